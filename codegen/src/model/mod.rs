@@ -1,0 +1,246 @@
+//! Stage 2, check: from what was written to a model with every name resolved and nothing derived yet.
+//!
+//! A [`Model`] can only be had from [`check`], so it satisfies every rule a declaration must: the Lagrangian is
+//! natural, the metric is not degenerate, the constraints are linear or affine and independent, surfaces can be
+//! reached. Indices are in order of declaration throughout: `i, j, k` coordinates, `a, b` constraints, `s` surfaces.
+
+use dalembert_expr::{ExprId, Pool, Rational, SymbolId};
+
+use crate::spec::ItemId;
+
+/// A checked model: all expressions live in `pool`.
+#[derive(Debug)]
+pub struct Model {
+    /// The expressions.
+    pub pool: Pool,
+    /// The type's name, `RollingDisk`.
+    pub name: String,
+    /// Snake case of `name`, `rolling_disk`.
+    pub snake_name: String,
+    /// The visibility as written: ``, `pub`, `pub(crate)`.
+    pub visibility: String,
+    /// Lines of the doc comment.
+    pub documentation: Vec<String>,
+    /// The declaration as text.
+    pub source: String,
+    /// The symbol of time `t`.
+    pub time: SymbolId,
+    /// Coordinates, families expanded.
+    pub coordinates: Vec<Coordinate>,
+    /// Parameters, families expanded.
+    pub parameters: Vec<Parameter>,
+    /// The Lagrangian and its parts.
+    pub lagrangian: Lagrangian,
+    /// Constraints, families expanded.
+    pub constraints: Vec<Constraint>,
+    /// Named forces.
+    pub forces: Vec<Force>,
+    /// Impact surfaces, families expanded.
+    pub surfaces: Vec<Surface>,
+    /// The declared initial condition.
+    pub initial: Initial,
+    /// The declared view.
+    pub view: Option<View>,
+    /// The declared outputs.
+    pub outputs: Vec<Output>,
+    /// Symbols that stand for derived quantities in outputs.
+    pub derived: DerivedSymbols,
+    /// Remarks a person should see: velocity-linear terms, integrable constraints, unused parameters.
+    pub notes: Vec<String>,
+}
+
+/// A name as the user knows it, and as Rust and formulas write it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Name {
+    /// As messages and the command line write it: `theta`, `theta.3`.
+    pub display: String,
+    /// The Rust field or family: `theta`.
+    pub field: String,
+    /// 1-based index in its family.
+    pub member: Option<usize>,
+}
+
+/// A coordinate with its velocity.
+#[derive(Debug, Clone)]
+pub struct Coordinate {
+    /// Its name.
+    pub name: Name,
+    /// The set it runs through.
+    pub topology: Topology,
+    /// The symbol of the coordinate.
+    pub q: SymbolId,
+    /// The symbol of its velocity; named `dot(x)`.
+    pub qdot: SymbolId,
+    /// Where it was declared.
+    pub item: ItemId,
+}
+
+/// The set a coordinate runs through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Topology {
+    /// The real line.
+    Line,
+    /// A circle of period 2 pi, stored unwrapped.
+    Angle,
+    /// An open interval between two constants (expressions without symbols).
+    Interval {
+        /// Lower end.
+        low: ExprId,
+        /// Upper end.
+        high: ExprId,
+    },
+}
+
+/// A parameter.
+#[derive(Debug, Clone)]
+pub struct Parameter {
+    /// Its name.
+    pub name: Name,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
+    /// The demand on its values.
+    pub assumption: Assumption,
+    /// Its default, an expression without symbols.
+    pub default: Option<ExprId>,
+    /// Its symbol.
+    pub symbol: SymbolId,
+    /// Where it was declared.
+    pub item: ItemId,
+}
+
+/// The demand on a parameter's values.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Assumption {
+    /// Any finite number.
+    Finite,
+    /// `> 0`
+    Positive,
+    /// `>= 0`
+    NonNegative,
+    /// `!= 0`
+    NonZero,
+    /// `in [low, high]`
+    Within {
+        /// Lower end.
+        low: Rational,
+        /// Upper end.
+        high: Rational,
+    },
+}
+
+/// `L = 1/2 qdot^T g qdot + A.qdot - V`.
+#[derive(Debug)]
+pub struct Lagrangian {
+    /// The whole as written, in coordinates, velocities, parameters and time.
+    pub whole: ExprId,
+    /// `g`, N rows of N, symmetric, free of velocities.
+    pub metric: Vec<Vec<ExprId>>,
+    /// `A`, N entries, free of velocities; zero without velocity-linear terms.
+    pub linear: Vec<ExprId>,
+    /// `V`, free of velocities.
+    pub potential: ExprId,
+    /// Where it was declared.
+    pub item: ItemId,
+}
+
+/// `eta(qdot) + eta_0 = 0`.
+#[derive(Debug)]
+pub struct Constraint {
+    /// Its name.
+    pub name: Name,
+    /// `eta`, N entries: left side minus right side, exactly as written.
+    pub form: Vec<ExprId>,
+    /// `eta_0`.
+    pub affine: ExprId,
+    /// `f(t, q)` with `df = eta + eta_0 dt`, when the form is exact with a known function.
+    pub level: Option<ExprId>,
+    /// Where it was declared.
+    pub item: ItemId,
+}
+
+/// A force as a one-form; coefficients may depend on coordinates, velocities and time.
+#[derive(Debug)]
+pub struct Force {
+    /// Its name.
+    pub name: Name,
+    /// N entries.
+    pub form: Vec<ExprId>,
+    /// Where it was declared.
+    pub item: ItemId,
+}
+
+/// An impact surface `h = 0`; motion is allowed where `h >= 0`.
+#[derive(Debug)]
+pub struct Surface {
+    /// Its name.
+    pub name: Name,
+    /// `h(t, q)`.
+    pub gap: ExprId,
+    /// Functions of `(t, q)` that must all be positive for the surface to count.
+    pub conditions: Vec<ExprId>,
+    /// Its law.
+    pub law: Law,
+    /// Where it was declared.
+    pub item: ItemId,
+}
+
+/// A declared impact law; coefficients are expressions of the parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Law {
+    /// `elastic`
+    Elastic,
+    /// `restitution(e)`
+    Restitution(ExprId),
+    /// `newton(e)`
+    Newton(ExprId),
+    /// `nonholonomic_plastic`
+    NonholonomicPlastic,
+    /// `impact_plastic`
+    ImpactPlastic,
+    /// `totally_plastic`
+    TotallyPlastic,
+}
+
+/// The declared initial condition: expressions of the parameters.
+#[derive(Debug, Default)]
+pub struct Initial {
+    /// Positions by coordinate; unnamed ones are 0.
+    pub q: Vec<Option<ExprId>>,
+    /// Velocities by coordinate; unnamed ones follow from the constraints.
+    pub qdot: Vec<Option<ExprId>>,
+    /// The horizon.
+    pub until: Option<ExprId>,
+}
+
+/// What a picture shows.
+#[derive(Debug)]
+pub struct View {
+    /// The point drawn, two functions of `(t, q)`.
+    pub path: [ExprId; 2],
+    /// The indices of the coordinates that `path` consists of, if it does.
+    pub plane: Option<[usize; 2]>,
+    /// A function of `(t, q)`, positive in the region where motion is allowed.
+    pub region: Option<ExprId>,
+}
+
+/// A quantity carried to tables and plots.
+#[derive(Debug)]
+pub struct Output {
+    /// Its name.
+    pub name: Name,
+    /// An expression of coordinates, velocities, parameters, time and [`DerivedSymbols`].
+    pub value: ExprId,
+    /// Where it was declared.
+    pub item: ItemId,
+}
+
+/// Symbols that stand for derived quantities where outputs name them.
+#[derive(Debug)]
+pub struct DerivedSymbols {
+    /// `energy`
+    pub energy: SymbolId,
+    /// `momentum(x)`, N symbols.
+    pub momenta: Vec<SymbolId>,
+    /// `multiplier(a)`, M symbols.
+    pub multipliers: Vec<SymbolId>,
+}

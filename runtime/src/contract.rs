@@ -1,0 +1,228 @@
+//! The traits between generated code and runtime: one per effect, so that a scene pays for what it declares.
+//!
+//! Only [`VectorField`] is known to integrators. Time is an argument everywhere; autonomous systems ignore it.
+
+use crate::error::{Fault, ParameterError, StateError};
+use crate::impacts::law::{Contact, Law};
+use crate::state::StateVector;
+
+/// A first-order system of ordinary differential equations on a state of fixed size.
+#[diagnostic::on_unimplemented(message = "`{Self}` has no vector field: declare it with `dalembert::model!`")]
+pub trait VectorField {
+    /// The state; its components mean what the system says.
+    type State: StateVector;
+
+    /// Writes the time derivative of `state` at time `t`.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the derivative does not exist; `rate` is unspecified then.
+    fn rate(&self, t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault>;
+
+    /// The size of one unit of each component: absolute tolerances are multiplied by it, so that they mean
+    /// the same for a momentum as for the velocity it belongs to. Ones unless overridden.
+    fn scale(&self, t: f64, state: &Self::State) -> Self::State {
+        let _ = (t, state);
+        let mut ones = Self::State::zeros();
+        ones.as_mut_slice().fill(1.0);
+        ones
+    }
+}
+
+/// A mechanical system: a state with positions, velocities, momenta and an energy.
+#[diagnostic::on_unimplemented(message = "`{Self}` is not a mechanical system: declare a `lagrangian` in its `model!`")]
+pub trait System: VectorField {
+    /// N numbers, one per coordinate, in the order of declaration: q, qdot or p.
+    type Vector: StateVector;
+
+    /// Positions q.
+    fn position(&self, state: &Self::State) -> Self::Vector;
+
+    /// Velocities `qdot = g^{-1}(p - A)`.
+    ///
+    /// # Errors
+    /// [`Fault::MetricNotPositive`].
+    fn velocity(&self, t: f64, state: &Self::State) -> Result<Self::Vector, Fault>;
+
+    /// Momenta `p = g qdot + A`.
+    ///
+    /// # Errors
+    /// [`Fault`], for states that do not hold momenta themselves.
+    fn momentum(&self, t: f64, state: &Self::State) -> Result<Self::Vector, Fault>;
+
+    /// The state with these positions and velocities, taken as they are.
+    ///
+    /// # Errors
+    /// [`Fault`] where the state cannot be formed.
+    fn state_unchecked(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<Self::State, Fault>;
+
+    /// The state with these positions and momenta, taken as they are.
+    ///
+    /// # Errors
+    /// [`Fault`] where the state cannot be formed.
+    fn state_from_momenta(&self, t: f64, q: &Self::Vector, p: &Self::Vector) -> Result<Self::State, Fault>;
+
+    /// Kinetic plus potential energy `1/2 g(qdot, qdot) + V`.
+    ///
+    /// # Errors
+    /// [`Fault::MetricNotPositive`].
+    fn energy(&self, t: f64, state: &Self::State) -> Result<f64, Fault>;
+
+    /// Adds `size * direction` to the momenta: an impulse.
+    ///
+    /// # Errors
+    /// [`Fault`], for states that do not hold momenta themselves.
+    fn kick(&self, t: f64, state: &mut Self::State, size: f64, direction: &Self::Vector) -> Result<(), Fault>;
+
+    /// Checks every parameter against its declaration.
+    ///
+    /// # Errors
+    /// The first [`ParameterError`], in order of declaration.
+    fn check_parameters(&self) -> Result<(), ParameterError>;
+
+    /// The first coordinate outside the open interval of its chart. None by default.
+    fn outside_chart(&self, state: &Self::State) -> Option<usize> {
+        let _ = state;
+        None
+    }
+
+    /// Refuses a state off the constraints by more than 1e-9 of the sum of absolute terms. Systems without
+    /// constraints accept every state.
+    ///
+    /// # Errors
+    /// [`StateError::OffConstraint`], or a [`Fault`] met on the way.
+    fn admit(&self, t: f64, state: &Self::State) -> Result<(), StateError> {
+        let _ = (t, state);
+        Ok(())
+    }
+
+    /// Moves the state to the nearest one in the metric whose velocity satisfies the constraints. Does
+    /// nothing without constraints.
+    ///
+    /// # Errors
+    /// A [`Fault`] met on the way; the state is unchanged then.
+    fn project(&self, t: f64, state: &mut Self::State) -> Result<(), Fault> {
+        let _ = (t, state);
+        Ok(())
+    }
+
+    /// The state with these positions and velocities, if they satisfy every constraint and declaration.
+    ///
+    /// # Errors
+    /// [`StateError`]: a parameter against its declaration, a number that is not finite, a coordinate
+    /// outside its chart, a constraint violated by more than 1e-9 of the sum of its absolute terms.
+    fn state(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<Self::State, StateError> {
+        let state = self.checked(t, q, qdot)?;
+        self.admit(t, &state)?;
+        Ok(state)
+    }
+
+    /// As [`System::state`], but moves an off-constraint velocity to the nearest allowed one in the metric.
+    ///
+    /// # Errors
+    /// As [`System::state`], without `OffConstraint`.
+    fn state_projected(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<Self::State, StateError> {
+        let mut state = self.checked(t, q, qdot)?;
+        self.project(t, &mut state)?;
+        Ok(state)
+    }
+
+    /// The state after every check but that of the constraints.
+    ///
+    /// # Errors
+    /// As [`System::state`], without `OffConstraint`.
+    fn checked(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<Self::State, StateError> {
+        self.check_parameters()?;
+        let components = q.as_slice().iter().chain(qdot.as_slice());
+        if let Some(component) = components.clone().position(|value| !value.is_finite()) {
+            return Err(StateError::NotFinite { component });
+        }
+        let state = self.state_unchecked(t, q, qdot)?;
+        if let Some(coordinate) = self.outside_chart(&state) {
+            return Err(StateError::OutsideChart { coordinate });
+        }
+        Ok(state)
+    }
+}
+
+/// A system with constraints `eta^a(qdot) + eta^a_0 = 0`.
+#[diagnostic::on_unimplemented(message = "`{Self}` has no constraints: declare `constraints {{ .. }}` in its `model!`")]
+pub trait Constrained: System {
+    /// M numbers, one per constraint, in the order of declaration.
+    type Multipliers: StateVector;
+
+    /// One number per constraint that is integrable with a known function (see
+    /// [`ConstraintInfo::level`](crate::describe::ConstraintInfo::level)).
+    type Levels: StateVector;
+
+    /// The multipliers `lambda_a`; the constraint force is `lambda_a eta^a`.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn multipliers(&self, t: f64, state: &Self::State) -> Result<Self::Multipliers, Fault>;
+
+    /// `eta^a(qdot) + eta^a_0`, and the sum of the absolute values of its terms: its natural scale.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn residuals(&self, t: f64, state: &Self::State) -> Result<(Self::Multipliers, Self::Multipliers), Fault>;
+
+    /// The forms `eta^a` (M rows of N, row after row) and their affine parts `eta^a_0` (M) at a position.
+    fn constraint_forms(&self, t: f64, q: &Self::Vector, forms: &mut [f64], affine: &mut Self::Multipliers);
+
+    /// The position-level values `f^k(t, q)` of the integrable constraints; the motion keeps them.
+    fn levels(&self, t: f64, q: &Self::Vector) -> Self::Levels;
+
+    /// One Newton step on position level, orthogonal in the metric: the change of q that moves the levels by
+    /// `-excess` to first order.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn level_correction(&self, t: f64, q: &Self::Vector, excess: &Self::Levels) -> Result<Self::Vector, Fault>;
+}
+
+/// A system with impact surfaces `h_s >= 0`.
+#[diagnostic::on_unimplemented(message = "`{Self}` has no impact surfaces: declare `impacts {{ .. }}` in its `model!`")]
+pub trait Impacting: System {
+    /// S numbers, one per surface, in the order of declaration.
+    type Gaps: StateVector;
+
+    /// The gaps `h_s`; motion is allowed where they are not negative.
+    fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps;
+
+    /// The gap rates `dh_s(qdot) + d_t h_s`.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn gap_rates(&self, t: f64, state: &Self::State) -> Result<Self::Gaps, Fault>;
+
+    /// Whether the surface counts here: all its `when` conditions are positive.
+    fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
+        let _ = (surface, t, state);
+        true
+    }
+
+    /// The declared law of a surface, at this system's parameters.
+    fn law(&self, surface: usize) -> Law;
+
+    /// What an impact on this surface needs.
+    ///
+    /// # Errors
+    /// [`Fault`]; [`Fault::SingularSurface`] where `dh(pi_D grad h)` is not positive.
+    fn contact(&self, surface: usize, t: f64, state: &Self::State) -> Result<Contact<Self::Vector>, Fault>;
+}
+
+/// A system whose divergence with respect to the invariant-volume candidate `mu_C` was derived.
+#[diagnostic::on_unimplemented(message = "the divergence of `{Self}` was not derived")]
+pub trait Divergence: System {
+    /// Divergence of the motion on D* with respect to `mu_C` (the Leray quotient of the Liouville volume).
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn divergence(&self, t: f64, state: &Self::State) -> Result<f64, Fault>;
+
+    /// The density form `theta = m_ab L_{W^a} eta^b` at a position: N components.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn density_form(&self, t: f64, q: &Self::Vector) -> Result<Self::Vector, Fault>;
+}

@@ -1,0 +1,133 @@
+//! What can go wrong at run time: small `Copy` values that say where.
+
+use core::fmt;
+
+use crate::describe::Assumption;
+
+/// A quantity that the equations of motion need does not exist at this state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Fault {
+    /// The metric is not positive definite: the pivot of this number in its LDL^T factorisation
+    /// (coordinate order) is not a positive number.
+    MetricNotPositive {
+        /// Index of the coordinate at which the factorisation stopped.
+        pivot: usize,
+        /// The pivot's value; may be NaN.
+        value: f64,
+    },
+    /// The constraint one-forms are dependent, or too nearly so to solve for the multipliers.
+    SingularConstraint {
+        /// Index of the first constraint that depends on the earlier ones.
+        constraint: usize,
+        /// Estimated condition number of the forms in the metric; infinite when dependent.
+        condition: f64,
+    },
+    /// `dh(pi_D grad h)` is not positive: no impulse that keeps the constraints can change the gap rate.
+    SingularSurface {
+        /// Index of the surface.
+        surface: usize,
+    },
+    /// A state, a rate or a gap is infinite or not a number.
+    NonFinite {
+        /// Index of the offending component of the state, in its own order.
+        component: usize,
+    },
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::MetricNotPositive { pivot, value } => {
+                write!(f, "the metric is not positive definite: pivot {pivot} is {value}")
+            }
+            Self::SingularConstraint { constraint, condition } => write!(
+                f,
+                "constraint {constraint} depends on the earlier ones at this state (condition {condition:e})"
+            ),
+            Self::SingularSurface { surface } => write!(
+                f,
+                "surface {surface}: no impulse within the constraints changes its gap rate here"
+            ),
+            Self::NonFinite { component } => write!(f, "component {component} of the state is not finite"),
+        }
+    }
+}
+
+/// A parameter's value contradicts its declaration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParameterError {
+    /// The parameter's name as declared (`m`, or `m.2` in a family).
+    pub name: &'static str,
+    /// The refused value.
+    pub value: f64,
+    /// What the declaration asks for.
+    pub expected: Assumption,
+}
+
+impl fmt::Display for ParameterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "parameter `{}` is {}, but must be {}", self.name, self.value, self.expected)
+    }
+}
+
+/// A state was refused.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum StateError {
+    /// A parameter of the system contradicts its declaration.
+    Parameter(ParameterError),
+    /// A position or velocity is infinite or not a number.
+    NotFinite {
+        /// Index among q, then qdot (or p).
+        component: usize,
+    },
+    /// The velocity violates a constraint by more than 1e-9 of the sum of the absolute values of its terms.
+    OffConstraint {
+        /// Index of the constraint.
+        constraint: usize,
+        /// `eta(qdot) + eta_0` at the given state.
+        residual: f64,
+        /// The sum of the absolute values of the terms of `residual`.
+        scale: f64,
+    },
+    /// A coordinate lies outside the open interval of its chart.
+    OutsideChart {
+        /// Index of the coordinate.
+        coordinate: usize,
+    },
+    /// The equations of motion do not exist at this state.
+    Fault(Fault),
+}
+
+impl fmt::Display for StateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Parameter(error) => error.fmt(f),
+            Self::NotFinite { component } => write!(f, "component {component} of (q, qdot) is not finite"),
+            Self::OffConstraint { constraint, residual, scale } => write!(
+                f,
+                "constraint {constraint} is violated: residual {residual:e} against terms of size {scale:e}; \
+                 use `state_projected` to project or `state_unchecked` to keep it"
+            ),
+            Self::OutsideChart { coordinate } => write!(f, "coordinate {coordinate} lies outside its interval"),
+            Self::Fault(fault) => fault.fmt(f),
+        }
+    }
+}
+
+impl From<Fault> for StateError {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
+
+impl From<ParameterError> for StateError {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error)
+    }
+}
+
+impl core::error::Error for Fault {}
+impl core::error::Error for ParameterError {}
+impl core::error::Error for StateError {}

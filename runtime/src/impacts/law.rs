@@ -1,0 +1,134 @@
+//! Impact laws: how large the impulse along `pi_D^* dh` is.
+//!
+//! Every law is `p+ = p + eps pi_D^* dh`; a law is a choice of `eps`. With `G` the gap rate
+//! `dh(qdot) + d_t h`, `rho = dh(pi_D grad h) / dh(grad h)`:
+//!
+//! | law | eps |
+//! |---|---|
+//! | elastic | `-2 (P(pi_D grad h) + d_t h) / dh(pi_D grad h)`, so that `H+ - H- = -eps d_t h` |
+//! | restitution(e) | the same with `1 + e` for 2 |
+//! | newton(e) | `-(1 + e) G / dh(pi_D grad h)`: `G` becomes `-e G` |
+//! | nonholonomic plastic | `-2 rho G / dh(pi_D grad h)` |
+//! | impact plastic | `-G / dh(pi_D grad h)` |
+//! | totally plastic | `-rho G / dh(pi_D grad h)` |
+//!
+//! Sources: W. Clark, thesis, (VI.16), Definition VI.20, Table 6.1; Clark and Bloch, Remark 5.
+
+use core::fmt;
+
+use crate::state::StateVector;
+
+/// An impact law of a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Law {
+    /// Keeps the energy at walls that stand still.
+    Elastic,
+    /// `1 + e` for the elastic law's 2; `e` in \[0, 1\].
+    Restitution(f64),
+    /// Multiplies the gap rate by `-e`; `e` in \[0, 1\].
+    Newton(f64),
+    /// Elastic constraint, plastic wall: the gap rate is multiplied by `1 - 2 rho`.
+    NonholonomicPlastic,
+    /// Orthogonal projection on D and the surface: the gap rate becomes 0.
+    ImpactPlastic,
+    /// The gap rate is multiplied by `1 - rho`.
+    TotallyPlastic,
+}
+
+/// What an impact at a state needs, derived and emitted for each surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact<V> {
+    /// `dh(qdot) + d_t h` before the impact; an impact has it negative.
+    pub gap_rate: f64,
+    /// `P(pi_D grad h)`: the momentum along the projected gradient.
+    pub constrained_rate: f64,
+    /// `d_t h`, the speed of a moving surface; 0 for one that stands still.
+    pub surface_rate: f64,
+    /// `dh(pi_D grad h)`.
+    pub constrained_compliance: f64,
+    /// `dh(grad h)`.
+    pub free_compliance: f64,
+    /// `pi_D^* dh`, the impulse's direction: N components, in the order of the coordinates.
+    pub direction: V,
+}
+
+impl<V: StateVector> Contact<V> {
+    /// `rho = dh(pi_D grad h) / dh(grad h)`, in \[0, 1\]; 1 without constraints.
+    pub fn rho(&self) -> f64 {
+        self.constrained_compliance / self.free_compliance
+    }
+
+    /// The impulse's size `eps`: `p+ = p + eps pi_D^* dh`.
+    pub fn impulse(&self, law: Law) -> f64 {
+        let elastic = self.constrained_rate + self.surface_rate;
+        let rate = match law {
+            Law::Elastic => 2.0 * elastic,
+            Law::Restitution(e) => (1.0 + e) * elastic,
+            Law::Newton(e) => (1.0 + e) * self.gap_rate,
+            Law::NonholonomicPlastic => 2.0 * self.rho() * self.gap_rate,
+            Law::ImpactPlastic => self.gap_rate,
+            Law::TotallyPlastic => self.rho() * self.gap_rate,
+        };
+        -rate / self.constrained_compliance
+    }
+
+    /// The gap rate after an impulse of size `eps`.
+    pub fn gap_rate_after(&self, eps: f64) -> f64 {
+        self.gap_rate + eps * self.constrained_compliance
+    }
+}
+
+impl Law {
+    /// The laws by the names the language and the command line use, with whether they take a coefficient.
+    pub const NAMES: [(&'static str, bool); 6] = [
+        ("elastic", false),
+        ("restitution", true),
+        ("newton", true),
+        ("nonholonomic_plastic", false),
+        ("impact_plastic", false),
+        ("totally_plastic", false),
+    ];
+
+    /// The law's name.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Elastic => "elastic",
+            Self::Restitution(_) => "restitution",
+            Self::Newton(_) => "newton",
+            Self::NonholonomicPlastic => "nonholonomic_plastic",
+            Self::ImpactPlastic => "impact_plastic",
+            Self::TotallyPlastic => "totally_plastic",
+        }
+    }
+
+    /// The coefficient of restitution, for the laws that have one.
+    pub const fn coefficient(&self) -> Option<f64> {
+        match *self {
+            Self::Restitution(e) | Self::Newton(e) => Some(e),
+            _ => None,
+        }
+    }
+
+    /// The law of this name; `coefficient` is used by those that take one. `None` for an unknown name.
+    pub fn from_name(name: &str, coefficient: f64) -> Option<Self> {
+        Some(match name {
+            "elastic" => Self::Elastic,
+            "restitution" => Self::Restitution(coefficient),
+            "newton" => Self::Newton(coefficient),
+            "nonholonomic_plastic" => Self::NonholonomicPlastic,
+            "impact_plastic" => Self::ImpactPlastic,
+            "totally_plastic" => Self::TotallyPlastic,
+            _ => return None,
+        })
+    }
+}
+
+impl fmt::Display for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.coefficient() {
+            Some(e) => write!(f, "{}({e})", self.name()),
+            None => f.write_str(self.name()),
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Impacts: the laws, and the effect that carries them out.
+
+pub mod law;
