@@ -1,1 +1,49 @@
-//! Placeholder.
+//! The systems of the source papers as dalembert models: one file each, with its source, what is known of it in
+//! closed form, and a test of such a fact.
+//!
+//! The binary of this package is the `dalembert` command over all of them.
+
+pub mod ball_on_rotating_table;
+pub mod bouncing_ball;
+pub mod chain;
+pub mod chaplygin_sleigh;
+pub mod double_pendulum;
+pub mod harmonic_oscillator;
+pub mod holonomic_bead_on_ellipses;
+pub mod point_billiard;
+pub mod rolling_ball_euler;
+pub mod rolling_disk;
+pub mod two_wheels_rod;
+
+pub use ball_on_rotating_table::BallOnRotatingTable;
+pub use bouncing_ball::BouncingBall;
+pub use chain::{Chain2, Chain3, Chain4, Chain8, Chain16};
+pub use chaplygin_sleigh::ChaplyginSleigh;
+pub use double_pendulum::DoublePendulum;
+pub use harmonic_oscillator::HarmonicOscillator;
+pub use holonomic_bead_on_ellipses::HolonomicBeadOnEllipses;
+pub use point_billiard::PointBilliard;
+pub use rolling_ball_euler::RollingBallEuler;
+pub use rolling_disk::RollingDisk;
+pub use two_wheels_rod::TwoWheelsRod;
+
+/// Every shipped model, for the command line.
+pub fn all() -> Vec<dalembert_cli::Entry> {
+    dalembert_cli::models![
+        BallOnRotatingTable,
+        BouncingBall,
+        Chain2,
+        Chain3,
+        Chain4,
+        Chain8,
+        Chain16,
+        ChaplyginSleigh,
+        DoublePendulum,
+        HarmonicOscillator,
+        HolonomicBeadOnEllipses,
+        PointBilliard,
+        RollingBallEuler,
+        RollingDisk,
+        TwoWheelsRod,
+    ]
+}

@@ -1,2 +1,7 @@
-//! Placeholder.
-fn main() {}
+//! The `dalembert` command over the shipped models.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    dalembert_cli::run(dalembert_models::all())
+}

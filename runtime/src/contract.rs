@@ -105,6 +105,23 @@ pub trait System: VectorField {
         Ok(())
     }
 
+    /// The velocities with those whose `named` is not 1 replaced by what the constraints make of the named
+    /// ones. Without constraints there is nothing to choose, and `qdot` is returned as it is.
+    ///
+    /// # Errors
+    /// [`StateError::OffConstraint`] where the named velocities contradict the constraints; a [`Fault`] met on
+    /// the way.
+    fn complete_velocity(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+        named: &Self::Vector,
+    ) -> Result<Self::Vector, StateError> {
+        let _ = (t, q, named);
+        Ok(*qdot)
+    }
+
     /// The state with these positions and velocities, if they satisfy every constraint and declaration.
     ///
     /// # Errors

@@ -96,6 +96,11 @@ pub enum StateError {
         /// Index of the coordinate.
         coordinate: usize,
     },
+    /// The system is larger than the fixed buffers of what was asked for.
+    TooLarge {
+        /// Number of coordinates they hold.
+        limit: usize,
+    },
     /// The equations of motion do not exist at this state.
     Fault(Fault),
 }
@@ -111,6 +116,7 @@ impl fmt::Display for StateError {
                  use `state_projected` to project or `state_unchecked` to keep it"
             ),
             Self::OutsideChart { coordinate } => write!(f, "coordinate {coordinate} lies outside its interval"),
+            Self::TooLarge { limit } => write!(f, "the system has more than {limit} coordinates"),
             Self::Fault(fault) => fault.fmt(f),
         }
     }

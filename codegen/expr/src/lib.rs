@@ -1,1 +1,70 @@
-//! Placeholder.
+//! Exact expressions for mechanics: hash-consed nodes, derivatives, zero tests, printing.
+//!
+//! Every expression lives in a [`Pool`] and is named by an [`ExprId`]. Equal expressions have equal ids, operands
+//! have smaller ids than their users, and ids are handed out in order of creation, so that passes run over ids in
+//! increasing order instead of recursing and every result is the same on every run.
+//!
+//! | file | job |
+//! |---|---|
+//! | `rational.rs`, `decimal.rs` | exact numbers; from text, to doubles |
+//! | `node.rs`, `pool.rs`, `intern.rs` | what an expression is, and where it is kept |
+//! | `construct.rs`, `sum.rs`, `product.rs`, `call.rs` | the constructors and every rewrite they make |
+//! | `sign.rs` | what is known of signs and finiteness |
+//! | `diff.rs`, `subst.rs`, `eval.rs` | calculus and evaluation |
+//! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and what it decides |
+//! | `simplify.rs`, `print/` | presentation |
+//!
+//! ```
+//! use dalembert_expr::{Assumption, Function, Pool, Rational, Verdict};
+//!
+//! let mut pool = Pool::new();
+//! let angle = pool.symbol("theta", r"\theta", Assumption::None);
+//! let theta = pool.variable(angle);
+//! let sine = pool.call(Function::Sin, theta);
+//! let cosine = pool.call(Function::Cos, theta);
+//! assert_eq!(pool.diff(sine, angle), cosine);
+//!
+//! let two = Rational::from(2);
+//! let (s2, c2) = (pool.pow(sine, two.clone()), pool.pow(cosine, two));
+//! let sum = pool.add(s2, c2);
+//! let one = pool.one();
+//! let difference = pool.sub(sum, one);
+//! assert_eq!(pool.zero_test(difference), Verdict::Proved);
+//! ```
+
+#![forbid(unsafe_code)]
+// A test may stop at the first surprise.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod call;
+mod construct;
+mod decimal;
+mod diff;
+mod eval;
+mod field;
+#[cfg(test)]
+mod fixture;
+mod intern;
+mod modular;
+mod node;
+mod point;
+mod pool;
+mod print;
+mod product;
+mod profile;
+mod rank;
+mod rational;
+mod sign;
+mod simplify;
+mod subst;
+mod sum;
+mod zero;
+
+pub use field::Modulus;
+pub use node::{Assumption, ExprId, Function, Node, SymbolId};
+pub use point::{ModularFailure, ModularPoint};
+pub use pool::Pool;
+pub use rank::RankReport;
+pub use rational::{MAX_BITS, Rational};
+pub use sign::Sign;
+pub use zero::Verdict;

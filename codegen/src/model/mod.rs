@@ -4,9 +4,29 @@
 //! natural, the metric is not degenerate, the constraints are linear or affine and independent, surfaces can be
 //! reached. Indices are in order of declaration throughout: `i, j, k` coordinates, `a, b` constraints, `s` surfaces.
 
+mod call;
+mod check;
+mod culprit;
+mod definitions;
+mod degree;
+mod form;
+mod latex;
+mod natural;
+mod order;
+mod periodic;
+mod resolve;
+mod symbols;
+#[cfg(test)]
+mod refusals;
+#[cfg(test)]
+mod tests;
+mod unknown;
+
 use dalembert_expr::{ExprId, Pool, Rational, SymbolId};
 
 use crate::spec::ItemId;
+
+pub use check::check;
 
 /// A checked model: all expressions live in `pool`.
 #[derive(Debug)]
@@ -217,6 +237,8 @@ pub struct Initial {
 pub struct View {
     /// The point drawn, two functions of `(t, q)`.
     pub path: [ExprId; 2],
+    /// The two expressions of the path as written.
+    pub labels: [String; 2],
     /// The indices of the coordinates that `path` consists of, if it does.
     pub plane: Option<[usize; 2]>,
     /// A function of `(t, q)`, positive in the region where motion is allowed.

@@ -1,1 +1,109 @@
-//! Placeholder.
+//! The dalembert command line over any list of models.
+//!
+//! The shipped `dalembert` binary is this crate over the shipped models; a crate of one's own gets the same
+//! commands for its own models:
+//!
+//! ```ignore
+//! fn main() -> std::process::ExitCode {
+//!     dalembert_cli::run(dalembert_cli::models![MySystem, MyOtherSystem])
+//! }
+//! ```
+//!
+//! Exit status: 0 the requested end was reached, 1 any other outcome (output is still written), 2 bad flags or
+//! input. Standard output holds results only, standard error messages only.
+
+#![forbid(unsafe_code)]
+
+mod args;
+mod command;
+mod driver;
+mod entry;
+mod error;
+mod exit;
+mod json;
+mod names;
+mod plot;
+mod progress;
+mod record;
+mod scalar;
+mod state_input;
+mod table;
+
+use std::ffi::OsString;
+use std::io::{self, IsTerminal, Read, Write};
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Command, CommandLine};
+pub use entry::{Entry, Model};
+use error::CliError;
+pub use exit::Exit;
+
+/// Where a command reads and writes.
+pub struct Streams<'a> {
+    /// The standard input.
+    pub input: &'a mut dyn Read,
+    /// The standard output: results.
+    pub output: &'a mut dyn Write,
+    /// The standard error: messages.
+    pub errors: &'a mut dyn Write,
+    /// Whether to show progress on the process's own standard error.
+    pub terminal: bool,
+}
+
+/// Runs the command line of this process over a list of models, as made by [`models!`].
+#[must_use]
+pub fn run(models: Vec<Entry>) -> ExitCode {
+    let mut streams = Streams {
+        input: &mut io::stdin().lock(),
+        output: &mut io::stdout(),
+        errors: &mut io::stderr(),
+        terminal: io::stderr().is_terminal(),
+    };
+    run_with(std::env::args_os(), &models, &mut streams).into()
+}
+
+/// Runs one command line, program name included, over a list of models, with streams of the caller's.
+pub fn run_with<A>(args: impl IntoIterator<Item = A>, models: &[Entry], streams: &mut Streams<'_>) -> Exit
+where
+    A: Into<OsString> + Clone,
+{
+    let line = match CommandLine::try_parse_from(args) {
+        Ok(line) => line,
+        Err(error) => return explain(&error, streams),
+    };
+    let done = dispatch(&line, models, streams).and_then(|exit| Ok(streams.output.flush().map(|()| exit)?));
+    done.unwrap_or_else(|error| match error {
+        // A reader that has seen enough, such as `head`, needs no message.
+        CliError::Stream(source) if source.kind() == io::ErrorKind::BrokenPipe => Exit::Other,
+        error => {
+            // Nothing is left to report to if the standard error fails.
+            let _ = writeln!(streams.errors, "error: {error}");
+            Exit::Refused
+        }
+    })
+}
+
+fn dispatch(line: &CommandLine, models: &[Entry], streams: &mut Streams<'_>) -> Result<Exit, CliError> {
+    match &line.command {
+        Command::List(args) => command::list::run(models, args, streams.output),
+        Command::Derive(args) => command::derive::run(models, args, streams.output),
+        Command::Check(args) => command::check::run(models, args, streams.output),
+        Command::Simulate(args) => command::simulate::run(models, args, streams),
+        Command::Eval(args) => command::eval::run(models, args, streams),
+    }
+}
+
+/// Help goes to the standard output; anything else is a refusal.
+fn explain(error: &clap::Error, streams: &mut Streams<'_>) -> Exit {
+    let text = error.to_string();
+    // Nothing is left to report to if a standard stream fails here.
+    if error.use_stderr() {
+        let _ = write!(streams.errors, "{text}");
+        Exit::Refused
+    } else {
+        let _ = write!(streams.output, "{text}");
+        Exit::Reached
+    }
+}

@@ -1,3 +1,9 @@
 //! Impacts: the laws, and the effect that carries them out.
 
+mod accumulation;
+mod impulse;
 pub mod law;
+mod override_table;
+mod watch;
+
+pub use impulse::{IMPACT_BUDGET, Impacts};

@@ -1,0 +1,148 @@
+//! Constructors of functions: exact values, parity, and the few rewrites listed in `construct.rs`.
+
+use crate::node::{ExprId, Function, Node};
+use crate::pool::Pool;
+use crate::rational::Rational;
+use crate::sign::Sign;
+
+impl Pool {
+    /// `function(argument)`
+    pub fn call(&mut self, function: Function, argument: ExprId) -> ExprId {
+        if let Some(value) = self.exact_value(function, argument) {
+            return value;
+        }
+        if let Some(value) = self.remove_quarter_turns(function, argument) {
+            return value;
+        }
+        let (coefficient, term) = self.as_multiple(argument);
+        let opposite = coefficient.is_negative();
+        match function {
+            Function::Ln => match self.node(argument) {
+                Node::Call(Function::Exp, exponent) => *exponent,
+                _ => self.intern(Node::Call(function, argument)),
+            },
+            Function::Abs => self.absolute(&coefficient, term),
+            _ if opposite && is_odd(function) => {
+                let positive = self.neg(argument);
+                let value = self.intern(Node::Call(function, positive));
+                self.neg(value)
+            }
+            Function::Cos | Function::Cosh if opposite => {
+                let positive = self.neg(argument);
+                self.intern(Node::Call(function, positive))
+            }
+            _ => self.intern(Node::Call(function, argument)),
+        }
+    }
+
+    /// The angle of the point `(x, y)`, in `(-pi, pi]`.
+    pub fn atan2(&mut self, y: ExprId, x: ExprId) -> ExprId {
+        if self.is_syntactic_zero(y) && self.sign(x) == Sign::Positive && self.is_finite(x) {
+            return self.zero();
+        }
+        self.intern(Node::Atan2(y, x))
+    }
+
+    /// `abs(coefficient * term)`
+    fn absolute(&mut self, coefficient: &Rational, term: ExprId) -> ExprId {
+        let sign = self.sign(term);
+        let value = if sign.is_nonnegative() {
+            term
+        } else if sign.is_nonpositive() {
+            self.neg(term)
+        } else if matches!(self.node(term), Node::Call(Function::Abs, _)) {
+            term
+        } else {
+            self.intern(Node::Call(Function::Abs, term))
+        };
+        self.scale(&coefficient.abs(), value)
+    }
+
+    fn exact_value(&mut self, function: Function, argument: ExprId) -> Option<ExprId> {
+        if matches!(function, Function::Sin | Function::Cos | Function::Tan) {
+            let turns = self.multiple_of_pi(argument)?;
+            let value = value_at_turns(function, &turns)?;
+            return Some(self.number(value));
+        }
+        let argument = self.as_number(argument)?.to_i64()?;
+        let pi_times = |numer, denom| (Rational::new(numer, denom), self.pi());
+        let (coefficient, factor) = match (function, argument) {
+            (Function::Exp | Function::Cosh, 0) => (Rational::ONE, self.one()),
+            (Function::Asin | Function::Atan | Function::Sinh | Function::Tanh, 0)
+            | (Function::Ln | Function::Acos, 1) => (Rational::ZERO, self.one()),
+            (Function::Asin, 1) | (Function::Acos, 0) => pi_times(1, 2),
+            (Function::Asin, -1) => pi_times(-1, 2),
+            (Function::Acos, -1) => pi_times(1, 1),
+            (Function::Atan, 1) => pi_times(1, 4),
+            (Function::Atan, -1) => pi_times(-1, 4),
+            _ => return None,
+        };
+        Some(self.scale(&coefficient, factor))
+    }
+
+    /// `r` if the expression is `r pi`.
+    fn multiple_of_pi(&self, id: ExprId) -> Option<Rational> {
+        match self.as_multiple(id) {
+            (coefficient, term) if term == self.pi() => Some(coefficient),
+            _ if self.is_syntactic_zero(id) => Some(Rational::ZERO),
+            _ => None,
+        }
+    }
+
+    /// sin and cos of `x + k pi/2`, `k` not 0, in terms of `x`.
+    fn remove_quarter_turns(&mut self, function: Function, argument: ExprId) -> Option<ExprId> {
+        if !matches!(function, Function::Sin | Function::Cos) || argument == self.pi() {
+            return None;
+        }
+        let (_, terms) = self.linear_form(argument);
+        let (coefficient, _) = terms.iter().find(|(_, term)| *term == self.pi())?;
+        let quarters = (coefficient + coefficient)
+            .to_i64()
+            .filter(|_| terms.len() > 1)?;
+        let shift = self.scale(coefficient, self.pi());
+        let rest = self.sub(argument, shift);
+        // cos x = sin(x + pi/2)
+        let quarters = quarters.rem_euclid(4) + i64::from(function == Function::Cos);
+        let (function, negative) = match quarters % 4 {
+            0 => (Function::Sin, false),
+            1 => (Function::Cos, false),
+            2 => (Function::Sin, true),
+            _ => (Function::Cos, true),
+        };
+        let value = self.call(function, rest);
+        Some(if negative { self.neg(value) } else { value })
+    }
+}
+
+fn is_odd(function: Function) -> bool {
+    use Function::{Asin, Atan, Sin, Sinh, Tan, Tanh};
+    matches!(function, Sin | Tan | Asin | Atan | Sinh | Tanh)
+}
+
+/// sin, cos or tan of `turns * pi` where it is rational.
+fn value_at_turns(function: Function, turns: &Rational) -> Option<Rational> {
+    // In units of pi/12, which hold the sixths and quarters.
+    let units = (turns * &Rational::from(12)).to_i64()?.rem_euclid(24);
+    match function {
+        Function::Sin => sine_at(units),
+        Function::Cos => sine_at((units + 6) % 24),
+        _ => match units % 12 {
+            0 => Some(Rational::ZERO),
+            3 => Some(Rational::ONE),
+            9 => Some(Rational::MINUS_ONE),
+            _ => None,
+        },
+    }
+}
+
+/// `sin(units * pi/12)` where it is rational.
+fn sine_at(units: i64) -> Option<Rational> {
+    match units {
+        0 | 12 => Some(Rational::ZERO),
+        2 | 10 => Some(Rational::HALF),
+        14 | 22 => Some(-Rational::HALF),
+        6 => Some(Rational::ONE),
+        18 => Some(Rational::MINUS_ONE),
+        _ => None,
+    }
+}

@@ -1,0 +1,218 @@
+//! Arithmetic modulo a prime just below 2^61.
+//!
+//! All primes are `p = 2^61 - c` with small `c`, so that a product is reduced by two multiplications by `c`. All are
+//! 3 modulo 4: of `u` and `-u` exactly one is a square, and on the squares, a group of odd order `(p-1)/2`, every
+//! root of a degree prime to that order is unique and multiplicative. Squares so take the place of the positive
+//! numbers: `sqrt(a b) = sqrt(a) sqrt(b)` holds for squares `a`, `b`.
+
+use num_bigint::BigInt;
+
+use crate::rational::Rational;
+
+const BITS: u32 = 61;
+const MASK: u64 = (1 << BITS) - 1;
+
+/// A prime `p = 2^61 - c`; residues are `u64` below `p`.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub struct Modulus {
+    deficit: u64,
+}
+
+impl Modulus {
+    /// The Mersenne prime `2^61 - 1`.
+    pub const MERSENNE: Self = Self { deficit: 1 };
+
+    /// The Mersenne prime, then the largest primes `p` below it for which 2 and 3 are squares and `(p-1)/2` is prime
+    /// to 2, 3, 5, 7 and 11, so that roots of these degrees exist (`p = 23 mod 24`).
+    pub const ALL: [Self; 9] = [
+        Self::MERSENNE,
+        Self { deficit: 465 },
+        Self { deficit: 1425 },
+        Self { deficit: 2385 },
+        Self { deficit: 3105 },
+        Self { deficit: 3153 },
+        Self { deficit: 3465 },
+        Self { deficit: 4185 },
+        Self { deficit: 4473 },
+    ];
+
+    /// `p`
+    pub fn prime(self) -> u64 {
+        (1 << BITS) - self.deficit
+    }
+
+    /// `a + b`
+    pub fn add(self, a: u64, b: u64) -> u64 {
+        self.reduce_once(a + b)
+    }
+
+    /// `a - b`
+    pub fn sub(self, a: u64, b: u64) -> u64 {
+        self.reduce_once(a + self.prime() - b)
+    }
+
+    /// `-a`
+    pub fn neg(self, a: u64) -> u64 {
+        self.sub(0, a)
+    }
+
+    /// `a b`
+    pub fn mul(self, a: u64, b: u64) -> u64 {
+        let wide = u128::from(a) * u128::from(b);
+        // 2^61 = c mod p: the first fold leaves less than 2^61 (1 + c), the second less than 2 p.
+        let fold = u128::from(wide as u64 & MASK) + (wide >> BITS) * u128::from(self.deficit);
+        self.reduce_once((fold as u64 & MASK) + (fold >> BITS) as u64 * self.deficit)
+    }
+
+    /// `base^exponent`; 1 for exponent 0.
+    pub fn pow(self, base: u64, mut exponent: u64) -> u64 {
+        let (mut square, mut result) = (base, 1);
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                result = self.mul(result, square);
+            }
+            square = self.mul(square, square);
+            exponent >>= 1;
+        }
+        result
+    }
+
+    /// `1 / a`; `None` for 0.
+    pub fn inv(self, a: u64) -> Option<u64> {
+        // Extended Euclid: half the multiplications of a power, on machine words.
+        let p = self.prime() as i64;
+        let (mut old, mut new) = ((a as i64, 1i64), (p, 0i64));
+        while new.0 != 0 {
+            let quotient = old.0 / new.0;
+            (old, new) = (new, (old.0 - quotient * new.0, old.1 - quotient * new.1));
+        }
+        (old.0 == 1).then(|| old.1.rem_euclid(p) as u64)
+    }
+
+    /// Whether `a` is a square other than 0.
+    pub fn is_square(self, a: u64) -> bool {
+        self.pow(a, (self.prime() - 1) / 2) == 1
+    }
+
+    /// The square root that is a square; `None` if `a` is none.
+    pub fn sqrt(self, a: u64) -> Option<u64> {
+        let root = self.pow(a, self.prime().div_ceil(4));
+        (self.mul(root, root) == a).then_some(root)
+    }
+
+    /// The `degree`-th root of squares as a power: its exponent, if `degree` is prime to `(p-1)/2`.
+    pub(crate) fn root_exponent(self, degree: u64) -> Option<u64> {
+        let order = i128::from((self.prime() - 1) / 2);
+        let (mut old, mut new) = ((i128::from(degree), 1i128), (order, 0i128));
+        while new.0 != 0 {
+            let quotient = old.0 / new.0;
+            (old, new) = (new, (old.0 - quotient * new.0, old.1 - quotient * new.1));
+        }
+        (old.0 == 1).then(|| old.1.rem_euclid(order) as u64)
+    }
+
+    /// The residue of an integer.
+    pub fn integer(self, value: i64) -> u64 {
+        value.rem_euclid(self.prime() as i64) as u64
+    }
+
+    /// The residue of a rational number; `None` if `p` divides its denominator.
+    pub fn rational(self, value: &Rational) -> Option<u64> {
+        match value.to_small() {
+            Some((n, 1)) => Some(self.integer(n)),
+            Some((n, d)) => Some(self.mul(self.integer(n), self.inv(self.integer(d))?)),
+            None => {
+                let numer = self.big_integer(&value.numer())?;
+                Some(self.mul(numer, self.inv(self.big_integer(&value.denom())?)?))
+            }
+        }
+    }
+
+    fn big_integer(self, value: &BigInt) -> Option<u64> {
+        let prime = BigInt::from(self.prime());
+        let residue = (value % &prime + &prime) % &prime;
+        u64::try_from(&residue).ok()
+    }
+
+    fn reduce_once(self, a: u64) -> u64 {
+        let p = self.prime();
+        if a >= p { a - p } else { a }
+    }
+}
+
+/// A residue other than 0 that depends on all words and on nothing else: the same on every run.
+pub(crate) fn draw(modulus: Modulus, words: &[u64]) -> u64 {
+    let mut state = 0x243f_6a88_85a3_08d3; // the first digits of pi
+    for word in words {
+        state = mix(state ^ word);
+    }
+    let mut residue = 0;
+    while residue == 0 || residue >= modulus.prime() {
+        state = mix(state);
+        residue = state & MASK;
+    }
+    residue
+}
+
+/// The output function of the splitmix64 generator.
+pub(crate) fn mix(state: u64) -> u64 {
+    let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_agree_with_wide_division() {
+        for modulus in Modulus::ALL {
+            let p = modulus.prime();
+            let mut samples = vec![0, 1, 2, p - 1, p - 2, p / 2];
+            samples.extend((0..20).map(|k| draw(modulus, &[k])));
+            for a in &samples {
+                for b in &samples {
+                    let expected = (u128::from(*a) * u128::from(*b) % u128::from(p)) as u64;
+                    assert_eq!(modulus.mul(*a, *b), expected);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn moduli_satisfy_fermat_for_many_bases() {
+        for modulus in Modulus::ALL {
+            for base in [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37] {
+                assert_eq!(modulus.pow(base, modulus.prime() - 1), 1);
+            }
+            assert_eq!(modulus.prime() % 4, 3);
+        }
+    }
+
+    #[test]
+    fn inverses_and_roots_undo_products() {
+        for modulus in Modulus::ALL {
+            assert_eq!(modulus.inv(0), None);
+            for k in 0..20 {
+                let a = draw(modulus, &[k, 7]);
+                assert_eq!(modulus.mul(a, modulus.inv(a).unwrap()), 1);
+                let square = modulus.mul(a, a);
+                let root = modulus.sqrt(square).unwrap();
+                assert!(root == a || root == modulus.neg(a));
+                assert!(modulus.is_square(root));
+                assert_ne!(modulus.is_square(a), modulus.is_square(modulus.neg(a)));
+            }
+        }
+    }
+
+    #[test]
+    fn rational_numbers_have_residues() {
+        let modulus = Modulus::ALL[1];
+        let value = modulus.rational(&Rational::new(-3, 7)).unwrap();
+        assert_eq!(modulus.mul(value, 7), modulus.integer(-3));
+        let big = Rational::from_decimal("1e30").unwrap();
+        assert_eq!(modulus.rational(&big), Some(modulus.pow(10, 30)));
+    }
+}

@@ -1,0 +1,162 @@
+//! What an expression is: the node types, and the names of nodes and symbols.
+
+use crate::rational::Rational;
+
+/// Names a symbol of a [`Pool`](crate::Pool).
+#[derive(Copy, Clone, Eq, PartialEq, Ord, PartialOrd, Hash, Debug)]
+pub struct SymbolId(u32);
+
+/// Names an expression of a [`Pool`](crate::Pool); operands come before their users.
+#[derive(Copy, Clone, Eq, PartialEq, Ord, PartialOrd, Hash, Debug)]
+pub struct ExprId(u32);
+
+macro_rules! id {
+    ($name:ident) => {
+        impl $name {
+            /// Position in order of creation.
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+
+            /// NOTE: the only place where a pool of more than 2^32 items would fail; memory ends long before.
+            pub(crate) fn from_index(index: usize) -> Self {
+                Self(index as u32)
+            }
+        }
+    };
+}
+
+id!(SymbolId);
+id!(ExprId);
+
+/// What is known of a symbol; every symbol is a finite real number.
+#[derive(Copy, Clone, Eq, PartialEq, Hash, Debug)]
+pub enum Assumption {
+    /// Nothing more.
+    None,
+    /// Greater than 0.
+    Positive,
+    /// Not less than 0.
+    NonNegative,
+    /// Not equal to 0.
+    NonZero,
+}
+
+/// The functions of one argument. The square root is the power 1/2.
+#[derive(Copy, Clone, Eq, PartialEq, Ord, PartialOrd, Hash, Debug)]
+pub enum Function {
+    /// Sine.
+    Sin,
+    /// Cosine.
+    Cos,
+    /// Tangent.
+    Tan,
+    /// Inverse sine, in `[-pi/2, pi/2]`.
+    Asin,
+    /// Inverse cosine, in `[0, pi]`.
+    Acos,
+    /// Inverse tangent, in `(-pi/2, pi/2)`.
+    Atan,
+    /// Exponential.
+    Exp,
+    /// Natural logarithm.
+    Ln,
+    /// Hyperbolic sine.
+    Sinh,
+    /// Hyperbolic cosine.
+    Cosh,
+    /// Hyperbolic tangent.
+    Tanh,
+    /// Absolute value.
+    Abs,
+}
+
+impl Function {
+    /// All functions, in the order of the enumeration.
+    pub const ALL: [Self; 12] = [
+        Self::Sin,
+        Self::Cos,
+        Self::Tan,
+        Self::Asin,
+        Self::Acos,
+        Self::Atan,
+        Self::Exp,
+        Self::Ln,
+        Self::Sinh,
+        Self::Cosh,
+        Self::Tanh,
+        Self::Abs,
+    ];
+
+    /// The name as written in expressions: `sin`, `ln`, ...
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sin => "sin",
+            Self::Cos => "cos",
+            Self::Tan => "tan",
+            Self::Asin => "asin",
+            Self::Acos => "acos",
+            Self::Atan => "atan",
+            Self::Exp => "exp",
+            Self::Ln => "ln",
+            Self::Sinh => "sinh",
+            Self::Cosh => "cosh",
+            Self::Tanh => "tanh",
+            Self::Abs => "abs",
+        }
+    }
+
+    /// The function of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|function| function.name() == name)
+    }
+}
+
+/// An expression whose operands are expressions of the same pool.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Node {
+    /// An exact number.
+    Number(Rational),
+    /// The circle constant.
+    Pi,
+    /// A symbol.
+    Symbol(SymbolId),
+    /// `constant + sum of coefficient * term`.
+    ///
+    /// Terms are in order of id, each once, and are no numbers. A coefficient is 0 only to keep the domain of its
+    /// term. A sum of two or more summands has coefficients without common factor and a positive first
+    /// coefficient; a multiple of it is the sum of that one term. See [`Pool::add`](crate::Pool::add).
+    Sum {
+        /// The numeric summand.
+        constant: Rational,
+        /// Coefficients and what they multiply.
+        terms: Box<[(Rational, ExprId)]>,
+    },
+    /// Product of `base^exponent`, in order of base and exponent; a single entry is a power.
+    ///
+    /// Exponents are never 0. Numeric coefficients live in the enclosing sum. A base occurs twice only where
+    /// merging would enlarge the domain. See [`Pool::mul`](crate::Pool::mul).
+    Product(Box<[(ExprId, Rational)]>),
+    /// A function of one argument.
+    Call(Function, ExprId),
+    /// `atan2(y, x)`, the angle of the point `(x, y)`.
+    Atan2(ExprId, ExprId),
+}
+
+impl Node {
+    /// Calls `visit` with every operand, in order of occurrence.
+    pub fn for_each_operand(&self, mut visit: impl FnMut(ExprId)) {
+        match self {
+            Self::Number(_) | Self::Pi | Self::Symbol(_) => {}
+            Self::Sum { terms, .. } => terms.iter().for_each(|(_, term)| visit(*term)),
+            Self::Product(factors) => factors.iter().for_each(|(base, _)| visit(*base)),
+            Self::Call(_, argument) => visit(*argument),
+            Self::Atan2(y, x) => {
+                visit(*y);
+                visit(*x);
+            }
+        }
+    }
+}

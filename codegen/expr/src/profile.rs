@@ -1,0 +1,142 @@
+//! What a set of expressions is made of, as far as it decides how much a modular evaluation proves.
+
+use crate::node::{ExprId, Function, Node};
+use crate::pool::Pool;
+use crate::rational::Rational;
+
+/// The properties of the expressions below some roots.
+#[derive(Clone, Debug)]
+pub(crate) struct Profile {
+    /// Roots or absolute values occur: their branches modulo a prime are not the real ones.
+    pub(crate) branches: bool,
+    /// Atoms occur that may be related in ways the residues do not show, as `ln(x y)` to `ln x` and `ln y`.
+    pub(crate) hidden_relations: bool,
+    /// Common denominator of the coefficients inside sin, cos and exp; `None` if there is no small one.
+    pub(crate) denominator: Option<i64>,
+    /// Bound for the degrees of numerators and denominators as polynomials in the drawn residues.
+    pub(crate) degree: f64,
+}
+
+impl Profile {
+    /// Whether a value other than 0 modulo a prime proves that an expression is not 0.
+    pub(crate) fn is_exact(&self) -> bool {
+        !self.branches && !self.hidden_relations
+    }
+}
+
+/// Beyond this common denominator the multiples of base angles are refused.
+const MAX_DENOMINATOR: i64 = 1 << 40;
+
+impl Pool {
+    /// The profile of the expressions in `order`, which is [`Pool::reachable`] of some roots.
+    pub(crate) fn profile(&self, order: &[ExprId]) -> Profile {
+        let mut profile = Profile {
+            branches: false,
+            hidden_relations: false,
+            denominator: Some(1),
+            degree: 0.0,
+        };
+        for id in order {
+            match self.node(*id) {
+                Node::Product(factors) => {
+                    profile.branches |= factors.iter().any(|(_, exponent)| !exponent.is_integer());
+                }
+                Node::Call(Function::Abs, _) => profile.branches = true,
+                Node::Call(function, argument) => self.add_call(&mut profile, *function, *argument),
+                Node::Atan2(..) => profile.hidden_relations = true,
+                _ => {}
+            }
+        }
+        profile.degree = self.degree_bound(order, profile.denominator.unwrap_or(1));
+        profile
+    }
+
+    fn add_call(&self, profile: &mut Profile, function: Function, argument: ExprId) {
+        use Function::{Cos, Cosh, Exp, Sin, Sinh, Tan, Tanh};
+        let circular = matches!(function, Sin | Cos | Tan);
+        if !circular && !matches!(function, Exp | Sinh | Cosh | Tanh) {
+            profile.hidden_relations = true;
+            return;
+        }
+        let (constant, terms) = self.linear_form(argument);
+        let common = |denominator: Option<i64>, coefficient: &Rational| {
+            least_common_multiple(denominator?, coefficient.to_small()?.1)
+        };
+        profile.denominator = common(profile.denominator, &constant);
+        profile.hidden_relations |= !constant.is_zero();
+        for (coefficient, term) in &terms {
+            let exact_turn = (coefficient * &Rational::from(12)).is_integer() && circular;
+            if *term == self.pi() && exact_turn {
+                // NOTE: only sqrt(2) and sqrt(3) enter; which root is taken is settled by their field automorphism.
+                continue;
+            }
+            profile.denominator = common(profile.denominator, coefficient);
+            profile.hidden_relations |= !matches!(self.node(*term), Node::Symbol(_));
+        }
+    }
+
+    /// Degrees of numerator and denominator are carried through all nodes; the largest is returned.
+    fn degree_bound(&self, order: &[ExprId], denominator: i64) -> f64 {
+        let mut degrees = vec![(0.0f64, 0.0f64); order.last().map_or(0, |id| id.index() + 1)];
+        let mut largest = 0.0f64;
+        for id in order {
+            let degree = self.degree_of_node(*id, denominator as f64, &degrees);
+            degrees[id.index()] = degree;
+            largest = largest.max(degree.0).max(degree.1);
+        }
+        largest
+    }
+
+    fn degree_of_node(&self, id: ExprId, denominator: f64, degrees: &[(f64, f64)]) -> (f64, f64) {
+        let of = |id: ExprId| degrees[id.index()];
+        match self.node(id) {
+            Node::Number(_) => (0.0, 0.0),
+            // A symbol known to be positive is drawn as a square.
+            Node::Pi | Node::Symbol(_) => (2.0, 0.0),
+            Node::Sum { terms, .. } => {
+                let below: f64 = terms.iter().map(|(_, term)| of(*term).1).sum();
+                let above = terms
+                    .iter()
+                    .map(|(_, term)| of(*term).0 - of(*term).1 + below);
+                (above.fold(below, f64::max), below)
+            }
+            Node::Product(factors) => {
+                factors
+                    .iter()
+                    .fold((0.0, 0.0), |(above, below), (base, e)| {
+                        let (size, (n, d)) = (e.to_f64().abs(), of(*base));
+                        let (n, d) = if e.is_negative() { (d, n) } else { (n, d) };
+                        (above + size * n, below + size * d)
+                    })
+            }
+            Node::Call(function, argument) => {
+                self.degree_of_call(*function, *argument, denominator)
+            }
+            Node::Atan2(..) => (1.0, 0.0),
+        }
+    }
+
+    /// Base angles and exponentials have degrees (2, 2) and 2; multiples multiply them.
+    fn degree_of_call(&self, function: Function, argument: ExprId, denominator: f64) -> (f64, f64) {
+        use Function::{Abs, Acos, Asin, Atan, Ln};
+        if matches!(function, Abs | Acos | Asin | Atan | Ln) {
+            return (1.0, 0.0);
+        }
+        let (constant, terms) = self.linear_form(argument);
+        let sizes = terms
+            .iter()
+            .map(|(coefficient, _)| coefficient.to_f64().abs());
+        let degree = 4.0 * denominator * sizes.sum::<f64>() + 4.0 * constant.to_f64().abs();
+        (degree, degree)
+    }
+}
+
+fn least_common_multiple(a: i64, b: i64) -> Option<i64> {
+    let (mut common, mut rest) = (a, b);
+    while rest != 0 {
+        (common, rest) = (rest, common % rest);
+    }
+    (a / common)
+        .checked_mul(b)
+        .filter(|multiple| *multiple <= MAX_DENOMINATOR)
+}

@@ -1,0 +1,115 @@
+//! Simultaneous substitution of expressions for symbols.
+
+use crate::node::{ExprId, Node, SymbolId};
+use crate::pool::Pool;
+
+impl Pool {
+    /// The expression with every symbol of `replacements` replaced, all at once.
+    ///
+    /// If a symbol occurs twice in `replacements`, the first entry counts.
+    pub fn substitute(&mut self, id: ExprId, replacements: &[(SymbolId, ExprId)]) -> ExprId {
+        self.substitute_all(&[id], replacements)[0]
+    }
+
+    /// [`Pool::substitute`] for several expressions, each shared part done once.
+    pub fn substitute_all(
+        &mut self,
+        roots: &[ExprId],
+        replacements: &[(SymbolId, ExprId)],
+    ) -> Vec<ExprId> {
+        let symbols: Vec<_> = replacements.iter().map(|(symbol, _)| *symbol).collect();
+        let affected = self.reachable_where(roots, |id| self.depends_on_any(id, &symbols));
+        let mut results = Rebuilt::new(affected.last());
+        for id in affected {
+            let node = self.node(id).clone();
+            let result = self.rebuild(node, replacements, |operand| results.get(operand));
+            results.set(id, result);
+        }
+        roots.iter().map(|root| results.get(*root)).collect()
+    }
+
+    /// A node that depends on a replaced symbol, its operands mapped.
+    fn rebuild(
+        &mut self,
+        node: Node,
+        replacements: &[(SymbolId, ExprId)],
+        map: impl Fn(ExprId) -> ExprId,
+    ) -> ExprId {
+        match node {
+            Node::Symbol(symbol) => match replacements.iter().find(|(key, _)| *key == symbol) {
+                Some((_, replacement)) => *replacement,
+                None => self.variable(symbol),
+            },
+            other => self.map_operands(other, map),
+        }
+    }
+
+    /// A node built anew from mapped operands, by the constructors.
+    pub(crate) fn map_operands(&mut self, node: Node, map: impl Fn(ExprId) -> ExprId) -> ExprId {
+        match node {
+            Node::Number(value) => self.number(value),
+            Node::Pi => self.pi(),
+            Node::Symbol(symbol) => self.variable(symbol),
+            Node::Sum { constant, terms } => {
+                let constant = self.number(constant);
+                let mut summands: Vec<_> = terms
+                    .iter()
+                    .map(|(c, term)| (c.clone(), map(*term)))
+                    .collect();
+                summands.push((crate::Rational::ONE, constant));
+                self.combine(&summands)
+            }
+            Node::Product(factors) => {
+                let powers: Vec<_> = factors
+                    .iter()
+                    .map(|(base, e)| (map(*base), e.clone()))
+                    .collect();
+                self.power_product(&powers)
+            }
+            Node::Call(function, argument) => self.call(function, map(argument)),
+            Node::Atan2(y, x) => self.atan2(map(y), map(x)),
+        }
+    }
+}
+
+/// A map from old to new expressions, the identity where nothing was set.
+pub(crate) struct Rebuilt(Vec<u32>);
+
+impl Rebuilt {
+    /// For ids up to `last`.
+    pub(crate) fn new(last: Option<&ExprId>) -> Self {
+        Self(vec![0; last.map_or(0, |id| id.index() + 1)])
+    }
+
+    pub(crate) fn set(&mut self, id: ExprId, result: ExprId) {
+        self.0[id.index()] = result.index() as u32 + 1;
+    }
+
+    pub(crate) fn get(&self, id: ExprId) -> ExprId {
+        match self.0.get(id.index()) {
+            None | Some(0) => id,
+            Some(position) => ExprId::from_index(*position as usize - 1),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixture::Fixture;
+
+    #[test]
+    fn substitution_is_simultaneous() {
+        let mut fixture = Fixture::new();
+        let [id, x, y, expected] = fixture.read_all(["x^2 + sin(y)", "x", "y", "y^2 + sin(x)"]);
+        let swap = [(fixture.symbol("x"), y), (fixture.symbol("y"), x)];
+        assert_eq!(fixture.pool.substitute(id, &swap), expected);
+    }
+
+    #[test]
+    fn substitution_builds_with_the_constructors() {
+        let mut fixture = Fixture::new();
+        let [id, zero, one] = fixture.read_all(["cos(x)*y + x/m", "0", "1"]);
+        let values = [(fixture.symbol("x"), zero), (fixture.symbol("y"), one)];
+        assert_eq!(fixture.pool.substitute(id, &values), one);
+    }
+}

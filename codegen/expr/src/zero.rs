@@ -1,0 +1,301 @@
+//! Whether an expression is identically zero, in three answers.
+//!
+//! Values at random points modulo primes, see [`Pool::modular_eval`], decide:
+//! - 0 at enough points: [`Verdict::Proved`]. The chance of an accident is `degree / p` per point (Schwartz, Zippel),
+//!   kept below 2^-60 in all; where roots or absolute values occur, a zero may also be an accident of branches, with
+//!   chance 1/2 per point, and there are [`BRANCH_POINTS`] points;
+//! - not 0 at one point: [`Verdict::Refuted`] for rational functions of symbols, sin, cos, exp. No probability is
+//!   involved. With other functions the atoms may be related in ways the residues do not show, or the branches differ
+//!   from the real ones; then values in double precision must be clearly different from 0, else the answer is
+//!   [`Verdict::Undecided`].
+
+use crate::field::{Modulus, mix};
+use crate::node::{Assumption, ExprId, SymbolId};
+use crate::point::ModularPoint;
+use crate::pool::Pool;
+use crate::profile::Profile;
+
+/// The answer of a zero test.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Verdict {
+    /// The expression is 0 wherever it is defined.
+    Proved,
+    /// The expression is not identically 0.
+    Refuted,
+    /// Neither was shown.
+    Undecided,
+}
+
+/// Points modulo primes at which an expression with roots must vanish.
+const BRANCH_POINTS: usize = 40;
+/// Points that are drawn before a value is given up, for each value wanted.
+const MAX_DRAWS: usize = 64;
+/// Real points that are tried, wanted, and must be clearly different from 0.
+const REAL_DRAWS: u64 = 96;
+const REAL_POINTS: usize = 12;
+const REAL_WITNESSES: usize = 3;
+/// A value counts as different from 0 beyond this part of its size before cancellation: a factor 1e9 above rounding.
+pub(crate) const CLEAR: f64 = 1e-6;
+/// Expressions with more distinct parts are not tested.
+const MAX_NODES: usize = 1 << 20;
+
+impl Pool {
+    /// Whether an expression is 0 for all values of its symbols that satisfy their assumptions.
+    pub fn zero_test(&self, id: ExprId) -> Verdict {
+        if self.is_syntactic_zero(id) {
+            return Verdict::Proved;
+        }
+        if self.is_finite(id) && self.sign(id).is_nonzero() {
+            return Verdict::Refuted;
+        }
+        let order = self.reachable(&[id]);
+        if order.len() > MAX_NODES {
+            return Verdict::Undecided;
+        }
+        let profile = self.profile(&order);
+        match self.vanishes_modularly(id, &order, &profile) {
+            Some(true) if profile.is_exact() => Verdict::Proved,
+            Some(false) if profile.is_exact() => Verdict::Refuted,
+            // NOTE: also where all residues are 0, as branches may agree by accident.
+            _ if self.is_clearly_nonzero(id) => Verdict::Refuted,
+            Some(true) => Verdict::Proved,
+            _ => Verdict::Undecided,
+        }
+    }
+
+    /// Whether all sampled residues are 0; `None` if there were not enough.
+    fn vanishes_modularly(&self, id: ExprId, order: &[ExprId], profile: &Profile) -> Option<bool> {
+        let wanted = sample_count(profile);
+        let mut points = SamplePoints::new(profile)?;
+        for _ in 0..wanted.unwrap_or(1) {
+            let value = points.find(|point| self.modular_eval_ordered(order, &[id], point).ok())?;
+            if value[0] != 0 {
+                return Some(false);
+            }
+        }
+        // A degree near the prime makes a zero worthless.
+        wanted.map(|_| true)
+    }
+
+    /// Whether values at real points are different from 0 beyond any doubt of rounding.
+    fn is_clearly_nonzero(&self, id: ExprId) -> bool {
+        let (mut valid, mut witnesses) = (0, 0);
+        for seed in 0..REAL_DRAWS {
+            let (value, magnitude) =
+                self.eval_magnitude(id, &|symbol| self.real_sample(symbol, seed));
+            if value.is_finite() && magnitude.is_finite() {
+                valid += 1;
+                witnesses += usize::from(value.abs() > CLEAR * magnitude);
+            }
+            if witnesses == REAL_WITNESSES || valid == REAL_POINTS {
+                break;
+            }
+        }
+        witnesses == REAL_WITNESSES
+    }
+
+    /// A value in `[-2, 2]` that satisfies the symbol's assumption; the same for the same seed.
+    pub(crate) fn real_sample(&self, symbol: SymbolId, seed: u64) -> f64 {
+        let word = mix(mix(seed + 1) ^ mix(symbol.index() as u64 + 1));
+        let unit = ((word >> 11) as f64 + 0.5) / (1u64 << 53) as f64;
+        match self.symbol_assumption(symbol) {
+            Assumption::None | Assumption::NonZero => 4.0 * unit - 2.0,
+            Assumption::Positive | Assumption::NonNegative => 2.0 * unit,
+        }
+    }
+}
+
+/// Points for a chance of error below 2^-60; `None` if the degree allows none.
+fn sample_count(profile: &Profile) -> Option<usize> {
+    let bits = 60.0 - profile.degree.max(1.0).log2();
+    if bits < 10.0 {
+        return None;
+    }
+    let points = (60.0 / bits).ceil().max(3.0) as usize;
+    Some(if profile.branches {
+        points.max(BRANCH_POINTS)
+    } else {
+        points
+    })
+}
+
+/// Random points, each with the next prime.
+pub(crate) struct SamplePoints {
+    denominator: i64,
+    drawn: usize,
+}
+
+impl SamplePoints {
+    /// For expressions of a profile; `None` if their coefficients have no common denominator in reach.
+    pub(crate) fn new(profile: &Profile) -> Option<Self> {
+        Some(Self {
+            denominator: profile.denominator?,
+            drawn: 0,
+        })
+    }
+
+    /// The first result that is not `None` at the next points.
+    pub(crate) fn find<T>(
+        &mut self,
+        mut f: impl FnMut(&mut ModularPoint) -> Option<T>,
+    ) -> Option<T> {
+        (0..MAX_DRAWS).find_map(|_| {
+            let modulus = Modulus::ALL[self.drawn % Modulus::ALL.len()];
+            self.drawn += 1;
+            let seed = mix(self.drawn as u64);
+            f(&mut ModularPoint::with_denominator(
+                modulus,
+                seed,
+                self.denominator,
+            ))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::Fixture;
+
+    fn expect(verdict: Verdict, texts: &[&str]) {
+        let mut fixture = Fixture::new();
+        for text in texts {
+            let id = fixture.read(text);
+            assert_eq!(fixture.pool.zero_test(id), verdict, "{text}");
+        }
+    }
+
+    #[test]
+    fn rational_identities_are_proved() {
+        expect(
+            Verdict::Proved,
+            &[
+                "0",
+                "(x + y)^2 - x^2 - 2*x*y - y^2",
+                "(x^2 - y^2)/(x - y) - x - y",
+                "x/x - 1",
+                "1/(x*y) - 1/x*1/y",
+                "(pi + 1)^2 - pi^2 - 2*pi - 1",
+                "0*ln(x)",
+            ],
+        );
+    }
+
+    #[test]
+    fn circular_and_exponential_identities_are_proved() {
+        expect(
+            Verdict::Proved,
+            &[
+                "cos(x)^2 + sin(x)^2 - 1",
+                "sin(2*x) - 2*sin(x)*cos(x)",
+                "cos(x + y) - cos(x)*cos(y) + sin(x)*sin(y)",
+                "cos(x) - 2*cos(x/2)^2 + 1",
+                "sin(x/3)*(3 - 4*sin(x/3)^2) - sin(x)",
+                "tan(x/2) - sin(x)/(1 + cos(x))",
+                "tan(x) - sin(x)/cos(x)",
+                "sin(x + pi/4) - (sin(x) + cos(x))*sqrt(2)/2",
+                "cos(pi/12) - (sqrt(6) + sqrt(2))/4",
+                "sin(pi/3)^2 - 3/4",
+                "cos(x + pi/3) - cos(x)/2 + sin(x)*sin(pi/3)",
+                "exp(x + y) - exp(x)*exp(y)",
+                "exp(x/2)^2 - exp(x)",
+                "cosh(x)^2 - sinh(x)^2 - 1",
+                "tanh(x)*cosh(x) - sinh(x)",
+                "sin(0.1*x)*2*cos(0.1*x) - sin(0.2*x)",
+                "sin(k*t)^2 + cos(k*t)^2 - 1",
+                "sin(1)^2 + cos(1)^2 - 1",
+            ],
+        );
+    }
+
+    #[test]
+    fn root_identities_are_proved_where_both_sides_are_defined() {
+        expect(
+            Verdict::Proved,
+            &[
+                "sqrt(x)^2 - x",
+                "sqrt(x*y) - sqrt(x)*sqrt(y)",
+                "sqrt(2)*sqrt(3) - sqrt(6)",
+                "sqrt(4*m^2*l^2) - 2*m*l",
+                "(sqrt(x^2 + 1) - x)*(sqrt(x^2 + 1) + x) - 1",
+                "1/sqrt(x + y) - sqrt(x + y)/(x + y)",
+                "abs(x)*abs(y) - abs(x*y)",
+                "sqrt(x^2) - abs(x)",
+                "exp(ln(x)) - x",
+                "acos(x) + asin(x) - pi/2",
+                "atan(x - y) + atan(y - x)",
+                "x^(1/3)*x^(2/3) - x",
+            ],
+        );
+    }
+
+    #[test]
+    fn what_is_not_zero_is_refuted() {
+        expect(
+            Verdict::Refuted,
+            &[
+                "1",
+                "m",
+                "x - y",
+                "x^2 - 1",
+                "sin(x)",
+                "sin(x) - x + x^3/6 - x^5/120",
+                "cos(x)^2 - sin(x)^2 - 1",
+                "sin(x/2) - sin(x)/2",
+                "exp(x) - 1",
+                "pi - 355/113",
+                "x/1000000000000000000000000000000",
+                "sin(pi/5)",
+                "sqrt(x^2) - x",
+                "sqrt(x) - x",
+                "abs(x) - x",
+                "(sqrt(x^2) - x)*(sqrt(y^2) - y)",
+                "ln(m*l) - ln(m) + ln(l)",
+                "atan(x) - x",
+                "sin(k*t) - k*t",
+                "sqrt(2) - 1.41421",
+            ],
+        );
+    }
+
+    #[test]
+    fn hidden_relations_are_never_refuted() {
+        expect(
+            Verdict::Undecided,
+            &[
+                "ln(m*l) - ln(m) - ln(l)",
+                "sin(asin(x)) - x",
+                "sin(x*(y + 1)) - sin(x*y + x)",
+                "atan(x) + atan(1/x^2*x) - pi/2*abs(x)/x",
+                "sqrt(x^4 + 2*x^2 + 1) - x^2 - 1",
+                "sin(pi/5)^2 - (5 - sqrt(5))/8",
+                "1/(x - x)",
+            ],
+        );
+    }
+
+    #[test]
+    fn large_degrees_are_decided_or_left_open_at_once() {
+        let mut fixture = Fixture::new();
+        let x = fixture.read("x");
+        let one = fixture.pool.one();
+        let mut tower = x;
+        for _ in 0..200 {
+            let square = fixture.pool.mul(tower, tower);
+            tower = fixture.pool.add(square, one);
+        }
+        let product = fixture.pool.mul(tower, tower);
+        let other = fixture.pool.add(tower, x);
+        let (a, b) = (fixture.pool.mul(other, other), fixture.pool.mul(tower, x));
+        let square = fixture.pool.mul(x, x);
+        let two = crate::Rational::from(-2);
+        let difference = fixture.pool.combine(&[
+            (crate::Rational::ONE, a),
+            (two, b),
+            (crate::Rational::MINUS_ONE, product),
+            (crate::Rational::MINUS_ONE, square),
+        ]);
+        assert_eq!(fixture.pool.zero_test(difference), Verdict::Undecided);
+        assert_eq!(fixture.pool.zero_test(other), Verdict::Refuted);
+    }
+}

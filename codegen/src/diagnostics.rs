@@ -1,0 +1,262 @@
+//! Diagnostics: collects every error of a stage, then becomes compile errors.
+//!
+//! An error is one text and at least one place. Stable Rust shows one text per place, so the help goes into the
+//! text, and an error about several declarations becomes one compile error at each of them.
+
+use std::fmt;
+
+use proc_macro2::{Group, Ident, Punct, Spacing, Span, TokenStream, TokenTree};
+
+/// A stretch of source: from the first to the last of its tokens.
+#[derive(Debug, Clone, Copy)]
+pub struct Location {
+    /// The first token.
+    pub first: Span,
+    /// The last token.
+    pub last: Span,
+}
+
+impl Location {
+    /// The place of a single token.
+    pub fn of(token: &TokenTree) -> Self {
+        Self::from(token.span())
+    }
+
+    /// From the beginning of `self` to the end of `end`.
+    pub fn to(self, end: Self) -> Self {
+        Self { first: self.first, last: end.last }
+    }
+
+    /// The place between the braces of `group` where something is missing: its opening brace.
+    pub fn opening(group: &Group) -> Self {
+        Self::from(group.span_open())
+    }
+}
+
+impl From<Span> for Location {
+    fn from(span: Span) -> Self {
+        Self { first: span, last: span }
+    }
+}
+
+/// The errors of a stage, in the order they were met.
+#[derive(Debug, Default)]
+pub struct Diagnostics {
+    errors: Vec<Diagnostic>,
+}
+
+/// One error: what is wrong, where, and what to write instead.
+#[derive(Debug)]
+pub struct Diagnostic {
+    places: Vec<(Location, String)>,
+}
+
+impl Diagnostics {
+    /// No errors yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Whether nothing went wrong.
+    pub fn is_empty(&self) -> bool {
+        self.errors.is_empty()
+    }
+
+    /// How many errors were met.
+    pub fn len(&self) -> usize {
+        self.errors.len()
+    }
+
+    /// Records an error; help and further places may be added to what is returned.
+    pub fn error(&mut self, at: Location, text: impl Into<String>) -> &mut Diagnostic {
+        self.errors.push(Diagnostic { places: vec![(at, text.into())] });
+        let last = self.errors.len() - 1;
+        &mut self.errors[last]
+    }
+
+    /// Records an error unless one with the same text and help is there: a mistake in the body of a family or a
+    /// definition is met once for each of its uses and told once.
+    pub fn error_once(&mut self, at: Location, text: impl Into<String>, help: impl fmt::Display) {
+        let full = with_help(text.into(), help);
+        if !self.errors.iter().any(|error| error.message() == full) {
+            self.error(at, full);
+        }
+    }
+
+    /// Takes over the errors of another collection.
+    pub fn extend(&mut self, others: Self) {
+        self.errors.extend(others.errors);
+    }
+
+    /// `value` if there were no errors.
+    ///
+    /// # Errors
+    /// The errors, if there were any.
+    pub fn finish<T>(self, value: T) -> Result<T, Self> {
+        if self.is_empty() { Ok(value) } else { Err(self) }
+    }
+
+    /// The errors in the order they were met.
+    pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.errors.iter()
+    }
+
+    /// One `compile_error!` for each place of each error.
+    pub fn into_compile_error(self) -> TokenStream {
+        let places = self.errors.into_iter().flat_map(|error| error.places);
+        places.map(|(at, text)| compile_error(at, &text)).collect()
+    }
+}
+
+impl Diagnostic {
+    /// Adds the line that says what to write instead.
+    pub fn help(&mut self, help: impl fmt::Display) -> &mut Self {
+        if let Some((_, text)) = self.places.last_mut() {
+            *text = with_help(std::mem::take(text), help);
+        }
+        self
+    }
+
+    /// Adds a second place with its own text.
+    pub fn also(&mut self, at: Location, text: impl Into<String>) -> &mut Self {
+        self.places.push((at, text.into()));
+        self
+    }
+
+    /// The text at the first place, help included.
+    pub fn message(&self) -> &str {
+        self.places.first().map_or("", |(_, text)| text)
+    }
+
+    /// All places with their texts; there is at least one.
+    pub fn places(&self) -> &[(Location, String)] {
+        &self.places
+    }
+}
+
+/// The text followed by a help line; an empty help adds nothing.
+fn with_help(text: String, help: impl fmt::Display) -> String {
+    let help = help.to_string();
+    if help.is_empty() { text } else { format!("{text}\nhelp: {help}") }
+}
+
+/// `::core::compile_error! { text }`, placed so that the compiler underlines `at`.
+fn compile_error(at: Location, text: &str) -> TokenStream {
+    let punct = |character, spacing| {
+        let mut punct = Punct::new(character, spacing);
+        punct.set_span(at.first);
+        TokenTree::from(punct)
+    };
+    let mut message = proc_macro2::Literal::string(text);
+    message.set_span(at.last);
+    let mut body = Group::new(proc_macro2::Delimiter::Brace, TokenTree::from(message).into());
+    body.set_span(at.last);
+    [
+        punct(':', Spacing::Joint),
+        punct(':', Spacing::Alone),
+        Ident::new("core", at.first).into(),
+        punct(':', Spacing::Joint),
+        punct(':', Spacing::Alone),
+        Ident::new("compile_error", at.first).into(),
+        punct('!', Spacing::Alone),
+        body.into(),
+    ]
+    .into_iter()
+    .collect()
+}
+
+/// The candidate most like `name`, if one is near enough to be meant: at most one edit for three letters.
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let limit = name.chars().count().div_ceil(3);
+    let near = candidates.into_iter().map(|candidate| (edit_distance(name, candidate), candidate));
+    near.filter(|(distance, candidate)| *distance <= limit && *distance < candidate.chars().count())
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other, letters of
+/// different case counted as the same.
+fn edit_distance(left: &str, right: &str) -> usize {
+    let left: Vec<char> = left.to_lowercase().chars().collect();
+    let right: Vec<char> = right.to_lowercase().chars().collect();
+    let mut before_last = Vec::new();
+    let mut last: Vec<usize> = (0..=right.len()).collect();
+    for (i, a) in left.iter().enumerate() {
+        let mut row = vec![i + 1];
+        for (j, b) in right.iter().enumerate() {
+            let replaced = last[j] + usize::from(a != b);
+            let mut least = replaced.min(last[j + 1] + 1).min(row[j] + 1);
+            if i > 0 && j > 0 && *a == right[j - 1] && left[i - 1] == *b {
+                least = least.min(before_last_at(&before_last, j - 1) + 1);
+            }
+            row.push(least);
+        }
+        before_last = std::mem::replace(&mut last, row);
+    }
+    last[right.len()]
+}
+
+/// The entry of the row before the last; it exists when it is asked for.
+fn before_last_at(row: &[usize], index: usize) -> usize {
+    row.get(index).copied().unwrap_or(usize::MAX - 1)
+}
+
+/// `` `a`, `b` and `c` ``, for lists of accepted words.
+pub fn listed<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    let quoted: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
+    match quoted.split_last() {
+        None => String::new(),
+        Some((only, [])) => only.clone(),
+        Some((last, rest)) => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
+/// For tests: the message of each error with the stretch of `source` that it points at.
+#[cfg(test)]
+pub(crate) fn reported(source: &str, diagnostics: &Diagnostics) -> Vec<(String, String)> {
+    let stretch = |at: Location| {
+        let range = at.first.byte_range().start..at.last.byte_range().end;
+        source.get(range).unwrap_or_default().to_owned()
+    };
+    diagnostics.iter().map(|error| (error.message().to_owned(), stretch(error.places[0].0))).collect()
+}
+
+/// For tests: takes the marks `«` and `»` off, and gives what stood between them.
+#[cfg(test)]
+pub(crate) fn unmarked(source: &str) -> (String, String) {
+    let marked = source.split_once('«').and_then(|(_, rest)| rest.split_once('»')).map_or("", |(marked, _)| marked);
+    (source.replace(['«', '»'], ""), marked.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_within_one_edit_for_three_letters() {
+        assert_eq!(nearest("thta", ["x", "theta", "phi"]), Some("theta"));
+        assert_eq!(nearest("sinn", ["sin", "sinh", "cos"]), Some("sin"));
+        assert_eq!(nearest("tehta", ["theta"]), Some("theta"));
+        assert_eq!(nearest("banana", ["x", "theta"]), None);
+        assert_eq!(nearest("y", ["x"]), None);
+    }
+
+    #[test]
+    fn every_place_becomes_a_compile_error() {
+        let mut diagnostics = Diagnostics::new();
+        let here = Location::from(Span::call_site());
+        diagnostics.error(here, "`x` declared again").help("choose another name").also(here, "first declared here");
+        let text = diagnostics.into_compile_error().to_string();
+        assert_eq!(text.matches("compile_error").count(), 2);
+        assert!(text.contains("help: choose another name"));
+    }
+
+    #[test]
+    fn the_same_mistake_is_told_once() {
+        let mut diagnostics = Diagnostics::new();
+        let here = Location::from(Span::call_site());
+        diagnostics.error_once(here, "unknown name `a`", "");
+        diagnostics.error_once(here, "unknown name `a`", "");
+        assert_eq!(diagnostics.len(), 1);
+    }
+}

@@ -1,0 +1,143 @@
+//! `Constrained`: multipliers, residuals, projections.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::function::Body;
+use super::{Context, doc};
+use crate::program::Constrained;
+
+/// `impl Constrained`, if there are constraints.
+pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
+    let Some(functions) = &context.program.constrained else { return TokenStream::new() };
+    let type_name = &context.names.type_name;
+    let m = context.model.constraints.len();
+    let levels = functions.levels.outputs.len();
+    let solve = emit_multipliers(context, functions);
+    let forms = emit_forms(context, functions);
+    let positions = emit_levels(context, functions);
+    quote! {
+        #[automatically_derived]
+        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        impl ::dalembert::Constrained for #type_name {
+            type Multipliers = ::dalembert::__private::SVector<f64, #m>;
+            type Levels = ::dalembert::__private::SVector<f64, #levels>;
+            #solve
+            #forms
+            #positions
+        }
+    }
+}
+
+fn emit_multipliers(context: &Context<'_>, functions: &Constrained) -> TokenStream {
+    let m = context.model.constraints.len();
+    let multipliers = context.state_body(&functions.multipliers);
+    let formula = "m^ab lambda_b = -[ W^a.(f - gdot qdot - Adot) + curvature_a ]";
+    let documentation = doc::formula(formula, &functions.multipliers.cost);
+    let (statements, values) = (multipliers.statements, multipliers.outputs);
+    let residuals = context.state_body(&functions.residuals);
+    let residuals_doc = doc::formula("eta^a(qdot) + eta^a_0", &functions.residuals.cost);
+    let (residual_statements, both) = (residuals.statements, residuals.outputs);
+    let (left, right) = both.split_at(m);
+    quote! {
+        #documentation
+        #[inline]
+        fn multipliers(
+            &self,
+            t: f64,
+            state: &Self::State,
+        ) -> ::core::result::Result<Self::Multipliers, ::dalembert::Fault> {
+            #statements
+            ::core::result::Result::Ok(::dalembert::__private::vector([#(#values),*]))
+        }
+
+        #residuals_doc
+        #[inline]
+        fn residuals(
+            &self,
+            t: f64,
+            state: &Self::State,
+        ) -> ::core::result::Result<(Self::Multipliers, Self::Multipliers), ::dalembert::Fault> {
+            #residual_statements
+            ::core::result::Result::Ok((
+                ::dalembert::__private::vector([#(#left),*]),
+                ::dalembert::__private::vector([#(#right),*]),
+            ))
+        }
+    }
+}
+
+fn emit_forms(context: &Context<'_>, functions: &Constrained) -> TokenStream {
+    let (n, m) = (context.dimension(), context.model.constraints.len());
+    let Body { statements, outputs } = context.position_body(&functions.forms);
+    let (forms, affine) = outputs.split_at(n * m);
+    quote! {
+        #[inline]
+        fn constraint_forms(&self, t: f64, q: &Self::Vector, forms: &mut [f64], affine: &mut Self::Multipliers) {
+            #statements
+            for (entry, value) in forms.iter_mut().zip([#(#forms),*]) {
+                *entry = value;
+            }
+            *affine = ::dalembert::__private::vector([#(#affine),*]);
+        }
+    }
+}
+
+fn emit_levels(context: &Context<'_>, functions: &Constrained) -> TokenStream {
+    let levels = context.position_body(&functions.levels);
+    let (level_statements, values) = (levels.statements, levels.outputs);
+    let correction = context.position_body(&functions.level_correction);
+    let documentation = doc::formula("g^-1 nu_k eta^k, m nu = -excess", &functions.level_correction.cost);
+    let (correction_statements, change) = (correction.statements, correction.outputs);
+    quote! {
+        #[inline]
+        fn levels(&self, t: f64, q: &Self::Vector) -> Self::Levels {
+            #level_statements
+            ::dalembert::__private::vector([#(#values),*])
+        }
+
+        #documentation
+        #[inline]
+        fn level_correction(
+            &self,
+            t: f64,
+            q: &Self::Vector,
+            excess: &Self::Levels,
+        ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
+            let _ = excess;
+            #correction_statements
+            ::core::result::Result::Ok(::dalembert::__private::vector([#(#change),*]))
+        }
+    }
+}
+
+/// What a system with constraints answers where others accept every state.
+pub(super) fn emit_system_hooks(context: &Context<'_>) -> TokenStream {
+    let Some(functions) = &context.program.constrained else { return TokenStream::new() };
+    let documentation = doc::formula("p + mu_a eta^a, m mu = -(eta(qdot) + eta_0)", &functions.project.cost);
+    let Body { statements, outputs } = context.state_body(&functions.project);
+    quote! {
+        fn admit(&self, t: f64, state: &Self::State) -> ::core::result::Result<(), ::dalembert::StateError> {
+            ::dalembert::__private::admit(self, t, state)
+        }
+
+        #documentation
+        #[inline]
+        fn project(&self, t: f64, state: &mut Self::State) -> ::core::result::Result<(), ::dalembert::Fault> {
+            #statements
+            let p = ::dalembert::__private::vector([#(#outputs),*]);
+            *state = ::dalembert::__private::join(&<Self as ::dalembert::System>::position(self, state), &p);
+            ::core::result::Result::Ok(())
+        }
+
+        fn complete_velocity(
+            &self,
+            t: f64,
+            q: &Self::Vector,
+            qdot: &Self::Vector,
+            named: &Self::Vector,
+        ) -> ::core::result::Result<Self::Vector, ::dalembert::StateError> {
+            ::dalembert::__private::complete_velocities(self, t, q, qdot, named)
+        }
+    }
+}

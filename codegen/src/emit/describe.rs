@@ -1,0 +1,320 @@
+//! `Described` and `Scene`: what the model says of itself, and the effects it comes with.
+
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::quote;
+
+use super::function::{Body, emit_body, number};
+use super::{Context, parameters};
+use crate::model::{Assumption, Law, Topology};
+use crate::program::recipes::geometry::Shape;
+
+/// `impl Described`
+pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
+    let type_name = &context.names.type_name;
+    let description = emit_description(context);
+    let defaults = parameters::with_defaults(context.model);
+    let access = emit_parameter_access(context);
+    let initial = emit_initial(context);
+    let declared = emit_declared(context);
+    let inspect = emit_inspect(context);
+    quote! {
+        #[automatically_derived]
+        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        impl ::dalembert::Described for #type_name {
+            const DESCRIPTION: ::dalembert::describe::Description = #description;
+
+            fn with_defaults() -> Self { #defaults }
+
+            #access
+            #initial
+            #declared
+            #inspect
+        }
+    }
+}
+
+fn emit_description(context: &Context<'_>) -> TokenStream {
+    let model = context.model;
+    let (type_name, name) = (&model.name, &model.snake_name);
+    let documentation = model.documentation.iter().map(|line| line.trim()).collect::<Vec<_>>().join("\n");
+    let source = &model.source;
+    let coordinates = emit_coordinate_infos(context);
+    let parameters = emit_parameter_infos(context);
+    let constraints = emit_constraint_infos(context);
+    let forces = model.forces.iter().map(|force| &force.name.display);
+    let surfaces = emit_surface_infos(context);
+    let outputs = model.outputs.iter().map(|output| &output.name.display);
+    let view = emit_view_info(context);
+    quote! {
+        ::dalembert::describe::Description {
+            type_name: #type_name,
+            name: #name,
+            documentation: #documentation,
+            source: #source,
+            coordinates: &[#coordinates],
+            parameters: &[#parameters],
+            constraints: &[#constraints],
+            forces: &[#(#forces),*],
+            surfaces: &[#surfaces],
+            outputs: &[#(#outputs),*],
+            scenes: &["all"],
+            view: #view,
+        }
+    }
+}
+
+fn emit_coordinate_infos(context: &Context<'_>) -> TokenStream {
+    let infos = context.model.coordinates.iter().map(|coordinate| {
+        let name = &coordinate.name.display;
+        let topology = match coordinate.topology {
+            Topology::Line => quote!(Line),
+            Topology::Angle => quote!(Circle),
+            Topology::Interval { low, high } => {
+                let ends = context.model.pool.eval(&[low, high], &|_| f64::NAN);
+                let (low, high) = (number(ends[0]), number(ends[1]));
+                quote!(Interval { low: #low, high: #high })
+            }
+        };
+        quote! {
+            ::dalembert::describe::CoordinateInfo {
+                name: #name,
+                topology: ::dalembert::describe::Topology::#topology,
+            },
+        }
+    });
+    quote!(#(#infos)*)
+}
+
+fn emit_parameter_infos(context: &Context<'_>) -> TokenStream {
+    let infos = context.model.parameters.iter().map(|parameter| {
+        let name = &parameter.name.display;
+        let assumption = match &parameter.assumption {
+            Assumption::Finite => quote!(Finite),
+            Assumption::Positive => quote!(Positive),
+            Assumption::NonNegative => quote!(NonNegative),
+            Assumption::NonZero => quote!(NonZero),
+            Assumption::Within { low, high } => {
+                let (low, high) = (number(low.to_f64()), number(high.to_f64()));
+                quote!(Within { low: #low, high: #high })
+            }
+        };
+        let default = match parameters::default_value(context.model, parameter) {
+            Some(value) => {
+                let value = number(value);
+                quote!(::core::option::Option::Some(#value))
+            }
+            None => quote!(::core::option::Option::None),
+        };
+        quote! {
+            ::dalembert::describe::ParameterInfo {
+                name: #name,
+                assumption: ::dalembert::describe::Assumption::#assumption,
+                default: #default,
+            },
+        }
+    });
+    quote!(#(#infos)*)
+}
+
+fn emit_constraint_infos(context: &Context<'_>) -> TokenStream {
+    let mut levels = 0_usize;
+    let infos = context.model.constraints.iter().map(|constraint| {
+        let name = &constraint.name.display;
+        let affine = !context.model.pool.is_syntactic_zero(constraint.affine);
+        let level = match constraint.level {
+            Some(_) => {
+                let index = levels;
+                levels += 1;
+                quote!(::core::option::Option::Some(#index))
+            }
+            None => quote!(::core::option::Option::None),
+        };
+        quote!(::dalembert::describe::ConstraintInfo { name: #name, affine: #affine, level: #level },)
+    });
+    quote!(#(#infos)*)
+}
+
+fn emit_surface_infos(context: &Context<'_>) -> TokenStream {
+    let pool = &context.model.pool;
+    let infos = context.model.surfaces.iter().map(|surface| {
+        let name = &surface.name.display;
+        let law = match surface.law {
+            Law::Elastic => "elastic".to_string(),
+            Law::Restitution(e) => format!("restitution({})", pool.text(e)),
+            Law::Newton(e) => format!("newton({})", pool.text(e)),
+            Law::NonholonomicPlastic => "nonholonomic_plastic".into(),
+            Law::ImpactPlastic => "impact_plastic".into(),
+            Law::TotallyPlastic => "totally_plastic".into(),
+        };
+        quote!(::dalembert::describe::SurfaceInfo { name: #name, law: #law },)
+    });
+    quote!(#(#infos)*)
+}
+
+fn emit_view_info(context: &Context<'_>) -> TokenStream {
+    let Some(view) = &context.model.view else { return quote!(::core::option::Option::None) };
+    let labels = &view.labels;
+    let plane = match view.plane {
+        Some([i, j]) => quote!(::core::option::Option::Some([#i, #j])),
+        None => quote!(::core::option::Option::None),
+    };
+    let region = view.region.is_some();
+    quote! {
+        ::core::option::Option::Some(::dalembert::describe::ViewInfo {
+            labels: [#(#labels),*],
+            plane: #plane,
+            region: #region,
+        })
+    }
+}
+
+/// `parameter` and `set_parameter`.
+fn emit_parameter_access(context: &Context<'_>) -> TokenStream {
+    let places: Vec<_> = context.names.parameters.iter().collect();
+    let get = places.iter().enumerate().map(|(k, place)| quote!(#k => #place,));
+    let set = places.iter().enumerate().map(|(k, place)| quote!(#k => #place = value,));
+    quote! {
+        fn parameter(&self, index: usize) -> f64 {
+            match index {
+                #(#get)*
+                _ => ::core::f64::NAN,
+            }
+        }
+
+        fn set_parameter(&mut self, index: usize, value: f64) {
+            let _ = value;
+            match index {
+                #(#set)*
+                _ => {}
+            }
+        }
+    }
+}
+
+fn emit_initial(context: &Context<'_>) -> TokenStream {
+    let (model, program) = (context.model, context.program);
+    let Body { statements, outputs } = emit_body(&program.initial, &context.names);
+    let (q, qdot) = outputs.split_at(context.dimension());
+    let named = model.initial.qdot.iter().map(|value| number(f64::from(u8::from(value.is_some()))));
+    let until = match &program.until {
+        Some(function) => {
+            let Body { statements, outputs } = emit_body(function, &context.names);
+            quote!({ #statements ::core::option::Option::Some(#(#outputs)*) })
+        }
+        None => quote!(::core::option::Option::None),
+    };
+    quote! {
+        fn initial(&self) -> ::dalembert::describe::Initial<Self::Vector> {
+            #statements
+            ::dalembert::describe::Initial {
+                q: ::dalembert::__private::vector([#(#q),*]),
+                qdot: ::dalembert::__private::vector([#(#qdot),*]),
+                named: ::dalembert::__private::vector([#(#named),*]),
+                until: #until,
+            }
+        }
+    }
+}
+
+/// Outputs and view.
+fn emit_declared(context: &Context<'_>) -> TokenStream {
+    let program = context.program;
+    let outputs = match &program.outputs {
+        Some(function) => {
+            let Body { statements, outputs } = context.state_body(function);
+            quote! {
+                #statements
+                for (entry, value) in values.iter_mut().zip([#(#outputs),*]) {
+                    *entry = value;
+                }
+            }
+        }
+        None => quote!(let _ = (t, state, values);),
+    };
+    let path = match &program.view_path {
+        Some(function) => {
+            let Body { statements, outputs } = context.state_body(function);
+            quote!(#statements ::core::option::Option::Some([#(#outputs),*]))
+        }
+        None => quote!(let _ = (t, state); ::core::option::Option::None),
+    };
+    let region = match &program.view_region {
+        Some(function) => {
+            let Body { statements, outputs } = context.position_body(function);
+            quote!(#statements ::core::option::Option::Some(#(#outputs)*))
+        }
+        None => quote!(let _ = (t, q); ::core::option::Option::None),
+    };
+    quote! {
+        fn outputs(
+            &self,
+            t: f64,
+            state: &Self::State,
+            values: &mut [f64],
+        ) -> ::core::result::Result<(), ::dalembert::Fault> {
+            #outputs
+            ::core::result::Result::Ok(())
+        }
+
+        fn view_path(&self, t: f64, state: &Self::State) -> ::core::option::Option<[f64; 2]> { #path }
+
+        fn view_region(&self, t: f64, q: &Self::Vector) -> ::core::option::Option<f64> { #region }
+    }
+}
+
+fn emit_inspect(context: &Context<'_>) -> TokenStream {
+    let geometry = &context.program.geometry;
+    let n = context.dimension();
+    let Body { statements, outputs } = context.state_body(&geometry.function);
+    let mut rest = outputs.as_slice();
+    let reports = geometry.groups.iter().map(|group| {
+        let (values, tail) = rest.split_at(group.shape.len());
+        rest = tail;
+        let name = &group.name;
+        match group.shape {
+            Shape::Scalar => quote!(report.scalar(#name, #(#values)*);),
+            Shape::Vector(_) => quote!(report.vector(#name, &[#(#values),*]);),
+            Shape::Matrix(rows, columns) => quote!(report.matrix(#name, #rows, #columns, &[#(#values),*]);),
+        }
+    });
+    let reports: Vec<TokenStream> = reports.collect();
+    let end = Literal::usize_unsuffixed(n);
+    let p = Ident::new("p", Span::mixed_site());
+    quote! {
+        fn inspect(
+            &self,
+            t: f64,
+            state: &Self::State,
+            report: &mut dyn ::dalembert::describe::Report,
+        ) -> ::core::result::Result<(), ::dalembert::Fault> {
+            let (q, #p) = ::dalembert::StateVector::as_slice(state).split_at(#end);
+            report.vector("q", q);
+            report.vector("p", #p);
+            #statements
+            #(#reports)*
+            ::core::result::Result::Ok(())
+        }
+    }
+}
+
+/// `impl Scene`: the effects of everything that was declared.
+pub(super) fn emit_scene(context: &Context<'_>) -> TokenStream {
+    let type_name = &context.names.type_name;
+    let (mut types, mut values) = (Vec::new(), Vec::new());
+    if context.program.constrained.is_some() {
+        types.push(quote!(::dalembert::Projection<Self>));
+        values.push(quote!(::dalembert::Projection::new()));
+    }
+    if context.program.impacting.is_some() {
+        types.push(quote!(::dalembert::Impacts<Self>));
+        values.push(quote!(::dalembert::Impacts::declared(self)));
+    }
+    quote! {
+        #[automatically_derived]
+        impl ::dalembert::Scene for #type_name {
+            type Effects = (#(#types,)*);
+
+            fn effects(&self) -> Self::Effects { (#(#values,)*) }
+        }
+    }
+}

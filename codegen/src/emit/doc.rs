@@ -1,0 +1,30 @@
+//! Doc comments of generated items.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::model::Model;
+use crate::program::Cost;
+
+/// A doc comment from lines.
+pub(super) fn lines<S: AsRef<str>>(lines: &[S]) -> TokenStream {
+    let lines = lines.iter().map(|line| {
+        let text = line.as_ref();
+        let text = if text.is_empty() || text.starts_with(' ') { text.to_string() } else { format!(" {text}") };
+        quote!(#[doc = #text])
+    });
+    quote!(#(#lines)*)
+}
+
+/// A doc comment that says formula and cost.
+pub(super) fn formula(text: &str, cost: &Cost) -> TokenStream {
+    lines(&[format!("`{text}`"), String::new(), format!("{cost}.")])
+}
+
+/// The order of the components of the state: `x, y, p_x, p_y`.
+pub(super) fn state_order(model: &Model) -> String {
+    let names = |prefix: &str| -> Vec<String> {
+        model.coordinates.iter().map(|coordinate| format!("{prefix}{}", coordinate.name.display)).collect()
+    };
+    [names(""), names("p_")].concat().join(", ")
+}

@@ -1,0 +1,275 @@
+//! `VectorField` and `System`: the motion of the state `(q, p)`.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+use super::function::{Body, emit_body, uses};
+use super::{Context, doc};
+use crate::model::Topology;
+use crate::program::{Function, Input};
+
+impl Context<'_> {
+    /// Number of coordinates.
+    pub(super) fn dimension(&self) -> usize {
+        self.model.coordinates.len()
+    }
+
+    /// `let [x, y, _] = components(q);` with the coordinates that the function uses.
+    pub(super) fn bind_coordinates(&self, function: &Function) -> TokenStream {
+        let pattern = pattern(&self.names.coordinates, |i| uses(function, |input| input == Input::Coordinate(i)));
+        bind(&[pattern], &quote!(q))
+    }
+
+    /// `let [x, _, p_x, p_y] = components(state);` with what the function uses.
+    pub(super) fn bind_state(&self, function: &Function) -> TokenStream {
+        let coordinates = pattern(&self.names.coordinates, |i| uses(function, |input| input == Input::Coordinate(i)));
+        let momenta = pattern(&self.names.momenta, |i| uses(function, |input| input == Input::Momentum(i)));
+        bind(&[coordinates, momenta], &quote!(state))
+    }
+
+    fn bind_velocities(&self, function: &Function) -> TokenStream {
+        let velocities = pattern(&self.names.velocities, |i| uses(function, |input| input == Input::Velocity(i)));
+        bind(&[velocities], &quote!(qdot))
+    }
+
+    /// The statements of a function of `(t, q, p)` and its results.
+    pub(super) fn state_body(&self, function: &Function) -> Body {
+        self.body(self.bind_state(function), function)
+    }
+
+    /// The statements of a function of `(t, q)` and its results.
+    pub(super) fn position_body(&self, function: &Function) -> Body {
+        self.body(self.bind_coordinates(function), function)
+    }
+
+    /// The statements of a function after what binds its arguments.
+    fn body(&self, bindings: TokenStream, function: &Function) -> Body {
+        let Body { statements, outputs } = emit_body(function, &self.names);
+        let time = match uses(function, |input| input == Input::Time) {
+            true => TokenStream::new(),
+            false => quote!(let _ = t;),
+        };
+        Body { statements: quote!(#time #bindings #statements), outputs }
+    }
+}
+
+/// A pattern of locals, `_` where nothing is used; and whether anything is.
+fn pattern(locals: &[Ident], used: impl Fn(usize) -> bool) -> (TokenStream, bool) {
+    let mut any = false;
+    let parts = locals.iter().enumerate().map(|(i, local)| match used(i) {
+        true => {
+            any = true;
+            quote!(#local)
+        }
+        false => quote!(_),
+    });
+    let parts: Vec<TokenStream> = parts.collect();
+    (quote!(#(#parts),*), any)
+}
+
+fn bind(patterns: &[(TokenStream, bool)], source: &TokenStream) -> TokenStream {
+    if !patterns.iter().any(|(_, any)| *any) {
+        return quote!(let _ = #source;);
+    }
+    let parts = patterns.iter().map(|(tokens, _)| tokens);
+    quote!(let [#(#parts),*] = ::dalembert::__private::components(#source);)
+}
+
+/// `impl VectorField`
+pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
+    let (type_name, n) = (&context.names.type_name, context.dimension());
+    let program = context.program;
+    let size = 2 * n;
+    let formula = match program.constrained {
+        Some(_) => "qdot = g^-1 (p - A), pdot = dL/dq + F + lambda_a eta^a",
+        None => "qdot = g^-1 (p - A), pdot = dL/dq + F",
+    };
+    let documentation = doc::formula(formula, &program.rate.cost);
+    let order = doc::lines(&[String::new(), format!("State: `{}`.", doc::state_order(context.model))]);
+    let Body { statements, outputs } = context.state_body(&program.rate);
+    let scale = context.position_body(&program.scale);
+    let (units, momenta) = ((0..n).map(|_| quote!(1.0)), scale.outputs);
+    let scale_statements = scale.statements;
+    quote! {
+        #[automatically_derived]
+        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        impl ::dalembert::VectorField for #type_name {
+            type State = ::dalembert::__private::SVector<f64, #size>;
+
+            #documentation
+            #order
+            #[inline]
+            fn rate(
+                &self,
+                t: f64,
+                state: &Self::State,
+                rate: &mut Self::State,
+            ) -> ::core::result::Result<(), ::dalembert::Fault> {
+                #statements
+                *rate = ::dalembert::__private::vector([#(#outputs),*]);
+                ::core::result::Result::Ok(())
+            }
+
+            /// 1 for a coordinate, `g_ii` for its momentum: what a unit of velocity makes of it.
+            #[inline]
+            fn scale(&self, t: f64, state: &Self::State) -> Self::State {
+                let q = &<Self as ::dalembert::System>::position(self, state);
+                #scale_statements
+                ::dalembert::__private::vector([#(#units,)* #(#momenta),*])
+            }
+        }
+    }
+}
+
+/// `impl System`
+pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
+    let (type_name, n) = (&context.names.type_name, context.dimension());
+    let momenta = emit_momentum_functions(context);
+    let derived = emit_derived_functions(context);
+    let chart = emit_chart(context);
+    let constrained = match context.program.constrained {
+        Some(_) => super::constraint::emit_system_hooks(context),
+        None => TokenStream::new(),
+    };
+    quote! {
+        #[automatically_derived]
+        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        impl ::dalembert::System for #type_name {
+            type Vector = ::dalembert::__private::SVector<f64, #n>;
+
+            #[inline]
+            fn position(&self, state: &Self::State) -> Self::Vector {
+                ::dalembert::__private::part::<0, _, _>(state)
+            }
+
+            #[inline]
+            fn momentum(
+                &self,
+                t: f64,
+                state: &Self::State,
+            ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
+                let _ = t;
+                ::core::result::Result::Ok(::dalembert::__private::part::<#n, _, _>(state))
+            }
+
+            #momenta
+            #derived
+
+            fn check_parameters(&self) -> ::core::result::Result<(), ::dalembert::ParameterError> {
+                ::dalembert::__private::check_parameters(self)
+            }
+
+            #chart
+            #constrained
+        }
+    }
+}
+
+/// States from velocities or momenta, and impulses.
+fn emit_momentum_functions(context: &Context<'_>) -> TokenStream {
+    let n = context.dimension();
+    let function = &context.program.momentum;
+    let documentation = doc::formula("p = g qdot + A", &function.cost);
+    let bindings = [context.bind_coordinates(function), context.bind_velocities(function)];
+    let Body { statements, outputs } = context.body(quote!(#(#bindings)*), function);
+    quote! {
+        #documentation
+        #[inline]
+        fn state_unchecked(
+            &self,
+            t: f64,
+            q: &Self::Vector,
+            qdot: &Self::Vector,
+        ) -> ::core::result::Result<Self::State, ::dalembert::Fault> {
+            #statements
+            let p = ::dalembert::__private::vector([#(#outputs),*]);
+            ::core::result::Result::Ok(::dalembert::__private::join(q, &p))
+        }
+
+        #[inline]
+        fn state_from_momenta(
+            &self,
+            t: f64,
+            q: &Self::Vector,
+            p: &Self::Vector,
+        ) -> ::core::result::Result<Self::State, ::dalembert::Fault> {
+            let _ = t;
+            ::core::result::Result::Ok(::dalembert::__private::join(q, p))
+        }
+
+        #[inline]
+        fn kick(
+            &self,
+            t: f64,
+            state: &mut Self::State,
+            size: f64,
+            direction: &Self::Vector,
+        ) -> ::core::result::Result<(), ::dalembert::Fault> {
+            let _ = t;
+            for i in 0..#n {
+                state[#n + i] += size * direction[i];
+            }
+            ::core::result::Result::Ok(())
+        }
+    }
+}
+
+/// Velocity and energy.
+fn emit_derived_functions(context: &Context<'_>) -> TokenStream {
+    let program = context.program;
+    let velocity = context.state_body(&program.velocity);
+    let velocity_doc = doc::formula("qdot = g^-1 (p - A)", &program.velocity.cost);
+    let (velocity_statements, qdot) = (velocity.statements, velocity.outputs);
+    let energy = context.state_body(&program.energy);
+    let energy_doc = doc::formula("H = g(qdot, qdot)/2 + V", &program.energy.cost);
+    let (energy_statements, value) = (energy.statements, &energy.outputs[0]);
+    quote! {
+        #velocity_doc
+        #[inline]
+        fn velocity(
+            &self,
+            t: f64,
+            state: &Self::State,
+        ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
+            #velocity_statements
+            ::core::result::Result::Ok(::dalembert::__private::vector([#(#qdot),*]))
+        }
+
+        #energy_doc
+        #[inline]
+        fn energy(&self, t: f64, state: &Self::State) -> ::core::result::Result<f64, ::dalembert::Fault> {
+            #energy_statements
+            ::core::result::Result::Ok(#value)
+        }
+    }
+}
+
+/// `outside_chart` for coordinates in open intervals.
+fn emit_chart(context: &Context<'_>) -> TokenStream {
+    let checks: Vec<TokenStream> = context
+        .model
+        .coordinates
+        .iter()
+        .enumerate()
+        .filter_map(|(i, coordinate)| {
+            let Topology::Interval { low, high } = coordinate.topology else { return None };
+            let ends = context.model.pool.eval(&[low, high], &|_| f64::NAN);
+            let (low, high) = (super::function::number(ends[0]), super::function::number(ends[1]));
+            Some(quote! {
+                if !(#low < state[#i] && state[#i] < #high) {
+                    return ::core::option::Option::Some(#i);
+                }
+            })
+        })
+        .collect();
+    if checks.is_empty() {
+        return TokenStream::new();
+    }
+    quote! {
+        #[inline]
+        fn outside_chart(&self, state: &Self::State) -> ::core::option::Option<usize> {
+            #(#checks)*
+            ::core::option::Option::None
+        }
+    }
+}

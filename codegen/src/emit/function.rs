@@ -1,0 +1,247 @@
+//! Straight-line functions as statements.
+//!
+//! A value becomes a local when it is used more than once, has a name, or would make a line too long; all other
+//! values stand inside the expression that uses them. Sine and cosine of one argument are taken together.
+
+use std::collections::BTreeSet;
+
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::quote;
+
+use super::names::{Names, claim};
+use crate::program::{Function, Guard, Input, Op, Value};
+use dalembert_expr::{Function as Elementary, Rational};
+
+/// Operations that one statement may hold.
+const LONGEST_EXPRESSION: usize = 8;
+
+/// How tightly an expression binds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Unary,
+    Atom,
+}
+
+/// An expression with its binding and the operations it holds.
+#[derive(Clone)]
+struct Piece {
+    tokens: TokenStream,
+    binding: Binding,
+    size: usize,
+}
+
+/// The statements of a function and the expressions of its results.
+pub(super) struct Body {
+    /// `let` statements and guards.
+    pub statements: TokenStream,
+    /// The results, in order.
+    pub outputs: Vec<TokenStream>,
+}
+
+/// Which inputs the function uses, for binding them.
+pub(super) fn uses(function: &Function, wanted: impl Fn(Input) -> bool) -> bool {
+    function.ops.iter().any(|op| matches!(op, Op::Input(input) if wanted(*input)))
+}
+
+/// Writes a function down. Inputs must be bound to the locals of `names` before the statements.
+pub(super) fn emit_body(function: &Function, names: &Names) -> Body {
+    let mut writer = Writer::new(function, names);
+    for index in 0..function.ops.len() {
+        writer.write(index);
+    }
+    let outputs = function.outputs.iter().map(|&output| writer.pieces[output.index()].tokens.clone()).collect();
+    Body { statements: writer.statements, outputs }
+}
+
+struct Writer<'a> {
+    function: &'a Function,
+    names: &'a Names,
+    taken: BTreeSet<String>,
+    uses: Vec<usize>,
+    pieces: Vec<Piece>,
+    paired: Vec<Option<Ident>>,
+    statements: TokenStream,
+}
+
+impl<'a> Writer<'a> {
+    fn new(function: &'a Function, names: &'a Names) -> Self {
+        let mut uses = vec![0; function.ops.len()];
+        for op in &function.ops {
+            // What a guard reads becomes a local, since a guard reads it twice.
+            let weight = if matches!(op, Op::Guard(_)) { 2 } else { 1 };
+            op.operands().iter().for_each(|operand| uses[operand.index()] += weight);
+        }
+        function.outputs.iter().for_each(|output| uses[output.index()] += 1);
+        let paired = vec![None; function.ops.len()];
+        let pieces = Vec::with_capacity(function.ops.len());
+        Self { function, names, taken: names.taken(function), uses, pieces, paired, statements: TokenStream::new() }
+    }
+
+    fn write(&mut self, index: usize) {
+        let op = &self.function.ops[index];
+        if let Op::Guard(guard) = op {
+            self.write_guard(guard);
+            self.pieces.push(atom(TokenStream::new()));
+            return;
+        }
+        if self.was_paired(index) {
+            return;
+        }
+        let piece = self.piece(op);
+        let is_local = !op.is_leaf()
+            && (self.uses[index] > 1
+                || self.function.names[index].is_some()
+                || piece.size >= LONGEST_EXPRESSION
+                || matches!(op, Op::Call(..)));
+        let piece = if is_local && !matches!(op, Op::Neg(_)) { self.bind(index, piece.tokens) } else { piece };
+        self.pieces.push(piece);
+    }
+
+    /// Whether the operation is the sine or cosine of an argument whose cosine or sine is needed too; both are
+    /// bound at the first of them.
+    fn was_paired(&mut self, index: usize) -> bool {
+        if let Some(local) = self.paired[index].take() {
+            self.pieces.push(atom(quote!(#local)));
+            return true;
+        }
+        let Op::Call(function @ (Elementary::Sin | Elementary::Cos), argument) = self.function.ops[index] else {
+            return false;
+        };
+        let partner = if function == Elementary::Sin { Elementary::Cos } else { Elementary::Sin };
+        let wanted = Op::Call(partner, argument);
+        let Some(other) = self.function.ops.iter().position(|op| *op == wanted) else { return false };
+        let (first, second) = (self.local(index), self.local(other));
+        let (sine, cosine) = if function == Elementary::Sin { (&first, &second) } else { (&second, &first) };
+        let argument = &self.pieces[argument.index()].tokens;
+        self.statements.extend(quote!(let (#sine, #cosine) = ::dalembert::__private::math::sin_cos(#argument);));
+        self.pieces.push(atom(quote!(#first)));
+        self.paired[other] = Some(second);
+        true
+    }
+
+    /// A fresh local for a value, named after it.
+    fn local(&mut self, index: usize) -> Ident {
+        let wished = self.function.names[index].clone().unwrap_or_else(|| format!("v{index}"));
+        Ident::new(&claim(&mut self.taken, &wished), Span::mixed_site())
+    }
+
+    fn bind(&mut self, index: usize, tokens: TokenStream) -> Piece {
+        let local = self.local(index);
+        self.statements.extend(quote!(let #local = #tokens;));
+        atom(quote!(#local))
+    }
+
+    fn write_guard(&mut self, guard: &Guard) {
+        let at = |value: &Value| self.pieces[value.index()].tokens.clone();
+        let statement = match guard {
+            Guard::Pivot { pivot, value } => {
+                let value = at(value);
+                quote!(::dalembert::__private::positive_pivot(#pivot, #value)?;)
+            }
+            Guard::Constraint { constraint, squared, reference } => {
+                let squared = at(squared);
+                let reference = match reference {
+                    Some(reference) => at(reference),
+                    None => quote!(0.0),
+                };
+                quote!(::dalembert::__private::independent_constraint(#constraint, #squared, #reference)?;)
+            }
+            Guard::Surface { surface, squared } => {
+                let squared = at(squared);
+                quote!(::dalembert::__private::regular_surface(#surface, #squared)?;)
+            }
+        };
+        self.statements.extend(statement);
+    }
+
+    fn operand(&self, value: Value, least: Binding) -> (TokenStream, usize) {
+        let piece = &self.pieces[value.index()];
+        let tokens = &piece.tokens;
+        let tokens = if piece.binding < least { quote!((#tokens)) } else { tokens.clone() };
+        (tokens, piece.size)
+    }
+
+    fn binary(&self, a: Value, b: Value, operator: TokenStream, binding: Binding) -> Piece {
+        let tighter = if binding == Binding::Sum { Binding::Product } else { Binding::Unary };
+        let ((left, m), (right, n)) = (self.operand(a, binding), self.operand(b, tighter));
+        Piece { tokens: quote!(#left #operator #right), binding, size: m + n + 1 }
+    }
+
+    fn call(&self, name: &str, arguments: &[Value]) -> Piece {
+        let name = Ident::new(name, Span::call_site());
+        let arguments = arguments.iter().map(|value| self.pieces[value.index()].tokens.clone());
+        atom(quote!(::dalembert::__private::math::#name(#(#arguments),*)))
+    }
+
+    fn piece(&self, op: &Op) -> Piece {
+        match op {
+            Op::Input(input) => atom(self.input(*input)),
+            Op::Number(number) => literal(number.to_f64()),
+            Op::Pi => atom(quote!(::core::f64::consts::PI)),
+            Op::Neg(a) => {
+                let (tokens, size) = self.operand(*a, Binding::Product);
+                Piece { tokens: quote!(-#tokens), binding: Binding::Unary, size: size + 1 }
+            }
+            Op::Add(a, b) => self.binary(*a, *b, quote!(+), Binding::Sum),
+            Op::Sub(a, b) => self.binary(*a, *b, quote!(-), Binding::Sum),
+            Op::Mul(a, b) => self.binary(*a, *b, quote!(*), Binding::Product),
+            Op::Div(a, b) => self.binary(*a, *b, quote!(/), Binding::Product),
+            Op::Sqrt(a) => self.call("sqrt", &[*a]),
+            Op::Power(a, exponent) => self.power(*a, exponent),
+            Op::Call(function, a) => self.call(function.name(), &[*a]),
+            Op::Atan2(y, x) => self.call("atan2", &[*y, *x]),
+            Op::Guard(_) => atom(TokenStream::new()),
+        }
+    }
+
+    fn power(&self, base: Value, exponent: &Rational) -> Piece {
+        let base = self.pieces[base.index()].tokens.clone();
+        let exponent = literal(exponent.to_f64()).tokens;
+        atom(quote!(::dalembert::__private::math::powf(#base, #exponent)))
+    }
+
+    fn input(&self, input: Input) -> TokenStream {
+        let local = |ident: &Ident| quote!(#ident);
+        match input {
+            Input::Time => quote!(t),
+            Input::Coordinate(i) => local(&self.names.coordinates[i]),
+            Input::Velocity(i) => local(&self.names.velocities[i]),
+            Input::Momentum(i) => local(&self.names.momenta[i]),
+            Input::Parameter(k) => self.names.parameters[k].clone(),
+            Input::Excess(k) => {
+                let index = Literal::usize_unsuffixed(k);
+                quote!(excess[#index])
+            }
+        }
+    }
+}
+
+fn atom(tokens: TokenStream) -> Piece {
+    Piece { tokens, binding: Binding::Atom, size: 0 }
+}
+
+/// A number. A value too large for `f64` was refused when the model was checked; were one to come this far, it
+/// would be written as the infinity it rounds to.
+fn literal(number: f64) -> Piece {
+    if !number.is_finite() {
+        return atom(quote!(::core::f64::INFINITY));
+    }
+    let size = Literal::f64_unsuffixed(number.abs());
+    match number.is_sign_negative() && number != 0.0 {
+        true => Piece { tokens: quote!(-#size), binding: Binding::Unary, size: 0 },
+        false => atom(quote!(#size)),
+    }
+}
+
+/// A finite constant as an expression.
+pub(super) fn number(value: f64) -> TokenStream {
+    if value.is_nan() {
+        return quote!(::core::f64::NAN);
+    }
+    if value.is_infinite() {
+        return if value > 0.0 { quote!(::core::f64::INFINITY) } else { quote!(::core::f64::NEG_INFINITY) };
+    }
+    literal(value).tokens
+}

@@ -1,0 +1,147 @@
+//! `Impacting`: gaps, gap rates, conditions, laws and contacts.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::function::Body;
+use super::{Context, doc};
+use crate::model::Law;
+use crate::program::Impacting;
+
+/// `impl Impacting`, if there are surfaces.
+pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
+    let Some(functions) = &context.program.impacting else { return TokenStream::new() };
+    let type_name = &context.names.type_name;
+    let s = context.model.surfaces.len();
+    let gaps = emit_gaps(context, functions);
+    let conditions = emit_conditions(context, functions);
+    let laws = emit_laws(context, functions);
+    let contacts = emit_contacts(context, functions);
+    quote! {
+        #[automatically_derived]
+        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        impl ::dalembert::Impacting for #type_name {
+            type Gaps = ::dalembert::__private::SVector<f64, #s>;
+            #gaps
+            #conditions
+            #laws
+            #contacts
+        }
+    }
+}
+
+fn emit_gaps(context: &Context<'_>, functions: &Impacting) -> TokenStream {
+    let gaps = context.state_body(&functions.gaps);
+    let gaps_doc = doc::formula("h_s(t, q)", &functions.gaps.cost);
+    let (gap_statements, gap_values) = (gaps.statements, gaps.outputs);
+    let rates = context.state_body(&functions.gap_rates);
+    let rates_doc = doc::formula("dh_s(qdot) + d_t h_s", &functions.gap_rates.cost);
+    let (rate_statements, rate_values) = (rates.statements, rates.outputs);
+    quote! {
+        #gaps_doc
+        #[inline]
+        fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps {
+            #gap_statements
+            ::dalembert::__private::vector([#(#gap_values),*])
+        }
+
+        #rates_doc
+        #[inline]
+        fn gap_rates(
+            &self,
+            t: f64,
+            state: &Self::State,
+        ) -> ::core::result::Result<Self::Gaps, ::dalembert::Fault> {
+            #rate_statements
+            ::core::result::Result::Ok(::dalembert::__private::vector([#(#rate_values),*]))
+        }
+    }
+}
+
+fn emit_conditions(context: &Context<'_>, functions: &Impacting) -> TokenStream {
+    if functions.conditions.iter().all(Option::is_none) {
+        return TokenStream::new();
+    }
+    let arms = functions.conditions.iter().enumerate().filter_map(|(s, function)| {
+        let Body { statements, outputs } = context.state_body(function.as_ref()?);
+        Some(quote!(#s => { #statements #(#outputs > 0.0)&&* }))
+    });
+    quote! {
+        #[inline]
+        fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
+            match surface {
+                #(#arms)*
+                _ => true,
+            }
+        }
+    }
+}
+
+fn emit_laws(context: &Context<'_>, functions: &Impacting) -> TokenStream {
+    let arms = context.model.surfaces.iter().zip(&functions.coefficients).enumerate().map(
+        |(s, (surface, coefficient))| {
+            let law = match surface.law {
+                Law::Elastic => quote!(Elastic),
+                Law::Restitution(_) => quote!(Restitution),
+                Law::Newton(_) => quote!(Newton),
+                Law::NonholonomicPlastic => quote!(NonholonomicPlastic),
+                Law::ImpactPlastic => quote!(ImpactPlastic),
+                Law::TotallyPlastic => quote!(TotallyPlastic),
+            };
+            match coefficient {
+                Some(function) => {
+                    let Body { statements, outputs } = super::function::emit_body(function, &context.names);
+                    quote!(#s => { #statements ::dalembert::impacts::law::Law::#law(#(#outputs)*) })
+                }
+                None => quote!(#s => ::dalembert::impacts::law::Law::#law,),
+            }
+        },
+    );
+    quote! {
+        #[inline]
+        fn law(&self, surface: usize) -> ::dalembert::impacts::law::Law {
+            match surface {
+                #(#arms)*
+                _ => ::dalembert::impacts::law::Law::Elastic,
+            }
+        }
+    }
+}
+
+fn emit_contacts(context: &Context<'_>, functions: &Impacting) -> TokenStream {
+    let arms = functions.contacts.iter().enumerate().map(|(s, function)| {
+        let Body { statements, outputs } = context.state_body(function);
+        let [gap_rate, constrained_rate, surface_rate, constrained_compliance, free_compliance, direction @ ..] =
+            outputs.as_slice()
+        else {
+            return TokenStream::new();
+        };
+        quote! {
+            #s => {
+                #statements
+                ::core::result::Result::Ok(::dalembert::impacts::law::Contact {
+                    gap_rate: #gap_rate,
+                    constrained_rate: #constrained_rate,
+                    surface_rate: #surface_rate,
+                    constrained_compliance: #constrained_compliance,
+                    free_compliance: #free_compliance,
+                    direction: ::dalembert::__private::vector([#(#direction),*]),
+                })
+            }
+        }
+    });
+    quote! {
+        #[inline]
+        fn contact(
+            &self,
+            surface: usize,
+            t: f64,
+            state: &Self::State,
+        ) -> ::core::result::Result<::dalembert::impacts::law::Contact<Self::Vector>, ::dalembert::Fault> {
+            match surface {
+                #(#arms)*
+                _ => ::core::result::Result::Err(::dalembert::Fault::SingularSurface { surface }),
+            }
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Stage 5, emit: the program as Rust. One file per emitted item; no decision of mathematics is taken here.
+//!
+//! Generated code names only public items of `::dalembert`, `::dalembert::__private` and `::core`.
+
+mod constraint;
+mod describe;
+mod doc;
+mod field;
+mod function;
+mod impact;
+mod names;
+mod parameters;
+mod volume;
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::model::Model;
+use crate::program::Program;
+use names::Names;
+
+/// What every emitter reads.
+struct Context<'a> {
+    model: &'a Model,
+    program: &'a Program,
+    names: Names,
+}
+
+/// The generated items of a model.
+pub fn tokens(model: &Model, program: &Program) -> TokenStream {
+    let context = Context { model, program, names: Names::of(model) };
+    let items = [
+        parameters::emit_parameters(&context),
+        parameters::emit_indices(&context),
+        field::emit_field(&context),
+        field::emit_system(&context),
+        constraint::emit_constrained(&context),
+        impact::emit_impacting(&context),
+        volume::emit_divergence(&context),
+        describe::emit_described(&context),
+        describe::emit_scene(&context),
+    ];
+    quote!(#(#items)*)
+}

@@ -1,0 +1,152 @@
+//! The model's type: its parameters as public fields, their defaults, and the indices of its names.
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
+
+use super::{Context, doc, function::number};
+use crate::model::{Assumption, Model, Name, Parameter};
+
+/// The struct, and `Default` when every parameter has one.
+pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
+    let model = context.model;
+    let type_name = &context.names.type_name;
+    let visibility: TokenStream = model.visibility.parse().unwrap_or_default();
+    let documentation = doc::lines(&documentation(model));
+    let fields = families(&model.parameters).into_iter().map(|family| emit_field_of(model, family));
+    let default = emit_default(context);
+    quote! {
+        #documentation
+        #[allow(non_snake_case)]
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        #visibility struct #type_name { #(#fields)* }
+        #default
+    }
+}
+
+fn documentation(model: &Model) -> Vec<String> {
+    let mut lines = model.documentation.clone();
+    lines.push(String::new());
+    lines.push(format!(" State: `{}`.", doc::state_order(model)));
+    for note in &model.notes {
+        lines.push(String::new());
+        lines.push(format!(" Note: {note}"));
+    }
+    lines
+}
+
+fn emit_field_of(model: &Model, family: &[Parameter]) -> TokenStream {
+    let first = &family[0];
+    let field = Ident::new(&first.name.field, Span::call_site());
+    let mut lines = first.documentation.clone();
+    lines.push(format!(" Parameter{}.", describe(model, first)));
+    let documentation = doc::lines(&lines);
+    let count = family.len();
+    match first.name.member {
+        Some(_) => quote!(#documentation pub #field: [f64; #count],),
+        None => quote!(#documentation pub #field: f64,),
+    }
+}
+
+fn describe(model: &Model, parameter: &Parameter) -> String {
+    let demand = match &parameter.assumption {
+        Assumption::Finite => String::new(),
+        Assumption::Positive => ", `> 0`".into(),
+        Assumption::NonNegative => ", `>= 0`".into(),
+        Assumption::NonZero => ", `!= 0`".into(),
+        Assumption::Within { low, high } => format!(", in `[{low}, {high}]`"),
+    };
+    match default_value(model, parameter) {
+        Some(value) => format!("{demand}; default {value}"),
+        None => demand,
+    }
+}
+
+/// Parameters grouped into scalars and whole families.
+pub(super) fn families(parameters: &[Parameter]) -> Vec<&[Parameter]> {
+    parameters.chunk_by(|a, b| a.name.member.is_some() && a.name.field == b.name.field).collect()
+}
+
+/// The declared default as a number.
+pub(super) fn default_value(model: &Model, parameter: &Parameter) -> Option<f64> {
+    parameter.default.map(|default| model.pool.eval(&[default], &|_| f64::NAN)[0])
+}
+
+/// The struct with declared defaults, NaN where there is none.
+pub(super) fn with_defaults(model: &Model) -> TokenStream {
+    let fields = families(&model.parameters).into_iter().map(|family| {
+        let field = Ident::new(&family[0].name.field, Span::call_site());
+        let values = family.iter().map(|parameter| number(default_value(model, parameter).unwrap_or(f64::NAN)));
+        match family[0].name.member {
+            Some(_) => quote!(#field: [#(#values),*]),
+            None => quote!(#field: #(#values)*),
+        }
+    });
+    quote!(Self { #(#fields),* })
+}
+
+fn emit_default(context: &Context<'_>) -> TokenStream {
+    let model = context.model;
+    if model.parameters.iter().any(|parameter| parameter.default.is_none()) {
+        return TokenStream::new();
+    }
+    let type_name = &context.names.type_name;
+    let value = with_defaults(model);
+    quote! {
+        #[automatically_derived]
+        impl ::core::default::Default for #type_name {
+            /// The declared defaults.
+            #[allow(clippy::excessive_precision)]
+            fn default() -> Self { #value }
+        }
+    }
+}
+
+/// A module with the indices of coordinates, constraints and surfaces under the user's names.
+pub(super) fn emit_indices(context: &Context<'_>) -> TokenStream {
+    let model = context.model;
+    let visibility: TokenStream = match model.visibility.as_str() {
+        "" => quote!(pub(crate)),
+        written => written.parse().unwrap_or_default(),
+    };
+    let module = &context.names.module;
+    let title = format!("Indices of the names declared in [`{}`].", model.name);
+    let coordinates: Vec<&Name> = model.coordinates.iter().map(|coordinate| &coordinate.name).collect();
+    let constraints: Vec<&Name> = model.constraints.iter().map(|constraint| &constraint.name).collect();
+    let surfaces: Vec<&Name> = model.surfaces.iter().map(|surface| &surface.name).collect();
+    let outputs: Vec<&Name> = model.outputs.iter().map(|output| &output.name).collect();
+    let parts = [
+        emit_index_module("coordinate", "coordinates", &coordinates),
+        emit_index_module("constraint", "constraints", &constraints),
+        emit_index_module("surface", "impact surfaces", &surfaces),
+        emit_index_module("output", "outputs", &outputs),
+    ];
+    quote! {
+        #[doc = #title]
+        #[allow(dead_code, non_upper_case_globals)]
+        #visibility mod #module { #(#parts)* }
+    }
+}
+
+fn emit_index_module(module: &str, plural: &str, names: &[&Name]) -> TokenStream {
+    if names.is_empty() {
+        return TokenStream::new();
+    }
+    let module = Ident::new(module, Span::call_site());
+    let title = format!("Indices of the {plural}, in order of declaration.");
+    let mut constants = Vec::new();
+    let mut next = 0;
+    for family in names.chunk_by(|a, b| a.member.is_some() && a.field == b.field) {
+        let constant = Ident::new(&family[0].field.to_uppercase(), Span::call_site());
+        let text = format!("`{}`", family[0].field);
+        let indices = next..next + family.len();
+        next += family.len();
+        constants.push(match family[0].member {
+            Some(_) => {
+                let count = family.len();
+                quote!(#[doc = #text] pub const #constant: [usize; #count] = [#(#indices),*];)
+            }
+            None => quote!(#[doc = #text] pub const #constant: usize = #(#indices)*;),
+        });
+    }
+    quote!(#[doc = #title] pub mod #module { #(#constants)* })
+}

@@ -1,0 +1,43 @@
+//! `Divergence`: the density form and the divergence of the motion.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::{Context, doc};
+
+/// `impl Divergence`
+pub(super) fn emit_divergence(context: &Context<'_>) -> TokenStream {
+    let type_name = &context.names.type_name;
+    let program = context.program;
+    let divergence = context.state_body(&program.divergence);
+    let formula = "-theta(qdot) - m_ab W^b(eta_0^a) - m_ab (d_t eta^a)(W^b) + m_ab (d_t g)(W^a, W^b) \
+                   + tr(dF/dqdot . pi_D g^-1)";
+    let divergence_doc = doc::formula(formula, &program.divergence.cost);
+    let (divergence_statements, value) = (divergence.statements, &divergence.outputs[0]);
+    let form = context.position_body(&program.density_form);
+    let form_doc = doc::formula("theta = m_ab L_{W^a} eta^b", &program.density_form.cost);
+    let (form_statements, theta) = (form.statements, form.outputs);
+    quote! {
+        #[automatically_derived]
+        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        impl ::dalembert::Divergence for #type_name {
+            #divergence_doc
+            #[inline]
+            fn divergence(&self, t: f64, state: &Self::State) -> ::core::result::Result<f64, ::dalembert::Fault> {
+                #divergence_statements
+                ::core::result::Result::Ok(#value)
+            }
+
+            #form_doc
+            #[inline]
+            fn density_form(
+                &self,
+                t: f64,
+                q: &Self::Vector,
+            ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
+                #form_statements
+                ::core::result::Result::Ok(::dalembert::__private::vector([#(#theta),*]))
+            }
+        }
+    }
+}

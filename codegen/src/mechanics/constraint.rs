@@ -1,0 +1,104 @@
+//! Constraint forms and the terms of `d/dt (eta(qdot) + eta_0)` that do not hold the acceleration.
+
+use dalembert_expr::{ExprId, Pool, Sign};
+
+use super::{Coordinates, Entry, gradient};
+use crate::model::Model;
+
+/// One constraint, differentiated.
+#[derive(Debug)]
+pub struct ConstraintForm {
+    /// `eta_j`, N entries.
+    pub form: Vec<ExprId>,
+    /// `eta_0`.
+    pub affine: ExprId,
+    /// `eta(qdot) + eta_0`.
+    pub residual: ExprId,
+    /// `(d_i eta_j) qdot^i qdot^j + (d_i eta_0) qdot^i + (d_t eta_j) qdot^j + d_t eta_0`.
+    pub curvature: ExprId,
+    /// `d_k eta_j`, index `[j, k]`.
+    pub form_gradient: Vec<Entry<2>>,
+    /// `d_k eta_0`, index `[k]`.
+    pub affine_gradient: Vec<Entry<1>>,
+    /// `d_t eta_j`, index `[j]`.
+    pub form_rate: Vec<Entry<1>>,
+    /// `f(t, q)` kept by the motion, when the form is exact with a known function.
+    pub level: Option<ExprId>,
+}
+
+/// Differentiates every constraint.
+pub(super) fn derive_constraints(model: &mut Model, coordinates: &Coordinates) -> Vec<ConstraintForm> {
+    let motion = coordinates.motion(model);
+    (0..model.constraints.len())
+        .map(|a| {
+            let form = model.constraints[a].form.clone();
+            let affine = model.constraints[a].affine;
+            let residual = derive_residual(model, coordinates, &form, affine);
+            ConstraintForm {
+                curvature: model.pool.derivative_along(residual, &motion),
+                form_gradient: derive_form_gradient(model, coordinates, &form),
+                affine_gradient: gradient(model, affine, &coordinates.q),
+                form_rate: derive_form_rate(model, coordinates, &form),
+                level: model.constraints[a].level,
+                residual,
+                form,
+                affine,
+            }
+        })
+        .collect()
+}
+
+/// `eta(qdot) + eta_0`.
+fn derive_residual(model: &mut Model, coordinates: &Coordinates, form: &[ExprId], affine: ExprId) -> ExprId {
+    let mut terms = vec![affine];
+    for (&component, &qdot) in form.iter().zip(&coordinates.qdot) {
+        let velocity = model.pool.variable(qdot);
+        terms.push(model.pool.mul(component, velocity));
+    }
+    model.pool.sum(&terms)
+}
+
+fn derive_form_gradient(model: &mut Model, coordinates: &Coordinates, form: &[ExprId]) -> Vec<Entry<2>> {
+    let mut entries = Vec::new();
+    for (j, &component) in form.iter().enumerate() {
+        for Entry { index: [k], value } in gradient(model, component, &coordinates.q) {
+            entries.push(Entry { index: [j, k], value });
+        }
+    }
+    entries
+}
+
+fn derive_form_rate(model: &mut Model, coordinates: &Coordinates, form: &[ExprId]) -> Vec<Entry<1>> {
+    let mut entries = Vec::new();
+    for (j, &component) in form.iter().enumerate() {
+        for Entry { value, .. } in gradient(model, component, &[coordinates.time]) {
+            entries.push(Entry { index: [j], value });
+        }
+    }
+    entries
+}
+
+/// Whether the forms are independent at every state because, after a permutation, some M columns are
+/// triangular with entries on the diagonal that are never zero: rows and columns are taken away as long as a
+/// column holds a single entry and that entry cannot vanish.
+pub(crate) fn has_regular_minor(pool: &Pool, constraints: &[ConstraintForm]) -> bool {
+    let mut rows: Vec<usize> = (0..constraints.len()).collect();
+    let columns = constraints.first().map_or(0, |constraint| constraint.form.len());
+    while !rows.is_empty() {
+        let removable = rows.iter().position(|&a| {
+            (0..columns).any(|j| {
+                let alone = rows.iter().all(|&b| b == a || pool.is_syntactic_zero(constraints[b].form[j]));
+                alone && never_zero(pool, constraints[a].form[j])
+            })
+        });
+        match removable {
+            Some(position) => drop(rows.remove(position)),
+            None => return false,
+        }
+    }
+    true
+}
+
+fn never_zero(pool: &Pool, expression: ExprId) -> bool {
+    matches!(pool.sign(expression), Sign::Positive | Sign::Negative | Sign::NonZero)
+}

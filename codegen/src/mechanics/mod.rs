@@ -1,0 +1,116 @@
+//! Stage 3, derive: from a checked model to the expressions of its equations. Pure mathematics, no tokens, no spans.
+//!
+//! With `L = 1/2 qdot^T g qdot + A.qdot - V`, constraints `eta^a(qdot) + eta^a_0 = 0` and forces `F`:
+//!
+//! ```text
+//! qdot = g^{-1}(p - A)                                    pdot = f + lambda_a eta^a
+//! f_k  = d_k L + F_k                                      drift = gdot qdot + Adot
+//! m^{ab} lambda_b = -[ W^a.(f - drift) + curvature_a ]    W^a = g^{-1} eta^a,  m^{ab} = eta^a(W^b)
+//! curvature_a = (d_i eta^a_j) qdot^i qdot^j + (d_i eta^a_0) qdot^i + (d_t eta^a_j) qdot^j + d_t eta^a_0
+//! ```
+//!
+//! Only derivatives are taken here. `g^{-1}` and `m_ab` are never formed: the program stage factorises (see
+//! [`crate::program::linear`]). Sources: W. Clark, thesis, chapters III and V, with signs as in docs/conventions.md.
+
+pub mod constraint;
+pub mod density;
+pub mod field;
+pub mod impact;
+pub mod metric;
+
+use dalembert_expr::{ExprId, SymbolId};
+
+use crate::model::Model;
+
+pub use constraint::ConstraintForm;
+pub use density::DensityTerms;
+pub use field::FieldTerms;
+pub use impact::SurfaceForm;
+pub use metric::MetricDerivatives;
+
+/// The expressions that every emitted function is made of, in the pool of the model they were derived from.
+#[derive(Debug)]
+pub struct Derivation {
+    /// Momenta, forces and drift.
+    pub field: FieldTerms,
+    /// Constraint forms with their curvature terms.
+    pub constraints: Vec<ConstraintForm>,
+    /// Impact surfaces with their differentials.
+    pub surfaces: Vec<SurfaceForm>,
+    /// What the density form and the divergence need.
+    pub density: DensityTerms,
+}
+
+impl Derivation {
+    /// The constraints that are integrable with a known function.
+    pub fn levelled(&self) -> impl Iterator<Item = usize> {
+        self.constraints.iter().enumerate().filter(|(_, constraint)| constraint.level.is_some()).map(|(a, _)| a)
+    }
+}
+
+/// A component of a sparse array with its indices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Entry<const RANK: usize> {
+    /// The indices.
+    pub index: [usize; RANK],
+    /// The component, not the zero node.
+    pub value: ExprId,
+}
+
+/// Derives everything that is emitted from a checked model; new expressions are added to the model's pool.
+pub fn derive(model: &mut Model) -> Derivation {
+    let coordinates = Coordinates::of(model);
+    let metric = metric::derive_metric(model, &coordinates);
+    let constraints = constraint::derive_constraints(model, &coordinates);
+    let density = density::derive_density(model, &coordinates, metric);
+    Derivation {
+        field: field::derive_field(model, &coordinates),
+        constraints,
+        surfaces: impact::derive_surfaces(model, &coordinates),
+        density,
+    }
+}
+
+/// The symbols that derivatives are taken by.
+#[derive(Debug, Clone)]
+pub struct Coordinates {
+    /// Coordinates, in order.
+    pub q: Vec<SymbolId>,
+    /// Velocities, in order.
+    pub qdot: Vec<SymbolId>,
+    /// Time.
+    pub time: SymbolId,
+}
+
+impl Coordinates {
+    fn of(model: &Model) -> Self {
+        Self {
+            q: model.coordinates.iter().map(|coordinate| coordinate.q).collect(),
+            qdot: model.coordinates.iter().map(|coordinate| coordinate.qdot).collect(),
+            time: model.time,
+        }
+    }
+
+    /// The direction of the motion in `(q, t)`: `qdot` for q, 1 for t.
+    fn motion(&self, model: &mut Model) -> Vec<(SymbolId, ExprId)> {
+        let mut direction: Vec<_> =
+            self.q.iter().zip(&self.qdot).map(|(&q, &qdot)| (q, model.pool.variable(qdot))).collect();
+        direction.push((self.time, model.pool.one()));
+        direction
+    }
+}
+
+/// The derivatives of `expression` by each symbol that are not the zero node.
+fn gradient(model: &mut Model, expression: ExprId, symbols: &[SymbolId]) -> Vec<Entry<1>> {
+    let mut entries = Vec::new();
+    for (k, &symbol) in symbols.iter().enumerate() {
+        if !model.pool.depends_on(expression, symbol) {
+            continue;
+        }
+        let value = model.pool.diff(expression, symbol);
+        if !model.pool.is_syntactic_zero(value) {
+            entries.push(Entry { index: [k], value });
+        }
+    }
+    entries
+}

@@ -1,0 +1,81 @@
+//! Constraints: one-forms that are independent and leave some motion.
+
+use dalembert_expr::{Assumption as Known, ExprId};
+
+use super::super::Constraint;
+use super::super::form::OneForm;
+use super::super::resolve::{Resolver, Scope};
+use super::Names;
+use crate::diagnostics::listed;
+use crate::spec::Equation;
+
+/// All constraints, families expanded; and the symbols of their multipliers.
+pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
+    let spec = resolver.spec;
+    let mut constraints: Vec<Constraint> = Vec::new();
+    let mut names = Names::new("constraint");
+    for equation in &spec.constraints {
+        let members = resolver.members(&equation.declared);
+        for (name, _) in &members {
+            names.add(resolver, name, &equation.declared.name);
+            resolver.multiplier_symbol(&name.display);
+        }
+        for (name, mut scope) in members {
+            let Some(parts) = resolver.constraint_form(equation, &mut scope) else { break };
+            resolver.check_coefficients(equation, &parts, &scope);
+            let OneForm { form, affine, level } = parts;
+            constraints.push(Constraint { name, form, affine, level, item: equation.item });
+        }
+    }
+    constraints
+}
+
+impl Resolver<'_> {
+    /// A symbol for the multiplier of a constraint.
+    fn multiplier_symbol(&mut self, name: &str) {
+        let latex = format!(r"\lambda_{{\mathrm{{{}}}}}", name.replace('_', r"\_"));
+        let symbol = self.pool.symbol(&format!("multiplier({name})"), &latex, Known::None);
+        self.symbols.derived.multipliers.push(symbol);
+        self.multipliers.insert(name.to_owned(), symbol);
+    }
+
+    /// The coefficients of a constraint are periodic in angles and differentiable.
+    fn check_coefficients(&mut self, equation: &Equation, parts: &OneForm, scope: &Scope) {
+        let sides = [&equation.left, &equation.right];
+        for coefficient in parts.form.iter().chain([&parts.affine]) {
+            self.check_periodic(&sides, scope, *coefficient);
+        }
+        for side in sides {
+            let value = self.expression(side, &mut scope.clone());
+            value.and_then(|value| self.forbid_abs(side, scope, value, "`constraints`"));
+        }
+    }
+}
+
+/// Refuses constraints that follow from those before them, and constraints that leave no motion.
+pub(super) fn check_independent(resolver: &mut Resolver<'_>, constraints: &[Constraint]) {
+    let rows: Vec<Vec<ExprId>> = constraints.iter().map(|constraint| constraint.form.clone()).collect();
+    if rows.is_empty() {
+        return;
+    }
+    let size = resolver.symbols.coordinates.len();
+    let report = resolver.pool.rank(&rows);
+    for (row, others) in &report.dependencies {
+        let names: Vec<&str> = others.iter().map(|other| constraints[*other].name.display.as_str()).collect();
+        let name = &constraints[*row].name.display;
+        let text = format!("`{name}` is dependent on {}", listed(names));
+        let at = resolver.spec.location(constraints[*row].item);
+        let places: Vec<_> = others.iter().map(|other| resolver.spec.location(constraints[*other].item)).collect();
+        let error = resolver.diagnostics.error(at, text);
+        error.help("leave one of them out");
+        for place in places {
+            error.also(place, format!("`{name}` is a combination that uses this one"));
+        }
+    }
+    if report.dependencies.is_empty() && report.rank >= size {
+        let last = &constraints[constraints.len() - 1];
+        let at = resolver.spec.location(last.item);
+        let text = format!("no motion is left: rank {} of {size}", report.rank);
+        resolver.refuse::<()>(at, text, "leave a constraint out, or add coordinates");
+    }
+}

@@ -1,0 +1,265 @@
+//! The rules a declaration must satisfy: one file per topic.
+//!
+//! Every declaration is resolved and checked by itself first, so that independent mistakes are all reported; what
+//! concerns several of them (ranks, surfaces against constraints) follows only for declarations without a fault.
+
+mod constraints;
+mod coordinates;
+mod initial;
+mod integrable;
+mod outputs;
+mod parameters;
+mod surfaces;
+
+use std::collections::BTreeSet;
+
+use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
+
+use super::natural;
+use super::resolve::{Resolver, Scope};
+use super::symbols::{member_name, snake_case};
+use super::{Constraint, Force, Initial, Lagrangian, Model, Name, Output, Surface, View};
+use crate::diagnostics::{Diagnostics, Location};
+use crate::spec::{Declared, Index, PIECEWISE, Scalar, Spec, Word};
+
+/// What was declared of the motion, resolved.
+struct Parts {
+    lagrangian: Option<Lagrangian>,
+    constraints: Vec<Constraint>,
+    forces: Vec<Force>,
+    surfaces: Vec<Surface>,
+    initial: Initial,
+    view: Option<View>,
+    outputs: Vec<Output>,
+}
+
+/// Checks a declaration and resolves every name in it.
+///
+/// # Errors
+/// Every mistake, each at the smallest part of the declaration that is wrong.
+pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
+    let mut resolver = Resolver::new(spec);
+    resolver.constants();
+    resolver.all_coordinates();
+    resolver.all_parameters();
+    resolver.all_definitions();
+    let parts = Parts {
+        lagrangian: lagrangian(&mut resolver),
+        constraints: constraints::resolve(&mut resolver),
+        forces: forces(&mut resolver),
+        surfaces: surfaces::resolve(&mut resolver),
+        initial: initial::resolve(&mut resolver),
+        view: outputs::view(&mut resolver),
+        outputs: outputs::resolve(&mut resolver),
+    };
+    together(&mut resolver, &parts);
+    let (Some(lagrangian), true) = (parts.lagrangian, resolver.diagnostics.is_empty()) else {
+        return Err(resolver.diagnostics);
+    };
+    let parts = Parts { lagrangian: None, ..parts };
+    Ok(model(resolver, lagrangian, parts))
+}
+
+/// The rules that concern several declarations.
+fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
+    if let (Some(lagrangian), Some(written)) = (&parts.lagrangian, &resolver.spec.lagrangian) {
+        natural::check_metric(resolver, &written.value, lagrangian);
+    }
+    // A constraint or surface that was refused is missing here; ranks would then name the wrong ones.
+    let constraints = check_complete(resolver, parts);
+    if constraints {
+        constraints::check_independent(resolver, &parts.constraints);
+        surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
+    }
+    surfaces::check_distinct(resolver, &parts.surfaces);
+}
+
+/// Whether every declared constraint and surface was resolved.
+fn check_complete(resolver: &Resolver<'_>, parts: &Parts) -> bool {
+    parts.constraints.len() >= resolver.spec.constraints.len()
+}
+
+fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model {
+    let notes = notes(&resolver, &lagrangian, &parts);
+    let Resolver { spec, pool, symbols, .. } = resolver;
+    Model {
+        pool,
+        name: spec.name.text.clone(),
+        snake_name: snake_case(&spec.name.text),
+        visibility: spec.visibility.clone(),
+        documentation: spec.documentation.clone(),
+        source: spec.source.clone(),
+        time: symbols.time,
+        coordinates: symbols.coordinates,
+        parameters: symbols.parameters,
+        lagrangian,
+        constraints: parts.constraints,
+        forces: parts.forces,
+        surfaces: parts.surfaces,
+        initial: parts.initial,
+        view: parts.view,
+        outputs: parts.outputs,
+        derived: symbols.derived,
+        notes,
+    }
+}
+
+fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec<String> {
+    let mut notes = natural::notes(resolver, lagrangian);
+    notes.extend(integrable::notes(resolver, &parts.constraints));
+    notes.extend(surfaces::notes(resolver, &parts.surfaces, &parts.constraints));
+    notes.extend(parameters::unused(resolver, &used_symbols(&resolver.pool, lagrangian, parts)));
+    notes
+}
+
+/// The symbols that occur in any declaration.
+fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet<SymbolId> {
+    let mut used: Vec<ExprId> = vec![lagrangian.whole];
+    for constraint in &parts.constraints {
+        used.extend(constraint.form.iter().chain([&constraint.affine]));
+    }
+    used.extend(parts.forces.iter().flat_map(|force| &force.form));
+    for surface in &parts.surfaces {
+        used.extend(surface.conditions.iter().chain([&surface.gap]).copied().chain(surfaces::coefficient(&surface.law)));
+    }
+    used.extend(parts.initial.q.iter().chain(&parts.initial.qdot).chain([&parts.initial.until]).flatten());
+    used.extend(parts.outputs.iter().map(|output| output.value));
+    used.extend(parts.view.iter().flat_map(|view| view.path.iter().copied().chain(view.region)));
+    used.into_iter().flat_map(|expr| pool.symbols(expr)).collect()
+}
+
+fn lagrangian(resolver: &mut Resolver<'_>) -> Option<Lagrangian> {
+    let spec = resolver.spec;
+    let Some(declared) = &spec.lagrangian else {
+        return resolver.refuse(spec.name.at, "a model needs a `lagrangian`", "write `lagrangian = m/2*dot(x)^2;`");
+    };
+    let scope = Scope::default();
+    let whole = resolver.expression(&declared.value, &mut scope.clone())?;
+    let differentials = resolver.symbols.all_differentials();
+    let help = "velocities are written `dot(x)`";
+    resolver.forbid(&declared.value, &scope, whole, &differentials, "a Lagrangian contains no differentials", help)?;
+    resolver.forbid_abs(&declared.value, &scope, whole, "`lagrangian`")?;
+    resolver.check_periodic(&[&declared.value], &scope, whole);
+    natural::split(resolver, &declared.value, whole, declared.item)
+}
+
+fn forces(resolver: &mut Resolver<'_>) -> Vec<Force> {
+    let spec = resolver.spec;
+    let mut forces = Vec::new();
+    let mut names = Names::new("force");
+    for force in &spec.forces {
+        for (name, mut scope) in resolver.members(&force.declared) {
+            names.add(resolver, &name, &force.declared.name);
+            let Some(form) = resolver.force_form(force, &mut scope) else { continue };
+            for coefficient in &form {
+                resolver.check_periodic(&[&force.value], &scope, *coefficient);
+            }
+            forces.push(Force { name, form, item: force.item });
+        }
+    }
+    forces
+}
+
+/// The names of the members of a section, each allowed once.
+struct Names {
+    noun: &'static str,
+    first: Vec<(String, Location)>,
+}
+
+impl Names {
+    fn new(noun: &'static str) -> Self {
+        Self { noun, first: Vec::new() }
+    }
+
+    fn add(&mut self, resolver: &mut Resolver<'_>, name: &Name, written: &Word) {
+        match self.first.iter().find(|(first, _)| *first == name.display) {
+            Some((_, first)) => {
+                let text = format!("{} `{}` declared again", self.noun, name.display);
+                let error = resolver.diagnostics.error(written.at, text);
+                error.help("choose another name").also(*first, format!("`{}` first declared here", name.display));
+            }
+            None => self.first.push((name.display.clone(), written.at)),
+        }
+    }
+}
+
+impl Resolver<'_> {
+    /// The members that a declaration declares, each with what its index stands for.
+    fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
+        let field = &declared.name.text;
+        let mut scope = Scope::default();
+        match &declared.index {
+            None => vec![(member_name(field, None), scope)],
+            Some(Index::One(index)) => {
+                let member = self.integer(index, &mut scope).and_then(|member| self.member_index(index, member));
+                member.map(|member| (member_name(field, Some(member)), scope)).into_iter().collect()
+            }
+            Some(Index::Each(binder)) => {
+                let mut members = Vec::new();
+                for member in self.range(binder, &mut scope).into_iter().flatten() {
+                    let Some(index) = self.member_index(&binder.low, member) else { break };
+                    let value = self.pool.int(member);
+                    let mut scope = Scope::default();
+                    scope.bind(&binder.name.text, value.into());
+                    members.push((member_name(field, Some(index)), scope));
+                }
+                members
+            }
+        }
+    }
+
+    fn member_index(&mut self, written: &Scalar, member: i64) -> Option<usize> {
+        match usize::try_from(member) {
+            Ok(index) if index > 0 => Some(index),
+            _ => self.refuse(written.at, format!("members are counted from 1, found {member}"), "write `[i in 1..=N]`"),
+        }
+    }
+
+    /// An expression of numbers and `pi`.
+    fn constant_expression(&mut self, written: &Scalar, what: &str) -> Option<ExprId> {
+        let mut scope = Scope::default();
+        let expr = self.expression(written, &mut scope)?;
+        let symbols = self.pool.symbols(expr);
+        let text = format!("{what} is a constant");
+        self.forbid(written, &scope, expr, &symbols, &text, "write numbers, `pi` and constants")?;
+        Some(expr)
+    }
+
+    /// The value of an expression without symbols.
+    fn constant_value(&self, expr: ExprId) -> f64 {
+        self.pool.eval(&[expr], &|_| f64::NAN).first().copied().unwrap_or(f64::NAN)
+    }
+
+    /// An expression of the parameters.
+    fn parameter_expression(&mut self, written: &Scalar, scope: &mut Scope, what: &str) -> Option<ExprId> {
+        let expr = self.expression(written, scope)?;
+        let moving = self.symbols.moving();
+        let text = format!("{what} depends on parameters only");
+        self.forbid(written, scope, expr, &moving, &text, "write numbers and parameters")?;
+        Some(expr)
+    }
+
+    /// An expression of `(t, q)`.
+    fn position_expression(&mut self, written: &Scalar, scope: &mut Scope, what: &str) -> Option<ExprId> {
+        let expr = self.expression(written, scope)?;
+        let mut rates = self.symbols.velocities();
+        rates.extend(self.symbols.all_differentials());
+        let text = format!("{what} depend on position (and time) only");
+        self.forbid(written, scope, expr, &rates, &text, "")?;
+        Some(expr)
+    }
+
+    /// Refuses `abs`, which is not differentiable.
+    fn forbid_abs(&mut self, written: &Scalar, scope: &Scope, expr: ExprId, place: &str) -> Option<()> {
+        if !contains_abs(&self.pool, expr) {
+            return Some(());
+        }
+        let part = self.culprit(written, scope, &|pool, expr| contains_abs(pool, expr));
+        let text = format!("`{part}`: `abs` is not differentiable and not allowed in {place}");
+        self.refuse(part.at, text, PIECEWISE)
+    }
+}
+
+fn contains_abs(pool: &Pool, expr: ExprId) -> bool {
+    pool.reachable(&[expr]).into_iter().any(|id| matches!(pool.node(id), Node::Call(Function::Abs, _)))
+}

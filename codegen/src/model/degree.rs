@@ -1,0 +1,97 @@
+//! The degree of an expression in some of its symbols, and linear expressions taken apart.
+
+use dalembert_expr::{Assumption, ExprId, Node, Pool, Rational, SymbolId, Verdict};
+
+/// An upper bound for the degree of `expr` as a polynomial in `symbols`, from its structure; `None` if it need not be
+/// one. One pass over the shared nodes, operands first.
+pub(super) fn degree_bound(pool: &Pool, expr: ExprId, symbols: &[SymbolId]) -> Option<u32> {
+    let order = pool.reachable(&[expr]);
+    let mut degrees: Vec<Option<u32>> = Vec::with_capacity(order.len());
+    for id in &order {
+        let degree = |operand: ExprId| order.binary_search(&operand).ok().and_then(|index| degrees.get(index).copied().flatten());
+        let bound = node_degree(pool.node(*id), symbols, &degree);
+        degrees.push(bound);
+    }
+    order.binary_search(&expr).ok().and_then(|index| degrees[index])
+}
+
+fn node_degree(node: &Node, symbols: &[SymbolId], degree: &dyn Fn(ExprId) -> Option<u32>) -> Option<u32> {
+    match node {
+        Node::Number(_) | Node::Pi => Some(0),
+        Node::Symbol(symbol) => Some(u32::from(symbols.contains(symbol))),
+        Node::Sum { terms, .. } => terms.iter().try_fold(0, |most, (_, term)| degree(*term).map(|term| most.max(term))),
+        Node::Product(factors) => factors.iter().try_fold(0_u32, |sum, (base, exponent)| {
+            let power = power_degree(degree(*base)?, exponent)?;
+            sum.checked_add(power)
+        }),
+        Node::Call(_, argument) => degree(*argument).filter(|degree| *degree == 0),
+        Node::Atan2(y, x) => degree(*y).filter(|degree| *degree == 0).and(degree(*x).filter(|degree| *degree == 0)),
+    }
+}
+
+fn power_degree(base: u32, exponent: &Rational) -> Option<u32> {
+    if base == 0 {
+        return Some(0);
+    }
+    let exponent = exponent.to_i64().and_then(|exponent| u32::try_from(exponent).ok())?;
+    base.checked_mul(exponent)
+}
+
+/// Whether `expr` is a polynomial of at most this degree in `symbols`: by its structure, or because its derivative of
+/// the next order along a general direction is zero.
+pub(super) fn has_degree(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId], degree: u32) -> bool {
+    if degree_bound(pool, expr, symbols).is_some_and(|bound| bound <= degree) {
+        return true;
+    }
+    let mut directions = Vec::with_capacity(symbols.len());
+    for symbol in symbols {
+        let direction = pool.symbol("w", "w", Assumption::None);
+        directions.push((*symbol, pool.variable(direction)));
+    }
+    let mut derivative = expr;
+    for _ in 0..=degree {
+        derivative = pool.derivative_along(derivative, &directions);
+    }
+    is_zero(pool, derivative)
+}
+
+/// Whether an expression is proved to be zero.
+pub(super) fn is_zero(pool: &Pool, expr: ExprId) -> bool {
+    pool.is_syntactic_zero(expr) || pool.zero_test(expr) == Verdict::Proved
+}
+
+/// `expr` with every one of `symbols` set to 0.
+pub(super) fn at_zero(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) -> ExprId {
+    if !pool.depends_on_any(expr, symbols) {
+        return expr;
+    }
+    let zero = pool.zero();
+    let replacements: Vec<(SymbolId, ExprId)> = symbols.iter().map(|symbol| (*symbol, zero)).collect();
+    pool.substitute(expr, &replacements)
+}
+
+/// The coefficients of `symbols` in an expression that is linear in them.
+pub(super) fn coefficients(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) -> Vec<ExprId> {
+    let derivatives: Vec<ExprId> = symbols.iter().map(|symbol| pool.diff(expr, *symbol)).collect();
+    derivatives.into_iter().map(|coefficient| at_zero(pool, coefficient, symbols)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polynomial_in_disguise_is_recognised() {
+        let mut pool = Pool::new();
+        let symbol = pool.symbol("v", "v", Assumption::None);
+        let v = pool.variable(symbol);
+        let one = pool.one();
+        let plus = pool.add(v, one);
+        let cube = pool.pow(plus, Rational::from(3));
+        let v_cubed = pool.pow(v, Rational::from(3));
+        let quadratic = pool.sub(cube, v_cubed);
+        assert_eq!(degree_bound(&pool, quadratic, &[symbol]), Some(3));
+        assert!(has_degree(&mut pool, quadratic, &[symbol], 2));
+        assert!(!has_degree(&mut pool, cube, &[symbol], 2));
+    }
+}

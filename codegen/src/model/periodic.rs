@@ -1,0 +1,145 @@
+//! Every declaration is periodic in each angle: it does not change when an angle grows by `2*pi`.
+//!
+//! An angle that occurs only as an integer multiple inside of `sin`, `cos` and `tan` needs no further test. For any
+//! other occurrence the change of the whole declaration under `theta -> theta + 2*pi` is tested to be zero.
+
+use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
+
+use super::degree::is_zero;
+use super::resolve::{Resolver, Scope};
+use super::Topology;
+use crate::spec::{Scalar, ScalarKind};
+
+impl Resolver<'_> {
+    /// Refuses a declaration that is not periodic in an angle. `expr` is the declared quantity, `written` the text it
+    /// came from.
+    pub(super) fn check_periodic(&mut self, written: &[&Scalar], scope: &Scope, expr: ExprId) {
+        let angles = self.angles();
+        for angle in bare_symbols(&self.pool, expr, &angles) {
+            if is_periodic(&mut self.pool, expr, angle) {
+                continue;
+            }
+            self.refuse_angle(written, scope, angle);
+            return;
+        }
+    }
+
+    fn angles(&self) -> Vec<SymbolId> {
+        let coordinates = self.symbols.coordinates.iter();
+        coordinates.filter(|coordinate| coordinate.topology == Topology::Angle).map(|coordinate| coordinate.q).collect()
+    }
+
+    fn refuse_angle(&mut self, written: &[&Scalar], scope: &Scope, angle: SymbolId) {
+        let name = self.pool.symbol_name(angle).to_owned();
+        let mut whole = scope.clone();
+        let is_bare = |pool: &mut Pool, expr: ExprId| !bare_symbols(pool, expr, &[angle]).is_empty();
+        let Some(side) = written.iter().find(|side| {
+            let value = self.expression(side, &mut whole);
+            value.is_some_and(|value| is_bare(&mut self.pool, value))
+        }) else {
+            return;
+        };
+        let parent = self.last_compound(side, scope, &is_bare);
+        let field = name.split('.').next().unwrap_or(&name).to_owned();
+        let text = match parent.kind {
+            ScalarKind::Name(_) | ScalarKind::Member(..) => format!("`{name}` is an angle and stands outside of `sin`, `cos` and `tan`"),
+            _ => format!("`{name}` is an angle but `{parent}` is not periodic"),
+        };
+        let help = format!("declare it as a line: `{field};`, or use it in multiples inside of `sin` and `cos`");
+        self.refuse::<()>(parent.at, text, &help);
+    }
+
+    /// The smallest part with the fault that is not a name alone, unless the name stands alone in a sum.
+    fn last_compound<'a>(
+        &mut self,
+        written: &'a Scalar,
+        scope: &Scope,
+        is_bare: &dyn Fn(&mut Pool, ExprId) -> bool,
+    ) -> &'a Scalar {
+        let smallest = self.culprit(written, scope, is_bare);
+        if !matches!(smallest.kind, ScalarKind::Name(_) | ScalarKind::Member(..)) {
+            return smallest;
+        }
+        parent_of(written, smallest).unwrap_or(smallest)
+    }
+}
+
+/// The power or product that `part` is a direct part of.
+fn parent_of<'a>(whole: &'a Scalar, part: &Scalar) -> Option<&'a Scalar> {
+    let parts: Vec<&Scalar> = match &whole.kind {
+        ScalarKind::Negative(inner) | ScalarKind::SumOver(_, inner) => vec![inner],
+        ScalarKind::Sum(terms) => terms.iter().map(|(_, term)| term).collect(),
+        ScalarKind::Product(factors) => factors.iter().map(|(_, factor)| factor).collect(),
+        ScalarKind::Power(base, _) => vec![base],
+        _ => Vec::new(),
+    };
+    let is_direct = parts.iter().any(|candidate| std::ptr::eq(*candidate, part));
+    if is_direct && matches!(whole.kind, ScalarKind::Power(..) | ScalarKind::Product(_)) {
+        return Some(whole);
+    }
+    parts.into_iter().find_map(|candidate| parent_of(candidate, part))
+}
+
+/// Those of `angles` that occur otherwise than as integer multiples inside of `sin`, `cos` or `tan`.
+fn bare_symbols(pool: &Pool, expr: ExprId, angles: &[SymbolId]) -> Vec<SymbolId> {
+    let mut bare = Vec::new();
+    if !pool.depends_on_any(expr, angles) {
+        return bare;
+    }
+    let order = pool.reachable(&[expr]);
+    let mut visible = vec![false; order.len()];
+    let mark = |id: ExprId, visible: &mut Vec<bool>| {
+        if let Ok(index) = order.binary_search(&id) {
+            visible[index] = true;
+        }
+    };
+    mark(expr, &mut visible);
+    // Users come after their operands: from the last to the first, a node is done before its operands are met.
+    for index in (0..order.len()).rev() {
+        if !visible[index] {
+            continue;
+        }
+        match pool.node(order[index]) {
+            Node::Symbol(symbol) if angles.contains(symbol) => bare.push(*symbol),
+            Node::Call(Function::Sin | Function::Cos | Function::Tan, argument) => {
+                for operand in not_periodic_terms(pool, *argument, angles) {
+                    mark(operand, &mut visible);
+                }
+            }
+            node => node.for_each_operand(|operand| mark(operand, &mut visible)),
+        }
+    }
+    bare.sort();
+    bare
+}
+
+/// The terms of the argument of a trigonometric function that are not integer multiples of an angle.
+fn not_periodic_terms(pool: &Pool, argument: ExprId, angles: &[SymbolId]) -> Vec<ExprId> {
+    let is_angle = |id: ExprId| matches!(pool.node(id), Node::Symbol(symbol) if angles.contains(symbol));
+    let (_, terms) = pool.linear_form(argument);
+    let others = terms.into_iter().filter(|(factor, term)| !(factor.is_integer() && is_angle(*term)));
+    others.map(|(_, term)| term).collect()
+}
+
+/// Whether `expr` does not change when `angle` grows by `2*pi`: proved, or seen at several points.
+fn is_periodic(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> bool {
+    let variable = pool.variable(angle);
+    let two = pool.int(2);
+    let pi = pool.pi();
+    let turn = pool.mul(two, pi);
+    let turned = pool.add(variable, turn);
+    let after = pool.substitute(expr, &[(angle, turned)]);
+    let change = pool.sub(after, expr);
+    is_zero(pool, change) || (0..8).all(|seed| agrees_at(pool, expr, after, seed))
+}
+
+/// Whether two expressions have the same value at a point, up to rounding; points outside their domain say nothing.
+fn agrees_at(pool: &Pool, left: ExprId, right: ExprId, seed: u32) -> bool {
+    let point = |symbol: SymbolId| {
+        let spread = f64::from(seed + 1) * 0.618_033_988_749_894_9 + symbol.index() as f64 * 0.414_213_562_373_095_1;
+        0.3 + spread.fract()
+    };
+    let values = pool.eval(&[left, right], &point);
+    let [left, right] = values.as_slice() else { return true };
+    !(left.is_finite() && right.is_finite()) || (left - right).abs() <= 1e-9 * (1.0 + left.abs() + right.abs())
+}

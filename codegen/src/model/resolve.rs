@@ -1,0 +1,355 @@
+//! From what was written to expressions: names, indices, families, sums, definitions, `dot` and `d`.
+//!
+//! `dot(e) = d_i e qdot^i + d_t e` and `d(e) = d_i e dq^i + d_t e dt`, with the differentials `dq^i`, `dt` as symbols
+//! of their own until the equation they belong to is taken apart. Next to its expression a value carries its *level*:
+//! the function `f` of `(t, q)` whose `dot(f)` or `d(f)` it is, if that is known from how it was written.
+
+use std::collections::BTreeMap;
+
+use dalembert_expr::{ExprId, Pool, Rational, SymbolId};
+
+use super::definitions::Definition;
+use super::symbols::{Meaning, Symbols};
+use crate::diagnostics::{Diagnostics, Location};
+use crate::spec::{
+    Binder, EXPRESSIONS, FAMILY, NUMBER_BITS, Operator, RESOLVED_DEPTH, RESOLVED_PARTS, Scalar, ScalarKind, Spec, Word,
+};
+
+/// A resolved expression.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Value {
+    /// The expression.
+    pub(super) expr: ExprId,
+    /// `f` with `expr = dot(f)` or `expr = d(f)`, where known.
+    pub(super) level: Option<ExprId>,
+}
+
+impl From<ExprId> for Value {
+    fn from(expr: ExprId) -> Self {
+        Self { expr, level: None }
+    }
+}
+
+/// Names that are known only inside of an expression: indices and arguments.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Scope {
+    locals: Vec<(String, Value)>,
+}
+
+impl Scope {
+    /// Makes `name` known.
+    pub(super) fn bind(&mut self, name: &str, value: Value) {
+        self.locals.push((name.to_owned(), value));
+    }
+
+    /// Forgets the name made known last.
+    pub(super) fn unbind(&mut self) {
+        self.locals.pop();
+    }
+
+    /// What `name` stands for here.
+    pub(super) fn get(&self, name: &str) -> Option<Value> {
+        self.locals.iter().rev().find(|(local, _)| local == name).map(|(_, value)| *value)
+    }
+
+    /// The names known here.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.locals.iter().map(|(name, _)| name.as_str())
+    }
+}
+
+/// Turns expressions as written into expressions of the pool. What cannot be resolved is recorded and gives `None`,
+/// so that every independent mistake is found.
+pub(super) struct Resolver<'s> {
+    pub(super) spec: &'s Spec,
+    pub(super) pool: Pool,
+    pub(super) symbols: Symbols,
+    pub(super) diagnostics: Diagnostics,
+    pub(super) definitions: BTreeMap<&'s str, Definition<'s>>,
+    /// Calls of defined functions met before, so that sharing survives them.
+    pub(super) calls: BTreeMap<(&'s str, Vec<ExprId>), Option<Value>>,
+    /// The symbols of multipliers by the display name of their constraint.
+    pub(super) multipliers: BTreeMap<String, SymbolId>,
+    /// Whether derived quantities may be named: in `outputs`.
+    pub(super) derived_allowed: bool,
+    parts: usize,
+    depth: usize,
+}
+
+impl<'s> Resolver<'s> {
+    /// A resolver that knows no names yet.
+    pub(super) fn new(spec: &'s Spec) -> Self {
+        let mut pool = Pool::new();
+        let symbols = Symbols::new(&mut pool);
+        Self {
+            spec,
+            pool,
+            symbols,
+            diagnostics: Diagnostics::new(),
+            definitions: BTreeMap::new(),
+            calls: BTreeMap::new(),
+            multipliers: BTreeMap::new(),
+            derived_allowed: false,
+            parts: 0,
+            depth: 0,
+        }
+    }
+
+    /// The value of an expression.
+    pub(super) fn resolve(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<Value> {
+        self.parts += 1;
+        if self.parts > RESOLVED_PARTS {
+            let text = format!("more than {RESOLVED_PARTS} parts with sums and definitions written out");
+            return self.refuse(scalar.at, text, "name what is repeated with `let`");
+        }
+        if self.depth >= RESOLVED_DEPTH {
+            let text = format!("nested more than {RESOLVED_DEPTH} deep with definitions written out");
+            return self.refuse(scalar.at, text, "name the inner parts with `let`");
+        }
+        self.depth += 1;
+        let value = self.resolve_kind(scalar, scope);
+        self.depth -= 1;
+        let value = value?;
+        self.within_limits(scalar, value.expr).then_some(value)
+    }
+
+    /// The expression of an expression.
+    pub(super) fn expression(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<ExprId> {
+        self.resolve(scalar, scope).map(|value| value.expr)
+    }
+
+    fn resolve_kind(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<Value> {
+        match &scalar.kind {
+            ScalarKind::Number(value, _) => Some(self.pool.number(value.clone()).into()),
+            ScalarKind::Name(name) => self.name(name, scalar.at, scope),
+            ScalarKind::Member(name, index) => self.member(name, index, scope),
+            ScalarKind::Negative(inner) => {
+                let value = self.resolve(inner, scope)?;
+                Some(self.scaled(value, -1))
+            }
+            ScalarKind::Sum(terms) => self.sum(terms, scope),
+            ScalarKind::Product(factors) => self.product(factors, scope),
+            ScalarKind::Power(base, exponent) => self.power(scalar, base, exponent, scope),
+            ScalarKind::Call(function, arguments) => self.call(scalar.at, function, arguments, scope),
+            ScalarKind::SumOver(binder, body) => self.sum_over(binder, body, scope),
+        }
+    }
+
+    /// Records an error once and gives nothing.
+    pub(super) fn refuse<T>(&mut self, at: Location, text: impl Into<String>, help: &str) -> Option<T> {
+        self.diagnostics.error_once(at, text, help);
+        None
+    }
+
+    fn within_limits(&mut self, scalar: &Scalar, expr: ExprId) -> bool {
+        let too_long = self.pool.as_number(expr).is_some_and(|number| number.bits() > NUMBER_BITS);
+        if too_long {
+            let text = format!("an exact number of more than {NUMBER_BITS} bits");
+            return self.refuse::<()>(scalar.at, text, "write it as a decimal").is_some();
+        }
+        if self.pool.len() > EXPRESSIONS {
+            let text = format!("more than {EXPRESSIONS} expressions in one model");
+            return self.refuse::<()>(scalar.at, text, "split the model").is_some();
+        }
+        true
+    }
+
+    fn scaled(&mut self, value: Value, factor: i64) -> Value {
+        let factor = self.pool.int(factor);
+        self.times(value, factor)
+    }
+
+    /// A value times something that does not change in time.
+    pub(super) fn times(&mut self, value: Value, factor: ExprId) -> Value {
+        let level = value.level.map(|level| self.pool.mul(level, factor));
+        Value { expr: self.pool.mul(value.expr, factor), level }
+    }
+
+    fn sum(&mut self, terms: &[(bool, Scalar)], scope: &mut Scope) -> Option<Value> {
+        let mut values = Vec::with_capacity(terms.len());
+        for (negative, term) in terms {
+            let value = self.resolve(term, scope);
+            values.push(value.map(|value| if *negative { self.scaled(value, -1) } else { value }));
+        }
+        let values: Option<Vec<Value>> = values.into_iter().collect();
+        values.map(|values| self.add(&values))
+    }
+
+    /// The sum of values; its level is known if that of every term is, where a constant `c` counts as `dot(c*t)`.
+    pub(super) fn add(&mut self, values: &[Value]) -> Value {
+        let exprs: Vec<ExprId> = values.iter().map(|value| value.expr).collect();
+        Value { expr: self.pool.sum(&exprs), level: self.sum_level(values) }
+    }
+
+    fn sum_level(&mut self, values: &[Value]) -> Option<ExprId> {
+        if values.iter().all(|value| value.level.is_none()) {
+            return None;
+        }
+        let mut levels = Vec::with_capacity(values.len());
+        for value in values {
+            levels.push(match value.level {
+                Some(level) => level,
+                None if self.is_constant(value.expr) => {
+                    let time = self.pool.variable(self.symbols.time);
+                    self.pool.mul(value.expr, time)
+                }
+                None => return None,
+            });
+        }
+        Some(self.pool.sum(&levels))
+    }
+
+    /// Whether an expression consists of numbers and parameters.
+    pub(super) fn is_constant(&self, expr: ExprId) -> bool {
+        !self.pool.depends_on_any(expr, &self.symbols.moving())
+    }
+
+    fn product(&mut self, factors: &[(Operator, Scalar)], scope: &mut Scope) -> Option<Value> {
+        let mut values = Vec::with_capacity(factors.len());
+        for (operator, factor) in factors {
+            values.push(self.resolve(factor, scope).map(|value| (*operator, factor, value)));
+        }
+        let values: Option<Vec<(Operator, &Scalar, Value)>> = values.into_iter().collect();
+        let mut product = Value::from(self.pool.one());
+        for (operator, factor, value) in values? {
+            product = match operator {
+                Operator::Times => self.multiplied(product, value),
+                Operator::Over => self.divided(product, value, factor)?,
+                Operator::Modulo => self.remainder(product, value, factor)?,
+            };
+        }
+        Some(product)
+    }
+
+    fn multiplied(&mut self, left: Value, right: Value) -> Value {
+        match (left.level, right.level) {
+            (Some(_), None) if self.is_constant(right.expr) => self.times(left, right.expr),
+            (None, Some(_)) if self.is_constant(left.expr) => self.times(right, left.expr),
+            _ => self.pool.mul(left.expr, right.expr).into(),
+        }
+    }
+
+    fn divided(&mut self, left: Value, right: Value, divisor: &Scalar) -> Option<Value> {
+        if self.pool.is_syntactic_zero(right.expr) {
+            return self.refuse(divisor.at, "division by zero", "");
+        }
+        if left.level.is_some() && self.is_constant(right.expr) {
+            let reciprocal = self.pool.pow(right.expr, Rational::from(-1));
+            return Some(self.times(left, reciprocal));
+        }
+        Some(self.pool.div(left.expr, right.expr).into())
+    }
+
+    /// `a % b` of indices, in `0..b`.
+    fn remainder(&mut self, left: Value, right: Value, divisor: &Scalar) -> Option<Value> {
+        match (self.as_integer(left.expr), self.as_integer(right.expr)) {
+            (Some(left), Some(right)) if right > 0 => Some(self.pool.int(left.rem_euclid(right)).into()),
+            (Some(_), Some(_)) => self.refuse(divisor.at, "`%` needs a positive divisor", ""),
+            _ => self.refuse(divisor.at, "`%` is defined for indices only", "both sides are integers known while building"),
+        }
+    }
+
+    fn as_integer(&self, expr: ExprId) -> Option<i64> {
+        self.pool.as_number(expr).and_then(Rational::to_i64)
+    }
+
+    /// The value of an index.
+    pub(super) fn integer(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<i64> {
+        let value = self.expression(scalar, scope)?;
+        let integer = self.as_integer(value);
+        integer.or_else(|| {
+            let text = format!("`{scalar}` is not an integer known while building");
+            self.refuse(scalar.at, text, "indices are made of integers, constants and indices of families")
+        })
+    }
+
+    /// The values an index takes; none if the last one is before the first.
+    pub(super) fn range(&mut self, binder: &Binder, scope: &mut Scope) -> Option<std::ops::RangeInclusive<i64>> {
+        let low = self.integer(&binder.low, scope);
+        let high = self.integer(&binder.high, scope);
+        let (low, high) = (low?, high?);
+        if high.saturating_sub(low) >= FAMILY {
+            let text = format!("`{binder}` takes more than {FAMILY} values");
+            return self.refuse(binder.low.at.to(binder.high.at), text, "");
+        }
+        Some(low..=high)
+    }
+
+    fn sum_over(&mut self, binder: &Binder, body: &Scalar, scope: &mut Scope) -> Option<Value> {
+        let mut terms = Vec::new();
+        for index in self.range(binder, scope)? {
+            let index = self.pool.int(index);
+            scope.bind(&binder.name.text, index.into());
+            let term = self.resolve(body, scope);
+            scope.unbind();
+            terms.push(term?);
+        }
+        Some(self.add(&terms))
+    }
+
+    fn name(&mut self, name: &str, at: Location, scope: &Scope) -> Option<Value> {
+        if let Some(value) = scope.get(name) {
+            return Some(value);
+        }
+        match name {
+            "t" => return Some(self.pool.variable(self.symbols.time).into()),
+            "pi" => return Some(self.pool.pi().into()),
+            "energy" => return self.energy(at),
+            _ => {}
+        }
+        let Some((meaning, _)) = self.symbols.names.get(name).copied() else {
+            return self.unknown_name(name, at, scope);
+        };
+        match meaning {
+            Meaning::Constant(value) => Some(self.pool.int(value).into()),
+            Meaning::Coordinate(index) => Some(self.pool.variable(self.symbols.coordinates[index].q).into()),
+            Meaning::Parameter(index) => Some(self.pool.variable(self.symbols.parameters[index].symbol).into()),
+            Meaning::Coordinates(_, size) | Meaning::Parameters(_, size) => {
+                let text = format!("`{name}` is a family of {size}");
+                self.refuse(at, text, &format!("write `{name}[1]`"))
+            }
+            Meaning::Definition => self.definition(name, at),
+        }
+    }
+
+    fn energy(&mut self, at: Location) -> Option<Value> {
+        if !self.derived_allowed {
+            return self.refuse(at, "`energy` is derived and not known here", "it may be used in `outputs`");
+        }
+        Some(self.pool.variable(self.symbols.derived.energy).into())
+    }
+
+    fn member(&mut self, name: &Word, index: &Scalar, scope: &mut Scope) -> Option<Value> {
+        let member = self.integer(index, scope);
+        let Some((meaning, _)) = self.symbols.names.get(&name.text).copied() else {
+            return self.unknown_name(&name.text, name.at, scope);
+        };
+        let member = member?;
+        match meaning {
+            Meaning::Coordinates(first, size) => {
+                let offset = self.offset(name, index, member, size)?;
+                Some(self.pool.variable(self.symbols.coordinates[first + offset].q).into())
+            }
+            Meaning::Parameters(first, size) => {
+                let offset = self.offset(name, index, member, size)?;
+                Some(self.pool.variable(self.symbols.parameters[first + offset].symbol).into())
+            }
+            Meaning::Definition => self.defined_member(name, index, member),
+            _ => {
+                let text = format!("`{}` is not a family", name.text);
+                self.refuse(name.at, text, &format!("write `{}`", name.text))
+            }
+        }
+    }
+
+    /// The offset of a 1-based member in its family.
+    pub(super) fn offset(&mut self, name: &Word, index: &Scalar, member: i64, size: usize) -> Option<usize> {
+        match usize::try_from(member) {
+            Ok(member) if (1..=size).contains(&member) => Some(member - 1),
+            _ => {
+                let text = format!("`{}[{member}]` does not exist", name.text);
+                self.refuse(index.at, text, &format!("`{}` has the members 1 to {size}", name.text))
+            }
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! The symbols of a model: time, coordinates, velocities, differentials, parameters; and what each name means.
+
+use std::collections::BTreeMap;
+
+use dalembert_expr::{Assumption as Known, Pool, SymbolId};
+
+use super::latex::{latex, latex_velocity};
+use super::{Coordinate, DerivedSymbols, Name, Parameter};
+use crate::diagnostics::Location;
+
+/// What a name stands for. A family names its members, which are consecutive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Meaning {
+    /// `const N = 8;`
+    Constant(i64),
+    /// The index of a coordinate.
+    Coordinate(usize),
+    /// The index of the first coordinate, and how many there are.
+    Coordinates(usize, usize),
+    /// The index of a parameter.
+    Parameter(usize),
+    /// The index of the first parameter, and how many there are.
+    Parameters(usize, usize),
+    /// Introduced by `let`.
+    Definition,
+}
+
+impl Meaning {
+    /// The kind as messages name it.
+    pub(super) fn noun(self) -> &'static str {
+        match self {
+            Self::Constant(_) => "constant",
+            Self::Coordinate(_) | Self::Coordinates(..) => "coordinate",
+            Self::Parameter(_) | Self::Parameters(..) => "parameter",
+            Self::Definition => "definition",
+        }
+    }
+}
+
+/// The symbols of a model and the names they go by.
+#[derive(Debug)]
+pub(super) struct Symbols {
+    /// `t`
+    pub(super) time: SymbolId,
+    /// `d(t)`
+    pub(super) time_differential: SymbolId,
+    /// Coordinates, families expanded.
+    pub(super) coordinates: Vec<Coordinate>,
+    /// `d(x)` of every coordinate.
+    pub(super) differentials: Vec<SymbolId>,
+    /// Parameters, families expanded.
+    pub(super) parameters: Vec<Parameter>,
+    /// Quantities that are derived later.
+    pub(super) derived: DerivedSymbols,
+    /// What each declared name means, and where it was declared.
+    pub(super) names: BTreeMap<String, (Meaning, Location)>,
+}
+
+impl Symbols {
+    /// Time and energy, and nothing declared yet.
+    pub(super) fn new(pool: &mut Pool) -> Self {
+        let derived = DerivedSymbols {
+            energy: pool.symbol("energy", "E", Known::None),
+            momenta: Vec::new(),
+            multipliers: Vec::new(),
+        };
+        Self {
+            time: pool.symbol("t", "t", Known::None),
+            time_differential: pool.symbol("d(t)", r"\mathrm{d}t", Known::None),
+            coordinates: Vec::new(),
+            differentials: Vec::new(),
+            parameters: Vec::new(),
+            derived,
+            names: BTreeMap::new(),
+        }
+    }
+
+    /// The velocities of all coordinates.
+    pub(super) fn velocities(&self) -> Vec<SymbolId> {
+        self.coordinates.iter().map(|coordinate| coordinate.qdot).collect()
+    }
+
+    /// The positions of all coordinates.
+    pub(super) fn positions(&self) -> Vec<SymbolId> {
+        self.coordinates.iter().map(|coordinate| coordinate.q).collect()
+    }
+
+    /// The differentials of all coordinates, then that of time.
+    pub(super) fn all_differentials(&self) -> Vec<SymbolId> {
+        let mut differentials = self.differentials.clone();
+        differentials.push(self.time_differential);
+        differentials
+    }
+
+    /// Everything that changes in time, differentials included; the rest are parameters.
+    pub(super) fn moving(&self) -> Vec<SymbolId> {
+        let mut moving = self.positions();
+        moving.extend(self.velocities());
+        moving.extend(self.all_differentials());
+        moving.extend(self.derived.momenta.iter().chain(&self.derived.multipliers));
+        moving.extend([self.time, self.derived.energy]);
+        moving
+    }
+
+    /// Where each coordinate goes, and time: the directions of a total time derivative.
+    pub(super) fn coordinate_of(&self, symbol: SymbolId) -> Option<usize> {
+        self.coordinates.iter().position(|coordinate| coordinate.q == symbol)
+    }
+}
+
+/// New symbols for a coordinate: its position, velocity, differential and momentum.
+pub(super) fn coordinate_symbols(pool: &mut Pool, name: &Name, known: Known) -> [SymbolId; 4] {
+    let letter = latex(name);
+    [
+        pool.symbol(&name.display, &letter, known),
+        pool.symbol(&format!("dot({})", name.display), &latex_velocity(name), Known::None),
+        pool.symbol(&format!("d({})", name.display), &format!(r"\mathrm{{d}}{letter}"), Known::None),
+        pool.symbol(&format!("momentum({})", name.display), &format!("p_{{{letter}}}"), Known::None),
+    ]
+}
+
+/// A name, alone or as a member of a family.
+pub(super) fn member_name(field: &str, member: Option<usize>) -> Name {
+    let display = match member {
+        Some(member) => format!("{field}.{member}"),
+        None => field.to_owned(),
+    };
+    Name { display, field: field.to_owned(), member }
+}
+
+/// `RollingDisk` as `rolling_disk`.
+pub(super) fn snake_case(name: &str) -> String {
+    let mut snake = String::new();
+    let characters: Vec<char> = name.chars().collect();
+    for (index, character) in characters.iter().enumerate() {
+        let after_lower = index > 0 && (characters[index - 1].is_lowercase() || characters[index - 1].is_ascii_digit());
+        let before_lower = index > 0
+            && characters[index - 1].is_uppercase()
+            && characters.get(index + 1).is_some_and(|next| next.is_lowercase());
+        if character.is_uppercase() && (after_lower || before_lower) {
+            snake.push('_');
+        }
+        snake.extend(character.to_lowercase());
+    }
+    snake
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn type_names_become_snake_case() {
+        assert_eq!(snake_case("RollingDisk"), "rolling_disk");
+        assert_eq!(snake_case("Pendulum"), "pendulum");
+        assert_eq!(snake_case("BallOnTable2D"), "ball_on_table2_d");
+        assert_eq!(snake_case("LChain"), "l_chain");
+    }
+}

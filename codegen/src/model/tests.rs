@@ -1,0 +1,134 @@
+//! Models that are right, and what is said of those that are not.
+
+use dalembert_expr::{Pool, SymbolId};
+
+use super::{Assumption, Law, Model, Topology, check};
+use crate::diagnostics::Diagnostics;
+use crate::spec;
+
+const DISK: &str = "
+    /// Vertical rolling disk on an elliptical table.
+    pub RollingDisk {
+        coordinates { x; y; theta: angle; phi: angle; }
+        parameters  { m > 0 = 0.0025; R > 0 = 0.01; I > 0 = 1.25e-7; J > 0 = 6.25e-8; ta > 0 = 0.15; tb > 0 = 0.20; }
+        let table(u, v) = 1 - u^2/ta^2 - v^2/tb^2;
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + J/2*dot(phi)^2;
+        constraints {
+            rolling_x: d(x) - R*cos(phi)*d(theta) = 0;
+            rolling_y: dot(y) = R*sin(phi)*dot(theta);
+        }
+        impacts {
+            leading_edge:  table(x + R*cos(phi), y + R*sin(phi)) >= 0;
+            trailing_edge: table(x - R*cos(phi), y - R*sin(phi)) >= 0;
+        }
+        initial { phi = pi/2; dot(theta) = 10; dot(phi) = 0.2; until = 20; }
+        view    { path: (x, y); region: table(x, y) >= 0; }
+        outputs { load: multiplier(rolling_x); e: energy; p: momentum(theta); }
+    }";
+
+const BALL: &str = "
+    BallOnRotatingTable {
+        coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
+        parameters { m > 0 = 1; r > 0 = 1; I > 0 = 0.4; Om = 2; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2)
+            + I/2*(dot(theta)^2 + dot(psi)^2 + dot(phi)^2 + 2*dot(psi)*dot(phi)*cos(theta));
+        constraints {
+            roll_x: dot(x) + r*sin(theta)*cos(psi)*dot(phi) - r*sin(psi)*dot(theta) = -Om*y;
+            roll_y: dot(y) + r*sin(theta)*sin(psi)*dot(phi) + r*cos(psi)*dot(theta) = Om*x;
+        }
+    }";
+
+fn chain(links: usize) -> String {
+    format!(
+        "Chain {{
+            const N = {links};
+            coordinates {{ theta[N]: angle; }}
+            parameters {{ m[N] > 0 = 1; l > 0 = 0.5; g > 0 = 9.81; }}
+            let X[0] = 0;
+            let Y[0] = 0;
+            let X[i in 1..=N] = X[i-1] + l*sin(theta[i]);
+            let Y[i in 1..=N] = Y[i-1] - l*cos(theta[i]);
+            lagrangian = sum(i in 1..=N: m[i]/2*(dot(X[i])^2 + dot(Y[i])^2) - m[i]*g*Y[i]);
+            initial {{ theta[i in 1..=N] = 0.1*i; }}
+            outputs {{ tip: X[N]; }}
+        }}"
+    )
+}
+
+fn read(source: &str) -> Result<Model, Diagnostics> {
+    let spec = spec::parse(source.parse().unwrap())?;
+    check(&spec)
+}
+
+fn model(source: &str) -> Model {
+    read(source).unwrap_or_else(|diagnostics| panic!("{}", all_messages(&diagnostics)))
+}
+
+fn all_messages(diagnostics: &Diagnostics) -> String {
+    diagnostics.iter().map(|error| format!("{}\n", error.message())).collect()
+}
+
+fn text(pool: &Pool, exprs: &[dalembert_expr::ExprId]) -> Vec<String> {
+    exprs.iter().map(|expr| pool.text(*expr)).collect()
+}
+
+#[test]
+fn the_rolling_disk_is_taken_apart() {
+    let model = model(DISK);
+    assert_eq!((model.name.as_str(), model.snake_name.as_str()), ("RollingDisk", "rolling_disk"));
+    assert_eq!(model.visibility, "pub");
+    assert_eq!(model.documentation, ["Vertical rolling disk on an elliptical table."]);
+    assert_eq!(model.coordinates[2].topology, Topology::Angle);
+    assert_eq!(model.parameters[0].assumption, Assumption::Positive);
+    let pool = &model.pool;
+    assert_eq!(text(pool, &model.lagrangian.metric[0]), ["m", "0", "0", "0"]);
+    assert_eq!(text(pool, &model.lagrangian.metric[3]), ["0", "0", "0", "J"]);
+    assert_eq!(text(pool, &model.constraints[0].form), ["1", "0", "-R*cos(phi)", "0"]);
+    assert_eq!(text(pool, &model.constraints[1].form), ["0", "1", "-R*sin(phi)", "0"]);
+    assert!(model.constraints.iter().all(|constraint| constraint.level.is_none()));
+    assert_eq!(model.surfaces.len(), 2);
+    assert_eq!(model.surfaces[0].law, Law::Elastic);
+    assert_eq!(model.initial.q.iter().filter(|value| value.is_some()).count(), 1);
+    assert!(model.initial.until.is_some());
+    let view = model.view.unwrap();
+    assert_eq!(view.plane, Some([0, 1]));
+    assert_eq!(view.labels, ["x", "y"]);
+    assert_eq!(text(pool, &[model.outputs[0].value]), ["multiplier(rolling_x)"]);
+    assert_eq!(model.notes, Vec::<String>::new());
+}
+
+#[test]
+fn the_text_of_a_model_declares_the_same_model() {
+    let first = model(DISK);
+    assert!(first.source.contains("let table(u, v) = 1 - u^2/ta^2 - v^2/tb^2;"), "{}", first.source);
+    assert_eq!(model(&first.source).source, first.source);
+}
+
+#[test]
+fn affine_constraints_keep_their_affine_part() {
+    let model = model(BALL);
+    let values = |symbol: SymbolId| 2.0 + symbol.index() as f64;
+    let rate = values(model.parameters[3].symbol);
+    let [x, y] = [0, 1].map(|index: usize| values(model.coordinates[index].q));
+    let affine = model.pool.eval(&[model.constraints[0].affine, model.constraints[1].affine], &values);
+    assert_eq!(affine, [rate * y, -rate * x]);
+    assert!(model.constraints.iter().all(|constraint| constraint.level.is_none()));
+    assert_eq!(text(&model.pool, &model.lagrangian.metric[2]), ["0", "0", "I", "0", "I*cos(theta)"]);
+}
+
+#[test]
+fn a_chain_is_written_out() {
+    let model = model(&chain(3));
+    let names: Vec<&str> = model.coordinates.iter().map(|coordinate| coordinate.name.display.as_str()).collect();
+    assert_eq!(names, ["theta.1", "theta.2", "theta.3"]);
+    assert_eq!(model.parameters.len(), 5);
+    assert_eq!(text(&model.pool, &[model.initial.q[1].unwrap()]), ["1/5"]);
+}
+
+#[test]
+fn a_chain_of_sixteen_links_is_checked_fast() {
+    let started = std::time::Instant::now();
+    let model = model(&chain(16));
+    println!("{:?}, {} nodes", started.elapsed(), model.pool.len());
+    assert!(model.pool.len() < 60_000, "{} nodes", model.pool.len());
+}

@@ -1,0 +1,177 @@
+//! What to say of a name that nothing declares: misspelt, pasted from a paper, or written as in another language.
+
+use super::latex::greek_name;
+use super::resolve::{Resolver, Scope, Value};
+use crate::diagnostics::{Location, listed, nearest};
+use crate::spec::{FUNCTIONS, PIECEWISE, Word, foreign_function, is_not_differentiable};
+
+/// Letters with a dot, as papers write velocities.
+const DOTTED: [(char, char); 22] = [
+    ('ȧ', 'a'),
+    ('ḃ', 'b'),
+    ('ċ', 'c'),
+    ('ḋ', 'd'),
+    ('ė', 'e'),
+    ('ḟ', 'f'),
+    ('ġ', 'g'),
+    ('ḣ', 'h'),
+    ('ṁ', 'm'),
+    ('ṅ', 'n'),
+    ('ȯ', 'o'),
+    ('ṗ', 'p'),
+    ('ṙ', 'r'),
+    ('ṡ', 's'),
+    ('ṫ', 't'),
+    ('ẇ', 'w'),
+    ('ẋ', 'x'),
+    ('ẏ', 'y'),
+    ('ż', 'z'),
+    ('Ṙ', 'R'),
+    ('Ẋ', 'X'),
+    ('Ẏ', 'Y'),
+];
+
+/// The dot that stands above the letter before it.
+const COMBINING_DOT: char = '\u{307}';
+
+/// Letters of other scripts that look like Latin ones.
+const LOOKALIKES: [(char, char); 33] = [
+    ('α', 'a'),
+    ('γ', 'y'),
+    ('ι', 'i'),
+    ('κ', 'k'),
+    ('ν', 'v'),
+    ('ο', 'o'),
+    ('ρ', 'p'),
+    ('τ', 't'),
+    ('υ', 'u'),
+    ('χ', 'x'),
+    ('ω', 'w'),
+    ('Α', 'A'),
+    ('Β', 'B'),
+    ('Ε', 'E'),
+    ('Ζ', 'Z'),
+    ('Η', 'H'),
+    ('Ι', 'I'),
+    ('Κ', 'K'),
+    ('Μ', 'M'),
+    ('Ν', 'N'),
+    ('Ο', 'O'),
+    ('Ρ', 'P'),
+    ('Τ', 'T'),
+    ('Χ', 'X'),
+    ('Υ', 'Y'),
+    ('а', 'a'),
+    ('е', 'e'),
+    ('о', 'o'),
+    ('р', 'p'),
+    ('с', 'c'),
+    ('у', 'y'),
+    ('х', 'x'),
+    ('і', 'i'),
+];
+
+impl Resolver<'_> {
+    /// Refuses a name that nothing declares.
+    pub(super) fn unknown_name(&mut self, name: &str, at: Location, scope: &Scope) -> Option<Value> {
+        if let Some((letter, declared)) = self.lookalike(name) {
+            let text = format!("`{name}` ({letter}) is not the declared `{declared}`");
+            return self.refuse(at, text, &format!("write `{declared}`"));
+        }
+        let help = self.unknown_help(name, scope);
+        self.refuse(at, format!("unknown name `{name}`"), &help)
+    }
+
+    fn unknown_help(&self, name: &str, scope: &Scope) -> String {
+        if name.contains('·') {
+            return format!("the middle dot is part of the name; write `{}`", name.replace('·', "*"));
+        }
+        if let Some(help) = self.velocity_help(name) {
+            return help;
+        }
+        let declared = self.symbols.names.iter().map(|(name, (meaning, _))| (name.as_str(), meaning.noun()));
+        let locals = scope.names().map(|name| (name, "index or argument"));
+        let known: Vec<(&str, &str)> = declared.chain(locals).collect();
+        let near = nearest(name, known.iter().map(|(name, _)| *name));
+        match near.and_then(|near| known.iter().find(|(name, _)| *name == near)) {
+            Some((near, noun)) => format!("did you mean the {noun} `{near}`?"),
+            None => format!("a parameter is declared with `parameters {{ {name}; }}`"),
+        }
+    }
+
+    /// `xdot`, `x_dot` and `ẋ` for `dot(x)`; `dx` for `d(x)`.
+    fn velocity_help(&self, name: &str) -> Option<String> {
+        if let Some(base) = without_dot(name) {
+            let base = self.ascii_name(&base).unwrap_or(base);
+            return Some(format!("did you mean `dot({base})`?"));
+        }
+        let coordinates = self.symbols.coordinates.iter().map(|coordinate| coordinate.name.field.as_str());
+        for field in coordinates {
+            let rest = name.strip_prefix(field).map(|rest| rest.trim_start_matches('_'));
+            if rest.is_some_and(|rest| rest == "d" || rest.starts_with("dot")) {
+                return Some(format!("the velocity of `{field}` is written `dot({field})`"));
+            }
+            if name.strip_prefix('d') == Some(field) {
+                return Some(format!("the differential of `{field}` is written `d({field})`"));
+            }
+        }
+        None
+    }
+
+    /// The declared name that a Greek or Cyrillic one looks like or spells, and what the letter is.
+    fn lookalike(&self, name: &str) -> Option<(String, String)> {
+        let foreign = name.chars().find(|letter| !letter.is_ascii() && (greek_name(*letter).is_some() || latin(*letter).is_some()))?;
+        let declared = self.ascii_name(name)?;
+        let letter = match greek_name(foreign) {
+            Some(greek) => format!("Greek {greek}"),
+            None if ('\u{400}'..'\u{500}').contains(&foreign) => "Cyrillic".to_owned(),
+            None => "Greek".to_owned(),
+        };
+        Some((letter, declared))
+    }
+
+    /// The declared name that is spelt or looks like this one.
+    fn ascii_name(&self, name: &str) -> Option<String> {
+        let spelt: String = name.chars().map(|letter| greek_name(letter).map_or(letter.to_string(), str::to_owned)).collect();
+        let seen: String = name.chars().map(|letter| latin(letter).unwrap_or(letter)).collect();
+        [spelt, seen].into_iter().find(|candidate| self.symbols.names.contains_key(candidate))
+    }
+
+    /// Refuses a call of a function that nothing declares.
+    pub(super) fn unknown_function(&mut self, name: &Word) -> Option<Value> {
+        let defined = self.definitions.keys().copied();
+        let help = if let Some(help) = foreign_function(&name.text) {
+            help.to_owned()
+        } else if is_not_differentiable(&name.text) {
+            format!("`{}` is not differentiable; {PIECEWISE}", name.text)
+        } else if let Some(near) = nearest(&name.text, FUNCTIONS.into_iter().chain(defined)) {
+            format!("did you mean `{near}`? The functions are {}", listed(FUNCTIONS))
+        } else {
+            format!("the functions are {}", listed(FUNCTIONS))
+        };
+        self.refuse(name.at, format!("unknown function `{}`", name.text), &help)
+    }
+}
+
+fn latin(letter: char) -> Option<char> {
+    LOOKALIKES.iter().find(|(foreign, _)| *foreign == letter).map(|(_, latin)| *latin)
+}
+
+/// The name without the dot above one of its letters.
+fn without_dot(name: &str) -> Option<String> {
+    let plain = |letter: char| DOTTED.iter().find(|(dotted, _)| *dotted == letter).map_or(letter, |(_, plain)| *plain);
+    let base: String = name.chars().filter(|letter| *letter != COMBINING_DOT).map(plain).collect();
+    (base != name).then_some(base)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dots_above_letters_are_taken_off() {
+        assert_eq!(without_dot("ẋ").as_deref(), Some("x"));
+        assert_eq!(without_dot("φ\u{307}").as_deref(), Some("φ"));
+        assert_eq!(without_dot("x"), None);
+    }
+}

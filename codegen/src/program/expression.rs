@@ -1,0 +1,242 @@
+//! Expressions to operations.
+//!
+//! Nodes are lowered in increasing id, so operands come first and depth costs no stack. Sums are factored:
+//! a factor that several terms share is multiplied once (`a*b + a*c` becomes `a*(b + c)`), the most frequent
+//! first. Powers are products; negative powers of one product share one division.
+
+use std::collections::HashMap;
+
+use dalembert_expr::{ExprId, Node, Pool, Rational, SymbolId};
+
+use super::Value;
+use super::builder::Builder;
+
+/// A term of a sum: coefficient and factors with their exponents.
+type Term = (Rational, Vec<(ExprId, Rational)>);
+
+/// Lowers expressions of one pool into one function.
+#[derive(Debug)]
+pub struct Expressions<'a> {
+    pool: &'a Pool,
+    values: HashMap<ExprId, Value>,
+    bindings: HashMap<SymbolId, Value>,
+}
+
+impl<'a> Expressions<'a> {
+    /// Nothing bound yet.
+    pub fn new(pool: &'a Pool) -> Self {
+        Self { pool, values: HashMap::new(), bindings: HashMap::new() }
+    }
+
+    /// Says what a symbol's value is.
+    pub fn bind(&mut self, symbol: SymbolId, value: Value) {
+        self.bindings.insert(symbol, value);
+    }
+
+    /// Whether a symbol has a value.
+    pub fn is_bound(&self, symbol: SymbolId) -> bool {
+        self.bindings.contains_key(&symbol)
+    }
+
+    /// The value of an expression all of whose symbols are bound. A symbol that is not bound counts as zero;
+    /// the kernel binds all that a function may use before it lowers anything.
+    pub fn lower(&mut self, builder: &mut Builder, root: ExprId) -> Value {
+        for id in self.pending(root) {
+            let value = self.lower_node(builder, id);
+            self.values.insert(id, value);
+        }
+        self.values[&root]
+    }
+
+    /// The nodes below `root` that have no value yet, operands first.
+    fn pending(&self, root: ExprId) -> Vec<ExprId> {
+        let mut found = Vec::new();
+        let mut stack = vec![root];
+        let mut seen = std::collections::HashSet::new();
+        while let Some(id) = stack.pop() {
+            if self.values.contains_key(&id) || !seen.insert(id) {
+                continue;
+            }
+            found.push(id);
+            stack.extend(operands(self.pool.node(id)));
+        }
+        found.sort_unstable();
+        found
+    }
+
+    fn lower_node(&mut self, builder: &mut Builder, id: ExprId) -> Value {
+        match self.pool.node(id) {
+            Node::Number(number) => builder.number(number.clone()),
+            Node::Pi => builder.pi(),
+            Node::Symbol(symbol) => match self.bindings.get(symbol) {
+                Some(&value) => value,
+                None => builder.zero(),
+            },
+            Node::Sum { constant, terms } => {
+                let terms = terms.iter().map(|(coefficient, id)| (coefficient.clone(), self.factors(*id))).collect();
+                let sum = self.lower_sum(builder, terms);
+                let constant = builder.number(constant.clone());
+                builder.add(sum, constant)
+            }
+            Node::Product(factors) => {
+                let factors = factors.to_vec();
+                self.lower_product(builder, &factors)
+            }
+            Node::Call(function, argument) => {
+                let value = builder.call(*function, self.values[argument]);
+                if let Node::Symbol(symbol) = self.pool.node(*argument) {
+                    let name = format!("{}_{}", function.name(), self.pool.symbol_name(*symbol));
+                    builder.name(value, name);
+                }
+                value
+            }
+            Node::Atan2(y, x) => builder.atan2(self.values[y], self.values[x]),
+        }
+    }
+
+    /// The factors of a term of a sum.
+    fn factors(&self, id: ExprId) -> Vec<(ExprId, Rational)> {
+        match self.pool.node(id) {
+            Node::Product(factors) => factors.to_vec(),
+            _ => vec![(id, Rational::from(1))],
+        }
+    }
+
+    fn lower_sum(&self, builder: &mut Builder, terms: Vec<Term>) -> Value {
+        let Some(shared) = most_frequent_factor(&terms) else {
+            return self.lower_plain_sum(builder, terms);
+        };
+        let (mut inside, mut outside) = (Vec::new(), Vec::new());
+        for (coefficient, mut factors) in terms {
+            match take_factor(&mut factors, shared) {
+                true => inside.push((coefficient, factors)),
+                false => outside.push((coefficient, factors)),
+            }
+        }
+        let cofactor = self.lower_sum(builder, inside);
+        let product = builder.mul(self.values[&shared], cofactor);
+        let rest = self.lower_sum(builder, outside);
+        builder.add(product, rest)
+    }
+
+    /// A sum whose terms share no factor; a coefficient that all terms share up to sign is applied once.
+    fn lower_plain_sum(&self, builder: &mut Builder, terms: Vec<Term>) -> Value {
+        let size = terms.first().map(|(coefficient, _)| coefficient.abs());
+        let common = size.filter(|size| terms.len() > 1 && terms.iter().all(|(c, _)| c.abs() == *size));
+        let mut total = builder.zero();
+        for (coefficient, factors) in terms {
+            let product = self.lower_product(builder, &factors);
+            let weight = match &common {
+                Some(_) => Rational::from(if coefficient.is_negative() { -1 } else { 1 }),
+                None => coefficient,
+            };
+            if weight.is_negative() {
+                let weight = builder.number(-weight);
+                total = builder.sub_product(total, weight, product);
+            } else {
+                let weight = builder.number(weight);
+                total = builder.add_product(total, weight, product);
+            }
+        }
+        match common {
+            Some(size) => {
+                let size = builder.number(size);
+                builder.mul(size, total)
+            }
+            None => total,
+        }
+    }
+
+    /// Parameters are multiplied first: what depends on them alone is then shared between products.
+    fn lower_product(&self, builder: &mut Builder, factors: &[(ExprId, Rational)]) -> Value {
+        let mut ordered: Vec<&(ExprId, Rational)> = factors.iter().collect();
+        ordered.sort_by_key(|(base, _)| (self.is_moving(builder, *base), *base));
+        let (mut numerator, mut denominator) = (builder.integer(1), builder.integer(1));
+        for (base, exponent) in ordered {
+            let power = self.lower_power(builder, self.values[base], &exponent.abs());
+            match exponent.is_negative() {
+                true => denominator = builder.mul(denominator, power),
+                false => numerator = builder.mul(numerator, power),
+            }
+        }
+        builder.div(numerator, denominator)
+    }
+
+    /// Whether an expression depends on anything but parameters and numbers.
+    fn is_moving(&self, builder: &Builder, id: ExprId) -> bool {
+        self.pool.symbols(id).iter().any(|symbol| {
+            let value = self.bindings.get(symbol);
+            !value.is_some_and(|&value| matches!(builder.op(value), super::Op::Input(super::Input::Parameter(_))))
+        })
+    }
+
+    /// `base^exponent` for a positive exponent: products, square roots, or a general power.
+    fn lower_power(&self, builder: &mut Builder, base: Value, exponent: &Rational) -> Value {
+        let doubled = exponent.clone() + exponent.clone();
+        match (exponent.to_i64(), doubled.to_i64()) {
+            (Some(integer), _) => integer_power(builder, base, integer),
+            (None, Some(odd)) => {
+                let root = builder.sqrt(base);
+                let rest = integer_power(builder, base, odd / 2);
+                builder.mul(root, rest)
+            }
+            _ => builder.power(base, exponent.clone()),
+        }
+    }
+}
+
+fn operands(node: &Node) -> Vec<ExprId> {
+    match node {
+        Node::Number(_) | Node::Pi | Node::Symbol(_) => Vec::new(),
+        Node::Sum { terms, .. } => terms.iter().flat_map(|(_, id)| [*id]).collect(),
+        Node::Product(factors) => factors.iter().map(|(id, _)| *id).collect(),
+        Node::Call(_, argument) => vec![*argument],
+        Node::Atan2(y, x) => vec![*y, *x],
+    }
+}
+
+/// The base that occurs with a positive integer exponent in the most terms, at least two.
+fn most_frequent_factor(terms: &[Term]) -> Option<ExprId> {
+    if terms.len() < 2 {
+        return None;
+    }
+    let mut counts: Vec<(ExprId, usize)> = Vec::new();
+    for (_, factors) in terms {
+        for (base, exponent) in factors {
+            if exponent.is_integer() && exponent.is_positive() {
+                match counts.iter_mut().find(|(known, _)| known == base) {
+                    Some((_, count)) => *count += 1,
+                    None => counts.push((*base, 1)),
+                }
+            }
+        }
+    }
+    let best = counts.iter().map(|&(_, count)| count).max().filter(|&count| count > 1)?;
+    counts.into_iter().find(|&(_, count)| count == best).map(|(base, _)| base)
+}
+
+/// Lowers the exponent of `base` by one, if it is a positive integer.
+fn take_factor(factors: &mut Vec<(ExprId, Rational)>, base: ExprId) -> bool {
+    let found = factors.iter().position(|(b, e)| *b == base && e.is_integer() && e.is_positive());
+    let Some(position) = found else { return false };
+    match factors[position].1.is_one() {
+        true => drop(factors.remove(position)),
+        false => factors[position].1 = factors[position].1.clone() - Rational::from(1),
+    }
+    true
+}
+
+/// `base^n` by squaring; 1 for `n = 0`.
+fn integer_power(builder: &mut Builder, base: Value, n: i64) -> Value {
+    let (mut result, mut square, mut left) = (builder.integer(1), base, n);
+    while left > 0 {
+        if left & 1 == 1 {
+            result = builder.mul(result, square);
+        }
+        left >>= 1;
+        if left > 0 {
+            square = builder.mul(square, square);
+        }
+    }
+    result
+}

@@ -1,0 +1,67 @@
+//! Executes a function without a compiler: the reference that emitted code is compared with.
+
+use dalembert_expr::Function as Elementary;
+
+use super::{Function, Guard, Input, Op, Value};
+
+/// Executes `function` with the given arguments.
+///
+/// # Errors
+/// The guard that did not hold.
+pub fn interpret(function: &Function, input: &dyn Fn(Input) -> f64) -> Result<Vec<f64>, Guard> {
+    let mut values: Vec<f64> = Vec::with_capacity(function.ops.len());
+    for op in &function.ops {
+        let value = execute(op, &values, input)?;
+        values.push(value);
+    }
+    Ok(function.outputs.iter().map(|output| values[output.index()]).collect())
+}
+
+fn execute(op: &Op, values: &[f64], input: &dyn Fn(Input) -> f64) -> Result<f64, Guard> {
+    let at = |value: &Value| values[value.index()];
+    Ok(match op {
+        Op::Input(argument) => input(*argument),
+        Op::Number(number) => number.to_f64(),
+        Op::Pi => std::f64::consts::PI,
+        Op::Neg(a) => -at(a),
+        Op::Add(a, b) => at(a) + at(b),
+        Op::Sub(a, b) => at(a) - at(b),
+        Op::Mul(a, b) => at(a) * at(b),
+        Op::Div(a, b) => at(a) / at(b),
+        Op::Sqrt(a) => at(a).sqrt(),
+        Op::Power(a, exponent) => at(a).powf(exponent.to_f64()),
+        Op::Call(function, a) => elementary(*function, at(a)),
+        Op::Atan2(y, x) => at(y).atan2(at(x)),
+        Op::Guard(guard) if holds(guard, values) => f64::NAN,
+        Op::Guard(guard) => return Err(guard.clone()),
+    })
+}
+
+fn holds(guard: &Guard, values: &[f64]) -> bool {
+    match *guard {
+        Guard::Pivot { value, .. } => values[value.index()] > 0.0,
+        Guard::Constraint { squared, reference: None, .. } | Guard::Surface { squared, .. } => {
+            values[squared.index()] > 0.0
+        }
+        Guard::Constraint { squared, reference: Some(reference), .. } => {
+            values[squared.index()] > Guard::LEAST_SQUARED_RATIO * values[reference.index()]
+        }
+    }
+}
+
+fn elementary(function: Elementary, x: f64) -> f64 {
+    match function {
+        Elementary::Sin => x.sin(),
+        Elementary::Cos => x.cos(),
+        Elementary::Tan => x.tan(),
+        Elementary::Asin => x.asin(),
+        Elementary::Acos => x.acos(),
+        Elementary::Atan => x.atan(),
+        Elementary::Exp => x.exp(),
+        Elementary::Ln => x.ln(),
+        Elementary::Sinh => x.sinh(),
+        Elementary::Cosh => x.cosh(),
+        Elementary::Tanh => x.tanh(),
+        Elementary::Abs => x.abs(),
+    }
+}

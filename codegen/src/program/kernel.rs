@@ -1,0 +1,292 @@
+//! What several functions of a model share, computed at most once per function: velocity, factorisations,
+//! multipliers.
+
+use dalembert_expr::{ExprId, Sign, SymbolId};
+
+use super::builder::Builder;
+use super::expression::Expressions;
+use super::linear::{Ldlt, Orthogonal};
+use super::{Function, Input, Value};
+use crate::mechanics::Derivation;
+use crate::mechanics::constraint::has_regular_minor;
+use crate::model::Model;
+
+/// What the second half of a function's arguments is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Arguments {
+    /// `(t, q)`
+    Position,
+    /// `(t, q, p)`
+    Momenta,
+    /// `(t, q, qdot)`
+    Velocities,
+}
+
+/// A function under construction together with the model it belongs to.
+pub struct Kernel<'a> {
+    pub(super) model: &'a Model,
+    pub(super) derivation: &'a Derivation,
+    pub(super) builder: Builder,
+    expressions: Expressions<'a>,
+    arguments: Arguments,
+    ldlt: Option<Ldlt>,
+    orthogonal: Option<Orthogonal>,
+    qdot: Option<Vec<Value>>,
+    multipliers: Option<Vec<Value>>,
+}
+
+impl<'a> Kernel<'a> {
+    /// A kernel whose positions, parameters and time are bound, and velocities too if they are arguments.
+    pub fn new(model: &'a Model, derivation: &'a Derivation, arguments: Arguments) -> Self {
+        let mut kernel = Self {
+            model,
+            derivation,
+            builder: Builder::new(),
+            expressions: Expressions::new(&model.pool),
+            arguments,
+            ldlt: None,
+            orthogonal: None,
+            qdot: None,
+            multipliers: None,
+        };
+        kernel.bind(model.time, Input::Time);
+        for (k, parameter) in model.parameters.iter().enumerate() {
+            kernel.bind(parameter.symbol, Input::Parameter(k));
+        }
+        for (i, coordinate) in model.coordinates.iter().enumerate() {
+            kernel.bind(coordinate.q, Input::Coordinate(i));
+        }
+        if arguments == Arguments::Velocities {
+            let inputs = (0..model.coordinates.len()).map(|i| kernel.builder.input(Input::Velocity(i))).collect();
+            kernel.bind_velocity(inputs);
+        }
+        kernel
+    }
+
+    fn bind(&mut self, symbol: SymbolId, input: Input) {
+        let value = self.builder.input(input);
+        self.expressions.bind(symbol, value);
+    }
+
+    /// Says what a symbol's value is.
+    pub fn bind_value(&mut self, symbol: SymbolId, value: Value) {
+        self.expressions.bind(symbol, value);
+    }
+
+    fn bind_velocity(&mut self, qdot: Vec<Value>) {
+        for (coordinate, &value) in self.model.coordinates.iter().zip(&qdot) {
+            self.expressions.bind(coordinate.qdot, value);
+        }
+        self.qdot = Some(qdot);
+    }
+
+    /// Number of coordinates.
+    pub fn dimension(&self) -> usize {
+        self.model.coordinates.len()
+    }
+
+    /// Number of constraints.
+    pub fn constraints(&self) -> usize {
+        self.derivation.constraints.len()
+    }
+
+    /// The value of an expression of time, positions, velocities and parameters.
+    pub fn value(&mut self, expression: ExprId) -> Value {
+        if self.qdot.is_none() {
+            let qdot: Vec<SymbolId> = self.model.coordinates.iter().map(|coordinate| coordinate.qdot).collect();
+            if self.model.pool.depends_on_any(expression, &qdot) {
+                self.velocity();
+            }
+        }
+        self.expressions.lower(&mut self.builder, expression)
+    }
+
+    /// The values of several expressions.
+    pub fn values(&mut self, expressions: &[ExprId]) -> Vec<Value> {
+        expressions.iter().map(|&expression| self.value(expression)).collect()
+    }
+
+    /// Names values after the coordinates: `x_dot` for the suffix `_dot`.
+    pub fn name_by_coordinate(&mut self, values: &[Value], prefix: &str, suffix: &str) {
+        for (coordinate, &value) in self.model.coordinates.iter().zip(values) {
+            self.builder.name(value, format!("{prefix}{}{suffix}", coordinate.name.display));
+        }
+    }
+
+    fn factor_metric(&mut self) -> Ldlt {
+        let n = self.dimension();
+        let mut metric = Vec::with_capacity(n);
+        let mut positive = Vec::with_capacity(n);
+        for i in 0..n {
+            let row: Vec<ExprId> = self.model.lagrangian.metric[i][..=i].to_vec();
+            positive.push(self.model.pool.sign(row[i]) == Sign::Positive);
+            metric.push(self.values(&row));
+        }
+        Ldlt::factor(&mut self.builder, &metric, &positive)
+    }
+
+    /// `L^{-1} b`
+    pub fn forward(&mut self, b: &[Value]) -> Vec<Value> {
+        self.with_ldlt(|builder, ldlt| ldlt.forward(builder, b))
+    }
+
+    /// `g^{-1} b`
+    pub fn raise(&mut self, b: &[Value]) -> Vec<Value> {
+        self.with_ldlt(|builder, ldlt| ldlt.solve(builder, b))
+    }
+
+    /// Runs `work` with the metric's factors.
+    pub fn with_ldlt<T>(&mut self, work: impl FnOnce(&mut Builder, &Ldlt) -> T) -> T {
+        let ldlt = match self.ldlt.take() {
+            Some(ldlt) => ldlt,
+            None => self.factor_metric(),
+        };
+        let result = work(&mut self.builder, &ldlt);
+        self.ldlt = Some(ldlt);
+        result
+    }
+
+    /// `p - A` at the given momenta.
+    fn kinetic_momenta(&mut self) -> Vec<Value> {
+        let linear = self.model.lagrangian.linear.clone();
+        linear
+            .iter()
+            .enumerate()
+            .map(|(i, &a)| {
+                let p = self.builder.input(Input::Momentum(i));
+                let a = self.value(a);
+                self.builder.sub(p, a)
+            })
+            .collect()
+    }
+
+    /// `qdot = g^{-1}(p - A)`, or the arguments themselves.
+    pub fn velocity(&mut self) -> Vec<Value> {
+        if let Some(qdot) = &self.qdot {
+            return qdot.clone();
+        }
+        let momenta = self.kinetic_momenta();
+        let qdot = self.raise(&momenta);
+        self.name_by_coordinate(&qdot, "", "_dot");
+        self.bind_velocity(qdot.clone());
+        qdot
+    }
+
+    /// `p - A = g qdot`.
+    pub fn lowered_velocity(&mut self) -> Vec<Value> {
+        if self.arguments == Arguments::Momenta {
+            return self.kinetic_momenta();
+        }
+        let qdot = self.velocity();
+        let n = self.dimension();
+        (0..n)
+            .map(|i| {
+                let row = self.model.lagrangian.metric[i].clone();
+                let row = self.values(&row);
+                self.dot(&row, &qdot)
+            })
+            .collect()
+    }
+
+    /// `u . v`
+    pub fn dot(&mut self, u: &[Value], v: &[Value]) -> Value {
+        let mut total = self.builder.zero();
+        for (&a, &b) in u.iter().zip(v) {
+            total = self.builder.add_product(total, a, b);
+        }
+        total
+    }
+
+    /// `eta^a`, M rows of N.
+    pub fn forms(&mut self) -> Vec<Vec<Value>> {
+        (0..self.constraints())
+            .map(|a| {
+                let form = self.derivation.constraints[a].form.clone();
+                self.values(&form)
+            })
+            .collect()
+    }
+
+    fn orthogonalise(&mut self, which: &[usize]) -> Orthogonal {
+        let mut columns = Vec::new();
+        for &a in which {
+            let form = self.derivation.constraints[a].form.clone();
+            let form = self.values(&form);
+            columns.push(self.forward(&form));
+        }
+        let independent = has_regular_minor(&self.model.pool, &self.derivation.constraints);
+        self.with_ldlt(|builder, ldlt| Orthogonal::factor(builder, ldlt, columns, independent))
+    }
+
+    /// Runs `work` with the factors of all constraint forms.
+    pub fn with_constraints<T>(&mut self, work: impl FnOnce(&mut Builder, &Ldlt, &Orthogonal) -> T) -> T {
+        let factors = match self.orthogonal.take() {
+            Some(factors) => factors,
+            None => self.orthogonalise(&(0..self.constraints()).collect::<Vec<_>>()),
+        };
+        let result = self.with_ldlt(|builder, ldlt| work(builder, ldlt, &factors));
+        self.orthogonal = Some(factors);
+        result
+    }
+
+    /// The `lambda` with `m lambda = -(eta g^{-1} b + s)`.
+    pub fn constraint_solve(&mut self, b: &[Value], s: &[Value]) -> Vec<Value> {
+        let y = self.forward(b);
+        self.with_constraints(|builder, ldlt, factors| factors.solve(builder, ldlt, y, s))
+    }
+
+    /// As [`Kernel::constraint_solve`] with `b = 0`, for some of the constraints only.
+    pub fn partial_solve(&mut self, which: &[usize], s: &[Value]) -> Vec<Value> {
+        let factors = self.orthogonalise(which);
+        let zero = self.builder.zero();
+        let y = vec![zero; self.dimension()];
+        self.with_ldlt(|builder, ldlt| factors.solve(builder, ldlt, y, s))
+    }
+
+    /// `f = dL/dq + F`
+    pub fn force(&mut self) -> Vec<Value> {
+        let force = self.derivation.field.force.clone();
+        self.values(&force)
+    }
+
+    /// `lambda_a`
+    pub fn multipliers(&mut self) -> Vec<Value> {
+        if let Some(multipliers) = &self.multipliers {
+            return multipliers.clone();
+        }
+        let free = self.force_without_drift();
+        let curvature: Vec<ExprId> = self.derivation.constraints.iter().map(|c| c.curvature).collect();
+        let curvature = self.values(&curvature);
+        let multipliers = self.constraint_solve(&free, &curvature);
+        for (constraint, &value) in self.model.constraints.iter().zip(&multipliers) {
+            self.builder.name(value, format!("lambda_{}", constraint.name.display));
+        }
+        self.multipliers = Some(multipliers.clone());
+        multipliers
+    }
+
+    /// `f - gdot qdot - Adot`
+    pub fn force_without_drift(&mut self) -> Vec<Value> {
+        let force = self.force();
+        let drift = self.derivation.field.drift.clone();
+        let drift = self.values(&drift);
+        force.iter().zip(drift).map(|(&f, d)| self.builder.sub(f, d)).collect()
+    }
+
+    /// `covector + lambda_a eta^a`
+    pub fn add_constraint_force(&mut self, covector: &[Value], multipliers: &[Value]) -> Vec<Value> {
+        let forms = self.forms();
+        let mut total = covector.to_vec();
+        for (form, &multiplier) in forms.iter().zip(multipliers) {
+            for (entry, &component) in total.iter_mut().zip(form) {
+                *entry = self.builder.add_product(*entry, multiplier, component);
+            }
+        }
+        total
+    }
+
+    /// The finished function.
+    pub fn finish(self, outputs: Vec<Value>) -> Function {
+        self.builder.finish(outputs)
+    }
+}

@@ -1,0 +1,214 @@
+//! Linear algebra as operations: sparse LDL^T of the metric, and the constraint solve by orthogonalisation.
+//!
+//! **Metric.** `g = L D L^T`, `L` unit lower triangular, in coordinate order; entries that are zero by structure
+//! are never touched. A pivot that is not known to be positive is guarded.
+//!
+//! **Constraints.** With `C = L^{-1} eta^T` (N rows, M columns) and the inner product `<u, v> = u^T D^{-1} v`,
+//! `m^{ab} = <C_a, C_b>`. Modified Gram-Schmidt without square roots gives `C = Q U`, `U` unit upper triangular,
+//! `<Q_a, Q_b> = n_a delta_ab`, hence `m = U^T diag(n) U` although `m` is never formed: forming it would square
+//! the condition number and lose every digit when forms are nearly dependent. The right-hand side is
+//! orthogonalised as a further column, which makes the solve backward stable (Bjorck, BIT 7 (1967)).
+
+use super::builder::Builder;
+use super::{Guard, Value};
+
+/// `g = L D L^T`.
+#[derive(Debug)]
+pub struct Ldlt {
+    /// `below[i][j]`, `j < i`: the entries of `L` below the diagonal.
+    below: Vec<Vec<Value>>,
+    /// `1 / D_i`.
+    inverse_pivots: Vec<Value>,
+}
+
+impl Ldlt {
+    /// Factorises; `metric[i][j]` for `j <= i`. `positive[i]`: whether `metric[i][i]` is known to be positive.
+    pub fn factor(builder: &mut Builder, metric: &[Vec<Value>], positive: &[bool]) -> Self {
+        let n = metric.len();
+        let mut below: Vec<Vec<Value>> = Vec::with_capacity(n);
+        let mut inverse_pivots: Vec<Value> = Vec::with_capacity(n);
+        for i in 0..n {
+            // Row i of the unscaled factor: scaled[j] = L_ij D_j.
+            let mut scaled: Vec<Value> = Vec::with_capacity(i);
+            for j in 0..i {
+                let mut entry = metric[i][j];
+                for k in 0..j {
+                    entry = builder.sub_product(entry, scaled[k], below[j][k]);
+                }
+                scaled.push(entry);
+            }
+            let row: Vec<Value> = (0..i).map(|j| builder.mul(scaled[j], inverse_pivots[j])).collect();
+            let mut pivot = metric[i][i];
+            for j in 0..i {
+                pivot = builder.sub_product(pivot, scaled[j], row[j]);
+            }
+            if !(positive[i] && pivot == metric[i][i]) {
+                builder.guard(Guard::Pivot { pivot: i, value: pivot });
+            }
+            inverse_pivots.push(builder.reciprocal(pivot));
+            below.push(row);
+        }
+        Self { below, inverse_pivots }
+    }
+
+    /// `L^{-1} b`
+    pub fn forward(&self, builder: &mut Builder, b: &[Value]) -> Vec<Value> {
+        let mut y: Vec<Value> = Vec::with_capacity(b.len());
+        for (i, &right) in b.iter().enumerate() {
+            let mut entry = right;
+            for (j, &known) in y.iter().enumerate() {
+                entry = builder.sub_product(entry, self.below[i][j], known);
+            }
+            y.push(entry);
+        }
+        y
+    }
+
+    /// `L^{-T} D^{-1} y`: the second half of a solve.
+    pub fn backward(&self, builder: &mut Builder, y: &[Value]) -> Vec<Value> {
+        let mut x: Vec<Value> = (0..y.len()).map(|i| builder.mul(y[i], self.inverse_pivots[i])).collect();
+        for i in (0..y.len()).rev() {
+            for j in i + 1..y.len() {
+                x[i] = builder.sub_product(x[i], self.below[j][i], x[j]);
+            }
+        }
+        x
+    }
+
+    /// `g^{-1} b`
+    pub fn solve(&self, builder: &mut Builder, b: &[Value]) -> Vec<Value> {
+        let y = self.forward(builder, b);
+        self.backward(builder, &y)
+    }
+
+    /// `L y`
+    pub fn lower_times(&self, builder: &mut Builder, y: &[Value]) -> Vec<Value> {
+        (0..y.len())
+            .map(|i| {
+                let mut entry = y[i];
+                for j in 0..i {
+                    entry = builder.add_product(entry, self.below[i][j], y[j]);
+                }
+                entry
+            })
+            .collect()
+    }
+
+    /// `<u, v> = u^T D^{-1} v`
+    pub fn inner(&self, builder: &mut Builder, u: &[Value], v: &[Value]) -> Value {
+        let mut total = builder.zero();
+        for i in 0..u.len() {
+            if builder.is_zero(u[i]) || builder.is_zero(v[i]) {
+                continue;
+            }
+            let weighted = builder.mul(u[i], self.inverse_pivots[i]);
+            total = builder.add_product(total, weighted, v[i]);
+        }
+        total
+    }
+}
+
+/// `L^{-1} eta^T = Q U` with `<Q_a, Q_b> = n_a delta_ab`.
+#[derive(Debug)]
+pub struct Orthogonal {
+    /// The columns of `Q`.
+    columns: Vec<Vec<Value>>,
+    /// `above[a][b]`, `b < a`: the entry `U_ba`.
+    above: Vec<Vec<Value>>,
+    /// `1 / n_a`
+    inverse_squares: Vec<Value>,
+}
+
+impl Orthogonal {
+    /// Orthogonalises the columns `L^{-1} eta^a`. With `independent`, a proof of independence, guards only ask
+    /// for positive norms.
+    pub fn factor(builder: &mut Builder, ldlt: &Ldlt, columns: Vec<Vec<Value>>, independent: bool) -> Self {
+        let mut factors = Self { columns: Vec::new(), above: Vec::new(), inverse_squares: Vec::new() };
+        for (a, column) in columns.into_iter().enumerate() {
+            let reference = (a > 0 && !independent).then(|| ldlt.inner(builder, &column, &column));
+            let (coefficients, rest) = factors.reduce(builder, ldlt, column);
+            let squared = ldlt.inner(builder, &rest, &rest);
+            builder.guard(Guard::Constraint { constraint: a, squared, reference });
+            factors.inverse_squares.push(builder.reciprocal(squared));
+            factors.above.push(coefficients);
+            factors.columns.push(rest);
+        }
+        factors
+    }
+
+    /// Removes from `y` its components along the columns, one after the other: the components, and what is left.
+    pub fn reduce(&self, builder: &mut Builder, ldlt: &Ldlt, mut y: Vec<Value>) -> (Vec<Value>, Vec<Value>) {
+        let mut coefficients = Vec::with_capacity(self.columns.len());
+        for (column, &inverse) in self.columns.iter().zip(&self.inverse_squares) {
+            let product = ldlt.inner(builder, column, &y);
+            let coefficient = builder.mul(product, inverse);
+            for (entry, &direction) in y.iter_mut().zip(column) {
+                *entry = builder.sub_product(*entry, coefficient, direction);
+            }
+            coefficients.push(coefficient);
+        }
+        (coefficients, y)
+    }
+
+    /// The `lambda` with `m lambda = -(C^T D^{-1} y + s)`.
+    pub fn solve(&self, builder: &mut Builder, ldlt: &Ldlt, y: Vec<Value>, s: &[Value]) -> Vec<Value> {
+        let (components, _) = self.reduce(builder, ldlt, y);
+        let shifts = self.transposed_solve(builder, s);
+        let right = (0..s.len())
+            .map(|a| {
+                let shift = builder.mul(shifts[a], self.inverse_squares[a]);
+                let sum = builder.add(components[a], shift);
+                builder.neg(sum)
+            })
+            .collect();
+        self.upper_solve(builder, right)
+    }
+
+    /// `U^{-T} s`
+    fn transposed_solve(&self, builder: &mut Builder, s: &[Value]) -> Vec<Value> {
+        let mut solution: Vec<Value> = Vec::with_capacity(s.len());
+        for (a, &right) in s.iter().enumerate() {
+            let mut entry = right;
+            for (b, &known) in solution.iter().enumerate() {
+                entry = builder.sub_product(entry, self.above[a][b], known);
+            }
+            solution.push(entry);
+        }
+        solution
+    }
+
+    /// `U^{-1} x`
+    fn upper_solve(&self, builder: &mut Builder, mut x: Vec<Value>) -> Vec<Value> {
+        for a in (0..x.len()).rev() {
+            for b in a + 1..x.len() {
+                x[a] = builder.sub_product(x[a], self.above[b][a], x[b]);
+            }
+        }
+        x
+    }
+
+    /// `m_ab`, the inverse of the constraint mass matrix: `U^{-1} diag(1/n) U^{-T}`.
+    pub fn inverse_mass(&self, builder: &mut Builder) -> Vec<Vec<Value>> {
+        let m = self.columns.len();
+        let inverse: Vec<Vec<Value>> = (0..m)
+            .map(|c| {
+                let unit = (0..m).map(|a| builder.integer(i64::from(a == c))).collect();
+                self.upper_solve(builder, unit)
+            })
+            .collect();
+        (0..m)
+            .map(|a| {
+                (0..m)
+                    .map(|b| {
+                        let mut entry = builder.zero();
+                        for c in a.max(b)..m {
+                            let scaled = builder.mul(inverse[c][a], self.inverse_squares[c]);
+                            entry = builder.add_product(entry, scaled, inverse[c][b]);
+                        }
+                        entry
+                    })
+                    .collect()
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,31 @@
+//! From a derivation to the program: one function per item of the contract.
+
+use super::Program;
+use super::recipes::{constrained, declared, geometry, impact, motion};
+use crate::mechanics::Derivation;
+use crate::model::Model;
+
+/// Lowers everything that a model declares.
+pub fn lower(model: &Model, derivation: &Derivation) -> Program {
+    Program {
+        rate: motion::rate(model, derivation),
+        scale: motion::scale(model, derivation),
+        velocity: motion::velocity(model, derivation),
+        momentum: motion::momentum(model, derivation),
+        energy: motion::energy(model, derivation),
+        geometry: geometry::geometry(model, derivation),
+        constrained: constrained::constrained(model, derivation),
+        impacting: impact::impacting(model, derivation),
+        divergence: geometry::divergence(model, derivation),
+        density_form: geometry::density_form(model, derivation),
+        outputs: declared::outputs(model, derivation),
+        view_path: model.view.as_ref().map(|view| declared::position_function(model, derivation, &view.path)),
+        view_region: model
+            .view
+            .as_ref()
+            .and_then(|view| view.region)
+            .map(|region| declared::position_function(model, derivation, &[region])),
+        initial: declared::initial(model, derivation),
+        until: model.initial.until.map(|until| declared::position_function(model, derivation, &[until])),
+    }
+}

@@ -1,0 +1,237 @@
+//! Stage 4, lower: from expressions to straight-line programs in static single assignment.
+//!
+//! A [`Function`] is a list of operations in an order that can be executed; every operand was defined before
+//! it is used. Linear algebra has already become operations here (see [`linear`]), with guards where a pivot
+//! must be positive. Nothing downstream decides anything: [`crate::emit`] writes down what stands here, and
+//! [`interpret`] executes it without a compiler.
+
+pub mod builder;
+pub mod cost;
+pub mod expression;
+pub mod interpret;
+pub mod kernel;
+pub mod linear;
+pub mod lower;
+pub mod recipes;
+pub mod schedule;
+pub mod verify;
+
+use dalembert_expr::{Function as Elementary, Rational};
+
+pub use cost::Cost;
+pub use lower::lower;
+
+/// A value: the result of the operation with this number in its function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Value(u32);
+
+impl Value {
+    pub(crate) fn new(index: usize) -> Self {
+        Self(u32::try_from(index).unwrap_or(u32::MAX))
+    }
+
+    /// Its number.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Where an argument of a function comes from. Indices follow the order of declaration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Input {
+    /// Time.
+    Time,
+    /// A coordinate.
+    Coordinate(usize),
+    /// A velocity.
+    Velocity(usize),
+    /// A momentum.
+    Momentum(usize),
+    /// A parameter.
+    Parameter(usize),
+    /// An excess of a position-level value.
+    Excess(usize),
+}
+
+/// One operation.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Op {
+    /// An argument.
+    Input(Input),
+    /// An exact number, rounded once when emitted.
+    Number(Rational),
+    /// The circle constant.
+    Pi,
+    /// `-a`
+    Neg(Value),
+    /// `a + b`
+    Add(Value, Value),
+    /// `a - b`
+    Sub(Value, Value),
+    /// `a * b`
+    Mul(Value, Value),
+    /// `a / b`
+    Div(Value, Value),
+    /// Square root.
+    Sqrt(Value),
+    /// `a` to a constant power that is neither an integer nor a half.
+    Power(Value, Rational),
+    /// An elementary function.
+    Call(Elementary, Value),
+    /// `atan2(y, x)`
+    Atan2(Value, Value),
+    /// Not a value: the function ends with a fault here unless the guard holds.
+    Guard(Guard),
+}
+
+/// A condition that must hold to go on.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Guard {
+    /// `value > 0`, else `MetricNotPositive`.
+    Pivot {
+        /// Number of the pivot.
+        pivot: usize,
+        /// The pivot.
+        value: Value,
+    },
+    /// `squared > least * reference`, else `SingularConstraint`; squared norms of a constraint form, after and
+    /// before the earlier forms were projected out. Without `reference`: `squared > 0`.
+    Constraint {
+        /// Number of the constraint.
+        constraint: usize,
+        /// Squared norm after projection.
+        squared: Value,
+        /// Squared norm before; `None` where independence was proved.
+        reference: Option<Value>,
+    },
+    /// `squared > 0`, else `SingularSurface`.
+    Surface {
+        /// Number of the surface.
+        surface: usize,
+        /// `dh(pi_D grad h)`.
+        squared: Value,
+    },
+}
+
+impl Guard {
+    /// Below this ratio of squared norms two constraint forms count as dependent: the square of
+    /// `4 * 2^-52`, where the projected form consists of rounding errors only.
+    pub const LEAST_SQUARED_RATIO: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
+
+    /// The values the guard reads.
+    pub fn operands(&self) -> impl Iterator<Item = Value> {
+        let (first, second) = match *self {
+            Self::Pivot { value, .. } => (value, None),
+            Self::Constraint { squared, reference, .. } => (squared, reference),
+            Self::Surface { squared, .. } => (squared, None),
+        };
+        core::iter::once(first).chain(second)
+    }
+}
+
+impl Op {
+    /// The values the operation reads.
+    pub fn operands(&self) -> Vec<Value> {
+        match self {
+            Self::Input(_) | Self::Number(_) | Self::Pi => Vec::new(),
+            Self::Neg(a) | Self::Sqrt(a) | Self::Power(a, _) | Self::Call(_, a) => vec![*a],
+            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) | Self::Div(a, b) | Self::Atan2(a, b) => {
+                vec![*a, *b]
+            }
+            Self::Guard(guard) => guard.operands().collect(),
+        }
+    }
+
+    /// Whether the operation is a mere name for something known without work.
+    pub fn is_leaf(&self) -> bool {
+        matches!(self, Self::Input(_) | Self::Number(_) | Self::Pi)
+    }
+}
+
+/// A straight-line function.
+#[derive(Debug, Clone)]
+pub struct Function {
+    /// The operations, in order.
+    pub ops: Vec<Op>,
+    /// Names for values that mean something, by value.
+    pub names: Vec<Option<String>>,
+    /// The results.
+    pub outputs: Vec<Value>,
+    /// Operation counts.
+    pub cost: Cost,
+}
+
+impl Function {
+    /// Whether the function can end with a fault.
+    pub fn is_fallible(&self) -> bool {
+        self.ops.iter().any(|op| matches!(op, Op::Guard(_)))
+    }
+}
+
+/// Every function of a model. What is absent was not declared.
+#[derive(Debug)]
+pub struct Program {
+    /// `(t, q, p) -> (qdot, pdot)`
+    pub rate: Function,
+    /// `(t, q) -> g_ii`, the unit of each momentum.
+    pub scale: Function,
+    /// `(t, q, p) -> qdot`
+    pub velocity: Function,
+    /// `(t, q, qdot) -> p`
+    pub momentum: Function,
+    /// `(t, q, p) -> energy`
+    pub energy: Function,
+    /// `(t, q, p)` to everything that is derived, by name.
+    pub geometry: recipes::Geometry,
+    /// With constraints.
+    pub constrained: Option<Constrained>,
+    /// With surfaces.
+    pub impacting: Option<Impacting>,
+    /// The divergence with respect to `mu_C`: `(t, q, p) -> div`.
+    pub divergence: Function,
+    /// The density form: `(t, q) -> theta`.
+    pub density_form: Function,
+    /// The declared outputs: `(t, q, p) -> values`.
+    pub outputs: Option<Function>,
+    /// The view's path: `(t, q) -> (x, y)`.
+    pub view_path: Option<Function>,
+    /// The view's region: `(t, q) -> h`.
+    pub view_region: Option<Function>,
+    /// The initial condition: `() -> q, qdot` with 0 where nothing was declared.
+    pub initial: Function,
+    /// The horizon, if declared.
+    pub until: Option<Function>,
+}
+
+/// Functions of a system with constraints.
+#[derive(Debug)]
+pub struct Constrained {
+    /// `(t, q, p) -> lambda`
+    pub multipliers: Function,
+    /// `(t, q, p) -> residuals, scales`
+    pub residuals: Function,
+    /// `(t, q) -> eta` row after row, then `eta_0`.
+    pub forms: Function,
+    /// `(t, q, p) -> p` on D*.
+    pub project: Function,
+    /// `(t, q) -> f`, one per integrable constraint.
+    pub levels: Function,
+    /// `(t, q, excess) -> change of q`
+    pub level_correction: Function,
+}
+
+/// Functions of a system with surfaces.
+#[derive(Debug)]
+pub struct Impacting {
+    /// `(t, q) -> h_s`
+    pub gaps: Function,
+    /// `(t, q, p) -> dh_s(qdot) + d_t h_s`
+    pub gap_rates: Function,
+    /// Per surface `(t, q) -> conditions`; `None` where there are none.
+    pub conditions: Vec<Option<Function>>,
+    /// Per surface `(t, q, p) -> gap_rate, constrained_rate, surface_rate, constrained_compliance,
+    /// free_compliance, direction`.
+    pub contacts: Vec<Function>,
+    /// Per surface: the coefficient of its law, a function of the parameters.
+    pub coefficients: Vec<Option<Function>>,
+}

@@ -1,0 +1,109 @@
+//! Functions of the constraints: multipliers, residuals, forms, projections on momenta and positions.
+
+use dalembert_expr::Function as Elementary;
+
+use crate::mechanics::Derivation;
+use crate::model::Model;
+use crate::program::kernel::{Arguments, Kernel};
+use crate::program::{Constrained, Function, Input, Value};
+
+/// All of them; `None` without constraints.
+pub fn constrained(model: &Model, derivation: &Derivation) -> Option<Constrained> {
+    if derivation.constraints.is_empty() {
+        return None;
+    }
+    Some(Constrained {
+        multipliers: multipliers(model, derivation),
+        residuals: residuals(model, derivation),
+        forms: forms(model, derivation),
+        project: project(model, derivation),
+        levels: levels(model, derivation),
+        level_correction: level_correction(model, derivation),
+    })
+}
+
+fn multipliers(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+    let outputs = kernel.multipliers();
+    kernel.finish(outputs)
+}
+
+/// `eta^a(qdot) + eta^a_0`, then the sums of the absolute values of their terms.
+fn residuals(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+    let qdot = kernel.velocity();
+    let (mut residuals, mut scales) = (Vec::new(), Vec::new());
+    for (a, form) in kernel.forms().into_iter().enumerate() {
+        let affine = kernel.value(derivation.constraints[a].affine);
+        let mut terms: Vec<Value> =
+            form.iter().zip(&qdot).map(|(&component, &v)| kernel.builder.mul(component, v)).collect();
+        terms.push(affine);
+        residuals.push(sum(&mut kernel, &terms));
+        let sizes: Vec<Value> = terms.into_iter().map(|term| magnitude(&mut kernel, term)).collect();
+        scales.push(sum(&mut kernel, &sizes));
+    }
+    residuals.append(&mut scales);
+    kernel.finish(residuals)
+}
+
+fn sum(kernel: &mut Kernel<'_>, terms: &[Value]) -> Value {
+    let zero = kernel.builder.zero();
+    terms.iter().fold(zero, |total, &term| kernel.builder.add(total, term))
+}
+
+fn magnitude(kernel: &mut Kernel<'_>, value: Value) -> Value {
+    match kernel.builder.is_zero(value) {
+        true => value,
+        false => kernel.builder.call(Elementary::Abs, value),
+    }
+}
+
+/// `eta` row after row, then `eta_0`.
+fn forms(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let mut outputs = kernel.forms().concat();
+    let affine: Vec<_> = derivation.constraints.iter().map(|constraint| constraint.affine).collect();
+    outputs.extend(kernel.values(&affine));
+    kernel.finish(outputs)
+}
+
+/// `p + mu_a eta^a` with `m mu = -(eta(qdot) + eta_0)`: the nearest momenta in the metric on D*.
+fn project(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+    let kinetic = kernel.lowered_velocity();
+    let affine: Vec<_> = derivation.constraints.iter().map(|constraint| constraint.affine).collect();
+    let affine = kernel.values(&affine);
+    let shift = kernel.constraint_solve(&kinetic, &affine);
+    let momenta: Vec<Value> =
+        (0..kernel.dimension()).map(|i| kernel.builder.input(Input::Momentum(i))).collect();
+    let outputs = kernel.add_constraint_force(&momenta, &shift);
+    kernel.finish(outputs)
+}
+
+fn levels(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let levels: Vec<_> = derivation.constraints.iter().filter_map(|constraint| constraint.level).collect();
+    let outputs = kernel.values(&levels);
+    kernel.finish(outputs)
+}
+
+/// `g^{-1} nu_k eta^k` with `m nu = -excess`, over the integrable constraints with a known function.
+fn level_correction(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let n = kernel.dimension();
+    let which: Vec<usize> = derivation.levelled().collect();
+    let zero = kernel.builder.zero();
+    let mut covector = vec![zero; n];
+    if !which.is_empty() {
+        let excess: Vec<Value> = (0..which.len()).map(|k| kernel.builder.input(Input::Excess(k))).collect();
+        let weights = kernel.partial_solve(&which, &excess);
+        let forms = kernel.forms();
+        for (&a, &weight) in which.iter().zip(&weights) {
+            for (entry, &component) in covector.iter_mut().zip(&forms[a]) {
+                *entry = kernel.builder.add_product(*entry, weight, component);
+            }
+        }
+        covector = kernel.raise(&covector);
+    }
+    kernel.finish(covector)
+}

@@ -1,0 +1,63 @@
+//! Functions that were declared as such: outputs, view, initial condition.
+
+use dalembert_expr::ExprId;
+
+use crate::mechanics::Derivation;
+use crate::model::Model;
+use crate::program::kernel::{Arguments, Kernel};
+use crate::program::recipes::motion::energy_value;
+use crate::program::{Function, Input, Value};
+
+/// The declared outputs; `None` without any.
+pub fn outputs(model: &Model, derivation: &Derivation) -> Option<Function> {
+    if model.outputs.is_empty() {
+        return None;
+    }
+    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+    let expressions: Vec<ExprId> = model.outputs.iter().map(|output| output.value).collect();
+    bind_derived(&mut kernel, &expressions);
+    let values = kernel.values(&expressions);
+    Some(kernel.finish(values))
+}
+
+/// Binds the derived quantities that the expressions name, and no others.
+fn bind_derived(kernel: &mut Kernel<'_>, expressions: &[ExprId]) {
+    let model = kernel.model;
+    let named = |symbol| expressions.iter().any(|&expression| model.pool.depends_on(expression, symbol));
+    if named(model.derived.energy) {
+        let energy = energy_value(kernel);
+        kernel.bind_value(model.derived.energy, energy);
+    }
+    for (i, &symbol) in model.derived.momenta.iter().enumerate() {
+        if named(symbol) {
+            let momentum = kernel.builder.input(Input::Momentum(i));
+            kernel.bind_value(symbol, momentum);
+        }
+    }
+    if model.derived.multipliers.iter().any(|&symbol| named(symbol)) {
+        let multipliers = kernel.multipliers();
+        for (&symbol, value) in model.derived.multipliers.iter().zip(multipliers) {
+            kernel.bind_value(symbol, value);
+        }
+    }
+}
+
+/// A function of time and position.
+pub fn position_function(model: &Model, derivation: &Derivation, expressions: &[ExprId]) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let values = kernel.values(expressions);
+    kernel.finish(values)
+}
+
+/// The declared initial positions, then velocities; 0 where nothing was declared.
+pub fn initial(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let declared = model.initial.q.iter().chain(&model.initial.qdot);
+    let values: Vec<Value> = declared
+        .map(|value| match value {
+            Some(expression) => kernel.value(*expression),
+            None => kernel.builder.zero(),
+        })
+        .collect();
+    kernel.finish(values)
+}

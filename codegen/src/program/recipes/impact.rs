@@ -1,0 +1,95 @@
+//! Functions of the surfaces: gaps, gap rates, conditions, contacts.
+//!
+//! With `y = L^{-1} dh` and `y'` what is left of it after the constraint columns are projected out,
+//! `dh(grad h) = <y, y>`, `dh(pi_D grad h) = <y', y'>` and `pi_D^* dh = L y'`: sums of squares, so nothing
+//! cancels when the surface is almost tangent to the constraints.
+
+use dalembert_expr::ExprId;
+
+use crate::mechanics::Derivation;
+use crate::model::{Law, Model};
+use crate::program::kernel::{Arguments, Kernel};
+use crate::program::{Function, Guard, Impacting, Value};
+
+/// All of them; `None` without surfaces.
+pub fn impacting(model: &Model, derivation: &Derivation) -> Option<Impacting> {
+    if derivation.surfaces.is_empty() {
+        return None;
+    }
+    let surfaces = 0..derivation.surfaces.len();
+    Some(Impacting {
+        gaps: evaluate(model, derivation, Arguments::Position, |surface| vec![surface.gap]),
+        gap_rates: evaluate(model, derivation, Arguments::Momenta, |surface| vec![surface.gap_rate]),
+        conditions: surfaces.clone().map(|s| conditions(model, derivation, s)).collect(),
+        contacts: surfaces.map(|s| contact(model, derivation, s)).collect(),
+        coefficients: model.surfaces.iter().map(|surface| coefficient(model, derivation, surface.law)).collect(),
+    })
+}
+
+/// A function of the same expressions of every surface.
+fn evaluate(
+    model: &Model,
+    derivation: &Derivation,
+    arguments: Arguments,
+    of: impl Fn(&crate::mechanics::SurfaceForm) -> Vec<ExprId>,
+) -> Function {
+    let mut kernel = Kernel::new(model, derivation, arguments);
+    let expressions: Vec<ExprId> = derivation.surfaces.iter().flat_map(of).collect();
+    let outputs = kernel.values(&expressions);
+    kernel.finish(outputs)
+}
+
+fn conditions(model: &Model, derivation: &Derivation, s: usize) -> Option<Function> {
+    let conditions = &derivation.surfaces[s].conditions;
+    (!conditions.is_empty()).then(|| {
+        let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+        let outputs = kernel.values(conditions);
+        kernel.finish(outputs)
+    })
+}
+
+fn coefficient(model: &Model, derivation: &Derivation, law: Law) -> Option<Function> {
+    let (Law::Restitution(coefficient) | Law::Newton(coefficient)) = law else { return None };
+    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let value = kernel.value(coefficient);
+    Some(kernel.finish(vec![value]))
+}
+
+fn contact(model: &Model, derivation: &Derivation, s: usize) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+    let mut outputs = contact_values(&mut kernel, s);
+    let squared = outputs[3];
+    kernel.builder.guard(Guard::Surface { surface: s, squared });
+    let direction = outputs.split_off(5);
+    kernel.name_by_coordinate(&direction, "direction_", "");
+    outputs.extend(direction);
+    kernel.finish(outputs)
+}
+
+/// `gap_rate, constrained_rate, surface_rate, constrained_compliance, free_compliance, direction`.
+pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> Vec<Value> {
+    let surface = &kernel.derivation.surfaces[s];
+    let (gap_rate, surface_rate, form) = (surface.gap_rate, surface.rate, surface.form.clone());
+    let qdot = kernel.velocity();
+    let gap_rate = kernel.value(gap_rate);
+    kernel.builder.name(gap_rate, "gap_rate");
+    let surface_rate = kernel.value(surface_rate);
+    let form = kernel.values(&form);
+    let free = kernel.forward(&form);
+    let rest = match kernel.constraints() {
+        0 => free.clone(),
+        _ => kernel.with_constraints(|builder, ldlt, factors| factors.reduce(builder, ldlt, free.clone()).1),
+    };
+    let (free_compliance, constrained_compliance, direction) = kernel.with_ldlt(|builder, ldlt| {
+        let free_compliance = ldlt.inner(builder, &free, &free);
+        let constrained_compliance = ldlt.inner(builder, &rest, &rest);
+        (free_compliance, constrained_compliance, ldlt.lower_times(builder, &rest))
+    });
+    kernel.builder.name(free_compliance, "free_compliance");
+    kernel.builder.name(constrained_compliance, "constrained_compliance");
+    let constrained_rate = kernel.dot(&direction, &qdot);
+    kernel.builder.name(constrained_rate, "constrained_rate");
+    let mut values = vec![gap_rate, constrained_rate, surface_rate, constrained_compliance, free_compliance];
+    values.extend(direction);
+    values
+}

@@ -1,0 +1,9 @@
+//! What each emitted function consists of. One recipe per function; shared pieces come from the kernel.
+
+pub mod constrained;
+pub mod declared;
+pub mod geometry;
+pub mod impact;
+pub mod motion;
+
+pub use geometry::{Geometry, Group};

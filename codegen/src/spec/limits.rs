@@ -1,0 +1,52 @@
+//! Limits on what is written. They are counts, never times, so that a build gives the same result everywhere.
+
+use proc_macro2::{TokenStream, TokenTree};
+
+use crate::diagnostics::{Diagnostics, Location};
+
+/// Brackets within brackets, and exponents of exponents.
+pub const NESTING: usize = 256;
+/// Letters of a name.
+pub const NAME_LENGTH: usize = 64;
+/// Digits of a literal.
+pub const LITERAL_DIGITS: usize = 40;
+/// Coordinates of a model, families expanded.
+pub const COORDINATES: usize = 64;
+/// Parameters of a model, families expanded.
+pub const PARAMETERS: usize = 256;
+/// Magnitude of the numerator and denominator of an exponent.
+pub const EXPONENT: i64 = 4096;
+/// Bits of an exact number.
+pub const NUMBER_BITS: u64 = 4096;
+/// Nodes of the shared expressions.
+pub const EXPRESSIONS: usize = 1 << 20;
+/// Members of a family of definitions, terms of a `sum`.
+pub const FAMILY: i64 = 4096;
+/// Parts of expressions visited while definitions and sums are written out.
+pub const RESOLVED_PARTS: usize = 1 << 20;
+/// Expressions within expressions, definitions written out.
+pub const RESOLVED_DEPTH: usize = 1024;
+
+/// Refuses brackets nested deeper than [`NESTING`] without recursion: everything later may recurse.
+pub(super) fn check_nesting(tokens: &TokenStream) -> Result<(), Diagnostics> {
+    let mut deepest = 0;
+    let mut culprit = None;
+    let mut pending: Vec<(usize, TokenStream)> = vec![(0, tokens.clone())];
+    while let Some((depth, stream)) = pending.pop() {
+        deepest = deepest.max(depth);
+        for token in stream {
+            let TokenTree::Group(group) = token else { continue };
+            if depth + 1 == NESTING + 1 && culprit.is_none() {
+                culprit = Some(Location::opening(&group));
+            }
+            pending.push((depth + 1, group.stream()));
+        }
+    }
+    let mut diagnostics = Diagnostics::new();
+    if let Some(at) = culprit {
+        diagnostics
+            .error(at, format!("nested {deepest} deep; the limit is {NESTING}"))
+            .help("name the inner parts with `let`");
+    }
+    diagnostics.finish(())
+}

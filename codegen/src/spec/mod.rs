@@ -1,0 +1,26 @@
+//! Stage 1, parse: from tokens to what was written, with the place of every part.
+//!
+//! ```text
+//! model      = docs visibility Name { declaration* }
+//! declaration = section { (entry ;)* } | let .. = e ; | const N = e ; | lagrangian = e ;
+//! ```
+//!
+//! Mistakes in one entry do not hide those in the next: reading goes on behind the next `;`.
+
+mod ast;
+mod cursor;
+mod display;
+mod keyword;
+mod limits;
+mod literal;
+mod parse;
+mod scalar;
+#[cfg(test)]
+mod tests;
+
+pub use ast::*;
+pub use keyword::{FUNCTIONS, LAWS, PIECEWISE, foreign_function, is_function, is_not_differentiable};
+pub use limits::{
+    COORDINATES, EXPONENT, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS, RESOLVED_DEPTH, RESOLVED_PARTS,
+};
+pub use parse::parse;

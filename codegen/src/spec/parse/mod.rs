@@ -1,0 +1,274 @@
+//! The declarations of the language: one file per section.
+
+mod constraints;
+mod coordinates;
+mod definitions;
+mod impacts;
+mod initial;
+mod parameters;
+mod source;
+mod view;
+
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+
+use super::ast::{Declared, Index, Lagrangian, Spec, Word};
+use super::cursor::{Cursor, Read, tokens_of};
+use super::keyword::{self, SECTIONS, not_implemented};
+use super::limits::check_nesting;
+use crate::diagnostics::{Diagnostics, Location, listed, nearest};
+
+/// Reads the declaration of a model.
+///
+/// # Errors
+/// Every mistake of syntax, each at its token.
+pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
+    check_nesting(&tokens)?;
+    let tokens = source::flatten_header(tokens);
+    let mut diagnostics = Diagnostics::new();
+    let start = tokens.first().map_or_else(|| Location::from(Span::call_site()), Location::of);
+    let mut cursor = Cursor::new(&tokens, start, &mut diagnostics);
+    match header(&mut cursor) {
+        Ok((mut spec, body)) => {
+            let tokens = tokens_of(body.stream());
+            declarations(&tokens, &body, &mut spec, &mut diagnostics);
+            diagnostics.finish(spec)
+        }
+        Err(_) => Err(diagnostics),
+    }
+}
+
+/// Documentation, visibility, name; and the group with the declarations.
+fn header(cursor: &mut Cursor<'_>) -> Read<(Spec, Group)> {
+    const FORM: &str = "a model is written `pub Name { coordinates { .. } lagrangian = ..; }`";
+    let documentation = documentation(cursor)?;
+    let visibility = visibility(cursor);
+    let name = cursor.new_name("the name of a model")?;
+    let Some(body) = cursor.eat_group(Delimiter::Brace) else {
+        return Err(cursor.unexpected("expected `{ .. }` after the name of the model", FORM));
+    };
+    if !cursor.is_at_end() {
+        return Err(cursor.unexpected("expected nothing after the model", "declare one model in each `model!`"));
+    }
+    let mut spec = Spec::new(name);
+    spec.source = source::text(&documentation, &visibility, &spec.name.text, body);
+    spec.documentation = documentation;
+    spec.visibility = visibility;
+    Ok((spec, body.clone()))
+}
+
+/// `pub`, `pub(crate)` or nothing.
+fn visibility(cursor: &mut Cursor<'_>) -> String {
+    if !cursor.eat_word("pub") {
+        return String::new();
+    }
+    match cursor.eat_group(Delimiter::Parenthesis) {
+        Some(scope) => format!("pub({})", scope.stream()),
+        None => "pub".to_owned(),
+    }
+}
+
+/// The lines of the doc comments that come next. Other attributes are refused.
+fn documentation(cursor: &mut Cursor<'_>) -> Read<Vec<String>> {
+    let mut lines = Vec::new();
+    while cursor.eat_operator("#").is_some() {
+        let at = cursor.last();
+        let tokens = cursor.eat_group(Delimiter::Bracket).map(|group| tokens_of(group.stream()));
+        match tokens.as_deref() {
+            Some([TokenTree::Ident(doc), TokenTree::Punct(_), text]) if *doc == "doc" => {
+                lines.extend(source::doc_lines(text));
+            }
+            _ => {
+                let help = "a doc comment is written `/// ..`";
+                return Err(cursor.refuse(at, "attributes are not part of a model", help));
+            }
+        }
+    }
+    Ok(lines)
+}
+
+/// Reads the declarations one after the other; a mistake in one does not hide those in the next.
+fn declarations(tokens: &[TokenTree], body: &Group, spec: &mut Spec, diagnostics: &mut Diagnostics) {
+    let mut rest = tokens;
+    let mut before = Location::opening(body);
+    while !rest.is_empty() {
+        let length = declaration_length(rest);
+        let (declaration, others) = rest.split_at(length);
+        let mut cursor = Cursor::new(declaration, before, diagnostics);
+        let read = declare(&mut cursor, spec);
+        let ends_well = matches!(declaration.last(), Some(TokenTree::Punct(punct)) if punct.as_char() == ';')
+            || is_section(declaration);
+        if let (Ok(()), false, Some(last)) = (read, ends_well, declaration.last()) {
+            diagnostics.error(Location::of(last), "expected `;`").help("end the declaration with `;`");
+        }
+        before = declaration.last().map_or(before, Location::of);
+        rest = others;
+    }
+}
+
+/// How many tokens belong to the first declaration: up to a `;`, a section's braces, or what begins another one.
+fn declaration_length(tokens: &[TokenTree]) -> usize {
+    for (index, token) in tokens.iter().enumerate() {
+        match token {
+            TokenTree::Punct(punct) if punct.as_char() == ';' => return index + 1,
+            TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => return index + 1,
+            TokenTree::Ident(word) if index > 0 && begins_declaration(word, tokens.get(index + 1)) => {
+                // The documentation of what begins here was read with the declaration before it; nothing is lost
+                // but its text.
+                return index;
+            }
+            _ => {}
+        }
+    }
+    tokens.len()
+}
+
+/// Whether this word, followed by this token, can only be the beginning of a declaration.
+fn begins_declaration(word: &Ident, next: Option<&TokenTree>) -> bool {
+    let word = word.to_string();
+    let known = SECTIONS.contains(&word.as_str()) || not_implemented(&word).is_some();
+    match next {
+        Some(TokenTree::Ident(_)) => word == "let" || word == "const",
+        Some(TokenTree::Punct(punct)) => word == "lagrangian" && punct.as_char() == '=',
+        Some(TokenTree::Group(group)) => known && group.delimiter() == Delimiter::Brace,
+        _ => false,
+    }
+}
+
+/// Whether a declaration ends with the braces of a section.
+fn is_section(declaration: &[TokenTree]) -> bool {
+    matches!(declaration.last(), Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace)
+}
+
+/// Reads one declaration.
+fn declare(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
+    documentation(cursor)?;
+    if cursor.is_operator(";") {
+        return Ok(());
+    }
+    let word = cursor.name("a declaration")?;
+    match word.text.as_str() {
+        "const" => definitions::constant(cursor, spec),
+        "let" => definitions::definition(cursor, spec),
+        "lagrangian" => lagrangian(&word, cursor, spec),
+        "coordinates" => coordinates::section(&word, cursor, spec),
+        "parameters" => section(&word, cursor, spec, parameters::parameter),
+        "constraints" => section(&word, cursor, spec, constraints::constraint),
+        "forces" => section(&word, cursor, spec, constraints::force),
+        "outputs" => section(&word, cursor, spec, constraints::output),
+        "impacts" => section(&word, cursor, spec, impacts::surface),
+        "initial" => section(&word, cursor, spec, initial::value),
+        "view" => section(&word, cursor, spec, view::entry),
+        _ => Err(unknown_declaration(&word, cursor)),
+    }
+}
+
+/// Refuses a word that begins no declaration of this version.
+fn unknown_declaration(word: &Word, cursor: &mut Cursor<'_>) -> super::cursor::Refused {
+    if let Some(instead) = not_implemented(&word.text) {
+        return refuse_not_implemented(word, instead, cursor);
+    }
+    let help = match nearest(&word.text, SECTIONS) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("a model consists of {}", listed(SECTIONS)),
+    };
+    cursor.refuse(word.at, format!("unknown declaration `{}`", word.text), &help)
+}
+
+/// Refuses a declaration of the language that this version lacks.
+fn refuse_not_implemented(word: &Word, instead: &str, cursor: &mut Cursor<'_>) -> super::cursor::Refused {
+    let text = format!("`{}` is not implemented in this version", word.text);
+    cursor.refuse(word.at, text, &format!("instead: {instead}"))
+}
+
+/// Reads the entries of a section, each up to its `;`.
+fn section(
+    keyword: &Word,
+    cursor: &mut Cursor<'_>,
+    spec: &mut Spec,
+    entry: fn(&mut Cursor<'_>, &mut Spec) -> Read<()>,
+) -> Read<()> {
+    let Some(group) = cursor.eat_group(Delimiter::Brace) else {
+        let text = format!("expected `{{ .. }}` after `{}`", keyword.text);
+        return Err(cursor.unexpected(&text, &format!("write `{} {{ .. }}`", keyword.text)));
+    };
+    let tokens = tokens_of(group.stream());
+    let mut inside = cursor.inside(&tokens, group);
+    while !inside.is_at_end() {
+        let length = entry_length(inside.remaining());
+        let (tokens, ended) = inside.take(length);
+        let mut cursor = inside.inside(tokens, group);
+        if !cursor.is_at_end() && entry(&mut cursor, spec).and_then(|()| cursor.end()).is_ok() && !ended {
+            let at = cursor.last();
+            cursor.refuse(at, "expected `;`", "end the declaration with `;`");
+        }
+    }
+    Ok(())
+}
+
+/// How many tokens stand before the next `;`.
+fn entry_length(tokens: &[TokenTree]) -> usize {
+    let is_end = |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ';');
+    tokens.iter().position(is_end).unwrap_or(tokens.len())
+}
+
+/// `lagrangian = e;`
+fn lagrangian(keyword: &Word, cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
+    cursor.expect_operator("=", "lagrangian = ..;")?;
+    let value = cursor.scalar()?;
+    end_of_declaration(cursor)?;
+    if let Some(first) = &spec.lagrangian {
+        let at = spec.location(first.item);
+        cursor.diagnostics.error(keyword.at, "second `lagrangian`").help("keep one of the two").also(at, "first declared here");
+        return Ok(());
+    }
+    let item = spec.item(value.at);
+    spec.lagrangian = Some(Lagrangian { value, item });
+    Ok(())
+}
+
+/// Takes the `;` behind a declaration; where it is missing the caller says so.
+fn end_of_declaration(cursor: &mut Cursor<'_>) -> Read<()> {
+    cursor.eat_operator(";");
+    cursor.end()
+}
+
+/// A name about to be declared, with what stands in brackets behind it.
+fn declared(cursor: &mut Cursor<'_>, what: &str) -> Read<Declared> {
+    let name = cursor.new_name(what)?;
+    let index = index(cursor)?;
+    Ok(Declared { name, index })
+}
+
+/// `[N]`, `[i in 1..=N]` or nothing.
+fn index(cursor: &mut Cursor<'_>) -> Read<Option<Index>> {
+    let Some(group) = cursor.eat_group(Delimiter::Bracket) else { return Ok(None) };
+    let tokens = tokens_of(group.stream());
+    let mut inside = cursor.inside(&tokens, group);
+    let is_binder = matches!(inside.peek_second(), Some(TokenTree::Ident(word)) if *word == "in");
+    if !is_binder {
+        return Ok(Some(Index::One(inside.whole_scalar()?)));
+    }
+    let binder = inside.binder("name[i in 1..=N]")?;
+    inside.end()?;
+    Ok(Some(Index::Each(binder)))
+}
+
+/// A name with an index and the `:` behind it.
+fn labelled(cursor: &mut Cursor<'_>, what: &str, form: &str) -> Read<Declared> {
+    documentation(cursor)?;
+    let declared = declared(cursor, what)?;
+    cursor.expect_operator(":", form)?;
+    Ok(declared)
+}
+
+/// The reserved word that this version refuses, if it comes next.
+fn refused_word(cursor: &mut Cursor<'_>, words: &[&str]) -> Read<()> {
+    for word in words {
+        if cursor.is_word(word) {
+            let name = cursor.name("a word")?;
+            let instead = keyword::not_implemented(word).unwrap_or("leave it out");
+            return Err(refuse_not_implemented(&name, instead, cursor));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,63 @@
+//! The text of a declaration, and the tokens of its header.
+
+use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
+
+/// The tokens with invisible groups taken off: a visibility passed through `macro_rules` comes in one.
+pub(super) fn flatten_header(tokens: TokenStream) -> Vec<TokenTree> {
+    let mut flat = Vec::new();
+    for token in tokens {
+        match token {
+            TokenTree::Group(group) if group.delimiter() == Delimiter::None => flat.extend(flatten_header(group.stream())),
+            other => flat.push(other),
+        }
+    }
+    flat
+}
+
+/// The lines of the text of one `#[doc = ".."]`.
+pub(super) fn doc_lines(text: &TokenTree) -> Vec<String> {
+    let literal = syn::parse2::<syn::LitStr>(TokenStream::from(text.clone()));
+    let text = literal.map(|literal| literal.value()).unwrap_or_default();
+    text.split('\n').map(|line| line.strip_prefix(' ').unwrap_or(line).trim_end().to_owned()).collect()
+}
+
+/// The declaration as it was written, or its tokens where that text is not at hand.
+pub(super) fn text(documentation: &[String], visibility: &str, name: &str, body: &Group) -> String {
+    let mut text = String::new();
+    for line in documentation {
+        text.push_str(&format!("/// {line}").trim_end().replace('\r', ""));
+        text.push('\n');
+    }
+    if !visibility.is_empty() {
+        text.push_str(visibility);
+        text.push(' ');
+    }
+    text.push_str(name);
+    text.push(' ');
+    text.push_str(&body_text(body));
+    text
+}
+
+/// The text between and including the braces. What a span covers inside of a `macro_rules` is the macro and not
+/// the model, so the text counts only if it reads as the same tokens.
+fn body_text(body: &Group) -> String {
+    let tokens = TokenTree::from(body.clone()).to_string();
+    let written = body.span().source_text().map(|text| dedent(&text));
+    let same = |text: &String| {
+        let read: Result<TokenStream, _> = text.parse();
+        read.is_ok_and(|read| without_blanks(&read.to_string()) == without_blanks(&tokens))
+    };
+    written.filter(same).unwrap_or(tokens)
+}
+
+fn without_blanks(text: &str) -> String {
+    text.chars().filter(|character| !character.is_whitespace()).collect()
+}
+
+/// Takes off the indentation that the last line has from the lines after the first.
+fn dedent(text: &str) -> String {
+    let Some((_, last)) = text.rsplit_once('\n') else { return text.to_owned() };
+    let margin = &last[..last.len() - last.trim_start().len()];
+    let lines = text.lines().map(|line| line.strip_prefix(margin).unwrap_or(line));
+    lines.collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,264 @@
+//! The command line's grammar. What it accepts is an interface; values are checked where they are used,
+//! because only there is it known which names the model has.
+
+use std::path::PathBuf;
+
+use clap::builder::ValueParser;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::scalar;
+
+/// Derive, evaluate and simulate mechanical systems declared with `dalembert::model!`.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    arg_required_else_help = true,
+    after_help = "Exit status: 0 the requested end was reached, 1 any other outcome, 2 bad flags or input."
+)]
+pub struct CommandLine {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// List the models with their numbers of coordinates (N), constraints (M) and surfaces (S).
+    #[command(after_help = LIST_EXAMPLES)]
+    List(ListArgs),
+    /// Print what is derived from a model: metric, constraints, field, impact maps.
+    #[command(after_help = DERIVE_EXAMPLES)]
+    Derive(DeriveArgs),
+    /// Check what a model declares.
+    #[command(after_help = CHECK_EXAMPLES)]
+    Check(CheckArgs),
+    /// Run a model from a state to an end time or a number of impacts.
+    #[command(after_help = SIMULATE_EXAMPLES)]
+    Simulate(Box<SimulateArgs>),
+    /// Evaluate everything that is derived at given states.
+    #[command(after_help = EVAL_EXAMPLES)]
+    Eval(EvalArgs),
+}
+
+const LIST_EXAMPLES: &str = "Examples:
+  dalembert list
+  dalembert list --format json";
+
+const DERIVE_EXAMPLES: &str = "Examples:
+  dalembert derive rolling_disk
+  dalembert derive rolling_disk --format latex > rolling_disk.tex";
+
+const CHECK_EXAMPLES: &str = "Examples:
+  dalembert check rolling_disk
+  dalembert check rolling_disk --format json";
+
+const SIMULATE_EXAMPLES: &str = "Numbers may be multiples of pi: pi/2, -3*pi/4, 2pi. A repeated name takes its last value.
+
+Examples:
+  dalembert simulate rolling_disk
+  dalembert simulate rolling_disk --until 40 --plot disk.svg
+  dalembert simulate rolling_disk --set ta=0.3 --initial phi=pi/3,theta_dot=12
+  dalembert simulate rolling_disk --impacts 50 --law leading_edge=newton:0.5 --json -
+  dalembert simulate bouncing_ball --q 1 --qdot 0 --until 10 --csv ball.csv";
+
+const EVAL_EXAMPLES: &str = "Input: a JSON array of states, {\"q\": [..], \"qdot\": [..]} or {\"q\": [..], \"p\": [..]}, with \"t\"
+if the model depends on time. Numbers may be decimal strings. Output: an array of the same length; a
+state at which something does not exist gives {\"error\": ..} and exit status 1.
+
+Examples:
+  echo '[{\"q\": [1], \"qdot\": [-2]}]' | dalembert eval bouncing_ball
+  dalembert eval rolling_disk --set m=2 --newton 0.5 --input states.json";
+
+/// Text for people or JSON for programs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// How a derivation is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DeriveFormat {
+    /// For people.
+    Text,
+    /// For documents.
+    Latex,
+    /// For programs.
+    Json,
+}
+
+/// `list`
+#[derive(Debug, Args)]
+pub struct ListArgs {
+    /// How to print.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+/// `derive`
+#[derive(Debug, Args)]
+pub struct DeriveArgs {
+    /// Name of the model, as `list` prints it.
+    pub model: String,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t = DeriveFormat::Text)]
+    pub format: DeriveFormat,
+}
+
+/// `check`
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Name of the model, as `list` prints it.
+    pub model: String,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+/// The model, its scene and its parameters.
+#[derive(Debug, Args)]
+pub struct ModelArgs {
+    /// Name of the model, as `list` prints it.
+    pub model: String,
+    /// The scene.
+    #[arg(long, value_name = "SCENE", default_value = "all")]
+    pub scene: String,
+    /// Set a parameter; may be repeated.
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub set: Vec<String>,
+}
+
+/// What to do with a velocity that violates the constraints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum OffConstraint {
+    /// Refuse it, beyond 1e-9 of the sum of the absolute values of the constraint's terms.
+    Error,
+    /// Replace it by the nearest allowed velocity in the metric.
+    Project,
+    /// Start there; the motion keeps the residual.
+    Keep,
+}
+
+/// The state to start from.
+#[derive(Debug, Args)]
+pub struct StateArgs {
+    /// Change the model's initial state by name: `x=..`, `theta.3=..`, `x_dot=..`, `theta_dot.3=..`;
+    /// velocities that nobody names follow from the constraints.
+    #[arg(long, value_name = "NAME=VALUE,..", allow_hyphen_values = true, conflicts_with_all = ["q", "qdot", "p"])]
+    pub initial: Vec<String>,
+    /// All positions, in the order of the coordinates; needs --qdot or --p.
+    #[arg(long, value_name = "V,..", allow_hyphen_values = true)]
+    pub q: Option<String>,
+    /// All velocities; needs --q.
+    #[arg(long, value_name = "V,..", allow_hyphen_values = true, conflicts_with = "p")]
+    pub qdot: Option<String>,
+    /// All momenta; needs --q.
+    #[arg(long, value_name = "V,..", allow_hyphen_values = true)]
+    pub p: Option<String>,
+    /// What to do with a velocity that violates the constraints.
+    #[arg(long, value_enum, default_value_t = OffConstraint::Error)]
+    pub off_constraint: OffConstraint,
+}
+
+/// The integrators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Integrator {
+    /// Dormand and Prince of order 8(5,3), dense output of order 7.
+    Dop853,
+    /// Dormand and Prince of order 5(4), dense output of order 4.
+    Dopri5,
+}
+
+impl Integrator {
+    /// The name on the command line and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Dop853 => "dop853",
+            Self::Dopri5 => "dopri5",
+        }
+    }
+}
+
+/// `on` or `off`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Switch {
+    /// Yes.
+    On,
+    /// No.
+    Off,
+}
+
+/// `simulate`
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// The state.
+    #[command(flatten)]
+    pub state: StateArgs,
+    /// End time; without it the model's `until`.
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
+    pub until: Option<f64>,
+    /// Stop after this many impacts. Without --until the run may then take up to 3600 units of time, or the
+    /// model's `until` if that is longer, to get there.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
+    pub impacts: Option<u64>,
+    /// Use this impact law, at one surface or at all; may be repeated. Laws: elastic, restitution:E, newton:E,
+    /// nonholonomic_plastic, impact_plastic, totally_plastic, with E in [0, 1].
+    #[arg(long, value_name = "[SURFACE=]LAW[:E]")]
+    pub law: Vec<String>,
+    /// The integrator.
+    #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
+    pub integrator: Integrator,
+    /// Relative error allowed per step, between 1e-15 and 0.1.
+    #[arg(long, value_name = "X", default_value = "1e-10", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
+    pub tol: f64,
+    /// Number of equally spaced times from 0 to the end, both included, to record (at most 10000000).
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(0..=10_000_000), default_value_t = 1000)]
+    pub samples: u64,
+    /// Write samples and impacts as a table; `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write everything as one JSON document; `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Draw the run: the declared view, or all coordinates against time.
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+    /// Whether to project on the constraints after each step; without it as the scene declares.
+    #[arg(long, value_enum)]
+    pub projection: Option<Switch>,
+}
+
+/// `eval`
+#[derive(Debug, Args)]
+pub struct EvalArgs {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Evaluate the law `restitution` too, with this coefficient in [0, 1].
+    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::coefficient))]
+    pub restitution: Option<f64>,
+    /// Evaluate the law `newton` too, with this coefficient in [0, 1].
+    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::coefficient))]
+    pub newton: Option<f64>,
+    /// Read the states from a file instead of the standard input; `-` is the standard input.
+    #[arg(long, value_name = "FILE")]
+    pub input: Option<PathBuf>,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_grammar_is_consistent() {
+        CommandLine::command().debug_assert();
+    }
+}

@@ -1,0 +1,76 @@
+//! Collects what a model reports of a state.
+
+use std::collections::BTreeMap;
+
+use dalembert::Fault;
+use dalembert::describe::Report;
+use serde_json::{Map, Value};
+
+use crate::entry::{AnyModel, Contacted};
+use crate::json;
+
+/// Everything reported at one state. Names that begin with `impacts.` are data of a surface's contact.
+#[derive(Default)]
+pub struct Collected {
+    values: Map<String, Value>,
+    contact_scalars: BTreeMap<String, f64>,
+    contact_vectors: BTreeMap<String, Vec<f64>>,
+}
+
+impl Collected {
+    /// What the model reports at this state.
+    ///
+    /// # Errors
+    /// The [`Fault`] where the equations of motion do not exist.
+    pub fn at(model: &dyn AnyModel, t: f64, state: &[f64]) -> Result<Self, Fault> {
+        let mut collected = Self::default();
+        model.inspect(t, state, &mut collected)?;
+        Ok(collected)
+    }
+
+    /// Takes out a value; `null` where the model has none of this name.
+    pub fn take(&mut self, name: &str) -> Value {
+        self.values.get_mut(name).map_or(Value::Null, Value::take)
+    }
+
+    /// A number of a surface's contact.
+    pub fn contact_scalar(&self, surface: &str, name: &str) -> Option<f64> {
+        self.contact_scalars.get(&format!("impacts.{surface}.{name}")).copied()
+    }
+
+    /// The contact of a surface, where an impulse can change its gap rate.
+    pub fn contact(&self, surface: &str) -> Option<Contacted> {
+        let scalar = |name| self.contact_scalar(surface, name);
+        let contact = Contacted {
+            gap_rate: scalar("gap_rate")?,
+            constrained_rate: scalar("constrained_rate")?,
+            surface_rate: scalar("surface_rate")?,
+            constrained_compliance: scalar("constrained_compliance")?,
+            free_compliance: scalar("free_compliance")?,
+            direction: self.contact_vectors.get(&format!("impacts.{surface}.direction"))?.clone(),
+        };
+        (contact.constrained_compliance > 0.0 && contact.constrained_compliance.is_finite()).then_some(contact)
+    }
+}
+
+impl Report for Collected {
+    fn scalar(&mut self, name: &str, value: f64) {
+        if name.starts_with("impacts.") {
+            self.contact_scalars.insert(name.to_owned(), value);
+        } else {
+            self.values.insert(name.to_owned(), json::number(value));
+        }
+    }
+
+    fn vector(&mut self, name: &str, values: &[f64]) {
+        if name.starts_with("impacts.") {
+            self.contact_vectors.insert(name.to_owned(), values.to_vec());
+        } else {
+            self.values.insert(name.to_owned(), json::vector(values));
+        }
+    }
+
+    fn matrix(&mut self, name: &str, _rows: usize, columns: usize, values: &[f64]) {
+        self.values.insert(name.to_owned(), json::matrix(columns, values));
+    }
+}

@@ -1,0 +1,7 @@
+//! The commands, one file each.
+
+pub mod check;
+pub mod derive;
+pub mod eval;
+pub mod list;
+pub mod simulate;

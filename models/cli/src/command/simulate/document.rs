@@ -1,0 +1,66 @@
+//! A run as one JSON document.
+
+use std::io::{self, Write};
+
+use dalembert::describe::Description;
+use serde_json::{Map, Value, json};
+
+use super::Finished;
+use crate::driver::Impact;
+use crate::entry::Point;
+use crate::json::{Document, named, number, vector};
+
+/// Writes the document.
+pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
+    let Finished { model, scene, settings, record, ending } = finished;
+    let description = model.description();
+    let values: Vec<f64> = (0..description.parameters.len()).map(|index| model.parameter(index)).collect();
+    let names = description.parameters.iter().map(|parameter| parameter.name);
+
+    let mut document = Document::begin(output)?;
+    document.field("model", description.name)?;
+    document.field("scene", *scene)?;
+    document.field("parameters", named(names, &values))?;
+    document.field("integrator", settings.integrator.name())?;
+    document.field("tol", number(settings.tol))?;
+    document.field("outcome", outcome(finished))?;
+    document.rows("events", record.impacts.iter().map(|impact| event(&description, impact)))?;
+    document.rows("samples", record.samples.iter().map(|(t, point)| sample(&description, *t, point)))?;
+    let counters = ending.counters.iter().map(|&(name, count)| (name.to_owned(), Value::from(count)));
+    document.field("counters", counters.collect::<Map<_, _>>())?;
+    document.end()
+}
+
+/// `kind` and `t`, the details of the kind, and the last state.
+fn outcome(finished: &Finished<'_>) -> Value {
+    let ending = &finished.ending;
+    let mut outcome = Map::new();
+    outcome.insert("kind".to_owned(), ending.kind.into());
+    outcome.insert("t".to_owned(), number(ending.t));
+    outcome.extend(ending.details.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
+    outcome.insert("q".to_owned(), vector(&ending.last.q));
+    outcome.insert("qdot".to_owned(), vector(&ending.last.qdot));
+    Value::Object(outcome)
+}
+
+fn event(description: &Description, impact: &Impact) -> Value {
+    json!({
+        "t": number(impact.t),
+        "surface": description.surfaces.get(impact.surface).map(|surface| surface.name),
+        "q": vector(&impact.after.q),
+        "qdot_minus": vector(&impact.before.qdot),
+        "qdot_plus": vector(&impact.after.qdot),
+        "energy": number(impact.after.energy),
+    })
+}
+
+fn sample(description: &Description, t: f64, point: &Point) -> Value {
+    json!({
+        "t": number(t),
+        "q": vector(&point.q),
+        "qdot": vector(&point.qdot),
+        "p": vector(&point.p),
+        "energy": number(point.energy),
+        "outputs": named(description.outputs.iter().copied(), &point.outputs),
+    })
+}

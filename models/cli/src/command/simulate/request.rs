@@ -1,0 +1,112 @@
+//! From flags to the settings of a run.
+
+use std::path::Path;
+
+use dalembert::describe::Description;
+use dalembert::impacts::law::Law;
+
+use crate::args::{SimulateArgs, Switch};
+use crate::driver::Settings;
+use crate::entry::AnyModel;
+use crate::error::CliError;
+use crate::{names, scalar};
+
+/// The time a run with `--impacts` alone may take, unless the model's own `until` is longer.
+const IMPACT_HORIZON: f64 = 3600.0;
+
+/// Refuses outputs that exclude each other.
+pub fn check_outputs(args: &SimulateArgs) -> Result<(), CliError> {
+    if let Some(path) = &args.plot
+        && path.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("svg"))
+    {
+        return Err(CliError::value("--plot", path.display().to_string(), "a file name that ends in .svg"));
+    }
+    let paths = [&args.csv, &args.json, &args.plot];
+    let clash = |first: usize, second: usize| paths[first].is_some() && paths[first] == paths[second];
+    if clash(0, 1) || clash(0, 2) || clash(1, 2) {
+        return Err(CliError::Usage("--csv, --json and --plot need different files (`-` can be used once)"));
+    }
+    Ok(())
+}
+
+/// Whether a document or a table goes to the standard output, which then holds nothing else.
+pub fn uses_stdout(args: &SimulateArgs) -> bool {
+    [&args.csv, &args.json].into_iter().flatten().any(|path| is_stdout(path))
+}
+
+/// Whether the path means the standard output.
+pub fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// How the run is to be made.
+pub fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, CliError> {
+    Ok(Settings {
+        integrator: args.integrator,
+        tol: args.tol,
+        until: horizon(model, args)?,
+        impacts: impacts(&model.description(), args)?,
+        laws: laws(&model.description(), &args.law)?,
+        projection: args.projection.map(|switch| switch == Switch::On),
+    })
+}
+
+fn horizon(model: &dyn AnyModel, args: &SimulateArgs) -> Result<f64, CliError> {
+    let declared = model.initial().until.filter(|until| until.is_finite() && *until > 0.0);
+    match (args.until, args.impacts, declared) {
+        (Some(until), ..) => Ok(until),
+        (None, Some(_), declared) => Ok(declared.unwrap_or(0.0).max(IMPACT_HORIZON)),
+        (None, None, Some(until)) => Ok(until),
+        (None, None, None) => Err(CliError::Usage(
+            "the model declares no usable `until`; say when to stop with --until T or --impacts N",
+        )),
+    }
+}
+
+fn impacts(description: &Description, args: &SimulateArgs) -> Result<Option<u64>, CliError> {
+    if args.impacts.is_some() && description.surfaces.is_empty() {
+        return Err(CliError::Usage("--impacts: the model has no impact surfaces"));
+    }
+    Ok(args.impacts)
+}
+
+/// The laws of `--law`, in order: a later one counts.
+fn laws(description: &Description, flags: &[String]) -> Result<Vec<(usize, Law)>, CliError> {
+    let mut laws = Vec::new();
+    for flag in flags {
+        let (surface, law) = match flag.split_once('=') {
+            Some((surface, law)) => (Some(surface.trim()), law.trim()),
+            None => (None, flag.trim()),
+        };
+        let law = parse_law(law)?;
+        match surface {
+            Some(name) => {
+                laws.push((names::find("--law", "surface", name, names::surfaces(description))?, law));
+            }
+            None if description.surfaces.is_empty() => {
+                return Err(CliError::Usage("--law: the model has no impact surfaces"));
+            }
+            None => laws.extend((0..description.surfaces.len()).map(|surface| (surface, law))),
+        }
+    }
+    Ok(laws)
+}
+
+/// `LAW[:E]`
+fn parse_law(text: &str) -> Result<Law, CliError> {
+    let (name, coefficient) = match text.split_once(':') {
+        Some((name, coefficient)) => (name.trim(), Some(coefficient.trim())),
+        None => (text, None),
+    };
+    let index = names::find("--law", "law", name, Law::NAMES.iter().map(|(name, _)| *name))?;
+    let e = match (Law::NAMES[index].1, coefficient) {
+        (true, Some(e)) => scalar::coefficient(e).map_err(|_| {
+            CliError::value("--law", text, format!("{name}:E with E a number from 0 to 1"))
+        })?,
+        (true, None) => return Err(CliError::value("--law", text, format!("{name}:E with E a number from 0 to 1"))),
+        (false, Some(_)) => return Err(CliError::value("--law", text, format!("{name} without a coefficient"))),
+        (false, None) => 0.0,
+    };
+    // The name is among the law's own names, so this is never `None`.
+    Law::from_name(name, e).ok_or_else(|| CliError::value("--law", text, "an impact law"))
+}

@@ -1,0 +1,210 @@
+//! Drives one model through one run, and shows the run to a [`Watch`] that knows nothing of the model's type.
+
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+
+use dalembert::describe::Description;
+use dalembert::impacts::law::Law;
+use dalembert::integrate::{Counters, Dop853, DormandPrince5, Stepper, Tolerance};
+use dalembert::{Event, Observer, Outcome, SceneEffects, Segment, Simulation};
+use serde_json::Value;
+
+use crate::args::Integrator;
+use crate::entry::{Model, Point, point};
+use crate::{json, names};
+
+/// How a run is to be made.
+#[derive(Debug, Clone)]
+pub(crate) struct Settings {
+    pub integrator: Integrator,
+    pub tol: f64,
+    pub until: f64,
+    /// Stop after this many impacts.
+    pub impacts: Option<u64>,
+    /// Laws by index of the surface, instead of the declared ones; a later one counts.
+    pub laws: Vec<(usize, Law)>,
+    /// Whether to project on the constraints, where the flags say.
+    pub projection: Option<bool>,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone)]
+pub(crate) struct Ending {
+    pub kind: &'static str,
+    /// What the kind says besides, by name.
+    pub details: Vec<(&'static str, Value)>,
+    pub t: f64,
+    pub first: Point,
+    pub last: Point,
+    pub counters: Vec<(&'static str, u64)>,
+    /// The law in force on each surface.
+    pub laws: Vec<Option<Law>>,
+    /// Whether the requested time or number of impacts was reached.
+    pub reached: bool,
+}
+
+/// An impact.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Impact {
+    pub t: f64,
+    pub surface: usize,
+    pub before: Point,
+    pub after: Point,
+}
+
+/// A stretch of smooth motion.
+pub(crate) trait Piece {
+    /// Its first and its last time.
+    fn span(&self) -> (f64, f64);
+
+    /// The state at a time within.
+    fn at(&self, t: f64) -> Point;
+}
+
+/// Watches a run.
+pub(crate) trait Watch {
+    /// A stretch of smooth motion was made.
+    fn step(&mut self, piece: &dyn Piece);
+
+    /// An impact was carried out.
+    fn impact(&mut self, impact: Impact);
+}
+
+/// Runs a model from `t = 0`.
+///
+/// # Errors
+/// Why the runtime refuses to start, as text.
+pub(crate) fn simulate<M: Model>(
+    model: &M,
+    state: M::State,
+    settings: &Settings,
+    watch: &mut dyn Watch,
+) -> Result<Ending, String> {
+    let tolerance = Tolerance::new(settings.tol).map_err(|error| error.to_string())?;
+    match settings.integrator {
+        Integrator::Dop853 => run(model, Dop853::new(tolerance), state, settings, watch),
+        Integrator::Dopri5 => run(model, DormandPrince5::new(tolerance), state, settings, watch),
+    }
+}
+
+fn run<M: Model, S: Stepper<M>>(
+    model: &M,
+    stepper: S,
+    state: M::State,
+    settings: &Settings,
+    watch: &mut dyn Watch,
+) -> Result<Ending, String> {
+    let mut effects = model.effects();
+    for &(surface, law) in &settings.laws {
+        effects.set_law(surface, law);
+    }
+    if settings.impacts.is_some() {
+        effects.set_impact_budget(settings.impacts);
+    }
+    if let Some(projection) = settings.projection {
+        effects.set_projection(projection);
+    }
+    let laws = (0..M::DESCRIPTION.surfaces.len()).map(|surface| effects.law(model, surface)).collect();
+    let first = point(model, 0.0, &state);
+    let mut bridge = Bridge { model, watch };
+    let run = Simulation::new(model, stepper, effects)
+        .run(0.0, state, settings.until, &mut bridge)
+        .map_err(|error| error.to_string())?;
+    Ok(Ending {
+        kind: run.outcome.kind(),
+        details: details(&M::DESCRIPTION, &run.outcome),
+        t: run.t,
+        first,
+        last: point(model, run.t, &run.state),
+        counters: counters(&run.counters),
+        laws,
+        reached: run.outcome.is_done() || (settings.impacts.is_some() && run.outcome == Outcome::ImpactBudget),
+    })
+}
+
+/// Shows the runtime's segments and events to a [`Watch`].
+struct Bridge<'a, M> {
+    model: &'a M,
+    watch: &'a mut dyn Watch,
+}
+
+impl<M: Model> Observer<M> for Bridge<'_, M> {
+    fn step(&mut self, segment: &mut Segment<'_, M::State>) -> ControlFlow<()> {
+        self.watch.step(&SegmentPiece { model: self.model, segment: RefCell::new(segment) });
+        ControlFlow::Continue(())
+    }
+
+    fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
+        self.watch.impact(Impact {
+            t: event.t,
+            surface: event.surface,
+            before: point(self.model, event.t, &event.before),
+            after: point(self.model, event.t, &event.after),
+        });
+        ControlFlow::Continue(())
+    }
+}
+
+/// A segment of a run. Looking inside one makes its dense output ready, hence the cell.
+struct SegmentPiece<'a, 'b, M: Model> {
+    model: &'a M,
+    segment: RefCell<&'a mut Segment<'b, M::State>>,
+}
+
+impl<M: Model> Piece for SegmentPiece<'_, '_, M> {
+    fn span(&self) -> (f64, f64) {
+        let segment = self.segment.borrow();
+        (segment.t_start(), segment.t_end())
+    }
+
+    fn at(&self, t: f64) -> Point {
+        let state = self.segment.borrow_mut().at(t);
+        match state {
+            Ok(state) => point(self.model, t, &state),
+            Err(_) => Point::undefined(&M::DESCRIPTION),
+        }
+    }
+}
+
+/// What an outcome says besides its kind and its time, in the model's names.
+fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, Value)> {
+    let surface = |index: usize| ("surface", name(names::surfaces(description), index));
+    let constraint = |index: usize| ("constraint", name(description.constraints.iter().map(|it| it.name), index));
+    let coordinate = |index: usize| name(names::coordinates(description), index);
+    match *outcome {
+        Outcome::Zeno { t, surface: index } => vec![("accumulates_at", json::number(t)), surface(index)],
+        Outcome::StillPenetrating { surface: index, rho } => vec![surface(index), ("rho", json::number(rho))],
+        Outcome::Contact { surface: index }
+        | Outcome::TangentialCrossing { surface: index }
+        | Outcome::SingularSurface { surface: index } => vec![surface(index)],
+        Outcome::StartsInside { surface: index, gap } => vec![surface(index), ("gap", json::number(gap))],
+        Outcome::LeftChart { coordinate: index } => vec![("coordinate", coordinate(index))],
+        Outcome::MetricNotPositive { pivot, value } => {
+            vec![("coordinate", coordinate(pivot)), ("value", json::number(value))]
+        }
+        Outcome::SingularConstraint { constraint: index, condition } => {
+            vec![constraint(index), ("condition", json::number(condition))]
+        }
+        Outcome::ProjectionFailed { constraint: index } => vec![constraint(index)],
+        Outcome::NonFinite { component } => vec![("component", component.into())],
+        _ => Vec::new(),
+    }
+}
+
+/// A declared name; the index itself past the last.
+fn name(mut names: impl Iterator<Item = &'static str>, index: usize) -> Value {
+    names.nth(index).map_or_else(|| Value::from(index), Value::from)
+}
+
+fn counters(counters: &Counters) -> Vec<(&'static str, u64)> {
+    vec![
+        ("rate_evaluations", counters.rate_evaluations),
+        ("accepted", counters.accepted),
+        ("rejected", counters.rejected),
+        ("dense_constructions", counters.dense_constructions),
+        ("event_evaluations", counters.event_evaluations),
+        ("crossings", counters.crossings),
+        ("impacts", counters.impacts),
+        ("projections", counters.projections),
+    ]
+}

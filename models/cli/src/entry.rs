@@ -1,0 +1,256 @@
+//! A list of models of any types: each model behind one object-safe trait.
+//!
+//! [`Entry::of`] instantiates [`Typed`] for a model type, and with it the emitted code; everything else in this
+//! crate works on slices of numbers through [`AnyModel`] and is compiled once.
+
+use dalembert::describe::{Described, Description, Report};
+use dalembert::impacts::law::{Contact, Law};
+use dalembert::state::StateVector;
+use dalembert::{Fault, ParameterError, Scene, StateError};
+
+use crate::args::OffConstraint;
+use crate::driver::{self, Ending, Settings, Watch};
+
+/// One model of the list handed to [`run`](crate::run), with its scenes.
+#[derive(Clone)]
+pub struct Entry {
+    description: Description,
+    scenes: Vec<(&'static str, fn() -> Box<dyn AnyModel>)>,
+}
+
+impl Entry {
+    /// The entry of a model type; the model itself is the scene `all`.
+    pub fn of<M: Model>() -> Self {
+        Self { description: M::DESCRIPTION, scenes: vec![("all", Typed::<M>::boxed)] }
+    }
+
+    /// Adds a scene: a type of its own, with the model's parameters.
+    #[must_use]
+    pub fn with_scene<M: Model>(mut self, name: &'static str) -> Self {
+        self.scenes.push((name, Typed::<M>::boxed));
+        self
+    }
+
+    /// What the model says of itself.
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    /// The names of the scenes, `all` first.
+    pub fn scenes(&self) -> impl Iterator<Item = &'static str> + Clone {
+        self.scenes.iter().map(|(name, _)| *name)
+    }
+
+    /// The model in the scene of this index, with declared defaults.
+    pub(crate) fn with_defaults(&self, scene: usize) -> Box<dyn AnyModel> {
+        (self.scenes[scene].1)()
+    }
+}
+
+/// What the command line needs of a model type: everything that `model!` implements.
+pub trait Model: Described + Scene + 'static {}
+
+impl<M: Described + Scene + 'static> Model for M {}
+
+/// A list of models for [`run`](crate::run), by their types: `models![Pendulum, RollingDisk]`.
+#[macro_export]
+macro_rules! models {
+    ($($model:ty),* $(,)?) => { vec![$($crate::Entry::of::<$model>()),*] };
+}
+
+/// Velocities or momenta, one per coordinate.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Rates<'a> {
+    Velocities(&'a [f64]),
+    Momenta(&'a [f64]),
+}
+
+/// The declared initial condition.
+#[derive(Debug, Clone)]
+pub(crate) struct Start {
+    pub q: Vec<f64>,
+    pub qdot: Vec<f64>,
+    /// Whether the velocity is given; the constraints may choose the others.
+    pub named: Vec<bool>,
+    pub until: Option<f64>,
+}
+
+/// What tables and pictures show of a state; NaN where a quantity does not exist.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Point {
+    pub q: Vec<f64>,
+    pub qdot: Vec<f64>,
+    pub p: Vec<f64>,
+    pub energy: f64,
+    pub outputs: Vec<f64>,
+    pub view: Option<[f64; 2]>,
+}
+
+impl Point {
+    /// A point of which nothing is known.
+    pub fn undefined(description: &Description) -> Self {
+        let nothing = vec![f64::NAN; description.coordinates.len()];
+        Self {
+            q: nothing.clone(),
+            qdot: nothing.clone(),
+            p: nothing,
+            energy: f64::NAN,
+            outputs: vec![f64::NAN; description.outputs.len()],
+            view: None,
+        }
+    }
+}
+
+/// A model with values for its parameters. States are the components of the model's own state type.
+pub(crate) trait AnyModel {
+    fn description(&self) -> Description;
+    fn parameter(&self, index: usize) -> f64;
+    fn set_parameter(&mut self, index: usize, value: f64);
+    fn check_parameters(&self) -> Result<(), ParameterError>;
+    fn initial(&self) -> Start;
+    /// The velocities with those that are not `named` chosen by the constraints.
+    fn complete_velocity(&self, q: &[f64], qdot: &[f64], named: &[bool]) -> Result<Vec<f64>, StateError>;
+    fn state(&self, t: f64, q: &[f64], rates: Rates<'_>, policy: OffConstraint) -> Result<Vec<f64>, StateError>;
+    fn region(&self, t: f64, q: &[f64]) -> Option<f64>;
+    fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault>;
+    /// The state after the impact of a law.
+    fn impact(&self, t: f64, state: &[f64], contact: &Contacted, law: Law) -> Result<Vec<f64>, Fault>;
+    fn simulate(&self, state: &[f64], settings: &Settings, watch: &mut dyn Watch) -> Result<Ending, String>;
+}
+
+/// The data of a contact as `inspect` reports them.
+#[derive(Debug, Clone)]
+pub(crate) struct Contacted {
+    pub gap_rate: f64,
+    pub constrained_rate: f64,
+    pub surface_rate: f64,
+    pub constrained_compliance: f64,
+    pub free_compliance: f64,
+    pub direction: Vec<f64>,
+}
+
+/// A model type behind [`AnyModel`].
+struct Typed<M>(M);
+
+impl<M: Model> Typed<M> {
+    fn boxed() -> Box<dyn AnyModel> {
+        Box::new(Self(M::with_defaults()))
+    }
+
+    /// The state with these momenta after every check but that of the constraints.
+    fn checked_momenta(&self, t: f64, q: &M::Vector, p: &M::Vector) -> Result<M::State, StateError> {
+        self.0.check_parameters()?;
+        let mut components = q.as_slice().iter().chain(p.as_slice());
+        if let Some(component) = components.position(|value| !value.is_finite()) {
+            return Err(StateError::NotFinite { component });
+        }
+        let state = self.0.state_from_momenta(t, q, p)?;
+        match self.0.outside_chart(&state) {
+            Some(coordinate) => Err(StateError::OutsideChart { coordinate }),
+            None => Ok(state),
+        }
+    }
+}
+
+impl<M: Model> AnyModel for Typed<M> {
+    fn description(&self) -> Description {
+        M::DESCRIPTION
+    }
+
+    fn parameter(&self, index: usize) -> f64 {
+        self.0.parameter(index)
+    }
+
+    fn set_parameter(&mut self, index: usize, value: f64) {
+        self.0.set_parameter(index, value);
+    }
+
+    fn check_parameters(&self) -> Result<(), ParameterError> {
+        self.0.check_parameters()
+    }
+
+    fn initial(&self) -> Start {
+        let initial = self.0.initial();
+        Start {
+            q: initial.q.as_slice().to_vec(),
+            qdot: initial.qdot.as_slice().to_vec(),
+            named: initial.named.as_slice().iter().map(|&named| named != 0.0).collect(),
+            until: initial.until,
+        }
+    }
+
+    fn complete_velocity(&self, q: &[f64], qdot: &[f64], named: &[bool]) -> Result<Vec<f64>, StateError> {
+        let marks: Vec<f64> = named.iter().map(|&named| f64::from(u8::from(named))).collect();
+        let completed = self.0.complete_velocity(0.0, &vector(q), &vector(qdot), &vector(&marks))?;
+        Ok(completed.as_slice().to_vec())
+    }
+
+    fn state(&self, t: f64, q: &[f64], rates: Rates<'_>, policy: OffConstraint) -> Result<Vec<f64>, StateError> {
+        let q = vector(q);
+        let mut state = match rates {
+            Rates::Velocities(qdot) => self.0.checked(t, &q, &vector(qdot))?,
+            Rates::Momenta(p) => self.checked_momenta(t, &q, &vector(p))?,
+        };
+        match policy {
+            OffConstraint::Error => self.0.admit(t, &state)?,
+            OffConstraint::Project => self.0.project(t, &mut state)?,
+            OffConstraint::Keep => {}
+        }
+        Ok(state.as_slice().to_vec())
+    }
+
+    fn region(&self, t: f64, q: &[f64]) -> Option<f64> {
+        self.0.view_region(t, &vector(q))
+    }
+
+    fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault> {
+        self.0.inspect(t, &vector(state), report)
+    }
+
+    fn impact(&self, t: f64, state: &[f64], contact: &Contacted, law: Law) -> Result<Vec<f64>, Fault> {
+        let contact = Contact::<M::Vector> {
+            gap_rate: contact.gap_rate,
+            constrained_rate: contact.constrained_rate,
+            surface_rate: contact.surface_rate,
+            constrained_compliance: contact.constrained_compliance,
+            free_compliance: contact.free_compliance,
+            direction: vector(&contact.direction),
+        };
+        let mut state = vector(state);
+        self.0.kick(t, &mut state, contact.impulse(law), &contact.direction)?;
+        Ok(state.as_slice().to_vec())
+    }
+
+    fn simulate(&self, state: &[f64], settings: &Settings, watch: &mut dyn Watch) -> Result<Ending, String> {
+        driver::simulate(&self.0, vector(state), settings, watch)
+    }
+}
+
+/// What tables and pictures show of a state.
+pub(crate) fn point<M: Described>(model: &M, t: f64, state: &M::State) -> Point {
+    let components = |values: Result<M::Vector, Fault>| match values {
+        Ok(values) => values.as_slice().to_vec(),
+        Err(_) => vec![f64::NAN; M::Vector::LEN],
+    };
+    let mut outputs = vec![f64::NAN; M::DESCRIPTION.outputs.len()];
+    if model.outputs(t, state, &mut outputs).is_err() {
+        outputs.fill(f64::NAN);
+    }
+    Point {
+        q: model.position(state).as_slice().to_vec(),
+        qdot: components(model.velocity(t, state)),
+        p: components(model.momentum(t, state)),
+        energy: model.energy(t, state).unwrap_or(f64::NAN),
+        outputs,
+        view: model.view_path(t, state),
+    }
+}
+
+/// The vector of these components; missing ones are 0.
+fn vector<V: StateVector>(components: &[f64]) -> V {
+    let mut vector = V::zeros();
+    for (component, &value) in vector.as_mut_slice().iter_mut().zip(components) {
+        *component = value;
+    }
+    vector
+}

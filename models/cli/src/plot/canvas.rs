@@ -1,0 +1,84 @@
+//! The sheet a picture is drawn on.
+//!
+//! The drawing library works in whole pixels, which shows as steps in a smooth curve. A sheet is therefore drawn
+//! [`SUBPIXELS`] times as large, and the finished SVG is told to be shown at its intended size.
+
+use plotters::coord::Shift;
+use plotters::prelude::{DrawingArea, IntoDrawingArea, SVGBackend, WHITE};
+use plotters::style::{IntoFont, RGBColor, TextStyle};
+
+use super::style::{FAINT_INK, INK};
+
+/// Units of the drawing library per pixel of the picture.
+const SUBPIXELS: i32 = 10;
+
+/// Pixels in units of the drawing library.
+pub fn px(pixels: f64) -> i32 {
+    (pixels * f64::from(SUBPIXELS)).round() as i32
+}
+
+/// A line width in units of the drawing library.
+pub fn stroke(pixels: f64) -> u32 {
+    px(pixels).unsigned_abs().max(1)
+}
+
+/// A part of the sheet, in units of the drawing library.
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// A text style; sizes are in pixels.
+pub fn text(size: f64, colour: RGBColor) -> TextStyle<'static> {
+    ("sans-serif", px(size)).into_font().color(&colour)
+}
+
+/// About how wide a text is, in pixels. There is no font here to measure it with.
+pub fn text_width(text: &str, size: f64) -> f64 {
+    0.56 * size * text.chars().count() as f64
+}
+
+/// Height of the two title lines, in pixels.
+pub const TITLE_HEIGHT: f64 = 54.0;
+
+/// Left edge of titles and legends, in pixels.
+pub const INDENT: f64 = 20.0;
+
+/// Draws a sheet of this size in pixels, with a title, and returns it as SVG.
+///
+/// # Errors
+/// What the drawing library or `content` says.
+pub fn sheet(
+    size: (f64, f64),
+    title: &str,
+    subtitle: &str,
+    content: impl FnOnce(Area<'_>) -> Result<(), String>,
+) -> Result<String, String> {
+    let units = (stroke(size.0), stroke(size.1));
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, units).into_drawing_area();
+        root.fill(&WHITE).map_err(message)?;
+        let (head, body) = root.split_vertically(px(TITLE_HEIGHT));
+        head.draw_text(title, &text(17.0, INK), (px(INDENT), px(10.0))).map_err(message)?;
+        let room = size.0 - 2.0 * INDENT;
+        let subtitle = shortened(subtitle, room, 12.0);
+        head.draw_text(&subtitle, &text(12.0, FAINT_INK), (px(INDENT), px(33.0))).map_err(message)?;
+        content(body)?;
+        root.present().map_err(message)?;
+    }
+    let drawn = format!("width=\"{}\" height=\"{}\"", units.0, units.1);
+    let shown = format!("width=\"{}\" height=\"{}\"", size.0.round(), size.1.round());
+    Ok(svg.replacen(&drawn, &shown, 1))
+}
+
+/// The text, cut off with an ellipsis where it would be wider than `room` pixels.
+pub fn shortened(text: &str, room: f64, size: f64) -> String {
+    if text_width(text, size) <= room {
+        return text.to_owned();
+    }
+    let letters = (room / text_width("x", size)).floor().max(1.0) as usize;
+    text.chars().take(letters - 1).chain(['\u{2026}']).collect()
+}
+
+/// An error of the drawing library as text.
+pub fn message(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}

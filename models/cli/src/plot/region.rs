@@ -1,0 +1,85 @@
+//! The declared region behind a path: which part of the plane to show, and the region's boundary in it.
+
+use super::Picture;
+use super::contour::{Contour, Window, contours};
+
+/// Grid squares per side for the picture.
+const FINE: usize = 240;
+
+/// Grid squares per side while the extent of the region is sought.
+const COARSE: usize = 48;
+
+/// Room around what is shown, as a part of its size.
+const ROOM: f64 = 0.06;
+
+/// How often the window may grow, by half of its size on each side, before a region counts as unbounded.
+const GROWTHS: usize = 5;
+
+/// The region's function in the plane of two coordinates, positive where motion is allowed.
+pub struct Region<'a> {
+    picture: &'a Picture<'a>,
+    plane: [usize; 2],
+}
+
+impl<'a> Region<'a> {
+    /// The region of a picture, if there is one to draw: declared, in a plane of two coordinates, and the same
+    /// throughout the run.
+    pub fn of(picture: &'a Picture<'a>, path: Window) -> Option<Self> {
+        let view = picture.model.description().view?;
+        let region = Self { picture, plane: view.plane.filter(|_| view.region)? };
+        region.stands_still(path).then_some(region)
+    }
+
+    /// The boundary of the region inside a window.
+    pub fn contours(&self, window: Window) -> Vec<Contour> {
+        contours(window, FINE, |point| self.value(point))
+    }
+
+    /// The part of the plane to show: the path, and all of the region if it is bounded.
+    pub fn window(&self, path: Window) -> Window {
+        let mut window = path.grown(0.5);
+        for _ in 0..GROWTHS {
+            let inside = |&(x, y): &(usize, usize)| self.value(node(window, x, y)) > 0.0;
+            let all = (0..=COARSE).flat_map(|x| (0..=COARSE).map(move |y| (x, y)));
+            let positive: Vec<_> = all.filter(inside).collect();
+            if !positive.iter().any(|&(x, y)| [x, y].iter().any(|&index| index == 0 || index == COARSE)) {
+                // One square of room covers what the grid has missed.
+                let corners = positive.iter().flat_map(|&(x, y)| [node(window, x, y), path.at(0.0, 0.0), path.at(1.0, 1.0)]);
+                return Window::around(corners).unwrap_or(path).grown(ROOM);
+            }
+            window = window.grown(0.5);
+        }
+        path.grown(ROOM)
+    }
+
+    fn value(&self, point: [f64; 2]) -> f64 {
+        self.value_at(0.0, &self.picture.first.q, point)
+    }
+
+    fn value_at(&self, t: f64, q: &[f64], point: [f64; 2]) -> f64 {
+        let mut q = q.to_vec();
+        for (&coordinate, value) in self.plane.iter().zip(point) {
+            q[coordinate] = value;
+        }
+        self.picture.model.region(t, &q).unwrap_or(f64::NAN)
+    }
+
+    /// Whether the region depends on nothing but the plane: compared at the first and the last instant, and
+    /// between, with the other coordinates as they are at both ends.
+    fn stands_still(&self, path: Window) -> bool {
+        let (end, last) = self.picture.last;
+        let points = [(0.1, 0.3), (0.5, 0.5), (0.8, 0.6), (0.3, 0.9)].map(|(x, y)| path.grown(0.2).at(x, y));
+        let same = |t: f64, q: &[f64], point: [f64; 2]| {
+            let (now, then) = (self.value(point), self.value_at(t, q, point));
+            now == then || (now.is_nan() && then.is_nan())
+        };
+        let first = &self.picture.first.q;
+        points.into_iter().all(|point| {
+            same(end, &last.q, point) && same(0.37 * end, first, point) && same(0.61 * end, &last.q, point)
+        })
+    }
+}
+
+fn node(window: Window, x: usize, y: usize) -> [f64; 2] {
+    window.at(x as f64 / COARSE as f64, y as f64 / COARSE as f64)
+}

@@ -1,0 +1,113 @@
+//! Colours, sizes and number formats shared by all pictures.
+
+use plotters::style::RGBColor;
+
+/// Colours that colour-blind people can tell apart (Okabe and Ito), those that are readable on white.
+pub const PALETTE: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(60, 60, 60),
+];
+
+/// The path in a portrait.
+pub const PATH: RGBColor = PALETTE[0];
+
+/// Text and axes.
+pub const INK: RGBColor = RGBColor(50, 50, 50);
+
+/// Secondary text.
+pub const FAINT_INK: RGBColor = RGBColor(105, 105, 105);
+
+/// Grid lines.
+pub const GRID: RGBColor = RGBColor(226, 229, 233);
+
+/// The allowed region.
+pub const REGION: RGBColor = RGBColor(240, 244, 249);
+
+/// The region's boundary.
+pub const BOUNDARY: RGBColor = RGBColor(110, 120, 132);
+
+/// The colour of a curve by its index.
+pub const fn curve(index: usize) -> RGBColor {
+    PALETTE[index % PALETTE.len()]
+}
+
+/// The colour of a surface's impacts by its index; the first colour is the path's own.
+pub const fn surface(index: usize) -> RGBColor {
+    PALETTE[1 + index % (PALETTE.len() - 1)]
+}
+
+/// An axis: its range, and how many labels plotters may place on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axis {
+    /// Least and greatest value.
+    pub range: [f64; 2],
+    /// Number of labels.
+    pub labels: usize,
+    /// Distance of the labels.
+    step: f64,
+}
+
+impl Axis {
+    /// An axis of this range with labels at multiples of 1, 2 or 5 powers of ten, about `target` of them.
+    pub fn new(range: [f64; 2], target: usize) -> Self {
+        let length = range[1] - range[0];
+        let raw = length / target.max(1) as f64;
+        let decade = 10f64.powi(raw.log10().floor() as i32);
+        let step = [1.0, 2.0, 5.0].map(|digit| digit * decade).into_iter().find(|&step| step >= raw);
+        let step = step.unwrap_or(10.0 * decade);
+        Self { range, labels: (length / step) as usize + 1, step }
+    }
+
+    /// The label of a value: as many decimals as the step needs, or an exponent where there would be many.
+    pub fn label(&self, value: f64) -> String {
+        let largest = self.range[0].abs().max(self.range[1].abs());
+        let decimals = (-self.step.log10()).ceil().max(0.0) as usize;
+        // A tick at zero comes out of the arithmetic as a tiny number.
+        let value = if value.abs() < 1e-9 * largest { 0.0 } else { value };
+        if decimals <= 5 && largest < 1e6 { format!("{value:.decimals$}") } else { shortest_exponent(value) }
+    }
+}
+
+/// `2.5e-7`: at most five significant digits.
+fn shortest_exponent(value: f64) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    if rounded == 0.0 { "0".to_owned() } else { format!("{rounded:e}") }
+}
+
+/// A range that contains the values with some room; one unit about a constant.
+pub fn padded(values: impl Iterator<Item = f64>, room: f64) -> [f64; 2] {
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
+    let middle = 0.5 * (low + high);
+    // Below this the range is rounding error of a constant.
+    let half = 0.5 * (high - low);
+    let half = if half > 1e-12 * middle.abs() && half > f64::MIN_POSITIVE { half * (1.0 + 2.0 * room) } else { 0.5 * middle.abs().max(1.0) };
+    [middle - half, middle + half]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_have_as_many_decimals_as_they_need() {
+        assert_eq!(Axis::new([0.0, 0.4], 8).label(0.05), "0.05");
+        assert_eq!(Axis::new([0.0, 20.0], 8).label(15.0), "15");
+        assert_eq!(Axis::new([-0.3, 0.3], 6).label(-1e-17), "0.0");
+        assert_eq!(Axis::new([0.0, 3e-7], 6).label(2.5e-7), "2.5e-7");
+    }
+
+    #[test]
+    fn ranges_are_never_empty() {
+        for values in [vec![], vec![0.0], vec![3.0, 3.0], vec![1e300, -1e300], vec![5e-324, 0.0]] {
+            let [low, high] = padded(values.iter().copied(), 0.05);
+            assert!(low < high && low.is_finite() && high.is_finite(), "{values:?}");
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! The curve of a picture: points along a run, dense where it bends, with both sides of every impact.
+
+use crate::driver::Piece;
+use crate::entry::Point;
+
+/// Intervals that every step is divided into first.
+const INTERVALS: usize = 12;
+
+/// Halvings of such an interval at most.
+const DEPTH: u32 = 8;
+
+/// Points from which on steps are no longer subdivided, and at most this many more are kept.
+const MANY: usize = 100_000;
+
+/// An interval is halved while its middle lies off its chord by more than this part of the curve's extent.
+const FLATNESS: f64 = 3e-4;
+
+/// What a point of the curve shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Source {
+    /// The declared view's point in the plane.
+    View,
+    /// All coordinates, then all outputs.
+    Coordinates,
+}
+
+/// A curve under construction.
+#[derive(Debug)]
+pub struct Trace {
+    source: Source,
+    points: Vec<Mark>,
+    /// Least and greatest value so far, per component.
+    extent: Vec<[f64; 2]>,
+}
+
+/// A point of the curve.
+#[derive(Debug, Clone)]
+pub struct Mark {
+    /// Its time.
+    pub t: f64,
+    /// What the picture shows at that time.
+    pub values: Vec<f64>,
+    /// Whether it is one side of an impact or an end, never to be left out.
+    pub corner: bool,
+}
+
+impl Trace {
+    /// An empty curve: of the declared view, or else of all coordinates and outputs.
+    pub fn new(view: bool) -> Self {
+        let source = if view { Source::View } else { Source::Coordinates };
+        Self { source, points: Vec::new(), extent: Vec::new() }
+    }
+
+    /// The points in order of time; none has an infinite or undefined value.
+    pub fn points(&self) -> &[Mark] {
+        &self.points
+    }
+
+    /// Adds a step without impacts inside.
+    pub fn follow(&mut self, piece: &dyn Piece) {
+        let (start, end) = piece.span();
+        let many = self.points.len() >= MANY;
+        let intervals = if many { 1 } else { INTERVALS };
+        let depth = if many { 0 } else { DEPTH };
+        let time = |index: usize| start + (end - start) * (index as f64 / intervals as f64);
+        let marks: Vec<Mark> = (0..=intervals).map(|index| self.mark(time(index), &piece.at(time(index)))).collect();
+        // The extent of the whole step first, so that a first small piece is not taken for the whole picture.
+        marks.iter().for_each(|mark| self.widen(mark));
+        for pair in marks.windows(2) {
+            self.push(pair[0].clone());
+            self.refine(piece, &pair[0], &pair[1], depth);
+        }
+        if let Some(last) = marks.into_iter().next_back() {
+            self.push(last);
+        }
+        self.thin();
+    }
+
+    /// Adds one side of an impact, or an end of the run.
+    pub fn corner(&mut self, t: f64, point: &Point) {
+        let mark = Mark { corner: true, ..self.mark(t, point) };
+        self.widen(&mark);
+        self.push(mark);
+    }
+
+    fn mark(&self, t: f64, point: &Point) -> Mark {
+        let values = match self.source {
+            Source::View => point.view.map_or_else(Vec::new, |view| view.to_vec()),
+            Source::Coordinates => point.q.iter().chain(&point.outputs).copied().collect(),
+        };
+        Mark { t, values, corner: false }
+    }
+
+    /// Adds what lies between two points, without them.
+    fn refine(&mut self, piece: &dyn Piece, left: &Mark, right: &Mark, depth: u32) {
+        let t = 0.5 * (left.t + right.t);
+        if depth == 0 || t <= left.t || t >= right.t {
+            return;
+        }
+        let middle = self.mark(t, &piece.at(t));
+        if self.is_flat(left, &middle, right) {
+            return;
+        }
+        self.refine(piece, left, &middle, depth - 1);
+        self.widen(&middle);
+        self.push(middle.clone());
+        self.refine(piece, &middle, right, depth - 1);
+    }
+
+    fn is_flat(&self, left: &Mark, middle: &Mark, right: &Mark) -> bool {
+        let ends = left.values.iter().zip(&right.values);
+        ends.zip(&middle.values).zip(&self.extent).all(|(((left, right), middle), [low, high])| {
+            // Written so that an undefined value counts as flat: subdividing does not define it.
+            let deviation = (middle - 0.5 * (left + right)).abs();
+            let bent = deviation > FLATNESS * (high - low);
+            !bent
+        })
+    }
+
+    fn widen(&mut self, mark: &Mark) {
+        self.extent.resize(mark.values.len(), [f64::INFINITY, f64::NEG_INFINITY]);
+        for (extent, &value) in self.extent.iter_mut().zip(&mark.values).filter(|(_, value)| value.is_finite()) {
+            *extent = [extent[0].min(value), extent[1].max(value)];
+        }
+    }
+
+    fn push(&mut self, mark: Mark) {
+        if mark.values.iter().all(|value| value.is_finite()) {
+            self.points.push(mark);
+        }
+    }
+
+    /// Leaves out every other point once there are too many; corners stay.
+    fn thin(&mut self) {
+        if self.points.len() < 2 * MANY {
+            return;
+        }
+        let mut keep = false;
+        self.points.retain(|mark| {
+            keep = !keep;
+            keep || mark.corner
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Circle;
+
+    impl Piece for Circle {
+        fn span(&self) -> (f64, f64) {
+            (0.0, 30.0)
+        }
+
+        fn at(&self, t: f64) -> Point {
+            Point {
+                q: vec![t],
+                qdot: vec![1.0],
+                p: vec![1.0],
+                energy: 0.5,
+                outputs: vec![],
+                view: Some([t.cos(), t.sin()]),
+            }
+        }
+    }
+
+    #[test]
+    fn a_curve_that_turns_many_times_in_one_step_is_smooth() {
+        let mut trace = Trace::new(true);
+        trace.follow(&Circle);
+        let turns = trace.points().windows(2).map(|pair| pair[1].t - pair[0].t);
+        assert!(turns.fold(0.0, f64::max) < 0.1);
+        assert!(trace.points().windows(2).all(|pair| pair[0].t < pair[1].t));
+    }
+
+    #[test]
+    fn a_straight_curve_needs_few_points() {
+        let mut trace = Trace::new(false);
+        trace.follow(&Circle);
+        assert_eq!(trace.points().len(), INTERVALS + 1);
+    }
+}

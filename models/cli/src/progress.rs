@@ -1,0 +1,54 @@
+//! A progress bar on a terminal, for runs of more than a second.
+
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Steps between two looks at the clock.
+const STRIDE: u32 = 256;
+
+/// Parts of the bar.
+const PARTS: u64 = 1000;
+
+/// How far a run has come.
+pub struct Progress {
+    end: f64,
+    steps: u32,
+    started: Option<Instant>,
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    /// Progress towards the time `end`; shown only if `terminal`.
+    pub fn new(end: f64, terminal: bool) -> Self {
+        Self { end, steps: 0, started: terminal.then(Instant::now), bar: None }
+    }
+
+    /// Notes that the run has reached `t`.
+    pub fn at(&mut self, t: f64) {
+        let Some(started) = self.started else { return };
+        self.steps = self.steps.wrapping_add(1);
+        if !self.steps.is_multiple_of(STRIDE) || started.elapsed() < Duration::from_secs(1) {
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(new_bar);
+        bar.set_position((t / self.end * PARTS as f64) as u64);
+        bar.set_message(format!("t = {t:.6} of {}", self.end));
+    }
+
+    /// Removes the bar.
+    pub fn finish(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn new_bar() -> ProgressBar {
+    let bar = ProgressBar::new(PARTS);
+    // The template is a constant; should indicatif refuse it, its default style does as well.
+    if let Ok(style) = ProgressStyle::with_template("[{elapsed}] {bar:40} {percent}% {msg}") {
+        bar.set_style(style);
+    }
+    bar
+}

@@ -1,0 +1,115 @@
+//! Numbers as people write them on the command line: decimals and multiples of pi.
+//!
+//! `scalar = ["+" | "-"] factor {("*" | "/") factor}`, `factor = decimal ["pi"] | "pi"`. Evaluated from left to
+//! right in `f64`; a lone decimal is the nearest `f64`.
+
+use std::f64::consts::PI;
+
+/// What [`parse`] accepts, for messages.
+pub const EXPECTED: &str = "a finite number such as -1.5, 2e-3, pi/2 or -3*pi/4";
+
+/// The number `text` stands for.
+///
+/// # Errors
+/// [`EXPECTED`] where `text` is anything else, an infinity or a NaN included.
+pub fn parse(text: &str) -> Result<f64, &'static str> {
+    let text = text.trim();
+    let (sign, mut rest) = match text.strip_prefix('-') {
+        Some(rest) => (-1.0, rest),
+        None => (1.0, text.strip_prefix('+').unwrap_or(text)),
+    };
+    let mut value = 1.0;
+    let mut divide = false;
+    loop {
+        let end = rest.find(['*', '/']).unwrap_or(rest.len());
+        let operand = factor(rest[..end].trim()).ok_or(EXPECTED)?;
+        value = if divide { value / operand } else { value * operand };
+        let Some(operator) = rest[end..].chars().next() else { break };
+        divide = operator == '/';
+        rest = &rest[end + 1..];
+    }
+    let value = sign * value;
+    if value.is_finite() { Ok(value) } else { Err(EXPECTED) }
+}
+
+fn factor(text: &str) -> Option<f64> {
+    match text.strip_suffix("pi") {
+        Some("") => Some(PI),
+        Some(multiple) => Some(decimal(multiple.trim_end())? * PI),
+        None => decimal(text),
+    }
+}
+
+/// An unsigned decimal; the standard library's signs, `inf` and `nan` are left out.
+fn decimal(text: &str) -> Option<f64> {
+    let starts_as_number = text.starts_with(|first: char| first.is_ascii_digit() || first == '.');
+    starts_as_number.then(|| text.parse().ok()).flatten()
+}
+
+/// A positive number.
+///
+/// # Errors
+/// What is expected.
+pub fn positive(text: &str) -> Result<f64, String> {
+    within(text, |value| value > 0.0, "a positive number")
+}
+
+/// An error tolerance.
+///
+/// # Errors
+/// What is expected.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    within(text, |value| (1e-15..=0.1).contains(&value), "a number from 1e-15 to 0.1")
+}
+
+/// A coefficient of restitution.
+///
+/// # Errors
+/// What is expected.
+pub fn coefficient(text: &str) -> Result<f64, String> {
+    within(text, |value| (0.0..=1.0).contains(&value), "a number from 0 to 1")
+}
+
+fn within(text: &str, accepts: impl Fn(f64) -> bool, expected: &str) -> Result<f64, String> {
+    match parse(text) {
+        Ok(value) if accepts(value) => Ok(value),
+        _ => Err(format!("expected {expected}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_are_the_nearest_numbers() {
+        for text in ["0", "1.5", "2.225073858507201e-308", "0.1", "1e22", "5e-324", "+3", "-7.25"] {
+            assert_eq!(parse(text), Ok(text.trim_start_matches('+').parse().unwrap()), "{text}");
+        }
+    }
+
+    #[test]
+    fn multiples_of_pi() {
+        let cases = [
+            ("pi", PI),
+            ("-pi/2", -PI / 2.0),
+            ("3*pi/4", 3.0 * PI / 4.0),
+            ("2pi", 2.0 * PI),
+            (" 1/4 ", 0.25),
+            ("pi*2", 2.0 * PI),
+        ];
+        for (text, value) in cases {
+            assert_eq!(parse(text), Ok(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        for text in [
+            "", "-", "--1", "nan", "inf", "-inf", "infinity", "1e999", "1/0", "pi pi", "1,5", "1+1", "*2", "2*",
+            "πi", "0x10", "1_000", "pipi", "é", "1//2", "0/0",
+        ] {
+            assert_eq!(parse(text), Err(EXPECTED), "{text}");
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! From flags to a model with its parameters, and to the state a run starts from.
+
+use crate::args::{ModelArgs, OffConstraint, StateArgs};
+use crate::entry::{AnyModel, Entry, Rates, Start};
+use crate::error::CliError;
+use crate::names;
+use crate::scalar;
+
+/// The position of the model of this name in the list.
+///
+/// # Errors
+/// [`CliError::Unknown`].
+pub fn find_model<'a>(models: &'a [Entry], name: &str) -> Result<&'a Entry, CliError> {
+    let names = models.iter().map(|entry| entry.description().name);
+    Ok(&models[names::find("MODEL", "model", name, names)?])
+}
+
+/// The model a command names, in its scene, with `--set` carried out and every parameter checked.
+///
+/// # Errors
+/// An unknown name, a value that is not a number or is against the parameter's declaration.
+pub fn build_model(models: &[Entry], args: &ModelArgs) -> Result<Box<dyn AnyModel>, CliError> {
+    let entry = find_model(models, &args.model)?;
+    let scene = names::find("--scene", "scene", &args.scene, entry.scenes())?;
+    let mut model = entry.with_defaults(scene);
+    for text in &args.set {
+        set_parameter(model.as_mut(), text)?;
+    }
+    let checked = model.check_parameters();
+    checked.map_err(|error| CliError::state("--set", &model.description(), error.into()))?;
+    Ok(model)
+}
+
+fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
+    let (name, value) = names::assignment("--set", text, "NAME=VALUE")?;
+    let parameters = model.description().parameters;
+    let index = names::find("--set", "parameter", name, parameters.iter().map(|parameter| parameter.name))?;
+    let assumption = parameters[index].assumption;
+    match scalar::parse(value) {
+        Ok(number) if assumption.holds(number) => {
+            model.set_parameter(index, number);
+            Ok(())
+        }
+        Ok(_) => Err(CliError::value(format!("--set {name}"), value, format!("a value {assumption}"))),
+        Err(expected) => Err(CliError::value(format!("--set {name}"), value, expected)),
+    }
+}
+
+/// The state that the flags describe, at `t = 0`.
+///
+/// # Errors
+/// Anything about the flags, or why the system refuses the state.
+pub fn initial_state(model: &dyn AnyModel, args: &StateArgs) -> Result<Vec<f64>, CliError> {
+    let policy = args.off_constraint;
+    let refuse = |place: &str, error| CliError::state(place, &model.description(), error);
+    let vector = |flag: &str, text: &str| numbers(model, flag, text);
+    match (&args.q, &args.qdot, &args.p) {
+        (Some(q), Some(qdot), None) => {
+            let (q, qdot) = (vector("--q", q)?, vector("--qdot", qdot)?);
+            model.state(0.0, &q, Rates::Velocities(&qdot), policy).map_err(|error| refuse("--q, --qdot", error))
+        }
+        (Some(q), None, Some(p)) => {
+            let (q, p) = (vector("--q", q)?, vector("--p", p)?);
+            model.state(0.0, &q, Rates::Momenta(&p), policy).map_err(|error| refuse("--q, --p", error))
+        }
+        (None, None, None) => named_state(model, &args.initial, policy),
+        (Some(_), ..) => Err(CliError::Usage("--q needs --qdot or --p")),
+        (None, ..) => Err(CliError::Usage("--qdot and --p need --q")),
+    }
+}
+
+/// The model's `initial` with the changes of `--initial`.
+fn named_state(model: &dyn AnyModel, changes: &[String], policy: OffConstraint) -> Result<Vec<f64>, CliError> {
+    let mut start = model.initial();
+    for change in changes.iter().flat_map(|list| list.split(',')).filter(|change| !change.trim().is_empty()) {
+        apply_change(model, &mut start, change)?;
+    }
+    let place = if changes.is_empty() { "the model's `initial`" } else { "--initial" };
+    let refuse = |error| CliError::state(place, &model.description(), error);
+    let qdot = match model.complete_velocity(&start.q, &start.qdot, &start.named) {
+        Ok(qdot) => qdot,
+        Err(error) if policy == OffConstraint::Error => return Err(refuse(error)),
+        // The named velocities contradict the constraints, and that is for the policy to settle.
+        Err(_) => start.qdot,
+    };
+    model.state(0.0, &start.q, Rates::Velocities(&qdot), policy).map_err(refuse)
+}
+
+/// Carries out one `name=value` of `--initial`.
+fn apply_change(model: &dyn AnyModel, start: &mut Start, change: &str) -> Result<(), CliError> {
+    let (name, value) = names::assignment("--initial", change, "NAME=VALUE,..")?;
+    let coordinates: Vec<String> = names::coordinates(&model.description()).map(str::to_owned).collect();
+    let velocities = coordinates.iter().map(|coordinate| names::velocity(coordinate));
+    let accepted: Vec<String> = coordinates.iter().cloned().chain(velocities).collect();
+    let index = names::find("--initial", "coordinate or velocity", name, accepted.iter().map(String::as_str))?;
+    let number =
+        scalar::parse(value).map_err(|expected| CliError::value(format!("--initial {name}"), value, expected))?;
+    let n = coordinates.len();
+    if index < n {
+        start.q[index] = number;
+    } else {
+        start.qdot[index - n] = number;
+        start.named[index - n] = true;
+    }
+    Ok(())
+}
+
+/// A comma-separated list of one number per coordinate.
+fn numbers(model: &dyn AnyModel, flag: &str, text: &str) -> Result<Vec<f64>, CliError> {
+    let names: Vec<_> = names::coordinates(&model.description()).collect();
+    let given: Vec<_> = match text.trim() {
+        "" => Vec::new(),
+        list => list.split(',').collect(),
+    };
+    if given.len() != names.len() {
+        return Err(CliError::Length { place: flag.to_owned(), names, got: given.len() });
+    }
+    let number = |(value, name): (&&str, &&str)| {
+        scalar::parse(value).map_err(|expected| CliError::value(format!("{flag} ({name})"), *value, expected))
+    };
+    given.iter().zip(&names).map(number).collect()
+}

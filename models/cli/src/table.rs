@@ -1,0 +1,69 @@
+//! Samples and impacts as CSV: `t`, coordinates, velocities, `energy`, outputs, `event`.
+
+use std::io::{self, Write};
+
+use dalembert::describe::Description;
+
+use crate::driver::Impact;
+use crate::entry::Point;
+use crate::names;
+
+/// Writes samples and impacts in order of time. The row of an impact shows the state after it and names the
+/// surface in the column `event`; a sample at that very instant follows it.
+///
+/// # Errors
+/// Whatever the stream says.
+pub fn write(
+    output: &mut dyn Write,
+    description: &Description,
+    samples: &[(f64, Point)],
+    impacts: &[Impact],
+) -> io::Result<()> {
+    let rows = write_rows(csv::Writer::from_writer(output), description, samples, impacts);
+    rows.map_err(|error| match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        kind => io::Error::other(format!("{kind:?}")),
+    })
+}
+
+fn write_rows(
+    mut writer: csv::Writer<&mut dyn Write>,
+    description: &Description,
+    samples: &[(f64, Point)],
+    impacts: &[Impact],
+) -> csv::Result<()> {
+    writer.write_record(header(description))?;
+    let mut impacts = impacts.iter().peekable();
+    for (t, point) in samples {
+        while let Some(impact) = impacts.next_if(|impact| impact.t <= *t) {
+            writer.write_record(row(impact.t, &impact.after, surface(description, impact)))?;
+        }
+        writer.write_record(row(*t, point, ""))?;
+    }
+    for impact in impacts {
+        writer.write_record(row(impact.t, &impact.after, surface(description, impact)))?;
+    }
+    writer.flush()?;
+    Ok(())
+}
+
+fn header(description: &Description) -> Vec<String> {
+    let mut header = vec!["t".to_owned()];
+    header.extend(names::coordinates(description).map(str::to_owned));
+    header.extend(names::coordinates(description).map(names::velocity));
+    header.push("energy".to_owned());
+    header.extend(description.outputs.iter().map(|&output| output.to_owned()));
+    header.push("event".to_owned());
+    header
+}
+
+fn row(t: f64, point: &Point, event: &str) -> Vec<String> {
+    let numbers = [t].into_iter().chain(point.q.iter().chain(&point.qdot).copied());
+    let numbers = numbers.chain([point.energy]).chain(point.outputs.iter().copied());
+    // `Debug` writes the shortest decimal that reads back to the same number, with an exponent where that is short.
+    numbers.map(|number| format!("{number:?}")).chain([event.to_owned()]).collect()
+}
+
+fn surface(description: &Description, impact: &Impact) -> &'static str {
+    description.surfaces.get(impact.surface).map_or("", |surface| surface.name)
+}

@@ -1,0 +1,50 @@
+//! The command line from its arguments to its streams and its exit status, over systems written by hand.
+
+mod check;
+mod eval;
+mod hostile;
+mod list;
+mod simulate;
+mod systems;
+
+use dalembert_cli::{Entry, Exit, Streams, models, run_with};
+use serde_json::Value;
+
+/// What a command line did.
+struct Done {
+    exit: Exit,
+    output: String,
+    errors: String,
+}
+
+impl Done {
+    /// The standard output as JSON.
+    fn json(&self) -> Value {
+        serde_json::from_str(&self.output).unwrap_or_else(|error| panic!("{error} in {}", self.output))
+    }
+}
+
+fn list_of_models() -> Vec<Entry> {
+    models![systems::BouncingBall, systems::Oscillator, systems::Bead]
+}
+
+/// Runs a command line given as words, with this standard input.
+fn run_on(input: &str, words: &[&str]) -> Done {
+    let (mut output, mut errors) = (Vec::new(), Vec::new());
+    let mut streams =
+        Streams { input: &mut input.as_bytes(), output: &mut output, errors: &mut errors, terminal: false };
+    let args = std::iter::once("dalembert").chain(words.iter().copied());
+    let exit = run_with(args, &list_of_models(), &mut streams);
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Done { exit, output: text(output), errors: text(errors) }
+}
+
+/// Runs a command line given as one text, split at spaces.
+fn run(line: &str) -> Done {
+    run_on("", &line.split_whitespace().collect::<Vec<_>>())
+}
+
+/// Numbers of a JSON array.
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+}

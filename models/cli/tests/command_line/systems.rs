@@ -1,0 +1,428 @@
+//! Systems written by hand, so that the command line is tested without the generator: a ball on a floor, an
+//! oscillator with a view of the plane, and a bead held to a line by a constraint.
+//!
+//! All have the metric `m` times the identity, and a potential.
+
+use dalembert::describe::{
+    Assumption, ConstraintInfo, CoordinateInfo, Described, Description, Initial, ParameterInfo, Report, SurfaceInfo,
+    Topology, ViewInfo,
+};
+use dalembert::error::ParameterError;
+use dalembert::impacts::law::{Contact, Law};
+use dalembert::{Fault, Impacting, Impacts, Scene, StateError, System, VectorField};
+use nalgebra::SVector;
+
+/// What differs between the systems: mass, force and potential.
+trait Particle<const N: usize> {
+    fn mass(&self) -> f64;
+    fn force(&self, q: &[f64; N]) -> [f64; N];
+    fn potential(&self, q: &[f64; N]) -> f64;
+}
+
+/// `VectorField` and `System` of a [`Particle`] with state `(q, p)`; the hooks are the caller's.
+macro_rules! particle {
+    ($type:ty, $n:literal, $dim:literal, { $($hooks:tt)* }) => {
+        impl VectorField for $type {
+            type State = SVector<f64, $dim>;
+
+            fn rate(&self, _t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault> {
+                let force = self.force(&std::array::from_fn(|i| state[i]));
+                for i in 0..$n {
+                    rate[i] = state[$n + i] / self.mass();
+                    rate[$n + i] = force[i];
+                }
+                Ok(())
+            }
+        }
+
+        impl System for $type {
+            type Vector = SVector<f64, $n>;
+
+            fn position(&self, state: &Self::State) -> Self::Vector {
+                SVector::from_fn(|i, _| state[i])
+            }
+
+            fn velocity(&self, _t: f64, state: &Self::State) -> Result<Self::Vector, Fault> {
+                Ok(SVector::from_fn(|i, _| state[$n + i] / self.mass()))
+            }
+
+            fn momentum(&self, _t: f64, state: &Self::State) -> Result<Self::Vector, Fault> {
+                Ok(SVector::from_fn(|i, _| state[$n + i]))
+            }
+
+            fn state_unchecked(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<Self::State, Fault> {
+                self.state_from_momenta(t, q, &(qdot * self.mass()))
+            }
+
+            fn state_from_momenta(&self, _t: f64, q: &Self::Vector, p: &Self::Vector) -> Result<Self::State, Fault> {
+                Ok(SVector::from_fn(|i, _| if i < $n { q[i] } else { p[i - $n] }))
+            }
+
+            fn energy(&self, _t: f64, state: &Self::State) -> Result<f64, Fault> {
+                let kinetic: f64 = (0..$n).map(|i| state[$n + i] * state[$n + i]).sum::<f64>() / (2.0 * self.mass());
+                Ok(kinetic + self.potential(&std::array::from_fn(|i| state[i])))
+            }
+
+            fn kick(&self, _t: f64, state: &mut Self::State, size: f64, direction: &Self::Vector) -> Result<(), Fault> {
+                (0..$n).for_each(|i| state[$n + i] += size * direction[i]);
+                Ok(())
+            }
+
+            fn check_parameters(&self) -> Result<(), ParameterError> {
+                for (index, parameter) in Self::DESCRIPTION.parameters.iter().enumerate() {
+                    let value = self.parameter(index);
+                    if !parameter.assumption.holds(value) {
+                        return Err(ParameterError { name: parameter.name, value, expected: parameter.assumption });
+                    }
+                }
+                Ok(())
+            }
+
+            $($hooks)*
+        }
+    };
+}
+
+/// What every model reports.
+fn inspect_common<S: System>(system: &S, t: f64, state: &S::State, report: &mut dyn Report) -> Result<(), Fault>
+where
+    S::Vector: AsRef<[f64]>,
+{
+    report.vector("q", system.position(state).as_ref());
+    report.vector("qdot", system.velocity(t, state)?.as_ref());
+    report.vector("p", system.momentum(t, state)?.as_ref());
+    report.scalar("energy", system.energy(t, state)?);
+    Ok(())
+}
+
+const NOTHING: Description = Description {
+    type_name: "",
+    name: "",
+    documentation: "",
+    source: "",
+    coordinates: &[],
+    parameters: &[],
+    constraints: &[],
+    forces: &[],
+    surfaces: &[],
+    outputs: &[],
+    scenes: &["all"],
+    view: None,
+};
+
+const fn line(name: &'static str) -> CoordinateInfo {
+    CoordinateInfo { name, topology: Topology::Line }
+}
+
+const fn positive(name: &'static str, default: Option<f64>) -> ParameterInfo {
+    ParameterInfo { name, assumption: Assumption::Positive, default }
+}
+
+/// A ball above a floor.
+#[derive(Debug, Clone)]
+pub struct BouncingBall {
+    m: f64,
+    g: f64,
+}
+
+impl Particle<1> for BouncingBall {
+    fn mass(&self) -> f64 {
+        self.m
+    }
+
+    fn force(&self, _q: &[f64; 1]) -> [f64; 1] {
+        [-self.m * self.g]
+    }
+
+    fn potential(&self, q: &[f64; 1]) -> f64 {
+        self.m * self.g * q[0]
+    }
+}
+
+particle!(BouncingBall, 1, 2, {});
+
+impl Impacting for BouncingBall {
+    type Gaps = SVector<f64, 1>;
+
+    fn gaps(&self, _t: f64, state: &Self::State) -> Self::Gaps {
+        SVector::from([state[0]])
+    }
+
+    fn gap_rates(&self, _t: f64, state: &Self::State) -> Result<Self::Gaps, Fault> {
+        Ok(SVector::from([state[1] / self.m]))
+    }
+
+    fn law(&self, _surface: usize) -> Law {
+        Law::Elastic
+    }
+
+    fn contact(&self, _surface: usize, _t: f64, state: &Self::State) -> Result<Contact<Self::Vector>, Fault> {
+        let gap_rate = state[1] / self.m;
+        Ok(Contact {
+            gap_rate,
+            constrained_rate: gap_rate,
+            surface_rate: 0.0,
+            constrained_compliance: 1.0 / self.m,
+            free_compliance: 1.0 / self.m,
+            direction: SVector::from([1.0]),
+        })
+    }
+}
+
+impl Scene for BouncingBall {
+    type Effects = (Impacts<Self>,);
+
+    fn effects(&self) -> Self::Effects {
+        (Impacts::declared(self),)
+    }
+}
+
+impl Described for BouncingBall {
+    const DESCRIPTION: Description = Description {
+        type_name: "BouncingBall",
+        name: "bouncing_ball",
+        documentation: " A ball above a floor.\n It bounces.",
+        source: "pub BouncingBall { .. }",
+        coordinates: &[line("x")],
+        parameters: &[positive("m", Some(1.0)), positive("g", Some(1.0))],
+        surfaces: &[SurfaceInfo { name: "floor", law: "elastic" }],
+        ..NOTHING
+    };
+
+    fn with_defaults() -> Self {
+        Self { m: 1.0, g: 1.0 }
+    }
+
+    fn parameter(&self, index: usize) -> f64 {
+        [self.m, self.g].get(index).copied().unwrap_or(f64::NAN)
+    }
+
+    fn set_parameter(&mut self, index: usize, value: f64) {
+        match index {
+            0 => self.m = value,
+            1 => self.g = value,
+            _ => {}
+        }
+    }
+
+    fn initial(&self) -> Initial<Self::Vector> {
+        let [q, qdot, named] = [1.0, 0.0, 1.0].map(|value| SVector::from([value]));
+        Initial { q, qdot, named, until: None }
+    }
+
+    fn outputs(&self, _t: f64, _state: &Self::State, _values: &mut [f64]) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn view_path(&self, _t: f64, _state: &Self::State) -> Option<[f64; 2]> {
+        None
+    }
+
+    fn view_region(&self, _t: f64, _q: &Self::Vector) -> Option<f64> {
+        None
+    }
+
+    fn inspect(&self, t: f64, state: &Self::State, report: &mut dyn Report) -> Result<(), Fault> {
+        inspect_common(self, t, state, report)?;
+        report.vector("pdot", &[-self.m * self.g]);
+        report.vector("acceleration", &[-self.g]);
+        report.vector("multipliers", &[]);
+        report.matrix("metric", 1, 1, &[self.m]);
+        report.matrix("W", 0, 1, &[]);
+        let contact = self.contact(0, t, state)?;
+        report.scalar("impacts.floor.gap", state[0]);
+        report.scalar("impacts.floor.gap_rate", contact.gap_rate);
+        report.scalar("impacts.floor.constrained_rate", contact.constrained_rate);
+        report.scalar("impacts.floor.surface_rate", contact.surface_rate);
+        report.scalar("impacts.floor.constrained_compliance", contact.constrained_compliance);
+        report.scalar("impacts.floor.free_compliance", contact.free_compliance);
+        report.vector("impacts.floor.direction", contact.direction.as_slice());
+        Ok(())
+    }
+}
+
+/// Two springs of different strength in a round dish.
+#[derive(Debug, Clone)]
+pub struct Oscillator {
+    k: f64,
+}
+
+impl Particle<2> for Oscillator {
+    fn mass(&self) -> f64 {
+        1.0
+    }
+
+    fn force(&self, q: &[f64; 2]) -> [f64; 2] {
+        [-q[0], -self.k * q[1]]
+    }
+
+    fn potential(&self, q: &[f64; 2]) -> f64 {
+        0.5 * (q[0] * q[0] + self.k * q[1] * q[1])
+    }
+}
+
+particle!(Oscillator, 2, 4, {});
+
+impl Scene for Oscillator {
+    type Effects = ();
+
+    fn effects(&self) -> Self::Effects {}
+}
+
+impl Described for Oscillator {
+    const DESCRIPTION: Description = Description {
+        type_name: "Oscillator",
+        name: "oscillator",
+        documentation: " Two springs of different strength.",
+        coordinates: &[line("x.1"), line("x.2")],
+        parameters: &[positive("k", None)],
+        outputs: &["radius"],
+        view: Some(ViewInfo { labels: ["x[1]", "x[2]"], plane: Some([0, 1]), region: true }),
+        ..NOTHING
+    };
+
+    fn with_defaults() -> Self {
+        Self { k: f64::NAN }
+    }
+
+    fn parameter(&self, index: usize) -> f64 {
+        if index == 0 { self.k } else { f64::NAN }
+    }
+
+    fn set_parameter(&mut self, index: usize, value: f64) {
+        if index == 0 {
+            self.k = value;
+        }
+    }
+
+    fn initial(&self) -> Initial<Self::Vector> {
+        let [q, qdot, named] = [[1.0, 0.0], [0.0, 0.5], [0.0, 1.0]].map(SVector::from);
+        Initial { q, qdot, named, until: Some(20.0) }
+    }
+
+    fn outputs(&self, _t: f64, state: &Self::State, values: &mut [f64]) -> Result<(), Fault> {
+        values[0] = state[0].hypot(state[1]);
+        Ok(())
+    }
+
+    fn view_path(&self, _t: f64, state: &Self::State) -> Option<[f64; 2]> {
+        Some([state[0], state[1]])
+    }
+
+    fn view_region(&self, _t: f64, q: &Self::Vector) -> Option<f64> {
+        Some(2.0 - q[0] * q[0] - q[1] * q[1])
+    }
+
+    fn inspect(&self, t: f64, state: &Self::State, report: &mut dyn Report) -> Result<(), Fault> {
+        if state[0] == 7.0 {
+            return Err(Fault::MetricNotPositive { pivot: 1, value: 0.0 });
+        }
+        inspect_common(self, t, state, report)?;
+        report.matrix("metric", 2, 2, &[1.0, 0.0, 0.0, 1.0]);
+        Ok(())
+    }
+}
+
+/// A bead on the line through the origin at 45 degrees, between the ends of an interval.
+#[derive(Debug, Clone)]
+pub struct Bead;
+
+impl Particle<2> for Bead {
+    fn mass(&self) -> f64 {
+        1.0
+    }
+
+    fn force(&self, _q: &[f64; 2]) -> [f64; 2] {
+        [0.0, 0.0]
+    }
+
+    fn potential(&self, _q: &[f64; 2]) -> f64 {
+        0.0
+    }
+}
+
+particle!(Bead, 2, 4, {
+    fn outside_chart(&self, state: &Self::State) -> Option<usize> {
+        let inside = state[1] > -1.0 && state[1] < 1.0;
+        (!inside).then_some(1)
+    }
+
+    fn admit(&self, _t: f64, state: &Self::State) -> Result<(), StateError> {
+        let (residual, scale) = (state[3] - state[2], state[3].abs() + state[2].abs());
+        match residual.abs() <= 1e-9 * scale {
+            true => Ok(()),
+            false => Err(StateError::OffConstraint { constraint: 0, residual, scale }),
+        }
+    }
+
+    fn project(&self, _t: f64, state: &mut Self::State) -> Result<(), Fault> {
+        let mean = 0.5 * (state[2] + state[3]);
+        (state[2], state[3]) = (mean, mean);
+        Ok(())
+    }
+
+    fn complete_velocity(
+        &self,
+        _t: f64,
+        _q: &Self::Vector,
+        qdot: &Self::Vector,
+        named: &Self::Vector,
+    ) -> Result<Self::Vector, StateError> {
+        let (residual, scale) = (qdot[1] - qdot[0], qdot[1].abs() + qdot[0].abs());
+        match (named[0] == 1.0, named[1] == 1.0) {
+            (true, true) if residual != 0.0 => Err(StateError::OffConstraint { constraint: 0, residual, scale }),
+            (true, _) => Ok(SVector::from([qdot[0], qdot[0]])),
+            (false, _) => Ok(SVector::from([qdot[1], qdot[1]])),
+        }
+    }
+});
+
+impl Scene for Bead {
+    type Effects = ();
+
+    fn effects(&self) -> Self::Effects {}
+}
+
+impl Described for Bead {
+    const DESCRIPTION: Description = Description {
+        type_name: "Bead",
+        name: "bead",
+        coordinates: &[
+            line("x"),
+            CoordinateInfo { name: "y", topology: Topology::Interval { low: -1.0, high: 1.0 } },
+        ],
+        constraints: &[ConstraintInfo { name: "wire", affine: false, level: Some(0) }],
+        ..NOTHING
+    };
+
+    fn with_defaults() -> Self {
+        Self
+    }
+
+    fn parameter(&self, _index: usize) -> f64 {
+        f64::NAN
+    }
+
+    fn set_parameter(&mut self, _index: usize, _value: f64) {}
+
+    fn initial(&self) -> Initial<Self::Vector> {
+        let [q, qdot, named] = [[0.0, 0.0], [0.25, 0.0], [1.0, 0.0]].map(SVector::from);
+        Initial { q, qdot, named, until: Some(2.0) }
+    }
+
+    fn outputs(&self, _t: f64, _state: &Self::State, _values: &mut [f64]) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn view_path(&self, _t: f64, _state: &Self::State) -> Option<[f64; 2]> {
+        None
+    }
+
+    fn view_region(&self, _t: f64, _q: &Self::Vector) -> Option<f64> {
+        None
+    }
+
+    fn inspect(&self, t: f64, state: &Self::State, report: &mut dyn Report) -> Result<(), Fault> {
+        inspect_common(self, t, state, report)
+    }
+}

@@ -1,0 +1,277 @@
+//! Effects: what else happens along a motion. They compose as tuples at the type level; `()` compiles to nothing.
+//!
+//! In every step each effect proposes the earliest crossing inside it; the motion is cut at the earliest of all,
+//! the effects that proposed it act there, and integration starts again from the state they leave.
+
+use crate::contract::System;
+use crate::error::Fault;
+use crate::impacts::law::Law;
+use crate::integrate::{Counters, Stepper};
+use crate::outcome::Outcome;
+use crate::record::{Interpolant, Observer};
+
+/// An accepted step, as effects look at it.
+pub struct StepView<'a, Sys: System, Step> {
+    /// The system.
+    pub system: &'a Sys,
+    /// Work done so far.
+    pub counters: &'a mut Counters,
+    pub(crate) stepper: &'a mut Step,
+}
+
+impl<Sys: System, Step: Stepper<Sys>> StepView<'_, Sys, Step> {
+    /// Time at the start.
+    #[inline(always)]
+    pub fn t_start(&self) -> f64 {
+        self.stepper.t_start()
+    }
+
+    /// Time at the end.
+    #[inline(always)]
+    pub fn t_end(&self) -> f64 {
+        self.stepper.t_end()
+    }
+
+    /// Length of the step.
+    #[inline(always)]
+    pub fn length(&self) -> f64 {
+        self.stepper.t_end() - self.stepper.t_start()
+    }
+
+    /// Time at a part of the step; exact at both ends.
+    #[inline(always)]
+    pub fn time(&self, theta: f64) -> f64 {
+        if theta >= 1.0 { self.t_end() } else { self.t_start() + theta * self.length() }
+    }
+
+    /// State at the start.
+    #[inline(always)]
+    pub fn start(&self) -> &Sys::State {
+        self.stepper.start_state()
+    }
+
+    /// State at the end.
+    #[inline(always)]
+    pub fn end(&self) -> &Sys::State {
+        self.stepper.end_state()
+    }
+
+    /// Rates at both ends.
+    #[inline(always)]
+    pub fn rates(&self) -> [&Sys::State; 2] {
+        self.stepper.end_rates()
+    }
+
+    /// Makes the dense output ready for [`StepView::state`].
+    ///
+    /// # Errors
+    /// The [`Fault`] of an extra stage.
+    #[inline]
+    pub fn prepare(&mut self) -> Result<(), Fault> {
+        self.stepper.prepare_dense(self.system, self.counters)
+    }
+
+    /// State at a part of the step; at the end, exactly [`StepView::end`]. Inside, only after
+    /// [`StepView::prepare`].
+    #[inline(always)]
+    pub fn state(&self, theta: f64) -> Sys::State {
+        if theta >= 1.0 { *self.end() } else { self.stepper.interpolate(theta) }
+    }
+}
+
+impl<Sys: System, Step: Stepper<Sys>> Interpolant<Sys::State> for StepView<'_, Sys, Step> {
+    fn start(&self) -> &Sys::State {
+        self.stepper.start_state()
+    }
+
+    fn at(&mut self, theta: f64) -> Result<Sys::State, Fault> {
+        self.prepare()?;
+        Ok(self.state(theta))
+    }
+}
+
+/// A moment of a run at which effects may change the state.
+pub struct Moment<'a, Sys: System> {
+    /// The system.
+    pub system: &'a Sys,
+    /// The time.
+    pub t: f64,
+    /// The state; whatever an effect leaves here, the motion goes on from.
+    pub state: &'a mut Sys::State,
+    /// Work done so far.
+    pub counters: &'a mut Counters,
+}
+
+/// Whether an effect changed the state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    /// The state is as it was.
+    Kept,
+    /// The state is another.
+    Changed,
+}
+
+impl Change {
+    /// Changed if either did.
+    #[inline(always)]
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        if self == Self::Changed { self } else { other }
+    }
+}
+
+/// What else happens along a motion. An `Err` from any hook ends the run with that outcome.
+pub trait Effect<Sys: System> {
+    /// At the first instant of a run, before the first step.
+    ///
+    /// # Errors
+    /// The [`Outcome`] that ends the run.
+    fn begin<O: Observer<Sys>>(&mut self, now: &mut Moment<'_, Sys>, observer: &mut O) -> Result<(), Outcome> {
+        let _ = (now, observer);
+        Ok(())
+    }
+
+    /// Proposes the earliest crossing in the step, as a part in (0, 1\] of it. `None`: let it pass whole.
+    ///
+    /// # Errors
+    /// The [`Outcome`] that ends the run, at the start of the step.
+    fn propose<Step: Stepper<Sys>>(&mut self, step: &mut StepView<'_, Sys, Step>) -> Result<Option<f64>, Outcome> {
+        let _ = step;
+        Ok(None)
+    }
+
+    /// After smooth motion has arrived somewhere: at the end of a step, or where `cut` by a crossing.
+    ///
+    /// # Errors
+    /// The [`Outcome`] that ends the run here.
+    fn settle(&mut self, now: &mut Moment<'_, Sys>, cut: bool) -> Result<Change, Outcome> {
+        let _ = (now, cut);
+        Ok(Change::Kept)
+    }
+
+    /// Acts where the step was cut; `theta` is the part an effect proposed, this one or another.
+    ///
+    /// # Errors
+    /// The [`Outcome`] that ends the run here.
+    fn act<O: Observer<Sys>>(
+        &mut self,
+        theta: f64,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        let _ = (theta, now, observer);
+        Ok(())
+    }
+}
+
+/// What a caller may choose in a scene's effects at run time. Effects that do not know a setting ignore it.
+pub trait SceneEffects<Sys: System>: Effect<Sys> {
+    /// Replaces the law of a surface.
+    fn set_law(&mut self, surface: usize, law: Law) {
+        let _ = (surface, law);
+    }
+
+    /// The law in force on a surface; `None` where no impacts happen.
+    fn law(&self, system: &Sys, surface: usize) -> Option<Law> {
+        let _ = (system, surface);
+        None
+    }
+
+    /// Ends a run after this many impacts; `None` restores the default.
+    fn set_impact_budget(&mut self, budget: Option<u64>) {
+        let _ = budget;
+    }
+
+    /// Switches the projection to the constraints on or off.
+    fn set_projection(&mut self, on: bool) {
+        let _ = on;
+    }
+}
+
+/// A system with the effects its declaration asks for.
+pub trait Scene: System + Sized {
+    /// Their type.
+    type Effects: SceneEffects<Self>;
+
+    /// The effects as declared.
+    fn effects(&self) -> Self::Effects;
+}
+
+impl<Sys: System> Effect<Sys> for () {}
+
+impl<Sys: System> SceneEffects<Sys> for () {}
+
+/// The earlier of two proposals.
+#[inline(always)]
+fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a.min(b)),
+        (a, b) => a.or(b),
+    }
+}
+
+macro_rules! compose {
+    ($($effect:ident $index:tt),+) => {
+        impl<Sys: System, $($effect: Effect<Sys>),+> Effect<Sys> for ($($effect,)+) {
+            fn begin<O: Observer<Sys>>(
+                &mut self,
+                now: &mut Moment<'_, Sys>,
+                observer: &mut O,
+            ) -> Result<(), Outcome> {
+                $(self.$index.begin(now, observer)?;)+
+                Ok(())
+            }
+
+            #[inline(always)]
+            fn propose<Step: Stepper<Sys>>(
+                &mut self,
+                step: &mut StepView<'_, Sys, Step>,
+            ) -> Result<Option<f64>, Outcome> {
+                let mut earliest = None;
+                $(earliest = earlier(earliest, self.$index.propose(step)?);)+
+                Ok(earliest)
+            }
+
+            #[inline(always)]
+            fn settle(&mut self, now: &mut Moment<'_, Sys>, cut: bool) -> Result<Change, Outcome> {
+                let mut change = Change::Kept;
+                $(change = change.or(self.$index.settle(now, cut)?);)+
+                Ok(change)
+            }
+
+            #[inline]
+            fn act<O: Observer<Sys>>(
+                &mut self,
+                theta: f64,
+                now: &mut Moment<'_, Sys>,
+                observer: &mut O,
+            ) -> Result<(), Outcome> {
+                $(self.$index.act(theta, now, observer)?;)+
+                Ok(())
+            }
+        }
+
+        impl<Sys: System, $($effect: SceneEffects<Sys>),+> SceneEffects<Sys> for ($($effect,)+) {
+            fn set_law(&mut self, surface: usize, law: Law) {
+                $(self.$index.set_law(surface, law);)+
+            }
+
+            fn law(&self, system: &Sys, surface: usize) -> Option<Law> {
+                None$(.or(self.$index.law(system, surface)))+
+            }
+
+            fn set_impact_budget(&mut self, budget: Option<u64>) {
+                $(self.$index.set_impact_budget(budget);)+
+            }
+
+            fn set_projection(&mut self, on: bool) {
+                $(self.$index.set_projection(on);)+
+            }
+        }
+    };
+}
+
+compose!(A 0);
+compose!(A 0, B 1);
+compose!(A 0, B 1, C 2);
+compose!(A 0, B 1, C 2, D 3);

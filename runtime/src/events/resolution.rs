@@ -1,0 +1,37 @@
+//! How small a gap can be told from zero: `32 u` times the sum of the absolute values of its terms.
+//!
+//! The terms are not known here, but how far the gap moves when a component moves by a small part of itself is:
+//! `sum_i |dh/dx_i| |x_i|`, at a zero of `h` the same up to the degree of the terms.
+
+use crate::contract::Impacting;
+use crate::state::StateVector;
+
+/// The part by which a component is moved: half the digits, where difference quotients are best.
+const PART: f64 = 1.0 / (1 << 26) as f64;
+
+/// Rounding errors in units of the sum of terms.
+const UNITS: f64 = 16.0 * f64::EPSILON;
+
+/// The size of the rounding errors of a surface's gap at a state whose components have come from values of these
+/// sizes. Takes one evaluation of the gaps per component and one for time, and one more.
+pub(crate) fn resolution<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    t: f64,
+    state: &Sys::State,
+    sizes: &Sys::State,
+    evaluations: &mut u64,
+) -> f64 {
+    let mut gap = |t: f64, state: &Sys::State| {
+        *evaluations += 1;
+        system.gaps(t, state).as_slice()[surface]
+    };
+    let here = gap(t, state);
+    let mut sum = (gap(t + PART * t, state) - here).abs();
+    for i in 0..Sys::State::LEN {
+        let mut moved = *state;
+        moved.as_mut_slice()[i] += PART * sizes.as_slice()[i].abs();
+        sum += (gap(t, &moved) - here).abs();
+    }
+    UNITS * sum / PART
+}

@@ -1,0 +1,112 @@
+//! What generated code calls, besides the public traits. Not part of the interface.
+
+use nalgebra::SVector;
+
+use crate::contract::Constrained;
+use crate::describe::Described;
+use crate::error::{Fault, ParameterError, StateError};
+use crate::state::StateVector;
+
+/// A constraint residual up to this share of the sum of the absolute values of its terms counts as satisfied
+/// when a state is made by hand: rounded decimal input passes, a wrong velocity does not.
+const ADMITTED_RESIDUAL: f64 = 1e-9;
+
+/// The components of a vector.
+#[inline(always)]
+pub fn components<const D: usize>(vector: &SVector<f64, D>) -> [f64; D] {
+    vector.data.0[0]
+}
+
+/// The vector with these components.
+#[inline(always)]
+pub fn vector<const D: usize>(components: [f64; D]) -> SVector<f64, D> {
+    SVector::from_array_storage(nalgebra::ArrayStorage([components]))
+}
+
+/// N components of a state, from `OFFSET` on.
+#[inline(always)]
+pub fn part<const OFFSET: usize, const D: usize, const N: usize>(state: &SVector<f64, D>) -> SVector<f64, N> {
+    let mut values = [0.0; N];
+    for (entry, value) in values.iter_mut().zip(state.as_slice().iter().skip(OFFSET)) {
+        *entry = *value;
+    }
+    vector(values)
+}
+
+/// Positions and momenta as one state.
+#[inline(always)]
+pub fn join<const N: usize, const D: usize>(q: &SVector<f64, N>, p: &SVector<f64, N>) -> SVector<f64, D> {
+    let mut values = [0.0; D];
+    for (entry, value) in values.iter_mut().zip(q.iter().chain(p.iter())) {
+        *entry = *value;
+    }
+    vector(values)
+}
+
+/// `value > 0`, or the fault of the metric's pivot.
+#[inline(always)]
+pub fn positive_pivot(pivot: usize, value: f64) -> Result<(), Fault> {
+    match value > 0.0 {
+        true => Ok(()),
+        false => Err(Fault::MetricNotPositive { pivot, value }),
+    }
+}
+
+/// Below this ratio of squared norms a constraint form counts as dependent on the earlier ones: what is left
+/// of it after their directions were projected out consists of rounding errors.
+const LEAST_SQUARED_RATIO: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
+
+/// `squared > LEAST_SQUARED_RATIO * reference`, or the fault of a dependent constraint.
+#[inline(always)]
+pub fn independent_constraint(constraint: usize, squared: f64, reference: f64) -> Result<(), Fault> {
+    match squared > LEAST_SQUARED_RATIO * reference {
+        true => Ok(()),
+        false => Err(singular_constraint(constraint, squared, reference)),
+    }
+}
+
+#[cold]
+fn singular_constraint(constraint: usize, squared: f64, reference: f64) -> Fault {
+    let ratio = reference / squared;
+    let condition = if ratio > 0.0 { crate::math::sqrt(ratio) } else { f64::INFINITY };
+    Fault::SingularConstraint { constraint, condition }
+}
+
+/// `squared > 0`, or the fault of a surface that no allowed impulse moves.
+#[inline(always)]
+pub fn regular_surface(surface: usize, squared: f64) -> Result<(), Fault> {
+    match squared > 0.0 {
+        true => Ok(()),
+        false => Err(Fault::SingularSurface { surface }),
+    }
+}
+
+/// Every parameter against its declaration.
+///
+/// # Errors
+/// The first that contradicts it.
+pub fn check_parameters<S: Described>(system: &S) -> Result<(), ParameterError> {
+    for (index, parameter) in S::DESCRIPTION.parameters.iter().enumerate() {
+        let value = system.parameter(index);
+        if !parameter.assumption.holds(value) {
+            return Err(ParameterError { name: parameter.name, value, expected: parameter.assumption });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a state off the constraints.
+///
+/// # Errors
+/// [`StateError::OffConstraint`], or a fault met on the way.
+pub fn admit<S: Constrained>(system: &S, t: f64, state: &S::State) -> Result<(), StateError> {
+    let (residuals, scales) = system.residuals(t, state)?;
+    let pairs = residuals.as_slice().iter().zip(scales.as_slice());
+    for (constraint, (&residual, &scale)) in pairs.enumerate() {
+        if !(residual.abs() <= ADMITTED_RESIDUAL * scale) {
+            return Err(StateError::OffConstraint { constraint, residual, scale });
+        }
+    }
+    Ok(())
+}
+

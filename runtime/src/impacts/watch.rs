@@ -1,0 +1,416 @@
+//! Watching the gaps of all surfaces along a step.
+//!
+//! The gaps and their rates at the ends, and one probe between, settle most steps without dense output. A gap of
+//! exactly 0 at the start of a step stands for a surface at hand: it was just hit, or touched within rounding.
+//! Its root there is divided out, so it is neither found again nor hides a later one.
+
+use crate::contract::Impacting;
+use crate::effects::{Moment, StepView};
+use crate::events::crossing::{NODES, PROBE, SAMPLES, clear};
+use crate::events::locate::{Line, Search, Start};
+use crate::events::resolution::resolution;
+use crate::integrate::Stepper;
+use crate::outcome::Outcome;
+use crate::state::StateVector;
+
+/// Times closer than this many units in the last place are the same time.
+const SAME_TIME: f64 = 4.0 * f64::EPSILON;
+
+/// Falls looked at in one step on one surface before the step is cut: those that are no impacts are passed over.
+const FALLS: u32 = 1024;
+
+/// A gap rate this small a part of those at the ends of the step may belong to a graze.
+const SLOW: f64 = 1.0 / (1 << 10) as f64;
+
+/// The gaps at the start of the coming step, and what was found in the last one looked at.
+#[derive(Debug, Clone)]
+pub(super) struct Watch<Sys: Impacting> {
+    /// Gaps at the start of the step; 0 for surfaces at hand, negative only where the surface does not count.
+    gaps: Sys::Gaps,
+    rates: Sys::Gaps,
+    /// The earliest proposal of the last step.
+    proposed: Option<f64>,
+    /// Per surface, the part of the last step at which it is hit; meaningful while something is proposed.
+    parts: Sys::Gaps,
+    /// 1 where that hit is a graze.
+    grazes: Sys::Gaps,
+    /// Length of the last step.
+    length: f64,
+}
+
+/// Surfaces at hand at one moment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hits<G> {
+    /// 1 for surfaces at hand.
+    at_hand: G,
+    /// Gap rates above minus this count as not approaching.
+    still: G,
+}
+
+impl<G: StateVector> Hits<G> {
+    fn none() -> Self {
+        Self { at_hand: G::zeros(), still: G::zeros() }
+    }
+
+    fn is_approached(&self, surface: usize, rates: &G) -> bool {
+        self.at_hand.as_slice()[surface] == 1.0 && rates.as_slice()[surface] < -self.still.as_slice()[surface]
+    }
+
+    /// Number of surfaces at hand that are approached.
+    pub(super) fn approached(&self, rates: &G) -> usize {
+        (0..G::LEN).filter(|&surface| self.is_approached(surface, rates)).count()
+    }
+
+    /// The first of them.
+    pub(super) fn first_approached(&self, rates: &G) -> Option<usize> {
+        (0..G::LEN).find(|&surface| self.is_approached(surface, rates))
+    }
+
+    /// From now on, gap rates above `-rate` count as not approaching.
+    pub(super) fn set_still(&mut self, surface: usize, rate: f64) {
+        let still = &mut self.still.as_mut_slice()[surface];
+        *still = still.max(rate);
+    }
+}
+
+/// What the cheap test of a step looks at: gaps and rates at its end, gaps at a probe inside.
+struct Glance<G> {
+    gaps: G,
+    rates: G,
+    probe: G,
+    /// Length of the step, and the larger of the absolute values of its times.
+    length: f64,
+    latest: f64,
+}
+
+impl<Sys: Impacting> Watch<Sys> {
+    pub(super) fn new() -> Self {
+        let zeros = Sys::Gaps::zeros();
+        Self { gaps: zeros, rates: zeros, proposed: None, parts: zeros, grazes: zeros, length: 0.0 }
+    }
+
+    /// The surfaces at hand at the first instant of a run.
+    pub(super) fn begin(&mut self, now: &mut Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
+        self.proposed = None;
+        self.grazes = Sys::Gaps::zeros();
+        let rates = now.system.gap_rates(now.t, now.state)?;
+        let gaps = measured(now)?;
+        let mut hits = Hits::<Sys::Gaps>::none();
+        for (surface, &gap) in gaps.as_slice().iter().enumerate() {
+            if now.system.surface_active(surface, now.t, now.state) {
+                let drift = SAME_TIME * (rates.as_slice()[surface] * now.t).abs();
+                if gap.abs() <= 2.0 * rounding(now, surface) + drift {
+                    hits.at_hand.as_mut_slice()[surface] = 1.0;
+                }
+            }
+        }
+        Ok(hits)
+    }
+
+    /// Takes in the state that motion goes on from, after impacts on the surfaces at hand.
+    pub(super) fn leave(
+        &mut self,
+        hits: &Hits<Sys::Gaps>,
+        now: &mut Moment<'_, Sys>,
+        rates: Sys::Gaps,
+    ) -> Result<(), Outcome> {
+        self.rates = rates;
+        self.gaps = measured(now)?;
+        for surface in 0..Sys::Gaps::LEN {
+            if hits.at_hand.as_slice()[surface] == 1.0 {
+                self.gaps.as_mut_slice()[surface] = 0.0;
+            }
+        }
+        self.check_negative(now)
+    }
+
+    /// The surfaces hit where the step was cut.
+    pub(super) fn hits(&mut self, theta: f64, now: &Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
+        let mut hits = Hits::<Sys::Gaps>::none();
+        if self.proposed.is_some() {
+            for (hit, part) in hits.at_hand.as_mut_slice().iter_mut().zip(self.parts.as_slice()) {
+                if (part - theta) * self.length <= SAME_TIME * now.t.abs() {
+                    *hit = 1.0;
+                }
+            }
+        }
+        Ok(hits)
+    }
+
+    /// Whether the hit on this surface is a graze.
+    pub(super) fn is_graze(&self, surface: usize) -> bool {
+        self.grazes.as_slice()[surface] == 1.0
+    }
+
+    /// Looks for the earliest hit in a step.
+    #[inline]
+    pub(super) fn look<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<Option<f64>, Outcome> {
+        let glance = glance(step)?;
+        self.proposed = None;
+        if !(0..Sys::Gaps::LEN).all(|surface| self.is_clear(surface, &glance)) {
+            self.search(step, &glance)?;
+        }
+        if self.proposed.is_none() {
+            self.gaps = glance.gaps;
+            self.rates = glance.rates;
+            if self.gaps.as_slice().iter().any(|&gap| gap < 0.0) {
+                let (t, mut state) = (step.t_end(), *step.end());
+                let counters = &mut *step.counters;
+                self.check_negative(&mut Moment { system: step.system, t, state: &mut state, counters })?;
+            }
+        }
+        Ok(self.proposed)
+    }
+
+    /// Whether the step can pass this surface, told cheaply.
+    #[inline(always)]
+    fn is_clear(&self, surface: usize, glance: &Glance<Sys::Gaps>) -> bool {
+        let at = |values: &Sys::Gaps| values.as_slice()[surface];
+        let slopes = [at(&self.rates) * glance.length, at(&glance.rates) * glance.length];
+        !is_due(surface, glance) && clear([at(&self.gaps), at(&glance.gaps)], slopes, at(&glance.probe))
+    }
+
+    /// Looks for the earliest hit along the dense output.
+    fn search<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) -> Result<(), Outcome> {
+        step.prepare()?;
+        self.length = glance.length;
+        let whole = samples(step, &self.gaps, &glance.gaps);
+        for surface in 0..Sys::Gaps::LEN {
+            self.parts.as_mut_slice()[surface] = f64::INFINITY;
+            if self.is_clear(surface, glance) {
+                continue;
+            }
+            let samples = whole.map(|gaps| gaps.as_slice()[surface]);
+            let (part, is_hit) = match self.first_hit(surface, step, &samples)? {
+                Found::Hit(part) => (part, true),
+                Found::Unfinished(part) => (part, false),
+                Found::Nothing if is_due(surface, glance) && is_active(surface, step, 1.0) => (1.0, true),
+                Found::Nothing => continue,
+            };
+            if is_hit {
+                self.parts.as_mut_slice()[surface] = part;
+                self.note_graze(surface, part, step, glance)?;
+            }
+            self.proposed = Some(self.proposed.map_or(part, |earliest| earliest.min(part)));
+        }
+        Ok(())
+    }
+
+    /// The first fall of this gap that is an impact: the surface counts there, and is approached.
+    fn first_hit<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        step: &mut StepView<'_, Sys, Step>,
+        samples: &[f64; SAMPLES],
+    ) -> Result<Found, Outcome> {
+        let gap = self.gaps.as_slice()[surface];
+        let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
+        let mut start = Start { from: 0.0, above: gap >= 0.0, slope };
+        let mut tangential = false;
+        for _ in 0..FALLS {
+            let (part, after) = match first_fall(surface, step, samples, start) {
+                Search::Clear => {
+                    let end = step.state(1.0);
+                    let sunk = tangential && step.system.gaps(step.t_end(), &end).as_slice()[surface] < 0.0;
+                    return if sunk { Err(Outcome::TangentialCrossing { surface }) } else { Ok(Found::Nothing) };
+                }
+                Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
+                Search::Pole(after) => {
+                    start = Start { from: after, above: false, slope: None };
+                    continue;
+                }
+                Search::Sinks(part) => (part, part),
+                Search::Falls(bracket) => (bracket.before, bracket.after),
+            };
+            step.counters.crossings += 1;
+            if is_active(surface, step, part) {
+                if part == 0.0 && start.slope.is_some() {
+                    return Err(Outcome::Contact { surface });
+                }
+                if is_approached(surface, step, part)? || is_approached(surface, step, after)? {
+                    return Ok(Found::Hit(if part > 0.0 { part } else { after }));
+                }
+                tangential = true;
+            }
+            start = Start { from: after, above: false, slope: None };
+            if after >= 1.0 {
+                return Ok(Found::Nothing);
+            }
+        }
+        Ok(Found::Unfinished(start.from))
+    }
+
+    /// Marks a hit so slow that the gap's lowest value would be within its rounding.
+    fn note_graze<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        part: f64,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) -> Result<(), Outcome> {
+        let ends = [self.rates.as_slice()[surface], glance.rates.as_slice()[surface]];
+        let state = step.state(part);
+        let rate = step.system.gap_rates(step.time(part), &state)?.as_slice()[surface];
+        let mut graze = 0.0;
+        if rate.abs() <= SLOW * ends[0].abs().max(ends[1].abs()) {
+            let start = part > 0.5;
+            let (other, part) = if start { (ends[0], part) } else { (ends[1], 1.0 - part) };
+            let bend = (other - rate).abs() / (part * self.length);
+            let mut evaluations = 0;
+            if rate * rate < 4.0 * bend * rounding_along(surface, step, &mut evaluations) {
+                graze = 1.0;
+            }
+            step.counters.event_evaluations += evaluations;
+        }
+        self.grazes.as_mut_slice()[surface] = graze;
+        Ok(())
+    }
+
+    /// Surfaces that count have a gap that is not negative beyond rounding; within rounding they are at hand.
+    fn check_negative(&mut self, now: &mut Moment<'_, Sys>) -> Result<(), Outcome> {
+        for surface in 0..Sys::Gaps::LEN {
+            let gap = self.gaps.as_slice()[surface];
+            if gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
+                let drift = SAME_TIME * (self.rates.as_slice()[surface] * now.t).abs();
+                if gap < -2.0 * rounding(now, surface) - drift {
+                    return Err(Outcome::StartsInside { surface, gap });
+                }
+                self.gaps.as_mut_slice()[surface] = 0.0;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The first hit of one surface in a step.
+enum Found {
+    Nothing,
+    Hit(f64),
+    Unfinished(f64),
+}
+
+/// The gap vanishes at the end of the step as far as times can tell.
+#[inline(always)]
+fn is_due<G: StateVector>(surface: usize, glance: &Glance<G>) -> bool {
+    let (gap, rate) = (glance.gaps.as_slice()[surface], glance.rates.as_slice()[surface]);
+    rate < 0.0 && gap >= 0.0 && gap <= SAME_TIME * glance.latest * -rate
+}
+
+/// Gaps at a moment, all finite.
+fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outcome> {
+    now.counters.event_evaluations += 1;
+    finite::<Sys>(now.system.gaps(now.t, now.state))
+}
+
+#[inline(always)]
+fn finite<Sys: Impacting>(gaps: Sys::Gaps) -> Result<Sys::Gaps, Outcome> {
+    match gaps.as_slice().iter().position(|gap| !gap.is_finite()) {
+        Some(surface) => Err(Outcome::NonFinite { component: Sys::State::LEN + surface }),
+        None => Ok(gaps),
+    }
+}
+
+/// The size of a gap's rounding errors at a moment.
+fn rounding<Sys: Impacting>(now: &mut Moment<'_, Sys>, surface: usize) -> f64 {
+    resolution(now.system, surface, now.t, now.state, now.state, &mut now.counters.event_evaluations)
+}
+
+/// The size of a gap's rounding errors along a step: its components carry those of the larger end.
+fn rounding_along<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    evaluations: &mut u64,
+) -> f64 {
+    let (start, end) = (*step.start(), *step.end());
+    let mut sizes = start;
+    for (size, value) in sizes.as_mut_slice().iter_mut().zip(end.as_slice()) {
+        *size = size.abs().max(value.abs());
+    }
+    resolution(step.system, surface, step.t_end(), &end, &sizes, evaluations)
+}
+
+fn is_active<Sys: Impacting, Step: Stepper<Sys>>(surface: usize, step: &StepView<'_, Sys, Step>, part: f64) -> bool {
+    step.system.surface_active(surface, step.time(part), &step.state(part))
+}
+
+fn is_approached<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    part: f64,
+) -> Result<bool, Outcome> {
+    let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
+    Ok(rates.as_slice()[surface] < 0.0)
+}
+
+/// The first fall of a gap, with its time to the last bits.
+fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &mut StepView<'_, Sys, Step>,
+    whole: &[f64; SAMPLES],
+    start: Start,
+) -> Search {
+    let (mut evaluations, mut more) = (0, 0);
+    let line = Line {
+        gap: |part: f64| {
+            evaluations += 1;
+            step.system.gaps(step.time(part), &step.state(part)).as_slice()[surface]
+        },
+        rounding: || rounding_along(surface, step, &mut more),
+        whole,
+        start,
+    };
+    let found = line.first_fall();
+    step.counters.event_evaluations += evaluations + more;
+    found
+}
+
+/// Gaps at the ends of the step and at the probe.
+#[inline(always)]
+fn glance<Sys: Impacting, Step: Stepper<Sys>>(
+    step: &mut StepView<'_, Sys, Step>,
+) -> Result<Glance<Sys::Gaps>, Outcome> {
+    let (t, length) = (step.t_end(), step.length());
+    let gaps = finite::<Sys>(step.system.gaps(t, step.end()))?;
+    let rates = step.system.gap_rates(t, step.end())?;
+    let probe = step.system.gaps(step.time(PROBE), &hermite(step));
+    step.counters.event_evaluations += 2;
+    Ok(Glance { gaps, rates, probe, length, latest: t.abs().max(step.t_start().abs()) })
+}
+
+/// The state at the probe by the cubic through the ends: good enough to measure how far the gap is from a cubic.
+#[inline(always)]
+fn hermite<Sys: Impacting, Step: Stepper<Sys>>(step: &StepView<'_, Sys, Step>) -> Sys::State {
+    const P: f64 = PROBE;
+    const Q: f64 = 1.0 - PROBE;
+    let (start, end, [first, last]) = (step.start(), step.end(), step.rates());
+    let length = step.length();
+    let mut state = *start;
+    for i in 0..Sys::State::LEN {
+        state.as_mut_slice()[i] = Q * Q * (Q + 3.0 * P) * start.as_slice()[i]
+            + P * P * (P + 3.0 * Q) * end.as_slice()[i]
+            + length * (Q * Q * P * first.as_slice()[i] - Q * P * P * last.as_slice()[i]);
+    }
+    state
+}
+
+/// Gaps at the samples over a whole step; those at the ends are known.
+fn samples<Sys: Impacting, Step: Stepper<Sys>>(
+    step: &mut StepView<'_, Sys, Step>,
+    first: &Sys::Gaps,
+    last: &Sys::Gaps,
+) -> [Sys::Gaps; SAMPLES] {
+    let mut samples = [*first; SAMPLES];
+    samples[SAMPLES - 1] = *last;
+    for j in 1..SAMPLES - 1 {
+        samples[j] = step.system.gaps(step.time(NODES[j]), &step.state(NODES[j]));
+    }
+    step.counters.event_evaluations += SAMPLES as u64 - 2;
+    samples
+}

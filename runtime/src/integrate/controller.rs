@@ -1,0 +1,133 @@
+//! Step size control (Hairer, Norsett, Wanner I, II.4; Gustafsson's PI controller).
+
+use super::tolerance::Tolerance;
+use crate::math;
+use crate::state::StateVector;
+
+/// Constants of the controller of one scheme.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Control {
+    /// Order of the error estimate plus one: the error is taken to grow like `h` to this power.
+    pub(super) power: f64,
+    /// Gustafsson's `beta`: how much the last error counts. 0 gives the classical controller.
+    pub(super) beta: f64,
+    /// Least factor between successive step sizes.
+    pub(super) shrink: f64,
+    /// Largest factor between successive step sizes.
+    pub(super) grow: f64,
+}
+
+/// Part of the predicted step size that is taken, so that most trials pass.
+const SAFETY: f64 = 0.9;
+
+/// Least error the controller remembers: below it the last error says nothing about the next.
+const LEAST_ERROR: f64 = 1e-4;
+
+/// Factor after a trial that has no error estimate at all: a fault, or numbers that are not finite.
+pub(super) const RETREAT: f64 = 0.25;
+
+/// What the controller remembers between steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Memory {
+    last_error: f64,
+    rejected: bool,
+}
+
+impl Memory {
+    /// Nothing known yet.
+    pub(super) const fn new() -> Self {
+        Self { last_error: LEAST_ERROR, rejected: false }
+    }
+
+    /// The factor for the next step size after a step with this error (at most 1) was accepted.
+    #[inline]
+    pub(super) fn accept(&mut self, control: &Control, error: f64) -> f64 {
+        let mut predicted = SAFETY * power(error, -(1.0 / control.power - 0.75 * control.beta));
+        if control.beta != 0.0 {
+            predicted *= power(self.last_error, control.beta);
+        }
+        // After a rejection the step does not grow at once, or it would be rejected again.
+        let grow = if self.rejected { 1.0 } else { control.grow };
+        *self = Self { last_error: error.max(LEAST_ERROR), rejected: false };
+        predicted.clamp(control.shrink, grow)
+    }
+
+    /// The factor for the next trial after one with this error (more than 1) was rejected.
+    #[inline]
+    pub(super) fn reject(&mut self, control: &Control, error: f64) -> f64 {
+        self.rejected = true;
+        (SAFETY * power(error, -1.0 / control.power)).clamp(control.shrink, 1.0)
+    }
+
+    /// The factor for the next trial after one that has no error estimate.
+    pub(super) fn retreat(&mut self) -> f64 {
+        self.rejected = true;
+        RETREAT
+    }
+}
+
+/// `x^e`, where `x = 0` with negative `e` means: as large as you like.
+#[inline]
+fn power(x: f64, e: f64) -> f64 {
+    if x > 0.0 { math::powf(x, e) } else { f64::INFINITY }
+}
+
+/// Error weights: component `i` may err by `absolute * scale_i + relative * size_i`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Weights<S> {
+    relative: f64,
+    floor: S,
+}
+
+impl<S: StateVector> Weights<S> {
+    /// The weights of a tolerance where the system has this scale. A scale that is not a positive finite number
+    /// counts as 1.
+    pub(super) fn new(tolerance: Tolerance, scale: &S) -> Self {
+        let mut floor = *scale;
+        for value in floor.as_mut_slice() {
+            let usable = *value > 0.0 && value.is_finite();
+            *value = tolerance.absolute() * if usable { *value } else { 1.0 };
+        }
+        Self { relative: tolerance.relative(), floor }
+    }
+
+    /// The error allowed in component `i` between two states.
+    #[inline(always)]
+    pub(super) fn allowed(&self, i: usize, y0: &S, y1: &S) -> f64 {
+        self.floor.as_slice()[i] + self.relative * y0.as_slice()[i].abs().max(y1.as_slice()[i].abs())
+    }
+
+    /// Root mean square of `value(i)` over the error allowed at a state.
+    fn norm(&self, at: &S, value: impl Fn(usize) -> f64) -> f64 {
+        let mut sum = 0.0;
+        for i in 0..S::LEN {
+            let ratio = value(i) / self.allowed(i, at, at);
+            sum += ratio * ratio;
+        }
+        math::sqrt(sum / S::LEN.max(1) as f64)
+    }
+}
+
+/// Size of the first step, by comparing an explicit Euler step with the rate at its end (Hairer, Norsett, Wanner
+/// I, II.4). `rate_after(h)` writes the rate after an Euler step of `h`; its failure leaves the cautious guess.
+///
+/// The book's fallbacks are absolute numbers; here they are parts of the span, and time is measured in units of
+/// `|y| / |y'|`, so that the choice does not depend on units.
+pub(super) fn first_step<S: StateVector>(
+    power: f64,
+    span: f64,
+    weights: &Weights<S>,
+    (state, rate): (&S, &S),
+    rate_after: impl FnOnce(f64) -> Option<S>,
+) -> f64 {
+    let size = weights.norm(state, |i| state.as_slice()[i]);
+    let speed = weights.norm(state, |i| rate.as_slice()[i]);
+    let known = size >= 1e-5 && speed * span >= 1e-5;
+    let unit = if known { (size / speed).min(100.0 * span) } else { 1e-4 * span };
+    let cautious = 0.01 * unit;
+    let Some(after) = rate_after(cautious) else { return cautious };
+    let bend = weights.norm(state, |i| after.as_slice()[i] - rate.as_slice()[i]) / cautious;
+    let change = (speed * unit).max(bend * unit * unit);
+    let step = if change > 1e-15 { unit * math::powf(0.01 / change, 1.0 / power) } else { unit };
+    if step.is_finite() { step.min(unit).min(span) } else { cautious }
+}

@@ -1,0 +1,112 @@
+//! Dormand and Prince, order 8 with errors of orders 5 and 3, seventh-order dense output.
+//!
+//! The three extra stages of dense output are evaluated only in steps that ask for it.
+//! (Hairer, Norsett, Wanner I, II.5, II.6; coefficients in the neighbouring table.)
+
+use super::controller::Control;
+use super::dense::Polynomial;
+use super::dop853_tableau::*;
+use super::embedded::{Counted, Embedded, Scheme, Span};
+use super::tableau::{combine, sum};
+use crate::contract::VectorField;
+use crate::error::Fault;
+use crate::math;
+use crate::state::StateVector;
+
+/// The integrator of choice at tolerances below 1e-6.
+pub type Dop853<S> = Embedded<S, Dop853Scheme>;
+
+/// The coefficients of [`Dop853`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dop853Scheme;
+
+/// Stages of the step (0 to 11), the rate at its end (12), the extra stages (13 to 15).
+const STAGES: usize = 16;
+
+impl Scheme for Dop853Scheme {
+    const NAME: &'static str = "dop853";
+    const ORDER: usize = 8;
+    const DENSE_ORDER: usize = 7;
+    const LAST: usize = 12;
+    const ERROR_TAKES_LAST: bool = false;
+    const CONTROL: Control = Control { power: 8.0, beta: 0.0, shrink: 0.333, grow: 6.0 };
+
+    type Stages<S: StateVector> = [S; STAGES];
+    type Dense<S: StateVector> = Polynomial<S, 7>;
+
+    fn stages<S: StateVector>() -> Self::Stages<S> {
+        [S::zeros(); STAGES]
+    }
+
+    fn dense<S: StateVector>() -> Self::Dense<S> {
+        Polynomial::zero()
+    }
+
+    #[inline(always)]
+    fn advance<F: VectorField>(
+        field: &mut Counted<'_, F>,
+        t: f64,
+        h: f64,
+        start: &F::State,
+        stages: &mut [F::State],
+        end: &mut F::State,
+    ) -> Result<(), Fault> {
+        macro_rules! stage {
+            ($($index:literal $row:ident)*) => {$(
+                combine(start, h, stages, &$row, end);
+                field.rate(t + NODES[$index] * h, end, &mut stages[$index])?;
+            )*};
+        }
+        stage! { 1 A1 2 A2 3 A3 4 A4 5 A5 6 A6 7 A7 8 A8 9 A9 10 A10 11 A11 }
+        combine(start, h, stages, &B, end);
+        Ok(())
+    }
+
+    /// `|h| e5^2 / sqrt(n (e5^2 + e3^2 / 100))`: of order 8 although the estimates are of orders 5 and 3.
+    #[inline(always)]
+    fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64 {
+        let (mut fifth, mut third) = (0.0, 0.0);
+        for i in 0..S::LEN {
+            let weight = 1.0 / allowed(i);
+            let e5 = sum(stages, &E5, i) * weight;
+            let e3 = sum(stages, &E3, i) * weight;
+            fifth += e5 * e5;
+            third += e3 * e3;
+        }
+        if fifth == 0.0 && third == 0.0 {
+            return 0.0;
+        }
+        h.abs() * fifth / math::sqrt((fifth + 0.01 * third) * S::LEN as f64)
+    }
+
+    #[inline(always)]
+    fn build_dense<F: VectorField>(
+        field: &mut Counted<'_, F>,
+        span: Span<'_, F::State>,
+        stages: &mut [F::State],
+        dense: &mut Self::Dense<F::State>,
+    ) -> Result<(), Fault> {
+        let Span { t, h, start, end } = span;
+        let mut inside = *start;
+        macro_rules! stage {
+            ($($index:literal $row:ident)*) => {$(
+                combine(start, h, stages, &$row, &mut inside);
+                field.rate(t + NODES[$index] * h, &inside, &mut stages[$index])?;
+            )*};
+        }
+        stage! { 13 A13 14 A14 15 A15 }
+        dense.set_cubic(h, [start, end], [&stages[0], &stages[Self::LAST]]);
+        for i in 0..F::State::LEN {
+            dense.coefficients[3].as_mut_slice()[i] = h * sum(stages, &D3, i);
+            dense.coefficients[4].as_mut_slice()[i] = h * sum(stages, &D4, i);
+            dense.coefficients[5].as_mut_slice()[i] = h * sum(stages, &D5, i);
+            dense.coefficients[6].as_mut_slice()[i] = h * sum(stages, &D6, i);
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn interpolate<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> S {
+        dense.at(theta)
+    }
+}

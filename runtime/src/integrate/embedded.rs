@@ -1,0 +1,361 @@
+//! The step of an embedded Runge-Kutta pair: trial, error, acceptance or another trial.
+//!
+//! First-same-as-last: the rate at the end of an accepted step is the first stage of the next one. Where the error
+//! estimate does without it, it is evaluated only once the error has passed.
+
+use super::controller::{Control, Memory, Weights, first_step};
+use super::stats::Counters;
+use super::stepper::{StepFailure, Stepper};
+use super::tolerance::Tolerance;
+use crate::contract::VectorField;
+use crate::error::Fault;
+use crate::state::StateVector;
+
+/// The vector field with its evaluations counted.
+pub struct Counted<'a, F> {
+    pub(super) field: &'a F,
+    pub(super) counters: &'a mut Counters,
+}
+
+impl<F: VectorField> Counted<'_, F> {
+    /// One evaluation.
+    #[inline(always)]
+    pub(super) fn rate(&mut self, t: f64, state: &F::State, rate: &mut F::State) -> Result<(), Fault> {
+        self.counters.rate_evaluations += 1;
+        self.field.rate(t, state, rate)
+    }
+}
+
+/// One step of a scheme: where it starts, and how long it is.
+#[derive(Debug, Clone, Copy)]
+pub struct Span<'a, S> {
+    pub(super) t: f64,
+    pub(super) h: f64,
+    pub(super) start: &'a S,
+    pub(super) end: &'a S,
+}
+
+/// The coefficients of an embedded pair, and what is computed from them. Implemented by the schemes here.
+pub trait Scheme {
+    /// See [`Stepper::NAME`].
+    const NAME: &'static str;
+    /// See [`Stepper::ORDER`].
+    const ORDER: usize;
+    /// See [`Stepper::DENSE_ORDER`].
+    const DENSE_ORDER: usize;
+    /// Index of the stage that is the rate at the end of the step.
+    const LAST: usize;
+    /// Whether the error estimate uses the stage [`Scheme::LAST`].
+    const ERROR_TAKES_LAST: bool;
+    /// Constants of the step size control.
+    #[doc(hidden)]
+    const CONTROL: Control;
+
+    /// Room for the stages.
+    type Stages<S: StateVector>: Copy + AsRef<[S]> + AsMut<[S]>;
+    /// The dense output of a step.
+    type Dense<S: StateVector>: Copy;
+
+    /// Stages of zeros.
+    fn stages<S: StateVector>() -> Self::Stages<S>;
+
+    /// Dense output that is zero.
+    fn dense<S: StateVector>() -> Self::Dense<S>;
+
+    /// From the first stage, all others but [`Scheme::LAST`], and the state at the end of a step of `h`.
+    #[doc(hidden)]
+    fn advance<F: VectorField>(
+        field: &mut Counted<'_, F>,
+        t: f64,
+        h: f64,
+        start: &F::State,
+        stages: &mut [F::State],
+        end: &mut F::State,
+    ) -> Result<(), Fault>;
+
+    /// The error of the step over what is allowed. `allowed(i)` is the error allowed in component `i`.
+    #[doc(hidden)]
+    fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64;
+
+    /// The dense output, after the extra stages it takes.
+    #[doc(hidden)]
+    fn build_dense<F: VectorField>(
+        field: &mut Counted<'_, F>,
+        span: Span<'_, F::State>,
+        stages: &mut [F::State],
+        dense: &mut Self::Dense<F::State>,
+    ) -> Result<(), Fault>;
+
+    /// The state at `theta`.
+    #[doc(hidden)]
+    fn interpolate<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> S;
+}
+
+/// An embedded pair at work.
+#[derive(Debug, Clone, Copy)]
+pub struct Embedded<S: StateVector, M: Scheme> {
+    tolerance: Tolerance,
+    max_step: f64,
+    first_step: Option<f64>,
+    weights: Weights<S>,
+    memory: Memory,
+    /// The step size for the next trial.
+    next: f64,
+    t: [f64; 2],
+    start: S,
+    end: S,
+    stages: M::Stages<S>,
+    dense: M::Dense<S>,
+    dense_ready: bool,
+}
+
+impl<S: StateVector, M: Scheme> Embedded<S, M> {
+    /// An integrator with this tolerance.
+    pub fn new(tolerance: Tolerance) -> Self {
+        let zeros = S::zeros();
+        Self {
+            tolerance,
+            max_step: f64::INFINITY,
+            first_step: None,
+            weights: Weights::new(tolerance, &zeros),
+            memory: Memory::new(),
+            next: 0.0,
+            t: [0.0; 2],
+            start: zeros,
+            end: zeros,
+            stages: M::stages(),
+            dense: M::dense(),
+            dense_ready: false,
+        }
+    }
+
+    /// With no step longer than `max_step`. Anything but a positive number lifts the limit.
+    #[must_use]
+    pub fn with_max_step(mut self, max_step: f64) -> Self {
+        self.max_step = if max_step > 0.0 { max_step } else { f64::INFINITY };
+        self
+    }
+
+    /// With this size for the first trial instead of the automatic one. Anything but a positive number is ignored.
+    #[must_use]
+    pub fn with_first_step(mut self, first_step: f64) -> Self {
+        self.first_step = (first_step > 0.0 && first_step.is_finite()).then_some(first_step);
+        self
+    }
+
+    /// The tolerance.
+    pub fn tolerance(&self) -> Tolerance {
+        self.tolerance
+    }
+
+    /// Takes `(t, state)` for the end of a step, as a start does.
+    fn place<F: VectorField<State = S>>(
+        &mut self,
+        field: &mut Counted<'_, F>,
+        t: f64,
+        state: &S,
+    ) -> Result<(), StepFailure> {
+        self.t = [t; 2];
+        self.start = *state;
+        self.end = *state;
+        self.dense_ready = false;
+        self.memory = Memory::new();
+        self.weights = Weights::new(self.tolerance, &field.field.scale(t, state));
+        let rate = &mut self.stages.as_mut()[M::LAST];
+        field.rate(t, state, rate)?;
+        match not_finite(state).or(not_finite(rate)) {
+            Some(component) => Err(StepFailure::NonFinite { component }),
+            None => Ok(()),
+        }
+    }
+
+    /// The end of the last step becomes the start of the next.
+    #[inline(always)]
+    fn move_on(&mut self) {
+        self.t[0] = self.t[1];
+        self.start = self.end;
+        let stages = self.stages.as_mut();
+        stages[0] = stages[M::LAST];
+        self.dense_ready = false;
+    }
+
+    /// One trial of `h`: the error over what is allowed, at most 1 if and only if the step is good.
+    #[inline(always)]
+    fn attempt<F: VectorField<State = S>>(&mut self, field: &mut Counted<'_, F>, h: f64) -> Result<f64, StepFailure> {
+        let t = self.t[0];
+        let stages = self.stages.as_mut();
+        M::advance(field, t, h, &self.start, stages, &mut self.end)?;
+        if M::ERROR_TAKES_LAST {
+            field.rate(t + h, &self.end, &mut stages[M::LAST])?;
+        }
+        let error = M::error(h, stages, |i| self.weights.allowed(i, &self.start, &self.end));
+        if error > 1.0 {
+            return Ok(error);
+        }
+        if !M::ERROR_TAKES_LAST {
+            field.rate(t + h, &self.end, &mut stages[M::LAST])?;
+        }
+        match not_finite(&self.end).or(not_finite(&stages[M::LAST])) {
+            Some(component) => Err(StepFailure::NonFinite { component }),
+            None if error.is_nan() => Err(StepFailure::NonFinite { component: 0 }),
+            None => Ok(error),
+        }
+    }
+
+    /// Puts the last good state back in place after a failure.
+    fn retract(&mut self) {
+        self.t[1] = self.t[0];
+        self.end = self.start;
+        let stages = self.stages.as_mut();
+        stages[M::LAST] = stages[0];
+    }
+}
+
+/// Shortest step at a time: sixteen units in its last place, so that every step moves the time.
+fn least_step(t: f64) -> f64 {
+    (16.0 * f64::EPSILON * t.abs()).max(f64::MIN_POSITIVE)
+}
+
+/// The end of a step of about `h` from `t`: `t_end` itself when a hundredth more would reach it.
+#[inline(always)]
+fn landing(t: f64, h: f64, t_end: f64) -> f64 {
+    if t + 1.01 * h >= t_end { t_end } else { t + h }
+}
+
+fn not_finite<S: StateVector>(state: &S) -> Option<usize> {
+    state.as_slice().iter().position(|value| !value.is_finite())
+}
+
+impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
+    const NAME: &'static str = M::NAME;
+    const ORDER: usize = M::ORDER;
+    const DENSE_ORDER: usize = M::DENSE_ORDER;
+
+    fn start(
+        &mut self,
+        field: &F,
+        t: f64,
+        state: &F::State,
+        t_end: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        let mut field = Counted { field, counters };
+        self.place(&mut field, t, state)?;
+        let rate = self.stages.as_ref()[M::LAST];
+        let rate_after = |h: f64| {
+            let mut moved = *state;
+            for i in 0..F::State::LEN {
+                moved.as_mut_slice()[i] += h * rate.as_slice()[i];
+            }
+            let mut after = F::State::zeros();
+            let known = field.rate(t + h, &moved, &mut after).is_ok();
+            (known && after.is_finite()).then_some(after)
+        };
+        self.next = match self.first_step {
+            Some(h) => h,
+            None => first_step(M::CONTROL.power, t_end - t, &self.weights, (state, &rate), rate_after),
+        };
+        Ok(())
+    }
+
+    #[inline]
+    fn restart(
+        &mut self,
+        field: &F,
+        t: f64,
+        state: &F::State,
+        limit: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        self.next = self.next.min(limit);
+        self.place(&mut Counted { field, counters }, t, state)
+    }
+
+    #[inline]
+    fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
+        self.move_on();
+        let mut field = Counted { field, counters };
+        let t = self.t[0];
+        let least = least_step(t);
+        let mut h = self.next.min(self.max_step).max(least);
+        loop {
+            let arrival = landing(t, h, t_end);
+            // NOTE: the step that is made is the difference of the two times, not the one asked for.
+            let made = arrival - t;
+            let attempt = self.attempt(&mut field, made);
+            if let Ok(error) = attempt
+                && error <= 1.0
+            {
+                field.counters.accepted += 1;
+                self.t[1] = arrival;
+                self.next = made * self.memory.accept(&M::CONTROL, error);
+                return Ok(());
+            }
+            field.counters.rejected += 1;
+            let factor = match attempt {
+                Ok(error) => self.memory.reject(&M::CONTROL, error),
+                Err(_) => self.memory.retreat(),
+            };
+            h = made * factor;
+            if h < least {
+                self.retract();
+                return Err(attempt.err().unwrap_or(StepFailure::StepUnderflow { t }));
+            }
+        }
+    }
+
+    fn replace_end(&mut self, field: &F, state: &F::State, counters: &mut Counters) -> Result<(), StepFailure> {
+        self.end = *state;
+        let rate = &mut self.stages.as_mut()[M::LAST];
+        Counted { field, counters }.rate(self.t[1], state, rate)?;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn t_start(&self) -> f64 {
+        self.t[0]
+    }
+
+    #[inline(always)]
+    fn t_end(&self) -> f64 {
+        self.t[1]
+    }
+
+    #[inline(always)]
+    fn start_state(&self) -> &F::State {
+        &self.start
+    }
+
+    #[inline(always)]
+    fn end_state(&self) -> &F::State {
+        &self.end
+    }
+
+    #[inline(always)]
+    fn end_rates(&self) -> [&F::State; 2] {
+        let stages = self.stages.as_ref();
+        [&stages[0], &stages[M::LAST]]
+    }
+
+    #[inline(always)]
+    fn dense_ready(&self) -> bool {
+        self.dense_ready
+    }
+
+    #[inline]
+    fn prepare_dense(&mut self, field: &F, counters: &mut Counters) -> Result<(), Fault> {
+        if self.dense_ready {
+            return Ok(());
+        }
+        counters.dense_constructions += 1;
+        let span = Span { t: self.t[0], h: self.t[1] - self.t[0], start: &self.start, end: &self.end };
+        M::build_dense(&mut Counted { field, counters }, span, self.stages.as_mut(), &mut self.dense)?;
+        self.dense_ready = true;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn interpolate(&self, theta: f64) -> F::State {
+        M::interpolate(&self.dense, theta)
+    }
+}

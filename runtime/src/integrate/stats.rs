@@ -1,0 +1,23 @@
+//! Work counters: what a run cost, part of its result.
+
+/// How much of each kind of work a run did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct Counters {
+    /// Evaluations of the vector field, those of rejected steps included.
+    pub rate_evaluations: u64,
+    /// Steps whose error estimate passed.
+    pub accepted: u64,
+    /// Trial steps thrown away: error too large, a fault, or a number that is not finite.
+    pub rejected: u64,
+    /// Steps whose dense output was built.
+    pub dense_constructions: u64,
+    /// Evaluations of the vector of gaps.
+    pub event_evaluations: u64,
+    /// Roots of a gap that were located, in whichever direction motion then went on.
+    pub crossings: u64,
+    /// Impacts carried out.
+    pub impacts: u64,
+    /// Projections back to the constraints.
+    pub projections: u64,
+}

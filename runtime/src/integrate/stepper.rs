@@ -1,0 +1,127 @@
+//! The step interface: all that the driver knows of an integrator.
+
+use core::fmt;
+
+use super::stats::Counters;
+use crate::contract::VectorField;
+use crate::error::Fault;
+
+/// A one-step integrator with error control and dense output.
+///
+/// After [`Stepper::start`], every [`Stepper::step`] makes one accepted step from the end of the last one. Both
+/// ends of the step stay readable until the next; states between them are had from [`Stepper::interpolate`] after
+/// [`Stepper::prepare_dense`].
+pub trait Stepper<F: VectorField> {
+    /// Name, as the command line writes it.
+    const NAME: &'static str;
+
+    /// Order of the solution at the ends of steps.
+    const ORDER: usize;
+
+    /// Order of the dense output between them.
+    const DENSE_ORDER: usize;
+
+    /// Begins at `(t, state)`, heading for `t_end`: finds a first step size.
+    ///
+    /// # Errors
+    /// [`StepFailure`] where the vector field does not exist at the start.
+    fn start(
+        &mut self,
+        field: &F,
+        t: f64,
+        state: &F::State,
+        t_end: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure>;
+
+    /// Begins again after a jump, with the step size known so far but none larger than `limit`.
+    ///
+    /// # Errors
+    /// [`StepFailure`] where the vector field does not exist at the new state.
+    fn restart(
+        &mut self,
+        field: &F,
+        t: f64,
+        state: &F::State,
+        limit: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure>;
+
+    /// Makes one accepted step towards `t_end`, landing on it exactly when it is in reach. Trial steps that fail
+    /// are shortened here; only what no step size cures is reported.
+    ///
+    /// # Errors
+    /// [`StepFailure`]; the last good state is still [`Stepper::end`].
+    fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure>;
+
+    /// Takes `state` for the end of the last step, as a projection does, and evaluates the rate there anew.
+    ///
+    /// # Errors
+    /// [`StepFailure`] where the vector field does not exist at `state`.
+    fn replace_end(&mut self, field: &F, state: &F::State, counters: &mut Counters) -> Result<(), StepFailure>;
+
+    /// Time at the start of the last step.
+    fn t_start(&self) -> f64;
+
+    /// Time at the end of the last step.
+    fn t_end(&self) -> f64;
+
+    /// State at the start of the last step.
+    fn start_state(&self) -> &F::State;
+
+    /// State at the end of the last step.
+    fn end_state(&self) -> &F::State;
+
+    /// Rates at the start and at the end of the last step.
+    fn end_rates(&self) -> [&F::State; 2];
+
+    /// Whether the last step's dense output is ready.
+    fn dense_ready(&self) -> bool;
+
+    /// Makes the last step's dense output ready, with what extra stages it takes; does nothing if it is.
+    ///
+    /// # Errors
+    /// The [`Fault`] of an extra stage.
+    fn prepare_dense(&mut self, field: &F, counters: &mut Counters) -> Result<(), Fault>;
+
+    /// The state at `t_start + theta (t_end - t_start)`, for `theta` in \[0, 1\].
+    ///
+    /// Meaningful only while [`Stepper::dense_ready`].
+    fn interpolate(&self, theta: f64) -> F::State;
+}
+
+/// Why no step could be made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum StepFailure {
+    /// The error stays too large down to steps that no longer change the time: a singularity of the motion.
+    StepUnderflow {
+        /// Where.
+        t: f64,
+    },
+    /// The vector field does not exist in whatever short step.
+    Fault(Fault),
+    /// The state or its rate is not finite in whatever short step.
+    NonFinite {
+        /// First component concerned.
+        component: usize,
+    },
+}
+
+impl fmt::Display for StepFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::StepUnderflow { t } => write!(f, "the step size underflows at t = {t}"),
+            Self::Fault(fault) => fault.fmt(f),
+            Self::NonFinite { component } => write!(f, "component {component} of the state or its rate is not finite"),
+        }
+    }
+}
+
+impl core::error::Error for StepFailure {}
+
+impl From<Fault> for StepFailure {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}

@@ -1,0 +1,3 @@
+//! The little dense linear algebra that the runtime itself needs; generated code brings its own.
+
+pub(crate) mod qr;

@@ -1,0 +1,74 @@
+//! Orthogonalisation of the rows of a wide matrix, and least-norm solutions.
+//!
+//! `A x = b` with M rows of N: modified Gram-Schmidt on the rows, twice over (once more is enough), writes
+//! `a_i = sum_j r_ij q_j`; then `x = sum_j z_j q_j` with `R z = b` has the least norm of all solutions.
+
+use crate::math;
+
+/// A row is taken for dependent on the earlier ones if orthogonalisation leaves less than this part of it.
+const DEPENDENT: f64 = 1e-12;
+
+/// Overwrites `rows` (row after row, each of `width`) by orthonormal rows, zero where a row depends on earlier ones,
+/// and writes the least-norm solution of `rows x = values` to `solution`.
+///
+/// Equations whose rows depend on earlier ones are left out; whether they hold is for the caller to check.
+pub(crate) fn least_norm(rows: &mut [f64], width: usize, values: &[f64], solution: &mut [f64]) {
+    solution.fill(0.0);
+    if width == 0 {
+        return;
+    }
+    for (i, value) in values.iter().enumerate() {
+        let (earlier, rest) = rows.split_at_mut(i * width);
+        let Some(row) = rest.get_mut(..width) else { return };
+        let before = math::sqrt(dot(row, row));
+        // What the solution so far gives this equation: exact on the earlier rows, nothing across them.
+        let reached = dot(row, solution);
+        for _ in 0..2 {
+            for direction in earlier.chunks_exact(width) {
+                let along = dot(row, direction);
+                add(row, -along, direction);
+            }
+        }
+        let after = math::sqrt(dot(row, row));
+        if after > DEPENDENT * before {
+            row.iter_mut().for_each(|entry| *entry /= after);
+            add(solution, (value - reached) / after, row);
+        } else {
+            row.fill(0.0);
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// `a += size * b`.
+fn add(a: &mut [f64], size: f64, b: &[f64]) {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a += size * b;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solution_is_the_shortest_one() {
+        let mut rows = [1.0, 1.0, 1.0, 0.0, 1.0, -1.0];
+        let mut solution = [0.0; 3];
+        least_norm(&mut rows, 3, &[6.0, 0.0], &mut solution);
+        for value in solution {
+            assert!((value - 2.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn dependent_rows_are_left_out() {
+        let mut rows = [1.0, 2.0, 2.0, 4.0];
+        let mut solution = [0.0; 2];
+        least_norm(&mut rows, 2, &[5.0, 10.0], &mut solution);
+        assert!((solution[0] - 1.0).abs() < 1e-14 && (solution[1] - 2.0).abs() < 1e-14);
+    }
+}

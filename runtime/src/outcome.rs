@@ -1,0 +1,212 @@
+//! How a run ends: exactly one [`Outcome`], never a panic, a silent NaN or an endless loop.
+
+use core::fmt;
+
+use crate::error::{Fault, ParameterError};
+use crate::integrate::{Counters, StepFailure};
+
+/// Why a run ended where it did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Outcome {
+    /// The requested end was reached.
+    Done,
+    /// Impacts accumulate: their times no longer differ, or the hops between them are below the rounding of the gap.
+    Zeno {
+        /// Where they accumulate, extrapolated from the last hops.
+        t: f64,
+        /// The surface last hit.
+        surface: usize,
+    },
+    /// An impact law left the state approaching the surface.
+    StillPenetrating {
+        /// The surface.
+        surface: usize,
+        /// `dh(pi_D grad h) / dh(grad h)` there.
+        rho: f64,
+    },
+    /// The state rests on a surface and the motion presses it in: going on needs a contact force.
+    Contact {
+        /// The surface.
+        surface: usize,
+    },
+    /// A surface was crossed at gap rate 0, where no impact law acts.
+    TangentialCrossing {
+        /// The surface.
+        surface: usize,
+    },
+    /// A surface counts where its gap is clearly negative: at the start, or where its condition begins to hold.
+    StartsInside {
+        /// The surface.
+        surface: usize,
+        /// Its gap.
+        gap: f64,
+    },
+    /// A coordinate reached the end of its interval.
+    LeftChart {
+        /// Index of the coordinate.
+        coordinate: usize,
+    },
+    /// See [`Fault::MetricNotPositive`].
+    MetricNotPositive {
+        /// Index of the pivot.
+        pivot: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// See [`Fault::SingularConstraint`].
+    SingularConstraint {
+        /// Index of the constraint.
+        constraint: usize,
+        /// Estimated condition number.
+        condition: f64,
+    },
+    /// See [`Fault::SingularSurface`].
+    SingularSurface {
+        /// Index of the surface.
+        surface: usize,
+    },
+    /// A state, a rate or a gap is infinite or not a number.
+    NonFinite {
+        /// Index of the component of the state; gaps are counted after its components.
+        component: usize,
+    },
+    /// The error stays too large in steps that no longer change the time.
+    StepUnderflow {
+        /// Where.
+        t: f64,
+    },
+    /// The allowed number of steps was used up.
+    StepBudget,
+    /// The allowed number of impacts was used up.
+    ImpactBudget,
+    /// Projection did not bring the state back to this constraint (levels first, then velocities).
+    ProjectionFailed {
+        /// Index of the level, or of the constraint.
+        constraint: usize,
+    },
+    /// The observer asked to stop.
+    Stopped,
+}
+
+impl Outcome {
+    /// The class of the outcome in snake case, as tables and files write it.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Zeno { .. } => "zeno",
+            Self::StillPenetrating { .. } => "still_penetrating",
+            Self::Contact { .. } => "contact",
+            Self::TangentialCrossing { .. } => "tangential_crossing",
+            Self::StartsInside { .. } => "starts_inside",
+            Self::LeftChart { .. } => "left_chart",
+            Self::MetricNotPositive { .. } => "metric_not_positive",
+            Self::SingularConstraint { .. } => "singular_constraint",
+            Self::SingularSurface { .. } => "singular_surface",
+            Self::NonFinite { .. } => "non_finite",
+            Self::StepUnderflow { .. } => "step_underflow",
+            Self::StepBudget => "step_budget",
+            Self::ImpactBudget => "impact_budget",
+            Self::ProjectionFailed { .. } => "projection_failed",
+            Self::Stopped => "stopped",
+        }
+    }
+
+    /// Whether the requested end was reached.
+    pub const fn is_done(&self) -> bool {
+        matches!(self, Self::Done)
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Done => write!(f, "reached the requested end"),
+            Self::Zeno { t, surface } => write!(f, "impacts on surface {surface} accumulate at t = {t}"),
+            Self::StillPenetrating { surface, rho } => {
+                write!(f, "the law of surface {surface} leaves the state approaching it (rho = {rho})")
+            }
+            Self::Contact { surface } => write!(f, "the state rests on surface {surface} and is pressed into it"),
+            Self::TangentialCrossing { surface } => write!(f, "surface {surface} was crossed at gap rate 0"),
+            Self::StartsInside { surface, gap } => write!(f, "surface {surface} counts where its gap is {gap:e}"),
+            Self::LeftChart { coordinate } => write!(f, "coordinate {coordinate} reached the end of its interval"),
+            Self::MetricNotPositive { pivot, value } => Fault::MetricNotPositive { pivot, value }.fmt(f),
+            Self::SingularConstraint { constraint, condition } => {
+                Fault::SingularConstraint { constraint, condition }.fmt(f)
+            }
+            Self::SingularSurface { surface } => Fault::SingularSurface { surface }.fmt(f),
+            Self::NonFinite { component } => Fault::NonFinite { component }.fmt(f),
+            Self::StepUnderflow { t } => StepFailure::StepUnderflow { t }.fmt(f),
+            Self::StepBudget => write!(f, "the allowed number of steps was used up"),
+            Self::ImpactBudget => write!(f, "the allowed number of impacts was used up"),
+            Self::ProjectionFailed { constraint } => write!(f, "projection to constraint {constraint} failed"),
+            Self::Stopped => write!(f, "stopped on request"),
+        }
+    }
+}
+
+impl From<Fault> for Outcome {
+    fn from(fault: Fault) -> Self {
+        match fault {
+            Fault::MetricNotPositive { pivot, value } => Self::MetricNotPositive { pivot, value },
+            Fault::SingularConstraint { constraint, condition } => Self::SingularConstraint { constraint, condition },
+            Fault::SingularSurface { surface } => Self::SingularSurface { surface },
+            Fault::NonFinite { component } => Self::NonFinite { component },
+        }
+    }
+}
+
+impl From<StepFailure> for Outcome {
+    fn from(failure: StepFailure) -> Self {
+        match failure {
+            StepFailure::StepUnderflow { t } => Self::StepUnderflow { t },
+            StepFailure::Fault(fault) => fault.into(),
+            StepFailure::NonFinite { component } => Self::NonFinite { component },
+        }
+    }
+}
+
+/// A finished run: why and where it ended, in what state, and what it cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Run<S> {
+    /// Why it ended.
+    pub outcome: Outcome,
+    /// The time it ended at.
+    pub t: f64,
+    /// The last good state, at `t`; after an impact at `t`, the state after it.
+    pub state: S,
+    /// What it cost.
+    pub counters: Counters,
+}
+
+/// A run that was not begun.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum StartError {
+    /// A parameter of the system contradicts its declaration.
+    Parameter(ParameterError),
+    /// The times are not finite, or the end lies before the start.
+    Times {
+        /// The start.
+        t0: f64,
+        /// The end.
+        t_end: f64,
+    },
+}
+
+impl fmt::Display for StartError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Parameter(error) => error.fmt(f),
+            Self::Times { t0, t_end } => write!(f, "a run goes forward between finite times, not from {t0} to {t_end}"),
+        }
+    }
+}
+
+impl core::error::Error for StartError {}
+
+impl From<ParameterError> for StartError {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error)
+    }
+}

@@ -1,0 +1,156 @@
+//! What a run shows while it goes on: stretches of smooth motion, and the impacts between them.
+
+use core::ops::ControlFlow;
+
+use crate::contract::System;
+use crate::error::Fault;
+use crate::impacts::law::Law;
+
+/// One impact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event<S> {
+    /// When.
+    pub t: f64,
+    /// Index of the surface.
+    pub surface: usize,
+    /// The law that was applied.
+    pub law: Law,
+    /// The state just before.
+    pub before: S,
+    /// The state just after.
+    pub after: S,
+    /// Whether another surface was hit at the same time; such impacts are carried out in order of index.
+    pub simultaneous: bool,
+    /// Whether the surface was touched so lightly that rounding may have decided it.
+    pub graze: bool,
+}
+
+/// A stretch of smooth motion, from one step's start to its end or to the impact that cuts it short.
+pub struct Segment<'a, S> {
+    pub(crate) t: [f64; 2],
+    pub(crate) end: &'a S,
+    /// Length of the step the stretch is cut from.
+    pub(crate) step: f64,
+    pub(crate) source: &'a mut dyn Interpolant<S>,
+}
+
+/// Where a segment has its states from.
+pub(crate) trait Interpolant<S> {
+    /// The state at the start of the step.
+    fn start(&self) -> &S;
+
+    /// The state at a part of the step.
+    fn at(&mut self, theta: f64) -> Result<S, Fault>;
+}
+
+impl<S: Copy> Segment<'_, S> {
+    /// Time at the start.
+    pub fn t_start(&self) -> f64 {
+        self.t[0]
+    }
+
+    /// Time at the end.
+    pub fn t_end(&self) -> f64 {
+        self.t[1]
+    }
+
+    /// State at the start; after an impact, the state after it.
+    pub fn start(&self) -> &S {
+        self.source.start()
+    }
+
+    /// State at the end; before an impact, the state before it.
+    pub fn end(&self) -> &S {
+        self.end
+    }
+
+    /// The state at time `t`, from the integrator's dense output; times outside count as the nearer end.
+    ///
+    /// Evaluations strictly inside make a step pay for its dense output, once.
+    ///
+    /// # Errors
+    /// The [`Fault`] of an extra stage of the dense output.
+    pub fn at(&mut self, t: f64) -> Result<S, Fault> {
+        if t >= self.t[1] {
+            return Ok(*self.end);
+        }
+        if t > self.t[0] {
+            return self.source.at((t - self.t[0]) / self.step);
+        }
+        Ok(*self.source.start())
+    }
+}
+
+/// Watches a run. Every hook may ask to stop by returning [`ControlFlow::Break`]; the run then ends with
+/// [`Outcome::Stopped`](crate::Outcome::Stopped).
+pub trait Observer<Sys: System> {
+    /// A stretch of smooth motion was made. Stretches follow each other without gap; impacts lie between them.
+    fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
+        let _ = segment;
+        ControlFlow::Continue(())
+    }
+
+    /// An impact was carried out.
+    fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
+        let _ = event;
+        ControlFlow::Continue(())
+    }
+}
+
+/// Watches nothing.
+impl<Sys: System> Observer<Sys> for () {}
+
+impl<Sys: System, O: Observer<Sys>> Observer<Sys> for &mut O {
+    fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
+        (**self).step(segment)
+    }
+
+    fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
+        (**self).event(event)
+    }
+}
+
+/// Keeps the first `CAP` impacts of a run, and counts all of them.
+#[derive(Debug, Clone, Copy)]
+pub struct EventLog<S, const CAP: usize> {
+    events: [Option<Event<S>>; CAP],
+    seen: usize,
+}
+
+impl<S: Copy, const CAP: usize> EventLog<S, CAP> {
+    /// An empty log.
+    pub const fn new() -> Self {
+        Self { events: [None; CAP], seen: 0 }
+    }
+
+    /// The impacts that were kept, in order.
+    pub fn iter(&self) -> impl Iterator<Item = &Event<S>> {
+        self.events.iter().flatten()
+    }
+
+    /// Number of impacts seen.
+    pub const fn seen(&self) -> usize {
+        self.seen
+    }
+
+    /// Number of impacts that found the log full.
+    pub const fn dropped(&self) -> usize {
+        self.seen.saturating_sub(CAP)
+    }
+}
+
+impl<S: Copy, const CAP: usize> Default for EventLog<S, CAP> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<Sys: System, const CAP: usize> Observer<Sys> for EventLog<Sys::State, CAP> {
+    fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
+        if let Some(slot) = self.events.get_mut(self.seen) {
+            *slot = Some(*event);
+        }
+        self.seen += 1;
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,201 @@
+//! The driver: steps, cuts them where an effect proposes, lets the effects act, and ends in an [`Outcome`].
+
+use core::ops::ControlFlow;
+
+use crate::contract::System;
+use crate::effects::{Change, Effect, Moment, StepView};
+use crate::integrate::{Counters, Stepper};
+use crate::outcome::{Outcome, Run, StartError};
+use crate::record::{Observer, Segment};
+use crate::state::StateVector;
+
+/// Steps a run may make unless told otherwise: more than a day's work for most systems, less than for ever.
+pub const STEP_BUDGET: u64 = 1_000_000_000;
+
+/// After an impact no step is longer than this many times the last flight, so that hops that shrink are followed
+/// by steps of their own size.
+const FLIGHTS: f64 = 4.0;
+
+/// A system with an integrator and effects.
+#[derive(Debug, Clone)]
+pub struct Simulation<'a, Sys, Step, Effects> {
+    system: &'a Sys,
+    stepper: Step,
+    effects: Effects,
+    step_budget: u64,
+}
+
+impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, Sys, Step, Effects> {
+    /// Puts the three together. [`Scene::effects`](crate::Scene::effects) are the effects a system declares.
+    pub fn new(system: &'a Sys, stepper: Step, effects: Effects) -> Self {
+        Self { system, stepper, effects, step_budget: STEP_BUDGET }
+    }
+
+    /// Ends runs after this many accepted steps instead of [`STEP_BUDGET`].
+    #[must_use]
+    pub fn with_step_budget(mut self, budget: u64) -> Self {
+        self.step_budget = budget;
+        self
+    }
+
+    /// The effects.
+    pub fn effects(&mut self) -> &mut Effects {
+        &mut self.effects
+    }
+
+    /// Runs from `state` at `t0` to `t_end`, showing `observer` what happens.
+    ///
+    /// # Errors
+    /// [`StartError`]: times that are not finite or run backwards, a parameter against its declaration. Whatever
+    /// happens after that is an [`Outcome`] with the last good state.
+    pub fn run<O: Observer<Sys>>(
+        &mut self,
+        t0: f64,
+        state: Sys::State,
+        t_end: f64,
+        observer: &mut O,
+    ) -> Result<Run<Sys::State>, StartError> {
+        if !(t0.is_finite() && t_end.is_finite() && t0 <= t_end) {
+            return Err(StartError::Times { t0, t_end });
+        }
+        self.system.check_parameters()?;
+        let mut course = Course {
+            system: self.system,
+            stepper: &mut self.stepper,
+            effects: &mut self.effects,
+            budget: self.step_budget,
+            t: t0,
+            late: 0.0,
+            state,
+            counters: Counters::default(),
+        };
+        let outcome = match course.follow(t_end, observer) {
+            Ok(()) => Outcome::Done,
+            Err(outcome) => outcome,
+        };
+        Ok(Run { outcome, t: course.t, state: course.state, counters: course.counters })
+    }
+}
+
+/// A run on its way.
+struct Course<'a, Sys: System, Step, Effects> {
+    system: &'a Sys,
+    stepper: &'a mut Step,
+    effects: &'a mut Effects,
+    budget: u64,
+    t: f64,
+    /// The part of the time that `t` cannot hold: lengths of flights add up without losing it.
+    late: f64,
+    state: Sys::State,
+    counters: Counters,
+}
+
+impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step, Effects> {
+    fn follow<O: Observer<Sys>>(&mut self, t_end: f64, observer: &mut O) -> Result<(), Outcome> {
+        if let Some(component) = self.state.as_slice().iter().position(|value| !value.is_finite()) {
+            return Err(Outcome::NonFinite { component });
+        }
+        if let Some(coordinate) = self.system.outside_chart(&self.state) {
+            return Err(Outcome::LeftChart { coordinate });
+        }
+        let mut now =
+            Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
+        self.effects.begin(&mut now, observer)?;
+        if self.t < t_end {
+            self.stepper.start(self.system, self.t, &self.state, t_end, &mut self.counters)?;
+        }
+        while self.t < t_end {
+            if self.counters.accepted >= self.budget {
+                return Err(Outcome::StepBudget);
+            }
+            self.stepper.step(self.system, t_end, &mut self.counters)?;
+            let mut view =
+                StepView { system: self.system, counters: &mut self.counters, stepper: &mut *self.stepper };
+            match self.effects.propose(&mut view)? {
+                None => self.pass(observer)?,
+                Some(theta) => self.cut(theta, observer)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// The step passes whole.
+    #[inline(always)]
+    fn pass<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
+        if let Some(coordinate) = self.system.outside_chart(self.stepper.end_state()) {
+            return self.leave_chart(coordinate, observer);
+        }
+        self.t = self.stepper.t_end();
+        self.state = *self.stepper.end_state();
+        let mut now =
+            Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
+        if self.effects.settle(&mut now, false)? == Change::Changed {
+            self.stepper.replace_end(self.system, &self.state, &mut self.counters)?;
+        }
+        self.show(observer)
+    }
+
+    /// The step ends at `theta`, where the effects act.
+    fn cut<O: Observer<Sys>>(&mut self, theta: f64, observer: &mut O) -> Result<(), Outcome> {
+        let start = self.stepper.t_start();
+        let flight = if theta < 1.0 { theta * (self.stepper.t_end() - start) } else { self.stepper.t_end() - start };
+        self.arrive(theta)?;
+        let mut now =
+            Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
+        self.effects.settle(&mut now, true)?;
+        self.show(observer)?;
+        let mut now =
+            Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
+        self.effects.act(theta, &mut now, observer)?;
+        self.stepper.restart(self.system, self.t, &self.state, FLIGHTS * flight, &mut self.counters)?;
+        Ok(())
+    }
+
+    /// Sets time and state to those at `theta`.
+    fn arrive(&mut self, theta: f64) -> Result<(), Outcome> {
+        let (start, end) = (self.stepper.t_start(), self.stepper.t_end());
+        if theta >= 1.0 {
+            self.t = end;
+            self.state = *self.stepper.end_state();
+            return Ok(());
+        }
+        self.stepper.prepare_dense(self.system, &mut self.counters)?;
+        let length = theta * (end - start) + self.late;
+        self.t = (start + length).min(end);
+        self.late = length - (self.t - start);
+        self.state = self.stepper.interpolate(theta);
+        Ok(())
+    }
+
+    /// Shows the motion from the start of the step to the present.
+    #[inline(always)]
+    fn show<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
+        let t = [self.stepper.t_start(), self.t];
+        let step = self.stepper.t_end() - t[0];
+        let mut source =
+            StepView { system: self.system, counters: &mut self.counters, stepper: &mut *self.stepper };
+        match observer.step(&mut Segment { t, end: &self.state, step, source: &mut source }) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Outcome::Stopped),
+        }
+    }
+
+    /// The step ends outside the chart: goes to the last state inside it, by bisection.
+    fn leave_chart<O: Observer<Sys>>(&mut self, coordinate: usize, observer: &mut O) -> Result<(), Outcome> {
+        self.stepper.prepare_dense(self.system, &mut self.counters)?;
+        let (mut inside, mut outside, mut left) = (0.0, 1.0, coordinate);
+        loop {
+            let middle = 0.5 * (inside + outside);
+            if middle <= inside || middle >= outside {
+                break;
+            }
+            match self.system.outside_chart(&self.stepper.interpolate(middle)) {
+                None => inside = middle,
+                Some(coordinate) => (outside, left) = (middle, coordinate),
+            }
+        }
+        self.arrive(inside)?;
+        self.show(observer)?;
+        Err(Outcome::LeftChart { coordinate: left })
+    }
+}

@@ -1,0 +1,196 @@
+//! A point of mass 1 in the plane, under a constant force, between surfaces given as functions.
+#![allow(dead_code, missing_docs, reason = "each test uses its part")]
+
+use dalembert::{
+    Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Impacting, Impacts, Law, Outcome, ParameterError, Run,
+    Simulation, Stepper, System, Tolerance, VectorField,
+};
+use nalgebra::SVector;
+
+pub type Vector = SVector<f64, 2>;
+pub type State = SVector<f64, 4>;
+
+/// A gap and its gradient at a point.
+pub type Gap = fn([f64; 2]) -> (f64, [f64; 2]);
+
+#[derive(Clone)]
+pub struct Particle<const S: usize> {
+    pub force: [f64; 2],
+    pub surfaces: [Gap; S],
+    pub law: Law,
+    /// Where each surface counts.
+    pub active: fn(usize, [f64; 2]) -> bool,
+}
+
+impl<const S: usize> Particle<S> {
+    pub fn new(force: [f64; 2], surfaces: [Gap; S]) -> Self {
+        Self { force, surfaces, law: Law::Elastic, active: |_, _| true }
+    }
+
+    pub fn with_law(mut self, law: Law) -> Self {
+        self.law = law;
+        self
+    }
+}
+
+fn point(state: &State) -> [f64; 2] {
+    [state[0], state[1]]
+}
+
+impl<const S: usize> VectorField for Particle<S> {
+    type State = State;
+
+    #[inline]
+    fn rate(&self, _: f64, state: &State, rate: &mut State) -> Result<(), Fault> {
+        *rate = State::new(state[2], state[3], self.force[0], self.force[1]);
+        Ok(())
+    }
+}
+
+impl<const S: usize> System for Particle<S> {
+    type Vector = Vector;
+
+    fn position(&self, state: &State) -> Vector {
+        Vector::new(state[0], state[1])
+    }
+
+    fn velocity(&self, _: f64, state: &State) -> Result<Vector, Fault> {
+        Ok(Vector::new(state[2], state[3]))
+    }
+
+    fn momentum(&self, t: f64, state: &State) -> Result<Vector, Fault> {
+        self.velocity(t, state)
+    }
+
+    fn state_unchecked(&self, _: f64, q: &Vector, qdot: &Vector) -> Result<State, Fault> {
+        Ok(State::new(q[0], q[1], qdot[0], qdot[1]))
+    }
+
+    fn state_from_momenta(&self, t: f64, q: &Vector, p: &Vector) -> Result<State, Fault> {
+        self.state_unchecked(t, q, p)
+    }
+
+    fn energy(&self, _: f64, s: &State) -> Result<f64, Fault> {
+        Ok(0.5 * (s[2] * s[2] + s[3] * s[3]) - self.force[0] * s[0] - self.force[1] * s[1])
+    }
+
+    fn kick(&self, _: f64, state: &mut State, size: f64, direction: &Vector) -> Result<(), Fault> {
+        state[2] += size * direction[0];
+        state[3] += size * direction[1];
+        Ok(())
+    }
+
+    fn check_parameters(&self) -> Result<(), ParameterError> {
+        Ok(())
+    }
+}
+
+impl<const S: usize> Impacting for Particle<S> {
+    type Gaps = SVector<f64, S>;
+
+    fn gaps(&self, _: f64, state: &State) -> Self::Gaps {
+        SVector::from_fn(|s, _| self.surfaces[s](point(state)).0)
+    }
+
+    fn gap_rates(&self, _: f64, state: &State) -> Result<Self::Gaps, Fault> {
+        Ok(SVector::from_fn(|s, _| {
+            let gradient = self.surfaces[s](point(state)).1;
+            gradient[0] * state[2] + gradient[1] * state[3]
+        }))
+    }
+
+    fn surface_active(&self, surface: usize, _: f64, state: &State) -> bool {
+        (self.active)(surface, point(state))
+    }
+
+    fn law(&self, _: usize) -> Law {
+        self.law
+    }
+
+    fn contact(&self, surface: usize, _: f64, state: &State) -> Result<Contact<Vector>, Fault> {
+        let [a, b] = self.surfaces[surface](point(state)).1;
+        let rate = a * state[2] + b * state[3];
+        let compliance = a * a + b * b;
+        if compliance <= 0.0 {
+            return Err(Fault::SingularSurface { surface });
+        }
+        Ok(Contact {
+            gap_rate: rate,
+            constrained_rate: rate,
+            surface_rate: 0.0,
+            constrained_compliance: compliance,
+            free_compliance: compliance,
+            direction: Vector::new(a, b),
+        })
+    }
+}
+
+pub fn floor([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
+    (x, [1.0, 0.0])
+}
+
+pub fn ceiling([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
+    (1.0 - x, [-1.0, 0.0])
+}
+
+/// A floor away from zero, where the gap rounds.
+pub fn raised_floor([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
+    (x - 1.0, [1.0, 0.0])
+}
+
+pub type Log = EventLog<State, 256>;
+
+pub fn at(x: f64, y: f64, vx: f64, vy: f64) -> State {
+    State::new(x, y, vx, vy)
+}
+
+/// Runs with every integrator and several step limits; each result goes to `check` with its events.
+pub fn with_every_integrator<const S: usize>(
+    particle: &Particle<S>,
+    state: State,
+    t_end: f64,
+    mut check: impl FnMut(&Run<State>, &Log, &str),
+) {
+    for max_step in [f64::INFINITY, 0.25, 1e-3] {
+        let tolerance = Tolerance::new(1e-12).unwrap();
+        let eighth = Dop853::new(tolerance).with_max_step(max_step);
+        let fifth = DormandPrince5::new(tolerance).with_max_step(max_step);
+        let mut log = Log::new();
+        let run = run_with(particle, eighth, state, t_end, &mut log);
+        check(&run, &log, &format!("dop853 {max_step}"));
+        let mut log = Log::new();
+        let run = run_with(particle, fifth, state, t_end, &mut log);
+        check(&run, &log, &format!("dopri5 {max_step}"));
+    }
+}
+
+pub fn run_with<const S: usize>(
+    particle: &Particle<S>,
+    stepper: impl Stepper<Particle<S>>,
+    state: State,
+    t_end: f64,
+    log: &mut Log,
+) -> Run<State> {
+    Simulation::new(particle, stepper, Impacts::declared(particle)).run(0.0, state, t_end, log).unwrap()
+}
+
+pub fn run<const S: usize>(particle: &Particle<S>, state: State, t_end: f64, log: &mut Log) -> Run<State> {
+    run_with(particle, Dop853::new(Tolerance::new(1e-12).unwrap()), state, t_end, log)
+}
+
+pub fn times(log: &Log) -> Vec<f64> {
+    log.iter().map(|event: &Event<State>| event.t).collect()
+}
+
+pub fn assert_done(run: &Run<State>, case: &str) {
+    assert_eq!(run.outcome, Outcome::Done, "{case} at t = {}", run.t);
+}
+
+#[track_caller]
+pub fn assert_times(log: &Log, exact: &[f64], tolerance: f64, case: &str) {
+    let times = times(log);
+    assert_eq!(times.len(), exact.len(), "{case}: {times:?}");
+    for (time, exact) in times.iter().zip(exact) {
+        assert!((time - exact).abs() <= tolerance, "{case}: {time} for {exact}");
+    }
+}

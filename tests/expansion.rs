@@ -1,0 +1,74 @@
+//! What expansion costs: time per model, and how the N-link chain grows.
+//!
+//! The bounds are those of a user's build. Built without optimisation, as cargo builds procedural macros in every
+//! profile, each model must expand in under a second; optimised, in under 50 ms. Times are the least of three.
+
+use std::time::{Duration, Instant};
+
+use dalembert::{Described, Scene};
+use dalembert_codegen::{mechanics, model, program, spec, try_expand};
+use dalembert_models::{Chain2, Chain4, Chain8, Chain16};
+use dalembert_tests::sampling::{Visitor, visit_all};
+
+/// The least of three times, with the generated code's length.
+fn expansion(source: &str) -> (Duration, usize) {
+    let mut length = 0;
+    let times = [(); 3].map(|()| {
+        let tokens = source.parse().expect("tokens");
+        let start = Instant::now();
+        let items = try_expand(tokens).expect("a model");
+        let time = start.elapsed();
+        length = items.to_string().len();
+        time
+    });
+    (times.into_iter().min().expect("three times"), length)
+}
+
+struct Timed;
+
+impl Visitor for Timed {
+    fn visit<S: Described + Scene>(&mut self, _: S) {
+        let (time, length) = expansion(S::DESCRIPTION.source);
+        let bound = Duration::from_millis(if cfg!(debug_assertions) { 1000 } else { 50 });
+        println!("{:28} {:8.1} ms {:8} characters", S::DESCRIPTION.name, time.as_secs_f64() * 1e3, length);
+        assert!(time < bound, "{}: {time:?}", S::DESCRIPTION.name);
+    }
+}
+
+#[test]
+fn every_model_expands_in_time() {
+    visit_all(&mut Timed);
+}
+
+/// Operations of the rate.
+fn operations(source: &str) -> usize {
+    let spec = spec::parse(source.parse().expect("tokens")).expect("a declaration");
+    let mut model = model::check(&spec).expect("a model");
+    let derivation = mechanics::derive(&mut model);
+    program::lower(&model, &derivation).rate.cost.total()
+}
+
+#[test]
+fn the_chain_grows_no_faster_than_its_factorisation() {
+    let sources = [
+        (2.0_f64, Chain2::DESCRIPTION.source),
+        (4.0, Chain4::DESCRIPTION.source),
+        (8.0, Chain8::DESCRIPTION.source),
+        (16.0, Chain16::DESCRIPTION.source),
+    ];
+    let mut table = Vec::new();
+    for (n, source) in sources {
+        let (time, length) = expansion(source);
+        let operations = operations(source);
+        println!("N = {n:2}: {operations:6} operations, {:8.1} ms, {length} characters", time.as_secs_f64() * 1e3);
+        table.push((n, operations as f64, time.as_secs_f64()));
+    }
+    let power = |value: fn(&(f64, f64, f64)) -> f64| {
+        let (first, last) = (&table[1], &table[3]);
+        (value(last) / value(first)).ln() / (last.0 / first.0).ln()
+    };
+    let (work, time) = (power(|row| row.1), power(|row| row.2));
+    println!("fitted between N = 4 and 16: operations ~ N^{work:.2}, expansion time ~ N^{time:.2}");
+    assert!(work <= 3.0, "operations grow like N^{work}");
+    assert!(time <= 3.3, "expansion time grows like N^{time}");
+}

@@ -1,0 +1,187 @@
+//! Three routes to the same numbers: emitted code, the program's interpreter, and derivatives of the Lagrangian by
+//! differences.
+
+use dalembert::{Described, Scene, StateVector};
+use dalembert_codegen::model::Model;
+use dalembert_codegen::program::{Function, Input, Program, interpret::interpret, verify::verify};
+use dalembert_codegen::{mechanics, model, program, spec};
+use dalembert_expr::SymbolId;
+use dalembert_tests::sampling::{Visitor, states, visit_all};
+
+/// A model derived again from its own source text.
+fn derive(source: &str) -> (Model, mechanics::Derivation, Program) {
+    let spec = spec::parse(source.parse().expect("tokens")).expect("a declaration");
+    let mut model = model::check(&spec).expect("a model");
+    let derivation = mechanics::derive(&mut model);
+    let program = program::lower(&model, &derivation);
+    (model, derivation, program)
+}
+
+/// The arguments of a function at a state of a system.
+fn input<'a, S: Described>(system: &'a S, t: f64, state: &'a S::State) -> impl Fn(Input) -> f64 + 'a {
+    let n = S::Vector::LEN;
+    let qdot = system.velocity(t, state).expect("a velocity");
+    move |input| match input {
+        Input::Time => t,
+        Input::Coordinate(i) => state.as_slice()[i],
+        Input::Momentum(i) => state.as_slice()[n + i],
+        Input::Velocity(i) => qdot.as_slice()[i],
+        Input::Parameter(k) => system.parameter(k),
+        Input::Excess(_) => f64::NAN,
+    }
+}
+
+/// Emitted code does what the interpreter does, to the bit: the same operations in the same order.
+struct EmittedIsInterpreted(usize);
+
+impl Visitor for EmittedIsInterpreted {
+    fn visit<S: Described + Scene>(&mut self, system: S) {
+        let name = S::DESCRIPTION.name;
+        let (_, _, program) = derive(S::DESCRIPTION.source);
+        for state in states(&system, 5, 1) {
+            let at = input(&system, 0.25, &state);
+            let mut rate = S::State::zeros();
+            system.rate(0.25, &state, &mut rate).expect("a rate");
+            let interpreted = interpret(&program.rate, &at).expect("a rate");
+            assert_eq!(rate.as_slice(), interpreted, "{name}: rate");
+            let energy = interpret(&program.energy, &at).expect("an energy")[0];
+            assert_eq!(system.energy(0.25, &state).expect("an energy"), energy, "{name}: energy");
+            self.0 += 1;
+        }
+    }
+}
+
+#[test]
+fn emitted_code_is_what_the_interpreter_executes() {
+    let mut visitor = EmittedIsInterpreted(0);
+    visit_all(&mut visitor);
+    assert!(visitor.0 >= 100);
+}
+
+/// The force `f = dL/dq + F` in the program against central differences of L, which is evaluated as an expression.
+struct ForceIsDifferenced;
+
+impl Visitor for ForceIsDifferenced {
+    fn visit<S: Described + Scene>(&mut self, system: S) {
+        let (model, derivation, _) = derive(S::DESCRIPTION.source);
+        for state in states(&system, 3, 2) {
+            let t = 0.4;
+            let qdot = system.velocity(t, &state).expect("a velocity");
+            for (k, coordinate) in model.coordinates.iter().enumerate() {
+                let lagrangian = |shift: f64| {
+                    let value = |symbol: SymbolId| {
+                        let shift = if symbol == coordinate.q { shift } else { 0.0 };
+                        value_of(&model, &system, t, &state, &qdot, symbol) + shift
+                    };
+                    model.pool.eval(&[model.lagrangian.whole], &value)[0]
+                };
+                let value = |symbol| value_of(&model, &system, t, &state, &qdot, symbol);
+                let applied: f64 = model.forces.iter().map(|force| model.pool.eval(&[force.form[k]], &value)[0]).sum();
+                let force = model.pool.eval(&[derivation.field.force[k]], &value)[0] - applied;
+                let h = 1e-5;
+                let difference = (lagrangian(h) - lagrangian(-h)) / (2.0 * h);
+                let scale = lagrangian(0.0).abs().max(1.0);
+                assert!((force - difference).abs() < 1e-8 * scale, "{}: {k}", S::DESCRIPTION.name);
+            }
+        }
+    }
+}
+
+fn value_of<S: Described>(model: &Model, system: &S, t: f64, state: &S::State, qdot: &S::Vector, symbol: SymbolId) -> f64 {
+    if symbol == model.time {
+        return t;
+    }
+    for (i, coordinate) in model.coordinates.iter().enumerate() {
+        if symbol == coordinate.q {
+            return state.as_slice()[i];
+        }
+        if symbol == coordinate.qdot {
+            return qdot.as_slice()[i];
+        }
+    }
+    model.parameters.iter().position(|parameter| parameter.symbol == symbol).map_or(f64::NAN, |k| system.parameter(k))
+}
+
+#[test]
+fn forces_are_derivatives_of_the_lagrangian() {
+    visit_all(&mut ForceIsDifferenced);
+}
+
+/// Every function is well formed.
+struct WellFormed;
+
+impl Visitor for WellFormed {
+    fn visit<S: Described + Scene>(&mut self, _: S) {
+        let (_, _, program) = derive(S::DESCRIPTION.source);
+        let mut functions: Vec<&Function> = vec![
+            &program.rate,
+            &program.scale,
+            &program.velocity,
+            &program.momentum,
+            &program.energy,
+            &program.geometry.function,
+            &program.divergence,
+            &program.density_form,
+            &program.initial,
+        ];
+        functions.extend(program.outputs.iter().chain(&program.view_path).chain(&program.view_region));
+        if let Some(constrained) = &program.constrained {
+            functions.extend([
+                &constrained.multipliers,
+                &constrained.residuals,
+                &constrained.forms,
+                &constrained.project,
+                &constrained.levels,
+                &constrained.level_correction,
+            ]);
+        }
+        if let Some(impacting) = &program.impacting {
+            functions.extend([&impacting.gaps, &impacting.gap_rates]);
+            functions.extend(&impacting.contacts);
+        }
+        for function in functions {
+            assert_eq!(verify(function), Ok(()), "{}", S::DESCRIPTION.name);
+        }
+    }
+}
+
+#[test]
+fn programs_are_well_formed() {
+    visit_all(&mut WellFormed);
+}
+
+/// The field keeps the value of every constraint, on it and off it: `d/dt (eta(qdot) + eta_0) = 0`, by differences
+/// of the residual expression along the emitted rate.
+#[test]
+fn the_field_keeps_the_constraints_everywhere() {
+    struct Kept(usize);
+    impl Visitor for Kept {
+        fn visit<S: Described + Scene>(&mut self, system: S) {
+            let (model, derivation, _) = derive(S::DESCRIPTION.source);
+            let mut random = dalembert_tests::sampling::Random::new(3);
+            for constraint in &derivation.constraints {
+                let (q, qdot) = (random.vector::<S::Vector>(0.1, 1.4), random.vector::<S::Vector>(-1.0, 1.0));
+                let t = 0.3;
+                let state = system.state_unchecked(t, &q, &qdot).expect("a state");
+                let mut rate = S::State::zeros();
+                system.rate(t, &state, &mut rate).expect("a rate");
+                let residual = |h: f64| {
+                    let mut moved = state;
+                    for (x, v) in moved.as_mut_slice().iter_mut().zip(rate.as_slice()) {
+                        *x += h * v;
+                    }
+                    let qdot = system.velocity(t + h, &moved).expect("a velocity");
+                    let value = |symbol| value_of(&model, &system, t + h, &moved, &qdot, symbol);
+                    model.pool.eval(&[constraint.residual], &value)[0]
+                };
+                let h = 1e-5;
+                let derivative = (residual(h) - residual(-h)) / (2.0 * h);
+                assert!(derivative.abs() < 1e-7, "{}: {derivative:e}", S::DESCRIPTION.name);
+                self.0 += 1;
+            }
+        }
+    }
+    let mut kept = Kept(0);
+    visit_all(&mut kept);
+    assert!(kept.0 >= 15);
+}

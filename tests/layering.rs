@@ -1,0 +1,89 @@
+//! Who may depend on whom: the invariants of `docs/architecture.md`, read from the sources.
+
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Every Rust file below a folder, with its text.
+fn sources(folder: &str) -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    let mut pending = vec![root().join(folder)];
+    while let Some(path) = pending.pop() {
+        if path.is_dir() {
+            let entries = std::fs::read_dir(&path).expect("a folder");
+            pending.extend(entries.map(|entry| entry.expect("an entry").path()));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let text = std::fs::read_to_string(&path).expect("text");
+            found.push((path, text));
+        }
+    }
+    assert!(!found.is_empty(), "{folder} holds no sources");
+    found.sort();
+    found
+}
+
+/// Asserts that no code line (comments aside) of a folder holds a text.
+fn assert_absent(folder: &str, forbidden: &[&str]) {
+    for (path, text) in sources(folder) {
+        for (number, line) in text.lines().enumerate() {
+            let code = line.split("//").next().unwrap_or_default();
+            for word in forbidden {
+                assert!(!code.contains(word), "{}:{}: `{word}`", path.display(), number + 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn expressions_know_no_tokens_and_no_mechanics() {
+    assert_absent("codegen/expr/src", &["proc_macro2", "syn::", "quote::", "lagrangian", "constraint"]);
+}
+
+#[test]
+fn mathematics_knows_no_tokens() {
+    for folder in ["codegen/src/mechanics", "codegen/src/program"] {
+        assert_absent(folder, &["proc_macro2", "syn::", "quote::", "quote!", "Span"]);
+    }
+}
+
+#[test]
+fn a_stage_uses_only_those_to_its_left() {
+    let stages = ["spec", "model", "mechanics", "program", "emit"];
+    for (k, stage) in stages.iter().enumerate() {
+        let later: Vec<String> = stages[k + 1..].iter().map(|later| format!("crate::{later}::")).collect();
+        let later: Vec<&str> = later.iter().map(String::as_str).collect();
+        assert_absent(&format!("codegen/src/{stage}"), &later);
+    }
+}
+
+#[test]
+fn the_runtime_is_bare() {
+    assert_absent("runtime/src", &["extern crate alloc", "alloc::", "Vec<", "Box<", "String", "unsafe {"]);
+    let text = std::fs::read_to_string(root().join("runtime/src/lib.rs")).expect("text");
+    assert!(text.contains("#![forbid(unsafe_code)]"));
+    assert!(text.contains("no_std"));
+}
+
+#[test]
+fn the_macro_does_nothing_but_expand() {
+    let text = std::fs::read_to_string(root().join("macros/src/lib.rs")).expect("text");
+    let code = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    assert!(code.contains("dalembert_codegen::expand"));
+    assert!(code.lines().count() < 15, "{code}");
+}
+
+#[test]
+fn the_project_stands_alone() {
+    for folder in ["codegen", "macros/src", "runtime", "models", "tests", "benches"] {
+        for (path, text) in sources(folder) {
+            if path.ends_with("layering.rs") {
+                continue;
+            }
+            for outside in ["../shared", "../../shared", "/home/", "/work/"] {
+                assert!(!text.contains(outside), "{}: {outside}", path.display());
+            }
+        }
+    }
+}

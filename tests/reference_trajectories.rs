@@ -1,0 +1,228 @@
+//! Impact times against trajectories computed in closed form or with more than 30 digits.
+//!
+//! Every case runs at tolerance 1e-13. Regular motions (straight lines, the disk on a circular table) keep their
+//! accuracy over all impacts; on elliptical tables neighbouring motions separate, so only the first five are held to
+//! the same bound.
+
+use core::ops::ControlFlow;
+
+use dalembert::impacts::law::Law;
+use dalembert::{
+    Described, Dop853, DormandPrince5, Event, Impacting, Observer, Outcome, Run, Scene, SceneEffects, Simulation, Stepper,
+    System, Tolerance,
+};
+use dalembert_models::{BouncingBall, ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk};
+use dalembert_tests::reference::{number, numbers, read};
+use serde_json::Value;
+
+/// Times and surfaces of impacts.
+#[derive(Default)]
+struct Impacts {
+    times: Vec<f64>,
+    surfaces: Vec<usize>,
+}
+
+impl<Sys: System> Observer<Sys> for Impacts {
+    fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
+        self.times.push(event.t);
+        self.surfaces.push(event.surface);
+        ControlFlow::Continue(())
+    }
+}
+
+/// A run with a law on every surface, up to a number of impacts.
+fn run<S, Step>(system: &S, state: S::State, law: Law, count: usize, stepper: Step) -> (Impacts, Run<S::State>)
+where
+    S: Described + Impacting + Scene,
+    Step: Stepper<S>,
+{
+    let mut effects = system.effects();
+    for surface in 0..S::DESCRIPTION.surfaces.len() {
+        effects.set_law(surface, law);
+    }
+    effects.set_impact_budget(Some(count as u64));
+    let mut impacts = Impacts::default();
+    let run = Simulation::new(system, stepper, effects).run(0.0, state, 1e6, &mut impacts).expect("a start");
+    (impacts, run)
+}
+
+fn dop853<S: dalembert::StateVector>(tol: f64) -> Dop853<S> {
+    Dop853::new(Tolerance::new(tol).expect("a tolerance"))
+}
+
+fn law_of(case: &Value) -> Law {
+    Law::from_name(case["law"].as_str().expect("a law"), f64::NAN).expect("a known law")
+}
+
+/// The times of a case.
+fn times(case: &Value) -> Vec<f64> {
+    case["impacts"].as_array().expect("impacts").iter().map(|impact| number(&impact["t"])).collect()
+}
+
+/// Asserts that the first impacts come at their times.
+fn assert_times(label: &str, impacts: &Impacts, case: &Value, first: usize, bound: f64) {
+    let expected = times(case);
+    assert!(impacts.times.len() >= first.min(expected.len()), "{label}: {} impacts", impacts.times.len());
+    for (k, (actual, expected)) in impacts.times.iter().zip(&expected).take(first).enumerate() {
+        assert!((actual - expected).abs() < bound, "{label}: impact {} at {actual}, not {expected}", k + 1);
+    }
+}
+
+fn disk(case: &Value) -> (RollingDisk, <RollingDisk as dalembert::VectorField>::State) {
+    let mut disk = RollingDisk::default();
+    (disk.ta, disk.tb) = (number(&case["parameters"]["ta"]), number(&case["parameters"]["tb"]));
+    let at = |name: &str| number(&case["initial"][name]);
+    let (phi, roll) = (at("phi"), at("theta_dot"));
+    let qdot = [disk.R * phi.cos() * roll, disk.R * phi.sin() * roll, roll, at("phi_dot")];
+    let state = disk.state(0.0, &[at("x"), at("y"), at("theta"), phi].into(), &qdot.into()).expect("a state");
+    (disk, state)
+}
+
+#[test]
+fn the_rolling_disk_meets_its_impacts() {
+    for case in read("rolling_disk_trajectories")["cases"].as_array().expect("cases") {
+        let label = format!("{} {}", case["label"], case["law"]);
+        let (disk, state) = disk(case);
+        let (impacts, _) = run(&disk, state, law_of(case), 20, dop853(1e-13));
+        let regular = case["label"].as_str().is_some_and(|label| label.starts_with("circle"));
+        assert_times(&label, &impacts, case, if regular { 20 } else { 5 }, 1e-9);
+        for (impact, surface) in case["impacts"].as_array().expect("impacts").iter().zip(&impacts.surfaces).take(5) {
+            assert_eq!(impact["edge"], RollingDisk::DESCRIPTION.surfaces[*surface].name);
+        }
+    }
+}
+
+/// The elliptical table amplifies errors; a hand-written DOP853 in velocities reaches these errors at impact 20.
+const BY_HAND: [(f64, f64); 5] = [(1e-6, 9.7e-2), (1e-8, 5.2e-5), (1e-10, 1.0e-6), (1e-12, 6.2e-8), (1e-14, 6.4e-10)];
+
+#[test]
+fn the_disk_on_the_ellipse_is_no_worse_than_ten_times_a_hand_written_integrator() {
+    let file = read("rolling_disk_trajectories");
+    let case = &file["cases"][2];
+    assert_eq!((case["law"].as_str(), number(&case["parameters"]["ta"])), (Some("elastic"), 0.15));
+    let (disk, state) = disk(case);
+    let expected = times(case)[19];
+    for (tol, by_hand) in BY_HAND {
+        let (impacts, _) = run(&disk, state, Law::Elastic, 20, dop853(tol));
+        let error = (impacts.times[19] - expected).abs();
+        println!("tol {tol:e}: impact 20 off by {error:.2e}, by hand {by_hand:.1e}");
+        assert!(error <= 10.0 * by_hand, "tol {tol:e}: {error:e} against {by_hand:e}");
+    }
+}
+
+fn sleigh_state(case: &Value) -> (ChaplyginSleigh, <ChaplyginSleigh as dalembert::VectorField>::State) {
+    let sleigh = ChaplyginSleigh::default();
+    let initial = numbers(&case["initial"]);
+    let [x, y, theta, v, w] = initial[..] else { panic!("five numbers") };
+    let qdot = [v * theta.cos(), v * theta.sin(), w];
+    let state = sleigh.state(0.0, &[x, y, theta].into(), &qdot.into()).expect("a state");
+    (sleigh, state)
+}
+
+#[test]
+fn the_sleigh_billiard_meets_its_impacts() {
+    for case in read("chaplygin_sleigh_trajectories")["billiard"].as_array().expect("cases") {
+        let (sleigh, state) = sleigh_state(case);
+        let count = times(case).len();
+        let (impacts, run) = run(&sleigh, state, law_of(case), count, dop853(1e-13));
+        let label = format!("sleigh {} {}", case["law"], case["initial"]);
+        assert_times(&label, &impacts, case, 5, 1e-9);
+        let infeasible = case["stopped_because_law_infeasible"].as_bool().expect("a flag");
+        let penetrating = matches!(run.outcome, Outcome::StillPenetrating { .. });
+        assert_eq!(penetrating, infeasible, "{label}: {}", run.outcome);
+    }
+}
+
+#[test]
+fn the_free_sleigh_passes_its_checkpoints() {
+    for case in read("chaplygin_sleigh_trajectories")["free"].as_array().expect("cases") {
+        let (sleigh, state) = sleigh_state(case);
+        for checkpoint in case["checkpoints"].as_array().expect("checkpoints") {
+            let t = number(&checkpoint["t"]);
+            let run = Simulation::new(&sleigh, dop853(1e-13), ()).run(0.0, state, t, &mut ()).expect("a start");
+            let expected = numbers(&checkpoint["state"]);
+            for (actual, expected) in run.state.iter().zip(&expected).take(3) {
+                assert!((actual - expected).abs() < 1e-9, "t = {t}: {actual} for {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_rolling_ball_meets_its_impacts() {
+    for case in read("rolling_ball_trajectories")["cases"].as_array().expect("cases") {
+        let ball = RollingBallEuler::default();
+        let q: [f64; 5] = numbers(&case["initial_q"]).try_into().expect("five");
+        let [phi_dot, theta_dot, psi_dot] = numbers(&case["initial_independent_qdot(phi,theta,psi)"])[..] else {
+            panic!("three numbers")
+        };
+        let named = [0.0, 0.0, 1.0, 1.0, 1.0].into();
+        let given = [0.0, 0.0, phi_dot, theta_dot, psi_dot].into();
+        let qdot = ball.complete_velocity(0.0, &q.into(), &given, &named).expect("velocities");
+        let state = ball.state(0.0, &q.into(), &qdot).expect("a state");
+        let (impacts, run) = run(&ball, state, law_of(case), 12, dop853(1e-13));
+        assert_eq!(run.outcome, Outcome::ImpactBudget, "the chart is not left in these cases");
+        assert_times(&format!("ball {}", case["law"]), &impacts, case, 12, 1e-9);
+    }
+}
+
+#[test]
+fn the_point_billiard_meets_its_impacts() {
+    for case in read("point_billiard_trajectories")["cases"].as_array().expect("cases") {
+        let table = PointBilliard { ta: number(&case["ta"]), tb: number(&case["tb"]), ..PointBilliard::default() };
+        let [x, y, vx, vy] = numbers(&case["initial"])[..] else { panic!("four numbers") };
+        let state = table.state(0.0, &[x, y].into(), &[vx, vy].into()).expect("a state");
+        let (impacts, _) = run(&table, state, Law::Elastic, 25, dop853(1e-13));
+        assert_times(&format!("point billiard {}", case["ta"]), &impacts, case, 25, 1e-9);
+    }
+}
+
+#[test]
+fn the_bouncing_ball_meets_its_impacts() {
+    for case in read("bouncing_ball_trajectories")["cases"].as_array().expect("cases") {
+        let ball = BouncingBall { m: number(&case["m"]), g: number(&case["g"]) };
+        let (x0, v0, e) = (number(&case["x0"]), number(&case["v0"]), number(&case["e"]));
+        let state = ball.state(0.0, &[x0].into(), &[v0].into()).expect("a state");
+        let count = times(case).len();
+        let (impacts, run) = run(&ball, state, Law::Restitution(e), count, dop853(1e-13));
+        assert_times(&format!("ball e = {e}"), &impacts, case, count, 1e-9);
+        assert_eq!(run.outcome, Outcome::ImpactBudget);
+    }
+}
+
+/// Errors at impact 10 of the elastic sleigh billiard over a ladder of tolerances.
+fn ladder<Step>(tolerances: &[f64], stepper: impl Fn(f64) -> Step) -> Vec<f64>
+where
+    Step: Stepper<ChaplyginSleigh>,
+{
+    let file = read("chaplygin_sleigh_trajectories");
+    let case = &file["billiard"][0];
+    let (sleigh, state) = sleigh_state(case);
+    let expected = times(case)[9];
+    tolerances
+        .iter()
+        .map(|&tol| (run(&sleigh, state, Law::Elastic, 10, stepper(tol)).0.times[9] - expected).abs())
+        .collect()
+}
+
+/// The slope of log error over log tolerance, by least squares.
+fn slope(tolerances: &[f64], errors: &[f64]) -> f64 {
+    let points: Vec<(f64, f64)> = tolerances.iter().zip(errors).map(|(t, e)| (t.log10(), e.log10())).collect();
+    let n = points.len() as f64;
+    let (mx, my) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
+    points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>() / points.iter().map(|p| (p.0 - mx).powi(2)).sum::<f64>()
+}
+
+/// With error control per step an error estimate of order q makes the global error fall like tol^(p/(q + 1)): 8/8
+/// for DOP853, 5/5 for Dormand-Prince 5(4).
+#[test]
+fn errors_fall_with_the_tolerance() {
+    let tolerances = [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+    let high = ladder(&tolerances, dop853);
+    let low = ladder(&tolerances, |tol| DormandPrince5::new(Tolerance::new(tol).expect("a tolerance")));
+    for (name, errors) in [("dop853", high), ("dopri5", low)] {
+        let slope = slope(&tolerances, &errors);
+        println!("{name}: {errors:?}, slope {slope:.2}");
+        assert!((0.75..1.35).contains(&slope), "{name}: slope {slope}, {errors:?}");
+    }
+}

@@ -1,0 +1,41 @@
+//! The command line, run inside the process.
+
+use std::io::Cursor;
+
+use dalembert_cli::{Entry, Exit, Streams};
+
+/// What one command line gave.
+#[derive(Debug)]
+pub struct Finished {
+    /// The exit.
+    pub exit: Exit,
+    /// The standard output.
+    pub output: String,
+    /// The standard error.
+    pub errors: String,
+}
+
+/// Every model that tests know: the shipped ones and those of [`crate::systems`].
+pub fn models() -> Vec<Entry> {
+    let mut models = dalembert_models::all();
+    models.extend(crate::systems::all());
+    models
+}
+
+/// Runs `dalembert` with these arguments and this standard input.
+pub fn dalembert(arguments: &[&str], input: &str) -> Finished {
+    let (mut output, mut errors) = (Vec::new(), Vec::new());
+    let mut streams = Streams {
+        input: &mut Cursor::new(input),
+        output: &mut output,
+        errors: &mut errors,
+        terminal: false,
+    };
+    let line = ["dalembert"].iter().chain(arguments);
+    let exit = dalembert_cli::run_with(line, &models(), &mut streams);
+    Finished {
+        exit,
+        output: String::from_utf8_lossy(&output).into_owned(),
+        errors: String::from_utf8_lossy(&errors).into_owned(),
+    }
+}

@@ -1,0 +1,93 @@
+//! Random states with a fixed seed.
+
+use dalembert::{Described, StateVector, System};
+
+/// A small generator (SplitMix64): the same numbers everywhere.
+#[derive(Debug, Clone)]
+pub struct Random(u64);
+
+impl Random {
+    /// A generator with this seed.
+    pub const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// A number in `[low, high)`.
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+        let unit = (self.next() >> 11) as f64 / (1_u64 << 53) as f64;
+        low + (high - low) * unit
+    }
+
+    /// A vector with components in `[low, high)`.
+    pub fn vector<V: StateVector>(&mut self, low: f64, high: f64) -> V {
+        let mut vector = V::zeros();
+        vector.as_mut_slice().iter_mut().for_each(|component| *component = self.within(low, high));
+        vector
+    }
+}
+
+/// Random states of a system inside its chart, projected on the constraints.
+///
+/// # Panics
+/// When a state cannot be made.
+pub fn states<S: Described>(system: &S, count: usize, seed: u64) -> Vec<S::State> {
+    let mut random = Random::new(seed);
+    (0..count)
+        .map(|_| {
+            // Inside every shipped chart: intervals are (0, pi).
+            let q: S::Vector = random.vector(0.1, 1.4);
+            let qdot: S::Vector = random.vector(-1.0, 1.0);
+            system.state_projected(0.0, &q, &qdot).expect("a state")
+        })
+        .collect()
+}
+
+/// Calls a macro-like function for every system that is known to tests: `visit` must be generic.
+pub trait Visitor {
+    /// Visits one system.
+    fn visit<S: Described + dalembert::Scene>(&mut self, system: S);
+}
+
+/// Visits every shipped model and every system of [`crate::systems`], at their defaults.
+pub fn visit_all(visitor: &mut impl Visitor) {
+    use crate::systems::{
+        AffineSleigh, DampedSleigh, IntegrableBead, MagneticDisk, MovingWallDisk, Rheonomic, TableWall, WalkerFootSlip,
+        WalkerWithMultiplier,
+    };
+    use dalembert_models::{
+        BallOnRotatingTable, BouncingBall, Chain2, Chain3, Chain4, Chain8, Chain16, ChaplyginSleigh, DoublePendulum,
+        HarmonicOscillator, HolonomicBeadOnEllipses, PointBilliard, RollingBallEuler, RollingDisk, TwoWheelsRod,
+    };
+    visitor.visit(BallOnRotatingTable::default());
+    visitor.visit(BouncingBall::default());
+    visitor.visit(Chain2::default());
+    visitor.visit(Chain3::default());
+    visitor.visit(Chain4::default());
+    visitor.visit(Chain8::default());
+    visitor.visit(Chain16::default());
+    visitor.visit(ChaplyginSleigh::default());
+    visitor.visit(DoublePendulum::default());
+    visitor.visit(HarmonicOscillator::default());
+    visitor.visit(HolonomicBeadOnEllipses::default());
+    visitor.visit(PointBilliard::default());
+    visitor.visit(RollingBallEuler::default());
+    visitor.visit(RollingDisk::default());
+    visitor.visit(TwoWheelsRod::default());
+    visitor.visit(AffineSleigh::default());
+    visitor.visit(TableWall::default());
+    visitor.visit(MagneticDisk::default());
+    visitor.visit(DampedSleigh::default());
+    visitor.visit(IntegrableBead::default());
+    visitor.visit(MovingWallDisk::default());
+    visitor.visit(Rheonomic::default());
+    visitor.visit(WalkerWithMultiplier::default());
+    visitor.visit(WalkerFootSlip::default());
+}

@@ -1,0 +1,166 @@
+//! Systems that only tests declare: affine constraints, velocity-linear terms, time, forces, integrable constraints.
+//!
+//! Names, order, parameters and surfaces are those of the reference files in `tests/reference`.
+
+dalembert::model! {
+    /// Chaplygin sleigh on a support with a cross flow: affine constraint.
+    pub AffineSleigh {
+        coordinates { x; y; theta: angle; }
+        parameters { m > 0 = 1; I > 0 = 1; a = 1/5; len > 0 = 1/4; ta > 0 = 2; tb > 0 = 1; }
+        let table(u, v) = 1 - u^2/ta^2 - v^2/tb^2;
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (I + m*a^2)/2*dot(theta)^2
+            + a*m*dot(theta)*(-dot(x)*sin(theta) + dot(y)*cos(theta));
+        constraints { blade: -sin(theta)*d(x) + cos(theta)*d(y) + (x^2*y + sin(theta))*d(t) = 0; }
+        impacts {
+            wall: table(x + len*cos(theta), y + len*sin(theta)) >= 0;
+            wall_behind: table(x - len*cos(theta), y - len*sin(theta)) >= 0;
+        }
+    }
+}
+
+dalembert::model! {
+    /// Ball on a turning table with a wall that stands still.
+    pub TableWall {
+        coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
+        parameters { r > 0 = 1; k > 0 = 2/3; Om = 1/2; ta > 0 = 3; tb > 0 = 2; }
+        lagrangian = 1/2*(dot(x)^2 + dot(y)^2)
+            + k^2/2*(dot(phi)^2 + 2*dot(phi)*dot(psi)*cos(theta) + dot(psi)^2 + dot(theta)^2);
+        constraints {
+            rolling_x: dot(x) + r*sin(theta)*cos(psi)*dot(phi) - r*sin(psi)*dot(theta) = -Om*y;
+            rolling_y: dot(y) + r*sin(psi)*sin(theta)*dot(phi) + r*cos(psi)*dot(theta) = Om*x;
+        }
+        impacts { rim: 1 - y^2/tb^2 - x^2/ta^2 >= 0; }
+    }
+}
+
+dalembert::model! {
+    /// Rolling disk with a charge in a magnetic field: velocity-linear terms and a potential.
+    pub MagneticDisk {
+        coordinates { x; y; theta: angle; phi: angle; }
+        parameters {
+            m > 0 = 3/2; R > 0 = 1/4; I > 0 = 1/5; J > 0 = 1/8; b = 4/5; c = 3/10; k >= 0 = 1/2; s = 2/5;
+            ta > 0 = 2; tb > 0 = 3/2;
+        }
+        let table(u, v) = 1 - u^2/ta^2 - v^2/tb^2;
+        lagrangian = I*dot(theta)^2/2 + J*dot(phi)^2/2 + b*(x*dot(y) - dot(x)*y)/2 + c*dot(theta)*cos(phi)
+            - k*(x^2 + 2*y^2)/2 + m*(dot(x)^2 + dot(y)^2)/2 - s*sin(phi);
+        constraints {
+            rolling_x: d(x) - R*cos(phi)*d(theta) = 0;
+            rolling_y: d(y) - R*sin(phi)*d(theta) = 0;
+        }
+        impacts {
+            leading_edge: table(x + R*cos(phi), y + R*sin(phi)) >= 0;
+            trailing_edge: table(x - R*cos(phi), y - R*sin(phi)) >= 0;
+        }
+    }
+}
+
+dalembert::model! {
+    /// Chaplygin sleigh with linear and cubic friction.
+    pub DampedSleigh {
+        coordinates { x; y; theta: angle; }
+        parameters {
+            m > 0 = 1; I > 0 = 1; a = 1/5; c >= 0 = 3/10; k >= 0 = 1/10; len > 0 = 1/4; ta > 0 = 2; tb > 0 = 1;
+        }
+        let table(u, v) = 1 - u^2/ta^2 - v^2/tb^2;
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (I + m*a^2)/2*dot(theta)^2
+            + a*m*dot(theta)*(-dot(x)*sin(theta) + dot(y)*cos(theta));
+        constraints { blade: -sin(theta)*d(x) + cos(theta)*d(y) = 0; }
+        forces {
+            drag: -c*(dot(x)*d(x) + dot(y)*d(y));
+            spin: -k*dot(theta)*(1 + dot(theta)^2)*d(theta);
+        }
+        impacts { front_tip: table(x + len*cos(theta), y + len*sin(theta)) >= 0; }
+    }
+}
+
+dalembert::model! {
+    /// Bead on an ellipse with gravity and a spring: an integrable constraint kept on position level.
+    pub IntegrableBead {
+        coordinates { x; y; }
+        parameters { m > 0 = 1; g = 1; k >= 0 = 3/4; w = 7/4; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) - m*g*y - k/2*(x - 1)^2;
+        constraints { ellipse: d(x^2/4 + y^2 - 1) = 0; }
+        impacts { slope: w - x - y/3 >= 0; }
+    }
+}
+
+dalembert::model! {
+    /// Rolling disk inside an ellipse that moves with constant velocity.
+    pub MovingWallDisk {
+        coordinates { x; y; theta: angle; phi: angle; }
+        parameters {
+            m > 0 = 3/2; R > 0 = 1/4; I > 0 = 1/5; J > 0 = 1/8; ta > 0 = 2; tb > 0 = 3/2; wx = 1/2; wy = -1/4;
+        }
+        let table(u, v) = 1 - (u - wx*t)^2/ta^2 - (v - wy*t)^2/tb^2;
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + J/2*dot(phi)^2;
+        constraints {
+            rolling_x: d(x) - R*cos(phi)*d(theta) = 0;
+            rolling_y: d(y) - R*sin(phi)*d(theta) = 0;
+        }
+        impacts {
+            leading_edge: table(x + R*cos(phi), y + R*sin(phi)) >= 0;
+            trailing_edge: table(x - R*cos(phi), y - R*sin(phi)) >= 0;
+        }
+    }
+}
+
+dalembert::model! {
+    /// Everything depends on time: metric and linear terms, potential, constraint, force and wall.
+    pub Rheonomic {
+        coordinates { x; y; z; }
+        parameters { m > 0 = 1; b = 3/10; k >= 0 = 1/2; s = 1/4; c >= 0 = 1/5; d_ = 1/10; w = 3/2; }
+        lagrangian = b*t*dot(x)*z/2 + b*x*dot(y)*cos(t) - k*(x^2 + z^2)/2
+            + m*(dot(x)^2 + dot(y)^2 + dot(z)^2*(x^2 + 1))/2 - s*x*sin(2*t);
+        constraints { sweep: x*(-t/3 - 1)*d(x) + d(y) + sin(t)*d(t) = 0; }
+        forces {
+            friction: -c*dot(x)*(dot(z)^2 + 1)*d(x) + (-c*dot(y) + d_*dot(z)*sin(t))*d(y)
+                + (-c*dot(z)^3 - d_*dot(x))*d(z);
+        }
+        impacts { wall: w - x - z^2/4 + sin(t)/5 >= 0; }
+    }
+}
+
+dalembert::model! {
+    /// Walker with its foot held by a multiplier (W. Clark, thesis, section 4.2, signs as they should be).
+    pub WalkerWithMultiplier {
+        coordinates { x_c; y_c; theta; }
+        parameters { m > 0 = 1; I > 0 = 1/4; lf > 0 = 1/2; b >= 0 = 1; g = 1; alpha = 1/10; }
+        lagrangian = m/2*(dot(x_c)^2 + dot(y_c)^2) + I/2*dot(theta)^2
+            - g*m*(lf*cos(alpha)*cos(theta) - x_c*sin(alpha));
+        constraints { foot: d(y_c) + lf*sin(theta)*d(theta) = 0; }
+        forces {
+            slip: -b*(dot(x_c) + lf*dot(theta)*cos(theta))*d(x_c)
+                - b*lf*cos(theta)*(dot(x_c) + lf*dot(theta)*cos(theta))*d(theta);
+        }
+    }
+}
+
+dalembert::model! {
+    /// Walker with the constraint eliminated.
+    pub WalkerFootSlip {
+        coordinates { x_c; theta; }
+        parameters { m > 0 = 1; I > 0 = 1/4; lf > 0 = 1/2; b >= 0 = 1; g = 1; alpha = 1/10; delta > 0 = 3/10; }
+        lagrangian = m/2*(lf^2*dot(theta)^2*sin(theta)^2 + dot(x_c)^2) + I/2*dot(theta)^2
+            - g*m*(lf*cos(alpha)*cos(theta) - x_c*sin(alpha));
+        forces {
+            slip: -b*(dot(x_c) + lf*dot(theta)*cos(theta))*d(x_c)
+                - b*lf*cos(theta)*(dot(x_c) + lf*dot(theta)*cos(theta))*d(theta);
+        }
+    }
+}
+
+/// Every system of this file, for the command line.
+pub fn all() -> Vec<dalembert_cli::Entry> {
+    dalembert_cli::models![
+        AffineSleigh,
+        TableWall,
+        MagneticDisk,
+        DampedSleigh,
+        IntegrableBead,
+        MovingWallDisk,
+        Rheonomic,
+        WalkerWithMultiplier,
+        WalkerFootSlip,
+    ]
+}
