@@ -148,8 +148,8 @@ macro_rules! agrees {
 }
 
 agrees! {
-    rolling_disk_agrees "rolling_disk" "rolling_disk" 600;
-    chaplygin_sleigh_agrees "chaplygin_sleigh" "chaplygin_sleigh" 600;
+    rolling_disk_agrees "rolling_disk" "rolling_disk" 500;
+    chaplygin_sleigh_agrees "chaplygin_sleigh" "chaplygin_sleigh" 500;
     rolling_ball_euler_agrees "rolling_ball_euler" "rolling_ball_euler" 400;
     ball_on_rotating_table_agrees "ball_on_rotating_table" "rotating_table_states" 200;
     two_wheels_rod_agrees "two_wheels_rod" "cv64_two_wheels" 400;

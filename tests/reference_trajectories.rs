@@ -60,12 +60,18 @@ fn times(case: &Value) -> Vec<f64> {
 }
 
 /// Asserts that the first impacts come at their times.
-fn assert_times(label: &str, impacts: &Impacts, case: &Value, first: usize, bound: f64) {
+fn assert_times(label: &str, impacts: &Impacts, case: &Value, first: usize, bound: impl Fn(usize) -> f64) {
     let expected = times(case);
     assert!(impacts.times.len() >= first.min(expected.len()), "{label}: {} impacts", impacts.times.len());
     for (k, (actual, expected)) in impacts.times.iter().zip(&expected).take(first).enumerate() {
-        assert!((actual - expected).abs() < bound, "{label}: impact {} at {actual}, not {expected}", k + 1);
+        let error = (actual - expected).abs();
+        assert!(error < bound(k), "{label}: impact {} at {actual}, not {expected}: {error:.1e}", k + 1);
     }
+}
+
+/// The bound of the regular cases and of the first five impacts of every case.
+fn billionth(_: usize) -> f64 {
+    1e-9
 }
 
 fn disk(case: &Value) -> (RollingDisk, <RollingDisk as dalembert::VectorField>::State) {
@@ -84,12 +90,27 @@ fn the_rolling_disk_meets_its_impacts() {
         let label = format!("{} {}", case["label"], case["law"]);
         let (disk, state) = disk(case);
         let (impacts, _) = run(&disk, state, law_of(case), 20, dop853(1e-13));
-        let regular = case["label"].as_str().is_some_and(|label| label.starts_with("circle"));
-        assert_times(&label, &impacts, case, if regular { 20 } else { 5 }, 1e-9);
+        let regular = number(&case["parameters"]["ta"]) == number(&case["parameters"]["tb"]);
+        match (regular, law_of(case)) {
+            (true, Law::Elastic) => assert_times(&label, &impacts, case, 20, billionth),
+            (true, _) => assert_grazing_times(&label, &impacts, case),
+            (false, _) => assert_times(&label, &impacts, case, 5, billionth),
+        }
         for (impact, surface) in case["impacts"].as_array().expect("impacts").iter().zip(&impacts.surfaces).take(5) {
             assert_eq!(impact["edge"], RollingDisk::DESCRIPTION.surfaces[*surface].name);
         }
     }
+}
+
+/// On the circular table the nonholonomic plastic disk settles into running along the rim: the gap rate at impact
+/// falls by 0.37 from one impact to the next, down to 1e-8. A gap known to `eta` gives the time of a crossing to
+/// `2 eta / |gap rate|` and no better, whatever the method; `eta` = 1e-13 is 16 units in the last place of the
+/// terms of h and the error of a second of integration at tolerance 1e-13. Impacts 18 to 20, where a rounding of h decides
+/// whether the rim is met at all, are left out.
+fn assert_grazing_times(label: &str, impacts: &Impacts, case: &Value) {
+    let rate = |k: usize| number(&case["impacts"][k]["dh_minus"]).abs();
+    assert_times(label, impacts, case, 10, billionth);
+    assert_times(label, impacts, case, 17, |k| (2e-13 / rate(k)).max(1e-9));
 }
 
 /// The elliptical table amplifies errors; a hand-written DOP853 in velocities reaches these errors at impact 20.
@@ -126,7 +147,7 @@ fn the_sleigh_billiard_meets_its_impacts() {
         let count = times(case).len();
         let (impacts, run) = run(&sleigh, state, law_of(case), count, dop853(1e-13));
         let label = format!("sleigh {} {}", case["law"], case["initial"]);
-        assert_times(&label, &impacts, case, 5, 1e-9);
+        assert_times(&label, &impacts, case, 5, billionth);
         let infeasible = case["stopped_because_law_infeasible"].as_bool().expect("a flag");
         let penetrating = matches!(run.outcome, Outcome::StillPenetrating { .. });
         assert_eq!(penetrating, infeasible, "{label}: {}", run.outcome);
@@ -162,7 +183,7 @@ fn the_rolling_ball_meets_its_impacts() {
         let state = ball.state(0.0, &q.into(), &qdot).expect("a state");
         let (impacts, run) = run(&ball, state, law_of(case), 12, dop853(1e-13));
         assert_eq!(run.outcome, Outcome::ImpactBudget, "the chart is not left in these cases");
-        assert_times(&format!("ball {}", case["law"]), &impacts, case, 12, 1e-9);
+        assert_times(&format!("ball {}", case["law"]), &impacts, case, 12, billionth);
     }
 }
 
@@ -173,7 +194,7 @@ fn the_point_billiard_meets_its_impacts() {
         let [x, y, vx, vy] = numbers(&case["initial"])[..] else { panic!("four numbers") };
         let state = table.state(0.0, &[x, y].into(), &[vx, vy].into()).expect("a state");
         let (impacts, _) = run(&table, state, Law::Elastic, 25, dop853(1e-13));
-        assert_times(&format!("point billiard {}", case["ta"]), &impacts, case, 25, 1e-9);
+        assert_times(&format!("point billiard {}", case["ta"]), &impacts, case, 25, billionth);
     }
 }
 
@@ -185,24 +206,28 @@ fn the_bouncing_ball_meets_its_impacts() {
         let state = ball.state(0.0, &[x0].into(), &[v0].into()).expect("a state");
         let count = times(case).len();
         let (impacts, run) = run(&ball, state, Law::Restitution(e), count, dop853(1e-13));
-        assert_times(&format!("ball e = {e}"), &impacts, case, count, 1e-9);
+        assert_times(&format!("ball e = {e}"), &impacts, case, count, billionth);
         assert_eq!(run.outcome, Outcome::ImpactBudget);
     }
 }
 
-/// Errors at impact 10 of the elastic sleigh billiard over a ladder of tolerances.
+/// The largest errors of the first eight impacts of the elastic sleigh billiards over a ladder of tolerances.
 fn ladder<Step>(tolerances: &[f64], stepper: impl Fn(f64) -> Step) -> Vec<f64>
 where
     Step: Stepper<ChaplyginSleigh>,
 {
     let file = read("chaplygin_sleigh_trajectories");
-    let case = &file["billiard"][0];
-    let (sleigh, state) = sleigh_state(case);
-    let expected = times(case)[9];
-    tolerances
-        .iter()
-        .map(|&tol| (run(&sleigh, state, Law::Elastic, 10, stepper(tol)).0.times[9] - expected).abs())
-        .collect()
+    let worst = |tol: f64| {
+        let cases = [&file["billiard"][0], &file["billiard"][2]];
+        let errors = cases.into_iter().flat_map(|case| {
+            let (sleigh, state) = sleigh_state(case);
+            let (impacts, _) = run(&sleigh, state, Law::Elastic, 8, stepper(tol));
+            let expected = times(case);
+            impacts.times.into_iter().zip(expected).map(|(a, e)| (a - e).abs()).collect::<Vec<_>>()
+        });
+        errors.fold(0.0, f64::max)
+    };
+    tolerances.iter().map(|&tol| worst(tol)).collect()
 }
 
 /// The slope of log error over log tolerance, by least squares.
@@ -217,7 +242,7 @@ fn slope(tolerances: &[f64], errors: &[f64]) -> f64 {
 /// for DOP853, 5/5 for Dormand-Prince 5(4).
 #[test]
 fn errors_fall_with_the_tolerance() {
-    let tolerances = [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+    let tolerances = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
     let high = ladder(&tolerances, dop853);
     let low = ladder(&tolerances, |tol| DormandPrince5::new(Tolerance::new(tol).expect("a tolerance")));
     for (name, errors) in [("dop853", high), ("dopri5", low)] {

@@ -24,7 +24,10 @@ impl Location {
 
     /// From the beginning of `self` to the end of `end`.
     pub fn to(self, end: Self) -> Self {
-        Self { first: self.first, last: end.last }
+        Self {
+            first: self.first,
+            last: end.last,
+        }
     }
 
     /// The place between the braces of `group` where something is missing: its opening brace.
@@ -35,7 +38,10 @@ impl Location {
 
 impl From<Span> for Location {
     fn from(span: Span) -> Self {
-        Self { first: span, last: span }
+        Self {
+            first: span,
+            last: span,
+        }
     }
 }
 
@@ -69,7 +75,9 @@ impl Diagnostics {
 
     /// Records an error; help and further places may be added to what is returned.
     pub fn error(&mut self, at: Location, text: impl Into<String>) -> &mut Diagnostic {
-        self.errors.push(Diagnostic { places: vec![(at, text.into())] });
+        self.errors.push(Diagnostic {
+            places: vec![(at, text.into())],
+        });
         let last = self.errors.len() - 1;
         &mut self.errors[last]
     }
@@ -93,7 +101,11 @@ impl Diagnostics {
     /// # Errors
     /// The errors, if there were any.
     pub fn finish<T>(self, value: T) -> Result<T, Self> {
-        if self.is_empty() { Ok(value) } else { Err(self) }
+        if self.is_empty() {
+            Ok(value)
+        } else {
+            Err(self)
+        }
     }
 
     /// The errors in the order they were met.
@@ -137,7 +149,11 @@ impl Diagnostic {
 /// The text followed by a help line; an empty help adds nothing.
 fn with_help(text: String, help: impl fmt::Display) -> String {
     let help = help.to_string();
-    if help.is_empty() { text } else { format!("{text}\nhelp: {help}") }
+    if help.is_empty() {
+        text
+    } else {
+        format!("{text}\nhelp: {help}")
+    }
 }
 
 /// `::core::compile_error! { text }`, placed so that the compiler underlines `at`.
@@ -149,7 +165,10 @@ fn compile_error(at: Location, text: &str) -> TokenStream {
     };
     let mut message = proc_macro2::Literal::string(text);
     message.set_span(at.last);
-    let mut body = Group::new(proc_macro2::Delimiter::Brace, TokenTree::from(message).into());
+    let mut body = Group::new(
+        proc_macro2::Delimiter::Brace,
+        TokenTree::from(message).into(),
+    );
     body.set_span(at.last);
     [
         punct(':', Spacing::Joint),
@@ -168,7 +187,9 @@ fn compile_error(at: Location, text: &str) -> TokenStream {
 /// The candidate most like `name`, if one is near enough to be meant: at most one edit for three letters.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = name.chars().count().div_ceil(3);
-    let near = candidates.into_iter().map(|candidate| (edit_distance(name, candidate), candidate));
+    let near = candidates
+        .into_iter()
+        .map(|candidate| (edit_distance(name, candidate), candidate));
     near.filter(|(distance, candidate)| *distance <= limit && *distance < candidate.chars().count())
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
@@ -218,13 +239,19 @@ pub(crate) fn reported(source: &str, diagnostics: &Diagnostics) -> Vec<(String, 
         let range = at.first.byte_range().start..at.last.byte_range().end;
         source.get(range).unwrap_or_default().to_owned()
     };
-    diagnostics.iter().map(|error| (error.message().to_owned(), stretch(error.places[0].0))).collect()
+    diagnostics
+        .iter()
+        .map(|error| (error.message().to_owned(), stretch(error.places[0].0)))
+        .collect()
 }
 
 /// For tests: takes the marks `«` and `»` off, and gives what stood between them.
 #[cfg(test)]
 pub(crate) fn unmarked(source: &str) -> (String, String) {
-    let marked = source.split_once('«').and_then(|(_, rest)| rest.split_once('»')).map_or("", |(marked, _)| marked);
+    let marked = source
+        .split_once('«')
+        .and_then(|(_, rest)| rest.split_once('»'))
+        .map_or("", |(marked, _)| marked);
     (source.replace(['«', '»'], ""), marked.to_owned())
 }
 
@@ -245,7 +272,10 @@ mod tests {
     fn every_place_becomes_a_compile_error() {
         let mut diagnostics = Diagnostics::new();
         let here = Location::from(Span::call_site());
-        diagnostics.error(here, "`x` declared again").help("choose another name").also(here, "first declared here");
+        diagnostics
+            .error(here, "`x` declared again")
+            .help("choose another name")
+            .also(here, "first declared here");
         let text = diagnostics.into_compile_error().to_string();
         assert_eq!(text.matches("compile_error").count(), 2);
         assert!(text.contains("help: choose another name"));

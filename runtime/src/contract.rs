@@ -177,7 +177,8 @@ pub trait Constrained: System {
     /// [`Fault`].
     fn multipliers(&self, t: f64, state: &Self::State) -> Result<Self::Multipliers, Fault>;
 
-    /// `eta^a(qdot) + eta^a_0`, and the sum of the absolute values of its terms: its natural scale.
+    /// `eta^a(qdot) + eta^a_0`, and the sum of the absolute values of its terms, sines and cosines counted as 1: its
+    /// natural scale.
     ///
     /// # Errors
     /// [`Fault`].

@@ -79,7 +79,8 @@ fn check<Sys: Constrained>(
     let rows = forms.chunks_exact(Sys::Vector::LEN.max(1));
     for (constraint, (form, affine)) in rows.zip(affine.as_slice()).enumerate() {
         let (residual, scale) = residual(form, *affine, velocities);
-        if !(residual.abs() <= ACCEPTED * scale) {
+        let holds = residual.abs() <= ACCEPTED * scale;
+        if !holds {
             return Err(StateError::OffConstraint { constraint, residual, scale });
         }
     }

@@ -63,7 +63,8 @@ impl<Sys: Constrained> Projection<Sys> {
         for (k, (value, level)) in excess.as_mut_slice().iter_mut().zip(self.levels.as_slice()).enumerate() {
             let scale = value.abs().max(level.abs());
             *value -= level;
-            if worst.is_none() && !(value.abs() <= THRESHOLD * scale) {
+            let holds = value.abs() <= THRESHOLD * scale;
+            if worst.is_none() && !holds {
                 worst = Some(k);
             }
         }
@@ -95,7 +96,7 @@ impl<Sys: Constrained> Default for Projection<Sys> {
 /// Whether a correction changes any digit of the positions.
 fn is_visible<V: StateVector>(q: &V, correction: &V) -> bool {
     let largest = |values: &V| values.as_slice().iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    !(largest(correction) <= f64::EPSILON * largest(q))
+    largest(correction) > f64::EPSILON * largest(q)
 }
 
 /// The first constraint violated by more than the threshold.
@@ -111,8 +112,9 @@ fn far<Sys: Constrained>(now: &Moment<'_, Sys>) -> Result<Option<usize>, Fault> 
 
 fn exceeding<Sys: Constrained>(now: &Moment<'_, Sys>, threshold: f64) -> Result<Option<usize>, Fault> {
     let (residuals, scales) = now.system.residuals(now.t, now.state)?;
-    let pairs = residuals.as_slice().iter().zip(scales.as_slice());
-    Ok(pairs.into_iter().position(|(residual, scale)| !(residual.abs() <= threshold * scale)))
+    let mut pairs = residuals.as_slice().iter().zip(scales.as_slice());
+    let holds = |(residual, scale): (&f64, &f64)| residual.abs() <= threshold * scale;
+    Ok(pairs.position(|pair| !holds(pair)))
 }
 
 impl<Sys: Constrained> Effect<Sys> for Projection<Sys> {

@@ -66,6 +66,7 @@ impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, S
             budget: self.step_budget,
             t: t0,
             late: 0.0,
+            flight: 0.0,
             state,
             counters: Counters::default(),
         };
@@ -86,6 +87,8 @@ struct Course<'a, Sys: System, Step, Effects> {
     t: f64,
     /// The part of the time that `t` cannot hold: lengths of flights add up without losing it.
     late: f64,
+    /// Time since the last cut, in full precision however short it is.
+    flight: f64,
     state: Sys::State,
     counters: Counters,
 }
@@ -126,6 +129,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             return self.leave_chart(coordinate, observer);
         }
         self.t = self.stepper.t_end();
+        self.flight += self.t - self.stepper.t_start();
         self.state = *self.stepper.end_state();
         let mut now =
             Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
@@ -137,8 +141,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
 
     /// The step ends at `theta`, where the effects act.
     fn cut<O: Observer<Sys>>(&mut self, theta: f64, observer: &mut O) -> Result<(), Outcome> {
-        let start = self.stepper.t_start();
-        let flight = if theta < 1.0 { theta * (self.stepper.t_end() - start) } else { self.stepper.t_end() - start };
+        let limit = FLIGHTS * (self.flight + theta * (self.stepper.t_end() - self.stepper.t_start()));
+        self.flight = 0.0;
         self.arrive(theta)?;
         let mut now =
             Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
@@ -147,7 +151,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         let mut now =
             Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
         self.effects.act(theta, &mut now, observer)?;
-        self.stepper.restart(self.system, self.t, &self.state, FLIGHTS * flight, &mut self.counters)?;
+        self.stepper.restart(self.system, self.t, &self.state, limit, &mut self.counters)?;
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! Random states with a fixed seed.
 
-use dalembert::{Described, StateVector, System};
+use dalembert::{Described, StateVector};
 
 /// A small generator (SplitMix64): the same numbers everywhere.
 #[derive(Debug, Clone)]

@@ -22,18 +22,30 @@ impl Modulus {
     /// The Mersenne prime `2^61 - 1`.
     pub const MERSENNE: Self = Self { deficit: 1 };
 
-    /// The Mersenne prime, then the largest primes `p` below it for which 2 and 3 are squares and `(p-1)/2` is prime
-    /// to 2, 3, 5, 7 and 11, so that roots of these degrees exist (`p = 23 mod 24`).
+    /// The Mersenne prime, then [`Modulus::POSITIVE`].
     pub const ALL: [Self; 9] = [
         Self::MERSENNE,
-        Self { deficit: 465 },
-        Self { deficit: 1425 },
-        Self { deficit: 2385 },
-        Self { deficit: 3105 },
-        Self { deficit: 3153 },
-        Self { deficit: 3465 },
-        Self { deficit: 4185 },
-        Self { deficit: 4473 },
+        Self::POSITIVE[0],
+        Self::POSITIVE[1],
+        Self::POSITIVE[2],
+        Self::POSITIVE[3],
+        Self::POSITIVE[4],
+        Self::POSITIVE[5],
+        Self::POSITIVE[6],
+        Self::POSITIVE[7],
+    ];
+
+    /// The largest primes below 2^61 for which 2, 3, 5, ..., 17 are squares, as positive numbers should be, and
+    /// `(p-1)/2` is prime to 2, 3, 5, 7 and 11, so that roots of these degrees exist (`p = 23 mod 24`).
+    pub const POSITIVE: [Self; 8] = [
+        Self { deficit: 11_913 },
+        Self { deficit: 116_673 },
+        Self { deficit: 132_033 },
+        Self { deficit: 148_593 },
+        Self { deficit: 150_993 },
+        Self { deficit: 155_193 },
+        Self { deficit: 204_033 },
+        Self { deficit: 219_153 },
     ];
 
     /// `p`
@@ -188,6 +200,24 @@ mod tests {
                 assert_eq!(modulus.pow(base, modulus.prime() - 1), 1);
             }
             assert_eq!(modulus.prime() % 4, 3);
+        }
+    }
+
+    #[test]
+    fn small_numbers_are_squares_and_have_roots_for_the_positive_moduli() {
+        for modulus in Modulus::POSITIVE {
+            assert!(
+                [2, 3, 5, 7, 11, 13, 17]
+                    .iter()
+                    .all(|number| modulus.is_square(*number))
+            );
+            for degree in [2, 3, 4, 5, 6, 7, 11] {
+                let root = modulus.pow(
+                    modulus.pow(6, modulus.root_exponent(degree).unwrap()),
+                    degree,
+                );
+                assert_eq!(root, 6);
+            }
         }
     }
 

@@ -36,7 +36,7 @@ impl Pool {
         let order = self.reachable(&roots);
         let profile = self.profile(&order);
         let mut best: Option<RankReport> = None;
-        let mut samples = SamplePoints::new(&profile);
+        let mut samples = SamplePoints::new(&profile, order.len());
         for _ in 0..SAMPLES {
             let report = samples.as_mut().and_then(|samples| {
                 samples.find(|point| {

@@ -1,7 +1,7 @@
-//! Simplification for presentation: `a cos(u)^2 + a sin(u)^2 -> a` and its two other readings, everywhere below a
-//! root.
+//! Simplification for presentation: squares and products of sines and cosines are collected, everywhere below a root.
 //!
-//! The rules keep the domain: `u` must be known finite. Work is bounded: larger expressions are returned unchanged.
+//! The rules keep the domain: an angle that vanishes must be known finite. Work is bounded: larger expressions are
+//! returned unchanged.
 
 use crate::node::{ExprId, Function, Node};
 use crate::pool::Pool;
@@ -21,9 +21,18 @@ struct Square {
     argument: ExprId,
 }
 
+/// A summand `coefficient * rest * functions[0](arguments[0]) * functions[1](arguments[1])`.
+struct Cross {
+    position: usize,
+    rest: ExprId,
+    functions: [Function; 2],
+    arguments: [ExprId; 2],
+}
+
 impl Pool {
-    /// An equal expression in which squares of sine and cosine with equal cofactors are collected:
-    /// `a cos^2 + a sin^2 -> a`, `a - a cos^2 -> a sin^2`, `a - a sin^2 -> a cos^2`.
+    /// An equal expression in which sines and cosines with equal cofactors are collected:
+    /// - `a cos(u)^2 + a sin(u)^2 -> a`, `a - a cos(u)^2 -> a sin(u)^2`, `a - a sin(u)^2 -> a cos(u)^2`;
+    /// - `a cos(u) cos(v) +- a sin(u) sin(v) -> a cos(u -+ v)`, `a sin(u) cos(v) +- a cos(u) sin(v) -> a sin(u +- v)`.
     pub fn simplify(&mut self, id: ExprId) -> ExprId {
         let order = self.reachable(&[id]);
         if order.len() > MAX_NODES {
@@ -33,14 +42,14 @@ impl Pool {
         for part in order {
             let node = self.node(part).clone();
             let rebuilt = self.map_operands(node, |operand| results.get(operand));
-            let collected = self.collect_squares(rebuilt);
+            let collected = self.collect_circular(rebuilt);
             results.set(part, collected);
         }
         results.get(id)
     }
 
     /// Applies the rules to the terms of one sum until none matches; each application removes a term.
-    fn collect_squares(&mut self, sum: ExprId) -> ExprId {
+    fn collect_circular(&mut self, sum: ExprId) -> ExprId {
         let mut sum = sum;
         loop {
             let (constant, mut terms) = self.linear_form(sum);
@@ -49,19 +58,20 @@ impl Pool {
             }
             let one = self.one();
             terms.push((constant, one));
-            let Some(terms) = self.collect_pair(terms) else {
+            let collected = self
+                .collect_square(&terms)
+                .or_else(|| self.collect_cross(&terms));
+            let Some(terms) = collected else {
                 return sum;
             };
             sum = self.combine(&terms);
         }
     }
 
-    /// The terms after one application of a rule; `None` if none applies.
-    fn collect_pair(
-        &mut self,
-        mut terms: Vec<(Rational, ExprId)>,
-    ) -> Option<Vec<(Rational, ExprId)>> {
-        let squares = self.squares(&terms);
+    /// The terms after one application of a rule for squares; `None` if none applies.
+    fn collect_square(&mut self, terms: &[(Rational, ExprId)]) -> Option<Vec<(Rational, ExprId)>> {
+        let squares = self.squares(terms);
+        let mut terms = terms.to_vec();
         for square in &squares {
             let coefficient = terms[square.position].0.clone();
             let partner = squares.iter().find(|other| {
@@ -88,26 +98,121 @@ impl Pool {
         None
     }
 
+    /// The terms after one application of a rule for two angles; `None` if none applies.
+    fn collect_cross(&mut self, terms: &[(Rational, ExprId)]) -> Option<Vec<(Rational, ExprId)>> {
+        let crosses = self.crosses(terms);
+        for cross in &crosses {
+            let coefficient = &terms[cross.position].0;
+            let partner = crosses.iter().find(|other| {
+                other.position > cross.position
+                    && (other.rest, other.arguments) == (cross.rest, cross.arguments)
+                    && other.functions == cross.functions.map(complement)
+                    && terms[other.position].0.abs() == coefficient.abs()
+            });
+            if let Some(partner) = partner {
+                let alike = terms[partner.position].0 == *coefficient;
+                let (sign, wave) = self.wave_of_two_angles(cross, alike);
+                let mut collected = terms.to_vec();
+                let product = self.mul(cross.rest, wave);
+                collected[cross.position] = (&sign * coefficient, product);
+                collected.swap_remove(partner.position);
+                return Some(collected);
+            }
+        }
+        None
+    }
+
+    /// The value of `functions(u, v) +- complements(u, v)` as a sign and one sine or cosine; plus if `alike`.
+    fn wave_of_two_angles(&mut self, cross: &Cross, alike: bool) -> (Rational, ExprId) {
+        let [u, v] = cross.arguments;
+        let signed = |positive| {
+            if positive {
+                Rational::ONE
+            } else {
+                Rational::MINUS_ONE
+            }
+        };
+        let (function, plus, sign) = match cross.functions {
+            [Function::Cos, Function::Cos] => (Function::Cos, !alike, true),
+            // sin sin +- cos cos = +- (cos cos +- sin sin)
+            [Function::Sin, Function::Sin] => (Function::Cos, !alike, alike),
+            [Function::Sin, _] => (Function::Sin, alike, true),
+            // cos sin +- sin cos = +- (sin cos +- cos sin)
+            _ => (Function::Sin, alike, alike),
+        };
+        let angle = self.combine(&[(Rational::ONE, u), (signed(plus), v)]);
+        (signed(sign), self.call(function, angle))
+    }
+
+    /// All ways to read the terms as two waves of different angles times a rest.
+    fn crosses(&mut self, terms: &[(Rational, ExprId)]) -> Vec<Cross> {
+        let mut crosses = Vec::new();
+        for (position, (_, term)) in terms.iter().enumerate() {
+            let Node::Product(factors) = self.node(*term).clone() else {
+                continue;
+            };
+            let waves: Vec<_> = (0..factors.len())
+                .filter_map(|index| Some((index, self.wave(&factors[index], &Rational::ONE)?)))
+                .collect();
+            for (index, (first, (f, u))) in waves.iter().enumerate() {
+                for (second, (g, v)) in &waves[index + 1..] {
+                    let rest = self.without(&factors, &[*first, *second], &Rational::ONE);
+                    // The same two angles in the same order, whichever factor came first.
+                    let (functions, arguments) = if u < v {
+                        ([*f, *g], [*u, *v])
+                    } else {
+                        ([*g, *f], [*v, *u])
+                    };
+                    crosses.push(Cross {
+                        position,
+                        rest,
+                        functions,
+                        arguments,
+                    });
+                }
+            }
+        }
+        crosses
+    }
+
+    /// Function and argument of a power of a sine or cosine that contains its `least`-th power.
+    fn wave(&self, factor: &(ExprId, Rational), least: &Rational) -> Option<(Function, ExprId)> {
+        let (base, exponent) = factor;
+        match *self.node(*base) {
+            Node::Call(function @ (Function::Sin | Function::Cos), argument) => {
+                (exponent.is_integer() && exponent >= least).then_some((function, argument))
+            }
+            _ => None,
+        }
+    }
+
+    /// The product of powers, the exponents at some positions lowered.
+    fn without(
+        &mut self,
+        factors: &[(ExprId, Rational)],
+        positions: &[usize],
+        amount: &Rational,
+    ) -> ExprId {
+        let mut rest = factors.to_vec();
+        for position in positions {
+            rest[*position].1 = &rest[*position].1 - amount;
+        }
+        rest.retain(|(_, exponent)| !exponent.is_zero());
+        self.power_product(&rest)
+    }
+
     /// All ways to read the terms as a square of a sine or cosine times a rest.
     fn squares(&mut self, terms: &[(Rational, ExprId)]) -> Vec<Square> {
+        let two = Rational::from(2);
         let mut squares = Vec::new();
         for (position, (_, term)) in terms.iter().enumerate() {
             let Node::Product(factors) = self.node(*term).clone() else {
                 continue;
             };
-            for (index, (base, exponent)) in factors.iter().enumerate() {
-                let Node::Call(function @ (Function::Sin | Function::Cos), argument) =
-                    *self.node(*base)
-                else {
-                    continue;
-                };
-                let lowered = exponent - &Rational::from(2);
-                let divisible = exponent.is_integer() && !lowered.is_negative();
-                if divisible && self.is_finite(argument) {
-                    let mut rest = factors.to_vec();
-                    rest[index].1 = lowered;
-                    rest.retain(|(_, exponent)| !exponent.is_zero());
-                    let rest = self.power_product(&rest);
+            for (index, factor) in factors.iter().enumerate() {
+                let wave = self.wave(factor, &two);
+                if let Some((function, argument)) = wave.filter(|(_, u)| self.is_finite(*u)) {
+                    let rest = self.without(&factors, &[index], &two);
                     squares.push(Square {
                         position,
                         rest,
@@ -132,6 +237,35 @@ fn complement(function: Function) -> Function {
 #[cfg(test)]
 mod tests {
     use crate::fixture::Fixture;
+
+    #[test]
+    fn products_of_two_angles_are_collected() {
+        let mut fixture = Fixture::new();
+        for (text, expected) in [
+            ("m*l*cos(x)*cos(y) + m*l*sin(x)*sin(y)", "m*l*cos(x - y)"),
+            ("cos(x)*cos(y) - sin(x)*sin(y)", "cos(x + y)"),
+            ("sin(x)*sin(y) - cos(x)*cos(y) + z", "z - cos(x + y)"),
+            ("sin(x)*cos(y) + cos(x)*sin(y)", "sin(x + y)"),
+            ("cos(x)*sin(y) - sin(x)*cos(y)", "-sin(x - y)"),
+            (
+                "2*sin(1/x)*cos(y)*a - 2*a*cos(1/x)*sin(y)",
+                "2*a*sin(1/x - y)",
+            ),
+            (
+                "cos(x)*cos(y) + 2*sin(x)*sin(y)",
+                "cos(x)*cos(y) + 2*sin(x)*sin(y)",
+            ),
+        ] {
+            let ids = fixture.read_all([text, expected]);
+            let simple = fixture.pool.simplify(ids[0]);
+            assert_eq!(
+                simple,
+                ids[1],
+                "{text} became {}",
+                fixture.pool.text(simple)
+            );
+        }
+    }
 
     #[test]
     fn squares_of_sine_and_cosine_are_collected() {

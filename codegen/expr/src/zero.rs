@@ -28,8 +28,11 @@ pub enum Verdict {
 
 /// Points modulo primes at which an expression with roots must vanish.
 const BRANCH_POINTS: usize = 40;
-/// Points that are drawn before a value is given up, for each value wanted.
-const MAX_DRAWS: usize = 64;
+/// Points that are drawn before a value is given up, for each value wanted: every independent root refuses half of
+/// them. Small expressions get more, up to the second number.
+const DRAWS: (usize, usize) = (64, 1024);
+/// Evaluated nodes that the draws for one value may take beyond the smaller number of draws.
+const DRAW_WORK: usize = 1 << 18;
 /// Real points that are tried, wanted, and must be clearly different from 0.
 const REAL_DRAWS: u64 = 96;
 const REAL_POINTS: usize = 12;
@@ -66,7 +69,7 @@ impl Pool {
     /// Whether all sampled residues are 0; `None` if there were not enough.
     fn vanishes_modularly(&self, id: ExprId, order: &[ExprId], profile: &Profile) -> Option<bool> {
         let wanted = sample_count(profile);
-        let mut points = SamplePoints::new(profile)?;
+        let mut points = SamplePoints::new(profile, order.len())?;
         for _ in 0..wanted.unwrap_or(1) {
             let value = points.find(|point| self.modular_eval_ordered(order, &[id], point).ok())?;
             if value[0] != 0 {
@@ -122,15 +125,25 @@ fn sample_count(profile: &Profile) -> Option<usize> {
 /// Random points, each with the next prime.
 pub(crate) struct SamplePoints {
     denominator: i64,
+    moduli: &'static [Modulus],
     drawn: usize,
+    limit: usize,
 }
 
 impl SamplePoints {
-    /// For expressions of a profile; `None` if their coefficients have no common denominator in reach.
-    pub(crate) fn new(profile: &Profile) -> Option<Self> {
+    /// For expressions of a profile and size; `None` if their coefficients have no common denominator in reach.
+    pub(crate) fn new(profile: &Profile, nodes: usize) -> Option<Self> {
+        let limit = (DRAW_WORK / nodes.max(1)).clamp(DRAWS.0, DRAWS.1);
+        let moduli: &[Modulus] = if profile.branches {
+            &Modulus::POSITIVE
+        } else {
+            &Modulus::ALL
+        };
         Some(Self {
             denominator: profile.denominator?,
+            moduli,
             drawn: 0,
+            limit,
         })
     }
 
@@ -139,8 +152,8 @@ impl SamplePoints {
         &mut self,
         mut f: impl FnMut(&mut ModularPoint) -> Option<T>,
     ) -> Option<T> {
-        (0..MAX_DRAWS).find_map(|_| {
-            let modulus = Modulus::ALL[self.drawn % Modulus::ALL.len()];
+        (0..self.limit).find_map(|_| {
+            let modulus = self.moduli[self.drawn % self.moduli.len()];
             self.drawn += 1;
             let seed = mix(self.drawn as u64);
             f(&mut ModularPoint::with_denominator(
@@ -220,11 +233,13 @@ mod tests {
                 "(sqrt(x^2 + 1) - x)*(sqrt(x^2 + 1) + x) - 1",
                 "1/sqrt(x + y) - sqrt(x + y)/(x + y)",
                 "abs(x)*abs(y) - abs(x*y)",
+                "sqrt(w)*sqrt(27*x/8) - 3*sqrt(3*w*x/2)/2",
                 "sqrt(x^2) - abs(x)",
                 "exp(ln(x)) - x",
                 "acos(x) + asin(x) - pi/2",
                 "atan(x - y) + atan(y - x)",
                 "x^(1/3)*x^(2/3) - x",
+                "sqrt(x - 1)*sqrt(y - 1)*sqrt(x + y)*sqrt(x - y)*(1 + z) - sqrt(x - 1)*sqrt(y - 1)*sqrt(x + y)*sqrt(x - y)*z - sqrt(x - 1)*sqrt(y - 1)*sqrt(x^2 - y^2)",
             ],
         );
     }

@@ -150,8 +150,18 @@ fn built_value(pool: &Pool, id: ExprId, point: &[f64]) -> Option<f64> {
 /// Coordinates that are 0 stay: what happens there is the point of the test.
 fn is_fragile(written: &Written, point: &[f64]) -> bool {
     let moved = |pattern: usize| {
-        let shift = |k: usize| if pattern >> k & 1 == 1 { 1.0 + 1e-11 } else { 1.0 - 2e-11 };
-        let shifted: Vec<f64> = point.iter().enumerate().map(|(k, x)| x * shift(k)).collect();
+        let shift = |k: usize| {
+            if pattern >> k & 1 == 1 {
+                1.0 + 1e-11
+            } else {
+                1.0 - 2e-11
+            }
+        };
+        let shifted: Vec<f64> = point
+            .iter()
+            .enumerate()
+            .map(|(k, x)| x * shift(k))
+            .collect();
         value(written, &shifted)
     };
     let here = value(written, point);

@@ -1,6 +1,6 @@
 //! Constraint forms and the terms of `d/dt (eta(qdot) + eta_0)` that do not hold the acceleration.
 
-use dalembert_expr::{ExprId, Pool, Sign};
+use dalembert_expr::{ExprId, Function, Node, Pool, Sign};
 
 use super::{Coordinates, Entry, gradient};
 use crate::model::Model;
@@ -14,6 +14,9 @@ pub struct ConstraintForm {
     pub affine: ExprId,
     /// `eta(qdot) + eta_0`.
     pub residual: ExprId,
+    /// The natural size of `residual`: its terms without their signs, sines and cosines counted as 1. With the
+    /// sines themselves a term `cos(pi/2) v`, zero but for rounding, would have to vanish to the last digit.
+    pub scale: ExprId,
     /// `(d_i eta_j) qdot^i qdot^j + (d_i eta_0) qdot^i + (d_t eta_j) qdot^j + d_t eta_0`.
     pub curvature: ExprId,
     /// `d_k eta_j`, index `[j, k]`.
@@ -35,6 +38,7 @@ pub(super) fn derive_constraints(model: &mut Model, coordinates: &Coordinates) -
             let affine = model.constraints[a].affine;
             let residual = derive_residual(model, coordinates, &form, affine);
             ConstraintForm {
+                scale: amplitude(&mut model.pool, residual),
                 curvature: model.pool.derivative_along(residual, &motion),
                 form_gradient: derive_form_gradient(model, coordinates, &form),
                 affine_gradient: gradient(model, affine, &coordinates.q),
@@ -76,6 +80,33 @@ fn derive_form_rate(model: &mut Model, coordinates: &Coordinates, form: &[ExprId
         }
     }
     entries
+}
+
+/// The expression without its signs, sines and cosines counted as 1: a bound of `|expression|` for which terms
+/// cannot cancel.
+fn amplitude(pool: &mut Pool, expression: ExprId) -> ExprId {
+    match pool.node(expression).clone() {
+        Node::Number(number) => pool.number(number.abs()),
+        Node::Call(Function::Sin | Function::Cos, _) => pool.one(),
+        Node::Sum { constant, terms } => {
+            let mut bounds = vec![pool.number(constant.abs())];
+            for (coefficient, term) in terms.iter() {
+                let (size, bound) = (pool.number(coefficient.abs()), amplitude(pool, *term));
+                bounds.push(pool.mul(size, bound));
+            }
+            pool.sum(&bounds)
+        }
+        Node::Product(factors) => {
+            let mut bounds = Vec::with_capacity(factors.len());
+            for (base, exponent) in factors.iter() {
+                // A small denominator is what it is: only numerators may be counted by their bound.
+                let bound = if exponent.is_positive() { amplitude(pool, *base) } else { pool.call(Function::Abs, *base) };
+                bounds.push(pool.pow(bound, exponent.clone()));
+            }
+            pool.product(&bounds)
+        }
+        Node::Pi | Node::Symbol(_) | Node::Call(..) | Node::Atan2(..) => pool.call(Function::Abs, expression),
+    }
 }
 
 /// Whether the forms are independent at every state because, after a permutation, some M columns are

@@ -9,12 +9,22 @@ use crate::diagnostics::Location;
 use crate::spec::{EXPONENT, NUMBER_BITS, Scalar, ScalarKind, Word};
 
 impl<'s> Resolver<'s> {
-    pub(super) fn power(&mut self, whole: &Scalar, base: &Scalar, exponent: &Scalar, scope: &mut Scope) -> Option<Value> {
+    pub(super) fn power(
+        &mut self,
+        whole: &Scalar,
+        base: &Scalar,
+        exponent: &Scalar,
+        scope: &mut Scope,
+    ) -> Option<Value> {
         let value = self.expression(base, scope);
         let power = self.expression(exponent, scope)?;
         let Some(power) = self.pool.as_number(power).cloned() else {
             let text = format!("the exponent `{exponent}` is not a constant rational number");
-            return self.refuse(exponent.at, text, &format!("write `exp({exponent}*ln({base}))`"));
+            return self.refuse(
+                exponent.at,
+                text,
+                &format!("write `exp({exponent}*ln({base}))`"),
+            );
         };
         if power.abs() > Rational::from(EXPONENT) || power.denom().bits() > 12 {
             let text = format!("the exponent `{exponent}` is too large; the limit is {EXPONENT}");
@@ -28,7 +38,12 @@ impl<'s> Resolver<'s> {
     }
 
     /// Refuses powers of numbers that are not numbers, and numbers that are too long.
-    fn check_constant_power(&mut self, whole: &Scalar, base: &Rational, power: &Rational) -> Option<()> {
+    fn check_constant_power(
+        &mut self,
+        whole: &Scalar,
+        base: &Rational,
+        power: &Rational,
+    ) -> Option<()> {
         if base.is_zero() && power.is_negative() {
             return self.refuse(whole.at, "division by zero", "");
         }
@@ -46,7 +61,13 @@ impl<'s> Resolver<'s> {
         Some(())
     }
 
-    pub(super) fn call(&mut self, at: Location, name: &Word, arguments: &[Scalar], scope: &mut Scope) -> Option<Value> {
+    pub(super) fn call(
+        &mut self,
+        at: Location,
+        name: &Word,
+        arguments: &[Scalar],
+        scope: &mut Scope,
+    ) -> Option<Value> {
         match name.text.as_str() {
             "dot" | "d" => self.derivative(at, name, arguments, scope),
             "momentum" | "multiplier" => self.derived_quantity(name, arguments, scope),
@@ -59,11 +80,24 @@ impl<'s> Resolver<'s> {
     }
 
     /// The values of all arguments, if there are as many as expected.
-    fn arguments(&mut self, name: &Word, arguments: &[Scalar], count: usize, scope: &mut Scope) -> Option<Vec<Value>> {
-        let values: Vec<Option<Value>> = arguments.iter().map(|argument| self.resolve(argument, scope)).collect();
+    fn arguments(
+        &mut self,
+        name: &Word,
+        arguments: &[Scalar],
+        count: usize,
+        scope: &mut Scope,
+    ) -> Option<Vec<Value>> {
+        let values: Vec<Option<Value>> = arguments
+            .iter()
+            .map(|argument| self.resolve(argument, scope))
+            .collect();
         if values.len() != count {
             let plural = if count == 1 { "" } else { "s" };
-            let text = format!("`{}` takes {count} argument{plural}, found {}", name.text, values.len());
+            let text = format!(
+                "`{}` takes {count} argument{plural}, found {}",
+                name.text,
+                values.len()
+            );
             return self.refuse(name.at, text, "");
         }
         values.into_iter().collect()
@@ -86,27 +120,51 @@ impl<'s> Resolver<'s> {
             (_, [argument]) => self.pool.sqrt(argument.expr),
             _ => return None,
         };
-        if self.pool.is_undefined_constant(expr) && !values.iter().any(|value| self.pool.is_undefined_constant(value.expr)) {
+        if self.pool.is_undefined_constant(expr)
+            && !values
+                .iter()
+                .any(|value| self.pool.is_undefined_constant(value.expr))
+        {
             let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
-            let text = format!("`{}({})` is not a real number", name.text, arguments.join(", "));
+            let text = format!(
+                "`{}({})` is not a real number",
+                name.text,
+                arguments.join(", ")
+            );
             return self.refuse(at, text, "");
         }
         Some(expr.into())
     }
 
     /// `dot(e)` or `d(e)`.
-    fn derivative(&mut self, at: Location, name: &Word, arguments: &[Scalar], scope: &mut Scope) -> Option<Value> {
+    fn derivative(
+        &mut self,
+        at: Location,
+        name: &Word,
+        arguments: &[Scalar],
+        scope: &mut Scope,
+    ) -> Option<Value> {
         let values = self.arguments(name, arguments, 1, scope)?;
         let expr = values.first()?.expr;
         let mut rates = self.symbols.velocities();
         rates.extend(self.symbols.all_differentials());
         if self.pool.depends_on_any(expr, &rates) {
-            let text = format!("`{}` of an expression that contains a velocity or a differential", name.text);
-            return self.refuse(at, text, &format!("`{}` takes an expression of the coordinates", name.text));
+            let text = format!(
+                "`{}` of an expression that contains a velocity or a differential",
+                name.text
+            );
+            return self.refuse(
+                at,
+                text,
+                &format!("`{}` takes an expression of the coordinates", name.text),
+            );
         }
         let directions = self.directions(&name.text, expr);
         let rate = self.pool.derivative_along(expr, &directions);
-        Some(Value { expr: rate, level: Some(expr) })
+        Some(Value {
+            expr: rate,
+            level: Some(expr),
+        })
     }
 
     /// The symbols that `expr` depends on and that change, each with its rate or differential.
@@ -115,7 +173,9 @@ impl<'s> Resolver<'s> {
         for symbol in self.pool.symbols(expr) {
             let index = self.symbols.coordinate_of(symbol);
             let rate = match index {
-                Some(index) if operation == "dot" => self.pool.variable(self.symbols.coordinates[index].qdot),
+                Some(index) if operation == "dot" => {
+                    self.pool.variable(self.symbols.coordinates[index].qdot)
+                }
                 Some(index) => self.pool.variable(self.symbols.differentials[index]),
                 None if symbol != self.symbols.time => continue,
                 None if operation == "dot" => self.pool.one(),
@@ -127,13 +187,26 @@ impl<'s> Resolver<'s> {
     }
 
     /// `momentum(x)` or `multiplier(a)`.
-    fn derived_quantity(&mut self, name: &Word, arguments: &[Scalar], scope: &mut Scope) -> Option<Value> {
+    fn derived_quantity(
+        &mut self,
+        name: &Word,
+        arguments: &[Scalar],
+        scope: &mut Scope,
+    ) -> Option<Value> {
         if !self.derived_allowed {
             let text = format!("`{}` is derived and not known here", name.text);
             return self.refuse(name.at, text, "it may be used in `outputs`");
         }
         let [argument] = arguments else {
-            return self.refuse(name.at, format!("`{}` takes 1 argument, found {}", name.text, arguments.len()), "");
+            return self.refuse(
+                name.at,
+                format!(
+                    "`{}` takes 1 argument, found {}",
+                    name.text,
+                    arguments.len()
+                ),
+                "",
+            );
         };
         let symbol = if name.text == "momentum" {
             let index = self.coordinate(argument, scope)?;
@@ -142,7 +215,11 @@ impl<'s> Resolver<'s> {
             let display = self.display_name(argument, scope)?;
             let Some(symbol) = self.multipliers.get(&display) else {
                 let help = known_constraints(self.multipliers.keys());
-                return self.refuse(argument.at, format!("`{argument}` is not a constraint"), &help);
+                return self.refuse(
+                    argument.at,
+                    format!("`{argument}` is not a constraint"),
+                    &help,
+                );
             };
             *symbol
         };
@@ -177,9 +254,21 @@ impl<'s> Resolver<'s> {
     }
 
     /// A call of a function that was introduced by `let`.
-    fn defined_call(&mut self, name: &Word, arguments: &[Scalar], scope: &mut Scope) -> Option<Value> {
+    fn defined_call(
+        &mut self,
+        name: &Word,
+        arguments: &[Scalar],
+        scope: &mut Scope,
+    ) -> Option<Value> {
         let definition = self.definitions.get_key_value(name.text.as_str());
-        let Some((key, Definition::Function { arguments: names, body })) = definition else {
+        let Some((
+            key,
+            Definition::Function {
+                arguments: names,
+                body,
+            },
+        )) = definition
+        else {
             return self.not_a_function(name, arguments, scope);
         };
         let (key, names, body) = (*key, *names, *body);
@@ -197,11 +286,23 @@ impl<'s> Resolver<'s> {
         value
     }
 
-    fn not_a_function(&mut self, name: &Word, arguments: &[Scalar], scope: &mut Scope) -> Option<Value> {
-        if matches!(self.definitions.get(name.text.as_str()), Some(Definition::Faulty)) {
+    fn not_a_function(
+        &mut self,
+        name: &Word,
+        arguments: &[Scalar],
+        scope: &mut Scope,
+    ) -> Option<Value> {
+        if matches!(
+            self.definitions.get(name.text.as_str()),
+            Some(Definition::Faulty)
+        ) {
             return None;
         }
-        let meaning = self.symbols.names.get(&name.text).map(|(meaning, _)| *meaning);
+        let meaning = self
+            .symbols
+            .names
+            .get(&name.text)
+            .map(|(meaning, _)| *meaning);
         let noun = match meaning {
             Some(Meaning::Definition) => "not a function",
             Some(meaning) => meaning.noun(),
@@ -213,7 +314,15 @@ impl<'s> Resolver<'s> {
             noun => format!("`{}` is a {noun}, not a function", name.text),
         };
         let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
-        self.refuse(name.at, text, &format!("a product is written `{}*({})`", name.text, arguments.join(", ")))
+        self.refuse(
+            name.at,
+            text,
+            &format!(
+                "a product is written `{}*({})`",
+                name.text,
+                arguments.join(", ")
+            ),
+        )
     }
 }
 

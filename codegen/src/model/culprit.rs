@@ -77,7 +77,9 @@ impl Resolver<'_> {
         if !self.pool.depends_on_any(expr, symbols) {
             return Some(());
         }
-        let part = self.culprit(scalar, scope, &|pool, expr| pool.depends_on_any(expr, symbols));
+        let part = self.culprit(scalar, scope, &|pool, expr| {
+            pool.depends_on_any(expr, symbols)
+        });
         self.refuse(part.at, format!("`{part}`: {text}"), help)
     }
 }

@@ -31,11 +31,17 @@ impl<'s> Resolver<'s> {
     pub(super) fn declare(&mut self, name: &Word, meaning: Meaning) -> bool {
         if let Some((_, first)) = self.symbols.names.get(&name.text) {
             let first = *first;
-            let error = self.diagnostics.error(name.at, format!("`{}` declared again", name.text));
-            error.help("choose another name").also(first, format!("`{}` first declared here", name.text));
+            let error = self
+                .diagnostics
+                .error(name.at, format!("`{}` declared again", name.text));
+            error
+                .help("choose another name")
+                .also(first, format!("`{}` first declared here", name.text));
             return false;
         }
-        self.symbols.names.insert(name.text.clone(), (meaning, name.at));
+        self.symbols
+            .names
+            .insert(name.text.clone(), (meaning, name.at));
         true
     }
 
@@ -57,7 +63,13 @@ impl<'s> Resolver<'s> {
             if faulty.contains(&position) {
                 self.definitions.entry(name).or_insert(Definition::Faulty);
             } else if let Some(arguments) = &definition.arguments {
-                self.definitions.insert(name, Definition::Function { arguments, body: &definition.value });
+                self.definitions.insert(
+                    name,
+                    Definition::Function {
+                        arguments,
+                        body: &definition.value,
+                    },
+                );
             } else {
                 self.define(definition);
             }
@@ -72,7 +84,11 @@ impl<'s> Resolver<'s> {
             let name = &definition.declared.name;
             let is_family = definition.declared.index.is_some();
             if is_family && definition.arguments.is_some() {
-                self.refuse::<()>(name.at, "a function has no index", "give the index as an argument");
+                self.refuse::<()>(
+                    name.at,
+                    "a function has no index",
+                    "give the index as an argument",
+                );
                 faulty.insert(position);
             } else if is_family && families.contains(name.text.as_str()) {
                 continue;
@@ -91,10 +107,13 @@ impl<'s> Resolver<'s> {
         match &definition.declared.index {
             None => {
                 let value = self.resolve(&definition.value, &mut Scope::default());
-                self.definitions.insert(name, value.map_or(Definition::Faulty, Definition::Value));
+                self.definitions
+                    .insert(name, value.map_or(Definition::Faulty, Definition::Value));
             }
             Some(index) => {
-                self.definitions.entry(name).or_insert_with(|| Definition::Family(BTreeMap::new()));
+                self.definitions
+                    .entry(name)
+                    .or_insert_with(|| Definition::Family(BTreeMap::new()));
                 self.define_members(definition, index);
             }
         }
@@ -125,10 +144,18 @@ impl<'s> Resolver<'s> {
 
     fn define_member(&mut self, definition: &'s spec::Definition, member: i64, scope: &mut Scope) {
         let name = &definition.declared.name;
-        let Some(value) = self.resolve(&definition.value, scope) else { return self.poison(name) };
-        let Some(Definition::Family(members)) = self.definitions.get_mut(name.text.as_str()) else { return };
+        let Some(value) = self.resolve(&definition.value, scope) else {
+            return self.poison(name);
+        };
+        let Some(Definition::Family(members)) = self.definitions.get_mut(name.text.as_str()) else {
+            return;
+        };
         if members.insert(member, value).is_some() {
-            self.refuse::<()>(name.at, format!("`{}[{member}]` declared again", name.text), "");
+            self.refuse::<()>(
+                name.at,
+                format!("`{}[{member}]` declared again", name.text),
+                "",
+            );
         }
     }
 
@@ -142,24 +169,40 @@ impl<'s> Resolver<'s> {
         match self.definitions.get(name) {
             Some(Definition::Value(value)) => Some(*value),
             Some(Definition::Function { arguments, .. }) => {
-                let names: Vec<&str> = arguments.iter().map(|argument| argument.text.as_str()).collect();
+                let names: Vec<&str> = arguments
+                    .iter()
+                    .map(|argument| argument.text.as_str())
+                    .collect();
                 let help = format!("write `{name}({})`", names.join(", "));
                 self.refuse(at, format!("`{name}` is a function"), &help)
             }
             Some(Definition::Family(members)) => {
                 let first = members.keys().next().copied().unwrap_or(1);
-                self.refuse(at, format!("`{name}` is a family"), &format!("write `{name}[{first}]`"))
+                self.refuse(
+                    at,
+                    format!("`{name}` is a family"),
+                    &format!("write `{name}[{first}]`"),
+                )
             }
             Some(Definition::Faulty) | None => None,
         }
     }
 
     /// A member of a family of definitions.
-    pub(super) fn defined_member(&mut self, name: &Word, index: &Scalar, member: i64) -> Option<Value> {
+    pub(super) fn defined_member(
+        &mut self,
+        name: &Word,
+        index: &Scalar,
+        member: i64,
+    ) -> Option<Value> {
         match self.definitions.get(name.text.as_str()) {
             Some(Definition::Family(members)) => {
                 let value = members.get(&member).copied();
-                let known: Vec<String> = members.keys().take(9).map(|member| member.to_string()).collect();
+                let known: Vec<String> = members
+                    .keys()
+                    .take(9)
+                    .map(|member| member.to_string())
+                    .collect();
                 value.or_else(|| {
                     let text = format!("`{}[{member}]` is not defined above", name.text);
                     let help = if known.is_empty() {

@@ -8,24 +8,40 @@ pub(super) fn degree_bound(pool: &Pool, expr: ExprId, symbols: &[SymbolId]) -> O
     let order = pool.reachable(&[expr]);
     let mut degrees: Vec<Option<u32>> = Vec::with_capacity(order.len());
     for id in &order {
-        let degree = |operand: ExprId| order.binary_search(&operand).ok().and_then(|index| degrees.get(index).copied().flatten());
+        let degree = |operand: ExprId| {
+            order
+                .binary_search(&operand)
+                .ok()
+                .and_then(|index| degrees.get(index).copied().flatten())
+        };
         let bound = node_degree(pool.node(*id), symbols, &degree);
         degrees.push(bound);
     }
-    order.binary_search(&expr).ok().and_then(|index| degrees[index])
+    order
+        .binary_search(&expr)
+        .ok()
+        .and_then(|index| degrees[index])
 }
 
-fn node_degree(node: &Node, symbols: &[SymbolId], degree: &dyn Fn(ExprId) -> Option<u32>) -> Option<u32> {
+fn node_degree(
+    node: &Node,
+    symbols: &[SymbolId],
+    degree: &dyn Fn(ExprId) -> Option<u32>,
+) -> Option<u32> {
     match node {
         Node::Number(_) | Node::Pi => Some(0),
         Node::Symbol(symbol) => Some(u32::from(symbols.contains(symbol))),
-        Node::Sum { terms, .. } => terms.iter().try_fold(0, |most, (_, term)| degree(*term).map(|term| most.max(term))),
+        Node::Sum { terms, .. } => terms.iter().try_fold(0, |most, (_, term)| {
+            degree(*term).map(|term| most.max(term))
+        }),
         Node::Product(factors) => factors.iter().try_fold(0_u32, |sum, (base, exponent)| {
             let power = power_degree(degree(*base)?, exponent)?;
             sum.checked_add(power)
         }),
         Node::Call(_, argument) => degree(*argument).filter(|degree| *degree == 0),
-        Node::Atan2(y, x) => degree(*y).filter(|degree| *degree == 0).and(degree(*x).filter(|degree| *degree == 0)),
+        Node::Atan2(y, x) => degree(*y)
+            .filter(|degree| *degree == 0)
+            .and(degree(*x).filter(|degree| *degree == 0)),
     }
 }
 
@@ -33,7 +49,9 @@ fn power_degree(base: u32, exponent: &Rational) -> Option<u32> {
     if base == 0 {
         return Some(0);
     }
-    let exponent = exponent.to_i64().and_then(|exponent| u32::try_from(exponent).ok())?;
+    let exponent = exponent
+        .to_i64()
+        .and_then(|exponent| u32::try_from(exponent).ok())?;
     base.checked_mul(exponent)
 }
 
@@ -66,14 +84,21 @@ pub(super) fn at_zero(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) -> Ex
         return expr;
     }
     let zero = pool.zero();
-    let replacements: Vec<(SymbolId, ExprId)> = symbols.iter().map(|symbol| (*symbol, zero)).collect();
+    let replacements: Vec<(SymbolId, ExprId)> =
+        symbols.iter().map(|symbol| (*symbol, zero)).collect();
     pool.substitute(expr, &replacements)
 }
 
 /// The coefficients of `symbols` in an expression that is linear in them.
 pub(super) fn coefficients(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) -> Vec<ExprId> {
-    let derivatives: Vec<ExprId> = symbols.iter().map(|symbol| pool.diff(expr, *symbol)).collect();
-    derivatives.into_iter().map(|coefficient| at_zero(pool, coefficient, symbols)).collect()
+    let derivatives: Vec<ExprId> = symbols
+        .iter()
+        .map(|symbol| pool.diff(expr, *symbol))
+        .collect();
+    derivatives
+        .into_iter()
+        .map(|coefficient| at_zero(pool, coefficient, symbols))
+        .collect()
 }
 
 #[cfg(test)]

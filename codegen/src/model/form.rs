@@ -19,7 +19,11 @@ pub(super) struct OneForm {
 
 impl Resolver<'_> {
     /// The one-form `left - right` of a constraint, exactly as written.
-    pub(super) fn constraint_form(&mut self, equation: &Equation, scope: &mut Scope) -> Option<OneForm> {
+    pub(super) fn constraint_form(
+        &mut self,
+        equation: &Equation,
+        scope: &mut Scope,
+    ) -> Option<OneForm> {
         let left = self.resolve(&equation.left, scope);
         let right = self.resolve(&equation.right, scope);
         let (left, right) = (left?, right?);
@@ -29,7 +33,11 @@ impl Resolver<'_> {
         let differentials = self.symbols.all_differentials();
         let velocities = self.symbols.velocities();
         let sides = [(&equation.left, left.expr), (&equation.right, right.expr)];
-        let uses = |resolver: &Self, symbols: &[SymbolId]| sides.iter().any(|(_, expr)| resolver.pool.depends_on_any(*expr, symbols));
+        let uses = |resolver: &Self, symbols: &[SymbolId]| {
+            sides
+                .iter()
+                .any(|(_, expr)| resolver.pool.depends_on_any(*expr, symbols))
+        };
         match (uses(self, &differentials), uses(self, &velocities)) {
             (true, true) => self.refuse_mixture(&sides, &differentials, &velocities, scope),
             (true, false) => self.differential_form(&sides, value, &differentials, scope),
@@ -51,7 +59,14 @@ impl Resolver<'_> {
         }
         let mut form = coefficients(&mut self.pool, value.expr, differentials);
         let affine = form.pop()?;
-        self.nonzero_form(OneForm { form, affine, level: value.level }, sides)
+        self.nonzero_form(
+            OneForm {
+                form,
+                affine,
+                level: value.level,
+            },
+            sides,
+        )
     }
 
     fn velocity_form(
@@ -64,7 +79,14 @@ impl Resolver<'_> {
         self.check_linear(sides, velocities, scope)?;
         let form = coefficients(&mut self.pool, value.expr, velocities);
         let affine = at_zero(&mut self.pool, value.expr, velocities);
-        self.nonzero_form(OneForm { form, affine, level: value.level }, sides)
+        self.nonzero_form(
+            OneForm {
+                form,
+                affine,
+                level: value.level,
+            },
+            sides,
+        )
     }
 
     fn nonzero_form(&mut self, form: OneForm, sides: &[(&Scalar, ExprId)]) -> Option<OneForm> {
@@ -72,37 +94,68 @@ impl Resolver<'_> {
             return Some(form);
         }
         let (first, last) = (sides.first()?.0, sides.last()?.0);
-        self.refuse(first.at.to(last.at), "this form is zero", "a constraint restricts the velocities")
+        self.refuse(
+            first.at.to(last.at),
+            "this form is zero",
+            "a constraint restricts the velocities",
+        )
     }
 
-    fn check_linear(&mut self, sides: &[(&Scalar, ExprId)], symbols: &[SymbolId], scope: &Scope) -> Option<()> {
+    fn check_linear(
+        &mut self,
+        sides: &[(&Scalar, ExprId)],
+        symbols: &[SymbolId],
+        scope: &Scope,
+    ) -> Option<()> {
         for (side, expr) in sides {
             if has_degree(&mut self.pool, *expr, symbols, 1) {
                 continue;
             }
-            let nonlinear =
-                |pool: &mut Pool, expr: ExprId| degree_bound(pool, expr, symbols).is_none_or(|degree| degree > 1);
+            let nonlinear = |pool: &mut Pool, expr: ExprId| {
+                degree_bound(pool, expr, symbols).is_none_or(|degree| degree > 1)
+            };
             let part = self.culprit(side, scope, &nonlinear);
             let text = format!("`{part}`: constraints are linear in velocities");
-            return self.refuse(part.at, text, "write `d(x) - R*d(theta) = 0` or `dot(x) = R*dot(theta)`");
+            return self.refuse(
+                part.at,
+                text,
+                "write `d(x) - R*d(theta) = 0` or `dot(x) = R*dot(theta)`",
+            );
         }
         Some(())
     }
 
     /// Every term of a one-form has a differential.
-    fn check_every_term(&mut self, side: &Scalar, expr: ExprId, differentials: &[SymbolId], scope: &Scope) -> Option<()> {
+    fn check_every_term(
+        &mut self,
+        side: &Scalar,
+        expr: ExprId,
+        differentials: &[SymbolId],
+        scope: &Scope,
+    ) -> Option<()> {
         let rest = at_zero(&mut self.pool, expr, differentials);
         if is_zero(&self.pool, rest) {
             return Some(());
         }
         let part = self.bare_term(side, differentials, scope);
         let help = format!("an affine part is marked with `d(t)`: `({part})*d(t)`");
-        self.refuse(part.at, format!("`{part}` has no differential; every term of a one-form has one"), &help)
+        self.refuse(
+            part.at,
+            format!("`{part}` has no differential; every term of a one-form has one"),
+            &help,
+        )
     }
 
     /// The first term without any differential.
-    fn bare_term<'a>(&mut self, side: &'a Scalar, differentials: &[SymbolId], scope: &Scope) -> &'a Scalar {
-        let ScalarKind::Sum(terms) = &side.kind else { return side };
+    fn bare_term<'a>(
+        &mut self,
+        side: &'a Scalar,
+        differentials: &[SymbolId],
+        scope: &Scope,
+    ) -> &'a Scalar {
+        let ScalarKind::Sum(terms) = &side.kind else {
+            return side;
+        };
         let mut scope = scope.clone();
         let bare = terms.iter().map(|(_, term)| term).find(|term| {
             let expr = self.expression(term, &mut scope);
@@ -119,42 +172,72 @@ impl Resolver<'_> {
         scope: &Scope,
     ) -> Option<T> {
         let part_with = |resolver: &mut Self, symbols: &[SymbolId]| {
-            let (side, _) = sides.iter().find(|(_, expr)| resolver.pool.depends_on_any(*expr, symbols))?;
-            Some(resolver.culprit(side, scope, &|pool, expr| pool.depends_on_any(expr, symbols)))
+            let (side, _) = sides
+                .iter()
+                .find(|(_, expr)| resolver.pool.depends_on_any(*expr, symbols))?;
+            Some(resolver.culprit(side, scope, &|pool, expr| {
+                pool.depends_on_any(expr, symbols)
+            }))
         };
         let differential = part_with(self, differentials)?;
         let velocity = part_with(self, velocities)?;
         let text = format!("`{velocity}` and `{differential}` in one equation");
-        self.refuse(velocity.at, text, "use either `d(..)` or `dot(..)` throughout")
+        self.refuse(
+            velocity.at,
+            text,
+            "use either `d(..)` or `dot(..)` throughout",
+        )
     }
 
     fn refuse_without_differential<T>(&mut self, equation: &Equation) -> Option<T> {
         let at = equation.left.at.to(equation.right.at);
         if mentions_rate(&equation.left) || mentions_rate(&equation.right) {
-            return self.refuse(at, "this form is zero", "a constraint restricts the velocities");
+            return self.refuse(
+                at,
+                "this form is zero",
+                "a constraint restricts the velocities",
+            );
         }
         let help = match &equation.right.kind {
-            ScalarKind::Number(value, _) if value.is_zero() => format!("write `d({}) = 0`", equation.left),
+            ScalarKind::Number(value, _) if value.is_zero() => {
+                format!("write `d({}) = 0`", equation.left)
+            }
             _ => format!("write `d({} - ({})) = 0`", equation.left, equation.right),
         };
         self.refuse(at, "a constraint is a one-form", &help)
     }
 
     /// The one-form of a force: linear in differentials, without `d(t)`.
-    pub(super) fn force_form(&mut self, force: &Quantity, scope: &mut Scope) -> Option<Vec<ExprId>> {
+    pub(super) fn force_form(
+        &mut self,
+        force: &Quantity,
+        scope: &mut Scope,
+    ) -> Option<Vec<ExprId>> {
         const HELP: &str = "write `-c*dot(x)*d(x)`";
         let expr = self.expression(&force.value, scope)?;
         let time = [self.symbols.time_differential];
-        self.forbid(&force.value, scope, expr, &time, "a force does no work along `t`", HELP)?;
+        self.forbid(
+            &force.value,
+            scope,
+            expr,
+            &time,
+            "a force does no work along `t`",
+            HELP,
+        )?;
         let differentials = self.symbols.differentials.clone();
         if !self.pool.depends_on_any(expr, &differentials) {
             return self.refuse(force.value.at, "a force is a one-form", HELP);
         }
         if !has_degree(&mut self.pool, expr, &differentials, 1) {
-            let nonlinear =
-                |pool: &mut Pool, expr: ExprId| degree_bound(pool, expr, &differentials).is_none_or(|degree| degree > 1);
+            let nonlinear = |pool: &mut Pool, expr: ExprId| {
+                degree_bound(pool, expr, &differentials).is_none_or(|degree| degree > 1)
+            };
             let part = self.culprit(&force.value, scope, &nonlinear);
-            return self.refuse(part.at, format!("`{part}`: forces are linear in differentials"), HELP);
+            return self.refuse(
+                part.at,
+                format!("`{part}`: forces are linear in differentials"),
+                HELP,
+            );
         }
         self.check_every_term_of_force(&force.value, expr, &differentials, scope)?;
         Some(coefficients(&mut self.pool, expr, &differentials))
@@ -173,7 +256,11 @@ impl Resolver<'_> {
         }
         let part = self.bare_term(written, differentials, scope);
         let text = format!("`{part}` has no differential; every term of a force has one");
-        self.refuse(part.at, text, &format!("write `({part})*d(x)` for a force along `x`"))
+        self.refuse(
+            part.at,
+            text,
+            &format!("write `({part})*d(x)` for a force along `x`"),
+        )
     }
 }
 

@@ -4,9 +4,10 @@ use super::Name;
 
 /// Letters that have a command of their own, by name.
 const GREEK: [&str; 34] = [
-    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi",
-    "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi",
-    "Sigma", "Upsilon", "Phi", "Psi", "Omega", "varphi",
+    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa",
+    "lambda", "mu", "nu", "xi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega",
+    "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Upsilon", "Phi", "Psi", "Omega",
+    "varphi",
 ];
 
 /// Greek letters as characters, with their names.
@@ -49,7 +50,10 @@ const LETTERS: [(char, &str); 34] = [
 
 /// The name of a Greek letter.
 pub(super) fn greek_name(letter: char) -> Option<&'static str> {
-    LETTERS.iter().find(|(character, _)| *character == letter).map(|(_, name)| *name)
+    LETTERS
+        .iter()
+        .find(|(character, _)| *character == letter)
+        .map(|(_, name)| *name)
 }
 
 /// The name in a formula.
@@ -66,7 +70,11 @@ fn decorated(name: &Name, decorate: fn(String) -> String) -> String {
     let (letter, mut indices) = split(&name.field);
     indices.extend(name.member.map(|member| member.to_string()));
     let letter = decorate(symbol(letter));
-    if indices.is_empty() { letter } else { format!("{letter}_{{{}}}", indices.join(",")) }
+    if indices.is_empty() {
+        letter
+    } else {
+        format!("{letter}_{{{}}}", indices.join(","))
+    }
 }
 
 /// The letter or word, and what is written as its index: trailing digits, and what follows an underscore.
@@ -100,8 +108,14 @@ fn symbol(letter: &str) -> String {
 
 /// Words in an index stand upright; single letters and numbers do not.
 fn index_symbol(index: &str) -> String {
-    let is_plain = index.split(',').all(|part| part.chars().count() == 1 || part.chars().all(|digit| digit.is_ascii_digit()));
-    if is_plain { index.to_owned() } else { format!(r"\mathrm{{{index}}}") }
+    let is_plain = index
+        .split(',')
+        .all(|part| part.chars().count() == 1 || part.chars().all(|digit| digit.is_ascii_digit()));
+    if is_plain {
+        index.to_owned()
+    } else {
+        format!(r"\mathrm{{{index}}}")
+    }
 }
 
 #[cfg(test)]
@@ -109,7 +123,11 @@ mod tests {
     use super::*;
 
     fn name(field: &str, member: Option<usize>) -> Name {
-        Name { display: field.to_owned(), field: field.to_owned(), member }
+        Name {
+            display: field.to_owned(),
+            field: field.to_owned(),
+            member,
+        }
     }
 
     #[test]

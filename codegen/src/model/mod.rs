@@ -14,10 +14,10 @@ mod latex;
 mod natural;
 mod order;
 mod periodic;
-mod resolve;
-mod symbols;
 #[cfg(test)]
 mod refusals;
+mod resolve;
+mod symbols;
 #[cfg(test)]
 mod tests;
 mod unknown;

@@ -9,7 +9,12 @@ use super::resolve::{Resolver, Scope};
 use crate::spec::{ItemId, Scalar, ScalarKind};
 
 /// The parts of a resolved Lagrangian, if it is natural.
-pub(super) fn split(resolver: &mut Resolver<'_>, written: &Scalar, whole: ExprId, item: ItemId) -> Option<Lagrangian> {
+pub(super) fn split(
+    resolver: &mut Resolver<'_>,
+    written: &Scalar,
+    whole: ExprId,
+    item: ItemId,
+) -> Option<Lagrangian> {
     let velocities = resolver.symbols.velocities();
     if !resolver.pool.depends_on_any(whole, &velocities) {
         let help = "a particle has `m/2*dot(x)^2`";
@@ -19,12 +24,24 @@ pub(super) fn split(resolver: &mut Resolver<'_>, written: &Scalar, whole: ExprId
         return refuse_term(resolver, written, &velocities);
     }
     let pool = &mut resolver.pool;
-    let slopes: Vec<ExprId> = velocities.iter().map(|velocity| pool.diff(whole, *velocity)).collect();
+    let slopes: Vec<ExprId> = velocities
+        .iter()
+        .map(|velocity| pool.diff(whole, *velocity))
+        .collect();
     let metric = metric(pool, &slopes, &velocities);
-    let linear = slopes.iter().map(|slope| at_zero(pool, *slope, &velocities)).collect();
+    let linear = slopes
+        .iter()
+        .map(|slope| at_zero(pool, *slope, &velocities))
+        .collect();
     let rest = at_zero(pool, whole, &velocities);
     let potential = pool.neg(rest);
-    Some(Lagrangian { whole, metric, linear, potential, item })
+    Some(Lagrangian {
+        whole,
+        metric,
+        linear,
+        potential,
+        item,
+    })
 }
 
 fn metric(pool: &mut Pool, slopes: &[ExprId], velocities: &[SymbolId]) -> Vec<Vec<ExprId>> {
@@ -41,8 +58,14 @@ fn metric(pool: &mut Pool, slopes: &[ExprId], velocities: &[SymbolId]) -> Vec<Ve
     metric
 }
 
-fn refuse_term<T>(resolver: &mut Resolver<'_>, written: &Scalar, velocities: &[SymbolId]) -> Option<T> {
-    let too_high = |pool: &mut Pool, expr: ExprId| degree_bound(pool, expr, velocities).is_none_or(|degree| degree > 2);
+fn refuse_term<T>(
+    resolver: &mut Resolver<'_>,
+    written: &Scalar,
+    velocities: &[SymbolId],
+) -> Option<T> {
+    let too_high = |pool: &mut Pool, expr: ExprId| {
+        degree_bound(pool, expr, velocities).is_none_or(|degree| degree > 2)
+    };
     let term = resolver.culprit(written, &Scope::default(), &too_high);
     let help = "a Lagrangian is natural: terms quadratic, linear and constant in the velocities";
     resolver.refuse(term.at, format!("not natural: `{term}`"), help)
@@ -57,7 +80,9 @@ pub(super) fn check_metric(resolver: &mut Resolver<'_>, written: &Scalar, lagran
     }
     let report = resolver.pool.rank(&lagrangian.metric);
     let size = lagrangian.metric.len();
-    let Some((row, _)) = report.dependencies.first() else { return };
+    let Some((row, _)) = report.dependencies.first() else {
+        return;
+    };
     let name = resolver.symbols.coordinates[*row].name.display.clone();
     let text = format!("the metric is singular: rank {} of {size}", report.rank);
     let help = format!("the motion of `{name}` is not determined; add its kinetic term");
@@ -69,12 +94,19 @@ fn check_velocities(resolver: &mut Resolver<'_>, lagrangian: &Lagrangian) -> usi
     let mut absent = 0;
     for (index, row) in lagrangian.metric.iter().enumerate() {
         let coordinate = &resolver.symbols.coordinates[index];
-        if !row.iter().all(|entry| resolver.pool.is_syntactic_zero(*entry)) {
+        if !row
+            .iter()
+            .all(|entry| resolver.pool.is_syntactic_zero(*entry))
+        {
             continue;
         }
         absent += 1;
         let name = &coordinate.name.display;
-        let how = if resolver.pool.depends_on(lagrangian.whole, coordinate.qdot) { "appears only linearly" } else { "does not appear" };
+        let how = if resolver.pool.depends_on(lagrangian.whole, coordinate.qdot) {
+            "appears only linearly"
+        } else {
+            "does not appear"
+        };
         let text = format!("the metric is singular: `dot({name})` {how}");
         let at = resolver.spec.location(coordinate.item);
         let help = format!("make `{name}` a parameter, or add its kinetic term");
@@ -87,7 +119,9 @@ fn check_velocities(resolver: &mut Resolver<'_>, lagrangian: &Lagrangian) -> usi
 fn check_diagonal(resolver: &mut Resolver<'_>, written: &Scalar, lagrangian: &Lagrangian) {
     for (index, row) in lagrangian.metric.iter().enumerate() {
         let entry = row[index];
-        let is_zero_row = row.iter().all(|entry| resolver.pool.is_syntactic_zero(*entry));
+        let is_zero_row = row
+            .iter()
+            .all(|entry| resolver.pool.is_syntactic_zero(*entry));
         if is_zero_row || !resolver.pool.sign(entry).is_nonpositive() {
             continue;
         }
@@ -101,14 +135,26 @@ fn check_diagonal(resolver: &mut Resolver<'_>, written: &Scalar, lagrangian: &La
 }
 
 /// The term of the Lagrangian that makes the square of a velocity count negatively.
-fn negative_term<'a>(resolver: &mut Resolver<'_>, written: &'a Scalar, velocity: SymbolId) -> &'a Scalar {
-    let ScalarKind::Sum(terms) = &written.kind else { return written };
+fn negative_term<'a>(
+    resolver: &mut Resolver<'_>,
+    written: &'a Scalar,
+    velocity: SymbolId,
+) -> &'a Scalar {
+    let ScalarKind::Sum(terms) = &written.kind else {
+        return written;
+    };
     let cause = terms.iter().find(|(subtracted, term)| {
-        let Some(expr) = resolver.expression(term, &mut Scope::default()) else { return false };
+        let Some(expr) = resolver.expression(term, &mut Scope::default()) else {
+            return false;
+        };
         let slope = resolver.pool.diff(expr, velocity);
         let second = resolver.pool.diff(slope, velocity);
         let sign = resolver.pool.sign(second);
-        if *subtracted { sign == Sign::Positive } else { sign == Sign::Negative }
+        if *subtracted {
+            sign == Sign::Positive
+        } else {
+            sign == Sign::Negative
+        }
     });
     cause.map_or(written, |(_, term)| term)
 }
@@ -124,7 +170,10 @@ pub(super) fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian) -> Vec<Str
         .map(|(_, coordinate)| coordinate.name.display.as_str())
         .collect();
     if !linear.is_empty() {
-        notes.push(format!("the Lagrangian has terms linear in the velocities of {}", crate::diagnostics::listed(linear)));
+        notes.push(format!(
+            "the Lagrangian has terms linear in the velocities of {}",
+            crate::diagnostics::listed(linear)
+        ));
     }
     for (index, row) in lagrangian.metric.iter().enumerate() {
         if resolver.pool.sign(row[index]) == Sign::Positive {

@@ -17,15 +17,23 @@ struct Use<'s> {
 pub(super) fn check<'s>(resolver: &mut Resolver<'s>, spec: &'s Spec) -> BTreeSet<usize> {
     let mut first: BTreeMap<&str, usize> = BTreeMap::new();
     for (position, definition) in spec.definitions.iter().enumerate() {
-        first.entry(&definition.declared.name.text).or_insert(position);
+        first
+            .entry(&definition.declared.name.text)
+            .or_insert(position);
     }
     let uses: Vec<Vec<Use<'s>>> = spec.definitions.iter().map(uses).collect();
     let mut faulty = BTreeSet::new();
     for (position, definition) in spec.definitions.iter().enumerate() {
         check_known(resolver, definition, &uses[position]);
-        let own_family = definition.declared.index.is_some().then_some(definition.declared.name.text.as_str());
+        let own_family = definition
+            .declared
+            .index
+            .is_some()
+            .then_some(definition.declared.name.text.as_str());
         for used in &uses[position] {
-            let Some(target) = first.get(used.name).copied() else { continue };
+            let Some(target) = first.get(used.name).copied() else {
+                continue;
+            };
             if target < position || own_family == Some(used.name) {
                 continue;
             }
@@ -49,19 +57,34 @@ fn refuse_use(
     let target = first.get(used.name).copied().unwrap_or(position);
     match path(uses, first, target, position) {
         Some(between) => {
-            let names: Vec<&str> = between.iter().map(|step| spec.definitions[*step].declared.name.text.as_str()).collect();
-            let text = format!("defined in terms of itself: {start} -> {}", names.join(" -> "));
+            let names: Vec<&str> = between
+                .iter()
+                .map(|step| spec.definitions[*step].declared.name.text.as_str())
+                .collect();
+            let text = format!(
+                "defined in terms of itself: {start} -> {}",
+                names.join(" -> ")
+            );
             resolver.refuse::<()>(used.at, text, "a definition uses only what stands above it");
         }
         None => {
             let help = format!("move `let {}` above `let {start}`", used.name);
-            resolver.refuse::<()>(used.at, format!("`{}` is used before it is defined", used.name), &help);
+            resolver.refuse::<()>(
+                used.at,
+                format!("`{}` is used before it is defined", used.name),
+                &help,
+            );
         }
     }
 }
 
 /// The definitions on the way from `from` to `to`, both included, if `from` uses `to` through others.
-fn path(uses: &[Vec<Use<'_>>], first: &BTreeMap<&str, usize>, from: usize, to: usize) -> Option<Vec<usize>> {
+fn path(
+    uses: &[Vec<Use<'_>>],
+    first: &BTreeMap<&str, usize>,
+    from: usize,
+    to: usize,
+) -> Option<Vec<usize>> {
     let mut reached_from: BTreeMap<usize, usize> = BTreeMap::new();
     let mut pending = vec![from];
     while let Some(step) = pending.pop() {
@@ -76,7 +99,9 @@ fn path(uses: &[Vec<Use<'_>>], first: &BTreeMap<&str, usize>, from: usize, to: u
             return Some(way);
         }
         for used in &uses[step] {
-            let Some(next) = first.get(used.name).copied() else { continue };
+            let Some(next) = first.get(used.name).copied() else {
+                continue;
+            };
             if next != from && !reached_from.contains_key(&next) {
                 reached_from.insert(next, step);
                 pending.push(next);
@@ -127,8 +152,12 @@ fn collect<'s>(scalar: &'s Scalar, bound: &mut Vec<&'s str>, uses: &mut Vec<Use<
             collect(index, bound, uses);
         }
         ScalarKind::Negative(inner) => collect(inner, bound, uses),
-        ScalarKind::Sum(terms) => terms.iter().for_each(|(_, term)| collect(term, bound, uses)),
-        ScalarKind::Product(factors) => factors.iter().for_each(|(_, factor)| collect(factor, bound, uses)),
+        ScalarKind::Sum(terms) => terms
+            .iter()
+            .for_each(|(_, term)| collect(term, bound, uses)),
+        ScalarKind::Product(factors) => factors
+            .iter()
+            .for_each(|(_, factor)| collect(factor, bound, uses)),
         ScalarKind::Power(base, exponent) => {
             collect(base, bound, uses);
             collect(exponent, bound, uses);
@@ -137,7 +166,9 @@ fn collect<'s>(scalar: &'s Scalar, bound: &mut Vec<&'s str>, uses: &mut Vec<Use<
             record(&function.text, function.at, true);
             // The argument of `multiplier` is the name of a constraint.
             if function.text != "multiplier" {
-                arguments.iter().for_each(|argument| collect(argument, bound, uses));
+                arguments
+                    .iter()
+                    .for_each(|argument| collect(argument, bound, uses));
             }
         }
         ScalarKind::SumOver(binder, body) => {

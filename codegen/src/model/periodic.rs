@@ -5,9 +5,9 @@
 
 use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 
+use super::Topology;
 use super::degree::is_zero;
 use super::resolve::{Resolver, Scope};
-use super::Topology;
 use crate::spec::{Scalar, ScalarKind};
 
 impl Resolver<'_> {
@@ -26,13 +26,17 @@ impl Resolver<'_> {
 
     fn angles(&self) -> Vec<SymbolId> {
         let coordinates = self.symbols.coordinates.iter();
-        coordinates.filter(|coordinate| coordinate.topology == Topology::Angle).map(|coordinate| coordinate.q).collect()
+        coordinates
+            .filter(|coordinate| coordinate.topology == Topology::Angle)
+            .map(|coordinate| coordinate.q)
+            .collect()
     }
 
     fn refuse_angle(&mut self, written: &[&Scalar], scope: &Scope, angle: SymbolId) {
         let name = self.pool.symbol_name(angle).to_owned();
         let mut whole = scope.clone();
-        let is_bare = |pool: &mut Pool, expr: ExprId| !bare_symbols(pool, expr, &[angle]).is_empty();
+        let is_bare =
+            |pool: &mut Pool, expr: ExprId| !bare_symbols(pool, expr, &[angle]).is_empty();
         let Some(side) = written.iter().find(|side| {
             let value = self.expression(side, &mut whole);
             value.is_some_and(|value| is_bare(&mut self.pool, value))
@@ -42,10 +46,14 @@ impl Resolver<'_> {
         let parent = self.last_compound(side, scope, &is_bare);
         let field = name.split('.').next().unwrap_or(&name).to_owned();
         let text = match parent.kind {
-            ScalarKind::Name(_) | ScalarKind::Member(..) => format!("`{name}` is an angle and stands outside of `sin`, `cos` and `tan`"),
+            ScalarKind::Name(_) | ScalarKind::Member(..) => {
+                format!("`{name}` is an angle and stands outside of `sin`, `cos` and `tan`")
+            }
             _ => format!("`{name}` is an angle but `{parent}` is not periodic"),
         };
-        let help = format!("declare it as a line: `{field};`, or use it in multiples inside of `sin` and `cos`");
+        let help = format!(
+            "declare it as a line: `{field};`, or use it in multiples inside of `sin` and `cos`"
+        );
         self.refuse::<()>(parent.at, text, &help);
     }
 
@@ -77,7 +85,9 @@ fn parent_of<'a>(whole: &'a Scalar, part: &Scalar) -> Option<&'a Scalar> {
     if is_direct && matches!(whole.kind, ScalarKind::Power(..) | ScalarKind::Product(_)) {
         return Some(whole);
     }
-    parts.into_iter().find_map(|candidate| parent_of(candidate, part))
+    parts
+        .into_iter()
+        .find_map(|candidate| parent_of(candidate, part))
 }
 
 /// Those of `angles` that occur otherwise than as integer multiples inside of `sin`, `cos` or `tan`.
@@ -115,9 +125,12 @@ fn bare_symbols(pool: &Pool, expr: ExprId, angles: &[SymbolId]) -> Vec<SymbolId>
 
 /// The terms of the argument of a trigonometric function that are not integer multiples of an angle.
 fn not_periodic_terms(pool: &Pool, argument: ExprId, angles: &[SymbolId]) -> Vec<ExprId> {
-    let is_angle = |id: ExprId| matches!(pool.node(id), Node::Symbol(symbol) if angles.contains(symbol));
+    let is_angle =
+        |id: ExprId| matches!(pool.node(id), Node::Symbol(symbol) if angles.contains(symbol));
     let (_, terms) = pool.linear_form(argument);
-    let others = terms.into_iter().filter(|(factor, term)| !(factor.is_integer() && is_angle(*term)));
+    let others = terms
+        .into_iter()
+        .filter(|(factor, term)| !(factor.is_integer() && is_angle(*term)));
     others.map(|(_, term)| term).collect()
 }
 
@@ -136,10 +149,14 @@ fn is_periodic(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> bool {
 /// Whether two expressions have the same value at a point, up to rounding; points outside their domain say nothing.
 fn agrees_at(pool: &Pool, left: ExprId, right: ExprId, seed: u32) -> bool {
     let point = |symbol: SymbolId| {
-        let spread = f64::from(seed + 1) * 0.618_033_988_749_894_9 + symbol.index() as f64 * 0.414_213_562_373_095_1;
+        let spread = f64::from(seed + 1) * 0.618_033_988_749_894_9
+            + symbol.index() as f64 * 0.414_213_562_373_095_1;
         0.3 + spread.fract()
     };
     let values = pool.eval(&[left, right], &point);
-    let [left, right] = values.as_slice() else { return true };
-    !(left.is_finite() && right.is_finite()) || (left - right).abs() <= 1e-9 * (1.0 + left.abs() + right.abs())
+    let [left, right] = values.as_slice() else {
+        return true;
+    };
+    !(left.is_finite() && right.is_finite())
+        || (left - right).abs() <= 1e-9 * (1.0 + left.abs() + right.abs())
 }

@@ -12,7 +12,8 @@ use super::definitions::Definition;
 use super::symbols::{Meaning, Symbols};
 use crate::diagnostics::{Diagnostics, Location};
 use crate::spec::{
-    Binder, EXPRESSIONS, FAMILY, NUMBER_BITS, Operator, RESOLVED_DEPTH, RESOLVED_PARTS, Scalar, ScalarKind, Spec, Word,
+    Binder, EXPRESSIONS, FAMILY, NUMBER_BITS, Operator, RESOLVED_DEPTH, RESOLVED_PARTS, Scalar,
+    ScalarKind, Spec, Word,
 };
 
 /// A resolved expression.
@@ -49,7 +50,11 @@ impl Scope {
 
     /// What `name` stands for here.
     pub(super) fn get(&self, name: &str) -> Option<Value> {
-        self.locals.iter().rev().find(|(local, _)| local == name).map(|(_, value)| *value)
+        self.locals
+            .iter()
+            .rev()
+            .find(|(local, _)| local == name)
+            .map(|(_, value)| *value)
     }
 
     /// The names known here.
@@ -99,11 +104,13 @@ impl<'s> Resolver<'s> {
     pub(super) fn resolve(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<Value> {
         self.parts += 1;
         if self.parts > RESOLVED_PARTS {
-            let text = format!("more than {RESOLVED_PARTS} parts with sums and definitions written out");
+            let text =
+                format!("more than {RESOLVED_PARTS} parts with sums and definitions written out");
             return self.refuse(scalar.at, text, "name what is repeated with `let`");
         }
         if self.depth >= RESOLVED_DEPTH {
-            let text = format!("nested more than {RESOLVED_DEPTH} deep with definitions written out");
+            let text =
+                format!("nested more than {RESOLVED_DEPTH} deep with definitions written out");
             return self.refuse(scalar.at, text, "name the inner parts with `let`");
         }
         self.depth += 1;
@@ -130,26 +137,40 @@ impl<'s> Resolver<'s> {
             ScalarKind::Sum(terms) => self.sum(terms, scope),
             ScalarKind::Product(factors) => self.product(factors, scope),
             ScalarKind::Power(base, exponent) => self.power(scalar, base, exponent, scope),
-            ScalarKind::Call(function, arguments) => self.call(scalar.at, function, arguments, scope),
+            ScalarKind::Call(function, arguments) => {
+                self.call(scalar.at, function, arguments, scope)
+            }
             ScalarKind::SumOver(binder, body) => self.sum_over(binder, body, scope),
         }
     }
 
     /// Records an error once and gives nothing.
-    pub(super) fn refuse<T>(&mut self, at: Location, text: impl Into<String>, help: &str) -> Option<T> {
+    pub(super) fn refuse<T>(
+        &mut self,
+        at: Location,
+        text: impl Into<String>,
+        help: &str,
+    ) -> Option<T> {
         self.diagnostics.error_once(at, text, help);
         None
     }
 
     fn within_limits(&mut self, scalar: &Scalar, expr: ExprId) -> bool {
-        let too_long = self.pool.as_number(expr).is_some_and(|number| number.bits() > NUMBER_BITS);
+        let too_long = self
+            .pool
+            .as_number(expr)
+            .is_some_and(|number| number.bits() > NUMBER_BITS);
         if too_long {
             let text = format!("an exact number of more than {NUMBER_BITS} bits");
-            return self.refuse::<()>(scalar.at, text, "write it as a decimal").is_some();
+            return self
+                .refuse::<()>(scalar.at, text, "write it as a decimal")
+                .is_some();
         }
         if self.pool.len() > EXPRESSIONS {
             let text = format!("more than {EXPRESSIONS} expressions in one model");
-            return self.refuse::<()>(scalar.at, text, "split the model").is_some();
+            return self
+                .refuse::<()>(scalar.at, text, "split the model")
+                .is_some();
         }
         true
     }
@@ -162,14 +183,23 @@ impl<'s> Resolver<'s> {
     /// A value times something that does not change in time.
     pub(super) fn times(&mut self, value: Value, factor: ExprId) -> Value {
         let level = value.level.map(|level| self.pool.mul(level, factor));
-        Value { expr: self.pool.mul(value.expr, factor), level }
+        Value {
+            expr: self.pool.mul(value.expr, factor),
+            level,
+        }
     }
 
     fn sum(&mut self, terms: &[(bool, Scalar)], scope: &mut Scope) -> Option<Value> {
         let mut values = Vec::with_capacity(terms.len());
         for (negative, term) in terms {
             let value = self.resolve(term, scope);
-            values.push(value.map(|value| if *negative { self.scaled(value, -1) } else { value }));
+            values.push(value.map(|value| {
+                if *negative {
+                    self.scaled(value, -1)
+                } else {
+                    value
+                }
+            }));
         }
         let values: Option<Vec<Value>> = values.into_iter().collect();
         values.map(|values| self.add(&values))
@@ -178,7 +208,10 @@ impl<'s> Resolver<'s> {
     /// The sum of values; its level is known if that of every term is, where a constant `c` counts as `dot(c*t)`.
     pub(super) fn add(&mut self, values: &[Value]) -> Value {
         let exprs: Vec<ExprId> = values.iter().map(|value| value.expr).collect();
-        Value { expr: self.pool.sum(&exprs), level: self.sum_level(values) }
+        Value {
+            expr: self.pool.sum(&exprs),
+            level: self.sum_level(values),
+        }
     }
 
     fn sum_level(&mut self, values: &[Value]) -> Option<ExprId> {
@@ -207,7 +240,10 @@ impl<'s> Resolver<'s> {
     fn product(&mut self, factors: &[(Operator, Scalar)], scope: &mut Scope) -> Option<Value> {
         let mut values = Vec::with_capacity(factors.len());
         for (operator, factor) in factors {
-            values.push(self.resolve(factor, scope).map(|value| (*operator, factor, value)));
+            values.push(
+                self.resolve(factor, scope)
+                    .map(|value| (*operator, factor, value)),
+            );
         }
         let values: Option<Vec<(Operator, &Scalar, Value)>> = values.into_iter().collect();
         let mut product = Value::from(self.pool.one());
@@ -243,9 +279,15 @@ impl<'s> Resolver<'s> {
     /// `a % b` of indices, in `0..b`.
     fn remainder(&mut self, left: Value, right: Value, divisor: &Scalar) -> Option<Value> {
         match (self.as_integer(left.expr), self.as_integer(right.expr)) {
-            (Some(left), Some(right)) if right > 0 => Some(self.pool.int(left.rem_euclid(right)).into()),
+            (Some(left), Some(right)) if right > 0 => {
+                Some(self.pool.int(left.rem_euclid(right)).into())
+            }
             (Some(_), Some(_)) => self.refuse(divisor.at, "`%` needs a positive divisor", ""),
-            _ => self.refuse(divisor.at, "`%` is defined for indices only", "both sides are integers known while building"),
+            _ => self.refuse(
+                divisor.at,
+                "`%` is defined for indices only",
+                "both sides are integers known while building",
+            ),
         }
     }
 
@@ -259,12 +301,20 @@ impl<'s> Resolver<'s> {
         let integer = self.as_integer(value);
         integer.or_else(|| {
             let text = format!("`{scalar}` is not an integer known while building");
-            self.refuse(scalar.at, text, "indices are made of integers, constants and indices of families")
+            self.refuse(
+                scalar.at,
+                text,
+                "indices are made of integers, constants and indices of families",
+            )
         })
     }
 
     /// The values an index takes; none if the last one is before the first.
-    pub(super) fn range(&mut self, binder: &Binder, scope: &mut Scope) -> Option<std::ops::RangeInclusive<i64>> {
+    pub(super) fn range(
+        &mut self,
+        binder: &Binder,
+        scope: &mut Scope,
+    ) -> Option<std::ops::RangeInclusive<i64>> {
         let low = self.integer(&binder.low, scope);
         let high = self.integer(&binder.high, scope);
         let (low, high) = (low?, high?);
@@ -302,8 +352,14 @@ impl<'s> Resolver<'s> {
         };
         match meaning {
             Meaning::Constant(value) => Some(self.pool.int(value).into()),
-            Meaning::Coordinate(index) => Some(self.pool.variable(self.symbols.coordinates[index].q).into()),
-            Meaning::Parameter(index) => Some(self.pool.variable(self.symbols.parameters[index].symbol).into()),
+            Meaning::Coordinate(index) => {
+                Some(self.pool.variable(self.symbols.coordinates[index].q).into())
+            }
+            Meaning::Parameter(index) => Some(
+                self.pool
+                    .variable(self.symbols.parameters[index].symbol)
+                    .into(),
+            ),
             Meaning::Coordinates(_, size) | Meaning::Parameters(_, size) => {
                 let text = format!("`{name}` is a family of {size}");
                 self.refuse(at, text, &format!("write `{name}[1]`"))
@@ -314,7 +370,11 @@ impl<'s> Resolver<'s> {
 
     fn energy(&mut self, at: Location) -> Option<Value> {
         if !self.derived_allowed {
-            return self.refuse(at, "`energy` is derived and not known here", "it may be used in `outputs`");
+            return self.refuse(
+                at,
+                "`energy` is derived and not known here",
+                "it may be used in `outputs`",
+            );
         }
         Some(self.pool.variable(self.symbols.derived.energy).into())
     }
@@ -328,11 +388,19 @@ impl<'s> Resolver<'s> {
         match meaning {
             Meaning::Coordinates(first, size) => {
                 let offset = self.offset(name, index, member, size)?;
-                Some(self.pool.variable(self.symbols.coordinates[first + offset].q).into())
+                Some(
+                    self.pool
+                        .variable(self.symbols.coordinates[first + offset].q)
+                        .into(),
+                )
             }
             Meaning::Parameters(first, size) => {
                 let offset = self.offset(name, index, member, size)?;
-                Some(self.pool.variable(self.symbols.parameters[first + offset].symbol).into())
+                Some(
+                    self.pool
+                        .variable(self.symbols.parameters[first + offset].symbol)
+                        .into(),
+                )
             }
             Meaning::Definition => self.defined_member(name, index, member),
             _ => {
@@ -343,12 +411,22 @@ impl<'s> Resolver<'s> {
     }
 
     /// The offset of a 1-based member in its family.
-    pub(super) fn offset(&mut self, name: &Word, index: &Scalar, member: i64, size: usize) -> Option<usize> {
+    pub(super) fn offset(
+        &mut self,
+        name: &Word,
+        index: &Scalar,
+        member: i64,
+        size: usize,
+    ) -> Option<usize> {
         match usize::try_from(member) {
             Ok(member) if (1..=size).contains(&member) => Some(member - 1),
             _ => {
                 let text = format!("`{}[{member}]` does not exist", name.text);
-                self.refuse(index.at, text, &format!("`{}` has the members 1 to {size}", name.text))
+                self.refuse(
+                    index.at,
+                    text,
+                    &format!("`{}` has the members 1 to {size}", name.text),
+                )
             }
         }
     }

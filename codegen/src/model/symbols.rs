@@ -77,12 +77,18 @@ impl Symbols {
 
     /// The velocities of all coordinates.
     pub(super) fn velocities(&self) -> Vec<SymbolId> {
-        self.coordinates.iter().map(|coordinate| coordinate.qdot).collect()
+        self.coordinates
+            .iter()
+            .map(|coordinate| coordinate.qdot)
+            .collect()
     }
 
     /// The positions of all coordinates.
     pub(super) fn positions(&self) -> Vec<SymbolId> {
-        self.coordinates.iter().map(|coordinate| coordinate.q).collect()
+        self.coordinates
+            .iter()
+            .map(|coordinate| coordinate.q)
+            .collect()
     }
 
     /// The differentials of all coordinates, then that of time.
@@ -104,7 +110,9 @@ impl Symbols {
 
     /// Where each coordinate goes, and time: the directions of a total time derivative.
     pub(super) fn coordinate_of(&self, symbol: SymbolId) -> Option<usize> {
-        self.coordinates.iter().position(|coordinate| coordinate.q == symbol)
+        self.coordinates
+            .iter()
+            .position(|coordinate| coordinate.q == symbol)
     }
 }
 
@@ -113,9 +121,21 @@ pub(super) fn coordinate_symbols(pool: &mut Pool, name: &Name, known: Known) -> 
     let letter = latex(name);
     [
         pool.symbol(&name.display, &letter, known),
-        pool.symbol(&format!("dot({})", name.display), &latex_velocity(name), Known::None),
-        pool.symbol(&format!("d({})", name.display), &format!(r"\mathrm{{d}}{letter}"), Known::None),
-        pool.symbol(&format!("momentum({})", name.display), &format!("p_{{{letter}}}"), Known::None),
+        pool.symbol(
+            &format!("dot({})", name.display),
+            &latex_velocity(name),
+            Known::None,
+        ),
+        pool.symbol(
+            &format!("d({})", name.display),
+            &format!(r"\mathrm{{d}}{letter}"),
+            Known::None,
+        ),
+        pool.symbol(
+            &format!("momentum({})", name.display),
+            &format!("p_{{{letter}}}"),
+            Known::None,
+        ),
     ]
 }
 
@@ -125,7 +145,11 @@ pub(super) fn member_name(field: &str, member: Option<usize>) -> Name {
         Some(member) => format!("{field}.{member}"),
         None => field.to_owned(),
     };
-    Name { display, field: field.to_owned(), member }
+    Name {
+        display,
+        field: field.to_owned(),
+        member,
+    }
 }
 
 /// `RollingDisk` as `rolling_disk`.
@@ -133,10 +157,13 @@ pub(super) fn snake_case(name: &str) -> String {
     let mut snake = String::new();
     let characters: Vec<char> = name.chars().collect();
     for (index, character) in characters.iter().enumerate() {
-        let after_lower = index > 0 && (characters[index - 1].is_lowercase() || characters[index - 1].is_ascii_digit());
+        let after_lower = index > 0
+            && (characters[index - 1].is_lowercase() || characters[index - 1].is_ascii_digit());
         let before_lower = index > 0
             && characters[index - 1].is_uppercase()
-            && characters.get(index + 1).is_some_and(|next| next.is_lowercase());
+            && characters
+                .get(index + 1)
+                .is_some_and(|next| next.is_lowercase());
         if character.is_uppercase() && (after_lower || before_lower) {
             snake.push('_');
         }

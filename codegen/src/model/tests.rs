@@ -65,7 +65,10 @@ fn model(source: &str) -> Model {
 }
 
 fn all_messages(diagnostics: &Diagnostics) -> String {
-    diagnostics.iter().map(|error| format!("{}\n", error.message())).collect()
+    diagnostics
+        .iter()
+        .map(|error| format!("{}\n", error.message()))
+        .collect()
 }
 
 fn text(pool: &Pool, exprs: &[dalembert_expr::ExprId]) -> Vec<String> {
@@ -75,32 +78,72 @@ fn text(pool: &Pool, exprs: &[dalembert_expr::ExprId]) -> Vec<String> {
 #[test]
 fn the_rolling_disk_is_taken_apart() {
     let model = model(DISK);
-    assert_eq!((model.name.as_str(), model.snake_name.as_str()), ("RollingDisk", "rolling_disk"));
+    assert_eq!(
+        (model.name.as_str(), model.snake_name.as_str()),
+        ("RollingDisk", "rolling_disk")
+    );
     assert_eq!(model.visibility, "pub");
-    assert_eq!(model.documentation, ["Vertical rolling disk on an elliptical table."]);
+    assert_eq!(
+        model.documentation,
+        ["Vertical rolling disk on an elliptical table."]
+    );
     assert_eq!(model.coordinates[2].topology, Topology::Angle);
     assert_eq!(model.parameters[0].assumption, Assumption::Positive);
     let pool = &model.pool;
-    assert_eq!(text(pool, &model.lagrangian.metric[0]), ["m", "0", "0", "0"]);
-    assert_eq!(text(pool, &model.lagrangian.metric[3]), ["0", "0", "0", "J"]);
-    assert_eq!(text(pool, &model.constraints[0].form), ["1", "0", "-R*cos(phi)", "0"]);
-    assert_eq!(text(pool, &model.constraints[1].form), ["0", "1", "-R*sin(phi)", "0"]);
-    assert!(model.constraints.iter().all(|constraint| constraint.level.is_none()));
+    assert_eq!(
+        text(pool, &model.lagrangian.metric[0]),
+        ["m", "0", "0", "0"]
+    );
+    assert_eq!(
+        text(pool, &model.lagrangian.metric[3]),
+        ["0", "0", "0", "J"]
+    );
+    assert_eq!(
+        text(pool, &model.constraints[0].form),
+        ["1", "0", "-R*cos(phi)", "0"]
+    );
+    assert_eq!(
+        text(pool, &model.constraints[1].form),
+        ["0", "1", "-R*sin(phi)", "0"]
+    );
+    assert!(
+        model
+            .constraints
+            .iter()
+            .all(|constraint| constraint.level.is_none())
+    );
     assert_eq!(model.surfaces.len(), 2);
     assert_eq!(model.surfaces[0].law, Law::Elastic);
-    assert_eq!(model.initial.q.iter().filter(|value| value.is_some()).count(), 1);
+    assert_eq!(
+        model
+            .initial
+            .q
+            .iter()
+            .filter(|value| value.is_some())
+            .count(),
+        1
+    );
     assert!(model.initial.until.is_some());
     let view = model.view.unwrap();
     assert_eq!(view.plane, Some([0, 1]));
     assert_eq!(view.labels, ["x", "y"]);
-    assert_eq!(text(pool, &[model.outputs[0].value]), ["multiplier(rolling_x)"]);
+    assert_eq!(
+        text(pool, &[model.outputs[0].value]),
+        ["multiplier(rolling_x)"]
+    );
     assert_eq!(model.notes, Vec::<String>::new());
 }
 
 #[test]
 fn the_text_of_a_model_declares_the_same_model() {
     let first = model(DISK);
-    assert!(first.source.contains("let table(u, v) = 1 - u^2/ta^2 - v^2/tb^2;"), "{}", first.source);
+    assert!(
+        first
+            .source
+            .contains("let table(u, v) = 1 - u^2/ta^2 - v^2/tb^2;"),
+        "{}",
+        first.source
+    );
     assert_eq!(model(&first.source).source, first.source);
 }
 
@@ -110,16 +153,31 @@ fn affine_constraints_keep_their_affine_part() {
     let values = |symbol: SymbolId| 2.0 + symbol.index() as f64;
     let rate = values(model.parameters[3].symbol);
     let [x, y] = [0, 1].map(|index: usize| values(model.coordinates[index].q));
-    let affine = model.pool.eval(&[model.constraints[0].affine, model.constraints[1].affine], &values);
+    let affine = model.pool.eval(
+        &[model.constraints[0].affine, model.constraints[1].affine],
+        &values,
+    );
     assert_eq!(affine, [rate * y, -rate * x]);
-    assert!(model.constraints.iter().all(|constraint| constraint.level.is_none()));
-    assert_eq!(text(&model.pool, &model.lagrangian.metric[2]), ["0", "0", "I", "0", "I*cos(theta)"]);
+    assert!(
+        model
+            .constraints
+            .iter()
+            .all(|constraint| constraint.level.is_none())
+    );
+    assert_eq!(
+        text(&model.pool, &model.lagrangian.metric[2]),
+        ["0", "0", "I", "0", "I*cos(theta)"]
+    );
 }
 
 #[test]
 fn a_chain_is_written_out() {
     let model = model(&chain(3));
-    let names: Vec<&str> = model.coordinates.iter().map(|coordinate| coordinate.name.display.as_str()).collect();
+    let names: Vec<&str> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.name.display.as_str())
+        .collect();
     assert_eq!(names, ["theta.1", "theta.2", "theta.3"]);
     assert_eq!(model.parameters.len(), 5);
     assert_eq!(text(&model.pool, &[model.initial.q[1].unwrap()]), ["1/5"]);
@@ -131,4 +189,93 @@ fn a_chain_of_sixteen_links_is_checked_fast() {
     let model = model(&chain(16));
     println!("{:?}, {} nodes", started.elapsed(), model.pool.len());
     assert!(model.pool.len() < 60_000, "{} nodes", model.pool.len());
+}
+
+/// A particle in space with one constraint.
+fn constrained(constraint: &str) -> Model {
+    model(&format!(
+        "P {{ coordinates {{ x; y; z; }} parameters {{ m > 0 = 1; v; l > 0 = 1; }}
+            let circle = x^2 + y^2;
+            lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(z)^2);
+            constraints {{ c: {constraint}; }}
+            outputs {{ o: v + l; }} }}"
+    ))
+}
+
+#[test]
+fn constraints_written_as_a_derivative_keep_their_level() {
+    let level = |constraint: &str| {
+        let model = constrained(constraint);
+        let values = |symbol: SymbolId| 2.0 + symbol.index() as f64;
+        let [x, y, _] = [0, 1, 2].map(|index: usize| values(model.coordinates[index].q));
+        let [v, l] = [1, 2].map(|index: usize| values(model.parameters[index].symbol));
+        let level = model.constraints[0]
+            .level
+            .map(|level| model.pool.eval(&[level], &values)[0]);
+        (level, [x, y, v, l, values(model.time)])
+    };
+    let (value, [x, y, ..]) = level("d(circle) = 0");
+    assert_eq!(value, Some(x * x + y * y));
+    let (value, [x, y, _, l, _]) = level("d(x) - l*d(y) = 0");
+    assert_eq!(value, Some(x - l * y));
+    let (value, [x, _, v, _, t]) = level("dot(x) = v");
+    assert_eq!(value, Some(x - v * t));
+    let (value, [x, _, v, _, t]) = level("d(x)/2 = v*d(t)");
+    assert_eq!(value, Some(x / 2.0 - v * t));
+    assert_eq!(level("x*dot(x) + y*dot(y) = 0").0, None);
+}
+
+#[test]
+fn integrable_constraints_are_noted() {
+    let note = |constraint: &str| constrained(constraint).notes.join("; ");
+    assert!(
+        note("x*dot(x) + y*dot(y) = 0").starts_with("`c` is integrable: write it as `d(f) = 0`")
+    );
+    assert!(note("d(x)/x + d(y)/x = 0").starts_with("`c` is integrable with a factor"));
+    assert_eq!(note("d(z) - y*d(x) = 0"), "");
+    assert_eq!(note("d(x) = 0"), "");
+}
+
+#[test]
+fn remarks_name_what_a_person_should_see() {
+    let model = model(
+        "P { coordinates { x; y; } parameters { m; k; }
+            lagrangian = m/2*(dot(x)^2 + dot(y)^2) + x*dot(y);
+            constraints { c: d(x) - y*d(y) = 0; }
+            impacts { w: y >= 1 => totally_plastic; } }",
+    );
+    let notes = model.notes.join("\n");
+    assert!(
+        notes.contains("terms linear in the velocities of `y`"),
+        "{notes}"
+    );
+    assert!(
+        notes.contains("positive only where `m > 0` (entry (x, x))"),
+        "{notes}"
+    );
+    assert!(
+        notes.contains("`w` may still point into the wall"),
+        "{notes}"
+    );
+    assert!(notes.contains("the parameter `k` is not used"), "{notes}");
+}
+
+#[test]
+fn angles_may_be_used_in_disguise() {
+    model(
+        "P { coordinates { a: angle; b: angle; } parameters { w; }
+            lagrangian = dot(a)^2 + dot(b)^2 + sin(a/2)^2 + cos(2*a - b + w*t) + tan(a)^2;
+            impacts { h: cos(a - pi/3) >= 1/2 when sin(b) > 0; }
+            outputs { turns: a/(2*pi); } }",
+    );
+}
+
+#[test]
+fn a_chain_of_sixty_lets_doubles_nothing() {
+    let mut source = String::from("P { coordinates { x; } let a0 = x; let f(u) = u + u^2;");
+    for level in 1..60 {
+        source.push_str(&format!("let a{level} = f(a{0})*a{0};", level - 1));
+    }
+    source.push_str("lagrangian = dot(x)^2 - a59; }");
+    assert!(model(&source).pool.len() < 5_000);
 }

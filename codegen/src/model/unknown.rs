@@ -73,7 +73,12 @@ const LOOKALIKES: [(char, char); 33] = [
 
 impl Resolver<'_> {
     /// Refuses a name that nothing declares.
-    pub(super) fn unknown_name(&mut self, name: &str, at: Location, scope: &Scope) -> Option<Value> {
+    pub(super) fn unknown_name(
+        &mut self,
+        name: &str,
+        at: Location,
+        scope: &Scope,
+    ) -> Option<Value> {
         if let Some((letter, declared)) = self.lookalike(name) {
             let text = format!("`{name}` ({letter}) is not the declared `{declared}`");
             return self.refuse(at, text, &format!("write `{declared}`"));
@@ -84,12 +89,19 @@ impl Resolver<'_> {
 
     fn unknown_help(&self, name: &str, scope: &Scope) -> String {
         if name.contains('·') {
-            return format!("the middle dot is part of the name; write `{}`", name.replace('·', "*"));
+            return format!(
+                "the middle dot is part of the name; write `{}`",
+                name.replace('·', "*")
+            );
         }
         if let Some(help) = self.velocity_help(name) {
             return help;
         }
-        let declared = self.symbols.names.iter().map(|(name, (meaning, _))| (name.as_str(), meaning.noun()));
+        let declared = self
+            .symbols
+            .names
+            .iter()
+            .map(|(name, (meaning, _))| (name.as_str(), meaning.noun()));
         let locals = scope.names().map(|name| (name, "index or argument"));
         let known: Vec<(&str, &str)> = declared.chain(locals).collect();
         let near = nearest(name, known.iter().map(|(name, _)| *name));
@@ -105,14 +117,24 @@ impl Resolver<'_> {
             let base = self.ascii_name(&base).unwrap_or(base);
             return Some(format!("did you mean `dot({base})`?"));
         }
-        let coordinates = self.symbols.coordinates.iter().map(|coordinate| coordinate.name.field.as_str());
+        let coordinates = self
+            .symbols
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.name.field.as_str());
         for field in coordinates {
-            let rest = name.strip_prefix(field).map(|rest| rest.trim_start_matches('_'));
+            let rest = name
+                .strip_prefix(field)
+                .map(|rest| rest.trim_start_matches('_'));
             if rest.is_some_and(|rest| rest == "d" || rest.starts_with("dot")) {
-                return Some(format!("the velocity of `{field}` is written `dot({field})`"));
+                return Some(format!(
+                    "the velocity of `{field}` is written `dot({field})`"
+                ));
             }
             if name.strip_prefix('d') == Some(field) {
-                return Some(format!("the differential of `{field}` is written `d({field})`"));
+                return Some(format!(
+                    "the differential of `{field}` is written `d({field})`"
+                ));
             }
         }
         None
@@ -120,7 +142,9 @@ impl Resolver<'_> {
 
     /// The declared name that a Greek or Cyrillic one looks like or spells, and what the letter is.
     fn lookalike(&self, name: &str) -> Option<(String, String)> {
-        let foreign = name.chars().find(|letter| !letter.is_ascii() && (greek_name(*letter).is_some() || latin(*letter).is_some()))?;
+        let foreign = name.chars().find(|letter| {
+            !letter.is_ascii() && (greek_name(*letter).is_some() || latin(*letter).is_some())
+        })?;
         let declared = self.ascii_name(name)?;
         let letter = match greek_name(foreign) {
             Some(greek) => format!("Greek {greek}"),
@@ -132,9 +156,17 @@ impl Resolver<'_> {
 
     /// The declared name that is spelt or looks like this one.
     fn ascii_name(&self, name: &str) -> Option<String> {
-        let spelt: String = name.chars().map(|letter| greek_name(letter).map_or(letter.to_string(), str::to_owned)).collect();
-        let seen: String = name.chars().map(|letter| latin(letter).unwrap_or(letter)).collect();
-        [spelt, seen].into_iter().find(|candidate| self.symbols.names.contains_key(candidate))
+        let spelt: String = name
+            .chars()
+            .map(|letter| greek_name(letter).map_or(letter.to_string(), str::to_owned))
+            .collect();
+        let seen: String = name
+            .chars()
+            .map(|letter| latin(letter).unwrap_or(letter))
+            .collect();
+        [spelt, seen]
+            .into_iter()
+            .find(|candidate| self.symbols.names.contains_key(candidate))
     }
 
     /// Refuses a call of a function that nothing declares.
@@ -145,7 +177,10 @@ impl Resolver<'_> {
         } else if is_not_differentiable(&name.text) {
             format!("`{}` is not differentiable; {PIECEWISE}", name.text)
         } else if let Some(near) = nearest(&name.text, FUNCTIONS.into_iter().chain(defined)) {
-            format!("did you mean `{near}`? The functions are {}", listed(FUNCTIONS))
+            format!(
+                "did you mean `{near}`? The functions are {}",
+                listed(FUNCTIONS)
+            )
         } else {
             format!("the functions are {}", listed(FUNCTIONS))
         };
@@ -154,13 +189,25 @@ impl Resolver<'_> {
 }
 
 fn latin(letter: char) -> Option<char> {
-    LOOKALIKES.iter().find(|(foreign, _)| *foreign == letter).map(|(_, latin)| *latin)
+    LOOKALIKES
+        .iter()
+        .find(|(foreign, _)| *foreign == letter)
+        .map(|(_, latin)| *latin)
 }
 
 /// The name without the dot above one of its letters.
 fn without_dot(name: &str) -> Option<String> {
-    let plain = |letter: char| DOTTED.iter().find(|(dotted, _)| *dotted == letter).map_or(letter, |(_, plain)| *plain);
-    let base: String = name.chars().filter(|letter| *letter != COMBINING_DOT).map(plain).collect();
+    let plain = |letter: char| {
+        DOTTED
+            .iter()
+            .find(|(dotted, _)| *dotted == letter)
+            .map_or(letter, |(_, plain)| *plain)
+    };
+    let base: String = name
+        .chars()
+        .filter(|letter| *letter != COMBINING_DOT)
+        .map(plain)
+        .collect();
     (base != name).then_some(base)
 }
 

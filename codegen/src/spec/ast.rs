@@ -76,7 +76,10 @@ impl Spec {
 
     /// Where a declaration was written; the model's name for an id of another model.
     pub fn location(&self, item: ItemId) -> Location {
-        self.items.get(item.0 as usize).copied().unwrap_or(self.name.at)
+        self.items
+            .get(item.0 as usize)
+            .copied()
+            .unwrap_or(self.name.at)
     }
 
     /// The first token of a declaration.

@@ -26,8 +26,18 @@ pub(super) struct Cursor<'a> {
 
 impl<'a> Cursor<'a> {
     /// A cursor before `tokens`; `before` is where something is missing if there are none.
-    pub(super) fn new(tokens: &'a [TokenTree], before: Location, diagnostics: &'a mut Diagnostics) -> Self {
-        Self { tokens, next: 0, last: before, exponents: 0, diagnostics }
+    pub(super) fn new(
+        tokens: &'a [TokenTree],
+        before: Location,
+        diagnostics: &'a mut Diagnostics,
+    ) -> Self {
+        Self {
+            tokens,
+            next: 0,
+            last: before,
+            exponents: 0,
+            diagnostics,
+        }
     }
 
     /// A cursor over the tokens inside of a group.
@@ -98,10 +108,29 @@ impl<'a> Cursor<'a> {
 
     /// Whether the mark at `index` and the next one form a longer operator of comparison or range.
     fn goes_on(&self, index: usize) -> bool {
-        let Some(TokenTree::Punct(punct)) = self.tokens.get(index) else { return false };
-        let Some(TokenTree::Punct(next)) = self.tokens.get(index + 1) else { return false };
+        let Some(TokenTree::Punct(punct)) = self.tokens.get(index) else {
+            return false;
+        };
+        let Some(TokenTree::Punct(next)) = self.tokens.get(index + 1) else {
+            return false;
+        };
         punct.spacing() == Spacing::Joint
-            && matches!((punct.as_char(), next.as_char()), ('=' | '<' | '>' | '!', '=') | ('=', '>') | ('.', '.' | '='))
+            && matches!(
+                (punct.as_char(), next.as_char()),
+                ('=' | '<' | '>' | '!', '=') | ('=', '>') | ('.', '.' | '=')
+            )
+    }
+
+    /// Records an error at the operator that comes next.
+    pub(super) fn refuse_operator(
+        &mut self,
+        operator: &str,
+        text: impl Into<String>,
+        help: &str,
+    ) -> Refused {
+        let last = self.tokens.get(self.next + operator.chars().count() - 1);
+        let at = self.here().to(last.map_or(self.last, Location::of));
+        self.refuse(at, text, help)
     }
 
     /// Takes the operator if it comes next, and says where it stands.
@@ -120,7 +149,10 @@ impl<'a> Cursor<'a> {
     pub(super) fn expect_operator(&mut self, operator: &str, form: &str) -> Read<Location> {
         match self.eat_operator(operator) {
             Some(at) => Ok(at),
-            None => Err(self.unexpected(&format!("expected `{operator}`"), &format!("write `{form}`"))),
+            None => Err(self.unexpected(
+                &format!("expected `{operator}`"),
+                &format!("write `{form}`"),
+            )),
         }
     }
 
@@ -165,7 +197,10 @@ impl<'a> Cursor<'a> {
         let name = self.name(what)?;
         if let Some(reason) = keyword::reserved(&name.text) {
             let text = format!("`{}` is {reason}", name.text);
-            self.diagnostics.error(name.at, text).help(format!("choose another name, for example `{}_1`", name.text));
+            self.diagnostics.error(name.at, text).help(format!(
+                "choose another name, for example `{}_1`",
+                name.text
+            ));
         }
         Ok(name)
     }
@@ -177,8 +212,11 @@ impl<'a> Cursor<'a> {
         let letters = text.chars().count();
         if letters > NAME_LENGTH {
             let start: String = text.chars().take(12).collect();
-            let message = format!("the name `{start}..` has {letters} letters; the limit is {NAME_LENGTH}");
-            self.diagnostics.error(at, message).help("choose a shorter name");
+            let message =
+                format!("the name `{start}..` has {letters} letters; the limit is {NAME_LENGTH}");
+            self.diagnostics
+                .error(at, message)
+                .help("choose a shorter name");
             return Err(Refused);
         }
         Ok(Word { text, at })
@@ -186,11 +224,13 @@ impl<'a> Cursor<'a> {
 
     /// Records an error at the next token, or behind the last one if there is none.
     pub(super) fn unexpected(&mut self, expected: &str, help: &str) -> Refused {
-        let text = match self.peek() {
-            Some(token) => format!("{expected}, found `{}`", token_text(token)),
-            None => expected.to_owned(),
-        };
-        self.refuse(self.here(), text, help)
+        match self.peek() {
+            Some(token) if !self.is_operator(";") => {
+                let text = format!("{expected}, found `{}`", token_text(token));
+                self.refuse(Location::of(token), text, help)
+            }
+            _ => self.refuse(self.last, expected, help),
+        }
     }
 
     /// Records an error.
@@ -210,7 +250,9 @@ pub(super) fn tokens_of(stream: TokenStream) -> Vec<TokenTree> {
 
 fn without_invisible_group(mut token: TokenTree) -> TokenTree {
     loop {
-        let TokenTree::Group(group) = &token else { return token };
+        let TokenTree::Group(group) = &token else {
+            return token;
+        };
         if group.delimiter() != Delimiter::None {
             return token;
         }
@@ -233,5 +275,9 @@ pub(super) fn token_text(token: &TokenTree) -> String {
         },
         other => other.to_string(),
     };
-    if text.chars().count() <= 24 { text } else { text.chars().take(22).chain("..".chars()).collect() }
+    if text.chars().count() <= 24 {
+        text
+    } else {
+        text.chars().take(22).chain("..".chars()).collect()
+    }
 }

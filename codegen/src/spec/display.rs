@@ -26,7 +26,11 @@ impl Scalar {
     }
 
     fn write_at(&self, least: Level, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.level() >= least { write!(f, "{self}") } else { write!(f, "({self})") }
+        if self.level() >= least {
+            write!(f, "{self}")
+        } else {
+            write!(f, "({self})")
+        }
     }
 }
 

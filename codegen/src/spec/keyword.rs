@@ -18,19 +18,29 @@ pub const SECTIONS: [&str; 11] = [
 /// Words of the language that this version does not implement, each with what can be written instead.
 pub const NOT_IMPLEMENTED: [(&str, &str); 9] = [
     ("claims", "leave it out"),
-    ("scenes", "leave it out; the model itself uses every declared force and surface"),
-    ("frame", "leave it out; velocities and momenta of the coordinates are derived"),
+    (
+        "scenes",
+        "leave it out; the model itself uses every declared force and surface",
+    ),
+    (
+        "frame",
+        "leave it out; velocities and momenta of the coordinates are derived",
+    ),
     ("modes", "declare one model for each mode"),
     ("transitions", "declare one model for each mode"),
     ("field", "give a `lagrangian`"),
     ("inputs", "declare a parameter and set it between runs"),
-    ("reset", "one of the laws `elastic`, `restitution(e)`, `newton(e)`, `nonholonomic_plastic`, `impact_plastic`, `totally_plastic`"),
+    (
+        "reset",
+        "one of the laws `elastic`, `restitution(e)`, `newton(e)`, `nonholonomic_plastic`, `impact_plastic`, `totally_plastic`",
+    ),
     ("instantaneous", "declare the constraint in `constraints`"),
 ];
 
 /// The elementary functions.
 pub const FUNCTIONS: [&str; 14] = [
-    "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "ln", "sinh", "cosh", "tanh", "abs",
+    "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "ln", "sinh", "cosh",
+    "tanh", "abs",
 ];
 
 /// Functions of other languages, with what is written here.
@@ -52,7 +62,16 @@ const FOREIGN_FUNCTIONS: [(&str, &str); 14] = [
 ];
 
 /// Functions that are not differentiable and belong nowhere in an expression.
-const NOT_DIFFERENTIABLE: [&str; 8] = ["max", "min", "floor", "ceil", "round", "sign", "signum", "heaviside"];
+const NOT_DIFFERENTIABLE: [&str; 8] = [
+    "max",
+    "min",
+    "floor",
+    "ceil",
+    "round",
+    "sign",
+    "signum",
+    "heaviside",
+];
 
 /// The impact laws, with the number of their coefficients.
 pub const LAWS: [(&str, usize); 6] = [
@@ -65,15 +84,27 @@ pub const LAWS: [(&str, usize); 6] = [
 ];
 
 /// Words with a meaning of their own in expressions.
-const RESERVED: [&str; 11] =
-    ["t", "pi", "d", "dot", "sum", "energy", "momentum", "multiplier", "partial", "until", "when"];
+const RESERVED: [&str; 11] = [
+    "t",
+    "pi",
+    "d",
+    "dot",
+    "sum",
+    "energy",
+    "momentum",
+    "multiplier",
+    "partial",
+    "until",
+    "when",
+];
 
 /// Words that Rust does not accept as the name of a field.
 const RUST: [&str; 52] = [
-    "as", "async", "await", "break", "const", "continue", "crate", "dyn", "else", "enum", "extern", "false", "fn", "for",
-    "gen", "if", "impl", "in", "let", "loop", "match", "mod", "move", "mut", "pub", "ref", "return", "self", "Self",
-    "static", "struct", "super", "trait", "true", "type", "unsafe", "use", "where", "while", "abstract", "become", "box",
-    "do", "final", "macro", "override", "priv", "try", "typeof", "unsized", "virtual", "yield",
+    "as", "async", "await", "break", "const", "continue", "crate", "dyn", "else", "enum", "extern",
+    "false", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "match", "mod", "move", "mut",
+    "pub", "ref", "return", "self", "Self", "static", "struct", "super", "trait", "true", "type",
+    "unsafe", "use", "where", "while", "abstract", "become", "box", "do", "final", "macro",
+    "override", "priv", "try", "typeof", "unsized", "virtual", "yield",
 ];
 
 /// Functions and operators that take their arguments in parentheses.
@@ -94,12 +125,18 @@ pub fn reserved(name: &str) -> Option<&'static str> {
 
 /// What to write instead of a word that this version does not implement.
 pub fn not_implemented(word: &str) -> Option<&'static str> {
-    NOT_IMPLEMENTED.iter().find(|(name, _)| *name == word).map(|(_, instead)| *instead)
+    NOT_IMPLEMENTED
+        .iter()
+        .find(|(name, _)| *name == word)
+        .map(|(_, instead)| *instead)
 }
 
 /// What to write instead of a function of another language.
 pub fn foreign_function(name: &str) -> Option<&'static str> {
-    FOREIGN_FUNCTIONS.iter().find(|(foreign, _)| *foreign == name).map(|(_, instead)| *instead)
+    FOREIGN_FUNCTIONS
+        .iter()
+        .find(|(foreign, _)| *foreign == name)
+        .map(|(_, instead)| *instead)
 }
 
 /// Whether `name` is a function that has no derivative everywhere.

@@ -35,7 +35,9 @@ pub(super) fn check_nesting(tokens: &TokenStream) -> Result<(), Diagnostics> {
     while let Some((depth, stream)) = pending.pop() {
         deepest = deepest.max(depth);
         for token in stream {
-            let TokenTree::Group(group) = token else { continue };
+            let TokenTree::Group(group) = token else {
+                continue;
+            };
             if depth + 1 == NESTING + 1 && culprit.is_none() {
                 culprit = Some(Location::opening(&group));
             }

@@ -9,8 +9,10 @@ use super::limits::LITERAL_DIGITS;
 use crate::diagnostics::Location;
 
 /// Rust's types of numbers, which appear as suffixes.
-const TYPES: [&str; 14] =
-    ["f16", "f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "usize"];
+const TYPES: [&str; 14] = [
+    "f16", "f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64",
+    "usize",
+];
 
 impl Cursor<'_> {
     /// The value of a literal that was just read.
@@ -18,17 +20,27 @@ impl Cursor<'_> {
         let text = literal.to_string();
         let at = Location::from(literal.span());
         let positive = text.strip_prefix('-').unwrap_or(&text);
-        let value = Scalar { kind: ScalarKind::Number(self.number(positive, at)?, positive.to_owned()), at };
+        let value = Scalar {
+            kind: ScalarKind::Number(self.number(positive, at)?, positive.to_owned()),
+            at,
+        };
         // Only a macro that builds literals itself can make a negative one.
         if positive.len() == text.len() {
             return Ok(value);
         }
-        Ok(Scalar { kind: ScalarKind::Negative(Box::new(value)), at })
+        Ok(Scalar {
+            kind: ScalarKind::Negative(Box::new(value)),
+            at,
+        })
     }
 
     fn number(&mut self, text: &str, at: Location) -> Read<Rational> {
         if !text.starts_with(|first: char| first.is_ascii_digit()) {
-            return Err(self.refuse(at, "expected an expression, found a text", "numbers are written `12`, `0.5`, `1.25e-7`"));
+            return Err(self.refuse(
+                at,
+                "expected an expression, found a text",
+                "numbers are written `12`, `0.5`, `1.25e-7`",
+            ));
         }
         if text.starts_with("0x") || text.starts_with("0b") || text.starts_with("0o") {
             return Err(self.refuse(at, "numbers are decimal", "write `12`, `0.5`, `1.25e-7`"));
@@ -49,9 +61,18 @@ impl Cursor<'_> {
         })
     }
 
-    fn refuse_suffix(&mut self, number: &str, suffix: &str, at: Location) -> super::cursor::Refused {
+    fn refuse_suffix(
+        &mut self,
+        number: &str,
+        suffix: &str,
+        at: Location,
+    ) -> super::cursor::Refused {
         if TYPES.contains(&suffix) {
-            return self.refuse(at, format!("numbers have no type: `{suffix}`"), &format!("write `{number}`"));
+            return self.refuse(
+                at,
+                format!("numbers have no type: `{suffix}`"),
+                &format!("write `{number}`"),
+            );
         }
         let suffix: String = suffix.chars().take(24).collect();
         let text = format!("missing `*` between `{number}` and `{suffix}`");
@@ -84,6 +105,9 @@ fn number_length(text: &str) -> usize {
 
 /// The end of the digits and underscores that begin at `start`.
 fn digits_from(bytes: &[u8], start: usize) -> usize {
-    let digits = bytes.iter().skip(start).take_while(|byte| byte.is_ascii_digit() || **byte == b'_');
+    let digits = bytes
+        .iter()
+        .skip(start)
+        .take_while(|byte| byte.is_ascii_digit() || **byte == b'_');
     start + digits.count()
 }

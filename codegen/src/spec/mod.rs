@@ -19,8 +19,11 @@ mod scalar;
 mod tests;
 
 pub use ast::*;
-pub use keyword::{FUNCTIONS, LAWS, PIECEWISE, foreign_function, is_function, is_not_differentiable};
+pub use keyword::{
+    FUNCTIONS, LAWS, PIECEWISE, foreign_function, is_function, is_not_differentiable,
+};
 pub use limits::{
-    COORDINATES, EXPONENT, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS, RESOLVED_DEPTH, RESOLVED_PARTS,
+    COORDINATES, EXPONENT, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS, RESOLVED_DEPTH,
+    RESOLVED_PARTS,
 };
 pub use parse::parse;

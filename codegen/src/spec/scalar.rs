@@ -29,7 +29,9 @@ impl Cursor<'_> {
         match self.peek() {
             Some(TokenTree::Ident(word)) if *word == "when" => Ok(sum),
             Some(TokenTree::Ident(_) | TokenTree::Literal(_)) => Err(self.missing_operator()),
-            Some(TokenTree::Group(group)) if group.delimiter() != Delimiter::Brace => Err(self.missing_operator()),
+            Some(TokenTree::Group(group)) if group.delimiter() != Delimiter::Brace => {
+                Err(self.missing_operator())
+            }
             _ => Ok(sum),
         }
     }
@@ -48,24 +50,36 @@ impl Cursor<'_> {
         }
         if let Some(sign) = COMPARISONS.into_iter().find(|sign| self.is_operator(sign)) {
             let text = format!("`{sign}` is not differentiable and not part of an expression");
-            return Err(self.refuse(self.here(), text, keyword::PIECEWISE));
+            return Err(self.refuse_operator(sign, text, keyword::PIECEWISE));
         }
         if self.is_operator(".") {
-            return Err(self.unexpected("unexpected `.`", "a member of a family is written `theta[3]`"));
+            return Err(self.unexpected(
+                "unexpected `.`",
+                "a member of a family is written `theta[3]`",
+            ));
         }
         Err(self.unexpected("expected `;` or an operator", ""))
     }
 
     fn missing_operator(&mut self) -> Refused {
-        if self.is_word("if") || self.is_word("else") || self.is_word("and") || self.is_word("or") {
+        if self.is_word("and") || self.is_word("or") {
+            let help = "several conditions are written `when a > 0 when b > 0`";
+            return self.unexpected("expected `when`", help);
+        }
+        if self.is_word("if") || self.is_word("else") {
             return self.unexpected("an expression has no cases", keyword::PIECEWISE);
         }
-        if matches!(self.peek_second(), Some(TokenTree::Punct(punct)) if matches!(punct.as_char(), ':' | '=')) {
+        if matches!(self.peek_second(), Some(TokenTree::Punct(punct)) if matches!(punct.as_char(), ':' | '='))
+        {
             return self.refuse(self.last(), "expected `;`", "end the declaration with `;`");
         }
         let next = self.peek().map_or_else(String::new, token_text);
         let help = "write `*` for a product, or `;` to end the declaration";
-        self.refuse(self.here(), format!("missing operator before `{next}`"), help)
+        self.refuse(
+            self.here(),
+            format!("missing operator before `{next}`"),
+            help,
+        )
     }
 
     fn sum(&mut self) -> Read<Scalar> {
@@ -80,7 +94,12 @@ impl Cursor<'_> {
             self.bump();
             terms.push((negative, self.product()?));
         }
-        Ok(single(terms, |(_, only)| only, ScalarKind::Sum, start.to(self.last())))
+        Ok(single(
+            terms,
+            |(_, only)| only,
+            ScalarKind::Sum,
+            start.to(self.last()),
+        ))
     }
 
     fn product(&mut self) -> Read<Scalar> {
@@ -89,12 +108,19 @@ impl Cursor<'_> {
         while let Some(operator) = self.product_operator()? {
             factors.push((operator, self.unary()?));
         }
-        Ok(single(factors, |(_, only)| only, ScalarKind::Product, start.to(self.last())))
+        Ok(single(
+            factors,
+            |(_, only)| only,
+            ScalarKind::Product,
+            start.to(self.last()),
+        ))
     }
 
     /// Takes `*`, `/` or `%`, if one comes next.
     fn product_operator(&mut self) -> Read<Option<Operator>> {
-        let Some(TokenTree::Punct(punct)) = self.peek() else { return Ok(None) };
+        let Some(TokenTree::Punct(punct)) = self.peek() else {
+            return Ok(None);
+        };
         let operator = match punct.as_char() {
             '*' => Operator::Times,
             '/' => Operator::Over,
@@ -103,7 +129,8 @@ impl Cursor<'_> {
         };
         self.bump();
         let start = self.last();
-        if matches!(self.peek(), Some(TokenTree::Punct(punct)) if operator == Operator::Times && punct.as_char() == '*') {
+        if matches!(self.peek(), Some(TokenTree::Punct(punct)) if operator == Operator::Times && punct.as_char() == '*')
+        {
             let at = start.to(self.here());
             return Err(self.refuse(at, "no `**` operator", "a power is written `x^2`"));
         }
@@ -122,7 +149,10 @@ impl Cursor<'_> {
             return Ok(power);
         }
         let at = start.to(self.last());
-        Ok(Scalar { kind: ScalarKind::Negative(Box::new(power)), at })
+        Ok(Scalar {
+            kind: ScalarKind::Negative(Box::new(power)),
+            at,
+        })
     }
 
     fn power(&mut self) -> Read<Scalar> {
@@ -140,7 +170,10 @@ impl Cursor<'_> {
         let exponent = self.unary()?;
         self.exponents -= 1;
         let at = start.to(self.last());
-        Ok(Scalar { kind: ScalarKind::Power(Box::new(base), Box::new(exponent)), at })
+        Ok(Scalar {
+            kind: ScalarKind::Power(Box::new(base), Box::new(exponent)),
+            at,
+        })
     }
 
     fn atom(&mut self) -> Read<Scalar> {
@@ -153,14 +186,18 @@ impl Cursor<'_> {
                 self.bump();
                 self.named(ident)
             }
-            Some(TokenTree::Group(group)) => match group.delimiter() {
-                Delimiter::Parenthesis | Delimiter::None => self.parenthesised(group),
-                Delimiter::Bracket => Err(self.unexpected("expected an expression", "group with parentheses: `( .. )`")),
-                Delimiter::Brace => Err(self.unexpected("expected an expression", "")),
-            },
-            Some(TokenTree::Punct(punct)) if punct.as_char() == '|' => {
-                Err(self.unexpected("expected an expression", "the absolute value is written `abs(x)`"))
+            Some(TokenTree::Group(group)) => {
+                match group.delimiter() {
+                    Delimiter::Parenthesis | Delimiter::None => self.parenthesised(group),
+                    Delimiter::Bracket => Err(self
+                        .unexpected("expected an expression", "group with parentheses: `( .. )`")),
+                    Delimiter::Brace => Err(self.unexpected("expected an expression", "")),
+                }
             }
+            Some(TokenTree::Punct(punct)) if punct.as_char() == '|' => Err(self.unexpected(
+                "expected an expression",
+                "the absolute value is written `abs(x)`",
+            )),
             _ => Err(self.unexpected("expected an expression", "")),
         }
     }
@@ -169,31 +206,46 @@ impl Cursor<'_> {
         self.bump();
         let tokens = tokens_of(group.stream());
         let inner = self.inside(&tokens, group).whole_scalar()?;
-        Ok(Scalar { kind: inner.kind, at: Location::from(group.span()) })
+        Ok(Scalar {
+            kind: inner.kind,
+            at: Location::from(group.span()),
+        })
     }
 
     /// What begins with a name.
     fn named(&mut self, ident: &Ident) -> Read<Scalar> {
         let name = self.word(ident)?;
         if matches!(name.text.as_str(), "if" | "match" | "else") {
-            let text = format!("`{}` is not differentiable and not part of an expression", name.text);
+            let text = format!(
+                "`{}` is not differentiable and not part of an expression",
+                name.text
+            );
             return Err(self.refuse(name.at, text, keyword::PIECEWISE));
         }
         if let Some(group) = self.eat_group(Delimiter::Parenthesis) {
             let tokens = tokens_of(group.stream());
             let kind = self.inside(&tokens, group).call(name.clone())?;
-            return Ok(Scalar { kind, at: name.at.to(self.last()) });
+            return Ok(Scalar {
+                kind,
+                at: name.at.to(self.last()),
+            });
         }
         if let Some(group) = self.eat_group(Delimiter::Bracket) {
             let tokens = tokens_of(group.stream());
             let index = self.inside(&tokens, group).whole_scalar()?;
             let at = name.at.to(self.last());
-            return Ok(Scalar { kind: ScalarKind::Member(name, Box::new(index)), at });
+            return Ok(Scalar {
+                kind: ScalarKind::Member(name, Box::new(index)),
+                at,
+            });
         }
         if keyword::is_function(&name.text) {
             return Err(self.missing_parentheses(&name));
         }
-        Ok(Scalar { kind: ScalarKind::Name(name.text), at: name.at })
+        Ok(Scalar {
+            kind: ScalarKind::Name(name.text),
+            at: name.at,
+        })
     }
 
     fn missing_parentheses(&mut self, function: &Word) -> Refused {
@@ -201,7 +253,11 @@ impl Cursor<'_> {
         match self.peek() {
             Some(token @ (TokenTree::Ident(_) | TokenTree::Literal(_))) => {
                 let help = format!("write `{name}({})`", token_text(token));
-                self.refuse(Location::of(token), "function call needs parentheses", &help)
+                self.refuse(
+                    Location::of(token),
+                    "function call needs parentheses",
+                    &help,
+                )
             }
             Some(TokenTree::Punct(punct)) if punct.as_char() == '^' => {
                 let help = format!("the power of a function is written `{name}(x)^2`");
@@ -252,13 +308,24 @@ impl Cursor<'_> {
 }
 
 /// The only part, or all of them as one expression.
-fn single<T>(mut parts: Vec<T>, only: fn(T) -> Scalar, kind: fn(Vec<T>) -> ScalarKind, at: Location) -> Scalar {
+fn single<T>(
+    mut parts: Vec<T>,
+    only: fn(T) -> Scalar,
+    kind: fn(Vec<T>) -> ScalarKind,
+    at: Location,
+) -> Scalar {
     match parts.pop() {
         Some(part) if parts.is_empty() => only(part),
         Some(part) => {
             parts.push(part);
-            Scalar { kind: kind(parts), at }
+            Scalar {
+                kind: kind(parts),
+                at,
+            }
         }
-        None => Scalar { kind: kind(parts), at },
+        None => Scalar {
+            kind: kind(parts),
+            at,
+        },
     }
 }

@@ -53,7 +53,8 @@ const CHECK_EXAMPLES: &str = "Examples:
   dalembert check rolling_disk
   dalembert check rolling_disk --format json";
 
-const SIMULATE_EXAMPLES: &str = "Numbers may be multiples of pi: pi/2, -3*pi/4, 2pi. A repeated name takes its last value.
+const SIMULATE_EXAMPLES: &str =
+    "Numbers may be multiples of pi: pi/2, -3*pi/4, 2pi. A repeated name takes its last value.
 
 Examples:
   dalembert simulate rolling_disk
@@ -153,7 +154,12 @@ pub struct StateArgs {
     #[arg(long, value_name = "V,..", allow_hyphen_values = true)]
     pub q: Option<String>,
     /// All velocities; needs --q.
-    #[arg(long, value_name = "V,..", allow_hyphen_values = true, conflicts_with = "p")]
+    #[arg(
+        long,
+        value_name = "V,..",
+        allow_hyphen_values = true,
+        conflicts_with = "p"
+    )]
     pub qdot: Option<String>,
     /// All momenta; needs --q.
     #[arg(long, value_name = "V,..", allow_hyphen_values = true)]

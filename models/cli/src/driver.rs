@@ -50,6 +50,10 @@ pub(crate) struct Impact {
     pub surface: usize,
     pub before: Point,
     pub after: Point,
+    /// Whether another surface was hit at the same time.
+    pub simultaneous: bool,
+    /// Whether the surface was touched so lightly that rounding may have decided it.
+    pub graze: bool,
 }
 
 /// A stretch of smooth motion.
@@ -83,7 +87,13 @@ pub(crate) fn simulate<M: Model>(
     let tolerance = Tolerance::new(settings.tol).map_err(|error| error.to_string())?;
     match settings.integrator {
         Integrator::Dop853 => run(model, Dop853::new(tolerance), state, settings, watch),
-        Integrator::Dopri5 => run(model, DormandPrince5::new(tolerance), state, settings, watch),
+        Integrator::Dopri5 => run(
+            model,
+            DormandPrince5::new(tolerance),
+            state,
+            settings,
+            watch,
+        ),
     }
 }
 
@@ -104,7 +114,9 @@ fn run<M: Model, S: Stepper<M>>(
     if let Some(projection) = settings.projection {
         effects.set_projection(projection);
     }
-    let laws = (0..M::DESCRIPTION.surfaces.len()).map(|surface| effects.law(model, surface)).collect();
+    let laws = (0..M::DESCRIPTION.surfaces.len())
+        .map(|surface| effects.law(model, surface))
+        .collect();
     let first = point(model, 0.0, &state);
     let mut bridge = Bridge { model, watch };
     let run = Simulation::new(model, stepper, effects)
@@ -118,7 +130,8 @@ fn run<M: Model, S: Stepper<M>>(
         last: point(model, run.t, &run.state),
         counters: counters(&run.counters),
         laws,
-        reached: run.outcome.is_done() || (settings.impacts.is_some() && run.outcome == Outcome::ImpactBudget),
+        reached: run.outcome.is_done()
+            || (settings.impacts.is_some() && run.outcome == Outcome::ImpactBudget),
     })
 }
 
@@ -130,7 +143,10 @@ struct Bridge<'a, M> {
 
 impl<M: Model> Observer<M> for Bridge<'_, M> {
     fn step(&mut self, segment: &mut Segment<'_, M::State>) -> ControlFlow<()> {
-        self.watch.step(&SegmentPiece { model: self.model, segment: RefCell::new(segment) });
+        self.watch.step(&SegmentPiece {
+            model: self.model,
+            segment: RefCell::new(segment),
+        });
         ControlFlow::Continue(())
     }
 
@@ -140,6 +156,8 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
             surface: event.surface,
             before: point(self.model, event.t, &event.before),
             after: point(self.model, event.t, &event.after),
+            simultaneous: event.simultaneous,
+            graze: event.graze,
         });
         ControlFlow::Continue(())
     }
@@ -169,20 +187,39 @@ impl<M: Model> Piece for SegmentPiece<'_, '_, M> {
 /// What an outcome says besides its kind and its time, in the model's names.
 fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, Value)> {
     let surface = |index: usize| ("surface", name(names::surfaces(description), index));
-    let constraint = |index: usize| ("constraint", name(description.constraints.iter().map(|it| it.name), index));
+    let constraint = |index: usize| {
+        (
+            "constraint",
+            name(description.constraints.iter().map(|it| it.name), index),
+        )
+    };
     let coordinate = |index: usize| name(names::coordinates(description), index);
     match *outcome {
-        Outcome::Zeno { t, surface: index } => vec![("accumulates_at", json::number(t)), surface(index)],
-        Outcome::StillPenetrating { surface: index, rho } => vec![surface(index), ("rho", json::number(rho))],
+        Outcome::Zeno { t, surface: index } => {
+            vec![("accumulates_at", json::number(t)), surface(index)]
+        }
+        Outcome::StillPenetrating {
+            surface: index,
+            rho,
+        } => vec![surface(index), ("rho", json::number(rho))],
         Outcome::Contact { surface: index }
         | Outcome::TangentialCrossing { surface: index }
         | Outcome::SingularSurface { surface: index } => vec![surface(index)],
-        Outcome::StartsInside { surface: index, gap } => vec![surface(index), ("gap", json::number(gap))],
+        Outcome::StartsInside {
+            surface: index,
+            gap,
+        } => vec![surface(index), ("gap", json::number(gap))],
         Outcome::LeftChart { coordinate: index } => vec![("coordinate", coordinate(index))],
         Outcome::MetricNotPositive { pivot, value } => {
-            vec![("coordinate", coordinate(pivot)), ("value", json::number(value))]
+            vec![
+                ("coordinate", coordinate(pivot)),
+                ("value", json::number(value)),
+            ]
         }
-        Outcome::SingularConstraint { constraint: index, condition } => {
+        Outcome::SingularConstraint {
+            constraint: index,
+            condition,
+        } => {
             vec![constraint(index), ("condition", json::number(condition))]
         }
         Outcome::ProjectionFailed { constraint: index } => vec![constraint(index)],
@@ -193,7 +230,9 @@ fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, V
 
 /// A declared name; the index itself past the last.
 fn name(mut names: impl Iterator<Item = &'static str>, index: usize) -> Value {
-    names.nth(index).map_or_else(|| Value::from(index), Value::from)
+    names
+        .nth(index)
+        .map_or_else(|| Value::from(index), Value::from)
 }
 
 fn counters(counters: &Counters) -> Vec<(&'static str, u64)> {

@@ -15,13 +15,19 @@ use crate::driver::{self, Ending, Settings, Watch};
 #[derive(Clone)]
 pub struct Entry {
     description: Description,
-    scenes: Vec<(&'static str, fn() -> Box<dyn AnyModel>)>,
+    scenes: Vec<(&'static str, Build)>,
 }
+
+/// Makes a model with declared defaults.
+type Build = fn() -> Box<dyn AnyModel>;
 
 impl Entry {
     /// The entry of a model type; the model itself is the scene `all`.
     pub fn of<M: Model>() -> Self {
-        Self { description: M::DESCRIPTION, scenes: vec![("all", Typed::<M>::boxed)] }
+        Self {
+            description: M::DESCRIPTION,
+            scenes: vec![("all", Typed::<M>::boxed)],
+        }
     }
 
     /// Adds a scene: a type of its own, with the model's parameters.
@@ -109,13 +115,35 @@ pub(crate) trait AnyModel {
     fn check_parameters(&self) -> Result<(), ParameterError>;
     fn initial(&self) -> Start;
     /// The velocities with those that are not `named` chosen by the constraints.
-    fn complete_velocity(&self, q: &[f64], qdot: &[f64], named: &[bool]) -> Result<Vec<f64>, StateError>;
-    fn state(&self, t: f64, q: &[f64], rates: Rates<'_>, policy: OffConstraint) -> Result<Vec<f64>, StateError>;
+    fn complete_velocity(
+        &self,
+        q: &[f64],
+        qdot: &[f64],
+        named: &[bool],
+    ) -> Result<Vec<f64>, StateError>;
+    fn state(
+        &self,
+        t: f64,
+        q: &[f64],
+        rates: Rates<'_>,
+        policy: OffConstraint,
+    ) -> Result<Vec<f64>, StateError>;
     fn region(&self, t: f64, q: &[f64]) -> Option<f64>;
     fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault>;
     /// The state after the impact of a law.
-    fn impact(&self, t: f64, state: &[f64], contact: &Contacted, law: Law) -> Result<Vec<f64>, Fault>;
-    fn simulate(&self, state: &[f64], settings: &Settings, watch: &mut dyn Watch) -> Result<Ending, String>;
+    fn impact(
+        &self,
+        t: f64,
+        state: &[f64],
+        contact: &Contacted,
+        law: Law,
+    ) -> Result<Vec<f64>, Fault>;
+    fn simulate(
+        &self,
+        state: &[f64],
+        settings: &Settings,
+        watch: &mut dyn Watch,
+    ) -> Result<Ending, String>;
 }
 
 /// The data of a contact as `inspect` reports them.
@@ -138,7 +166,12 @@ impl<M: Model> Typed<M> {
     }
 
     /// The state with these momenta after every check but that of the constraints.
-    fn checked_momenta(&self, t: f64, q: &M::Vector, p: &M::Vector) -> Result<M::State, StateError> {
+    fn checked_momenta(
+        &self,
+        t: f64,
+        q: &M::Vector,
+        p: &M::Vector,
+    ) -> Result<M::State, StateError> {
         self.0.check_parameters()?;
         let mut components = q.as_slice().iter().chain(p.as_slice());
         if let Some(component) = components.position(|value| !value.is_finite()) {
@@ -174,18 +207,39 @@ impl<M: Model> AnyModel for Typed<M> {
         Start {
             q: initial.q.as_slice().to_vec(),
             qdot: initial.qdot.as_slice().to_vec(),
-            named: initial.named.as_slice().iter().map(|&named| named != 0.0).collect(),
+            named: initial
+                .named
+                .as_slice()
+                .iter()
+                .map(|&named| named != 0.0)
+                .collect(),
             until: initial.until,
         }
     }
 
-    fn complete_velocity(&self, q: &[f64], qdot: &[f64], named: &[bool]) -> Result<Vec<f64>, StateError> {
-        let marks: Vec<f64> = named.iter().map(|&named| f64::from(u8::from(named))).collect();
-        let completed = self.0.complete_velocity(0.0, &vector(q), &vector(qdot), &vector(&marks))?;
+    fn complete_velocity(
+        &self,
+        q: &[f64],
+        qdot: &[f64],
+        named: &[bool],
+    ) -> Result<Vec<f64>, StateError> {
+        let marks: Vec<f64> = named
+            .iter()
+            .map(|&named| f64::from(u8::from(named)))
+            .collect();
+        let completed =
+            self.0
+                .complete_velocity(0.0, &vector(q), &vector(qdot), &vector(&marks))?;
         Ok(completed.as_slice().to_vec())
     }
 
-    fn state(&self, t: f64, q: &[f64], rates: Rates<'_>, policy: OffConstraint) -> Result<Vec<f64>, StateError> {
+    fn state(
+        &self,
+        t: f64,
+        q: &[f64],
+        rates: Rates<'_>,
+        policy: OffConstraint,
+    ) -> Result<Vec<f64>, StateError> {
         let q = vector(q);
         let mut state = match rates {
             Rates::Velocities(qdot) => self.0.checked(t, &q, &vector(qdot))?,
@@ -207,7 +261,13 @@ impl<M: Model> AnyModel for Typed<M> {
         self.0.inspect(t, &vector(state), report)
     }
 
-    fn impact(&self, t: f64, state: &[f64], contact: &Contacted, law: Law) -> Result<Vec<f64>, Fault> {
+    fn impact(
+        &self,
+        t: f64,
+        state: &[f64],
+        contact: &Contacted,
+        law: Law,
+    ) -> Result<Vec<f64>, Fault> {
         let contact = Contact::<M::Vector> {
             gap_rate: contact.gap_rate,
             constrained_rate: contact.constrained_rate,
@@ -217,11 +277,17 @@ impl<M: Model> AnyModel for Typed<M> {
             direction: vector(&contact.direction),
         };
         let mut state = vector(state);
-        self.0.kick(t, &mut state, contact.impulse(law), &contact.direction)?;
+        self.0
+            .kick(t, &mut state, contact.impulse(law), &contact.direction)?;
         Ok(state.as_slice().to_vec())
     }
 
-    fn simulate(&self, state: &[f64], settings: &Settings, watch: &mut dyn Watch) -> Result<Ending, String> {
+    fn simulate(
+        &self,
+        state: &[f64],
+        settings: &Settings,
+        watch: &mut dyn Watch,
+    ) -> Result<Ending, String> {
         driver::simulate(&self.0, vector(state), settings, watch)
     }
 }

@@ -47,7 +47,9 @@ pub enum CliError {
     #[error("{0}")]
     Usage(&'static str),
     /// A parameter against its declaration.
-    #[error("parameter `{name}` is {value}, but must be {expected}; change it with --set {name}=VALUE")]
+    #[error(
+        "parameter `{name}` is {value}, but must be {expected}; change it with --set {name}=VALUE"
+    )]
     Parameter {
         /// Its name.
         name: &'static str,
@@ -57,7 +59,9 @@ pub enum CliError {
         expected: Assumption,
     },
     /// A parameter that has no default and was not set.
-    #[error("parameter `{name}` has no default; give it with --set {name}=VALUE (must be {expected})")]
+    #[error(
+        "parameter `{name}` has no default; give it with --set {name}=VALUE (must be {expected})"
+    )]
     Unset {
         /// Its name.
         name: &'static str,
@@ -111,8 +115,16 @@ pub enum CliError {
 
 impl CliError {
     /// An error about a value.
-    pub fn value(place: impl Into<String>, given: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self::Value { place: place.into(), given: given.into(), expected: expected.into() }
+    pub fn value(
+        place: impl Into<String>,
+        given: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Self {
+        Self::Value {
+            place: place.into(),
+            given: given.into(),
+            expected: expected.into(),
+        }
     }
 
     /// Why a state was refused, in the model's names.
@@ -121,29 +133,56 @@ impl CliError {
             let (name, expected) = (error.name, error.expected);
             return match error.value.is_nan() {
                 true => Self::Unset { name, expected },
-                false => Self::Parameter { name, value: error.value, expected },
+                false => Self::Parameter {
+                    name,
+                    value: error.value,
+                    expected,
+                },
             };
         }
-        Self::State { place: place.to_owned(), reason: state_text(description, &error) }
+        Self::State {
+            place: place.to_owned(),
+            reason: state_text(description, &error),
+        }
     }
 }
 
 /// Says in the model's names why a state was refused.
 pub fn state_text(description: &Description, error: &StateError) -> String {
     match *error {
-        StateError::OffConstraint { constraint, residual, scale } => format!(
+        StateError::OffConstraint {
+            constraint,
+            residual,
+            scale,
+        } => format!(
             "constraint `{}` is violated: residual {residual:e}, where the absolute values of its terms add up to \
              {scale:e}; correct the velocities, or use --off-constraint project (nearest allowed velocity) or \
              --off-constraint keep (as it is)",
-            name(description.constraints.iter().map(|constraint| constraint.name), constraint)
+            name(
+                description
+                    .constraints
+                    .iter()
+                    .map(|constraint| constraint.name),
+                constraint
+            )
         ),
         StateError::NotFinite { component } => {
             let n = description.coordinates.len().max(1);
-            let kind = if component < n { "position" } else { "velocity or momentum" };
-            format!("the {kind} of `{}` is not finite", coordinate(description, component % n))
+            let kind = if component < n {
+                "position"
+            } else {
+                "velocity or momentum"
+            };
+            format!(
+                "the {kind} of `{}` is not finite",
+                coordinate(description, component % n)
+            )
         }
         StateError::OutsideChart { coordinate: index } => {
-            format!("coordinate `{}` lies outside its interval", coordinate(description, index))
+            format!(
+                "coordinate `{}` lies outside its interval",
+                coordinate(description, index)
+            )
         }
         StateError::Fault(ref fault) => fault_text(description, fault),
         ref other => other.to_string(),
@@ -157,13 +196,25 @@ pub fn fault_text(description: &Description, fault: &Fault) -> String {
             "the metric is not positive definite: the pivot at coordinate `{}` is {value}",
             coordinate(description, pivot)
         ),
-        Fault::SingularConstraint { constraint, condition } => format!(
+        Fault::SingularConstraint {
+            constraint,
+            condition,
+        } => format!(
             "constraint `{}` depends on the earlier ones at this state (condition {condition:e})",
-            name(description.constraints.iter().map(|constraint| constraint.name), constraint)
+            name(
+                description
+                    .constraints
+                    .iter()
+                    .map(|constraint| constraint.name),
+                constraint
+            )
         ),
         Fault::SingularSurface { surface } => format!(
             "no impulse within the constraints changes the gap rate of surface `{}` here",
-            name(description.surfaces.iter().map(|surface| surface.name), surface)
+            name(
+                description.surfaces.iter().map(|surface| surface.name),
+                surface
+            )
         ),
         ref other => other.to_string(),
     }
@@ -181,11 +232,19 @@ pub const fn fault_kind(fault: &Fault) -> &'static str {
 }
 
 fn coordinate(description: &Description, index: usize) -> String {
-    name(description.coordinates.iter().map(|coordinate| coordinate.name), index)
+    name(
+        description
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.name),
+        index,
+    )
 }
 
 fn name(mut names: impl Iterator<Item = &'static str>, index: usize) -> String {
-    names.nth(index).map_or_else(|| index.to_string(), str::to_owned)
+    names
+        .nth(index)
+        .map_or_else(|| index.to_string(), str::to_owned)
 }
 
 /// `1 number`, `3 numbers`.
@@ -223,7 +282,13 @@ mod tests {
 
     fn unknown(given: &str, accepted: &[&str]) -> String {
         let accepted = accepted.iter().map(|&name| name.to_owned()).collect();
-        CliError::Unknown { place: "MODEL".to_owned(), what: "model", given: given.to_owned(), accepted }.to_string()
+        CliError::Unknown {
+            place: "MODEL".to_owned(),
+            what: "model",
+            given: given.to_owned(),
+            accepted,
+        }
+        .to_string()
     }
 
     #[test]
@@ -237,7 +302,13 @@ mod tests {
 
     #[test]
     fn a_far_name_is_not_suggested() {
-        assert_eq!(unknown("zzz", &["pendulum"]), "MODEL: unknown model `zzz`\n  accepted: pendulum");
-        assert_eq!(unknown("zzz", &[]), "MODEL: unknown model `zzz`; there are none");
+        assert_eq!(
+            unknown("zzz", &["pendulum"]),
+            "MODEL: unknown model `zzz`\n  accepted: pendulum"
+        );
+        assert_eq!(
+            unknown("zzz", &[]),
+            "MODEL: unknown model `zzz`; there are none"
+        );
     }
 }

@@ -3,9 +3,19 @@
 //! The shipped `dalembert` binary is this crate over the shipped models; a crate of one's own gets the same
 //! commands for its own models:
 //!
-//! ```ignore
+//! ```no_run
+//! dalembert::model! {
+//!     /// A ball that bounces on a floor.
+//!     pub Ball {
+//!         coordinates { x; }
+//!         lagrangian = dot(x)^2/2 - x;
+//!         impacts { floor: x >= 0; }
+//!         initial { x = 1; until = 10; }
+//!     }
+//! }
+//!
 //! fn main() -> std::process::ExitCode {
-//!     dalembert_cli::run(dalembert_cli::models![MySystem, MyOtherSystem])
+//!     dalembert_cli::run(dalembert_cli::models![Ball])
 //! }
 //! ```
 //!
@@ -65,7 +75,11 @@ pub fn run(models: Vec<Entry>) -> ExitCode {
 }
 
 /// Runs one command line, program name included, over a list of models, with streams of the caller's.
-pub fn run_with<A>(args: impl IntoIterator<Item = A>, models: &[Entry], streams: &mut Streams<'_>) -> Exit
+pub fn run_with<A>(
+    args: impl IntoIterator<Item = A>,
+    models: &[Entry],
+    streams: &mut Streams<'_>,
+) -> Exit
 where
     A: Into<OsString> + Clone,
 {
@@ -73,7 +87,8 @@ where
         Ok(line) => line,
         Err(error) => return explain(&error, streams),
     };
-    let done = dispatch(&line, models, streams).and_then(|exit| Ok(streams.output.flush().map(|()| exit)?));
+    let done = dispatch(&line, models, streams)
+        .and_then(|exit| Ok(streams.output.flush().map(|()| exit)?));
     done.unwrap_or_else(|error| match error {
         // A reader that has seen enough, such as `head`, needs no message.
         CliError::Stream(source) if source.kind() == io::ErrorKind::BrokenPipe => Exit::Other,
@@ -85,7 +100,11 @@ where
     })
 }
 
-fn dispatch(line: &CommandLine, models: &[Entry], streams: &mut Streams<'_>) -> Result<Exit, CliError> {
+fn dispatch(
+    line: &CommandLine,
+    models: &[Entry],
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
     match &line.command {
         Command::List(args) => command::list::run(models, args, streams.output),
         Command::Derive(args) => command::derive::run(models, args, streams.output),

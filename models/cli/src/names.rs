@@ -14,20 +14,29 @@ pub fn find<'a>(
     given: &str,
     accepted: impl Iterator<Item = &'a str> + Clone,
 ) -> Result<usize, CliError> {
-    accepted.clone().position(|name| name == given).ok_or_else(|| CliError::Unknown {
-        place: place.to_owned(),
-        what,
-        given: given.to_owned(),
-        accepted: accepted.map(str::to_owned).collect(),
-    })
+    accepted
+        .clone()
+        .position(|name| name == given)
+        .ok_or_else(|| CliError::Unknown {
+            place: place.to_owned(),
+            what,
+            given: given.to_owned(),
+            accepted: accepted.map(str::to_owned).collect(),
+        })
 }
 
 /// `name=value`, split at the first equals sign.
 ///
 /// # Errors
 /// [`CliError::Value`] without one.
-pub fn assignment<'a>(place: &str, text: &'a str, expected: &str) -> Result<(&'a str, &'a str), CliError> {
-    let (name, value) = text.split_once('=').ok_or_else(|| CliError::value(place, text, expected))?;
+pub fn assignment<'a>(
+    place: &str,
+    text: &'a str,
+    expected: &str,
+) -> Result<(&'a str, &'a str), CliError> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or_else(|| CliError::value(place, text, expected))?;
     Ok((name.trim(), value.trim()))
 }
 
@@ -40,8 +49,13 @@ pub fn velocity(coordinate: &str) -> String {
 }
 
 /// The coordinates' names in order.
-pub fn coordinates(description: &Description) -> impl Iterator<Item = &'static str> + Clone + use<> {
-    description.coordinates.iter().map(|coordinate| coordinate.name)
+pub fn coordinates(
+    description: &Description,
+) -> impl Iterator<Item = &'static str> + Clone + use<> {
+    description
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.name)
 }
 
 /// The surfaces' names in order.
@@ -51,5 +65,10 @@ pub fn surfaces(description: &Description) -> impl Iterator<Item = &'static str>
 
 /// The first line of the model's documentation.
 pub fn summary(description: &Description) -> &'static str {
-    description.documentation.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default()
+    description
+        .documentation
+        .lines()
+        .map(str::trim)
+        .find(|line| !line.is_empty())
+        .unwrap_or_default()
 }

@@ -21,7 +21,12 @@ pub struct Progress {
 impl Progress {
     /// Progress towards the time `end`; shown only if `terminal`.
     pub fn new(end: f64, terminal: bool) -> Self {
-        Self { end, steps: 0, started: terminal.then(Instant::now), bar: None }
+        Self {
+            end,
+            steps: 0,
+            started: terminal.then(Instant::now),
+            bar: None,
+        }
     }
 
     /// Notes that the run has reached `t`.

@@ -26,23 +26,75 @@ impl Grid {
     }
 }
 
+/// What to keep of a run.
+pub struct Wanted {
+    /// The times of the samples.
+    pub grid: Grid,
+    /// Whether to keep every impact, or to count them only.
+    pub impacts: bool,
+    /// The empty trace of a picture.
+    pub trace: Option<Trace>,
+}
+
+/// How many impacts there were.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// On each surface.
+    pub per_surface: Vec<u64>,
+    /// So light that rounding may have decided them.
+    pub grazing: u64,
+    /// At the same time as another.
+    pub simultaneous: u64,
+}
+
 /// Keeps what was asked for while a run goes on.
 pub struct Recorder {
-    /// The times of the samples.
     grid: Grid,
+    keeps_impacts: bool,
     /// Samples taken so far, in order of time.
     pub samples: Vec<(f64, Point)>,
-    /// Impacts, in order of time.
+    /// Impacts, in order of time, if they were asked for.
     pub impacts: Vec<Impact>,
     /// The trace, if a picture was asked for.
     pub trace: Option<Trace>,
+    /// The number of impacts, kept or not.
+    pub tally: Tally,
     progress: Progress,
+}
+
+impl Tally {
+    fn count(&mut self, impact: &Impact) {
+        if self.per_surface.len() <= impact.surface {
+            self.per_surface.resize(impact.surface + 1, 0);
+        }
+        self.per_surface[impact.surface] += 1;
+        self.grazing += u64::from(impact.graze);
+        self.simultaneous += u64::from(impact.simultaneous);
+    }
+
+    /// The impacts on one surface.
+    pub fn on(&self, surface: usize) -> u64 {
+        self.per_surface.get(surface).copied().unwrap_or(0)
+    }
+
+    /// All impacts.
+    pub fn total(&self) -> u64 {
+        self.per_surface.iter().sum()
+    }
 }
 
 impl Recorder {
     /// A recorder that has seen nothing.
-    pub fn new(grid: Grid, trace: Option<Trace>, progress: Progress) -> Self {
-        Self { grid, samples: Vec::new(), impacts: Vec::new(), trace, progress }
+    pub fn new(wanted: Wanted, progress: Progress) -> Self {
+        Self {
+            grid: wanted.grid,
+            keeps_impacts: wanted.impacts,
+            samples: Vec::new(),
+            impacts: Vec::new(),
+            trace: wanted.trace,
+            tally: Tally::default(),
+            progress,
+        }
     }
 
     /// Takes the sample at the run's last instant, if the grid has one there.
@@ -79,7 +131,10 @@ impl Watch for Recorder {
             trace.corner(impact.t, &impact.before);
             trace.corner(impact.t, &impact.after);
         }
-        self.impacts.push(impact);
+        self.tally.count(&impact);
+        if self.keeps_impacts {
+            self.impacts.push(impact);
+        }
     }
 }
 

@@ -34,14 +34,23 @@ pub fn build_model(models: &[Entry], args: &ModelArgs) -> Result<Box<dyn AnyMode
 fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
     let (name, value) = names::assignment("--set", text, "NAME=VALUE")?;
     let parameters = model.description().parameters;
-    let index = names::find("--set", "parameter", name, parameters.iter().map(|parameter| parameter.name))?;
+    let index = names::find(
+        "--set",
+        "parameter",
+        name,
+        parameters.iter().map(|parameter| parameter.name),
+    )?;
     let assumption = parameters[index].assumption;
     match scalar::parse(value) {
         Ok(number) if assumption.holds(number) => {
             model.set_parameter(index, number);
             Ok(())
         }
-        Ok(_) => Err(CliError::value(format!("--set {name}"), value, format!("a value {assumption}"))),
+        Ok(_) => Err(CliError::value(
+            format!("--set {name}"),
+            value,
+            format!("a value {assumption}"),
+        )),
         Err(expected) => Err(CliError::value(format!("--set {name}"), value, expected)),
     }
 }
@@ -57,11 +66,15 @@ pub fn initial_state(model: &dyn AnyModel, args: &StateArgs) -> Result<Vec<f64>,
     match (&args.q, &args.qdot, &args.p) {
         (Some(q), Some(qdot), None) => {
             let (q, qdot) = (vector("--q", q)?, vector("--qdot", qdot)?);
-            model.state(0.0, &q, Rates::Velocities(&qdot), policy).map_err(|error| refuse("--q, --qdot", error))
+            model
+                .state(0.0, &q, Rates::Velocities(&qdot), policy)
+                .map_err(|error| refuse("--q, --qdot", error))
         }
         (Some(q), None, Some(p)) => {
             let (q, p) = (vector("--q", q)?, vector("--p", p)?);
-            model.state(0.0, &q, Rates::Momenta(&p), policy).map_err(|error| refuse("--q, --p", error))
+            model
+                .state(0.0, &q, Rates::Momenta(&p), policy)
+                .map_err(|error| refuse("--q, --p", error))
         }
         (None, None, None) => named_state(model, &args.initial, policy),
         (Some(_), ..) => Err(CliError::Usage("--q needs --qdot or --p")),
@@ -69,32 +82,60 @@ pub fn initial_state(model: &dyn AnyModel, args: &StateArgs) -> Result<Vec<f64>,
     }
 }
 
-/// The model's `initial` with the changes of `--initial`.
-fn named_state(model: &dyn AnyModel, changes: &[String], policy: OffConstraint) -> Result<Vec<f64>, CliError> {
+/// The model's `initial` with some changes `name=value`; velocities that nobody names follow from the constraints.
+///
+/// # Errors
+/// Anything about the changes, or why the system refuses the state.
+pub fn named_state(
+    model: &dyn AnyModel,
+    changes: &[String],
+    policy: OffConstraint,
+) -> Result<Vec<f64>, CliError> {
     let mut start = model.initial();
-    for change in changes.iter().flat_map(|list| list.split(',')).filter(|change| !change.trim().is_empty()) {
+    for change in changes
+        .iter()
+        .flat_map(|list| list.split(','))
+        .filter(|change| !change.trim().is_empty())
+    {
         apply_change(model, &mut start, change)?;
     }
-    let place = if changes.is_empty() { "the model's `initial`" } else { "--initial" };
+    let place = if changes.is_empty() {
+        "the model's `initial`"
+    } else {
+        "--initial"
+    };
     let refuse = |error| CliError::state(place, &model.description(), error);
-    let qdot = match model.complete_velocity(&start.q, &start.qdot, &start.named) {
-        Ok(qdot) => qdot,
+    let (qdot, policy) = match model.complete_velocity(&start.q, &start.qdot, &start.named) {
+        // Completed velocities satisfy the constraints; a residual of the state is rounding on the way through
+        // the momenta, which can be all there is of a constraint whose terms vanish here.
+        Ok(qdot) => (qdot, OffConstraint::Keep),
         Err(error) if policy == OffConstraint::Error => return Err(refuse(error)),
         // The named velocities contradict the constraints, and that is for the policy to settle.
-        Err(_) => start.qdot,
+        Err(_) => (start.qdot, policy),
     };
-    model.state(0.0, &start.q, Rates::Velocities(&qdot), policy).map_err(refuse)
+    model
+        .state(0.0, &start.q, Rates::Velocities(&qdot), policy)
+        .map_err(refuse)
 }
 
 /// Carries out one `name=value` of `--initial`.
 fn apply_change(model: &dyn AnyModel, start: &mut Start, change: &str) -> Result<(), CliError> {
     let (name, value) = names::assignment("--initial", change, "NAME=VALUE,..")?;
-    let coordinates: Vec<String> = names::coordinates(&model.description()).map(str::to_owned).collect();
-    let velocities = coordinates.iter().map(|coordinate| names::velocity(coordinate));
+    let coordinates: Vec<String> = names::coordinates(&model.description())
+        .map(str::to_owned)
+        .collect();
+    let velocities = coordinates
+        .iter()
+        .map(|coordinate| names::velocity(coordinate));
     let accepted: Vec<String> = coordinates.iter().cloned().chain(velocities).collect();
-    let index = names::find("--initial", "coordinate or velocity", name, accepted.iter().map(String::as_str))?;
-    let number =
-        scalar::parse(value).map_err(|expected| CliError::value(format!("--initial {name}"), value, expected))?;
+    let index = names::find(
+        "--initial",
+        "coordinate or velocity",
+        name,
+        accepted.iter().map(String::as_str),
+    )?;
+    let number = scalar::parse(value)
+        .map_err(|expected| CliError::value(format!("--initial {name}"), value, expected))?;
     let n = coordinates.len();
     if index < n {
         start.q[index] = number;
@@ -113,10 +154,15 @@ fn numbers(model: &dyn AnyModel, flag: &str, text: &str) -> Result<Vec<f64>, Cli
         list => list.split(',').collect(),
     };
     if given.len() != names.len() {
-        return Err(CliError::Length { place: flag.to_owned(), names, got: given.len() });
+        return Err(CliError::Length {
+            place: flag.to_owned(),
+            names,
+            got: given.len(),
+        });
     }
     let number = |(value, name): (&&str, &&str)| {
-        scalar::parse(value).map_err(|expected| CliError::value(format!("{flag} ({name})"), *value, expected))
+        scalar::parse(value)
+            .map_err(|expected| CliError::value(format!("{flag} ({name})"), *value, expected))
     };
     given.iter().zip(&names).map(number).collect()
 }

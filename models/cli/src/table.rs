@@ -19,7 +19,12 @@ pub fn write(
     samples: &[(f64, Point)],
     impacts: &[Impact],
 ) -> io::Result<()> {
-    let rows = write_rows(csv::Writer::from_writer(output), description, samples, impacts);
+    let rows = write_rows(
+        csv::Writer::from_writer(output),
+        description,
+        samples,
+        impacts,
+    );
     rows.map_err(|error| match error.into_kind() {
         csv::ErrorKind::Io(error) => error,
         kind => io::Error::other(format!("{kind:?}")),
@@ -58,12 +63,22 @@ fn header(description: &Description) -> Vec<String> {
 }
 
 fn row(t: f64, point: &Point, event: &str) -> Vec<String> {
-    let numbers = [t].into_iter().chain(point.q.iter().chain(&point.qdot).copied());
-    let numbers = numbers.chain([point.energy]).chain(point.outputs.iter().copied());
+    let numbers = [t]
+        .into_iter()
+        .chain(point.q.iter().chain(&point.qdot).copied());
+    let numbers = numbers
+        .chain([point.energy])
+        .chain(point.outputs.iter().copied());
     // `Debug` writes the shortest decimal that reads back to the same number, with an exponent where that is short.
-    numbers.map(|number| format!("{number:?}")).chain([event.to_owned()]).collect()
+    numbers
+        .map(|number| format!("{number:?}"))
+        .chain([event.to_owned()])
+        .collect()
 }
 
 fn surface(description: &Description, impact: &Impact) -> &'static str {
-    description.surfaces.get(impact.surface).map_or("", |surface| surface.name)
+    description
+        .surfaces
+        .get(impact.surface)
+        .map_or("", |surface| surface.name)
 }

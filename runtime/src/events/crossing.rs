@@ -5,6 +5,8 @@
 //! (Descartes). What the interpolant misses is estimated by its last two Chebyshev coefficients; a coefficient
 //! that small has no certain sign.
 
+use core::f64::consts::FRAC_1_SQRT_2;
+
 /// Number of samples.
 pub(crate) const SAMPLES: usize = 9;
 
@@ -21,7 +23,7 @@ const TO_BERNSTEIN: [[f64; SAMPLES]; 4] = [
 ];
 
 /// `cos(7 j pi / 8)`: the Chebyshev polynomial of degree 7 at the samples.
-const SEVENTH: [f64; SAMPLES] = [1.0, -0.9238795325112867, 0.7071067811865476, -0.3826834323650898, 0.0, 0.3826834323650898, -0.7071067811865476, 0.9238795325112867, -1.0];
+const SEVENTH: [f64; SAMPLES] = [1.0, -0.9238795325112867, FRAC_1_SQRT_2, -0.3826834323650898, 0.0, 0.3826834323650898, -FRAC_1_SQRT_2, 0.9238795325112867, -1.0];
 
 /// Rounding of the conversion relative to the largest sample: the largest row sum of the table is 184, and each
 /// product is rounded.

@@ -20,6 +20,8 @@ pub(crate) struct Start {
     pub above: bool,
     /// On the surface, at the start of the step: the gap's slope there. The root at the start is divided out.
     pub slope: Option<f64>,
+    /// Part of the step after which falls are of no interest.
+    pub until: f64,
 }
 
 /// Two parts of a step between which the gap falls: not negative at `before`, negative at `after`.
@@ -32,7 +34,7 @@ pub(crate) struct Bracket {
 /// What a search found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Search {
-    /// No fall up to the end of the step.
+    /// No fall in what is of interest of the step.
     Clear,
     /// The first fall, narrowed to neighbouring numbers or close to it.
     Falls(Bracket),
@@ -65,13 +67,24 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
         let (mut index, mut depth) = (0_u64, 0_u32);
         for _ in 0..STRETCHES {
             let [left, right] = stretch(self.start.from, index, depth);
+            if left > self.start.until {
+                return Search::Clear;
+            }
             let samples = self.samples(left, right);
-            let values = deflate(&samples, right, self.start.slope.filter(|_| left == 0.0));
+            let values = deflate(&samples, [left, right], self.start.slope);
             match signs(&values) {
                 Signs::Positive | Signs::Rises => (above, rose) = (true, true),
-                Signs::Negative if above => return Search::Sinks(if rose { left } else { 0.0 }),
+                Signs::Negative if above => {
+                    let floor = *floor.get_or_insert_with(&mut self.rounding);
+                    if samples.iter().any(|gap| *gap < -floor) {
+                        return Search::Sinks(if rose { left } else { 0.0 });
+                    }
+                }
                 Signs::Negative => {}
-                Signs::Falls => return self.narrow(first_drop(&values, left, right), [left, right]),
+                Signs::Falls => match first_drop(&values, [left, right]) {
+                    Some(drop) => return self.narrow(drop),
+                    None => above = false,
+                },
                 Signs::Unclear => {
                     let known = depth >= DOUBTFUL;
                     let floor = if known { *floor.get_or_insert_with(&mut self.rounding) } else { -1.0 };
@@ -80,9 +93,8 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
                         (index, depth) = (2 * index, depth + 1);
                         continue;
                     }
-                    let drop = first_drop(&values, left, right);
-                    if !flat && drop.is_some() {
-                        return self.narrow(drop, [left, right]);
+                    if !flat && let Some(drop) = first_drop(&values, [left, right]) {
+                        return self.narrow(drop);
                     }
                 }
             }
@@ -97,17 +109,15 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
         Search::Unfinished(stretch(self.start.from, index, depth)[0])
     }
 
-    /// Narrows a bracket, or else the whole stretch.
-    fn narrow(&mut self, bracket: Option<Bracket>, [left, right]: [f64; 2]) -> Search {
-        let Bracket { before, after } = bracket.unwrap_or(Bracket { before: left, after: right });
-        let slope = self.start.slope.filter(|_| before == 0.0);
-        let mut value = |theta: f64| match slope {
-            Some(slope) if theta == 0.0 => slope,
-            Some(_) => (self.gap)(theta) / theta,
-            None => (self.gap)(theta),
-        };
-        let ends = [value(before), value(after)];
-        narrow(&mut value, [before, after], ends).map_or(Search::Pole(after), Search::Falls)
+    /// Narrows the interval in which the gap falls.
+    fn narrow(&mut self, drop: Drop) -> Search {
+        let [after, before, _] = drop.x;
+        if before > self.start.until {
+            return Search::Clear;
+        }
+        let slope = self.start.slope;
+        let found = narrow(drop, |theta| deflated((self.gap)(theta), theta, slope));
+        found.map_or(Search::Pole(after), Search::Falls)
     }
 
     fn samples(&mut self, left: f64, right: f64) -> [f64; SAMPLES] {
@@ -130,48 +140,64 @@ fn inside(left: f64, right: f64, node: f64) -> f64 {
     if node >= 1.0 { right } else { left + (right - left) * node }
 }
 
-/// The samples over a stretch that starts at 0, divided by the part of the step they lie at.
-fn deflate(samples: &[f64; SAMPLES], right: f64, slope: Option<f64>) -> [f64; SAMPLES] {
-    let Some(slope) = slope else { return *samples };
-    let mut quotients = *samples;
-    quotients[0] = slope;
-    for j in 1..SAMPLES {
-        quotients[j] = samples[j] / (right * NODES[j]);
+/// A gap divided by the part of the step it is taken at, over a surface just left; its limit is the slope.
+///
+/// Besides the root at the start this takes out most of the bend of a flight, which saves iterations.
+fn deflated(gap: f64, theta: f64, slope: Option<f64>) -> f64 {
+    match slope {
+        Some(slope) if theta == 0.0 => slope,
+        Some(_) => gap / theta,
+        None => gap,
     }
-    quotients
+}
+
+/// All samples of a stretch, deflated.
+fn deflate(samples: &[f64; SAMPLES], [left, right]: [f64; 2], slope: Option<f64>) -> [f64; SAMPLES] {
+    let mut values = *samples;
+    if slope.is_some() {
+        for (value, node) in values.iter_mut().zip(NODES) {
+            *value = deflated(*value, inside(left, right, node), slope);
+        }
+    }
+    values
+}
+
+/// A fall between two samples, and a third sample beside them: positions and values. The newest point comes first;
+/// it and the second enclose the root.
+#[derive(Debug, Clone, Copy)]
+struct Drop {
+    x: [f64; 3],
+    f: [f64; 3],
 }
 
 /// The first value that is negative after one that is not.
-fn first_drop(values: &[f64; SAMPLES], left: f64, right: f64) -> Option<Bracket> {
-    let mut before = None;
-    for (value, node) in values.iter().zip(NODES) {
-        let theta = inside(left, right, node);
-        match before {
-            Some(before) if *value < 0.0 => return Some(Bracket { before, after: theta }),
-            _ if *value >= 0.0 => before = Some(theta),
-            _ => {}
-        }
-    }
-    None
+fn first_drop(values: &[f64; SAMPLES], [left, right]: [f64; 2]) -> Option<Drop> {
+    let j = (1..SAMPLES).find(|&j| values[j - 1] >= 0.0 && values[j] < 0.0)?;
+    let beside = if j + 1 < SAMPLES { j + 1 } else { j - 2 };
+    let at = [j, j - 1, beside];
+    Some(Drop { x: at.map(|j| inside(left, right, NODES[j])), f: at.map(|j| values[j]) })
 }
 
 /// Chandrupatla's method: inverse quadratic interpolation where it is safe, else bisection.
 ///
-/// The values at the two ends have signs `>= 0` and `< 0`. A pole is told from a root by values that grew.
-fn narrow(value: &mut impl FnMut(f64) -> f64, ends: [f64; 2], values: [f64; 2]) -> Option<Bracket> {
-    // `x[0]`, the newest point, and `x[1]` enclose the root; `x[2]` is the point before.
-    let mut x = [ends[1], ends[0], ends[0]];
-    let mut f = [values[1], values[0], values[0]];
-    let mut part = f[0] / (f[0] - f[1]);
+/// A pole is told from a root by values that grew.
+fn narrow(drop: Drop, mut value: impl FnMut(f64) -> f64) -> Option<Bracket> {
+    let Drop { mut x, mut f } = drop;
+    let largest = f[0].abs().max(f[1].abs());
+    let mut reach = 1.0;
     // Bisection alone ends within 64 halvings, but for roots next to 0.
     for _ in 0..200 {
         let best = if f[0].abs() < f[1].abs() { x[0] } else { x[1] };
         let width = (x[1] - x[0]).abs();
         let resolution = 2.0 * f64::EPSILON * best.abs();
-        if width <= resolution || f[0] == 0.0 {
+        if width <= resolution {
             break;
         }
-        let margin = (resolution / width).min(0.5);
+        // Trials keep off the ends so that both close in on the root; one that keeps close to an end and finds no
+        // change of sign there, for all is rounding, reaches further the next time.
+        let part = next_part(x, f);
+        let margin = (reach * resolution / width).min(0.5);
+        reach *= if part <= margin || part >= 1.0 - margin { 4.0 } else { 1.0 };
         let trial = x[0] + part.clamp(margin, 1.0 - margin) * (x[1] - x[0]);
         if trial == x[0] || trial == x[1] {
             break;
@@ -182,20 +208,26 @@ fn narrow(value: &mut impl FnMut(f64) -> f64, ends: [f64; 2], values: [f64; 2]) 
         } else {
             (x[2], f[2]) = (x[1], f[1]);
             (x[1], f[1]) = (x[0], f[0]);
+            reach = 1.0;
         }
         (x[0], f[0]) = (trial, at_trial);
-        part = next_part(x, f);
     }
-    let grown = f[0].abs().max(f[1].abs()) > values[0].abs().max(values[1].abs());
     let [before, after] = if f[0] >= 0.0 { [x[0], x[1]] } else { [x[1], x[0]] };
-    (!grown).then_some(Bracket { before, after })
+    (f[0].abs().max(f[1].abs()) <= largest).then_some(Bracket { before, after })
 }
 
 /// Where to go next between `x[0]` and `x[1]`.
 fn next_part(x: [f64; 3], f: [f64; 3]) -> f64 {
     let xi = (x[0] - x[1]) / (x[2] - x[1]);
     let phi = (f[0] - f[1]) / (f[2] - f[1]);
-    if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
+    // A third point outside the enclosing ones is only met at first; interpolation is safe there if the three
+    // values are in order.
+    let ordered = if xi <= 1.0 {
+        phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi
+    } else {
+        (f[0] - f[2]) * (f[1] - f[0]) > 0.0 || (f[0] - f[1]) * (f[1] - f[2]) > 0.0
+    };
+    if ordered {
         let part = f[0] / (f[1] - f[0]) * (f[2] / (f[1] - f[2]))
             + (x[2] - x[0]) / (x[1] - x[0]) * (f[0] / (f[2] - f[0])) * (f[1] / (f[2] - f[1]));
         if part.is_finite() {
@@ -203,4 +235,89 @@ fn next_part(x: [f64; 3], f: [f64; 3]) -> f64 {
         }
     }
     0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first fall of a function, and how often it was evaluated.
+    fn first(function: impl Fn(f64) -> f64, start: Start) -> (Search, u32) {
+        let whole = NODES.map(&function);
+        let mut evaluations = 0;
+        let gap = |theta: f64| {
+            evaluations += 1;
+            function(theta)
+        };
+        let found = Line { gap, rounding: || 1e-15, whole: &whole, start }.first_fall();
+        (found, evaluations)
+    }
+
+    const FROM_ABOVE: Start = Start { from: 0.0, above: true, slope: None, until: 1.0 };
+
+    fn assert_falls_at(found: Search, root: f64) {
+        let Search::Falls(Bracket { before, after }) = found else { panic!("{found:?}") };
+        assert!(before < after && after - before <= 4.0 * f64::EPSILON * root);
+        assert!((before - root).abs() <= 1e-15, "{before} for {root}");
+    }
+
+    #[test]
+    fn simple_roots_take_few_evaluations() {
+        let (found, evaluations) = first(|x| 0.3 - x * x, FROM_ABOVE);
+        assert_falls_at(found, 0.3_f64.sqrt());
+        assert!(evaluations <= 9, "{evaluations}");
+        let (found, evaluations) = first(|x| (0.7 - x).sinh(), FROM_ABOVE);
+        assert_falls_at(found, 0.7);
+        assert!(evaluations <= 9, "{evaluations}");
+    }
+
+    #[test]
+    fn root_at_the_start_is_divided_out() {
+        for root in [0.9, 1e-3, 1e-9] {
+            let start = Start { slope: Some(root), ..FROM_ABOVE };
+            let (found, evaluations) = first(|x| x * (root - x), start);
+            assert_falls_at(found, root);
+            assert!(evaluations <= 8, "{evaluations}");
+        }
+    }
+
+    #[test]
+    fn first_of_two_close_roots_is_found() {
+        for distance in [1e-1, 1e-3, 1e-6] {
+            let (found, _) = first(|x| (x - 0.4) * (x - 0.4 - distance), FROM_ABOVE);
+            let Search::Falls(bracket) = found else { panic!("{distance}: {found:?}") };
+            assert!((bracket.before - 0.4).abs() < 1e-9, "{distance}: {bracket:?}");
+        }
+        let (found, _) = first(|x| (x - 0.4) * (x - 0.4) + 1e-12, FROM_ABOVE);
+        assert_eq!(found, Search::Clear);
+    }
+
+    #[test]
+    fn from_below_only_the_second_root_is_a_fall() {
+        let start = Start { above: false, ..FROM_ABOVE };
+        let (found, _) = first(|x| (x - 0.25) * (0.625 - x), start);
+        assert_falls_at(found, 0.625);
+        assert_eq!(first(|x| x - 0.3, start).0, Search::Clear);
+    }
+
+    #[test]
+    fn fast_oscillations_are_resolved_from_the_left() {
+        let (found, _) = first(|x| 1.2 + (500.0 * x).cos() - x, FROM_ABOVE);
+        let Search::Falls(bracket) = found else { panic!("{found:?}") };
+        // Falls before the third minimum at 5 pi / 500; the level 1.2 - x first meets the minima there or later.
+        let mut x = 0.0;
+        while 1.2 + (500.0_f64 * x).cos() - x >= 0.0 {
+            x += 1e-6;
+        }
+        assert!((bracket.before - x).abs() < 2e-6, "{bracket:?} for {x}");
+    }
+
+    #[test]
+    fn pole_and_rest_are_told_from_roots() {
+        assert!(matches!(first(|x| 1.0 / (0.3 - x), FROM_ABOVE).0, Search::Pole(_)));
+        let resting = Start { slope: Some(0.0), ..FROM_ABOVE };
+        assert_eq!(first(|x| -x * x, resting).0, Search::Sinks(0.0));
+        assert_eq!(first(|x| x * x, resting).0, Search::Clear);
+        assert_eq!(first(|_| 0.0, resting).0, Search::Clear);
+    }
 }

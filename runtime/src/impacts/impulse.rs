@@ -120,7 +120,8 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
         let evaluations = &mut now.counters.event_evaluations;
         let rounding = || resolution(system, surface, t, &after, &after, evaluations);
-        match self.accumulation.add(surface, t, rate_after, rounding) {
+        let bounce = if rate_after > STILL * rate.abs() { rate_after } else { 0.0 };
+        match self.accumulation.add(surface, t, bounce, rounding) {
             Some(t) => Err(Outcome::Zeno { t, surface }),
             None => Ok(rates),
         }
@@ -136,7 +137,14 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
 
     #[inline]
     fn propose<Step: Stepper<Sys>>(&mut self, step: &mut StepView<'_, Sys, Step>) -> Result<Option<f64>, Outcome> {
-        self.watch.look(step)
+        self.watch.look(step).map_err(|outcome| match outcome {
+            // Hops have become too small to rise from the surface at all.
+            Outcome::Contact { surface } => match self.accumulation.ends_at(surface, step.t_start()) {
+                Some(t) => Outcome::Zeno { t, surface },
+                None => outcome,
+            },
+            outcome => outcome,
+        })
     }
 
     fn act<O: Observer<Sys>>(

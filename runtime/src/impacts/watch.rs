@@ -36,6 +36,8 @@ pub(super) struct Watch<Sys: Impacting> {
     grazes: Sys::Gaps,
     /// Length of the last step.
     length: f64,
+    /// Largest absolute values of the state's components since the last impact: their rounding errors stay with it.
+    sizes: Sys::State,
 }
 
 /// Surfaces at hand at one moment.
@@ -86,7 +88,7 @@ struct Glance<G> {
 impl<Sys: Impacting> Watch<Sys> {
     pub(super) fn new() -> Self {
         let zeros = Sys::Gaps::zeros();
-        Self { gaps: zeros, rates: zeros, proposed: None, parts: zeros, grazes: zeros, length: 0.0 }
+        Self { gaps: zeros, rates: zeros, proposed: None, parts: zeros, grazes: zeros, length: 0.0, sizes: Sys::State::zeros() }
     }
 
     /// The surfaces at hand at the first instant of a run.
@@ -116,6 +118,7 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Result<(), Outcome> {
         self.rates = rates;
         self.gaps = measured(now)?;
+        self.sizes = *now.state;
         for surface in 0..Sys::Gaps::LEN {
             if hits.at_hand.as_slice()[surface] == 1.0 {
                 self.gaps.as_mut_slice()[surface] = 0.0;
@@ -150,19 +153,54 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Result<Option<f64>, Outcome> {
         let glance = glance(step)?;
         self.proposed = None;
+        for (size, value) in self.sizes.as_mut_slice().iter_mut().zip(step.end().as_slice()) {
+            *size = size.abs().max(value.abs());
+        }
         if !(0..Sys::Gaps::LEN).all(|surface| self.is_clear(surface, &glance)) {
             self.search(step, &glance)?;
         }
         if self.proposed.is_none() {
-            self.gaps = glance.gaps;
-            self.rates = glance.rates;
-            if self.gaps.as_slice().iter().any(|&gap| gap < 0.0) {
-                let (t, mut state) = (step.t_end(), *step.end());
-                let counters = &mut *step.counters;
-                self.check_negative(&mut Moment { system: step.system, t, state: &mut state, counters })?;
-            }
+            self.pass(step, &glance)?;
         }
         Ok(self.proposed)
+    }
+
+    /// The step passes whole: its end is the start of the next.
+    #[inline]
+    fn pass<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) -> Result<(), Outcome> {
+        let before = self.gaps;
+        self.gaps = glance.gaps;
+        self.rates = glance.rates;
+        if self.gaps.as_slice().iter().all(|&gap| gap >= 0.0) {
+            return Ok(());
+        }
+        for surface in 0..Sys::Gaps::LEN {
+            let (gap, at_hand) = (self.gaps.as_slice()[surface], before.as_slice()[surface] == 0.0);
+            if at_hand && gap < 0.0 && !self.is_pressed(surface, step, glance) {
+                self.gaps.as_mut_slice()[surface] = 0.0;
+            }
+        }
+        let (t, mut state) = (step.t_end(), *step.end());
+        let counters = &mut *step.counters;
+        self.check_negative(&mut Moment { system: step.system, t, state: &mut state, counters })
+    }
+
+    /// Whether the motion goes into a surface at hand, rather than along it within rounding. Rounding adds up
+    /// along a wall, so its sum over the steps says nothing.
+    fn is_pressed<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) -> bool {
+        let mut evaluations = 0;
+        let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
+        step.counters.event_evaluations += evaluations;
+        glance.rates.as_slice()[surface] * glance.length < -rounding
     }
 
     /// Whether the step can pass this surface, told cheaply.
@@ -188,7 +226,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 continue;
             }
             let samples = whole.map(|gaps| gaps.as_slice()[surface]);
-            let (part, is_hit) = match self.first_hit(surface, step, &samples)? {
+            let (part, is_hit) = match self.first_hit(surface, step, &samples, glance)? {
                 Found::Hit(part) => (part, true),
                 Found::Unfinished(part) => (part, false),
                 Found::Nothing if is_due(surface, glance) && is_active(surface, step, 1.0) => (1.0, true),
@@ -209,21 +247,22 @@ impl<Sys: Impacting> Watch<Sys> {
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
         samples: &[f64; SAMPLES],
+        glance: &Glance<Sys::Gaps>,
     ) -> Result<Found, Outcome> {
         let gap = self.gaps.as_slice()[surface];
         let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
-        let mut start = Start { from: 0.0, above: gap >= 0.0, slope };
+        let until = self.proposed.unwrap_or(1.0);
+        let mut start = Start { from: 0.0, above: gap >= 0.0, slope, until };
         let mut tangential = false;
         for _ in 0..FALLS {
-            let (part, after) = match first_fall(surface, step, samples, start) {
+            let (part, after) = match first_fall(surface, step, &self.sizes, samples, start) {
                 Search::Clear => {
-                    let end = step.state(1.0);
-                    let sunk = tangential && step.system.gaps(step.t_end(), &end).as_slice()[surface] < 0.0;
+                    let sunk = tangential && glance.gaps.as_slice()[surface] < 0.0;
                     return if sunk { Err(Outcome::TangentialCrossing { surface }) } else { Ok(Found::Nothing) };
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
                 Search::Pole(after) => {
-                    start = Start { from: after, above: false, slope: None };
+                    start = Start { from: after, above: false, slope: None, until };
                     continue;
                 }
                 Search::Sinks(part) => (part, part),
@@ -232,14 +271,15 @@ impl<Sys: Impacting> Watch<Sys> {
             step.counters.crossings += 1;
             if is_active(surface, step, part) {
                 if part == 0.0 && start.slope.is_some() {
-                    return Err(Outcome::Contact { surface });
+                    let pressed = self.is_pressed(surface, step, glance);
+                    return if pressed { Err(Outcome::Contact { surface }) } else { Ok(Found::Nothing) };
                 }
                 if is_approached(surface, step, part)? || is_approached(surface, step, after)? {
                     return Ok(Found::Hit(if part > 0.0 { part } else { after }));
                 }
                 tangential = true;
             }
-            start = Start { from: after, above: false, slope: None };
+            start = Start { from: after, above: false, slope: None, until };
             if after >= 1.0 {
                 return Ok(Found::Nothing);
             }
@@ -264,7 +304,7 @@ impl<Sys: Impacting> Watch<Sys> {
             let (other, part) = if start { (ends[0], part) } else { (ends[1], 1.0 - part) };
             let bend = (other - rate).abs() / (part * self.length);
             let mut evaluations = 0;
-            if rate * rate < 4.0 * bend * rounding_along(surface, step, &mut evaluations) {
+            if rate * rate < 4.0 * bend * rounding_along(surface, step, &self.sizes, &mut evaluations) {
                 graze = 1.0;
             }
             step.counters.event_evaluations += evaluations;
@@ -322,18 +362,14 @@ fn rounding<Sys: Impacting>(now: &mut Moment<'_, Sys>, surface: usize) -> f64 {
     resolution(now.system, surface, now.t, now.state, now.state, &mut now.counters.event_evaluations)
 }
 
-/// The size of a gap's rounding errors along a step: its components carry those of the larger end.
+/// The size of a gap's rounding errors along a step, from components that have had these sizes.
 fn rounding_along<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,
+    sizes: &Sys::State,
     evaluations: &mut u64,
 ) -> f64 {
-    let (start, end) = (*step.start(), *step.end());
-    let mut sizes = start;
-    for (size, value) in sizes.as_mut_slice().iter_mut().zip(end.as_slice()) {
-        *size = size.abs().max(value.abs());
-    }
-    resolution(step.system, surface, step.t_end(), &end, &sizes, evaluations)
+    resolution(step.system, surface, step.t_end(), step.end(), sizes, evaluations)
 }
 
 fn is_active<Sys: Impacting, Step: Stepper<Sys>>(surface: usize, step: &StepView<'_, Sys, Step>, part: f64) -> bool {
@@ -353,6 +389,7 @@ fn is_approached<Sys: Impacting, Step: Stepper<Sys>>(
 fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &mut StepView<'_, Sys, Step>,
+    sizes: &Sys::State,
     whole: &[f64; SAMPLES],
     start: Start,
 ) -> Search {
@@ -362,7 +399,7 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
             evaluations += 1;
             step.system.gaps(step.time(part), &step.state(part)).as_slice()[surface]
         },
-        rounding: || rounding_along(surface, step, &mut more),
+        rounding: || rounding_along(surface, step, sizes, &mut more),
         whole,
         start,
     };

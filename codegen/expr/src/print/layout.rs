@@ -1,5 +1,7 @@
 //! How an expression is arranged: quotients, signs, common factors, order.
 
+use std::collections::VecDeque;
+
 use crate::node::{ExprId, Function, Node, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
@@ -78,13 +80,7 @@ impl Builder<'_> {
 
     /// A product; its sums are split into common factors and the rest, and signs are settled.
     fn term(&mut self, (coefficient, factors): Term) -> Layout {
-        let mut bases: Vec<(Base, Rational)> = Vec::new();
-        for (base, exponent) in factors {
-            match self.pool.node(base) {
-                Node::Sum { .. } => self.split_sum(&mut bases, base, &exponent),
-                _ => multiply(&mut bases, base, exponent),
-            }
-        }
+        let mut bases = self.split_sums(factors);
         let mut negative = coefficient.is_negative();
         if negative {
             negative = !flip_one_sum(&mut bases, coefficient == Rational::MINUS_ONE);
@@ -99,6 +95,26 @@ impl Builder<'_> {
         }
     }
 
+    /// Powers with the common factors of sums taken out, those of integer powers; a common factor may be a sum again.
+    fn split_sums(&self, factors: Vec<(ExprId, Rational)>) -> Vec<(Base, Rational)> {
+        let mut bases: Vec<(Base, Rational)> = Vec::new();
+        let mut pending = VecDeque::from(factors);
+        while let Some((base, exponent)) = pending.pop_front() {
+            if !matches!(self.pool.node(base), Node::Sum { .. }) {
+                multiply(&mut bases, base, exponent);
+                continue;
+            }
+            let mut terms = self.pool.sum_terms(base);
+            if exponent.is_integer() {
+                for (base, power) in take_common_factors(&mut terms) {
+                    pending.push_back((base, &power * &exponent));
+                }
+            }
+            bases.push((Base::Sum(terms), exponent));
+        }
+        bases
+    }
+
     fn rank(&self, base: &Base) -> u8 {
         match base {
             Base::Sum(_) => 3,
@@ -108,17 +124,6 @@ impl Builder<'_> {
                 _ => 2,
             },
         }
-    }
-
-    /// Appends `sum^exponent`; for integer exponents its common factors come out.
-    fn split_sum(&self, bases: &mut Vec<(Base, Rational)>, sum: ExprId, exponent: &Rational) {
-        let mut terms = self.pool.sum_terms(sum);
-        if exponent.is_integer() {
-            for (base, power) in take_common_factors(&mut terms) {
-                multiply(bases, base, &power * exponent);
-            }
-        }
-        bases.push((Base::Sum(terms), exponent.clone()));
     }
 
     fn quotient(&mut self, coefficient: &Rational, bases: &[(Base, Rational)]) -> Layout {
@@ -169,14 +174,15 @@ impl Builder<'_> {
         let order = [lead]
             .into_iter()
             .chain((0..terms.len()).filter(|position| *position != lead));
-        let summand = |builder: &mut Self, position: usize| {
+        let mut summands = Vec::with_capacity(terms.len());
+        for position in order {
             let (coefficient, factors) = &terms[position];
-            match builder.term((coefficient.clone(), factors.clone())) {
-                Layout::Negative(layout) => (true, *layout),
-                layout => (false, layout),
+            match self.term((coefficient.clone(), factors.clone())) {
+                Layout::Negative(layout) => summands.push((true, *layout)),
+                Layout::Sum(inner) => summands.extend(inner),
+                layout => summands.push((false, layout)),
             }
-        };
-        let mut summands: Vec<_> = order.map(|position| summand(self, position)).collect();
+        }
         match summands.len() {
             1 => match summands.remove(0) {
                 (true, layout) => Layout::Negative(Box::new(layout)),

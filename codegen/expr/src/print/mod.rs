@@ -69,6 +69,8 @@ mod tests {
             ("(x^2*y)^(1/3)", "(x^2*y)^(1/3)"),
             ("-(x - y)/(a - b)", "(y - x)/(a - b)"),
             ("m*(m*x + m*y)", "m^2*(x + y)"),
+            ("m*(l*a + l*b) + k*(l*a + l*b)", "l*(m + k)*(a + b)"),
+            ("m*(x + y) + m*z", "m*(x + y + z)"),
             ("k*x^2/2 - k*l*x", "k*x*(x - 2*l)/2"),
         ] {
             assert_eq!(Fixture::new().echo(text), expected);

@@ -1,12 +1,12 @@
 //! Constraints: one-forms that are independent and leave some motion.
 
-use dalembert_expr::{Assumption as Known, ExprId};
+use dalembert_expr::{Assumption as Known, ExprId, Rational};
 
 use super::super::Constraint;
 use super::super::form::OneForm;
 use super::super::resolve::{Resolver, Scope};
 use super::Names;
-use crate::diagnostics::listed;
+use crate::diagnostics::{Location, listed};
 use crate::spec::Equation;
 
 /// All constraints, families expanded; and the symbols of their multipliers.
@@ -21,10 +21,22 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
             resolver.multiplier_symbol(&name.display);
         }
         for (name, mut scope) in members {
-            let Some(parts) = resolver.constraint_form(equation, &mut scope) else { break };
+            let Some(parts) = resolver.constraint_form(equation, &mut scope) else {
+                break;
+            };
             resolver.check_coefficients(equation, &parts, &scope);
-            let OneForm { form, affine, level } = parts;
-            constraints.push(Constraint { name, form, affine, level, item: equation.item });
+            let OneForm {
+                form,
+                affine,
+                level,
+            } = parts;
+            constraints.push(Constraint {
+                name,
+                form,
+                affine,
+                level,
+                item: equation.item,
+            });
         }
     }
     constraints
@@ -34,7 +46,9 @@ impl Resolver<'_> {
     /// A symbol for the multiplier of a constraint.
     fn multiplier_symbol(&mut self, name: &str) {
         let latex = format!(r"\lambda_{{\mathrm{{{}}}}}", name.replace('_', r"\_"));
-        let symbol = self.pool.symbol(&format!("multiplier({name})"), &latex, Known::None);
+        let symbol = self
+            .pool
+            .symbol(&format!("multiplier({name})"), &latex, Known::None);
         self.symbols.derived.multipliers.push(symbol);
         self.multipliers.insert(name.to_owned(), symbol);
     }
@@ -54,23 +68,17 @@ impl Resolver<'_> {
 
 /// Refuses constraints that follow from those before them, and constraints that leave no motion.
 pub(super) fn check_independent(resolver: &mut Resolver<'_>, constraints: &[Constraint]) {
-    let rows: Vec<Vec<ExprId>> = constraints.iter().map(|constraint| constraint.form.clone()).collect();
+    let rows: Vec<Vec<ExprId>> = constraints
+        .iter()
+        .map(|constraint| constraint.form.clone())
+        .collect();
     if rows.is_empty() {
         return;
     }
     let size = resolver.symbols.coordinates.len();
     let report = resolver.pool.rank(&rows);
     for (row, others) in &report.dependencies {
-        let names: Vec<&str> = others.iter().map(|other| constraints[*other].name.display.as_str()).collect();
-        let name = &constraints[*row].name.display;
-        let text = format!("`{name}` is dependent on {}", listed(names));
-        let at = resolver.spec.location(constraints[*row].item);
-        let places: Vec<_> = others.iter().map(|other| resolver.spec.location(constraints[*other].item)).collect();
-        let error = resolver.diagnostics.error(at, text);
-        error.help("leave one of them out");
-        for place in places {
-            error.also(place, format!("`{name}` is a combination that uses this one"));
-        }
+        refuse_dependent(resolver, constraints, *row, others);
     }
     if report.dependencies.is_empty() && report.rank >= size {
         let last = &constraints[constraints.len() - 1];
@@ -78,4 +86,48 @@ pub(super) fn check_independent(resolver: &mut Resolver<'_>, constraints: &[Cons
         let text = format!("no motion is left: rank {} of {size}", report.rank);
         resolver.refuse::<()>(at, text, "leave a constraint out, or add coordinates");
     }
+}
+
+/// An error at a constraint that is a combination of others, and at each of those.
+fn refuse_dependent(
+    resolver: &mut Resolver<'_>,
+    constraints: &[Constraint],
+    row: usize,
+    others: &[usize],
+) {
+    let name = &constraints[row].name.display;
+    let names: Vec<&str> = others
+        .iter()
+        .map(|other| constraints[*other].name.display.as_str())
+        .collect();
+    let relation = match others {
+        [] => "`0`".to_owned(),
+        [other] => match ratio(resolver, &constraints[row].form, &constraints[*other].form) {
+            Some(ratio) => format!("`{}`: it is {ratio} times that form", names[0]),
+            None => listed(names),
+        },
+        _ => listed(names),
+    };
+    let at = resolver.spec.location(constraints[row].item);
+    let places: Vec<Location> = others
+        .iter()
+        .map(|other| resolver.spec.location(constraints[*other].item))
+        .collect();
+    let error = resolver
+        .diagnostics
+        .error(at, format!("`{name}` is dependent on {relation}"));
+    error.help("leave one of them out");
+    for place in places {
+        error.also(place, format!("`{name}` is dependent on this one"));
+    }
+}
+
+/// The quotient of two proportional forms, if it is a number.
+fn ratio(resolver: &mut Resolver<'_>, form: &[ExprId], other: &[ExprId]) -> Option<Rational> {
+    let pool = &mut resolver.pool;
+    let column = other
+        .iter()
+        .position(|entry| !pool.is_syntactic_zero(*entry))?;
+    let quotient = pool.div(form[column], other[column]);
+    pool.as_number(quotient).cloned()
 }

@@ -12,7 +12,11 @@ impl<'s> Resolver<'s> {
     pub(super) fn all_coordinates(&mut self) {
         let spec = self.spec;
         if spec.coordinates.is_empty() {
-            self.refuse::<()>(spec.name.at, "a model needs at least one coordinate", "write `coordinates { x; theta: angle; }`");
+            self.refuse::<()>(
+                spec.name.at,
+                "a model needs at least one coordinate",
+                "write `coordinates { x; theta: angle; }`",
+            );
         }
         for coordinate in &spec.coordinates {
             self.coordinate_family(coordinate);
@@ -21,27 +25,37 @@ impl<'s> Resolver<'s> {
 
     fn coordinate_family(&mut self, written: &'s spec::Coordinate) {
         let topology = self.topology(written);
-        let Some(size) = self.family_size(&written.declared) else { return };
         let first = self.symbols.coordinates.len();
-        if first + size.unwrap_or(1) > COORDINATES {
-            let text = format!("{} coordinates; the limit is {COORDINATES}", first + size.unwrap_or(1));
-            return self.diagnostics.error_once(written.declared.name.at, text, "");
-        }
-        let meaning = size.map_or(Meaning::Coordinate(first), |size| Meaning::Coordinates(first, size));
+        let size = self.family_size(&written.declared, first, COORDINATES, "coordinates");
+        let meaning = size.map_or(Meaning::Coordinate(first), |size| {
+            Meaning::Coordinates(first, size)
+        });
         if !self.declare(&written.declared.name, meaning) {
             return;
         }
-        let members: Vec<Option<usize>> = size.map_or(vec![None], |size| (1..=size).map(Some).collect());
+        let members: Vec<Option<usize>> =
+            size.map_or(vec![None], |size| (1..=size).map(Some).collect());
         for member in members {
             self.new_coordinate(written, member, topology);
         }
     }
 
-    fn new_coordinate(&mut self, written: &spec::Coordinate, member: Option<usize>, topology: Topology) {
+    fn new_coordinate(
+        &mut self,
+        written: &spec::Coordinate,
+        member: Option<usize>,
+        topology: Topology,
+    ) {
         let name = member_name(&written.declared.name.text, member);
         let known = self.known(topology);
         let [q, qdot, differential, momentum] = coordinate_symbols(&mut self.pool, &name, known);
-        self.symbols.coordinates.push(Coordinate { name, topology, q, qdot, item: written.item });
+        self.symbols.coordinates.push(Coordinate {
+            name,
+            topology,
+            q,
+            qdot,
+            item: written.item,
+        });
         self.symbols.differentials.push(differential);
         self.symbols.derived.momenta.push(momentum);
     }
@@ -64,30 +78,64 @@ impl<'s> Resolver<'s> {
                     self.constant_expression(low, "the end of an interval"),
                     self.constant_expression(high, "the end of an interval"),
                 );
-                let (Some(low_value), Some(high_value)) = ends else { return Topology::Line };
+                let (Some(low_value), Some(high_value)) = ends else {
+                    return Topology::Line;
+                };
                 if self.constant_value(low_value) >= self.constant_value(high_value) {
                     let at = low.at.to(high.at);
-                    self.refuse::<()>(at, format!("the interval from `{low}` to `{high}` is empty"), "write `(low, high)`");
+                    self.refuse::<()>(
+                        at,
+                        format!("the interval from `{low}` to `{high}` is empty"),
+                        "write `(low, high)`",
+                    );
                 }
-                Topology::Interval { low: low_value, high: high_value }
+                Topology::Interval {
+                    low: low_value,
+                    high: high_value,
+                }
             }
         }
     }
 
-    /// The number of members of a declared family: none if it is not a family.
-    pub(super) fn family_size(&mut self, declared: &Declared) -> Option<Option<usize>> {
-        let size = match &declared.index {
-            None => return Some(None),
-            Some(Index::One(size)) => size,
-            Some(Index::Each(binder)) => {
+    /// The number of members of a declared family: none if it is not a family, one if its size is at fault, so that
+    /// the names of its members are known nevertheless. `present` members of all kinds were declared before.
+    pub(super) fn family_size(
+        &mut self,
+        declared: &Declared,
+        present: usize,
+        limit: usize,
+        what: &str,
+    ) -> Option<usize> {
+        let size = declared
+            .index
+            .as_ref()
+            .map(|index| self.written_size(declared, index).unwrap_or(1));
+        let total = present + size.unwrap_or(1);
+        if total <= limit {
+            return size;
+        }
+        let text = format!("{total} {what}; the limit is {limit}");
+        self.refuse::<()>(declared.name.at, text, "split the model");
+        // Some more members are known than allowed, so that their uses are no errors of their own.
+        size.map(|size| size.min(4 * limit))
+    }
+
+    fn written_size(&mut self, declared: &Declared, index: &Index) -> Option<usize> {
+        let size = match index {
+            Index::One(size) => size,
+            Index::Each(binder) => {
                 let help = format!("write `{}[{}]`", declared.name.text, binder.high);
                 return self.refuse(binder.name.at, "a family is declared by its size", &help);
             }
         };
         let count = self.integer(size, &mut Scope::default())?;
         match usize::try_from(count) {
-            Ok(count) if count > 0 => Some(Some(count)),
-            _ => self.refuse(size.at, format!("a family of {count}"), "a family has at least one member"),
+            Ok(count) if count > 0 => Some(count),
+            _ => self.refuse(
+                size.at,
+                format!("a family of {count}"),
+                "a family has at least one member",
+            ),
         }
     }
 }

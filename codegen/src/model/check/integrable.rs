@@ -20,13 +20,18 @@ pub(super) fn notes(resolver: &Resolver<'_>, constraints: &[Constraint]) -> Vec<
     let mut pool = resolver.pool.clone();
     let mut variables = resolver.symbols.positions();
     variables.push(resolver.symbols.time);
-    for constraint in constraints.iter().filter(|constraint| constraint.level.is_none()) {
+    for constraint in constraints
+        .iter()
+        .filter(|constraint| constraint.level.is_none())
+    {
         let mut form = constraint.form.clone();
         form.push(constraint.affine);
         let name = &constraint.name.display;
         let curl = Curl::new(&mut pool, &form, &variables);
         if curl.is_zero(&pool) {
-            notes.push(format!("`{name}` is integrable: write it as `d(f) = 0` to keep it on position level"));
+            notes.push(format!(
+                "`{name}` is integrable: write it as `d(f) = 0` to keep it on position level"
+            ));
         } else if curl.is_integrable(&mut pool, &form) {
             notes.push(format!(
                 "`{name}` is integrable with a factor: find `f` with `d(f)` proportional to it and write `d(f) = 0` to keep it on position level"
@@ -56,14 +61,19 @@ impl Curl {
     }
 
     fn is_zero(&self, pool: &Pool) -> bool {
-        self.entries.iter().flatten().all(|entry| is_zero(pool, *entry))
+        self.entries
+            .iter()
+            .flatten()
+            .all(|entry| is_zero(pool, *entry))
     }
 
     /// Whether every component of `omega ^ d omega` is zero.
     fn is_integrable(&self, pool: &mut Pool, form: &[ExprId]) -> bool {
         let involved = |index: usize| {
             !pool.is_syntactic_zero(form[index])
-                || self.entries[index].iter().any(|entry| !pool.is_syntactic_zero(*entry))
+                || self.entries[index]
+                    .iter()
+                    .any(|entry| !pool.is_syntactic_zero(*entry))
         };
         let support: Vec<usize> = (0..form.len()).filter(|index| involved(*index)).collect();
         if support.len() > LARGEST_SUPPORT {
@@ -73,7 +83,9 @@ impl Curl {
             for (b, j) in support.iter().enumerate().skip(a + 1) {
                 for k in support.iter().skip(b + 1) {
                     let component = self.component(pool, form, [*i, *j, *k]);
-                    if !pool.is_syntactic_zero(component) && pool.zero_test(component) != Verdict::Proved {
+                    if !pool.is_syntactic_zero(component)
+                        && pool.zero_test(component) != Verdict::Proved
+                    {
                         return false;
                     }
                 }

@@ -56,7 +56,10 @@ pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
     let (Some(lagrangian), true) = (parts.lagrangian, resolver.diagnostics.is_empty()) else {
         return Err(resolver.diagnostics);
     };
-    let parts = Parts { lagrangian: None, ..parts };
+    let parts = Parts {
+        lagrangian: None,
+        ..parts
+    };
     Ok(model(resolver, lagrangian, parts))
 }
 
@@ -81,7 +84,12 @@ fn check_complete(resolver: &Resolver<'_>, parts: &Parts) -> bool {
 
 fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model {
     let notes = notes(&resolver, &lagrangian, &parts);
-    let Resolver { spec, pool, symbols, .. } = resolver;
+    let Resolver {
+        spec,
+        pool,
+        symbols,
+        ..
+    } = resolver;
     Model {
         pool,
         name: spec.name.text.clone(),
@@ -107,8 +115,15 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
 fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec<String> {
     let mut notes = natural::notes(resolver, lagrangian);
     notes.extend(integrable::notes(resolver, &parts.constraints));
-    notes.extend(surfaces::notes(resolver, &parts.surfaces, &parts.constraints));
-    notes.extend(parameters::unused(resolver, &used_symbols(&resolver.pool, lagrangian, parts)));
+    notes.extend(surfaces::notes(
+        resolver,
+        &parts.surfaces,
+        &parts.constraints,
+    ));
+    notes.extend(parameters::unused(
+        resolver,
+        &used_symbols(&resolver.pool, lagrangian, parts),
+    ));
     notes
 }
 
@@ -120,24 +135,57 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
     }
     used.extend(parts.forces.iter().flat_map(|force| &force.form));
     for surface in &parts.surfaces {
-        used.extend(surface.conditions.iter().chain([&surface.gap]).copied().chain(surfaces::coefficient(&surface.law)));
+        used.extend(
+            surface
+                .conditions
+                .iter()
+                .chain([&surface.gap])
+                .copied()
+                .chain(surfaces::coefficient(&surface.law)),
+        );
     }
-    used.extend(parts.initial.q.iter().chain(&parts.initial.qdot).chain([&parts.initial.until]).flatten());
+    used.extend(
+        parts
+            .initial
+            .q
+            .iter()
+            .chain(&parts.initial.qdot)
+            .chain([&parts.initial.until])
+            .flatten(),
+    );
     used.extend(parts.outputs.iter().map(|output| output.value));
-    used.extend(parts.view.iter().flat_map(|view| view.path.iter().copied().chain(view.region)));
-    used.into_iter().flat_map(|expr| pool.symbols(expr)).collect()
+    used.extend(
+        parts
+            .view
+            .iter()
+            .flat_map(|view| view.path.iter().copied().chain(view.region)),
+    );
+    used.into_iter()
+        .flat_map(|expr| pool.symbols(expr))
+        .collect()
 }
 
 fn lagrangian(resolver: &mut Resolver<'_>) -> Option<Lagrangian> {
     let spec = resolver.spec;
     let Some(declared) = &spec.lagrangian else {
-        return resolver.refuse(spec.name.at, "a model needs a `lagrangian`", "write `lagrangian = m/2*dot(x)^2;`");
+        return resolver.refuse(
+            spec.name.at,
+            "a model needs a `lagrangian`",
+            "write `lagrangian = m/2*dot(x)^2;`",
+        );
     };
     let scope = Scope::default();
     let whole = resolver.expression(&declared.value, &mut scope.clone())?;
     let differentials = resolver.symbols.all_differentials();
     let help = "velocities are written `dot(x)`";
-    resolver.forbid(&declared.value, &scope, whole, &differentials, "a Lagrangian contains no differentials", help)?;
+    resolver.forbid(
+        &declared.value,
+        &scope,
+        whole,
+        &differentials,
+        "a Lagrangian contains no differentials",
+        help,
+    )?;
     resolver.forbid_abs(&declared.value, &scope, whole, "`lagrangian`")?;
     resolver.check_periodic(&[&declared.value], &scope, whole);
     natural::split(resolver, &declared.value, whole, declared.item)
@@ -150,11 +198,17 @@ fn forces(resolver: &mut Resolver<'_>) -> Vec<Force> {
     for force in &spec.forces {
         for (name, mut scope) in resolver.members(&force.declared) {
             names.add(resolver, &name, &force.declared.name);
-            let Some(form) = resolver.force_form(force, &mut scope) else { continue };
+            let Some(form) = resolver.force_form(force, &mut scope) else {
+                continue;
+            };
             for coefficient in &form {
                 resolver.check_periodic(&[&force.value], &scope, *coefficient);
             }
-            forces.push(Force { name, form, item: force.item });
+            forces.push(Force {
+                name,
+                form,
+                item: force.item,
+            });
         }
     }
     forces
@@ -168,7 +222,10 @@ struct Names {
 
 impl Names {
     fn new(noun: &'static str) -> Self {
-        Self { noun, first: Vec::new() }
+        Self {
+            noun,
+            first: Vec::new(),
+        }
     }
 
     fn add(&mut self, resolver: &mut Resolver<'_>, name: &Name, written: &Word) {
@@ -176,7 +233,9 @@ impl Names {
             Some((_, first)) => {
                 let text = format!("{} `{}` declared again", self.noun, name.display);
                 let error = resolver.diagnostics.error(written.at, text);
-                error.help("choose another name").also(*first, format!("`{}` first declared here", name.display));
+                error
+                    .help("choose another name")
+                    .also(*first, format!("`{}` first declared here", name.display));
             }
             None => self.first.push((name.display.clone(), written.at)),
         }
@@ -191,13 +250,20 @@ impl Resolver<'_> {
         match &declared.index {
             None => vec![(member_name(field, None), scope)],
             Some(Index::One(index)) => {
-                let member = self.integer(index, &mut scope).and_then(|member| self.member_index(index, member));
-                member.map(|member| (member_name(field, Some(member)), scope)).into_iter().collect()
+                let member = self
+                    .integer(index, &mut scope)
+                    .and_then(|member| self.member_index(index, member));
+                member
+                    .map(|member| (member_name(field, Some(member)), scope))
+                    .into_iter()
+                    .collect()
             }
             Some(Index::Each(binder)) => {
                 let mut members = Vec::new();
                 for member in self.range(binder, &mut scope).into_iter().flatten() {
-                    let Some(index) = self.member_index(&binder.low, member) else { break };
+                    let Some(index) = self.member_index(&binder.low, member) else {
+                        break;
+                    };
                     let value = self.pool.int(member);
                     let mut scope = Scope::default();
                     scope.bind(&binder.name.text, value.into());
@@ -211,7 +277,11 @@ impl Resolver<'_> {
     fn member_index(&mut self, written: &Scalar, member: i64) -> Option<usize> {
         match usize::try_from(member) {
             Ok(index) if index > 0 => Some(index),
-            _ => self.refuse(written.at, format!("members are counted from 1, found {member}"), "write `[i in 1..=N]`"),
+            _ => self.refuse(
+                written.at,
+                format!("members are counted from 1, found {member}"),
+                "write `[i in 1..=N]`",
+            ),
         }
     }
 
@@ -221,26 +291,54 @@ impl Resolver<'_> {
         let expr = self.expression(written, &mut scope)?;
         let symbols = self.pool.symbols(expr);
         let text = format!("{what} is a constant");
-        self.forbid(written, &scope, expr, &symbols, &text, "write numbers, `pi` and constants")?;
+        self.forbid(
+            written,
+            &scope,
+            expr,
+            &symbols,
+            &text,
+            "write numbers, `pi` and constants",
+        )?;
         Some(expr)
     }
 
     /// The value of an expression without symbols.
     fn constant_value(&self, expr: ExprId) -> f64 {
-        self.pool.eval(&[expr], &|_| f64::NAN).first().copied().unwrap_or(f64::NAN)
+        self.pool
+            .eval(&[expr], &|_| f64::NAN)
+            .first()
+            .copied()
+            .unwrap_or(f64::NAN)
     }
 
     /// An expression of the parameters.
-    fn parameter_expression(&mut self, written: &Scalar, scope: &mut Scope, what: &str) -> Option<ExprId> {
+    fn parameter_expression(
+        &mut self,
+        written: &Scalar,
+        scope: &mut Scope,
+        what: &str,
+    ) -> Option<ExprId> {
         let expr = self.expression(written, scope)?;
         let moving = self.symbols.moving();
         let text = format!("{what} depends on parameters only");
-        self.forbid(written, scope, expr, &moving, &text, "write numbers and parameters")?;
+        self.forbid(
+            written,
+            scope,
+            expr,
+            &moving,
+            &text,
+            "write numbers and parameters",
+        )?;
         Some(expr)
     }
 
     /// An expression of `(t, q)`.
-    fn position_expression(&mut self, written: &Scalar, scope: &mut Scope, what: &str) -> Option<ExprId> {
+    fn position_expression(
+        &mut self,
+        written: &Scalar,
+        scope: &mut Scope,
+        what: &str,
+    ) -> Option<ExprId> {
         let expr = self.expression(written, scope)?;
         let mut rates = self.symbols.velocities();
         rates.extend(self.symbols.all_differentials());
@@ -250,7 +348,13 @@ impl Resolver<'_> {
     }
 
     /// Refuses `abs`, which is not differentiable.
-    fn forbid_abs(&mut self, written: &Scalar, scope: &Scope, expr: ExprId, place: &str) -> Option<()> {
+    fn forbid_abs(
+        &mut self,
+        written: &Scalar,
+        scope: &Scope,
+        expr: ExprId,
+        place: &str,
+    ) -> Option<()> {
         if !contains_abs(&self.pool, expr) {
             return Some(());
         }
@@ -261,5 +365,7 @@ impl Resolver<'_> {
 }
 
 fn contains_abs(pool: &Pool, expr: ExprId) -> bool {
-    pool.reachable(&[expr]).into_iter().any(|id| matches!(pool.node(id), Node::Call(Function::Abs, _)))
+    pool.reachable(&[expr])
+        .into_iter()
+        .any(|id| matches!(pool.node(id), Node::Call(Function::Abs, _)))
 }

@@ -12,17 +12,29 @@ pub(super) fn view(resolver: &mut Resolver<'_>) -> Option<View> {
     let region = region.map(|region| resolver.difference(region, &mut scope, "regions"));
     let Some([first, second]) = &written.path else {
         if let Some(region) = &written.region {
-            resolver.refuse::<()>(region.at, "a `view` needs a `path`", "write `path: (x, y);`");
+            resolver.refuse::<()>(
+                region.at,
+                "a `view` needs a `path`",
+                "write `path: (x, y);`",
+            );
         }
         return None;
     };
-    let path = [first, second].map(|component| resolver.position_expression(component, &mut scope, "views"));
-    let [Some(x), Some(y)] = path else { return None };
+    let path = [first, second]
+        .map(|component| resolver.position_expression(component, &mut scope, "views"));
+    let [Some(x), Some(y)] = path else {
+        return None;
+    };
     let plane = match [x, y].map(|component| resolver.coordinate_index(component)) {
         [Some(x), Some(y)] => Some([x, y]),
         _ => None,
     };
-    Some(View { path: [x, y], labels: [first.to_string(), second.to_string()], plane, region: region.flatten() })
+    Some(View {
+        path: [x, y],
+        labels: [first.to_string(), second.to_string()],
+        plane,
+        region: region.flatten(),
+    })
 }
 
 /// All outputs, families expanded. They may name derived quantities.
@@ -34,12 +46,25 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Output> {
     for output in &spec.outputs {
         for (name, mut scope) in resolver.members(&output.declared) {
             names.add(resolver, &name, &output.declared.name);
-            let Some(value) = resolver.expression(&output.value, &mut scope) else { break };
+            let Some(value) = resolver.expression(&output.value, &mut scope) else {
+                break;
+            };
             let differentials = resolver.symbols.all_differentials();
             let text = "an output contains no differentials";
-            let kept = resolver.forbid(&output.value, &scope, value, &differentials, text, "velocities are written `dot(x)`");
+            let kept = resolver.forbid(
+                &output.value,
+                &scope,
+                value,
+                &differentials,
+                text,
+                "velocities are written `dot(x)`",
+            );
             if kept.is_some() {
-                outputs.push(Output { name, value, item: output.item });
+                outputs.push(Output {
+                    name,
+                    value,
+                    item: output.item,
+                });
             }
         }
     }

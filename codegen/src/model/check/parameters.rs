@@ -21,21 +21,20 @@ impl<'s> Resolver<'s> {
 
     fn parameter_family(&mut self, written: &'s spec::Parameter) {
         let assumption = self.assumption(&written.assumption);
-        let Some(size) = self.family_size(&written.declared) else { return };
         let first = self.symbols.parameters.len();
-        let count = size.unwrap_or(1);
-        if first + count > PARAMETERS {
-            let text = format!("{} parameters; the limit is {PARAMETERS}", first + count);
-            return self.diagnostics.error_once(written.declared.name.at, text, "");
-        }
+        let size = self.family_size(&written.declared, first, PARAMETERS, "parameters");
         let defaults = self.defaults(written, size, &assumption);
-        let meaning = size.map_or(Meaning::Parameter(first), |size| Meaning::Parameters(first, size));
+        let meaning = size.map_or(Meaning::Parameter(first), |size| {
+            Meaning::Parameters(first, size)
+        });
         if !self.declare(&written.declared.name, meaning) {
             return;
         }
         for (offset, default) in defaults.into_iter().enumerate() {
             let name = member_name(&written.declared.name.text, size.map(|_| offset + 1));
-            let symbol = self.pool.symbol(&name.display, &latex(&name), known(&assumption));
+            let symbol = self
+                .pool
+                .symbol(&name.display, &latex(&name), known(&assumption));
             self.symbols.parameters.push(Parameter {
                 name,
                 documentation: written.documentation.clone(),
@@ -48,7 +47,12 @@ impl<'s> Resolver<'s> {
     }
 
     /// One default for each member.
-    fn defaults(&mut self, written: &spec::Parameter, size: Option<usize>, assumption: &Assumption) -> Vec<Option<ExprId>> {
+    fn defaults(
+        &mut self,
+        written: &spec::Parameter,
+        size: Option<usize>,
+        assumption: &Assumption,
+    ) -> Vec<Option<ExprId>> {
         let count = size.unwrap_or(1);
         match &written.default {
             None => vec![None; count],
@@ -58,12 +62,17 @@ impl<'s> Resolver<'s> {
                     let name = &written.declared.name.text;
                     let text = match size {
                         None => format!("a list of defaults, but `{name}` is not a family"),
-                        Some(size) => format!("{} defaults for {size} members of `{name}`", values.len()),
+                        Some(size) => {
+                            format!("{} defaults for {size} members of `{name}`", values.len())
+                        }
                     };
                     self.refuse::<()>(*at, text, "a single default holds for all members");
                     return vec![None; count];
                 }
-                values.iter().map(|value| self.default(value, assumption)).collect()
+                values
+                    .iter()
+                    .map(|value| self.default(value, assumption))
+                    .collect()
             }
         }
     }
@@ -72,7 +81,11 @@ impl<'s> Resolver<'s> {
         let expr = self.constant_expression(written, "a default")?;
         let value = self.constant_value(expr);
         if !value.is_finite() {
-            return self.refuse(written.at, format!("`{written}` is not a finite number"), "");
+            return self.refuse(
+                written.at,
+                format!("`{written}` is not a finite number"),
+                "",
+            );
         }
         if !holds(assumption, value) {
             let text = format!("the default `{written}` violates `{}`", demand(assumption));
@@ -89,12 +102,21 @@ impl<'s> Resolver<'s> {
             spec::Assumption::NonZero => Assumption::NonZero,
             spec::Assumption::Within(low, high) => {
                 let ends = (self.bound(low), self.bound(high));
-                let (Some(low_value), Some(high_value)) = ends else { return Assumption::Finite };
+                let (Some(low_value), Some(high_value)) = ends else {
+                    return Assumption::Finite;
+                };
                 if low_value > high_value {
                     let at = low.at.to(high.at);
-                    self.refuse::<()>(at, format!("the interval from `{low}` to `{high}` is empty"), "write `[low, high]`");
+                    self.refuse::<()>(
+                        at,
+                        format!("the interval from `{low}` to `{high}` is empty"),
+                        "write `[low, high]`",
+                    );
                 }
-                Assumption::Within { low: low_value, high: high_value }
+                Assumption::Within {
+                    low: low_value,
+                    high: high_value,
+                }
             }
         }
     }
@@ -110,7 +132,11 @@ impl<'s> Resolver<'s> {
         match size {
             Some(size) if value < 0.0 => Some(-size),
             Some(size) => Some(size),
-            None => self.refuse(written.at, format!("`{written}` is not a finite number"), ""),
+            None => self.refuse(
+                written.at,
+                format!("`{written}` is not a finite number"),
+                "",
+            ),
         }
     }
 }
@@ -152,5 +178,7 @@ fn demand(assumption: &Assumption) -> String {
 pub(super) fn unused(resolver: &Resolver<'_>, used: &BTreeSet<SymbolId>) -> Vec<String> {
     let parameters = resolver.symbols.parameters.iter();
     let unused = parameters.filter(|parameter| !used.contains(&parameter.symbol));
-    unused.map(|parameter| format!("the parameter `{}` is not used", parameter.name.display)).collect()
+    unused
+        .map(|parameter| format!("the parameter `{}` is not used", parameter.name.display))
+        .collect()
 }

@@ -18,12 +18,23 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
         for (name, mut scope) in resolver.members(&surface.declared) {
             names.add(resolver, &name, &surface.declared.name);
             let gap = resolver.gap(surface, &mut scope);
-            let conditions: Vec<Option<ExprId>> =
-                surface.conditions.iter().map(|condition| resolver.difference(condition, &mut scope, "conditions")).collect();
+            let conditions: Vec<Option<ExprId>> = surface
+                .conditions
+                .iter()
+                .map(|condition| resolver.difference(condition, &mut scope, "conditions"))
+                .collect();
             let law = resolver.law(surface.law.as_ref(), &mut scope);
             let conditions: Option<Vec<ExprId>> = conditions.into_iter().collect();
-            let (Some(gap), Some(conditions), Some(law)) = (gap, conditions, law) else { break };
-            surfaces.push(Surface { name, gap, conditions, law, item: surface.item });
+            let (Some(gap), Some(conditions), Some(law)) = (gap, conditions, law) else {
+                break;
+            };
+            surfaces.push(Surface {
+                name,
+                gap,
+                conditions,
+                law,
+                item: surface.item,
+            });
         }
     }
     surfaces
@@ -31,7 +42,12 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
 
 impl Resolver<'_> {
     /// The side that is greater minus the other.
-    pub(super) fn difference(&mut self, comparison: &Comparison, scope: &mut Scope, what: &str) -> Option<ExprId> {
+    pub(super) fn difference(
+        &mut self,
+        comparison: &Comparison,
+        scope: &mut Scope,
+        what: &str,
+    ) -> Option<ExprId> {
         let greater = self.position_expression(&comparison.greater, scope, what);
         let less = self.position_expression(&comparison.less, scope, what);
         let difference = self.pool.sub(greater?, less?);
@@ -48,7 +64,11 @@ impl Resolver<'_> {
             !is_zero(&self.pool, slope)
         });
         if !moves {
-            return self.refuse(at, "surface has no zero set: it does not depend on position", "write `name: h >= 0;`");
+            return self.refuse(
+                at,
+                "surface has no zero set: it does not depend on position",
+                "write `name: h >= 0;`",
+            );
         }
         if self.pool.sign(gap).is_nonzero() {
             return self.refuse(at, "surface has no zero set: it is never zero", "");
@@ -62,7 +82,9 @@ impl Resolver<'_> {
     }
 
     fn law(&mut self, law: Option<&spec::Law>, scope: &mut Scope) -> Option<Law> {
-        let Some(law) = law else { return Some(Law::Elastic) };
+        let Some(law) = law else {
+            return Some(Law::Elastic);
+        };
         let name = law.name.text.as_str();
         let Some((_, count)) = LAWS.into_iter().find(|(known, _)| *known == name) else {
             let laws = LAWS.map(|(known, _)| known);
@@ -72,14 +94,24 @@ impl Resolver<'_> {
         };
         if law.arguments.len() != count {
             let (text, help) = match count {
-                0 => (format!("`{name}` takes no coefficient"), format!("write `{name}`")),
-                _ => (format!("`{name}` takes one coefficient"), format!("write `{name}(0.8)`")),
+                0 => (
+                    format!("`{name}` takes no coefficient"),
+                    format!("write `{name}`"),
+                ),
+                _ => (
+                    format!("`{name}` takes one coefficient"),
+                    format!("write `{name}(0.8)`"),
+                ),
             };
             return self.refuse(law.name.at, text, &help);
         }
         match (name, law.arguments.first()) {
-            ("restitution", Some(coefficient)) => self.coefficient(name, coefficient, scope).map(Law::Restitution),
-            ("newton", Some(coefficient)) => self.coefficient(name, coefficient, scope).map(Law::Newton),
+            ("restitution", Some(coefficient)) => self
+                .coefficient(name, coefficient, scope)
+                .map(Law::Restitution),
+            ("newton", Some(coefficient)) => {
+                self.coefficient(name, coefficient, scope).map(Law::Newton)
+            }
             ("nonholonomic_plastic", _) => Some(Law::NonholonomicPlastic),
             ("impact_plastic", _) => Some(Law::ImpactPlastic),
             ("totally_plastic", _) => Some(Law::TotallyPlastic),
@@ -93,11 +125,17 @@ impl Resolver<'_> {
         match self.pool.as_number(expr) {
             Some(value) if *value > Rational::from(1) => {
                 let text = format!("{law} {written} adds energy");
-                self.refuse(written.at, text, "the coefficient lies in [0, 1]; `elastic` keeps the energy")
+                self.refuse(
+                    written.at,
+                    text,
+                    "the coefficient lies in [0, 1]; `elastic` keeps the energy",
+                )
             }
-            Some(value) if value.is_negative() => {
-                self.refuse(written.at, format!("{law} {written} goes on into the wall"), "the coefficient lies in [0, 1]")
-            }
+            Some(value) if value.is_negative() => self.refuse(
+                written.at,
+                format!("{law} {written} goes on into the wall"),
+                "the coefficient lies in [0, 1]",
+            ),
             _ => Some(expr),
         }
     }
@@ -106,35 +144,66 @@ impl Resolver<'_> {
 /// The base of which the gap is a constant times a power of at least 2.
 fn perfect_power(resolver: &Resolver<'_>, gap: ExprId) -> Option<ExprId> {
     let (_, power) = resolver.pool.as_multiple(gap);
-    let Node::Product(factors) = resolver.pool.node(power) else { return None };
-    let is_multiple = |(base, exponent): &&(ExprId, Rational)| *exponent >= Rational::from(2) || resolver.is_constant(*base);
+    let Node::Product(factors) = resolver.pool.node(power) else {
+        return None;
+    };
+    let is_multiple = |(base, exponent): &&(ExprId, Rational)| {
+        *exponent >= Rational::from(2) || resolver.is_constant(*base)
+    };
     let all_multiple = factors.iter().all(|factor| is_multiple(&factor));
-    let base = factors.iter().find(|(base, _)| !resolver.is_constant(*base)).map(|(base, _)| *base);
+    let base = factors
+        .iter()
+        .find(|(base, _)| !resolver.is_constant(*base))
+        .map(|(base, _)| *base);
     base.filter(|_| all_multiple)
 }
 
 /// Refuses surfaces that no allowed motion reaches: `dh` in the annihilator of D.
-pub(super) fn check_reachable(resolver: &mut Resolver<'_>, surfaces: &[Surface], constraints: &[Constraint]) {
+pub(super) fn check_reachable(
+    resolver: &mut Resolver<'_>,
+    surfaces: &[Surface],
+    constraints: &[Constraint],
+) {
     if constraints.is_empty() {
         return;
     }
     let positions = resolver.symbols.positions();
-    let forms: Vec<Vec<ExprId>> = constraints.iter().map(|constraint| constraint.form.clone()).collect();
+    let forms: Vec<Vec<ExprId>> = constraints
+        .iter()
+        .map(|constraint| constraint.form.clone())
+        .collect();
     for surface in surfaces {
-        let gradient: Vec<ExprId> = positions.iter().map(|position| resolver.pool.diff(surface.gap, *position)).collect();
+        let gradient: Vec<ExprId> = positions
+            .iter()
+            .map(|position| resolver.pool.diff(surface.gap, *position))
+            .collect();
         let mut rows = forms.clone();
         rows.push(gradient);
         let report = resolver.pool.rank(&rows);
-        let Some((_, others)) = report.dependencies.iter().find(|(row, _)| *row == forms.len()) else { continue };
+        let Some((_, others)) = report
+            .dependencies
+            .iter()
+            .find(|(row, _)| *row == forms.len())
+        else {
+            continue;
+        };
         // A wall that moves, or an affine constraint, can still bring the two together.
         let moving = resolver.pool.depends_on(surface.gap, resolver.symbols.time)
-            || others.iter().any(|other| !resolver.pool.is_syntactic_zero(constraints[*other].affine));
+            || others
+                .iter()
+                .any(|other| !resolver.pool.is_syntactic_zero(constraints[*other].affine));
         if moving {
             continue;
         }
-        let names: Vec<&str> = others.iter().map(|other| constraints[*other].name.display.as_str()).collect();
-        let help = format!("{} keep it at a constant distance", listed(names));
-        let text = format!("no allowed motion can reach the surface `{}`", surface.name.display);
+        let names: Vec<&str> = others
+            .iter()
+            .map(|other| constraints[*other].name.display.as_str())
+            .collect();
+        let help = format!("its distance is kept constant by {}", listed(names));
+        let text = format!(
+            "no allowed motion can reach the surface `{}`",
+            surface.name.display
+        );
         let at = resolver.spec.location(surface.item);
         resolver.refuse::<()>(at, text, &help);
     }
@@ -144,13 +213,21 @@ pub(super) fn check_reachable(resolver: &mut Resolver<'_>, surfaces: &[Surface],
 pub(super) fn check_distinct(resolver: &mut Resolver<'_>, surfaces: &[Surface]) {
     for (index, second) in surfaces.iter().enumerate() {
         for first in &surfaces[..index] {
-            if first.conditions != second.conditions || !is_proportional(resolver, first.gap, second.gap) {
+            if first.conditions != second.conditions
+                || !is_proportional(resolver, first.gap, second.gap)
+            {
                 continue;
             }
             let text = format!("same surface as `{}`", first.name.display);
-            let (at, other) = (resolver.spec.location(second.item), resolver.spec.location(first.item));
+            let (at, other) = (
+                resolver.spec.location(second.item),
+                resolver.spec.location(first.item),
+            );
             let error = resolver.diagnostics.error(at, text);
-            error.help("leave one of them out").also(other, format!("`{}` is the same surface", second.name.display));
+            error.help("leave one of them out").also(
+                other,
+                format!("`{}` is the same surface", second.name.display),
+            );
         }
     }
 }
@@ -179,7 +256,11 @@ pub(super) fn coefficient(law: &Law) -> Option<ExprId> {
 }
 
 /// Remarks on laws that can leave the state approaching the wall.
-pub(super) fn notes(resolver: &Resolver<'_>, surfaces: &[Surface], constraints: &[Constraint]) -> Vec<String> {
+pub(super) fn notes(
+    resolver: &Resolver<'_>,
+    surfaces: &[Surface],
+    constraints: &[Constraint],
+) -> Vec<String> {
     let mut notes = Vec::new();
     for surface in surfaces.iter().filter(|_| !constraints.is_empty()) {
         let bound = match surface.law {
@@ -190,10 +271,17 @@ pub(super) fn notes(resolver: &Resolver<'_>, surfaces: &[Surface], constraints: 
         let name = &surface.name.display;
         notes.push(format!("`{name}` may still point into the wall after an impact ({bound}); `impact_plastic` never does"));
     }
-    let affine = constraints.iter().any(|constraint| !resolver.pool.is_syntactic_zero(constraint.affine));
-    for surface in surfaces.iter().filter(|surface| affine && matches!(surface.law, Law::Elastic | Law::Restitution(_))) {
+    let affine = constraints
+        .iter()
+        .any(|constraint| !resolver.pool.is_syntactic_zero(constraint.affine));
+    for surface in surfaces
+        .iter()
+        .filter(|surface| affine && matches!(surface.law, Law::Elastic | Law::Restitution(_)))
+    {
         let name = &surface.name.display;
-        notes.push(format!("`{name}` need not reverse the gap rate where constraints are affine; `newton` does"));
+        notes.push(format!(
+            "`{name}` need not reverse the gap rate where constraints are affine; `newton` does"
+        ));
     }
     notes
 }

@@ -1,7 +1,5 @@
 //! Functions of the constraints: multipliers, residuals, forms, projections on momenta and positions.
 
-use dalembert_expr::Function as Elementary;
-
 use crate::mechanics::Derivation;
 use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
@@ -28,34 +26,14 @@ fn multipliers(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// `eta^a(qdot) + eta^a_0`, then the sums of the absolute values of their terms.
+/// `eta^a(qdot) + eta^a_0`, then their natural sizes.
 fn residuals(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
-    let qdot = kernel.velocity();
-    let (mut residuals, mut scales) = (Vec::new(), Vec::new());
-    for (a, form) in kernel.forms().into_iter().enumerate() {
-        let affine = kernel.value(derivation.constraints[a].affine);
-        let mut terms: Vec<Value> =
-            form.iter().zip(&qdot).map(|(&component, &v)| kernel.builder.mul(component, v)).collect();
-        terms.push(affine);
-        residuals.push(sum(&mut kernel, &terms));
-        let sizes: Vec<Value> = terms.into_iter().map(|term| magnitude(&mut kernel, term)).collect();
-        scales.push(sum(&mut kernel, &sizes));
-    }
-    residuals.append(&mut scales);
-    kernel.finish(residuals)
-}
-
-fn sum(kernel: &mut Kernel<'_>, terms: &[Value]) -> Value {
-    let zero = kernel.builder.zero();
-    terms.iter().fold(zero, |total, &term| kernel.builder.add(total, term))
-}
-
-fn magnitude(kernel: &mut Kernel<'_>, value: Value) -> Value {
-    match kernel.builder.is_zero(value) {
-        true => value,
-        false => kernel.builder.call(Elementary::Abs, value),
-    }
+    let residuals = derivation.constraints.iter().map(|constraint| constraint.residual);
+    let scales = derivation.constraints.iter().map(|constraint| constraint.scale);
+    let expressions: Vec<_> = residuals.chain(scales).collect();
+    let outputs = kernel.values(&expressions);
+    kernel.finish(outputs)
 }
 
 /// `eta` row after row, then `eta_0`.

@@ -10,12 +10,21 @@ pub(super) fn constraint(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let declared = labelled(cursor, "the name of a constraint", FORM)?;
     let left = cursor.scalar()?;
     if cursor.is_operator("==") {
-        return Err(cursor.unexpected("expected `=`", &format!("write `{FORM}`")));
+        return Err(cursor.refuse_operator(
+            "==",
+            "expected `=`, found `==`",
+            &format!("write `{FORM}`"),
+        ));
     }
     cursor.expect_operator("=", FORM)?;
     let right = cursor.scalar()?;
     let item = spec.item(left.at.to(right.at));
-    spec.constraints.push(Equation { declared, left, right, item });
+    spec.constraints.push(Equation {
+        declared,
+        left,
+        right,
+        item,
+    });
     Ok(())
 }
 
@@ -28,7 +37,12 @@ pub(super) fn force(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
 
 /// Reads one output.
 pub(super) fn output(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
-    let output = quantity(cursor, spec, "the name of an output", "name: x + l*sin(theta);")?;
+    let output = quantity(
+        cursor,
+        spec,
+        "the name of an output",
+        "name: x + l*sin(theta);",
+    )?;
     spec.outputs.push(output);
     Ok(())
 }
@@ -37,5 +51,9 @@ fn quantity(cursor: &mut Cursor<'_>, spec: &mut Spec, what: &str, form: &str) ->
     let declared = labelled(cursor, what, form)?;
     let value = cursor.scalar()?;
     let item = spec.item(value.at);
-    Ok(Quantity { declared, value, item })
+    Ok(Quantity {
+        declared,
+        value,
+        item,
+    })
 }

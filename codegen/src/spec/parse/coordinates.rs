@@ -22,7 +22,11 @@ fn coordinate(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let declared = declared(cursor, "the name of a coordinate")?;
     let topology = topology(cursor)?;
     let item = spec.item(declared.name.at);
-    spec.coordinates.push(Coordinate { declared, topology, item });
+    spec.coordinates.push(Coordinate {
+        declared,
+        topology,
+        item,
+    });
     Ok(())
 }
 
@@ -55,6 +59,10 @@ pub(super) fn pair(cursor: &mut Cursor<'_>, group: &Group, what: &str) -> Read<[
     let count = list.len();
     <[Scalar; 2]>::try_from(list).map_err(|_| {
         let at = group.span().into();
-        cursor.refuse(at, format!("{what} are two expressions, found {count}"), "write `(a, b)`")
+        cursor.refuse(
+            at,
+            format!("{what} are two expressions, found {count}"),
+            "write `(a, b)`",
+        )
     })
 }

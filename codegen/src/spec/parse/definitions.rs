@@ -23,20 +23,30 @@ pub(super) fn definition(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     cursor.expect_operator("=", "let name = ..;")?;
     let value = cursor.scalar()?;
     end_of_declaration(cursor)?;
-    spec.definitions.push(Definition { declared, arguments, value });
+    spec.definitions.push(Definition {
+        declared,
+        arguments,
+        value,
+    });
     Ok(())
 }
 
 /// `(u, v)` or nothing.
 fn arguments(cursor: &mut Cursor<'_>) -> Read<Option<Vec<Word>>> {
-    let Some(group) = cursor.eat_group(Delimiter::Parenthesis) else { return Ok(None) };
+    let Some(group) = cursor.eat_group(Delimiter::Parenthesis) else {
+        return Ok(None);
+    };
     let tokens = tokens_of(group.stream());
     let mut inside = cursor.inside(&tokens, group);
     let mut names: Vec<Word> = Vec::new();
     while !inside.is_at_end() {
         let name = inside.new_name("the name of an argument")?;
         if names.iter().any(|other| other.text == name.text) {
-            inside.refuse(name.at, format!("argument `{}` declared again", name.text), "choose another name");
+            inside.refuse(
+                name.at,
+                format!("argument `{}` declared again", name.text),
+                "choose another name",
+            );
         }
         names.push(name);
         if inside.eat_operator(",").is_none() && !inside.is_at_end() {
@@ -45,7 +55,11 @@ fn arguments(cursor: &mut Cursor<'_>) -> Read<Option<Vec<Word>>> {
     }
     if names.is_empty() {
         let at = group.span().into();
-        return Err(cursor.refuse(at, "a function has at least one argument", "write `let name = ..;`"));
+        return Err(cursor.refuse(
+            at,
+            "a function has at least one argument",
+            "write `let name = ..;`",
+        ));
     }
     Ok(Some(names))
 }

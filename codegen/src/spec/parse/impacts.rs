@@ -15,13 +15,19 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let mut conditions = Vec::new();
     while cursor.eat_word("when") {
         conditions.push(comparison(cursor, Strictness::Strict)?);
-        if cursor.is_word("and") || cursor.is_operator("&&") || cursor.is_operator(",") {
+        if cursor.is_operator("&&") || cursor.is_operator(",") {
             return Err(cursor.unexpected("expected `when`", "write `when a > 0 when b > 0`"));
         }
     }
     let law = law(cursor)?;
     let item = spec.item(gap.at);
-    spec.surfaces.push(Surface { declared, gap, conditions, law, item });
+    spec.surfaces.push(Surface {
+        declared,
+        gap,
+        conditions,
+        law,
+        item,
+    });
     Ok(())
 }
 
@@ -43,7 +49,7 @@ pub(super) fn comparison(cursor: &mut Cursor<'_>, strictness: Strictness) -> Rea
     let left = cursor.scalar()?;
     if let Some(sign) = wrong.into_iter().find(|sign| cursor.is_operator(sign)) {
         let text = format!("expected `{greater}` or `{less}`, found `{sign}`");
-        return Err(cursor.refuse(cursor.here(), text, &format!("write `{FORM}`")));
+        return Err(cursor.refuse_operator(sign, text, &format!("write `{FORM}`")));
     }
     let turned = if cursor.eat_operator(greater).is_some() {
         false
@@ -82,7 +88,10 @@ fn law(cursor: &mut Cursor<'_>) -> Read<Option<Law>> {
         return Err(cursor.unexpected("expected `;`", FORM));
     }
     if cursor.is_word("when") {
-        return Err(cursor.unexpected("expected `;`", &format!("conditions stand before the law: `{FORM}`")));
+        return Err(cursor.unexpected(
+            "expected `;`",
+            &format!("conditions stand before the law: `{FORM}`"),
+        ));
     }
     Ok(Some(Law { name, arguments }))
 }

@@ -14,7 +14,11 @@ pub(super) fn value(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let (target, declared) = target(cursor)?;
     cursor.expect_operator("=", "x = 1;")?;
     let value = cursor.scalar()?;
-    spec.initial.push(InitialValue { target, declared, value });
+    spec.initial.push(InitialValue {
+        target,
+        declared,
+        value,
+    });
     Ok(())
 }
 
@@ -29,7 +33,11 @@ fn target(cursor: &mut Cursor<'_>) -> Read<(InitialTarget, Declared)> {
         return Ok((InitialTarget::Position, Declared { name, index }));
     }
     if name.text != "dot" {
-        return Err(cursor.refuse(name.at, format!("`{}` is not an initial value", name.text), &format!("write {FORM}")));
+        return Err(cursor.refuse(
+            name.at,
+            format!("`{}` is not an initial value", name.text),
+            &format!("write {FORM}"),
+        ));
     }
     let Some(group) = cursor.eat_group(Delimiter::Parenthesis) else {
         return Err(cursor.unexpected("expected a coordinate", "write `dot(x) = 2;`"));

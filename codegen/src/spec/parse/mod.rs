@@ -25,7 +25,9 @@ pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
     check_nesting(&tokens)?;
     let tokens = source::flatten_header(tokens);
     let mut diagnostics = Diagnostics::new();
-    let start = tokens.first().map_or_else(|| Location::from(Span::call_site()), Location::of);
+    let start = tokens
+        .first()
+        .map_or_else(|| Location::from(Span::call_site()), Location::of);
     let mut cursor = Cursor::new(&tokens, start, &mut diagnostics);
     match header(&mut cursor) {
         Ok((mut spec, body)) => {
@@ -47,7 +49,10 @@ fn header(cursor: &mut Cursor<'_>) -> Read<(Spec, Group)> {
         return Err(cursor.unexpected("expected `{ .. }` after the name of the model", FORM));
     };
     if !cursor.is_at_end() {
-        return Err(cursor.unexpected("expected nothing after the model", "declare one model in each `model!`"));
+        return Err(cursor.unexpected(
+            "expected nothing after the model",
+            "declare one model in each `model!`",
+        ));
     }
     let mut spec = Spec::new(name);
     spec.source = source::text(&documentation, &visibility, &spec.name.text, body);
@@ -72,7 +77,9 @@ fn documentation(cursor: &mut Cursor<'_>) -> Read<Vec<String>> {
     let mut lines = Vec::new();
     while cursor.eat_operator("#").is_some() {
         let at = cursor.last();
-        let tokens = cursor.eat_group(Delimiter::Bracket).map(|group| tokens_of(group.stream()));
+        let tokens = cursor
+            .eat_group(Delimiter::Bracket)
+            .map(|group| tokens_of(group.stream()));
         match tokens.as_deref() {
             Some([TokenTree::Ident(doc), TokenTree::Punct(_), text]) if *doc == "doc" => {
                 lines.extend(source::doc_lines(text));
@@ -87,7 +94,12 @@ fn documentation(cursor: &mut Cursor<'_>) -> Read<Vec<String>> {
 }
 
 /// Reads the declarations one after the other; a mistake in one does not hide those in the next.
-fn declarations(tokens: &[TokenTree], body: &Group, spec: &mut Spec, diagnostics: &mut Diagnostics) {
+fn declarations(
+    tokens: &[TokenTree],
+    body: &Group,
+    spec: &mut Spec,
+    diagnostics: &mut Diagnostics,
+) {
     let mut rest = tokens;
     let mut before = Location::opening(body);
     while !rest.is_empty() {
@@ -98,7 +110,9 @@ fn declarations(tokens: &[TokenTree], body: &Group, spec: &mut Spec, diagnostics
         let ends_well = matches!(declaration.last(), Some(TokenTree::Punct(punct)) if punct.as_char() == ';')
             || is_section(declaration);
         if let (Ok(()), false, Some(last)) = (read, ends_well, declaration.last()) {
-            diagnostics.error(Location::of(last), "expected `;`").help("end the declaration with `;`");
+            diagnostics
+                .error(Location::of(last), "expected `;`")
+                .help("end the declaration with `;`");
         }
         before = declaration.last().map_or(before, Location::of);
         rest = others;
@@ -107,19 +121,29 @@ fn declarations(tokens: &[TokenTree], body: &Group, spec: &mut Spec, diagnostics
 
 /// How many tokens belong to the first declaration: up to a `;`, a section's braces, or what begins another one.
 fn declaration_length(tokens: &[TokenTree]) -> usize {
+    let documentation = documentation_length(tokens);
     for (index, token) in tokens.iter().enumerate() {
         match token {
             TokenTree::Punct(punct) if punct.as_char() == ';' => return index + 1,
             TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => return index + 1,
-            TokenTree::Ident(word) if index > 0 && begins_declaration(word, tokens.get(index + 1)) => {
-                // The documentation of what begins here was read with the declaration before it; nothing is lost
-                // but its text.
+            TokenTree::Ident(word)
+                if index > documentation && begins_declaration(word, tokens.get(index + 1)) =>
+            {
                 return index;
             }
             _ => {}
         }
     }
     tokens.len()
+}
+
+/// How many tokens belong to the attributes at the beginning, doc comments among them.
+fn documentation_length(tokens: &[TokenTree]) -> usize {
+    let is_attribute = |pair: &&[TokenTree]| {
+        matches!(pair, [TokenTree::Punct(hash), TokenTree::Group(group)]
+            if hash.as_char() == '#' && group.delimiter() == Delimiter::Bracket)
+    };
+    2 * tokens.chunks(2).take_while(is_attribute).count()
 }
 
 /// Whether this word, followed by this token, can only be the beginning of a declaration.
@@ -171,13 +195,21 @@ fn unknown_declaration(word: &Word, cursor: &mut Cursor<'_>) -> super::cursor::R
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("a model consists of {}", listed(SECTIONS)),
     };
-    cursor.refuse(word.at, format!("unknown declaration `{}`", word.text), &help)
+    cursor.refuse(
+        word.at,
+        format!("unknown declaration `{}`", word.text),
+        &help,
+    )
 }
 
 /// Refuses a declaration of the language that this version lacks.
-fn refuse_not_implemented(word: &Word, instead: &str, cursor: &mut Cursor<'_>) -> super::cursor::Refused {
+fn refuse_not_implemented(
+    word: &Word,
+    instead: &str,
+    cursor: &mut Cursor<'_>,
+) -> super::cursor::Refused {
     let text = format!("`{}` is not implemented in this version", word.text);
-    cursor.refuse(word.at, text, &format!("instead: {instead}"))
+    cursor.refuse(word.at, text, instead)
 }
 
 /// Reads the entries of a section, each up to its `;`.
@@ -197,7 +229,10 @@ fn section(
         let length = entry_length(inside.remaining());
         let (tokens, ended) = inside.take(length);
         let mut cursor = inside.inside(tokens, group);
-        if !cursor.is_at_end() && entry(&mut cursor, spec).and_then(|()| cursor.end()).is_ok() && !ended {
+        if !cursor.is_at_end()
+            && entry(&mut cursor, spec).and_then(|()| cursor.end()).is_ok()
+            && !ended
+        {
             let at = cursor.last();
             cursor.refuse(at, "expected `;`", "end the declaration with `;`");
         }
@@ -207,7 +242,8 @@ fn section(
 
 /// How many tokens stand before the next `;`.
 fn entry_length(tokens: &[TokenTree]) -> usize {
-    let is_end = |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ';');
+    let is_end =
+        |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ';');
     tokens.iter().position(is_end).unwrap_or(tokens.len())
 }
 
@@ -218,7 +254,11 @@ fn lagrangian(keyword: &Word, cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<
     end_of_declaration(cursor)?;
     if let Some(first) = &spec.lagrangian {
         let at = spec.location(first.item);
-        cursor.diagnostics.error(keyword.at, "second `lagrangian`").help("keep one of the two").also(at, "first declared here");
+        cursor
+            .diagnostics
+            .error(keyword.at, "second `lagrangian`")
+            .help("keep one of the two")
+            .also(at, "first declared here");
         return Ok(());
     }
     let item = spec.item(value.at);
@@ -241,7 +281,9 @@ fn declared(cursor: &mut Cursor<'_>, what: &str) -> Read<Declared> {
 
 /// `[N]`, `[i in 1..=N]` or nothing.
 fn index(cursor: &mut Cursor<'_>) -> Read<Option<Index>> {
-    let Some(group) = cursor.eat_group(Delimiter::Bracket) else { return Ok(None) };
+    let Some(group) = cursor.eat_group(Delimiter::Bracket) else {
+        return Ok(None);
+    };
     let tokens = tokens_of(group.stream());
     let mut inside = cursor.inside(&tokens, group);
     let is_binder = matches!(inside.peek_second(), Some(TokenTree::Ident(word)) if *word == "in");

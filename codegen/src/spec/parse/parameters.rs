@@ -8,7 +8,8 @@ use super::coordinates::pair;
 use super::{declared, documentation};
 use crate::diagnostics::Location;
 
-const HELP: &str = "a parameter is written `m;`, `m > 0;`, `m >= 0 = 1;`, `m != 0;` or `m in [a, b] = c;`";
+const HELP: &str =
+    "a parameter is written `m;`, `m > 0;`, `m >= 0 = 1;`, `m != 0;` or `m in [a, b] = c;`";
 
 /// Reads one parameter or family.
 pub(super) fn parameter(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
@@ -21,14 +22,22 @@ pub(super) fn parameter(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         return Err(cursor.refuse(last, "expected `;`", HELP));
     }
     let item = spec.item(declared.name.at);
-    spec.parameters.push(Parameter { declared, documentation, assumption, default, item });
+    spec.parameters.push(Parameter {
+        declared,
+        documentation,
+        assumption,
+        default,
+        item,
+    });
     Ok(())
 }
 
 fn assumption(cursor: &mut Cursor<'_>) -> Read<Assumption> {
-    for (operator, assumption) in
-        [(">", Assumption::Positive), (">=", Assumption::NonNegative), ("!=", Assumption::NonZero)]
-    {
+    for (operator, assumption) in [
+        (">", Assumption::Positive),
+        (">=", Assumption::NonNegative),
+        ("!=", Assumption::NonZero),
+    ] {
         if cursor.eat_operator(operator).is_some() {
             zero(cursor)?;
             return Ok(assumption);
@@ -67,5 +76,8 @@ fn default(cursor: &mut Cursor<'_>) -> Read<Option<ParameterDefault>> {
     };
     let tokens = tokens_of(group.stream());
     let list = cursor.inside(&tokens, group).list()?;
-    Ok(Some(ParameterDefault::List(list, Location::from(group.span()))))
+    Ok(Some(ParameterDefault::List(
+        list,
+        Location::from(group.span()),
+    )))
 }

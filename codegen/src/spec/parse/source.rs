@@ -2,12 +2,16 @@
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
+use super::super::cursor::tokens_of;
+
 /// The tokens with invisible groups taken off: a visibility passed through `macro_rules` comes in one.
 pub(super) fn flatten_header(tokens: TokenStream) -> Vec<TokenTree> {
     let mut flat = Vec::new();
     for token in tokens {
         match token {
-            TokenTree::Group(group) if group.delimiter() == Delimiter::None => flat.extend(flatten_header(group.stream())),
+            TokenTree::Group(group) if group.delimiter() == Delimiter::None => {
+                flat.extend(flatten_header(group.stream()))
+            }
             other => flat.push(other),
         }
     }
@@ -18,7 +22,9 @@ pub(super) fn flatten_header(tokens: TokenStream) -> Vec<TokenTree> {
 pub(super) fn doc_lines(text: &TokenTree) -> Vec<String> {
     let literal = syn::parse2::<syn::LitStr>(TokenStream::from(text.clone()));
     let text = literal.map(|literal| literal.value()).unwrap_or_default();
-    text.split('\n').map(|line| line.strip_prefix(' ').unwrap_or(line).trim_end().to_owned()).collect()
+    text.split('\n')
+        .map(|line| line.strip_prefix(' ').unwrap_or(line).trim_end().to_owned())
+        .collect()
 }
 
 /// The declaration as it was written, or its tokens where that text is not at hand.
@@ -41,7 +47,7 @@ pub(super) fn text(documentation: &[String], visibility: &str, name: &str, body:
 /// The text between and including the braces. What a span covers inside of a `macro_rules` is the macro and not
 /// the model, so the text counts only if it reads as the same tokens.
 fn body_text(body: &Group) -> String {
-    let tokens = TokenTree::from(body.clone()).to_string();
+    let tokens = visible(TokenTree::from(body.clone()).into()).to_string();
     let written = body.span().source_text().map(|text| dedent(&text));
     let same = |text: &String| {
         let read: Result<TokenStream, _> = text.parse();
@@ -50,14 +56,37 @@ fn body_text(body: &Group) -> String {
     written.filter(same).unwrap_or(tokens)
 }
 
+/// The tokens with parentheses for invisible groups, which text cannot show otherwise.
+fn visible(tokens: TokenStream) -> TokenStream {
+    let show = |token: TokenTree| match token {
+        TokenTree::Group(group) => {
+            let delimiter = match group.delimiter() {
+                Delimiter::None => Delimiter::Parenthesis,
+                other => other,
+            };
+            let mut shown = Group::new(delimiter, visible(group.stream()));
+            shown.set_span(group.span());
+            TokenTree::from(shown)
+        }
+        other => other,
+    };
+    tokens_of(tokens).into_iter().map(show).collect()
+}
+
 fn without_blanks(text: &str) -> String {
-    text.chars().filter(|character| !character.is_whitespace()).collect()
+    text.chars()
+        .filter(|character| !character.is_whitespace())
+        .collect()
 }
 
 /// Takes off the indentation that the last line has from the lines after the first.
 fn dedent(text: &str) -> String {
-    let Some((_, last)) = text.rsplit_once('\n') else { return text.to_owned() };
+    let Some((_, last)) = text.rsplit_once('\n') else {
+        return text.to_owned();
+    };
     let margin = &last[..last.len() - last.trim_start().len()];
-    let lines = text.lines().map(|line| line.strip_prefix(margin).unwrap_or(line));
+    let lines = text
+        .lines()
+        .map(|line| line.strip_prefix(margin).unwrap_or(line));
     lines.collect::<Vec<_>>().join("\n")
 }

@@ -20,11 +20,25 @@ pub(super) fn entry(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
             let path = pair(cursor, group, "the components of a path")?;
             spec.view.path.replace(path).is_some()
         }
-        "region" => spec.view.region.replace(comparison(cursor, Strictness::Weak)?).is_some(),
-        _ => return Err(cursor.refuse(key.at, format!("unknown entry `{}` of `view`", key.text), HELP)),
+        "region" => spec
+            .view
+            .region
+            .replace(comparison(cursor, Strictness::Weak)?)
+            .is_some(),
+        _ => {
+            return Err(cursor.refuse(
+                key.at,
+                format!("unknown entry `{}` of `view`", key.text),
+                HELP,
+            ));
+        }
     };
     if again {
-        cursor.refuse(key.at, format!("`{}` declared again", key.text), "keep one of the two");
+        cursor.refuse(
+            key.at,
+            format!("`{}` declared again", key.text),
+            "keep one of the two",
+        );
     }
     Ok(())
 }

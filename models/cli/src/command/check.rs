@@ -6,12 +6,12 @@ use dalembert::describe::{Description, Report, Topology};
 use serde_json::{Value, json};
 
 use crate::args::{CheckArgs, Format, OffConstraint};
-use crate::entry::{AnyModel, Entry, Rates};
+use crate::entry::{AnyModel, Entry};
 use crate::error::{CliError, fault_text};
 use crate::exit::Exit;
 use crate::json::{Document, number};
-use crate::state_input::find_model;
 use crate::names;
+use crate::state_input::{find_model, named_state};
 
 /// One thing that was looked at: what, and what is wrong with it.
 struct Finding {
@@ -39,18 +39,29 @@ pub fn run(models: &[Entry], args: &CheckArgs, output: &mut dyn Write) -> Result
 fn findings(model: &dyn AnyModel) -> Vec<Finding> {
     let description = model.description();
     let refused = defaults_against_assumptions(model);
-    let mut findings = vec![Finding { subject: "declared defaults satisfy their assumptions", failure: refused }];
+    let mut findings = vec![Finding {
+        subject: "declared defaults satisfy their assumptions",
+        failure: refused,
+    }];
     // Without a default there is nothing to form the initial state with.
     if model.check_parameters().is_err() {
         return findings;
     }
-    let initial = initial_state(model);
+    let initial = named_state(model, &[], OffConstraint::Error);
     let failure = initial.as_ref().err().map(CliError::to_string);
-    findings.push(Finding { subject: "the initial state is admissible", failure });
+    findings.push(Finding {
+        subject: "the initial state is admissible",
+        failure,
+    });
     if let Ok(state) = initial {
         let inspected = model.inspect(0.0, &state, &mut Silent);
-        let failure = inspected.err().map(|fault| fault_text(&description, &fault));
-        findings.push(Finding { subject: "the equations of motion exist at the initial state", failure });
+        let failure = inspected
+            .err()
+            .map(|fault| fault_text(&description, &fault));
+        findings.push(Finding {
+            subject: "the equations of motion exist at the initial state",
+            failure,
+        });
     }
     findings
 }
@@ -59,33 +70,44 @@ fn defaults_against_assumptions(model: &dyn AnyModel) -> Option<String> {
     let parameters = model.description().parameters.iter();
     let bad: Vec<String> = parameters
         .filter_map(|parameter| {
-            let value = parameter.default.filter(|&value| !parameter.assumption.holds(value))?;
-            Some(format!("`{}` is {value}, but must be {}", parameter.name, parameter.assumption))
+            let value = parameter
+                .default
+                .filter(|&value| !parameter.assumption.holds(value))?;
+            Some(format!(
+                "`{}` is {value}, but must be {}",
+                parameter.name, parameter.assumption
+            ))
         })
         .collect();
     (!bad.is_empty()).then(|| bad.join("; "))
-}
-
-fn initial_state(model: &dyn AnyModel) -> Result<Vec<f64>, CliError> {
-    let refuse = |error| CliError::state("the model's `initial`", &model.description(), error);
-    let start = model.initial();
-    let qdot = model.complete_velocity(&start.q, &start.qdot, &start.named).map_err(refuse)?;
-    model.state(0.0, &start.q, Rates::Velocities(&qdot), OffConstraint::Error).map_err(refuse)
 }
 
 /// Remarks a person should see.
 fn notes(model: &dyn AnyModel) -> Vec<String> {
     let description = model.description();
     let mut notes = Vec::new();
-    for parameter in description.parameters.iter().filter(|parameter| parameter.default.is_none()) {
-        notes.push(format!("parameter `{0}` has no default: runs need --set {0}=VALUE", parameter.name));
+    for parameter in description
+        .parameters
+        .iter()
+        .filter(|parameter| parameter.default.is_none())
+    {
+        notes.push(format!(
+            "parameter `{0}` has no default: runs need --set {0}=VALUE",
+            parameter.name
+        ));
     }
     for constraint in description.constraints {
         if constraint.affine {
-            notes.push(format!("constraint `{}` is affine in the velocities", constraint.name));
+            notes.push(format!(
+                "constraint `{}` is affine in the velocities",
+                constraint.name
+            ));
         }
         if constraint.level.is_some() {
-            notes.push(format!("constraint `{}` is integrable: it keeps a function of position", constraint.name));
+            notes.push(format!(
+                "constraint `{}` is integrable: it keeps a function of position",
+                constraint.name
+            ));
         }
     }
     if model.initial().until.is_none() {
@@ -102,14 +124,25 @@ fn write_text(
     notes: &[String],
 ) -> Result<(), CliError> {
     let description = model.description();
-    writeln!(output, "{}: {}", description.name, or_none(names::summary(&description)))?;
+    writeln!(
+        output,
+        "{}: {}",
+        description.name,
+        or_none(names::summary(&description))
+    )?;
     for (title, entries) in declarations(&description) {
         writeln!(output, "  {title:12} {}", or_none(&entries.join(", ")))?;
     }
     writeln!(output, "parameters")?;
     for parameter in description.parameters {
-        let default = parameter.default.map_or("no default".to_owned(), |value| format!("= {value}"));
-        writeln!(output, "  {} {default}, {}", parameter.name, parameter.assumption)?;
+        let default = parameter
+            .default
+            .map_or("no default".to_owned(), |value| format!("= {value}"));
+        writeln!(
+            output,
+            "  {} {default}, {}",
+            parameter.name, parameter.assumption
+        )?;
     }
     writeln!(output, "checks")?;
     for Finding { subject, failure } in findings {
@@ -131,10 +164,27 @@ fn declarations(description: &Description) -> [(&'static str, Vec<String>); 6] {
     let coordinates = description.coordinates.iter();
     let surfaces = description.surfaces.iter();
     [
-        ("coordinates", coordinates.map(|it| format!("{}{}", it.name, topology(it.topology))).collect()),
-        ("constraints", description.constraints.iter().map(|it| it.name.to_owned()).collect()),
+        (
+            "coordinates",
+            coordinates
+                .map(|it| format!("{}{}", it.name, topology(it.topology)))
+                .collect(),
+        ),
+        (
+            "constraints",
+            description
+                .constraints
+                .iter()
+                .map(|it| it.name.to_owned())
+                .collect(),
+        ),
         ("forces", owned(description.forces)),
-        ("surfaces", surfaces.map(|it| format!("{} ({})", it.name, it.law)).collect()),
+        (
+            "surfaces",
+            surfaces
+                .map(|it| format!("{} ({})", it.name, it.law))
+                .collect(),
+        ),
         ("outputs", owned(description.outputs)),
         ("scenes", owned(description.scenes)),
     ]
@@ -162,18 +212,31 @@ fn write_json(
     let mut document = Document::begin(output)?;
     document.field("model", description.name)?;
     document.field("documentation", description.documentation)?;
-    document.rows("coordinates", description.coordinates.iter().map(|it| {
-        json!({ "name": it.name, "topology": topology_json(it.topology) })
-    }))?;
+    document.rows(
+        "coordinates",
+        description
+            .coordinates
+            .iter()
+            .map(|it| json!({ "name": it.name, "topology": topology_json(it.topology) })),
+    )?;
     document.rows("parameters", description.parameters.iter().map(|it| {
         let holds = it.default.map(|value| it.assumption.holds(value));
         json!({ "name": it.name, "default": it.default, "assumption": it.assumption.to_string(), "holds": holds })
     }))?;
-    document.rows("constraints", description.constraints.iter().map(|it| {
-        json!({ "name": it.name, "affine": it.affine, "integrable": it.level.is_some() })
-    }))?;
+    document.rows(
+        "constraints",
+        description.constraints.iter().map(
+            |it| json!({ "name": it.name, "affine": it.affine, "integrable": it.level.is_some() }),
+        ),
+    )?;
     document.field("forces", description.forces.to_vec())?;
-    document.rows("surfaces", description.surfaces.iter().map(|it| json!({ "name": it.name, "law": it.law })))?;
+    document.rows(
+        "surfaces",
+        description
+            .surfaces
+            .iter()
+            .map(|it| json!({ "name": it.name, "law": it.law })),
+    )?;
     document.field("outputs", description.outputs.to_vec())?;
     document.field("scenes", description.scenes.to_vec())?;
     document.rows("checks", findings.iter().map(|finding| {

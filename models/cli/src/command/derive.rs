@@ -17,7 +17,8 @@ use crate::state_input::find_model;
 /// An unknown model, or whatever the generator says of its source.
 pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Result<Exit, CliError> {
     let entry = find_model(models, &args.model)?;
-    let report = report(entry.description().source).map_err(|error| CliError::Derive(error.to_string()))?;
+    let report =
+        report(entry.description().source).map_err(|error| CliError::Derive(error.to_string()))?;
     let text = match args.format {
         DeriveFormat::Text => text(&report),
         DeriveFormat::Latex => latex(&report),
@@ -48,12 +49,24 @@ fn text(report: &Report) -> String {
 
 /// A matrix with its columns aligned; a single row on one line.
 fn text_matrix(left: &str, rows: &[Vec<[String; 2]>]) -> String {
-    let width = |j: usize| rows.iter().map(|row| row[j][TEXT].chars().count()).max().unwrap_or(0);
+    let width = |j: usize| {
+        rows.iter()
+            .map(|row| row[j][TEXT].chars().count())
+            .max()
+            .unwrap_or(0)
+    };
     let mut out = String::new();
     for (i, row) in rows.iter().enumerate() {
-        let entries: Vec<String> =
-            row.iter().enumerate().map(|(j, entry)| format!("{:>1$}", entry[TEXT], width(j))).collect();
-        let head = if i == 0 { format!("{left} = ") } else { " ".repeat(left.chars().count() + 3) };
+        let entries: Vec<String> = row
+            .iter()
+            .enumerate()
+            .map(|(j, entry)| format!("{:>1$}", entry[TEXT], width(j)))
+            .collect();
+        let head = if i == 0 {
+            format!("{left} = ")
+        } else {
+            " ".repeat(left.chars().count() + 3)
+        };
         out += &format!("  {head}[ {} ]\n", entries.join(", "));
     }
     out
@@ -61,18 +74,34 @@ fn text_matrix(left: &str, rows: &[Vec<[String; 2]>]) -> String {
 
 /// A document that compiles as it is.
 fn latex(report: &Report) -> String {
-    let mut out = String::from("\\documentclass{article}\n\\usepackage{amsmath}\n\\begin{document}\n");
-    out += &format!("\\section*{{{}}}\n{}\n", escape(&report.name), escape(&report.documentation));
+    let mut out =
+        String::from("\\documentclass{article}\n\\usepackage{amsmath}\n\\begin{document}\n");
+    out += &format!(
+        "\\section*{{{}}}\n{}\n",
+        escape(&report.name),
+        escape(&report.documentation)
+    );
     for section in &report.sections {
         out += &format!("\n\\subsection*{{{}}}\n", escape(section.title));
         for item in &section.items {
             out += &match item {
                 Item::Words(words) => format!("\\noindent {}\\par\n", escape(words)),
-                Item::Formula { left, right } => format!("\\[ {} = {} \\]\n", left[LATEX], right[LATEX]),
+                Item::Formula { left, right } => {
+                    format!("\\[ {} = {} \\]\n", left[LATEX], right[LATEX])
+                }
                 Item::Matrix { left, rows } => {
-                    let row = |row: &Vec<[String; 2]>| row.iter().map(|e| e[LATEX].as_str()).collect::<Vec<_>>().join(" & ");
+                    let row = |row: &Vec<[String; 2]>| {
+                        row.iter()
+                            .map(|e| e[LATEX].as_str())
+                            .collect::<Vec<_>>()
+                            .join(" & ")
+                    };
                     let rows: Vec<String> = rows.iter().map(row).collect();
-                    format!("\\[ {} = \\begin{{pmatrix}} {} \\end{{pmatrix}} \\]\n", left[LATEX], rows.join(" \\\\ "))
+                    format!(
+                        "\\[ {} = \\begin{{pmatrix}} {} \\end{{pmatrix}} \\]\n",
+                        left[LATEX],
+                        rows.join(" \\\\ ")
+                    )
                 }
             };
         }
@@ -111,7 +140,10 @@ fn item_json(item: &Item) -> Value {
         Item::Words(words) => json!({ "words": words }),
         Item::Formula { left, right } => json!({ "left": both(left), "right": both(right) }),
         Item::Matrix { left, rows } => {
-            let rows: Vec<Vec<Value>> = rows.iter().map(|row| row.iter().map(both).collect()).collect();
+            let rows: Vec<Vec<Value>> = rows
+                .iter()
+                .map(|row| row.iter().map(both).collect())
+                .collect();
             json!({ "left": both(left), "rows": rows })
         }
     }

@@ -49,11 +49,20 @@ pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Resu
     let model = build_model(models, &args.model)?;
     let states = input::read(&model.description(), args.input.as_deref(), streams.input)?;
     let laws = laws(args);
-    let results: Vec<_> = states.iter().map(|state| evaluate(model.as_ref(), state, &laws)).collect();
-    let exit = if results.iter().all(Result::is_ok) { Exit::Reached } else { Exit::Other };
+    let results: Vec<_> = states
+        .iter()
+        .map(|state| evaluate(model.as_ref(), state, &laws))
+        .collect();
+    let exit = if results.iter().all(Result::is_ok) {
+        Exit::Reached
+    } else {
+        Exit::Other
+    };
 
     let description = model.description();
-    let rows = results.into_iter().map(|result| result.unwrap_or_else(|error| refusal(&description, &error)));
+    let rows = results
+        .into_iter()
+        .map(|result| result.unwrap_or_else(|error| refusal(&description, &error)));
     let mut output = BufWriter::new(&mut *streams.output);
     json::write_array(&mut output, rows)?;
     output.flush()?;
@@ -62,7 +71,12 @@ pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Resu
 
 /// The four laws without a coefficient, and those whose coefficient was given.
 fn laws(args: &EvalArgs) -> Vec<Law> {
-    let mut laws = vec![Law::Elastic, Law::NonholonomicPlastic, Law::ImpactPlastic, Law::TotallyPlastic];
+    let mut laws = vec![
+        Law::Elastic,
+        Law::NonholonomicPlastic,
+        Law::ImpactPlastic,
+        Law::TotallyPlastic,
+    ];
     laws.extend(args.restitution.map(Law::Restitution));
     laws.extend(args.newton.map(Law::Newton));
     laws
@@ -75,12 +89,20 @@ fn evaluate(model: &dyn AnyModel, given: &Given, laws: &[Law]) -> Result<Value, 
     };
     let state = model.state(given.t, &given.q, rates, OffConstraint::Keep)?;
     let mut collected = Collected::at(model, given.t, &state)?;
-    let mut row: Map<String, Value> = KEYS.iter().map(|&key| (key.to_owned(), collected.take(key))).collect();
+    let mut row: Map<String, Value> = KEYS
+        .iter()
+        .map(|&key| (key.to_owned(), collected.take(key)))
+        .collect();
     let mut impacts = Map::new();
     for (index, surface) in names::surfaces(&model.description()).enumerate() {
         let laws = evaluate_laws(model, given.t, &state, &collected, index, laws);
-        let quantity = |name: &str| collected.contact_scalar(surface, name).map_or(Value::Null, json::number);
-        let fields = json!({ "gap": quantity("gap"), "gap_rate": quantity("gap_rate"), "laws": laws });
+        let quantity = |name: &str| {
+            collected
+                .contact_scalar(surface, name)
+                .map_or(Value::Null, json::number)
+        };
+        let fields =
+            json!({ "gap": quantity("gap"), "gap_rate": quantity("gap_rate"), "laws": laws });
         impacts.insert(surface.to_owned(), fields);
     }
     row.insert("impacts".to_owned(), impacts.into());
@@ -100,10 +122,14 @@ fn evaluate_laws(
     let description = model.description();
     let fault = |fault: &Fault| refusal(&description, &StateError::Fault(*fault));
     let name = description.surfaces[surface].name;
-    let Some(contact) = collected.contact(name) else { return fault(&Fault::SingularSurface { surface }) };
+    let Some(contact) = collected.contact(name) else {
+        return fault(&Fault::SingularSurface { surface });
+    };
     let mut results = Map::new();
     for &law in laws {
-        let after = model.impact(t, state, &contact, law).and_then(|after| Collected::at(model, t, &after));
+        let after = model
+            .impact(t, state, &contact, law)
+            .and_then(|after| Collected::at(model, t, &after));
         let result = match after {
             Ok(mut after) => json!({
                 "qdot_plus": after.take("qdot"),

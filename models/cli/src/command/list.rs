@@ -24,12 +24,30 @@ pub fn run(models: &[Entry], args: &ListArgs, output: &mut dyn Write) -> Result<
 }
 
 fn write_text(models: &[Entry], output: &mut dyn Write) -> Result<(), CliError> {
-    let width = models.iter().map(|entry| entry.description().name.chars().count()).max().unwrap_or(0).max(5);
-    writeln!(output, "{:width$}  {:>3} {:>3} {:>3}", "model", "N", "M", "S")?;
+    let width = models
+        .iter()
+        .map(|entry| entry.description().name.chars().count())
+        .max()
+        .unwrap_or(0)
+        .max(5);
+    writeln!(
+        output,
+        "{:width$}  {:>3} {:>3} {:>3}",
+        "model", "N", "M", "S"
+    )?;
     for description in models.iter().map(Entry::description) {
-        let Description { name, coordinates, constraints, surfaces, .. } = description;
+        let Description {
+            name,
+            coordinates,
+            constraints,
+            surfaces,
+            ..
+        } = description;
         let (n, m, s) = (coordinates.len(), constraints.len(), surfaces.len());
-        let line = format!("{name:width$}  {n:>3} {m:>3} {s:>3}  {}", names::summary(description));
+        let line = format!(
+            "{name:width$}  {n:>3} {m:>3} {s:>3}  {}",
+            names::summary(description)
+        );
         writeln!(output, "{}", line.trim_end())?;
     }
     Ok(())

@@ -15,7 +15,7 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::plot::{self, Picture, trace::Trace};
 use crate::progress::Progress;
-use crate::record::{Grid, Recorder};
+use crate::record::{Grid, Recorder, Wanted};
 use crate::state_input::{build_model, initial_state};
 use crate::{Streams, table};
 
@@ -33,18 +33,36 @@ pub(crate) struct Finished<'a> {
 /// # Errors
 /// Bad flags, a state that is refused, a file that cannot be written. Any outcome of the run itself is not an
 /// error but an [`Exit`].
-pub fn run(models: &[Entry], args: &SimulateArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
+pub fn run(
+    models: &[Entry],
+    args: &SimulateArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
     request::check_outputs(args)?;
     let model = build_model(models, &args.model)?;
     let settings = request::settings(model.as_ref(), args)?;
     let state = initial_state(model.as_ref(), &args.state)?;
     // Opened before the run: a path that cannot be written is better known at once.
-    let [csv, json, plot] = [("--csv", &args.csv), ("--json", &args.json), ("--plot", &args.plot)]
-        .map(|(flag, path)| path.as_deref().map(|path| Sink::open(flag, path)).transpose());
+    let [csv, json, plot] = [
+        ("--csv", &args.csv),
+        ("--json", &args.json),
+        ("--plot", &args.plot),
+    ]
+    .map(|(flag, path)| {
+        path.as_deref()
+            .map(|path| Sink::open(flag, path))
+            .transpose()
+    });
     let (csv, json, plot) = (csv?, json?, plot?);
 
     let (record, ending) = carry_out(model.as_ref(), &state, &settings, args, streams.terminal)?;
-    let finished = Finished { model: model.as_ref(), scene: &args.model.scene, settings: &settings, record, ending };
+    let finished = Finished {
+        model: model.as_ref(),
+        scene: &args.model.scene,
+        settings: &settings,
+        record,
+        ending,
+    };
 
     let description = model.description();
     if let Some(sink) = json {
@@ -52,16 +70,25 @@ pub fn run(models: &[Entry], args: &SimulateArgs, streams: &mut Streams<'_>) -> 
     }
     if let Some(sink) = csv {
         let (samples, impacts) = (&finished.record.samples, &finished.record.impacts);
-        sink.write(streams, |output| table::write(output, &description, samples, impacts))?;
+        sink.write(streams, |output| {
+            table::write(output, &description, samples, impacts)
+        })?;
     }
     if let Some(sink) = plot {
-        let svg = picture(&finished).map_err(|reason| CliError::Plot { path: sink.path(), reason })?;
+        let svg = picture(&finished).map_err(|reason| CliError::Plot {
+            path: sink.path(),
+            reason,
+        })?;
         sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
     }
     if !request::uses_stdout(args) {
         summary::write(streams.output, &finished)?;
     }
-    Ok(if finished.ending.reached { Exit::Reached } else { Exit::Other })
+    Ok(if finished.ending.reached {
+        Exit::Reached
+    } else {
+        Exit::Other
+    })
 }
 
 /// Makes the run. Where the end time is not known beforehand the same run is made twice, first to find the end
@@ -74,25 +101,48 @@ fn carry_out(
     terminal: bool,
 ) -> Result<(Recorder, Ending), CliError> {
     let sampled = args.csv.is_some() || args.json.is_some();
-    let mut grid = Grid { end: settings.until, count: if sampled { args.samples } else { 0 } };
+    let progress = || Progress::new(settings.until, terminal);
+    let mut grid = Grid {
+        end: settings.until,
+        count: if sampled { args.samples } else { 0 },
+    };
     if sampled && settings.impacts.is_some() && args.until.is_none() {
-        let nothing = Grid { end: settings.until, count: 0 };
-        let mut recorder = Recorder::new(nothing, None, Progress::new(settings.until, terminal));
-        grid.end = model.simulate(state, settings, &mut recorder).map_err(CliError::Start)?.t;
+        let nothing = Wanted {
+            grid: Grid { count: 0, ..grid },
+            impacts: false,
+            trace: None,
+        };
+        let mut recorder = Recorder::new(nothing, progress());
+        grid.end = model
+            .simulate(state, settings, &mut recorder)
+            .map_err(CliError::Start)?
+            .t;
     }
     if grid.end == 0.0 {
         grid.count = grid.count.min(1);
     }
-    let trace = args.plot.is_some().then(|| Trace::new(model.description().view.is_some()));
-    let mut recorder = Recorder::new(grid, trace, Progress::new(settings.until, terminal));
-    let ending = model.simulate(state, settings, &mut recorder).map_err(CliError::Start)?;
+    let trace = args
+        .plot
+        .is_some()
+        .then(|| Trace::new(model.description().view.is_some()));
+    let wanted = Wanted {
+        grid,
+        impacts: sampled || trace.is_some(),
+        trace,
+    };
+    let mut recorder = Recorder::new(wanted, progress());
+    let ending = model
+        .simulate(state, settings, &mut recorder)
+        .map_err(CliError::Start)?;
     recorder.finish(ending.t, &ending.last);
     Ok((recorder, ending))
 }
 
 /// The run's picture as SVG.
 fn picture(finished: &Finished<'_>) -> Result<String, String> {
-    let Some(trace) = &finished.record.trace else { return Ok(String::new()) };
+    let Some(trace) = &finished.record.trace else {
+        return Ok(String::new());
+    };
     plot::draw(&Picture {
         model: finished.model,
         title: summary::title(finished),
@@ -107,7 +157,11 @@ fn picture(finished: &Finished<'_>) -> Result<String, String> {
 /// Where a file goes.
 enum Sink {
     Stdout,
-    File { flag: &'static str, path: PathBuf, file: File },
+    File {
+        flag: &'static str,
+        path: PathBuf,
+        file: File,
+    },
 }
 
 impl Sink {

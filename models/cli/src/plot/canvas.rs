@@ -57,10 +57,12 @@ pub fn sheet(
         let root = SVGBackend::with_string(&mut svg, units).into_drawing_area();
         root.fill(&WHITE).map_err(message)?;
         let (head, body) = root.split_vertically(px(TITLE_HEIGHT));
-        head.draw_text(title, &text(17.0, INK), (px(INDENT), px(10.0))).map_err(message)?;
+        head.draw_text(title, &text(17.0, INK), (px(INDENT), px(10.0)))
+            .map_err(message)?;
         let room = size.0 - 2.0 * INDENT;
         let subtitle = shortened(subtitle, room, 12.0);
-        head.draw_text(&subtitle, &text(12.0, FAINT_INK), (px(INDENT), px(33.0))).map_err(message)?;
+        head.draw_text(&subtitle, &text(12.0, FAINT_INK), (px(INDENT), px(33.0)))
+            .map_err(message)?;
         content(body)?;
         root.present().map_err(message)?;
     }

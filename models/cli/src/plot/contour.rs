@@ -18,20 +18,35 @@ pub struct Window {
 impl Window {
     /// The point at these fractions of the width and the height.
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
-        [self.x[0] + x * (self.x[1] - self.x[0]), self.y[0] + y * (self.y[1] - self.y[0])]
+        [
+            self.x[0] + x * (self.x[1] - self.x[0]),
+            self.y[0] + y * (self.y[1] - self.y[0]),
+        ]
     }
 
     /// Grown about its middle by a part of its size on each side.
     pub fn grown(&self, part: f64) -> Self {
         let [low, high] = [self.at(-part, -part), self.at(1.0 + part, 1.0 + part)];
-        Self { x: [low[0], high[0]], y: [low[1], high[1]] }
+        Self {
+            x: [low[0], high[0]],
+            y: [low[1], high[1]],
+        }
     }
 
     /// The smallest rectangle that contains the points; `None` without points.
     pub fn around(points: impl Iterator<Item = [f64; 2]>) -> Option<Self> {
         points.fold(None, |window: Option<Self>, [x, y]| {
-            let Self { x: [left, right], y: [bottom, top] } = window.unwrap_or(Self { x: [x, x], y: [y, y] });
-            Some(Self { x: [left.min(x), right.max(x)], y: [bottom.min(y), top.max(y)] })
+            let Self {
+                x: [left, right],
+                y: [bottom, top],
+            } = window.unwrap_or(Self {
+                x: [x, x],
+                y: [y, y],
+            });
+            Some(Self {
+                x: [left.min(x), right.max(x)],
+                y: [bottom.min(y), top.max(y)],
+            })
         })
     }
 }
@@ -49,7 +64,12 @@ impl Contour {
     /// Area, positive where the region is inside.
     pub fn signed_area(&self) -> f64 {
         let next = self.points.iter().cycle().skip(1);
-        0.5 * self.points.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>()
+        0.5 * self
+            .points
+            .iter()
+            .zip(next)
+            .map(|(a, b)| a[0] * b[1] - a[1] * b[0])
+            .sum::<f64>()
     }
 }
 
@@ -83,7 +103,9 @@ pub fn contours(window: Window, cells: usize, function: impl Fn([f64; 2]) -> f64
         while next != first {
             sides.push(next);
             // Each side that changes sign starts one segment and ends one, so the chain closes.
-            let Some(after) = following.remove(&next) else { break };
+            let Some(after) = following.remove(&next) else {
+                break;
+            };
             next = after;
         }
         contours.push(grid.contour(&sides));
@@ -97,11 +119,18 @@ impl Grid {
         let mut values = vec![-1.0; nodes * nodes];
         for row in 1..=cells + 1 {
             for column in 1..=cells + 1 {
-                let value = function(window.at((column - 1) as f64 / cells as f64, (row - 1) as f64 / cells as f64));
+                let value = function(window.at(
+                    (column - 1) as f64 / cells as f64,
+                    (row - 1) as f64 / cells as f64,
+                ));
                 values[row * nodes + column] = if value.is_finite() { value } else { -1.0 };
             }
         }
-        Self { window, cells, values }
+        Self {
+            window,
+            cells,
+            values,
+        }
     }
 
     fn value(&self, column: usize, row: usize) -> f64 {
@@ -110,7 +139,8 @@ impl Grid {
 
     /// The directed segments inside a square, each from a side to a side, the positive corners on its left.
     fn segments(&self, column: usize, row: usize) -> Vec<(Side, Side)> {
-        let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| self.value(column + i, row + j));
+        let corners =
+            [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| self.value(column + i, row + j));
         let positive = corners.map(|value| value > 0.0);
         let sides = [
             Side::Horizontal(column, row),
@@ -120,8 +150,12 @@ impl Grid {
         ];
         // Going around counterclockwise, side k leads from corner k to corner k + 1. A segment starts where the
         // sign turns from positive to negative and ends where it turns back.
-        let starts: Vec<usize> = (0..4).filter(|&k| positive[k] && !positive[(k + 1) % 4]).collect();
-        let ends: Vec<usize> = (0..4).filter(|&k| !positive[k] && positive[(k + 1) % 4]).collect();
+        let starts: Vec<usize> = (0..4)
+            .filter(|&k| positive[k] && !positive[(k + 1) % 4])
+            .collect();
+        let ends: Vec<usize> = (0..4)
+            .filter(|&k| !positive[k] && positive[(k + 1) % 4])
+            .collect();
         let joined = corners.iter().sum::<f64>() > 0.0;
         let end_of = |start: usize| match ends.as_slice() {
             [end] => *end,
@@ -130,14 +164,24 @@ impl Grid {
             _ if joined => (start + 1) % 4,
             _ => (start + 3) % 4,
         };
-        starts.iter().map(|&start| (sides[start], sides[end_of(start)])).collect()
+        starts
+            .iter()
+            .map(|&start| (sides[start], sides[end_of(start)]))
+            .collect()
     }
 
     fn contour(&self, sides: &[Side]) -> Contour {
         let crossings: Vec<_> = sides.iter().map(|&side| self.crossing(side)).collect();
         let next = crossings.iter().cycle().skip(1);
-        let on_frame = crossings.iter().zip(next).map(|((_, frame), (_, next))| *frame && *next).collect();
-        Contour { points: crossings.into_iter().map(|(point, _)| point).collect(), on_frame }
+        let on_frame = crossings
+            .iter()
+            .zip(next)
+            .map(|((_, frame), (_, next))| *frame && *next)
+            .collect();
+        Contour {
+            points: crossings.into_iter().map(|(point, _)| point).collect(),
+            on_frame,
+        }
     }
 
     /// Where the function vanishes on a side, by linear interpolation, and whether that is the rectangle's rim.
@@ -147,7 +191,9 @@ impl Grid {
             Side::Vertical(column, row) => ((column, row), (0, 1)),
         };
         let outer = |column: usize, row: usize| {
-            [column, row].into_iter().any(|index| index == 0 || index == self.cells + 2)
+            [column, row]
+                .into_iter()
+                .any(|index| index == 0 || index == self.cells + 2)
         };
         let (first, second) = (self.value(column, row), self.value(column + i, row + j));
         let fraction = match (outer(column, row), outer(column + i, row + j)) {
@@ -155,9 +201,14 @@ impl Grid {
             (_, true) => 0.0,
             _ => first / (first - second),
         };
-        let coordinate = |index: usize, step: usize| (index as f64 + step as f64 * fraction - 1.0) / self.cells as f64;
+        let coordinate = |index: usize, step: usize| {
+            (index as f64 + step as f64 * fraction - 1.0) / self.cells as f64
+        };
         let frame = outer(column, row) || outer(column + i, row + j);
-        (self.window.at(coordinate(column, i), coordinate(row, j)), frame)
+        (
+            self.window.at(coordinate(column, i), coordinate(row, j)),
+            frame,
+        )
     }
 }
 
@@ -165,7 +216,10 @@ impl Grid {
 mod tests {
     use super::*;
 
-    const SQUARE: Window = Window { x: [-1.0, 1.0], y: [-1.0, 1.0] };
+    const SQUARE: Window = Window {
+        x: [-1.0, 1.0],
+        y: [-1.0, 1.0],
+    };
 
     #[test]
     fn a_disk_is_one_counterclockwise_contour() {
@@ -177,12 +231,17 @@ mod tests {
 
     #[test]
     fn a_hole_is_clockwise() {
-        let mut areas: Vec<f64> = contours(SQUARE, 64, |[x, y]| (0.8 - x * x - y * y) * (x * x + y * y - 0.2))
-            .iter()
-            .map(Contour::signed_area)
-            .collect();
+        let mut areas: Vec<f64> = contours(SQUARE, 64, |[x, y]| {
+            (0.8 - x * x - y * y) * (x * x + y * y - 0.2)
+        })
+        .iter()
+        .map(Contour::signed_area)
+        .collect();
         areas.sort_by(f64::total_cmp);
-        assert!(areas.len() == 2 && areas[0] < 0.0 && areas[1] > 0.0, "{areas:?}");
+        assert!(
+            areas.len() == 2 && areas[0] < 0.0 && areas[1] > 0.0,
+            "{areas:?}"
+        );
     }
 
     #[test]
@@ -196,7 +255,10 @@ mod tests {
 
     #[test]
     fn saddles_and_undefined_values_still_close() {
-        for function in [|[x, y]: [f64; 2]| x * y, |[x, y]: [f64; 2]| (x * y).sqrt() - 0.1] {
+        for function in [
+            |[x, y]: [f64; 2]| x * y,
+            |[x, y]: [f64; 2]| (x * y).sqrt() - 0.1,
+        ] {
             for contour in contours(SQUARE, 17, function) {
                 assert!(contour.points.len() >= 3);
                 assert_eq!(contour.points.len(), contour.on_frame.len());

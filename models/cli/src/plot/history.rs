@@ -37,10 +37,15 @@ struct Panel {
 impl Panel {
     fn new(names: Vec<String>, offset: usize, impacts: &[Item]) -> Self {
         let curves = names.iter().enumerate();
-        let mut legend: Vec<Item> =
-            curves.map(|(index, name)| Item::new(Symbol::Line, style::curve(index), name.as_str())).collect();
+        let mut legend: Vec<Item> = curves
+            .map(|(index, name)| Item::new(Symbol::Line, style::curve(index), name.as_str()))
+            .collect();
         legend.extend_from_slice(impacts);
-        Self { names, offset, legend }
+        Self {
+            names,
+            offset,
+            legend,
+        }
     }
 
     fn height(&self) -> f64 {
@@ -68,8 +73,14 @@ pub fn draw(picture: &Picture<'_>) -> Result<String, String> {
 
 fn panels(picture: &Picture<'_>) -> Vec<Panel> {
     let description = picture.model.description();
-    let coordinates: Vec<String> = names::coordinates(&description).map(str::to_owned).collect();
-    let outputs: Vec<String> = description.outputs.iter().map(|&name| name.to_owned()).collect();
+    let coordinates: Vec<String> = names::coordinates(&description)
+        .map(str::to_owned)
+        .collect();
+    let outputs: Vec<String> = description
+        .outputs
+        .iter()
+        .map(|&name| name.to_owned())
+        .collect();
     let n = coordinates.len();
     let mut panels = vec![Panel::new(coordinates, 0, &impact_items(picture))];
     if !outputs.is_empty() {
@@ -81,12 +92,24 @@ fn panels(picture: &Picture<'_>) -> Vec<Panel> {
 fn impact_items(picture: &Picture<'_>) -> Vec<Item> {
     let surfaces = picture.model.description().surfaces.iter().enumerate();
     let counted = surfaces.map(|(index, surface)| {
-        (index, surface, picture.impacts.iter().filter(|impact| impact.surface == index).count())
+        (
+            index,
+            surface,
+            picture
+                .impacts
+                .iter()
+                .filter(|impact| impact.surface == index)
+                .count(),
+        )
     });
     counted
         .filter(|(_, _, count)| *count > 0)
         .map(|(index, surface, count)| {
-            Item::new(Symbol::Tick, style::surface(index), format!("impact: {} ({count})", surface.name))
+            Item::new(
+                Symbol::Tick,
+                style::surface(index),
+                format!("impact: {} ({count})", surface.name),
+            )
         })
         .collect()
 }
@@ -96,9 +119,15 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
     legend::draw(&strip, &panel.legend, WIDTH)?;
     let marks = picture.trace.points();
     let curves = panel.offset..panel.offset + panel.names.len();
-    let values = marks.iter().flat_map(|mark| mark.values[curves.clone()].iter().copied());
+    let values = marks
+        .iter()
+        .flat_map(|mark| mark.values[curves.clone()].iter().copied());
     let y = Axis::new(style::padded(values, 0.06), 6);
-    let end = if picture.last.0 > 0.0 { picture.last.0 } else { 1.0 };
+    let end = if picture.last.0 > 0.0 {
+        picture.last.0
+    } else {
+        1.0
+    };
     let t = Axis::new([0.0, end], 10);
 
     let mut chart = ChartBuilder::on(&plot)
@@ -124,9 +153,14 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
         .axis_desc_style(text(13.0, style::INK))
         .draw()
         .map_err(message)?;
-    chart.draw_series(impact_lines(picture, y.range)).map_err(message)?;
+    chart
+        .draw_series(impact_lines(picture, y.range))
+        .map_err(message)?;
     for (index, curve) in curves.enumerate() {
-        let points: Vec<(f64, f64)> = marks.iter().map(|mark| (mark.t, mark.values[curve])).collect();
+        let points: Vec<(f64, f64)> = marks
+            .iter()
+            .map(|mark| (mark.t, mark.values[curve]))
+            .collect();
         let line = PathElement::new(points, style::curve(index).stroke_width(stroke(1.4)));
         chart.draw_series([line]).map_err(message)?;
     }
@@ -134,11 +168,21 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
 }
 
 /// Impacts as lines behind the curves; where they are many, as marks along the lower edge.
-fn impact_lines(picture: &Picture<'_>, range: [f64; 2]) -> impl Iterator<Item = PathElement<(f64, f64)>> {
+fn impact_lines(
+    picture: &Picture<'_>,
+    range: [f64; 2],
+) -> impl Iterator<Item = PathElement<(f64, f64)>> {
     let few = picture.impacts.len() <= FEW_IMPACTS;
-    let top = if few { range[1] } else { range[0] + 0.04 * (range[1] - range[0]) };
+    let top = if few {
+        range[1]
+    } else {
+        range[0] + 0.04 * (range[1] - range[0])
+    };
     picture.impacts.iter().map(move |impact| {
         let colour = style::surface(impact.surface).mix(if few { 0.45 } else { 0.8 });
-        PathElement::new(vec![(impact.t, range[0]), (impact.t, top)], colour.stroke_width(stroke(0.8)))
+        PathElement::new(
+            vec![(impact.t, range[0]), (impact.t, top)],
+            colour.stroke_width(stroke(0.8)),
+        )
     })
 }

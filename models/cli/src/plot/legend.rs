@@ -47,7 +47,11 @@ pub struct Item {
 impl Item {
     /// An entry.
     pub fn new(symbol: Symbol, colour: RGBColor, label: impl Into<String>) -> Self {
-        Self { symbol, colour, label: label.into() }
+        Self {
+            symbol,
+            colour,
+            label: label.into(),
+        }
     }
 }
 
@@ -56,7 +60,9 @@ type Placed<'a> = (f64, usize, &'a Item);
 
 /// Height in pixels of the legend at this width.
 pub fn height(items: &[Item], width: f64) -> f64 {
-    place(items, width).last().map_or(0.0, |(_, line, _)| LINE * (line + 1) as f64)
+    place(items, width)
+        .last()
+        .map_or(0.0, |(_, line, _)| LINE * (line + 1) as f64)
 }
 
 /// Draws the legend at the top of an area.
@@ -69,7 +75,8 @@ pub fn draw(area: &Area<'_>, items: &[Item], width: f64) -> Result<(), String> {
         symbol(area, item, left, middle)?;
         let label = shortened(&item.label, width - 2.0 * INDENT - SYMBOL, SIZE);
         let corner = (px(left + SYMBOL), px(middle - 0.42 * SIZE));
-        area.draw_text(&label, &text(SIZE, INK), corner).map_err(message)?;
+        area.draw_text(&label, &text(SIZE, INK), corner)
+            .map_err(message)?;
     }
     Ok(())
 }
@@ -91,14 +98,24 @@ fn place(items: &[Item], width: f64) -> Vec<Placed<'_>> {
 fn symbol(area: &Area<'_>, item: &Item, left: f64, middle: f64) -> Result<(), String> {
     let at = |x: f64, y: f64| (px(left + x), px(middle + y));
     let line = |points: Vec<(i32, i32)>, width: f64| {
-        area.draw(&PathElement::new(points, item.colour.stroke_width(stroke(width))))
+        area.draw(&PathElement::new(
+            points,
+            item.colour.stroke_width(stroke(width)),
+        ))
     };
     match item.symbol {
         Symbol::Line => line(vec![at(0.0, 0.0), at(18.0, 0.0)], 2.0),
         Symbol::Tick => line(vec![at(9.0, -7.0), at(9.0, 7.0)], 1.2),
         Symbol::Dot => area.draw(&Circle::new(at(9.0, 0.0), px(3.5), item.colour.filled())),
-        Symbol::Ring => area.draw(&Circle::new(at(9.0, 0.0), px(4.5), item.colour.stroke_width(stroke(1.6)))),
-        Symbol::Square => area.draw(&Rectangle::new([at(5.0, -4.0), at(13.0, 4.0)], item.colour.filled())),
+        Symbol::Ring => area.draw(&Circle::new(
+            at(9.0, 0.0),
+            px(4.5),
+            item.colour.stroke_width(stroke(1.6)),
+        )),
+        Symbol::Square => area.draw(&Rectangle::new(
+            [at(5.0, -4.0), at(13.0, 4.0)],
+            item.colour.filled(),
+        )),
     }
     .map_err(message)
 }
@@ -109,7 +126,9 @@ mod tests {
 
     #[test]
     fn entries_wrap_and_stay_inside() {
-        let items: Vec<Item> = (0..20).map(|i| Item::new(Symbol::Line, INK, format!("coordinate.{i}"))).collect();
+        let items: Vec<Item> = (0..20)
+            .map(|i| Item::new(Symbol::Line, INK, format!("coordinate.{i}")))
+            .collect();
         let placed = place(&items, 400.0);
         assert!(placed.iter().all(|(left, _, _)| *left < 300.0));
         assert_eq!(height(&items, 400.0), LINE * (placed[19].1 + 1) as f64);

@@ -31,11 +31,24 @@ pub struct Picture<'a> {
     pub last: (f64, &'a Point),
 }
 
+/// Greatest value that is drawn; the drawing library computes ranges and ticks in the same `f64`.
+const LARGEST: f64 = 1e200;
+
 /// Draws the picture.
 ///
 /// # Errors
-/// What the drawing library says.
+/// What the drawing library says, or that there are values too large to draw.
 pub fn draw(picture: &Picture<'_>) -> Result<String, String> {
+    let mut values = picture
+        .trace
+        .points()
+        .iter()
+        .flat_map(|mark| mark.values.iter().chain([&mark.t]));
+    if values.any(|value| value.abs() > LARGEST) {
+        return Err(format!(
+            "the run has values beyond {LARGEST:e}, which cannot be drawn"
+        ));
+    }
     match picture.model.description().view {
         Some(view) => portrait::draw(picture, &view),
         None => history::draw(picture),

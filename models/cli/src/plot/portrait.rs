@@ -36,10 +36,17 @@ type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64
 /// # Errors
 /// What the drawing library says.
 pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
-    let points: Vec<[f64; 2]> = picture.trace.points().iter().map(|mark| [mark.values[0], mark.values[1]]).collect();
+    let points: Vec<[f64; 2]> = picture
+        .trace
+        .points()
+        .iter()
+        .map(|mark| [mark.values[0], mark.values[1]])
+        .collect();
     let path = extent(&points);
     let region = Region::of(picture, path);
-    let window = region.as_ref().map_or(path.grown(0.06), |region| region.window(path));
+    let window = region
+        .as_ref()
+        .map_or(path.grown(0.06), |region| region.window(path));
     let (window, plot) = equal_scales(window);
     let boundary = region.map_or_else(Vec::new, |region| region.contours(window));
 
@@ -63,8 +70,14 @@ fn extent(points: &[[f64; 2]]) -> Window {
     // A straight path along an axis takes the other side's length, so that it is not magnified into noise.
     let side = |range: [f64; 2]| range[1] - range[0];
     match tight.map(|tight| (side(tight.x), side(tight.y))) {
-        Some((w, h)) if w > 0.0 && h < 1e-6 * w => Window { x, y: around(y, 0.25 * w) },
-        Some((w, h)) if h > 0.0 && w < 1e-6 * h => Window { x: around(x, 0.25 * h), y },
+        Some((w, h)) if w > 0.0 && h < 1e-6 * w => Window {
+            x,
+            y: around(y, 0.25 * w),
+        },
+        Some((w, h)) if h > 0.0 && w < 1e-6 * h => Window {
+            x: around(x, 0.25 * h),
+            y,
+        },
         _ => Window { x, y },
     }
 }
@@ -78,7 +91,9 @@ fn around(range: [f64; 2], half: f64) -> [f64; 2] {
 fn equal_scales(window: Window) -> (Window, (f64, f64)) {
     let (width, height) = (window.x[1] - window.x[0], window.y[1] - window.y[0]);
     let plot_width = WIDTH - EDGE - LEFT - RIGHT;
-    let plot_height = (plot_width * height / width).clamp(HEIGHT[0], HEIGHT[1]).round();
+    let plot_height = (plot_width * height / width)
+        .clamp(HEIGHT[0], HEIGHT[1])
+        .round();
     let scale = (plot_width / width).min(plot_height / height);
     let x = around(window.x, 0.5 * plot_width / scale);
     let y = around(window.y, 0.5 * plot_height / scale);
@@ -93,9 +108,17 @@ fn legend_items(picture: &Picture<'_>) -> Vec<Item> {
     ];
     let surfaces = picture.model.description().surfaces;
     for (index, surface) in surfaces.iter().enumerate() {
-        let count = picture.impacts.iter().filter(|impact| impact.surface == index).count();
+        let count = picture
+            .impacts
+            .iter()
+            .filter(|impact| impact.surface == index)
+            .count();
         if count > 0 {
-            items.push(Item::new(Symbol::Dot, style::surface(index), format!("{} ({count})", surface.name)));
+            items.push(Item::new(
+                Symbol::Dot,
+                style::surface(index),
+                format!("{} ({count})", surface.name),
+            ));
         }
     }
     items
@@ -145,11 +168,18 @@ fn axes<'a, 'b>(
 
 /// Fills the contours from the largest to the smallest: what lies inside one is painted over it.
 fn fill_region(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<(), String> {
-    let mut sorted: Vec<_> = boundary.iter().map(|contour| (contour.signed_area(), contour)).collect();
+    let mut sorted: Vec<_> = boundary
+        .iter()
+        .map(|contour| (contour.signed_area(), contour))
+        .collect();
     sorted.sort_by(|(first, _), (second, _)| second.abs().total_cmp(&first.abs()));
     let polygons = sorted.into_iter().map(|(area, contour)| {
         let colour = if area > 0.0 { style::REGION } else { WHITE };
-        let points: Vec<(f64, f64)> = contour.points.iter().map(|point| (point[0], point[1])).collect();
+        let points: Vec<(f64, f64)> = contour
+            .points
+            .iter()
+            .map(|point| (point[0], point[1]))
+            .collect();
         Polygon::new(points, colour.filled())
     });
     chart.draw_series(polygons).map_err(message).map(drop)
@@ -163,7 +193,9 @@ fn draw_boundary(chart: &mut Chart<'_, '_>, contour: &Contour) -> Result<(), Str
     };
     // Begin after a side on the frame, so that no stroke is cut in two.
     let count = contour.points.len();
-    let begin = (0..count).find(|&index| contour.on_frame[index]).map_or(0, |index| index + 1);
+    let begin = (0..count)
+        .find(|&index| contour.on_frame[index])
+        .map_or(0, |index| index + 1);
     let mut strokes = vec![vec![corner(begin)]];
     for index in begin..begin + count {
         if contour.on_frame[index % count] {
@@ -173,32 +205,57 @@ fn draw_boundary(chart: &mut Chart<'_, '_>, contour: &Contour) -> Result<(), Str
         }
     }
     let style = style::BOUNDARY.stroke_width(stroke(1.6));
-    let elements = strokes.into_iter().filter(|stroke| stroke.len() > 1).map(|points| PathElement::new(points, style));
+    let elements = strokes
+        .into_iter()
+        .filter(|stroke| stroke.len() > 1)
+        .map(|points| PathElement::new(points, style));
     chart.draw_series(elements).map_err(message).map(drop)
 }
 
 fn draw_path(chart: &mut Chart<'_, '_>, points: &[[f64; 2]], scale: f64) -> Result<(), String> {
     let mut kept: Vec<(f64, f64)> = Vec::new();
     for &[x, y] in points {
-        let far = kept.last().is_none_or(|last| (x - last.0).hypot(y - last.1) * scale >= NEAR);
+        let far = kept
+            .last()
+            .is_none_or(|last| (x - last.0).hypot(y - last.1) * scale >= NEAR);
         if far {
             kept.push((x, y));
         }
     }
     let style = style::PATH.stroke_width(stroke(1.2));
-    chart.draw_series([PathElement::new(kept, style)]).map_err(message).map(drop)
+    chart
+        .draw_series([PathElement::new(kept, style)])
+        .map_err(message)
+        .map(drop)
 }
 
-fn draw_marks(chart: &mut Chart<'_, '_>, picture: &Picture<'_>, points: &[[f64; 2]]) -> Result<(), String> {
-    let impacts = picture.impacts.iter().filter_map(|impact| impact.after.view.map(|at| (impact.surface, at)));
+fn draw_marks(
+    chart: &mut Chart<'_, '_>,
+    picture: &Picture<'_>,
+    points: &[[f64; 2]],
+) -> Result<(), String> {
+    let impacts = picture
+        .impacts
+        .iter()
+        .filter_map(|impact| impact.after.view.map(|at| (impact.surface, at)));
     let dots = impacts
         .filter(|(_, at)| at.iter().all(|value| value.is_finite()))
-        .map(|(surface, at)| Circle::new((at[0], at[1]), px(2.8), style::surface(surface).filled()));
+        .map(|(surface, at)| {
+            Circle::new((at[0], at[1]), px(2.8), style::surface(surface).filled())
+        });
     chart.draw_series(dots).map_err(message)?;
-    let (Some(first), Some(last)) = (points.first(), points.last()) else { return Ok(()) };
-    let ring = Circle::new((first[0], first[1]), px(4.5), style::INK.stroke_width(stroke(1.6)));
+    let (Some(first), Some(last)) = (points.first(), points.last()) else {
+        return Ok(());
+    };
+    let ring = Circle::new(
+        (first[0], first[1]),
+        px(4.5),
+        style::INK.stroke_width(stroke(1.6)),
+    );
     chart.draw_series([ring]).map_err(message)?;
-    let square = |colour: RGBColor| Rectangle::new([(px(-3.5), px(-3.5)), (px(3.5), px(3.5))], colour.filled());
+    let square = |colour: RGBColor| {
+        Rectangle::new([(px(-3.5), px(-3.5)), (px(3.5), px(3.5))], colour.filled())
+    };
     let end = EmptyElement::at((last[0], last[1])) + square(style::INK);
     chart.draw_series([end]).map_err(message).map(drop)
 }

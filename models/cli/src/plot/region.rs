@@ -26,7 +26,10 @@ impl<'a> Region<'a> {
     /// throughout the run.
     pub fn of(picture: &'a Picture<'a>, path: Window) -> Option<Self> {
         let view = picture.model.description().view?;
-        let region = Self { picture, plane: view.plane.filter(|_| view.region)? };
+        let region = Self {
+            picture,
+            plane: view.plane.filter(|_| view.region)?,
+        };
         region.stands_still(path).then_some(region)
     }
 
@@ -42,9 +45,14 @@ impl<'a> Region<'a> {
             let inside = |&(x, y): &(usize, usize)| self.value(node(window, x, y)) > 0.0;
             let all = (0..=COARSE).flat_map(|x| (0..=COARSE).map(move |y| (x, y)));
             let positive: Vec<_> = all.filter(inside).collect();
-            if !positive.iter().any(|&(x, y)| [x, y].iter().any(|&index| index == 0 || index == COARSE)) {
+            if !positive
+                .iter()
+                .any(|&(x, y)| [x, y].iter().any(|&index| index == 0 || index == COARSE))
+            {
                 // One square of room covers what the grid has missed.
-                let corners = positive.iter().flat_map(|&(x, y)| [node(window, x, y), path.at(0.0, 0.0), path.at(1.0, 1.0)]);
+                let corners = positive
+                    .iter()
+                    .flat_map(|&(x, y)| [node(window, x, y), path.at(0.0, 0.0), path.at(1.0, 1.0)]);
                 return Window::around(corners).unwrap_or(path).grown(ROOM);
             }
             window = window.grown(0.5);
@@ -68,14 +76,17 @@ impl<'a> Region<'a> {
     /// between, with the other coordinates as they are at both ends.
     fn stands_still(&self, path: Window) -> bool {
         let (end, last) = self.picture.last;
-        let points = [(0.1, 0.3), (0.5, 0.5), (0.8, 0.6), (0.3, 0.9)].map(|(x, y)| path.grown(0.2).at(x, y));
+        let points =
+            [(0.1, 0.3), (0.5, 0.5), (0.8, 0.6), (0.3, 0.9)].map(|(x, y)| path.grown(0.2).at(x, y));
         let same = |t: f64, q: &[f64], point: [f64; 2]| {
             let (now, then) = (self.value(point), self.value_at(t, q, point));
             now == then || (now.is_nan() && then.is_nan())
         };
         let first = &self.picture.first.q;
         points.into_iter().all(|point| {
-            same(end, &last.q, point) && same(0.37 * end, first, point) && same(0.61 * end, &last.q, point)
+            same(end, &last.q, point)
+                && same(0.37 * end, first, point)
+                && same(0.61 * end, &last.q, point)
         })
     }
 }

@@ -31,9 +31,12 @@ pub const REGION: RGBColor = RGBColor(240, 244, 249);
 /// The region's boundary.
 pub const BOUNDARY: RGBColor = RGBColor(110, 120, 132);
 
-/// The colour of a curve by its index.
-pub const fn curve(index: usize) -> RGBColor {
-    PALETTE[index % PALETTE.len()]
+/// The colour of a curve by its index; after the palette's last comes its first again, lighter.
+pub fn curve(index: usize) -> RGBColor {
+    let RGBColor(r, g, b) = PALETTE[index % PALETTE.len()];
+    let times = index / PALETTE.len() % 3;
+    let lighter = |part: u8| (0..times).fold(part, |part, _| part + (255 - part) / 2);
+    RGBColor(lighter(r), lighter(g), lighter(b))
 }
 
 /// The colour of a surface's impacts by its index; the first colour is the path's own.
@@ -58,9 +61,16 @@ impl Axis {
         let length = range[1] - range[0];
         let raw = length / target.max(1) as f64;
         let decade = 10f64.powi(raw.log10().floor() as i32);
-        let step = [1.0, 2.0, 5.0].map(|digit| digit * decade).into_iter().find(|&step| step >= raw);
+        let step = [1.0, 2.0, 5.0]
+            .map(|digit| digit * decade)
+            .into_iter()
+            .find(|&step| step >= raw);
         let step = step.unwrap_or(10.0 * decade);
-        Self { range, labels: (length / step) as usize + 1, step }
+        Self {
+            range,
+            labels: (length / step) as usize + 1,
+            step,
+        }
     }
 
     /// The label of a value: as many decimals as the step needs, or an exponent where there would be many.
@@ -68,26 +78,43 @@ impl Axis {
         let largest = self.range[0].abs().max(self.range[1].abs());
         let decimals = (-self.step.log10()).ceil().max(0.0) as usize;
         // A tick at zero comes out of the arithmetic as a tiny number.
-        let value = if value.abs() < 1e-9 * largest { 0.0 } else { value };
-        if decimals <= 5 && largest < 1e6 { format!("{value:.decimals$}") } else { shortest_exponent(value) }
+        let value = if value.abs() < 1e-9 * largest {
+            0.0
+        } else {
+            value
+        };
+        if decimals <= 5 && largest < 1e6 {
+            format!("{value:.decimals$}")
+        } else {
+            shortest_exponent(value)
+        }
     }
 }
 
 /// `2.5e-7`: at most five significant digits.
 fn shortest_exponent(value: f64) -> String {
     let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    if rounded == 0.0 { "0".to_owned() } else { format!("{rounded:e}") }
+    if rounded == 0.0 {
+        "0".to_owned()
+    } else {
+        format!("{rounded:e}")
+    }
 }
 
 /// A range that contains the values with some room; one unit about a constant.
 pub fn padded(values: impl Iterator<Item = f64>, room: f64) -> [f64; 2] {
-    let (low, high) =
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
     let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
-    let middle = 0.5 * (low + high);
-    // Below this the range is rounding error of a constant.
-    let half = 0.5 * (high - low);
-    let half = if half > 1e-12 * middle.abs() && half > f64::MIN_POSITIVE { half * (1.0 + 2.0 * room) } else { 0.5 * middle.abs().max(1.0) };
+    let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
+    // Below this the range is rounding error of a constant, or too small to place ticks in.
+    let is_constant = half <= 1e-12 * middle.abs() || half < 1e-200;
+    let half = if is_constant {
+        0.5 * middle.abs().max(1.0)
+    } else {
+        half * (1.0 + 2.0 * room)
+    };
     [middle - half, middle + half]
 }
 
@@ -105,9 +132,18 @@ mod tests {
 
     #[test]
     fn ranges_are_never_empty() {
-        for values in [vec![], vec![0.0], vec![3.0, 3.0], vec![1e300, -1e300], vec![5e-324, 0.0]] {
+        for values in [
+            vec![],
+            vec![0.0],
+            vec![3.0, 3.0],
+            vec![1e300, -1e300],
+            vec![5e-324, 0.0],
+        ] {
             let [low, high] = padded(values.iter().copied(), 0.05);
-            assert!(low < high && low.is_finite() && high.is_finite(), "{values:?}");
+            assert!(
+                low < high && low.is_finite() && high.is_finite(),
+                "{values:?}"
+            );
         }
     }
 }

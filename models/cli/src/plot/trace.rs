@@ -47,8 +47,16 @@ pub struct Mark {
 impl Trace {
     /// An empty curve: of the declared view, or else of all coordinates and outputs.
     pub fn new(view: bool) -> Self {
-        let source = if view { Source::View } else { Source::Coordinates };
-        Self { source, points: Vec::new(), extent: Vec::new() }
+        let source = if view {
+            Source::View
+        } else {
+            Source::Coordinates
+        };
+        Self {
+            source,
+            points: Vec::new(),
+            extent: Vec::new(),
+        }
     }
 
     /// The points in order of time; none has an infinite or undefined value.
@@ -63,7 +71,9 @@ impl Trace {
         let intervals = if many { 1 } else { INTERVALS };
         let depth = if many { 0 } else { DEPTH };
         let time = |index: usize| start + (end - start) * (index as f64 / intervals as f64);
-        let marks: Vec<Mark> = (0..=intervals).map(|index| self.mark(time(index), &piece.at(time(index)))).collect();
+        let marks: Vec<Mark> = (0..=intervals)
+            .map(|index| self.mark(time(index), &piece.at(time(index))))
+            .collect();
         // The extent of the whole step first, so that a first small piece is not taken for the whole picture.
         marks.iter().for_each(|mark| self.widen(mark));
         for pair in marks.windows(2) {
@@ -78,7 +88,10 @@ impl Trace {
 
     /// Adds one side of an impact, or an end of the run.
     pub fn corner(&mut self, t: f64, point: &Point) {
-        let mark = Mark { corner: true, ..self.mark(t, point) };
+        let mark = Mark {
+            corner: true,
+            ..self.mark(t, point)
+        };
         self.widen(&mark);
         self.push(mark);
     }
@@ -88,7 +101,11 @@ impl Trace {
             Source::View => point.view.map_or_else(Vec::new, |view| view.to_vec()),
             Source::Coordinates => point.q.iter().chain(&point.outputs).copied().collect(),
         };
-        Mark { t, values, corner: false }
+        Mark {
+            t,
+            values,
+            corner: false,
+        }
     }
 
     /// Adds what lies between two points, without them.
@@ -109,17 +126,25 @@ impl Trace {
 
     fn is_flat(&self, left: &Mark, middle: &Mark, right: &Mark) -> bool {
         let ends = left.values.iter().zip(&right.values);
-        ends.zip(&middle.values).zip(&self.extent).all(|(((left, right), middle), [low, high])| {
-            // Written so that an undefined value counts as flat: subdividing does not define it.
-            let deviation = (middle - 0.5 * (left + right)).abs();
-            let bent = deviation > FLATNESS * (high - low);
-            !bent
-        })
+        ends.zip(&middle.values)
+            .zip(&self.extent)
+            .all(|(((left, right), middle), [low, high])| {
+                // Written so that an undefined value counts as flat: subdividing does not define it.
+                let deviation = (middle - 0.5 * (left + right)).abs();
+                let bent = deviation > FLATNESS * (high - low);
+                !bent
+            })
     }
 
     fn widen(&mut self, mark: &Mark) {
-        self.extent.resize(mark.values.len(), [f64::INFINITY, f64::NEG_INFINITY]);
-        for (extent, &value) in self.extent.iter_mut().zip(&mark.values).filter(|(_, value)| value.is_finite()) {
+        self.extent
+            .resize(mark.values.len(), [f64::INFINITY, f64::NEG_INFINITY]);
+        for (extent, &value) in self
+            .extent
+            .iter_mut()
+            .zip(&mark.values)
+            .filter(|(_, value)| value.is_finite())
+        {
             *extent = [extent[0].min(value), extent[1].max(value)];
         }
     }

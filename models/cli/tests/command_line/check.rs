@@ -13,7 +13,12 @@ fn sound_declarations_pass() {
 fn a_parameter_without_default_is_noted() {
     let checked = run("check oscillator --format json").json();
     assert_eq!(checked["parameters"][0]["default"], Value::Null);
-    assert!(checked["notes"][0].as_str().unwrap().contains("`k` has no default"));
+    assert!(
+        checked["notes"][0]
+            .as_str()
+            .unwrap()
+            .contains("`k` has no default")
+    );
     assert_eq!(checked["claims"]["checked"], false);
 }
 
@@ -22,5 +27,11 @@ fn json_lists_constraints_and_charts() {
     let checked = run("check bead --format json").json();
     assert_eq!(checked["constraints"][0]["integrable"], true);
     assert_eq!(numbers(&checked["coordinates"][1]["topology"]), [-1.0, 1.0]);
-    assert!(checked["checks"].as_array().unwrap().iter().all(|check| check["passed"] == true));
+    assert!(
+        checked["checks"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|check| check["passed"] == true)
+    );
 }

@@ -2,7 +2,10 @@ use super::*;
 
 #[test]
 fn a_state_gives_everything_in_order() {
-    let done = run_on(r#"[{"q": [2], "qdot": ["-3.0"], "t": 0}]"#, &["eval", "bouncing_ball", "--set", "m=2"]);
+    let done = run_on(
+        r#"[{"q": [2], "qdot": ["-3.0"], "t": 0}]"#,
+        &["eval", "bouncing_ball", "--set", "m=2"],
+    );
     assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
     let row = &done.json()[0];
     let keys: Vec<&String> = row.as_object().unwrap().keys().collect();
@@ -41,10 +44,20 @@ fn momenta_are_velocities_times_the_metric() {
 
 #[test]
 fn the_laws_of_a_surface() {
-    let words = ["eval", "bouncing_ball", "--restitution", "0.5", "--newton", "0.25"];
+    let words = [
+        "eval",
+        "bouncing_ball",
+        "--restitution",
+        "0.5",
+        "--newton",
+        "0.25",
+    ];
     let done = run_on(r#"[{"q": [0], "qdot": [-4]}]"#, &words);
     let floor = &done.json()[0]["impacts"]["floor"];
-    assert_eq!((&floor["gap"], &floor["gap_rate"]), (&0.0.into(), &(-4.0).into()));
+    assert_eq!(
+        (&floor["gap"], &floor["gap_rate"]),
+        (&0.0.into(), &(-4.0).into())
+    );
     let after = [
         ("elastic", 4.0),
         ("nonholonomic_plastic", 4.0),
@@ -71,7 +84,12 @@ fn a_fault_is_reported_in_its_place_and_the_others_are_evaluated() {
     assert_eq!(done.exit, Exit::Other);
     let rows = done.json();
     assert_eq!(rows[0]["error"]["kind"], "metric_not_positive");
-    assert!(rows[0]["error"]["message"].as_str().unwrap().contains("`x.2`"));
+    assert!(
+        rows[0]["error"]["message"]
+            .as_str()
+            .unwrap()
+            .contains("`x.2`")
+    );
     assert_eq!(rows[1]["energy"], 1.0);
 }
 
@@ -93,9 +111,13 @@ fn no_states_give_no_rows() {
 
 #[test]
 fn states_may_come_from_a_file() {
-    let path = std::env::temp_dir().join(format!("dalembert-cli-states-{}.json", std::process::id()));
+    let path =
+        std::env::temp_dir().join(format!("dalembert-cli-states-{}.json", std::process::id()));
     std::fs::write(&path, r#"[{"q": ["1"], "qdot": [0]}]"#).unwrap();
-    let done = run_on("", &["eval", "bouncing_ball", "--input", path.to_str().unwrap()]);
+    let done = run_on(
+        "",
+        &["eval", "bouncing_ball", "--input", path.to_str().unwrap()],
+    );
     std::fs::remove_file(&path).unwrap();
     assert_eq!(done.json()[0]["energy"], 1.0);
 }

@@ -16,7 +16,10 @@ fn check(cases: &[(&str, &[&str])]) {
     for (line, parts) in cases {
         let message = refused(&line.split_whitespace().collect::<Vec<_>>());
         for part in *parts {
-            assert!(message.contains(part), "`{line}` gave `{message}`, without `{part}`");
+            assert!(
+                message.contains(part),
+                "`{line}` gave `{message}`, without `{part}`"
+            );
         }
     }
 }
@@ -24,16 +27,37 @@ fn check(cases: &[(&str, &[&str])]) {
 #[test]
 fn unknown_names_bring_the_nearest_and_all() {
     check(&[
-        ("simulate bouncing_bal", &["did you mean `bouncing_ball`?", "oscillator", "MODEL"]),
-        ("derive nothing_like_it", &["MODEL", "bouncing_ball, oscillator, bead"]),
+        (
+            "simulate bouncing_bal",
+            &["did you mean `bouncing_ball`?", "oscillator", "MODEL"],
+        ),
+        (
+            "derive nothing_like_it",
+            &["MODEL", "bouncing_ball, oscillator, bead"],
+        ),
         ("check nothing", &["MODEL"]),
         ("eval nothing", &["MODEL"]),
-        ("simulate bouncing_ball --set mm=1", &["--set", "`mm`", "did you mean `m`?", "m, g"]),
-        ("simulate bouncing_ball --until 1 --initial z=1", &["--initial", "`z`", "x, x_dot"]),
-        ("simulate bouncing_ball --until 1 --law wall=elastic", &["--law", "surface `wall`", "floor"]),
-        ("simulate bouncing_ball --until 1 --law elastc", &["--law", "did you mean `elastic`?", "totally_plastic"]),
+        (
+            "simulate bouncing_ball --set mm=1",
+            &["--set", "`mm`", "did you mean `m`?", "m, g"],
+        ),
+        (
+            "simulate bouncing_ball --until 1 --initial z=1",
+            &["--initial", "`z`", "x, x_dot"],
+        ),
+        (
+            "simulate bouncing_ball --until 1 --law wall=elastic",
+            &["--law", "surface `wall`", "floor"],
+        ),
+        (
+            "simulate bouncing_ball --until 1 --law elastc",
+            &["--law", "did you mean `elastic`?", "totally_plastic"],
+        ),
         ("simulate bouncing_ball --scene windy", &["--scene", "all"]),
-        ("simulate bouncing_ball --integrator euler", &["--integrator", "dop853", "dopri5"]),
+        (
+            "simulate bouncing_ball --integrator euler",
+            &["--integrator", "dop853", "dopri5"],
+        ),
         ("list --format xml", &["--format", "text", "json"]),
         ("simulat bouncing_ball", &["simulate"]),
         ("simulate bouncing_ball --untill 3", &["--until"]),
@@ -46,29 +70,68 @@ fn values_that_are_not_accepted() {
         ("simulate bouncing_ball --set m", &["--set", "NAME=VALUE"]),
         ("simulate bouncing_ball --set m=-1", &["--set m", "> 0"]),
         ("simulate bouncing_ball --set m=nan", &["--set m", "finite"]),
-        ("simulate bouncing_ball --set m=1e999", &["--set m", "finite"]),
+        (
+            "simulate bouncing_ball --set m=1e999",
+            &["--set m", "finite"],
+        ),
         ("simulate bouncing_ball --set m=", &["--set m"]),
-        ("simulate bouncing_ball --until 1 --initial x=inf", &["--initial x", "finite"]),
-        ("simulate bouncing_ball --until 1 --initial x", &["--initial", "NAME=VALUE"]),
-        ("simulate bouncing_ball --until -5", &["--until", "positive"]),
-        ("simulate bouncing_ball --until nan", &["--until", "positive"]),
+        (
+            "simulate bouncing_ball --until 1 --initial x=inf",
+            &["--initial x", "finite"],
+        ),
+        (
+            "simulate bouncing_ball --until 1 --initial x",
+            &["--initial", "NAME=VALUE"],
+        ),
+        (
+            "simulate bouncing_ball --until -5",
+            &["--until", "positive"],
+        ),
+        (
+            "simulate bouncing_ball --until nan",
+            &["--until", "positive"],
+        ),
         ("simulate bouncing_ball --until 0", &["--until", "positive"]),
         ("simulate bouncing_ball --tol 0", &["--tol", "1e-15"]),
         ("simulate bouncing_ball --tol -1", &["--tol", "1e-15"]),
         ("simulate bouncing_ball --tol x", &["--tol"]),
         ("simulate bouncing_ball --samples -1", &["--samples"]),
         ("simulate bouncing_ball --samples 1e3", &["--samples"]),
-        ("simulate bouncing_ball --samples 99999999999999999999999", &["--samples"]),
+        (
+            "simulate bouncing_ball --samples 99999999999999999999999",
+            &["--samples"],
+        ),
         ("simulate bouncing_ball --impacts 0", &["--impacts"]),
         ("simulate bouncing_ball --impacts -3", &["--impacts"]),
-        ("simulate bouncing_ball --until 1 --law newton", &["--law", "newton:E", "0 to 1"]),
-        ("simulate bouncing_ball --until 1 --law newton:2", &["--law", "0 to 1"]),
-        ("simulate bouncing_ball --until 1 --law newton:", &["--law", "0 to 1"]),
-        ("simulate bouncing_ball --until 1 --law elastic:1", &["--law", "without a coefficient"]),
+        (
+            "simulate bouncing_ball --until 1 --law newton",
+            &["--law", "newton:E", "0 to 1"],
+        ),
+        (
+            "simulate bouncing_ball --until 1 --law newton:2",
+            &["--law", "0 to 1"],
+        ),
+        (
+            "simulate bouncing_ball --until 1 --law newton:",
+            &["--law", "0 to 1"],
+        ),
+        (
+            "simulate bouncing_ball --until 1 --law elastic:1",
+            &["--law", "without a coefficient"],
+        ),
         ("simulate bouncing_ball --until 1 --law =", &["--law"]),
-        ("simulate bouncing_ball --projection maybe", &["--projection", "on", "off"]),
-        ("simulate bead --off-constraint drop", &["--off-constraint", "project"]),
-        ("eval bouncing_ball --newton 1.5", &["--newton", "from 0 to 1"]),
+        (
+            "simulate bouncing_ball --projection maybe",
+            &["--projection", "on", "off"],
+        ),
+        (
+            "simulate bead --off-constraint drop",
+            &["--off-constraint", "project"],
+        ),
+        (
+            "eval bouncing_ball --newton 1.5",
+            &["--newton", "from 0 to 1"],
+        ),
         ("eval bouncing_ball --restitution nan", &["--restitution"]),
     ]);
 }
@@ -76,8 +139,14 @@ fn values_that_are_not_accepted() {
 #[test]
 fn lengths_say_what_was_expected_and_got() {
     check(&[
-        ("simulate bead --q 1 --qdot 1,2", &["--q", "2 numbers (x, y)", "got 1"]),
-        ("simulate bead --q 1,2 --qdot 1,2,3", &["--qdot", "2 numbers (x, y)", "got 3"]),
+        (
+            "simulate bead --q 1 --qdot 1,2",
+            &["--q", "2 numbers (x, y)", "got 1"],
+        ),
+        (
+            "simulate bead --q 1,2 --qdot 1,2,3",
+            &["--qdot", "2 numbers (x, y)", "got 3"],
+        ),
         ("simulate bead --q 1,2 --p 1,", &["--p (y)"]),
         ("simulate bead --q 0,nan --qdot 1,2", &["--q (y)", "finite"]),
         ("simulate bead --q 0,0 --qdot --p", &["--qdot"]),
@@ -90,27 +159,57 @@ fn flags_that_do_not_go_together() {
     check(&[
         ("simulate bead --q 0,0", &["--q needs --qdot or --p"]),
         ("simulate bead --qdot 0,0", &["need --q"]),
-        ("simulate bead --q 0,0 --qdot 1,1 --p 1,1", &["--qdot", "--p"]),
-        ("simulate bead --q 0,0 --qdot 1,1 --initial x=1", &["--initial", "--q"]),
+        (
+            "simulate bead --q 0,0 --qdot 1,1 --p 1,1",
+            &["--qdot", "--p"],
+        ),
+        (
+            "simulate bead --q 0,0 --qdot 1,1 --initial x=1",
+            &["--initial", "--q"],
+        ),
         ("simulate bouncing_ball", &["--until", "--impacts"]),
-        ("simulate bead --impacts 3", &["--impacts", "no impact surfaces"]),
-        ("simulate bead --law elastic", &["--law", "no impact surfaces"]),
-        ("simulate bead --law floor=elastic", &["--law", "there are none"]),
-        ("simulate bead --csv - --json -", &["--csv", "--json", "once"]),
+        (
+            "simulate bead --impacts 3",
+            &["--impacts", "no impact surfaces"],
+        ),
+        (
+            "simulate bead --law elastic",
+            &["--law", "no impact surfaces"],
+        ),
+        (
+            "simulate bead --law floor=elastic",
+            &["--law", "there are none"],
+        ),
+        (
+            "simulate bead --csv - --json -",
+            &["--csv", "--json", "once"],
+        ),
         ("simulate bead --plot picture.png", &["--plot", ".svg"]),
         ("simulate bead --plot -", &["--plot", ".svg"]),
         ("simulate oscillator", &["`k` has no default", "--set k="]),
         ("eval oscillator", &["`k` has no default"]),
-        ("simulate bead --initial y=2", &["`y`", "outside its interval"]),
+        (
+            "simulate bead --initial y=2",
+            &["`y`", "outside its interval"],
+        ),
     ]);
 }
 
 #[test]
 fn files_that_cannot_be_opened() {
     check(&[
-        ("simulate bead --csv /nonexistent/directory/run.csv", &["--csv", "/nonexistent/directory/run.csv"]),
-        ("simulate bead --plot /nonexistent/directory/run.svg", &["--plot"]),
-        ("eval bead --input /nonexistent/states.json", &["--input", "/nonexistent/states.json"]),
+        (
+            "simulate bead --csv /nonexistent/directory/run.csv",
+            &["--csv", "/nonexistent/directory/run.csv"],
+        ),
+        (
+            "simulate bead --plot /nonexistent/directory/run.svg",
+            &["--plot"],
+        ),
+        (
+            "eval bead --input /nonexistent/states.json",
+            &["--input", "/nonexistent/states.json"],
+        ),
     ]);
 }
 
@@ -124,14 +223,29 @@ fn states_that_are_not_states() {
         ("[1]", &["state 0", "expected an object"]),
         ("[{}]", &["state 0", "\"q\" is missing"]),
         (r#"[{"q":[1]}]"#, &["state 0", "one of \"qdot\" and \"p\""]),
-        (r#"[{"q":[1],"qdot":[1],"p":[1]}]"#, &["one of \"qdot\" and \"p\""]),
-        (r#"[{"q":[1],"qdot":[1]},{"q":[1,2],"qdot":[1]}]"#, &["state 1, q", "1 number (x)", "got 2"]),
-        (r#"[{"q":1,"qdot":[1]}]"#, &["state 0, q", "array of numbers"]),
-        (r#"[{"q":["one"],"qdot":[1]}]"#, &["state 0, q (x)", "finite number"]),
+        (
+            r#"[{"q":[1],"qdot":[1],"p":[1]}]"#,
+            &["one of \"qdot\" and \"p\""],
+        ),
+        (
+            r#"[{"q":[1],"qdot":[1]},{"q":[1,2],"qdot":[1]}]"#,
+            &["state 1, q", "1 number (x)", "got 2"],
+        ),
+        (
+            r#"[{"q":1,"qdot":[1]}]"#,
+            &["state 0, q", "array of numbers"],
+        ),
+        (
+            r#"[{"q":["one"],"qdot":[1]}]"#,
+            &["state 0, q (x)", "finite number"],
+        ),
         (r#"[{"q":["nan"],"qdot":[1]}]"#, &["finite number"]),
         (r#"[{"q":[null],"qdot":[1]}]"#, &["finite number"]),
         (r#"[{"q":[1e999],"qdot":[1]}]"#, &["standard input"]),
-        (r#"[{"q":[1],"qdto":[1]}]"#, &["unknown key `qdto`", "did you mean `qdot`?"]),
+        (
+            r#"[{"q":[1],"qdto":[1]}]"#,
+            &["unknown key `qdto`", "did you mean `qdot`?"],
+        ),
         (r#"[{"q":[1],"qdot":[1],"t":[]}]"#, &["state 0, t"]),
     ];
     for (input, parts) in cases {
@@ -139,15 +253,26 @@ fn states_that_are_not_states() {
         assert_eq!(done.exit, Exit::Refused, "{input}");
         assert!(done.output.is_empty(), "{input}");
         for part in parts {
-            assert!(done.errors.contains(part), "`{input}` gave `{}`, without `{part}`", done.errors);
+            assert!(
+                done.errors.contains(part),
+                "`{input}` gave `{}`, without `{part}`",
+                done.errors
+            );
         }
     }
 }
 
 #[test]
 fn deep_and_binary_input_is_refused() {
-    for input in ["[".repeat(100_000), "\u{0}\u{1}".to_owned(), "[{\"q\":".repeat(5000)] {
-        assert_eq!(run_on(&input, &["eval", "bouncing_ball"]).exit, Exit::Refused);
+    for input in [
+        "[".repeat(100_000),
+        "\u{0}\u{1}".to_owned(),
+        "[{\"q\":".repeat(5000),
+    ] {
+        assert_eq!(
+            run_on(&input, &["eval", "bouncing_ball"]).exit,
+            Exit::Refused
+        );
     }
 }
 
@@ -162,12 +287,52 @@ fn a_stream_that_closes_early_needs_no_message() {
             Ok(())
         }
     }
-    for line in ["list", "simulate bead --json -", "simulate bead --csv -", "check bead", "simulate bead"] {
+    for line in [
+        "list",
+        "simulate bead --json -",
+        "simulate bead --csv -",
+        "check bead",
+        "simulate bead",
+    ] {
         let mut errors = Vec::new();
-        let mut streams =
-            Streams { input: &mut "".as_bytes(), output: &mut Closed, errors: &mut errors, terminal: false };
+        let mut streams = Streams {
+            input: &mut "".as_bytes(),
+            output: &mut Closed,
+            errors: &mut errors,
+            terminal: false,
+        };
         let args = std::iter::once("dalembert").chain(line.split_whitespace());
-        assert_eq!(run_with(args, &list_of_models(), &mut streams), Exit::Other, "{line}");
-        assert!(errors.is_empty(), "{line}: {}", String::from_utf8_lossy(&errors));
+        assert_eq!(
+            run_with(args, &list_of_models(), &mut streams),
+            Exit::Other,
+            "{line}"
+        );
+        assert!(
+            errors.is_empty(),
+            "{line}: {}",
+            String::from_utf8_lossy(&errors)
+        );
     }
+}
+
+#[test]
+fn numbers_at_the_ends_of_the_range_are_drawn_or_refused() {
+    let path = std::env::temp_dir().join(format!("dalembert-cli-range-{}.svg", std::process::id()));
+    for start in [
+        "--q 1e308 --qdot 1e308",
+        "--q 1e-320 --qdot 0",
+        "--q 1e150 --qdot 0",
+        "--q 1e200 --qdot 1e200",
+    ] {
+        let done = run(&format!(
+            "simulate bouncing_ball {start} --until 1 --plot {}",
+            path.display()
+        ));
+        assert!(
+            done.exit != Exit::Refused || done.errors.contains("--plot"),
+            "{start}: {}",
+            done.errors
+        );
+    }
+    std::fs::remove_file(&path).unwrap();
 }

@@ -1,6 +1,10 @@
 //! The command line from its arguments to its streams and its exit status, over systems written by hand.
 
+// A test may fail by panicking.
+#![allow(clippy::unwrap_used)]
+
 mod check;
+mod derive;
 mod eval;
 mod hostile;
 mod list;
@@ -20,7 +24,8 @@ struct Done {
 impl Done {
     /// The standard output as JSON.
     fn json(&self) -> Value {
-        serde_json::from_str(&self.output).unwrap_or_else(|error| panic!("{error} in {}", self.output))
+        serde_json::from_str(&self.output)
+            .unwrap_or_else(|error| panic!("{error} in {}", self.output))
     }
 }
 
@@ -31,12 +36,20 @@ fn list_of_models() -> Vec<Entry> {
 /// Runs a command line given as words, with this standard input.
 fn run_on(input: &str, words: &[&str]) -> Done {
     let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let mut streams =
-        Streams { input: &mut input.as_bytes(), output: &mut output, errors: &mut errors, terminal: false };
+    let mut streams = Streams {
+        input: &mut input.as_bytes(),
+        output: &mut output,
+        errors: &mut errors,
+        terminal: false,
+    };
     let args = std::iter::once("dalembert").chain(words.iter().copied());
     let exit = run_with(args, &list_of_models(), &mut streams);
     let text = |bytes| String::from_utf8(bytes).unwrap();
-    Done { exit, output: text(output), errors: text(errors) }
+    Done {
+        exit,
+        output: text(output),
+        errors: text(errors),
+    }
 }
 
 /// Runs a command line given as one text, split at spaces.
@@ -46,5 +59,10 @@ fn run(line: &str) -> Done {
 
 /// Numbers of a JSON array.
 fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+    value
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|number| number.as_f64().unwrap())
+        .collect()
 }

@@ -8,7 +8,11 @@ fn document(line: &str) -> (Exit, Value) {
 }
 
 fn times(rows: &Value) -> Vec<f64> {
-    rows.as_array().unwrap().iter().map(|row| row["t"].as_f64().unwrap()).collect()
+    rows.as_array()
+        .unwrap()
+        .iter()
+        .map(|row| row["t"].as_f64().unwrap())
+        .collect()
 }
 
 #[test]
@@ -16,8 +20,17 @@ fn a_document_has_the_keys_of_the_interface() {
     let (exit, document) = document("simulate oscillator --set k=4 --samples 3");
     assert_eq!(exit, Exit::Reached);
     let keys: Vec<&String> = document.as_object().unwrap().keys().collect();
-    let expected =
-        ["model", "scene", "parameters", "integrator", "tol", "outcome", "events", "samples", "counters"];
+    let expected = [
+        "model",
+        "scene",
+        "parameters",
+        "integrator",
+        "tol",
+        "outcome",
+        "events",
+        "samples",
+        "counters",
+    ];
     assert_eq!(keys, expected);
     assert_eq!(document["parameters"]["k"], 4.0);
     assert_eq!(document["outcome"]["kind"], "done");
@@ -31,12 +44,17 @@ fn a_document_has_the_keys_of_the_interface() {
 #[test]
 fn samples_lie_on_the_closed_solution() {
     for integrator in ["dop853", "dopri5"] {
-        let line = format!("simulate oscillator --set k=4 --tol 1e-12 --integrator {integrator} --samples 101");
+        let line = format!(
+            "simulate oscillator --set k=4 --tol 1e-12 --integrator {integrator} --samples 101"
+        );
         let (_, document) = document(&line);
         for sample in document["samples"].as_array().unwrap() {
             let (t, q) = (sample["t"].as_f64().unwrap(), numbers(&sample["q"]));
             assert!((q[0] - t.cos()).abs() < 1e-9, "{integrator} at {t}");
-            assert!((q[1] - 0.25 * (2.0 * t).sin()).abs() < 1e-9, "{integrator} at {t}");
+            assert!(
+                (q[1] - 0.25 * (2.0 * t).sin()).abs() < 1e-9,
+                "{integrator} at {t}"
+            );
         }
     }
 }
@@ -46,7 +64,10 @@ fn impacts_are_located_and_samples_never_cross_them() {
     let (exit, document) = document("simulate bouncing_ball --until 10 --samples 1001");
     assert_eq!(exit, Exit::Reached);
     let root = 2f64.sqrt();
-    let expected: Vec<f64> = (0..4).map(|k| root * f64::from(2 * k + 1)).filter(|&t| t <= 10.0).collect();
+    let expected: Vec<f64> = (0..4)
+        .map(|k| root * f64::from(2 * k + 1))
+        .filter(|&t| t <= 10.0)
+        .collect();
     let events = document["events"].as_array().unwrap();
     assert_eq!(events.len(), expected.len());
     for (event, t) in events.iter().zip(expected) {
@@ -66,12 +87,18 @@ fn a_number_of_impacts_is_an_end_that_can_be_reached() {
     let (exit, document) = document("simulate bouncing_ball --impacts 3 --samples 11");
     assert_eq!(exit, Exit::Reached);
     assert_eq!(document["events"].as_array().unwrap().len(), 3);
-    let (times, end) = (times(&document["samples"]), document["outcome"]["t"].as_f64().unwrap());
+    let (times, end) = (
+        times(&document["samples"]),
+        document["outcome"]["t"].as_f64().unwrap(),
+    );
     assert_eq!(times.len(), 11);
     assert_eq!(times[10], end);
     assert!((end - 5.0 * 2f64.sqrt()).abs() < 1e-9);
     let last = &document["samples"][10];
-    assert!(numbers(&last["qdot"])[0] > 0.0, "a sample at an impact shows the state after it");
+    assert!(
+        numbers(&last["qdot"])[0] > 0.0,
+        "a sample at an impact shows the state after it"
+    );
 }
 
 #[test]
@@ -84,7 +111,11 @@ fn too_few_impacts_before_the_end_still_reach_the_end_time() {
 
 #[test]
 fn laws_by_name_and_by_surface() {
-    for law in ["newton:0.5", "floor=restitution:0.5", "elastic --law floor=newton:0.5"] {
+    for law in [
+        "newton:0.5",
+        "floor=restitution:0.5",
+        "elastic --law floor=newton:0.5",
+    ] {
         let (_, document) = document(&format!("simulate bouncing_ball --until 2 --law {law}"));
         let event = &document["events"][0];
         let ratio = numbers(&event["qdot_plus"])[0] / numbers(&event["qdot_minus"])[0];
@@ -115,15 +146,20 @@ fn a_state_below_the_floor_starts_inside() {
 #[test]
 fn initial_values_by_name_with_dependent_velocities_completed() {
     let (_, document) = document("simulate bead --initial x=0.125,x_dot=-0.5,y=pi/8 --samples 1");
-    assert_eq!(numbers(&document["samples"][0]["q"]), [0.125, std::f64::consts::PI / 8.0]);
+    assert_eq!(
+        numbers(&document["samples"][0]["q"]),
+        [0.125, std::f64::consts::PI / 8.0]
+    );
     assert_eq!(numbers(&document["samples"][0]["qdot"]), [-0.5, -0.5]);
-    let (_, document) = super::simulate::document("simulate oscillator --set k=1 --initial x_dot.2=3 --samples 1");
+    let (_, document) =
+        super::simulate::document("simulate oscillator --set k=1 --initial x_dot.2=3 --samples 1");
     assert_eq!(numbers(&document["samples"][0]["qdot"]), [0.0, 3.0]);
 }
 
 #[test]
 fn momenta_instead_of_velocities() {
-    let (_, document) = document("simulate bouncing_ball --set m=4 --q 1 --p -2 --until 1 --samples 1");
+    let (_, document) =
+        document("simulate bouncing_ball --set m=4 --q 1 --p -2 --until 1 --samples 1");
     assert_eq!(numbers(&document["samples"][0]["qdot"]), [-0.5]);
 }
 
@@ -132,8 +168,17 @@ fn off_constraint_policies() {
     let start = "simulate bead --q 0,0 --qdot 0.5,0.25 --until 0.5 --samples 1";
     let refused = run(start);
     assert_eq!(refused.exit, Exit::Refused);
-    for part in ["`wire`", "-2.5e-1", "--off-constraint project", "--off-constraint keep"] {
-        assert!(refused.errors.contains(part), "{part} in {}", refused.errors);
+    for part in [
+        "`wire`",
+        "-2.5e-1",
+        "--off-constraint project",
+        "--off-constraint keep",
+    ] {
+        assert!(
+            refused.errors.contains(part),
+            "{part} in {}",
+            refused.errors
+        );
     }
     let velocities = |policy: &str| {
         let (_, document) = document(&format!("{start} --off-constraint {policy}"));
@@ -156,19 +201,29 @@ fn a_table_has_samples_and_impacts_in_order_of_time() {
     let done = run("simulate bouncing_ball --until 5 --samples 6 --csv -");
     assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
     let mut reader = csv::Reader::from_reader(done.output.as_bytes());
-    assert_eq!(reader.headers().unwrap(), vec!["t", "x", "x_dot", "energy", "event"]);
+    assert_eq!(
+        reader.headers().unwrap(),
+        vec!["t", "x", "x_dot", "energy", "event"]
+    );
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
     let times: Vec<f64> = rows.iter().map(|row| row[0].parse().unwrap()).collect();
     assert!(times.is_sorted());
     assert_eq!(rows.len(), 8);
-    let events: Vec<&str> = rows.iter().map(|row| &row[4]).filter(|event| !event.is_empty()).collect();
+    let events: Vec<&str> = rows
+        .iter()
+        .map(|row| &row[4])
+        .filter(|event| !event.is_empty())
+        .collect();
     assert_eq!(events, ["floor", "floor"]);
 }
 
 #[test]
 fn a_table_of_outputs_names_members_of_families() {
     let done = run("simulate oscillator --set k=1 --samples 2 --csv -");
-    assert_eq!(done.output.lines().next(), Some("t,x.1,x.2,x_dot.1,x_dot.2,energy,radius,event"));
+    assert_eq!(
+        done.output.lines().next(),
+        Some("t,x.1,x.2,x_dot.1,x_dot.2,energy,radius,event")
+    );
     assert_eq!(done.output.lines().count(), 3);
 }
 
@@ -176,7 +231,13 @@ fn a_table_of_outputs_names_members_of_families() {
 fn without_a_document_on_it_the_standard_output_has_a_summary() {
     let done = run("simulate bouncing_ball --until 5");
     assert_eq!(done.exit, Exit::Reached);
-    for part in ["bouncing_ball", "done at t = 5", "2 (floor 2)", "dop853", "accepted"] {
+    for part in [
+        "bouncing_ball",
+        "done at t = 5",
+        "2 (floor 2)",
+        "dop853",
+        "accepted",
+    ] {
         assert!(done.output.contains(part), "{part} in {}", done.output);
     }
 }
@@ -190,8 +251,15 @@ fn the_same_run_is_the_same_to_the_byte() {
 #[test]
 fn pictures_are_svg_of_the_view_or_of_the_histories() {
     let directory = std::env::temp_dir();
-    for (model, text) in [("oscillator --set k=4", "x[2]"), ("bouncing_ball --until 10", "impact: floor (4)")] {
-        let path = directory.join(format!("dalembert-cli-{}-{}.svg", &model[..4], std::process::id()));
+    for (model, text) in [
+        ("oscillator --set k=4", "x[2]"),
+        ("bouncing_ball --until 10", "impact: floor (4)"),
+    ] {
+        let path = directory.join(format!(
+            "dalembert-cli-{}-{}.svg",
+            &model[..4],
+            std::process::id()
+        ));
         let done = run(&format!("simulate {model} --plot {}", path.display()));
         assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
         let svg = std::fs::read_to_string(&path).unwrap();

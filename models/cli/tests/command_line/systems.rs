@@ -4,8 +4,8 @@
 //! All have the metric `m` times the identity, and a potential.
 
 use dalembert::describe::{
-    Assumption, ConstraintInfo, CoordinateInfo, Described, Description, Initial, ParameterInfo, Report, SurfaceInfo,
-    Topology, ViewInfo,
+    Assumption, ConstraintInfo, CoordinateInfo, Described, Description, Initial, ParameterInfo,
+    Report, SurfaceInfo, Topology, ViewInfo,
 };
 use dalembert::error::ParameterError;
 use dalembert::impacts::law::{Contact, Law};
@@ -84,7 +84,12 @@ macro_rules! particle {
 }
 
 /// What every model reports.
-fn inspect_common<S: System>(system: &S, t: f64, state: &S::State, report: &mut dyn Report) -> Result<(), Fault>
+fn inspect_common<S: System>(
+    system: &S,
+    t: f64,
+    state: &S::State,
+    report: &mut dyn Report,
+) -> Result<(), Fault>
 where
     S::Vector: AsRef<[f64]>,
 {
@@ -111,11 +116,18 @@ const NOTHING: Description = Description {
 };
 
 const fn line(name: &'static str) -> CoordinateInfo {
-    CoordinateInfo { name, topology: Topology::Line }
+    CoordinateInfo {
+        name,
+        topology: Topology::Line,
+    }
 }
 
 const fn positive(name: &'static str, default: Option<f64>) -> ParameterInfo {
-    ParameterInfo { name, assumption: Assumption::Positive, default }
+    ParameterInfo {
+        name,
+        assumption: Assumption::Positive,
+        default,
+    }
 }
 
 /// A ball above a floor.
@@ -156,7 +168,12 @@ impl Impacting for BouncingBall {
         Law::Elastic
     }
 
-    fn contact(&self, _surface: usize, _t: f64, state: &Self::State) -> Result<Contact<Self::Vector>, Fault> {
+    fn contact(
+        &self,
+        _surface: usize,
+        _t: f64,
+        state: &Self::State,
+    ) -> Result<Contact<Self::Vector>, Fault> {
         let gap_rate = state[1] / self.m;
         Ok(Contact {
             gap_rate,
@@ -182,10 +199,18 @@ impl Described for BouncingBall {
         type_name: "BouncingBall",
         name: "bouncing_ball",
         documentation: " A ball above a floor.\n It bounces.",
-        source: "pub BouncingBall { .. }",
+        source: "pub BouncingBall {
+            coordinates { x; }
+            parameters { m > 0 = 1; g > 0 = 1; }
+            lagrangian = m/2*dot(x)^2 - m*g*x;
+            impacts { floor: x >= 0; }
+        }",
         coordinates: &[line("x")],
         parameters: &[positive("m", Some(1.0)), positive("g", Some(1.0))],
-        surfaces: &[SurfaceInfo { name: "floor", law: "elastic" }],
+        surfaces: &[SurfaceInfo {
+            name: "floor",
+            law: "elastic",
+        }],
         ..NOTHING
     };
 
@@ -207,7 +232,12 @@ impl Described for BouncingBall {
 
     fn initial(&self) -> Initial<Self::Vector> {
         let [q, qdot, named] = [1.0, 0.0, 1.0].map(|value| SVector::from([value]));
-        Initial { q, qdot, named, until: None }
+        Initial {
+            q,
+            qdot,
+            named,
+            until: None,
+        }
     }
 
     fn outputs(&self, _t: f64, _state: &Self::State, _values: &mut [f64]) -> Result<(), Fault> {
@@ -234,7 +264,10 @@ impl Described for BouncingBall {
         report.scalar("impacts.floor.gap_rate", contact.gap_rate);
         report.scalar("impacts.floor.constrained_rate", contact.constrained_rate);
         report.scalar("impacts.floor.surface_rate", contact.surface_rate);
-        report.scalar("impacts.floor.constrained_compliance", contact.constrained_compliance);
+        report.scalar(
+            "impacts.floor.constrained_compliance",
+            contact.constrained_compliance,
+        );
         report.scalar("impacts.floor.free_compliance", contact.free_compliance);
         report.vector("impacts.floor.direction", contact.direction.as_slice());
         Ok(())
@@ -277,7 +310,11 @@ impl Described for Oscillator {
         coordinates: &[line("x.1"), line("x.2")],
         parameters: &[positive("k", None)],
         outputs: &["radius"],
-        view: Some(ViewInfo { labels: ["x[1]", "x[2]"], plane: Some([0, 1]), region: true }),
+        view: Some(ViewInfo {
+            labels: ["x[1]", "x[2]"],
+            plane: Some([0, 1]),
+            region: true,
+        }),
         ..NOTHING
     };
 
@@ -297,7 +334,12 @@ impl Described for Oscillator {
 
     fn initial(&self) -> Initial<Self::Vector> {
         let [q, qdot, named] = [[1.0, 0.0], [0.0, 0.5], [0.0, 1.0]].map(SVector::from);
-        Initial { q, qdot, named, until: Some(20.0) }
+        Initial {
+            q,
+            qdot,
+            named,
+            until: Some(20.0),
+        }
     }
 
     fn outputs(&self, _t: f64, state: &Self::State, values: &mut [f64]) -> Result<(), Fault> {
@@ -315,7 +357,10 @@ impl Described for Oscillator {
 
     fn inspect(&self, t: f64, state: &Self::State, report: &mut dyn Report) -> Result<(), Fault> {
         if state[0] == 7.0 {
-            return Err(Fault::MetricNotPositive { pivot: 1, value: 0.0 });
+            return Err(Fault::MetricNotPositive {
+                pivot: 1,
+                value: 0.0,
+            });
         }
         inspect_common(self, t, state, report)?;
         report.matrix("metric", 2, 2, &[1.0, 0.0, 0.0, 1.0]);
@@ -351,7 +396,11 @@ particle!(Bead, 2, 4, {
         let (residual, scale) = (state[3] - state[2], state[3].abs() + state[2].abs());
         match residual.abs() <= 1e-9 * scale {
             true => Ok(()),
-            false => Err(StateError::OffConstraint { constraint: 0, residual, scale }),
+            false => Err(StateError::OffConstraint {
+                constraint: 0,
+                residual,
+                scale,
+            }),
         }
     }
 
@@ -370,7 +419,11 @@ particle!(Bead, 2, 4, {
     ) -> Result<Self::Vector, StateError> {
         let (residual, scale) = (qdot[1] - qdot[0], qdot[1].abs() + qdot[0].abs());
         match (named[0] == 1.0, named[1] == 1.0) {
-            (true, true) if residual != 0.0 => Err(StateError::OffConstraint { constraint: 0, residual, scale }),
+            (true, true) if residual != 0.0 => Err(StateError::OffConstraint {
+                constraint: 0,
+                residual,
+                scale,
+            }),
             (true, _) => Ok(SVector::from([qdot[0], qdot[0]])),
             (false, _) => Ok(SVector::from([qdot[1], qdot[1]])),
         }
@@ -389,9 +442,19 @@ impl Described for Bead {
         name: "bead",
         coordinates: &[
             line("x"),
-            CoordinateInfo { name: "y", topology: Topology::Interval { low: -1.0, high: 1.0 } },
+            CoordinateInfo {
+                name: "y",
+                topology: Topology::Interval {
+                    low: -1.0,
+                    high: 1.0,
+                },
+            },
         ],
-        constraints: &[ConstraintInfo { name: "wire", affine: false, level: Some(0) }],
+        constraints: &[ConstraintInfo {
+            name: "wire",
+            affine: false,
+            level: Some(0),
+        }],
         ..NOTHING
     };
 
@@ -407,7 +470,12 @@ impl Described for Bead {
 
     fn initial(&self) -> Initial<Self::Vector> {
         let [q, qdot, named] = [[0.0, 0.0], [0.25, 0.0], [1.0, 0.0]].map(SVector::from);
-        Initial { q, qdot, named, until: Some(2.0) }
+        Initial {
+            q,
+            qdot,
+            named,
+            until: Some(2.0),
+        }
     }
 
     fn outputs(&self, _t: f64, _state: &Self::State, _values: &mut [f64]) -> Result<(), Fault> {

@@ -35,11 +35,22 @@ pub enum GivenRates {
 ///
 /// # Errors
 /// [`CliError::File`], [`CliError::Input`] or [`CliError::Length`].
-pub fn read(description: &Description, path: Option<&Path>, stdin: &mut dyn Read) -> Result<Vec<Given>, CliError> {
+pub fn read(
+    description: &Description,
+    path: Option<&Path>,
+    stdin: &mut dyn Read,
+) -> Result<Vec<Given>, CliError> {
     let (place, bytes) = match path.filter(|path| path.as_os_str() != "-") {
         Some(path) => {
-            let failed = |source| CliError::File { flag: "--input", path: path.to_owned(), source };
-            (format!("--input {}", path.display()), fs::read(path).map_err(failed)?)
+            let failed = |source| CliError::File {
+                flag: "--input",
+                path: path.to_owned(),
+                source,
+            };
+            (
+                format!("--input {}", path.display()),
+                fs::read(path).map_err(failed)?,
+            )
         }
         None => {
             let mut bytes = Vec::new();
@@ -47,42 +58,75 @@ pub fn read(description: &Description, path: Option<&Path>, stdin: &mut dyn Read
             ("standard input".to_owned(), bytes)
         }
     };
-    let value: Value = serde_json::from_slice(&bytes).map_err(|error| invalid(&place, error.to_string()))?;
+    let value: Value =
+        serde_json::from_slice(&bytes).map_err(|error| invalid(&place, error.to_string()))?;
     let Value::Array(states) = value else {
-        return Err(invalid(&place, "expected a JSON array of states: [{\"q\": [..], \"qdot\": [..]}, ..]"));
+        return Err(invalid(
+            &place,
+            "expected a JSON array of states: [{\"q\": [..], \"qdot\": [..]}, ..]",
+        ));
     };
-    states.iter().enumerate().map(|(index, state)| parse(description, &format!("{place}, state {index}"), state)).collect()
+    states
+        .iter()
+        .enumerate()
+        .map(|(index, state)| parse(description, &format!("{place}, state {index}"), state))
+        .collect()
 }
 
 fn parse(description: &Description, place: &str, state: &Value) -> Result<Given, CliError> {
     let Value::Object(state) = state else {
-        return Err(invalid(place, "expected an object with \"q\" and \"qdot\" or \"p\""));
+        return Err(invalid(
+            place,
+            "expected an object with \"q\" and \"qdot\" or \"p\"",
+        ));
     };
     let accepted = ["q", "qdot", "p", "t"];
     for key in state.keys() {
         names::find(place, "key", key, accepted.into_iter())?;
     }
-    let vector = |key: &str| state.get(key).map(|value| vector(description, &format!("{place}, {key}"), value));
-    let Some(q) = vector("q") else { return Err(invalid(place, "\"q\" is missing")) };
+    let vector = |key: &str| {
+        state
+            .get(key)
+            .map(|value| vector(description, &format!("{place}, {key}"), value))
+    };
+    let Some(q) = vector("q") else {
+        return Err(invalid(place, "\"q\" is missing"));
+    };
     let rates = match (vector("qdot"), vector("p")) {
         (Some(qdot), None) => GivenRates::Velocities(qdot?),
         (None, Some(p)) => GivenRates::Momenta(p?),
         _ => return Err(invalid(place, "expected one of \"qdot\" and \"p\"")),
     };
-    Ok(Given { t: time(place, state)?, q: q?, rates })
+    Ok(Given {
+        t: time(place, state)?,
+        q: q?,
+        rates,
+    })
 }
 
 fn time(place: &str, state: &Map<String, Value>) -> Result<f64, CliError> {
-    state.get("t").map_or(Ok(0.0), |value| number(&format!("{place}, t"), value))
+    state
+        .get("t")
+        .map_or(Ok(0.0), |value| number(&format!("{place}, t"), value))
 }
 
 fn vector(description: &Description, place: &str, value: &Value) -> Result<Vec<f64>, CliError> {
-    let Value::Array(values) = value else { return Err(invalid(place, "expected an array of numbers")) };
+    let Value::Array(values) = value else {
+        return Err(invalid(place, "expected an array of numbers"));
+    };
     let names: Vec<_> = names::coordinates(description).collect();
     if values.len() != names.len() {
-        return Err(CliError::Length { place: place.to_owned(), names, got: values.len() });
+        return Err(CliError::Length {
+            place: place.to_owned(),
+            names,
+            got: values.len(),
+        });
     }
-    values.iter().zip(names).map(|(value, name)| number(&format!("{place} ({name})"), value)).collect()
+    values
+        .iter()
+        .zip(names)
+        .map(|(value, name)| number(&format!("{place} ({name})"), value))
+        .collect()
 }
 
 fn number(place: &str, value: &Value) -> Result<f64, CliError> {
@@ -91,9 +135,18 @@ fn number(place: &str, value: &Value) -> Result<f64, CliError> {
         Value::String(text) => scalar::parse(text).ok(),
         _ => None,
     };
-    number.ok_or_else(|| CliError::value(place, value.to_string(), "a finite number, or one in a string"))
+    number.ok_or_else(|| {
+        CliError::value(
+            place,
+            value.to_string(),
+            "a finite number, or one in a string",
+        )
+    })
 }
 
 fn invalid(place: &str, reason: impl Into<String>) -> CliError {
-    CliError::Input { place: place.to_owned(), reason: reason.into() }
+    CliError::Input {
+        place: place.to_owned(),
+        reason: reason.into(),
+    }
 }

@@ -35,7 +35,9 @@ impl Collected {
 
     /// A number of a surface's contact.
     pub fn contact_scalar(&self, surface: &str, name: &str) -> Option<f64> {
-        self.contact_scalars.get(&format!("impacts.{surface}.{name}")).copied()
+        self.contact_scalars
+            .get(&format!("impacts.{surface}.{name}"))
+            .copied()
     }
 
     /// The contact of a surface, where an impulse can change its gap rate.
@@ -47,9 +49,13 @@ impl Collected {
             surface_rate: scalar("surface_rate")?,
             constrained_compliance: scalar("constrained_compliance")?,
             free_compliance: scalar("free_compliance")?,
-            direction: self.contact_vectors.get(&format!("impacts.{surface}.direction"))?.clone(),
+            direction: self
+                .contact_vectors
+                .get(&format!("impacts.{surface}.direction"))?
+                .clone(),
         };
-        (contact.constrained_compliance > 0.0 && contact.constrained_compliance.is_finite()).then_some(contact)
+        (contact.constrained_compliance > 0.0 && contact.constrained_compliance.is_finite())
+            .then_some(contact)
     }
 }
 
@@ -64,13 +70,15 @@ impl Report for Collected {
 
     fn vector(&mut self, name: &str, values: &[f64]) {
         if name.starts_with("impacts.") {
-            self.contact_vectors.insert(name.to_owned(), values.to_vec());
+            self.contact_vectors
+                .insert(name.to_owned(), values.to_vec());
         } else {
             self.values.insert(name.to_owned(), json::vector(values));
         }
     }
 
     fn matrix(&mut self, name: &str, _rows: usize, columns: usize, values: &[f64]) {
-        self.values.insert(name.to_owned(), json::matrix(columns, values));
+        self.values
+            .insert(name.to_owned(), json::matrix(columns, values));
     }
 }

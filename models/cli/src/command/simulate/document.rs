@@ -12,10 +12,21 @@ use crate::json::{Document, named, number, vector};
 
 /// Writes the document.
 pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
-    let Finished { model, scene, settings, record, ending } = finished;
+    let Finished {
+        model,
+        scene,
+        settings,
+        record,
+        ending,
+    } = finished;
     let description = model.description();
-    let values: Vec<f64> = (0..description.parameters.len()).map(|index| model.parameter(index)).collect();
-    let names = description.parameters.iter().map(|parameter| parameter.name);
+    let values: Vec<f64> = (0..description.parameters.len())
+        .map(|index| model.parameter(index))
+        .collect();
+    let names = description
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name);
 
     let mut document = Document::begin(output)?;
     document.field("model", description.name)?;
@@ -24,9 +35,24 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     document.field("integrator", settings.integrator.name())?;
     document.field("tol", number(settings.tol))?;
     document.field("outcome", outcome(finished))?;
-    document.rows("events", record.impacts.iter().map(|impact| event(&description, impact)))?;
-    document.rows("samples", record.samples.iter().map(|(t, point)| sample(&description, *t, point)))?;
-    let counters = ending.counters.iter().map(|&(name, count)| (name.to_owned(), Value::from(count)));
+    document.rows(
+        "events",
+        record
+            .impacts
+            .iter()
+            .map(|impact| event(&description, impact)),
+    )?;
+    document.rows(
+        "samples",
+        record
+            .samples
+            .iter()
+            .map(|(t, point)| sample(&description, *t, point)),
+    )?;
+    let counters = ending
+        .counters
+        .iter()
+        .map(|&(name, count)| (name.to_owned(), Value::from(count)));
     document.field("counters", counters.collect::<Map<_, _>>())?;
     document.end()
 }
@@ -37,7 +63,12 @@ fn outcome(finished: &Finished<'_>) -> Value {
     let mut outcome = Map::new();
     outcome.insert("kind".to_owned(), ending.kind.into());
     outcome.insert("t".to_owned(), number(ending.t));
-    outcome.extend(ending.details.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
+    outcome.extend(
+        ending
+            .details
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), value.clone())),
+    );
     outcome.insert("q".to_owned(), vector(&ending.last.q));
     outcome.insert("qdot".to_owned(), vector(&ending.last.qdot));
     Value::Object(outcome)

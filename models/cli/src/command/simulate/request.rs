@@ -17,21 +17,33 @@ const IMPACT_HORIZON: f64 = 3600.0;
 /// Refuses outputs that exclude each other.
 pub fn check_outputs(args: &SimulateArgs) -> Result<(), CliError> {
     if let Some(path) = &args.plot
-        && path.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("svg"))
+        && path
+            .extension()
+            .is_none_or(|extension| !extension.eq_ignore_ascii_case("svg"))
     {
-        return Err(CliError::value("--plot", path.display().to_string(), "a file name that ends in .svg"));
+        return Err(CliError::value(
+            "--plot",
+            path.display().to_string(),
+            "a file name that ends in .svg",
+        ));
     }
     let paths = [&args.csv, &args.json, &args.plot];
-    let clash = |first: usize, second: usize| paths[first].is_some() && paths[first] == paths[second];
+    let clash =
+        |first: usize, second: usize| paths[first].is_some() && paths[first] == paths[second];
     if clash(0, 1) || clash(0, 2) || clash(1, 2) {
-        return Err(CliError::Usage("--csv, --json and --plot need different files (`-` can be used once)"));
+        return Err(CliError::Usage(
+            "--csv, --json and --plot need different files (`-` can be used once)",
+        ));
     }
     Ok(())
 }
 
 /// Whether a document or a table goes to the standard output, which then holds nothing else.
 pub fn uses_stdout(args: &SimulateArgs) -> bool {
-    [&args.csv, &args.json].into_iter().flatten().any(|path| is_stdout(path))
+    [&args.csv, &args.json]
+        .into_iter()
+        .flatten()
+        .any(|path| is_stdout(path))
 }
 
 /// Whether the path means the standard output.
@@ -52,7 +64,10 @@ pub fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, C
 }
 
 fn horizon(model: &dyn AnyModel, args: &SimulateArgs) -> Result<f64, CliError> {
-    let declared = model.initial().until.filter(|until| until.is_finite() && *until > 0.0);
+    let declared = model
+        .initial()
+        .until
+        .filter(|until| until.is_finite() && *until > 0.0);
     match (args.until, args.impacts, declared) {
         (Some(until), ..) => Ok(until),
         (None, Some(_), declared) => Ok(declared.unwrap_or(0.0).max(IMPACT_HORIZON)),
@@ -65,7 +80,9 @@ fn horizon(model: &dyn AnyModel, args: &SimulateArgs) -> Result<f64, CliError> {
 
 fn impacts(description: &Description, args: &SimulateArgs) -> Result<Option<u64>, CliError> {
     if args.impacts.is_some() && description.surfaces.is_empty() {
-        return Err(CliError::Usage("--impacts: the model has no impact surfaces"));
+        return Err(CliError::Usage(
+            "--impacts: the model has no impact surfaces",
+        ));
     }
     Ok(args.impacts)
 }
@@ -81,7 +98,10 @@ fn laws(description: &Description, flags: &[String]) -> Result<Vec<(usize, Law)>
         let law = parse_law(law)?;
         match surface {
             Some(name) => {
-                laws.push((names::find("--law", "surface", name, names::surfaces(description))?, law));
+                laws.push((
+                    names::find("--law", "surface", name, names::surfaces(description))?,
+                    law,
+                ));
             }
             None if description.surfaces.is_empty() => {
                 return Err(CliError::Usage("--law: the model has no impact surfaces"));
@@ -98,13 +118,34 @@ fn parse_law(text: &str) -> Result<Law, CliError> {
         Some((name, coefficient)) => (name.trim(), Some(coefficient.trim())),
         None => (text, None),
     };
-    let index = names::find("--law", "law", name, Law::NAMES.iter().map(|(name, _)| *name))?;
+    let index = names::find(
+        "--law",
+        "law",
+        name,
+        Law::NAMES.iter().map(|(name, _)| *name),
+    )?;
     let e = match (Law::NAMES[index].1, coefficient) {
         (true, Some(e)) => scalar::coefficient(e).map_err(|_| {
-            CliError::value("--law", text, format!("{name}:E with E a number from 0 to 1"))
+            CliError::value(
+                "--law",
+                text,
+                format!("{name}:E with E a number from 0 to 1"),
+            )
         })?,
-        (true, None) => return Err(CliError::value("--law", text, format!("{name}:E with E a number from 0 to 1"))),
-        (false, Some(_)) => return Err(CliError::value("--law", text, format!("{name} without a coefficient"))),
+        (true, None) => {
+            return Err(CliError::value(
+                "--law",
+                text,
+                format!("{name}:E with E a number from 0 to 1"),
+            ));
+        }
+        (false, Some(_)) => {
+            return Err(CliError::value(
+                "--law",
+                text,
+                format!("{name} without a coefficient"),
+            ));
+        }
         (false, None) => 0.0,
     };
     // The name is among the law's own names, so this is never `None`.

@@ -9,13 +9,30 @@ use crate::driver::Ending;
 
 /// Writes the summary.
 pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
-    let Finished { ending, settings, .. } = finished;
+    let Finished {
+        ending, settings, ..
+    } = finished;
     writeln!(output, "{}", title(finished))?;
-    writeln!(output, "  outcome     {} at t = {}{}", ending.kind, ending.t, details(ending))?;
+    writeln!(
+        output,
+        "  outcome     {} at t = {}{}",
+        ending.kind,
+        ending.t,
+        details(ending)
+    )?;
     writeln!(output, "  impacts     {}", impacts(finished))?;
     writeln!(output, "  energy      {}", energy(ending))?;
-    writeln!(output, "  integrator  {}, tol {:e}", settings.integrator.name(), settings.tol)?;
-    let counters: Vec<String> = ending.counters.iter().map(|(name, count)| format!("{name} {count}")).collect();
+    writeln!(
+        output,
+        "  integrator  {}, tol {:e}",
+        settings.integrator.name(),
+        settings.tol
+    )?;
+    let counters: Vec<String> = ending
+        .counters
+        .iter()
+        .map(|(name, count)| format!("{name} {count}"))
+        .collect();
     writeln!(output, "  counters    {}", counters.join(", "))
 }
 
@@ -39,7 +56,11 @@ pub fn subtitle(finished: &Finished<'_>) -> String {
         }
     }
     let ending = &finished.ending;
-    let end = if ending.kind == "done" { String::new() } else { format!("{} at ", ending.kind) };
+    let end = if ending.kind == "done" {
+        String::new()
+    } else {
+        format!("{} at ", ending.kind)
+    };
     parts.push(format!("{end}t = {}", rounded(ending.t)));
     parts.join(", ")
 }
@@ -47,37 +68,67 @@ pub fn subtitle(finished: &Finished<'_>) -> String {
 /// One text per law: `elastic` where all surfaces share it, `floor: elastic` otherwise.
 fn laws(finished: &Finished<'_>) -> Vec<String> {
     let surfaces = finished.model.description().surfaces;
-    let text = |law: &Option<Law>| law.map_or_else(|| "no impacts".to_owned(), |law| law.to_string());
+    let text =
+        |law: &Option<Law>| law.map_or_else(|| "no impacts".to_owned(), |law| law.to_string());
     let laws: Vec<String> = finished.ending.laws.iter().map(text).collect();
     match laws.first() {
         Some(first) if laws.iter().all(|law| law == first) => vec![first.clone()],
-        _ => surfaces.iter().zip(&laws).map(|(surface, law)| format!("{}: {law}", surface.name)).collect(),
+        _ => surfaces
+            .iter()
+            .zip(&laws)
+            .map(|(surface, law)| format!("{}: {law}", surface.name))
+            .collect(),
     }
 }
 
 fn impacts(finished: &Finished<'_>) -> String {
-    let impacts = &finished.record.impacts;
+    let tally = &finished.record.tally;
     let surfaces = finished.model.description().surfaces;
-    let counts = surfaces.iter().enumerate().map(|(index, surface)| {
-        let count = impacts.iter().filter(|impact| impact.surface == index).count();
-        format!("{} {count}", surface.name)
-    });
-    match surfaces.is_empty() {
-        true => "none: the model has no surfaces".to_owned(),
-        false => format!("{} ({})", impacts.len(), counts.collect::<Vec<_>>().join(", ")),
+    if surfaces.is_empty() {
+        return "none: the model has no surfaces".to_owned();
     }
+    let counts = surfaces
+        .iter()
+        .enumerate()
+        .map(|(index, surface)| format!("{} {}", surface.name, tally.on(index)));
+    let mut text = format!(
+        "{} ({})",
+        tally.total(),
+        counts.collect::<Vec<_>>().join(", ")
+    );
+    for (count, kind) in [
+        (tally.grazing, "grazing"),
+        (tally.simultaneous, "simultaneous"),
+    ] {
+        if count > 0 {
+            text += &format!(", {count} {kind}");
+        }
+    }
+    text
 }
 
 fn energy(ending: &Ending) -> String {
     let (first, last) = (ending.first.energy, ending.last.energy);
     let change = last - first;
-    let relative = if first == 0.0 { String::new() } else { format!(", relative {:.1e}", change / first.abs()) };
+    let relative = if first == 0.0 {
+        String::new()
+    } else {
+        format!(", relative {:.1e}", change / first.abs())
+    };
     format!("{first:?} at the start, {last:?} at the end (change {change:.1e}{relative})")
 }
 
 fn details(ending: &Ending) -> String {
-    let parts: Vec<String> = ending.details.iter().map(|(name, value)| format!("{name} {value}")).collect();
-    if parts.is_empty() { String::new() } else { format!(" ({})", parts.join(", ")) }
+    let parts: Vec<String> = ending
+        .details
+        .iter()
+        .map(|(name, value)| format!("{name} {value}"))
+        .collect();
+    if parts.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", parts.join(", "))
+    }
 }
 
 /// Six significant digits, without trailing zeros.

@@ -1,0 +1,14 @@
+dalembert::model! {
+    Particle {
+        coordinates { x; y; theta: angle; }
+        parameters { m > 0 = 1; k > 0 = 1; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(theta)^2);
+        constraints {
+            first: d(x) = 0;
+            second: d(y) = 0;
+            third: d(theta) = 0;
+        }
+    }
+}
+
+fn main() {}

@@ -1,0 +1,9 @@
+dalembert::model! {
+    Particle {
+        coordinates { x in (1, 0); }
+        parameters { m > 0 = 1; }
+        lagrangian = m/2*dot(x)^2;
+    }
+}
+
+fn main() {}

@@ -1,0 +1,8 @@
+dalembert::model! {
+    Particle {
+        parameters { m > 0 = 1; }
+        lagrangian = m;
+    }
+}
+
+fn main() {}

@@ -1,0 +1,10 @@
+dalembert::model! {
+    Particle {
+        coordinates { x y; z; }
+        lagrangian = 2x;
+        constraints { a: d(x) == 0; b: d(z) = 0; c: = 0; }
+        claims { conserved: energy; }
+    }
+}
+
+fn main() {}

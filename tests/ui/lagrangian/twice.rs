@@ -1,0 +1,10 @@
+dalembert::model! {
+    Particle {
+        coordinates { x; }
+        parameters { m > 0 = 1; }
+        lagrangian = m/2*dot(x)^2;
+        lagrangian = m*dot(x)^2;
+    }
+}
+
+fn main() {}
