@@ -3,7 +3,8 @@
 use core::ops::ControlFlow;
 
 use dalembert::{
-    Constrained, Dop853, Observer, Outcome, Scene, SceneEffects, Segment, Simulation, StateVector, System, Tolerance,
+    Constrained, Dop853, Observer, Outcome, Scene, SceneEffects, Segment, Simulation, StateVector,
+    System, Tolerance,
 };
 use dalembert_models::RollingDisk;
 
@@ -20,7 +21,10 @@ struct Residual<'a> {
 }
 
 impl Observer<RollingDisk> for Residual<'_> {
-    fn step(&mut self, segment: &mut Segment<'_, <RollingDisk as dalembert::VectorField>::State>) -> ControlFlow<()> {
+    fn step(
+        &mut self,
+        segment: &mut Segment<'_, <RollingDisk as dalembert::VectorField>::State>,
+    ) -> ControlFlow<()> {
         let state = segment.end();
         let (residuals, scales) = self.disk.residuals(0.0, state).expect("residuals");
         for (residual, scale) in residuals.as_slice().iter().zip(scales.as_slice()) {
@@ -34,15 +38,30 @@ impl Observer<RollingDisk> for Residual<'_> {
 fn drift(roll: f64, tol: f64) -> (f64, f64) {
     let disk = RollingDisk::default();
     let phi = core::f64::consts::FRAC_PI_2;
-    let qdot = [disk.R * phi.cos() * roll, disk.R * phi.sin() * roll, roll, 0.2];
-    let state = disk.state(0.0, &[0.0, 0.0, 0.0, phi].into(), &qdot.into()).expect("a state");
+    let qdot = [
+        disk.R * phi.cos() * roll,
+        disk.R * phi.sin() * roll,
+        roll,
+        0.2,
+    ];
+    let state = disk
+        .state(0.0, &[0.0, 0.0, 0.0, phi].into(), &qdot.into())
+        .expect("a state");
     let before = disk.energy(0.0, &state).expect("an energy");
     let mut effects = disk.effects();
     effects.set_impact_budget(Some(IMPACTS));
     let stepper = Dop853::new(Tolerance::new(tol).expect("a tolerance"));
-    let mut residual = Residual { disk: &disk, worst: 0.0 };
-    let run = Simulation::new(&disk, stepper, effects).run(0.0, state, 1e7, &mut residual).expect("a start");
-    assert_eq!((run.outcome, run.counters.impacts), (Outcome::ImpactBudget, IMPACTS));
+    let mut residual = Residual {
+        disk: &disk,
+        worst: 0.0,
+    };
+    let run = Simulation::new(&disk, stepper, effects)
+        .run(0.0, state, 1e7, &mut residual)
+        .expect("a start");
+    assert_eq!(
+        (run.outcome, run.counters.impacts),
+        (Outcome::ImpactBudget, IMPACTS)
+    );
     let after = disk.energy(run.t, &run.state).expect("an energy");
     (((after - before) / before).abs(), residual.worst)
 }
@@ -53,9 +72,19 @@ fn energy_drifts_no_more_than_by_hand_and_constraints_hold() {
         let runs = [8.0, 9.0, 10.0, 11.0, 12.0].map(|roll| drift(roll, tol));
         let mut errors = runs.map(|(error, _)| error);
         errors.sort_by(f64::total_cmp);
-        let residual = runs.iter().map(|(_, residual)| *residual).fold(0.0, f64::max);
-        println!("tol {tol:e}: median {:.1e} (by hand {by_hand:.1e}), all {errors:?}, residual {residual:.1e}", errors[2]);
-        assert!(errors[2] <= 2.0 * by_hand, "tol {tol:e}: {:e} against {by_hand:e}", errors[2]);
+        let residual = runs
+            .iter()
+            .map(|(_, residual)| *residual)
+            .fold(0.0, f64::max);
+        println!(
+            "tol {tol:e}: median {:.1e} (by hand {by_hand:.1e}), all {errors:?}, residual {residual:.1e}",
+            errors[2]
+        );
+        assert!(
+            errors[2] <= 2.0 * by_hand,
+            "tol {tol:e}: {:e} against {by_hand:e}",
+            errors[2]
+        );
         assert!(residual < 1e-12, "tol {tol:e}: residual {residual:e}");
     }
 }

@@ -30,7 +30,12 @@ impl Visitor for Timed {
     fn visit<S: Described + Scene>(&mut self, _: S) {
         let (time, length) = expansion(S::DESCRIPTION.source);
         let bound = Duration::from_millis(if cfg!(debug_assertions) { 1000 } else { 50 });
-        println!("{:28} {:8.1} ms {:8} characters", S::DESCRIPTION.name, time.as_secs_f64() * 1e3, length);
+        println!(
+            "{:28} {:8.1} ms {:8} characters",
+            S::DESCRIPTION.name,
+            time.as_secs_f64() * 1e3,
+            length
+        );
         assert!(time < bound, "{}: {time:?}", S::DESCRIPTION.name);
     }
 }
@@ -60,7 +65,10 @@ fn the_chain_grows_no_faster_than_its_factorisation() {
     for (n, source) in sources {
         let (time, length) = expansion(source);
         let operations = operations(source);
-        println!("N = {n:2}: {operations:6} operations, {:8.1} ms, {length} characters", time.as_secs_f64() * 1e3);
+        println!(
+            "N = {n:2}: {operations:6} operations, {:8.1} ms, {length} characters",
+            time.as_secs_f64() * 1e3
+        );
         table.push((n, operations as f64, time.as_secs_f64()));
     }
     let power = |value: fn(&(f64, f64, f64)) -> f64| {

@@ -32,7 +32,12 @@ fn run(binary: &Path, arguments: &[&str], input: &str) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .expect("the binary starts");
-    child.stdin.take().expect("a pipe").write_all(input.as_bytes()).expect("input");
+    child
+        .stdin
+        .take()
+        .expect("a pipe")
+        .write_all(input.as_bytes())
+        .expect("input");
     child.wait_with_output().expect("output")
 }
 
@@ -46,7 +51,11 @@ fn a_users_crate_has_every_command_for_its_own_model() {
 
     let state = r#"[{"q": [0, 0, 0], "qdot": [1, 0, 0.5]}]"#;
     let evaluated = run(&binary, &["eval", "inclined_skate"], state);
-    assert!(evaluated.status.success(), "{}", String::from_utf8_lossy(&evaluated.stderr));
+    assert!(
+        evaluated.status.success(),
+        "{}",
+        String::from_utf8_lossy(&evaluated.stderr)
+    );
     let values: Value = serde_json::from_slice(&evaluated.stdout).expect("JSON");
     // Along the skate's heading gravity alone acts: a = g sin(slope).
     let along = values[0]["acceleration"][0].as_f64().expect("a number");
@@ -58,5 +67,8 @@ fn a_users_crate_has_every_command_for_its_own_model() {
     let simulated = run(&binary, &["simulate", "inclined_skate", "--json", "-"], "");
     let outcome: Value = serde_json::from_slice(&simulated.stdout).expect("JSON");
     assert_eq!(outcome["model"], "inclined_skate");
-    assert!(!outcome["events"].as_array().expect("events").is_empty(), "the skate reaches the wall");
+    assert!(
+        !outcome["events"].as_array().expect("events").is_empty(),
+        "the skate reaches the wall"
+    );
 }

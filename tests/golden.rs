@@ -12,14 +12,24 @@ fn expansion(source: &str) -> String {
 }
 
 fn compare<S: Described>() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("golden/{}.rs.txt", S::DESCRIPTION.name));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join(format!("golden/{}.rs.txt", S::DESCRIPTION.name));
     let actual = expansion(S::DESCRIPTION.source);
-    assert_eq!(actual, expansion(S::DESCRIPTION.source), "the same input gives the same output");
+    assert_eq!(
+        actual,
+        expansion(S::DESCRIPTION.source),
+        "the same input gives the same output"
+    );
     if std::env::var_os("ACCEPT").is_some() {
         std::fs::write(&path, &actual).expect("a writable folder");
     }
     let stored = std::fs::read_to_string(&path).expect("a stored expansion");
-    if let Some((line, (a, b))) = actual.lines().zip(stored.lines()).enumerate().find(|(_, (a, b))| a != b) {
+    if let Some((line, (a, b))) = actual
+        .lines()
+        .zip(stored.lines())
+        .enumerate()
+        .find(|(_, (a, b))| a != b)
+    {
         panic!("{}:{}: now `{a}`, stored `{b}`", path.display(), line + 1);
     }
     assert_eq!(actual.len(), stored.len(), "{}", path.display());

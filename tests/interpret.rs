@@ -18,7 +18,11 @@ fn derive(source: &str) -> (Model, mechanics::Derivation, Program) {
 }
 
 /// The arguments of a function at a state of a system.
-fn input<'a, S: Described>(system: &'a S, t: f64, state: &'a S::State) -> impl Fn(Input) -> f64 + 'a {
+fn input<'a, S: Described>(
+    system: &'a S,
+    t: f64,
+    state: &'a S::State,
+) -> impl Fn(Input) -> f64 + 'a {
     let n = S::Vector::LEN;
     let qdot = system.velocity(t, state).expect("a velocity");
     move |input| match input {
@@ -45,7 +49,11 @@ impl Visitor for EmittedIsInterpreted {
             let interpreted = interpret(&program.rate, &at).expect("a rate");
             assert_eq!(rate.as_slice(), interpreted, "{name}: rate");
             let energy = interpret(&program.energy, &at).expect("an energy")[0];
-            assert_eq!(system.energy(0.25, &state).expect("an energy"), energy, "{name}: energy");
+            assert_eq!(
+                system.energy(0.25, &state).expect("an energy"),
+                energy,
+                "{name}: energy"
+            );
             self.0 += 1;
         }
     }
@@ -76,18 +84,33 @@ impl Visitor for ForceIsDifferenced {
                     model.pool.eval(&[model.lagrangian.whole], &value)[0]
                 };
                 let value = |symbol| value_of(&model, &system, t, &state, &qdot, symbol);
-                let applied: f64 = model.forces.iter().map(|force| model.pool.eval(&[force.form[k]], &value)[0]).sum();
+                let applied: f64 = model
+                    .forces
+                    .iter()
+                    .map(|force| model.pool.eval(&[force.form[k]], &value)[0])
+                    .sum();
                 let force = model.pool.eval(&[derivation.field.force[k]], &value)[0] - applied;
                 let h = 1e-5;
                 let difference = (lagrangian(h) - lagrangian(-h)) / (2.0 * h);
                 let scale = lagrangian(0.0).abs().max(1.0);
-                assert!((force - difference).abs() < 1e-8 * scale, "{}: {k}", S::DESCRIPTION.name);
+                assert!(
+                    (force - difference).abs() < 1e-8 * scale,
+                    "{}: {k}",
+                    S::DESCRIPTION.name
+                );
             }
         }
     }
 }
 
-fn value_of<S: Described>(model: &Model, system: &S, t: f64, state: &S::State, qdot: &S::Vector, symbol: SymbolId) -> f64 {
+fn value_of<S: Described>(
+    model: &Model,
+    system: &S,
+    t: f64,
+    state: &S::State,
+    qdot: &S::Vector,
+    symbol: SymbolId,
+) -> f64 {
     if symbol == model.time {
         return t;
     }
@@ -99,7 +122,11 @@ fn value_of<S: Described>(model: &Model, system: &S, t: f64, state: &S::State, q
             return qdot.as_slice()[i];
         }
     }
-    model.parameters.iter().position(|parameter| parameter.symbol == symbol).map_or(f64::NAN, |k| system.parameter(k))
+    model
+        .parameters
+        .iter()
+        .position(|parameter| parameter.symbol == symbol)
+        .map_or(f64::NAN, |k| system.parameter(k))
 }
 
 #[test]
@@ -124,7 +151,13 @@ impl Visitor for WellFormed {
             &program.density_form,
             &program.initial,
         ];
-        functions.extend(program.outputs.iter().chain(&program.view_path).chain(&program.view_region));
+        functions.extend(
+            program
+                .outputs
+                .iter()
+                .chain(&program.view_path)
+                .chain(&program.view_region),
+        );
         if let Some(constrained) = &program.constrained {
             functions.extend([
                 &constrained.multipliers,
@@ -160,7 +193,10 @@ fn the_field_keeps_the_constraints_everywhere() {
             let (model, derivation, _) = derive(S::DESCRIPTION.source);
             let mut random = dalembert_tests::sampling::Random::new(3);
             for constraint in &derivation.constraints {
-                let (q, qdot) = (random.vector::<S::Vector>(0.1, 1.4), random.vector::<S::Vector>(-1.0, 1.0));
+                let (q, qdot) = (
+                    random.vector::<S::Vector>(0.1, 1.4),
+                    random.vector::<S::Vector>(-1.0, 1.0),
+                );
                 let t = 0.3;
                 let state = system.state_unchecked(t, &q, &qdot).expect("a state");
                 let mut rate = S::State::zeros();
@@ -176,7 +212,11 @@ fn the_field_keeps_the_constraints_everywhere() {
                 };
                 let h = 1e-5;
                 let derivative = (residual(h) - residual(-h)) / (2.0 * h);
-                assert!(derivative.abs() < 1e-7, "{}: {derivative:e}", S::DESCRIPTION.name);
+                assert!(
+                    derivative.abs() < 1e-7,
+                    "{}: {derivative:e}",
+                    S::DESCRIPTION.name
+                );
                 self.0 += 1;
             }
         }

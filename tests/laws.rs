@@ -2,17 +2,26 @@
 
 use dalembert::impacts::law::Law;
 use dalembert::{Constrained, Described, Impacting, StateVector, System};
-use dalembert_models::{ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk, TwoWheelsRod};
+use dalembert_models::{
+    ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk, TwoWheelsRod,
+};
 use dalembert_tests::sampling::states;
 use dalembert_tests::systems::{AffineSleigh, DampedSleigh, MagneticDisk, TableWall};
 
-const LAWS: [Law; 4] = [Law::Elastic, Law::NonholonomicPlastic, Law::ImpactPlastic, Law::TotallyPlastic];
+const LAWS: [Law; 4] = [
+    Law::Elastic,
+    Law::NonholonomicPlastic,
+    Law::ImpactPlastic,
+    Law::TotallyPlastic,
+];
 
 /// The state after an impact of a law on a surface.
 fn apply<S: Impacting>(system: &S, surface: usize, law: Law, state: &S::State) -> S::State {
     let contact = system.contact(surface, 0.0, state).expect("a contact");
     let mut after = *state;
-    system.kick(0.0, &mut after, contact.impulse(law), &contact.direction).expect("an impulse");
+    system
+        .kick(0.0, &mut after, contact.impulse(law), &contact.direction)
+        .expect("an impulse");
     after
 }
 
@@ -28,12 +37,25 @@ fn check_linear<S: Described + Impacting>(system: &S) {
                 let after = apply(system, surface, law, &state);
                 let rate = system.gap_rates(0.0, &after).expect("rates").as_slice()[surface];
                 let scale = before.abs() + 1e-3;
-                assert!((rate - (1.0 - c) * before).abs() < 1e-11 * scale, "{}: {law}", S::DESCRIPTION.name);
+                assert!(
+                    (rate - (1.0 - c) * before).abs() < 1e-11 * scale,
+                    "{}: {law}",
+                    S::DESCRIPTION.name
+                );
                 let change = system.energy(0.0, &after).expect("an energy") - energy;
-                let expected = -(c - c * c / 2.0) * before * before / contact.constrained_compliance;
-                assert!((change - expected).abs() < 1e-11 * energy.abs(), "{}: {law}", S::DESCRIPTION.name);
+                let expected =
+                    -(c - c * c / 2.0) * before * before / contact.constrained_compliance;
+                assert!(
+                    (change - expected).abs() < 1e-11 * energy.abs(),
+                    "{}: {law}",
+                    S::DESCRIPTION.name
+                );
             }
-            assert!((0.0..=1.0 + 1e-12).contains(&rho), "{}: rho = {rho}", S::DESCRIPTION.name);
+            assert!(
+                (0.0..=1.0 + 1e-12).contains(&rho),
+                "{}: rho = {rho}",
+                S::DESCRIPTION.name
+            );
         }
     }
 }
@@ -53,11 +75,18 @@ fn gap_rate_and_energy_change_as_each_law_says() {
 fn check_constraints<S: Described + Impacting + Constrained>(system: &S) {
     for state in states(system, 20, 12) {
         for surface in 0..S::DESCRIPTION.surfaces.len() {
-            for law in LAWS.into_iter().chain([Law::Restitution(0.3), Law::Newton(0.7)]) {
+            for law in LAWS
+                .into_iter()
+                .chain([Law::Restitution(0.3), Law::Newton(0.7)])
+            {
                 let after = apply(system, surface, law, &state);
                 let (residuals, scales) = system.residuals(0.0, &after).expect("residuals");
                 for (residual, scale) in residuals.as_slice().iter().zip(scales.as_slice()) {
-                    assert!(residual.abs() < 1e-12 * scale.max(1e-3), "{}: {law}: {residual:e}", S::DESCRIPTION.name);
+                    assert!(
+                        residual.abs() < 1e-12 * scale.max(1e-3),
+                        "{}: {law}: {residual:e}",
+                        S::DESCRIPTION.name
+                    );
                 }
             }
         }
@@ -84,7 +113,10 @@ fn impact_plastic_is_idempotent_and_totally_plastic_is_not() {
         let once = apply(&disk, 0, Law::TotallyPlastic, &state);
         let twice = apply(&disk, 0, Law::TotallyPlastic, &once);
         let moved = (once - state).amax();
-        assert!((once - twice).amax() > 1e-3 * moved, "rho < 1 leaves something to do");
+        assert!(
+            (once - twice).amax() > 1e-3 * moved,
+            "rho < 1 leaves something to do"
+        );
     }
 }
 
@@ -94,13 +126,22 @@ fn newton_sets_the_gap_rate_where_elastic_does_not() {
     let mut differ = 0;
     for state in states(&sleigh, 20, 14) {
         let contact = sleigh.contact(0, 0.0, &state).expect("a contact");
-        let newton = sleigh.gap_rates(0.0, &apply(&sleigh, 0, Law::Newton(0.5), &state)).expect("rates")[0];
+        let newton = sleigh
+            .gap_rates(0.0, &apply(&sleigh, 0, Law::Newton(0.5), &state))
+            .expect("rates")[0];
         assert!((newton + 0.5 * contact.gap_rate).abs() < 1e-12);
         let elastic = apply(&sleigh, 0, Law::Elastic, &state);
-        let energies = [&state, &elastic].map(|state| sleigh.energy(0.0, state).expect("an energy"));
-        assert!((energies[0] - energies[1]).abs() < 1e-12, "elastic keeps the energy, affine constraints or not");
+        let energies =
+            [&state, &elastic].map(|state| sleigh.energy(0.0, state).expect("an energy"));
+        assert!(
+            (energies[0] - energies[1]).abs() < 1e-12,
+            "elastic keeps the energy, affine constraints or not"
+        );
         let rate = sleigh.gap_rates(0.0, &elastic).expect("rates")[0];
         differ += usize::from((rate + contact.gap_rate).abs() > 1e-3);
     }
-    assert!(differ > 10, "with an affine constraint elastic does not reverse the gap rate");
+    assert!(
+        differ > 10,
+        "with an affine constraint elastic does not reverse the gap rate"
+    );
 }

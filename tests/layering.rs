@@ -30,7 +30,12 @@ fn assert_absent(folder: &str, forbidden: &[&str]) {
         for (number, line) in text.lines().enumerate() {
             let code = line.split("//").next().unwrap_or_default();
             for word in forbidden {
-                assert!(!code.contains(word), "{}:{}: `{word}`", path.display(), number + 1);
+                assert!(
+                    !code.contains(word),
+                    "{}:{}: `{word}`",
+                    path.display(),
+                    number + 1
+                );
             }
         }
     }
@@ -38,13 +43,25 @@ fn assert_absent(folder: &str, forbidden: &[&str]) {
 
 #[test]
 fn expressions_know_no_tokens_and_no_mechanics() {
-    assert_absent("codegen/expr/src", &["proc_macro2", "syn::", "quote::", "lagrangian", "constraint"]);
+    assert_absent(
+        "codegen/expr/src",
+        &[
+            "proc_macro2",
+            "syn::",
+            "quote::",
+            "lagrangian",
+            "constraint",
+        ],
+    );
 }
 
 #[test]
 fn mathematics_knows_no_tokens() {
     for folder in ["codegen/src/mechanics", "codegen/src/program"] {
-        assert_absent(folder, &["proc_macro2", "syn::", "quote::", "quote!", "Span"]);
+        assert_absent(
+            folder,
+            &["proc_macro2", "syn::", "quote::", "quote!", "Span"],
+        );
     }
 }
 
@@ -52,7 +69,10 @@ fn mathematics_knows_no_tokens() {
 fn a_stage_uses_only_those_to_its_left() {
     let stages = ["spec", "model", "mechanics", "program", "emit"];
     for (k, stage) in stages.iter().enumerate() {
-        let later: Vec<String> = stages[k + 1..].iter().map(|later| format!("crate::{later}::")).collect();
+        let later: Vec<String> = stages[k + 1..]
+            .iter()
+            .map(|later| format!("crate::{later}::"))
+            .collect();
         let later: Vec<&str> = later.iter().map(String::as_str).collect();
         assert_absent(&format!("codegen/src/{stage}"), &later);
     }
@@ -60,7 +80,17 @@ fn a_stage_uses_only_those_to_its_left() {
 
 #[test]
 fn the_runtime_is_bare() {
-    assert_absent("runtime/src", &["extern crate alloc", "alloc::", "Vec<", "Box<", "String", "unsafe {"]);
+    assert_absent(
+        "runtime/src",
+        &[
+            "extern crate alloc",
+            "alloc::",
+            "Vec<",
+            "Box<",
+            "String",
+            "unsafe {",
+        ],
+    );
     let text = std::fs::read_to_string(root().join("runtime/src/lib.rs")).expect("text");
     assert!(text.contains("#![forbid(unsafe_code)]"));
     assert!(text.contains("no_std"));
@@ -69,14 +99,25 @@ fn the_runtime_is_bare() {
 #[test]
 fn the_macro_does_nothing_but_expand() {
     let text = std::fs::read_to_string(root().join("macros/src/lib.rs")).expect("text");
-    let code = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    let code = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .collect::<Vec<_>>()
+        .join("\n");
     assert!(code.contains("dalembert_codegen::expand"));
     assert!(code.lines().count() < 15, "{code}");
 }
 
 #[test]
 fn the_project_stands_alone() {
-    for folder in ["codegen", "macros/src", "runtime", "models", "tests", "benches"] {
+    for folder in [
+        "codegen",
+        "macros/src",
+        "runtime",
+        "models",
+        "tests",
+        "benches",
+    ] {
         for (path, text) in sources(folder) {
             if path.ends_with("layering.rs") {
                 continue;

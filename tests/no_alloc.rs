@@ -9,7 +9,9 @@ static ALLOCATOR: Counting = Counting;
 
 fn state_of<S: dalembert::Described>(system: &S) -> S::State {
     let initial = system.initial();
-    let qdot = system.complete_velocity(0.0, &initial.q, &initial.qdot, &initial.named).expect("velocities");
+    let qdot = system
+        .complete_velocity(0.0, &initial.q, &initial.qdot, &initial.named)
+        .expect("velocities");
     system.state(0.0, &initial.q, &qdot).expect("a state")
 }
 
@@ -25,7 +27,9 @@ where
     let count = allocations(|| end = simulation.run(0.0, state, until, &mut ()).ok());
     let end = end.expect("a start");
     assert!(end.counters.impacts > 3, "{:?}", end.counters);
-    let numbers = dalembert::StateVector::as_slice(&end.state).iter().chain([&end.t]);
+    let numbers = dalembert::StateVector::as_slice(&end.state)
+        .iter()
+        .chain([&end.t]);
     (numbers.map(|number| number.to_bits()).collect(), count)
 }
 

@@ -16,6 +16,8 @@ fn a_program_without_std_links_and_runs() {
         .status()
         .expect("cargo");
     assert!(status.success(), "the program does not link");
-    let ran = Command::new(target.join("release/bare")).status().expect("the program starts");
+    let ran = Command::new(target.join("release/bare"))
+        .status()
+        .expect("the program starts");
     assert_eq!(ran.code(), Some(0), "the ball did not bounce five times");
 }

@@ -2,7 +2,7 @@
 
 use dalembert_cli::Exit;
 use dalembert_tests::command::dalembert;
-use dalembert_tests::reference::{compare, number, read};
+use dalembert_tests::reference::{compare, number, numbers, read};
 use serde_json::{Map, Value, json};
 
 const TOLERANCE: f64 = 1e-12;
@@ -30,7 +30,13 @@ fn eval(model: &str, flags: &[&str], states: &[Value]) -> Vec<Value> {
     let mut arguments = vec!["eval", model];
     arguments.extend(flags);
     let finished = dalembert(&arguments, &Value::from(states.to_vec()).to_string());
-    assert_eq!(finished.exit, Exit::Reached, "{model}: {}\n{}", finished.errors, finished.output);
+    assert_eq!(
+        finished.exit,
+        Exit::Reached,
+        "{model}: {}\n{}",
+        finished.errors,
+        finished.output
+    );
     let printed: Value = serde_json::from_str(&finished.output).expect("JSON");
     printed.as_array().expect("one entry per state").clone()
 }
@@ -50,32 +56,92 @@ fn input(state: &Value, rates: &str) -> Value {
 #[derive(Default)]
 struct Mismatches {
     compared: usize,
+    /// Quantities that needed the allowance for rounded input.
+    conditioned: usize,
     found: Vec<String>,
 }
 
 impl Mismatches {
     fn check(&mut self, path: &str, actual: &Value, expected: &Value) {
         self.compared += 1;
-        self.found.extend(compare(path, actual, expected, TOLERANCE).err());
+        self.found
+            .extend(compare(path, actual, expected, TOLERANCE).err());
+    }
+
+    /// As [`Mismatches::check`], but a component that almost vanishes by cancellation may be off by what rounding
+    /// the given 30 digits to `f64` does to it: there no arithmetic on the rounded numbers does better.
+    fn check_conditioned(
+        &mut self,
+        path: &str,
+        actual: &Value,
+        expected: &Value,
+        spread: impl FnOnce() -> Vec<f64>,
+    ) {
+        self.compared += 1;
+        let Err(mismatch) = compare(path, actual, expected, TOLERANCE) else {
+            return;
+        };
+        let flat = |value: &Value| {
+            value
+                .as_array()
+                .map_or_else(|| vec![number(value)], |_| numbers(value))
+        };
+        let allowed =
+            |((a, e), spread): ((&f64, &f64), &f64)| (a - e).abs() <= TOLERANCE * e.abs() + spread;
+        let (actual, expected, spread) = (flat(actual), flat(expected), spread());
+        if !actual.iter().zip(&expected).zip(&spread).all(allowed) {
+            self.found.push(mismatch);
+        }
+        self.conditioned += 1;
     }
 
     fn finish(self, name: &str, least: usize) {
-        assert!(self.compared >= least, "{name}: only {} quantities compared", self.compared);
-        let shown = self.found.iter().take(40).cloned().collect::<Vec<_>>().join("\n");
-        assert!(self.found.is_empty(), "{name}: {} of {}\n{shown}", self.found.len(), self.compared);
+        assert!(
+            self.compared >= least,
+            "{name}: only {} quantities compared",
+            self.compared
+        );
+        let shown = self
+            .found
+            .iter()
+            .take(40)
+            .cloned()
+            .collect::<Vec<_>>()
+            .join("\n");
+        assert!(
+            self.conditioned <= 5,
+            "{name}: {} by cancellation",
+            self.conditioned
+        );
+        assert!(
+            self.found.is_empty(),
+            "{name}: {} of {}\n{shown}",
+            self.found.len(),
+            self.compared
+        );
     }
 }
 
 fn check_states(name: &str, file: &Value, list: &str, mismatches: &mut Mismatches) {
-    let Some(states) = file[list].as_array() else { return };
+    let Some(states) = file[list].as_array() else {
+        return;
+    };
     for rates in ["qdot", "p"] {
         let inputs: Vec<Value> = states.iter().map(|state| input(state, rates)).collect();
         for (k, (actual, expected)) in eval(name, &[], &inputs).iter().zip(states).enumerate() {
             for quantity in QUANTITIES {
                 // The global field's divergence with respect to omega^n is that of mu_C, on D* and off it.
-                let printed = if quantity == "divergence_omega_n" { "divergence_mu_C" } else { quantity };
+                let printed = if quantity == "divergence_omega_n" {
+                    "divergence_mu_C"
+                } else {
+                    quantity
+                };
                 if let Some(value) = expected.get(quantity) {
-                    mismatches.check(&format!("{list}[{k}].{quantity} from {rates}"), &actual[printed], value);
+                    mismatches.check(
+                        &format!("{list}[{k}].{quantity} from {rates}"),
+                        &actual[printed],
+                        value,
+                    );
                 }
             }
         }
@@ -101,30 +167,76 @@ fn check_impacts(name: &str, file: &Value, mismatches: &mut Mismatches) {
         }
         let moving = impact.get("gap_rate_minus").is_some();
         for (law, expected) in impact["laws"].as_object().expect("laws") {
-            let Some((law, flags)) = flags_of(law) else { continue };
-            let flags: Vec<&str> = flags.iter().map(String::as_str).collect();
-            let actual = &eval(name, &flags, std::slice::from_ref(&state))[0]["impacts"][surface];
+            let Some((law, flags)) = flags_of(law) else {
+                continue;
+            };
+            let results = |states: &[Value]| -> Vec<Value> {
+                let flags: Vec<&str> = flags.iter().map(String::as_str).collect();
+                let rows = eval(name, &flags, states);
+                let law = |row: &Value| row["impacts"][surface]["laws"][law].clone();
+                rows.iter().map(law).collect()
+            };
+            let actual = &results(std::slice::from_ref(&state))[0];
             for (theirs, ours) in RESULTS {
                 // For moving walls `dh(qdot)` is not the gap rate.
-                if let Some(value) = expected.get(theirs).filter(|_| !(moving && theirs.starts_with("dh("))) {
+                let applies = !(moving && theirs.starts_with("dh("));
+                if let Some(value) = expected.get(theirs).filter(|_| applies) {
                     let path = format!("impacts[{k}].{surface}.{law}.{theirs}");
-                    mismatches.check(&path, &actual["laws"][law][ours], value);
+                    let spread = || spread(&results(&neighbours(&state)), &actual[ours], ours);
+                    mismatches.check_conditioned(&path, &actual[ours], value, spread);
                 }
             }
         }
     }
 }
 
+/// The state with each of its numbers moved by one unit in the last place, one at a time.
+fn neighbours(state: &Value) -> Vec<Value> {
+    let mut moved = Vec::new();
+    for key in ["q", "qdot"] {
+        for i in 0..state[key].as_array().expect("numbers").len() {
+            let mut neighbour = state.clone();
+            neighbour[key][i] = number(&state[key][i]).next_up().into();
+            moved.push(neighbour);
+        }
+    }
+    moved
+}
+
+/// How much a result changes over neighbouring states, component by component.
+fn spread(neighbours: &[Value], actual: &Value, result: &str) -> Vec<f64> {
+    let flat = |value: &Value| {
+        value
+            .as_array()
+            .map_or_else(|| vec![number(value)], |_| numbers(value))
+    };
+    let actual = flat(actual);
+    let mut spread = vec![0.0; actual.len()];
+    for neighbour in neighbours {
+        for ((spread, a), b) in spread.iter_mut().zip(&actual).zip(flat(&neighbour[result])) {
+            *spread += (a - b).abs();
+        }
+    }
+    spread
+}
+
 /// The law's name on the command line, with the flags that ask for it.
 fn flags_of(law: &str) -> Option<(&str, Vec<String>)> {
-    for (prefix, ours) in [("elastic_family_e=", "restitution"), ("newton_e=", "newton")] {
+    for (prefix, ours) in [
+        ("elastic_family_e=", "restitution"),
+        ("newton_e=", "newton"),
+    ] {
         if let Some(coefficient) = law.strip_prefix(prefix) {
             let coefficient = number(&Value::from(coefficient)).to_string();
             return Some((ours, vec![format!("--{ours}"), coefficient]));
         }
     }
     // A family without a name on the command line.
-    if law.starts_with("nonholonomic_family_e=") { None } else { Some((law, Vec::new())) }
+    if law.starts_with("nonholonomic_family_e=") {
+        None
+    } else {
+        Some((law, Vec::new()))
+    }
 }
 
 fn check_file(name: &str, file: &str, least: usize) {

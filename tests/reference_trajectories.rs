@@ -8,10 +8,12 @@ use core::ops::ControlFlow;
 
 use dalembert::impacts::law::Law;
 use dalembert::{
-    Described, Dop853, DormandPrince5, Event, Impacting, Observer, Outcome, Run, Scene, SceneEffects, Simulation, Stepper,
-    System, Tolerance,
+    Described, Dop853, DormandPrince5, Event, Impacting, Observer, Outcome, Run, Scene,
+    SceneEffects, Simulation, Stepper, System, Tolerance,
 };
-use dalembert_models::{BouncingBall, ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk};
+use dalembert_models::{
+    BouncingBall, ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk,
+};
 use dalembert_tests::reference::{number, numbers, read};
 use serde_json::Value;
 
@@ -31,7 +33,13 @@ impl<Sys: System> Observer<Sys> for Impacts {
 }
 
 /// A run with a law on every surface, up to a number of impacts.
-fn run<S, Step>(system: &S, state: S::State, law: Law, count: usize, stepper: Step) -> (Impacts, Run<S::State>)
+fn run<S, Step>(
+    system: &S,
+    state: S::State,
+    law: Law,
+    count: usize,
+    stepper: Step,
+) -> (Impacts, Run<S::State>)
 where
     S: Described + Impacting + Scene,
     Step: Stepper<S>,
@@ -42,7 +50,9 @@ where
     }
     effects.set_impact_budget(Some(count as u64));
     let mut impacts = Impacts::default();
-    let run = Simulation::new(system, stepper, effects).run(0.0, state, 1e6, &mut impacts).expect("a start");
+    let run = Simulation::new(system, stepper, effects)
+        .run(0.0, state, 1e6, &mut impacts)
+        .expect("a start");
     (impacts, run)
 }
 
@@ -56,16 +66,35 @@ fn law_of(case: &Value) -> Law {
 
 /// The times of a case.
 fn times(case: &Value) -> Vec<f64> {
-    case["impacts"].as_array().expect("impacts").iter().map(|impact| number(&impact["t"])).collect()
+    case["impacts"]
+        .as_array()
+        .expect("impacts")
+        .iter()
+        .map(|impact| number(&impact["t"]))
+        .collect()
 }
 
 /// Asserts that the first impacts come at their times.
-fn assert_times(label: &str, impacts: &Impacts, case: &Value, first: usize, bound: impl Fn(usize) -> f64) {
+fn assert_times(
+    label: &str,
+    impacts: &Impacts,
+    case: &Value,
+    first: usize,
+    bound: impl Fn(usize) -> f64,
+) {
     let expected = times(case);
-    assert!(impacts.times.len() >= first.min(expected.len()), "{label}: {} impacts", impacts.times.len());
+    assert!(
+        impacts.times.len() >= first.min(expected.len()),
+        "{label}: {} impacts",
+        impacts.times.len()
+    );
     for (k, (actual, expected)) in impacts.times.iter().zip(&expected).take(first).enumerate() {
         let error = (actual - expected).abs();
-        assert!(error < bound(k), "{label}: impact {} at {actual}, not {expected}: {error:.1e}", k + 1);
+        assert!(
+            error < bound(k),
+            "{label}: impact {} at {actual}, not {expected}: {error:.1e}",
+            k + 1
+        );
     }
 }
 
@@ -76,17 +105,34 @@ fn billionth(_: usize) -> f64 {
 
 fn disk(case: &Value) -> (RollingDisk, <RollingDisk as dalembert::VectorField>::State) {
     let mut disk = RollingDisk::default();
-    (disk.ta, disk.tb) = (number(&case["parameters"]["ta"]), number(&case["parameters"]["tb"]));
+    (disk.ta, disk.tb) = (
+        number(&case["parameters"]["ta"]),
+        number(&case["parameters"]["tb"]),
+    );
     let at = |name: &str| number(&case["initial"][name]);
     let (phi, roll) = (at("phi"), at("theta_dot"));
-    let qdot = [disk.R * phi.cos() * roll, disk.R * phi.sin() * roll, roll, at("phi_dot")];
-    let state = disk.state(0.0, &[at("x"), at("y"), at("theta"), phi].into(), &qdot.into()).expect("a state");
+    let qdot = [
+        disk.R * phi.cos() * roll,
+        disk.R * phi.sin() * roll,
+        roll,
+        at("phi_dot"),
+    ];
+    let state = disk
+        .state(
+            0.0,
+            &[at("x"), at("y"), at("theta"), phi].into(),
+            &qdot.into(),
+        )
+        .expect("a state");
     (disk, state)
 }
 
 #[test]
 fn the_rolling_disk_meets_its_impacts() {
-    for case in read("rolling_disk_trajectories")["cases"].as_array().expect("cases") {
+    for case in read("rolling_disk_trajectories")["cases"]
+        .as_array()
+        .expect("cases")
+    {
         let label = format!("{} {}", case["label"], case["law"]);
         let (disk, state) = disk(case);
         let (impacts, _) = run(&disk, state, law_of(case), 20, dop853(1e-13));
@@ -96,8 +142,17 @@ fn the_rolling_disk_meets_its_impacts() {
             (true, _) => assert_grazing_times(&label, &impacts, case),
             (false, _) => assert_times(&label, &impacts, case, 5, billionth),
         }
-        for (impact, surface) in case["impacts"].as_array().expect("impacts").iter().zip(&impacts.surfaces).take(5) {
-            assert_eq!(impact["edge"], RollingDisk::DESCRIPTION.surfaces[*surface].name);
+        for (impact, surface) in case["impacts"]
+            .as_array()
+            .expect("impacts")
+            .iter()
+            .zip(&impacts.surfaces)
+            .take(5)
+        {
+            assert_eq!(
+                impact["edge"],
+                RollingDisk::DESCRIPTION.surfaces[*surface].name
+            );
         }
     }
 }
@@ -114,41 +169,67 @@ fn assert_grazing_times(label: &str, impacts: &Impacts, case: &Value) {
 }
 
 /// The elliptical table amplifies errors; a hand-written DOP853 in velocities reaches these errors at impact 20.
-const BY_HAND: [(f64, f64); 5] = [(1e-6, 9.7e-2), (1e-8, 5.2e-5), (1e-10, 1.0e-6), (1e-12, 6.2e-8), (1e-14, 6.4e-10)];
+const BY_HAND: [(f64, f64); 5] = [
+    (1e-6, 9.7e-2),
+    (1e-8, 5.2e-5),
+    (1e-10, 1.0e-6),
+    (1e-12, 6.2e-8),
+    (1e-14, 6.4e-10),
+];
 
 #[test]
 fn the_disk_on_the_ellipse_is_no_worse_than_ten_times_a_hand_written_integrator() {
     let file = read("rolling_disk_trajectories");
     let case = &file["cases"][2];
-    assert_eq!((case["law"].as_str(), number(&case["parameters"]["ta"])), (Some("elastic"), 0.15));
+    assert_eq!(
+        (case["law"].as_str(), number(&case["parameters"]["ta"])),
+        (Some("elastic"), 0.15)
+    );
     let (disk, state) = disk(case);
     let expected = times(case)[19];
     for (tol, by_hand) in BY_HAND {
         let (impacts, _) = run(&disk, state, Law::Elastic, 20, dop853(tol));
         let error = (impacts.times[19] - expected).abs();
         println!("tol {tol:e}: impact 20 off by {error:.2e}, by hand {by_hand:.1e}");
-        assert!(error <= 10.0 * by_hand, "tol {tol:e}: {error:e} against {by_hand:e}");
+        assert!(
+            error <= 10.0 * by_hand,
+            "tol {tol:e}: {error:e} against {by_hand:e}"
+        );
     }
 }
 
-fn sleigh_state(case: &Value) -> (ChaplyginSleigh, <ChaplyginSleigh as dalembert::VectorField>::State) {
+fn sleigh_state(
+    case: &Value,
+) -> (
+    ChaplyginSleigh,
+    <ChaplyginSleigh as dalembert::VectorField>::State,
+) {
     let sleigh = ChaplyginSleigh::default();
     let initial = numbers(&case["initial"]);
-    let [x, y, theta, v, w] = initial[..] else { panic!("five numbers") };
+    let [x, y, theta, v, w] = initial[..] else {
+        panic!("five numbers")
+    };
     let qdot = [v * theta.cos(), v * theta.sin(), w];
-    let state = sleigh.state(0.0, &[x, y, theta].into(), &qdot.into()).expect("a state");
+    let state = sleigh
+        .state(0.0, &[x, y, theta].into(), &qdot.into())
+        .expect("a state");
     (sleigh, state)
 }
 
 #[test]
 fn the_sleigh_billiard_meets_its_impacts() {
-    for case in read("chaplygin_sleigh_trajectories")["billiard"].as_array().expect("cases") {
+    for case in read("chaplygin_sleigh_trajectories")["billiard"]
+        .as_array()
+        .expect("cases")
+    {
         let (sleigh, state) = sleigh_state(case);
         let count = times(case).len();
         let (impacts, run) = run(&sleigh, state, law_of(case), count, dop853(1e-13));
         let label = format!("sleigh {} {}", case["law"], case["initial"]);
         assert_times(&label, &impacts, case, 5, billionth);
-        let infeasible = case["stopped_because_law_infeasible"].as_bool().expect("a flag");
+        let infeasible = case["stopped_because_law_infeasible"]
+            .as_bool()
+            .expect("a flag");
         let penetrating = matches!(run.outcome, Outcome::StillPenetrating { .. });
         assert_eq!(penetrating, infeasible, "{label}: {}", run.outcome);
     }
@@ -156,14 +237,22 @@ fn the_sleigh_billiard_meets_its_impacts() {
 
 #[test]
 fn the_free_sleigh_passes_its_checkpoints() {
-    for case in read("chaplygin_sleigh_trajectories")["free"].as_array().expect("cases") {
+    for case in read("chaplygin_sleigh_trajectories")["free"]
+        .as_array()
+        .expect("cases")
+    {
         let (sleigh, state) = sleigh_state(case);
         for checkpoint in case["checkpoints"].as_array().expect("checkpoints") {
             let t = number(&checkpoint["t"]);
-            let run = Simulation::new(&sleigh, dop853(1e-13), ()).run(0.0, state, t, &mut ()).expect("a start");
+            let run = Simulation::new(&sleigh, dop853(1e-13), ())
+                .run(0.0, state, t, &mut ())
+                .expect("a start");
             let expected = numbers(&checkpoint["state"]);
             for (actual, expected) in run.state.iter().zip(&expected).take(3) {
-                assert!((actual - expected).abs() < 1e-9, "t = {t}: {actual} for {expected}");
+                assert!(
+                    (actual - expected).abs() < 1e-9,
+                    "t = {t}: {actual} for {expected}"
+                );
             }
         }
     }
@@ -171,39 +260,81 @@ fn the_free_sleigh_passes_its_checkpoints() {
 
 #[test]
 fn the_rolling_ball_meets_its_impacts() {
-    for case in read("rolling_ball_trajectories")["cases"].as_array().expect("cases") {
+    for case in read("rolling_ball_trajectories")["cases"]
+        .as_array()
+        .expect("cases")
+    {
         let ball = RollingBallEuler::default();
         let q: [f64; 5] = numbers(&case["initial_q"]).try_into().expect("five");
-        let [phi_dot, theta_dot, psi_dot] = numbers(&case["initial_independent_qdot(phi,theta,psi)"])[..] else {
+        let [phi_dot, theta_dot, psi_dot] =
+            numbers(&case["initial_independent_qdot(phi,theta,psi)"])[..]
+        else {
             panic!("three numbers")
         };
         let named = [0.0, 0.0, 1.0, 1.0, 1.0].into();
         let given = [0.0, 0.0, phi_dot, theta_dot, psi_dot].into();
-        let qdot = ball.complete_velocity(0.0, &q.into(), &given, &named).expect("velocities");
+        let qdot = ball
+            .complete_velocity(0.0, &q.into(), &given, &named)
+            .expect("velocities");
         let state = ball.state(0.0, &q.into(), &qdot).expect("a state");
         let (impacts, run) = run(&ball, state, law_of(case), 12, dop853(1e-13));
-        assert_eq!(run.outcome, Outcome::ImpactBudget, "the chart is not left in these cases");
-        assert_times(&format!("ball {}", case["law"]), &impacts, case, 12, billionth);
+        assert_eq!(
+            run.outcome,
+            Outcome::ImpactBudget,
+            "the chart is not left in these cases"
+        );
+        assert_times(
+            &format!("ball {}", case["law"]),
+            &impacts,
+            case,
+            12,
+            billionth,
+        );
     }
 }
 
 #[test]
 fn the_point_billiard_meets_its_impacts() {
-    for case in read("point_billiard_trajectories")["cases"].as_array().expect("cases") {
-        let table = PointBilliard { ta: number(&case["ta"]), tb: number(&case["tb"]), ..PointBilliard::default() };
-        let [x, y, vx, vy] = numbers(&case["initial"])[..] else { panic!("four numbers") };
-        let state = table.state(0.0, &[x, y].into(), &[vx, vy].into()).expect("a state");
+    for case in read("point_billiard_trajectories")["cases"]
+        .as_array()
+        .expect("cases")
+    {
+        let table = PointBilliard {
+            ta: number(&case["ta"]),
+            tb: number(&case["tb"]),
+            ..PointBilliard::default()
+        };
+        let [x, y, vx, vy] = numbers(&case["initial"])[..] else {
+            panic!("four numbers")
+        };
+        let state = table
+            .state(0.0, &[x, y].into(), &[vx, vy].into())
+            .expect("a state");
         let (impacts, _) = run(&table, state, Law::Elastic, 25, dop853(1e-13));
-        assert_times(&format!("point billiard {}", case["ta"]), &impacts, case, 25, billionth);
+        assert_times(
+            &format!("point billiard {}", case["ta"]),
+            &impacts,
+            case,
+            25,
+            billionth,
+        );
     }
 }
 
 #[test]
 fn the_bouncing_ball_meets_its_impacts() {
-    for case in read("bouncing_ball_trajectories")["cases"].as_array().expect("cases") {
-        let ball = BouncingBall { m: number(&case["m"]), g: number(&case["g"]) };
+    for case in read("bouncing_ball_trajectories")["cases"]
+        .as_array()
+        .expect("cases")
+    {
+        let ball = BouncingBall {
+            m: number(&case["m"]),
+            g: number(&case["g"]),
+        };
         let (x0, v0, e) = (number(&case["x0"]), number(&case["v0"]), number(&case["e"]));
-        let state = ball.state(0.0, &[x0].into(), &[v0].into()).expect("a state");
+        let state = ball
+            .state(0.0, &[x0].into(), &[v0].into())
+            .expect("a state");
         let count = times(case).len();
         let (impacts, run) = run(&ball, state, Law::Restitution(e), count, dop853(1e-13));
         assert_times(&format!("ball e = {e}"), &impacts, case, count, billionth);
@@ -223,7 +354,12 @@ where
             let (sleigh, state) = sleigh_state(case);
             let (impacts, _) = run(&sleigh, state, Law::Elastic, 8, stepper(tol));
             let expected = times(case);
-            impacts.times.into_iter().zip(expected).map(|(a, e)| (a - e).abs()).collect::<Vec<_>>()
+            impacts
+                .times
+                .into_iter()
+                .zip(expected)
+                .map(|(a, e)| (a - e).abs())
+                .collect::<Vec<_>>()
         });
         errors.fold(0.0, f64::max)
     };
@@ -232,10 +368,18 @@ where
 
 /// The slope of log error over log tolerance, by least squares.
 fn slope(tolerances: &[f64], errors: &[f64]) -> f64 {
-    let points: Vec<(f64, f64)> = tolerances.iter().zip(errors).map(|(t, e)| (t.log10(), e.log10())).collect();
+    let points: Vec<(f64, f64)> = tolerances
+        .iter()
+        .zip(errors)
+        .map(|(t, e)| (t.log10(), e.log10()))
+        .collect();
     let n = points.len() as f64;
-    let (mx, my) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
-    points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>() / points.iter().map(|p| (p.0 - mx).powi(2)).sum::<f64>()
+    let (mx, my) = (
+        points.iter().map(|p| p.0).sum::<f64>() / n,
+        points.iter().map(|p| p.1).sum::<f64>() / n,
+    );
+    points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>()
+        / points.iter().map(|p| (p.0 - mx).powi(2)).sum::<f64>()
 }
 
 /// With error control per step an error estimate of order q makes the global error fall like tol^(p/(q + 1)): 8/8
@@ -244,10 +388,15 @@ fn slope(tolerances: &[f64], errors: &[f64]) -> f64 {
 fn errors_fall_with_the_tolerance() {
     let tolerances = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
     let high = ladder(&tolerances, dop853);
-    let low = ladder(&tolerances, |tol| DormandPrince5::new(Tolerance::new(tol).expect("a tolerance")));
+    let low = ladder(&tolerances, |tol| {
+        DormandPrince5::new(Tolerance::new(tol).expect("a tolerance"))
+    });
     for (name, errors) in [("dop853", high), ("dopri5", low)] {
         let slope = slope(&tolerances, &errors);
         println!("{name}: {errors:?}, slope {slope:.2}");
-        assert!((0.75..1.35).contains(&slope), "{name}: slope {slope}, {errors:?}");
+        assert!(
+            (0.75..1.35).contains(&slope),
+            "{name}: slope {slope}, {errors:?}"
+        );
     }
 }

@@ -69,7 +69,10 @@ impl fmt::Display for ReportError {
         match self {
             Self::Tokens(error) => write!(f, "not a sequence of tokens: {error}"),
             Self::Declaration(diagnostics) => {
-                let messages: Vec<&str> = diagnostics.iter().map(|diagnostic| diagnostic.message()).collect();
+                let messages: Vec<&str> = diagnostics
+                    .iter()
+                    .map(|diagnostic| diagnostic.message())
+                    .collect();
                 f.write_str(&messages.join("\n"))
             }
         }
@@ -83,12 +86,17 @@ impl std::error::Error for ReportError {}
 /// # Errors
 /// [`ReportError`].
 pub fn report(source: &str) -> Result<Report, ReportError> {
-    let tokens: TokenStream = source.parse().map_err(|error: LexError| ReportError::Tokens(error.to_string()))?;
+    let tokens: TokenStream = source
+        .parse()
+        .map_err(|error: LexError| ReportError::Tokens(error.to_string()))?;
     let spec = spec::parse(tokens).map_err(ReportError::Declaration)?;
     let mut model = model::check(&spec).map_err(ReportError::Declaration)?;
     let derivation = mechanics::derive(&mut model);
     let program = program::lower(&model, &derivation);
-    let mut writer = Writer { model: &mut model, derivation: &derivation };
+    let mut writer = Writer {
+        model: &mut model,
+        derivation: &derivation,
+    };
     let mut sections = vec![
         writer.declared(),
         writer.lagrangian(),
@@ -102,7 +110,12 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
     sections.retain(|section| !section.items.is_empty());
     Ok(Report {
         name: model.snake_name.clone(),
-        documentation: model.documentation.iter().map(|line| line.trim()).collect::<Vec<_>>().join("\n"),
+        documentation: model
+            .documentation
+            .iter()
+            .map(|line| line.trim())
+            .collect::<Vec<_>>()
+            .join("\n"),
         sections,
     })
 }
@@ -118,8 +131,16 @@ impl Writer<'_> {
         [self.model.pool.text(tidy), self.model.pool.latex(tidy)]
     }
 
-    fn formula(&mut self, text: impl Into<String>, latex: impl Into<String>, right: ExprId) -> Item {
-        Item::Formula { left: [text.into(), latex.into()], right: self.print(right) }
+    fn formula(
+        &mut self,
+        text: impl Into<String>,
+        latex: impl Into<String>,
+        right: ExprId,
+    ) -> Item {
+        Item::Formula {
+            left: [text.into(), latex.into()],
+            right: self.print(right),
+        }
     }
 
     fn is_zero(&self, expression: ExprId) -> bool {
@@ -142,12 +163,18 @@ impl Writer<'_> {
                 Topology::Line => format!("coordinate {name}: line"),
                 Topology::Angle => format!("coordinate {name}: angle"),
                 Topology::Interval { low, high } => {
-                    format!("coordinate {name}: in ({}, {})", pool.text(low), pool.text(high))
+                    format!(
+                        "coordinate {name}: in ({}, {})",
+                        pool.text(low),
+                        pool.text(high)
+                    )
                 }
             }));
         }
         for parameter in &self.model.parameters {
-            let default = parameter.default.map(|value| format!(", default {}", self.model.pool.text(value)));
+            let default = parameter
+                .default
+                .map(|value| format!(", default {}", self.model.pool.text(value)));
             let demand = match &parameter.assumption {
                 model::Assumption::Finite => String::new(),
                 model::Assumption::Positive => " > 0".into(),
@@ -156,17 +183,29 @@ impl Writer<'_> {
                 model::Assumption::Within { low, high } => format!(" in [{low}, {high}]"),
             };
             let name = &parameter.name.display;
-            items.push(Item::Words(format!("parameter {name}{demand}{}", default.unwrap_or_default())));
+            items.push(Item::Words(format!(
+                "parameter {name}{demand}{}",
+                default.unwrap_or_default()
+            )));
         }
-        Section { title: "Declared", items }
+        Section {
+            title: "Declared",
+            items,
+        }
     }
 
     fn lagrangian(&mut self) -> Section {
         let whole = self.model.lagrangian.whole;
         let mut items = vec![self.formula("L", "L", whole)];
         let metric = self.model.lagrangian.metric.clone();
-        let rows = metric.iter().map(|row| row.iter().map(|&entry| self.print(entry)).collect()).collect();
-        items.push(Item::Matrix { left: ["g".into(), "g".into()], rows });
+        let rows = metric
+            .iter()
+            .map(|row| row.iter().map(|&entry| self.print(entry)).collect())
+            .collect();
+        items.push(Item::Matrix {
+            left: ["g".into(), "g".into()],
+            rows,
+        });
         for (i, entry) in self.model.lagrangian.linear.clone().into_iter().enumerate() {
             if !self.is_zero(entry) {
                 let [name, latex] = self.coordinate(i);
@@ -175,7 +214,10 @@ impl Writer<'_> {
         }
         let potential = self.model.lagrangian.potential;
         items.push(self.formula("V", "V", potential));
-        Section { title: "Lagrangian L = g(qdot, qdot)/2 + A.qdot - V", items }
+        Section {
+            title: "Lagrangian L = g(qdot, qdot)/2 + A.qdot - V",
+            items,
+        }
     }
 
     fn motion(&mut self) -> Section {
@@ -189,7 +231,11 @@ impl Writer<'_> {
             let drift = self.derivation.field.drift[i];
             if !self.is_zero(drift) {
                 let [name, latex] = self.coordinate(i);
-                items.push(self.formula(format!("drift_{name}"), format!("(\\dot g\\dot q + \\dot A)_{{{latex}}}"), drift));
+                items.push(self.formula(
+                    format!("drift_{name}"),
+                    format!("(\\dot g\\dot q + \\dot A)_{{{latex}}}"),
+                    drift,
+                ));
             }
         }
         let title = match self.derivation.constraints.is_empty() {
@@ -207,21 +253,40 @@ impl Writer<'_> {
             let (form, affine) = (constraint.form.clone(), constraint.affine);
             let (curvature, level) = (constraint.curvature, constraint.level);
             let row = form.iter().map(|&entry| self.print(entry)).collect();
-            let label = |symbol: &str| [format!("{symbol}[{name}]"), format!("{symbol}^{{\\text{{{}}}}}", escape(&name))];
+            let label = |symbol: &str| {
+                [
+                    format!("{symbol}[{name}]"),
+                    format!("{symbol}^{{\\text{{{}}}}}", escape(&name)),
+                ]
+            };
             let [text, latex] = label("eta");
-            items.push(Item::Matrix { left: [text, format!("\\{latex}")], rows: vec![row] });
+            items.push(Item::Matrix {
+                left: [text, format!("\\{latex}")],
+                rows: vec![row],
+            });
             if !self.is_zero(affine) {
                 let [text, latex] = label("eta_0");
                 items.push(self.formula(text, format!("\\{latex}"), affine));
             }
             let [text, latex] = label("curvature");
-            items.push(self.formula(text, format!("\\text{{curvature}}{}", &latex["curvature".len()..]), curvature));
+            items.push(self.formula(
+                text,
+                format!("\\text{{curvature}}{}", &latex["curvature".len()..]),
+                curvature,
+            ));
             if let Some(level) = level {
                 let [text, latex] = label("level");
-                items.push(self.formula(text, format!("\\text{{level}}{}", &latex["level".len()..]), level));
+                items.push(self.formula(
+                    text,
+                    format!("\\text{{level}}{}", &latex["level".len()..]),
+                    level,
+                ));
             }
         }
-        Section { title: "Constraints: m^ab lambda_b = -[ W^a.(f - drift) + curvature_a ], W^a = g^-1 eta^a", items }
+        Section {
+            title: "Constraints: m^ab lambda_b = -[ W^a.(f - drift) + curvature_a ], W^a = g^-1 eta^a",
+            items,
+        }
     }
 
     fn surfaces(&mut self) -> Section {
@@ -236,15 +301,29 @@ impl Writer<'_> {
             let subscript = format!("_{{\\text{{{}}}}}", escape(&name));
             items.push(self.formula(format!("h[{name}]"), format!("h{subscript}"), gap));
             let row = form.iter().map(|&entry| self.print(entry)).collect();
-            items.push(Item::Matrix { left: [format!("dh[{name}]"), format!("dh{subscript}")], rows: vec![row] });
+            items.push(Item::Matrix {
+                left: [format!("dh[{name}]"), format!("dh{subscript}")],
+                rows: vec![row],
+            });
             if !self.is_zero(rate) {
-                items.push(self.formula(format!("d_t h[{name}]"), format!("\\partial_t h{subscript}"), rate));
+                items.push(self.formula(
+                    format!("d_t h[{name}]"),
+                    format!("\\partial_t h{subscript}"),
+                    rate,
+                ));
             }
             for condition in conditions {
-                items.push(self.formula(format!("when[{name}]"), format!("\\text{{when}}{subscript}"), condition));
+                items.push(self.formula(
+                    format!("when[{name}]"),
+                    format!("\\text{{when}}{subscript}"),
+                    condition,
+                ));
             }
         }
-        Section { title: "Impacts: p+ = p + eps pi_D^* dh", items }
+        Section {
+            title: "Impacts: p+ = p + eps pi_D^* dh",
+            items,
+        }
     }
 
     fn law(&self, law: Law) -> String {
@@ -260,8 +339,12 @@ impl Writer<'_> {
     }
 
     fn declared_outputs(&mut self) -> Section {
-        let outputs: Vec<_> =
-            self.model.outputs.iter().map(|output| (output.name.display.clone(), output.value)).collect();
+        let outputs: Vec<_> = self
+            .model
+            .outputs
+            .iter()
+            .map(|output| (output.name.display.clone(), output.value))
+            .collect();
         let items = outputs
             .into_iter()
             .map(|(name, value)| {
@@ -269,7 +352,10 @@ impl Writer<'_> {
                 self.formula(name, latex, value)
             })
             .collect();
-        Section { title: "Outputs", items }
+        Section {
+            title: "Outputs",
+            items,
+        }
     }
 }
 
@@ -281,18 +367,32 @@ fn escape(name: &str) -> String {
 /// Operation counts of the emitted functions.
 fn work(program: &Program) -> Section {
     let line = |name: &str, cost: &Cost| Item::Words(format!("{name}: {cost}"));
-    let mut items = vec![line("rate", &program.rate.cost), line("energy", &program.energy.cost)];
+    let mut items = vec![
+        line("rate", &program.rate.cost),
+        line("energy", &program.energy.cost),
+    ];
     if let Some(constrained) = &program.constrained {
         items.push(line("multipliers", &constrained.multipliers.cost));
         items.push(line("project", &constrained.project.cost));
     }
     if let Some(impacting) = &program.impacting {
         items.push(line("gaps", &impacting.gaps.cost));
-        items.extend(impacting.contacts.iter().map(|contact| line("contact", &contact.cost)));
+        items.extend(
+            impacting
+                .contacts
+                .iter()
+                .map(|contact| line("contact", &contact.cost)),
+        );
     }
-    Section { title: "Work of the emitted functions", items }
+    Section {
+        title: "Work of the emitted functions",
+        items,
+    }
 }
 
 fn notes(model: &Model) -> Section {
-    Section { title: "Notes", items: model.notes.iter().cloned().map(Item::Words).collect() }
+    Section {
+        title: "Notes",
+        items: model.notes.iter().cloned().map(Item::Words).collect(),
+    }
 }

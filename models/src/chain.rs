@@ -49,7 +49,9 @@ mod tests {
         let state = chain.state(0.0, &q, &qdot).unwrap();
         let (mut rate, mut expected) = (state, state);
         chain.rate(0.0, &state, &mut rate).unwrap();
-        pendulum.rate(0.0, &pendulum.state(0.0, &q, &qdot).unwrap(), &mut expected).unwrap();
+        pendulum
+            .rate(0.0, &pendulum.state(0.0, &q, &qdot).unwrap(), &mut expected)
+            .unwrap();
         assert!((rate - expected).amax() < 1e-13);
     }
 }

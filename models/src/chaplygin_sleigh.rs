@@ -43,11 +43,20 @@ mod tests {
 
     #[test]
     fn the_free_sleigh_follows_tanh_and_sech() {
-        let sleigh = ChaplyginSleigh { m: 1.3, I: 0.7, a: 0.4, ..ChaplyginSleigh::default() };
+        let sleigh = ChaplyginSleigh {
+            m: 1.3,
+            I: 0.7,
+            a: 0.4,
+            ..ChaplyginSleigh::default()
+        };
         let (v0, w0) = (-1.0, 0.5);
-        let state = sleigh.state(0.0, &[0.0; 3].into(), &[v0, 0.0, w0].into()).unwrap();
+        let state = sleigh
+            .state(0.0, &[0.0; 3].into(), &[v0, 0.0, w0].into())
+            .unwrap();
         let stepper = Dop853::new(Tolerance::new(1e-13).unwrap());
-        let run = Simulation::new(&sleigh, stepper, ()).run(0.0, state, 20.0, &mut ()).unwrap();
+        let run = Simulation::new(&sleigh, stepper, ())
+            .run(0.0, state, 20.0, &mut ())
+            .unwrap();
         let qdot = sleigh.velocity(20.0, &run.state).unwrap();
         let theta = run.state[2];
         let speed = qdot[0] * theta.cos() + qdot[1] * theta.sin();

@@ -39,7 +39,9 @@ mod tests {
     fn horizontal_rods_at_rest_fall_as_a_beam_on_a_pivot() {
         let pendulum = DoublePendulum::default();
         let quarter = core::f64::consts::FRAC_PI_2;
-        let state = pendulum.state(0.0, &[quarter, quarter].into(), &[0.0, 0.0].into()).unwrap();
+        let state = pendulum
+            .state(0.0, &[quarter, quarter].into(), &[0.0, 0.0].into())
+            .unwrap();
         let mut rate = state;
         pendulum.rate(0.0, &state, &mut rate).unwrap();
         // pdot = dL/dq: the torques -(m1 + m2) g l1 and -m2 g l2.

@@ -28,7 +28,9 @@ mod tests {
         let oscillator = HarmonicOscillator { m: 2.0, k: 8.0 };
         let state = oscillator.state(0.0, &[1.0].into(), &[0.0].into()).unwrap();
         let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
-        let run = Simulation::new(&oscillator, stepper, ()).run(0.0, state, 10.0, &mut ()).unwrap();
+        let run = Simulation::new(&oscillator, stepper, ())
+            .run(0.0, state, 10.0, &mut ())
+            .unwrap();
         assert!((run.state[0] - 20.0_f64.cos()).abs() < 1e-10);
     }
 }

@@ -32,9 +32,20 @@ mod tests {
     #[test]
     fn a_head_on_reflection_reverses_the_velocity() {
         let table = PointBilliard::default();
-        let mut state = table.state_unchecked(0.0, &[1.5, 0.0].into(), &[2.0, 0.0].into()).unwrap();
-        let contact = table.contact(point_billiard::surface::WALL, 0.0, &state).unwrap();
-        table.kick(0.0, &mut state, contact.impulse(Law::Elastic), &contact.direction).unwrap();
+        let mut state = table
+            .state_unchecked(0.0, &[1.5, 0.0].into(), &[2.0, 0.0].into())
+            .unwrap();
+        let contact = table
+            .contact(point_billiard::surface::WALL, 0.0, &state)
+            .unwrap();
+        table
+            .kick(
+                0.0,
+                &mut state,
+                contact.impulse(Law::Elastic),
+                &contact.direction,
+            )
+            .unwrap();
         assert!((state[2] + 2.0).abs() < 1e-14 && state[3].abs() < 1e-14);
     }
 }

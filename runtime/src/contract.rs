@@ -7,7 +7,9 @@ use crate::impacts::law::{Contact, Law};
 use crate::state::StateVector;
 
 /// A first-order system of ordinary differential equations on a state of fixed size.
-#[diagnostic::on_unimplemented(message = "`{Self}` has no vector field: declare it with `dalembert::model!`")]
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no vector field: declare it with `dalembert::model!`"
+)]
 pub trait VectorField {
     /// The state; its components mean what the system says.
     type State: StateVector;
@@ -29,7 +31,9 @@ pub trait VectorField {
 }
 
 /// A mechanical system: a state with positions, velocities, momenta and an energy.
-#[diagnostic::on_unimplemented(message = "`{Self}` is not a mechanical system: declare a `lagrangian` in its `model!`")]
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a mechanical system: declare a `lagrangian` in its `model!`"
+)]
 pub trait System: VectorField {
     /// N numbers, one per coordinate, in the order of declaration: q, qdot or p.
     type Vector: StateVector;
@@ -53,13 +57,23 @@ pub trait System: VectorField {
     ///
     /// # Errors
     /// [`Fault`] where the state cannot be formed.
-    fn state_unchecked(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<Self::State, Fault>;
+    fn state_unchecked(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, Fault>;
 
     /// The state with these positions and momenta, taken as they are.
     ///
     /// # Errors
     /// [`Fault`] where the state cannot be formed.
-    fn state_from_momenta(&self, t: f64, q: &Self::Vector, p: &Self::Vector) -> Result<Self::State, Fault>;
+    fn state_from_momenta(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        p: &Self::Vector,
+    ) -> Result<Self::State, Fault>;
 
     /// Kinetic plus potential energy `1/2 g(qdot, qdot) + V`.
     ///
@@ -71,7 +85,13 @@ pub trait System: VectorField {
     ///
     /// # Errors
     /// [`Fault`], for states that do not hold momenta themselves.
-    fn kick(&self, t: f64, state: &mut Self::State, size: f64, direction: &Self::Vector) -> Result<(), Fault>;
+    fn kick(
+        &self,
+        t: f64,
+        state: &mut Self::State,
+        size: f64,
+        direction: &Self::Vector,
+    ) -> Result<(), Fault>;
 
     /// Checks every parameter against its declaration.
     ///
@@ -127,7 +147,12 @@ pub trait System: VectorField {
     /// # Errors
     /// [`StateError`]: a parameter against its declaration, a number that is not finite, a coordinate
     /// outside its chart, a constraint violated by more than 1e-9 of the sum of its absolute terms.
-    fn state(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<Self::State, StateError> {
+    fn state(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, StateError> {
         let state = self.checked(t, q, qdot)?;
         self.admit(t, &state)?;
         Ok(state)
@@ -137,7 +162,12 @@ pub trait System: VectorField {
     ///
     /// # Errors
     /// As [`System::state`], without `OffConstraint`.
-    fn state_projected(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<Self::State, StateError> {
+    fn state_projected(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, StateError> {
         let mut state = self.checked(t, q, qdot)?;
         self.project(t, &mut state)?;
         Ok(state)
@@ -147,7 +177,12 @@ pub trait System: VectorField {
     ///
     /// # Errors
     /// As [`System::state`], without `OffConstraint`.
-    fn checked(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<Self::State, StateError> {
+    fn checked(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, StateError> {
         self.check_parameters()?;
         let components = q.as_slice().iter().chain(qdot.as_slice());
         if let Some(component) = components.clone().position(|value| !value.is_finite()) {
@@ -162,7 +197,9 @@ pub trait System: VectorField {
 }
 
 /// A system with constraints `eta^a(qdot) + eta^a_0 = 0`.
-#[diagnostic::on_unimplemented(message = "`{Self}` has no constraints: declare `constraints {{ .. }}` in its `model!`")]
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no constraints: declare `constraints {{ .. }}` in its `model!`"
+)]
 pub trait Constrained: System {
     /// M numbers, one per constraint, in the order of declaration.
     type Multipliers: StateVector;
@@ -182,10 +219,30 @@ pub trait Constrained: System {
     ///
     /// # Errors
     /// [`Fault`].
-    fn residuals(&self, t: f64, state: &Self::State) -> Result<(Self::Multipliers, Self::Multipliers), Fault>;
+    fn residuals(
+        &self,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<(Self::Multipliers, Self::Multipliers), Fault>;
 
     /// The forms `eta^a` (M rows of N, row after row) and their affine parts `eta^a_0` (M) at a position.
-    fn constraint_forms(&self, t: f64, q: &Self::Vector, forms: &mut [f64], affine: &mut Self::Multipliers);
+    fn constraint_forms(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        forms: &mut [f64],
+        affine: &mut Self::Multipliers,
+    );
+
+    /// Brings the velocity back to the constraints after a step. Unlike [`System::project`] it need not move it as
+    /// little as possible: where some velocities follow from the others at every state, those are recomputed
+    /// and the others kept to the last digit.
+    ///
+    /// # Errors
+    /// [`Fault`]; the state is unchanged then.
+    fn restore(&self, t: f64, state: &mut Self::State) -> Result<(), Fault> {
+        self.project(t, state)
+    }
 
     /// The position-level values `f^k(t, q)` of the integrable constraints; the motion keeps them.
     fn levels(&self, t: f64, q: &Self::Vector) -> Self::Levels;
@@ -195,11 +252,18 @@ pub trait Constrained: System {
     ///
     /// # Errors
     /// [`Fault`].
-    fn level_correction(&self, t: f64, q: &Self::Vector, excess: &Self::Levels) -> Result<Self::Vector, Fault>;
+    fn level_correction(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        excess: &Self::Levels,
+    ) -> Result<Self::Vector, Fault>;
 }
 
 /// A system with impact surfaces `h_s >= 0`.
-#[diagnostic::on_unimplemented(message = "`{Self}` has no impact surfaces: declare `impacts {{ .. }}` in its `model!`")]
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no impact surfaces: declare `impacts {{ .. }}` in its `model!`"
+)]
 pub trait Impacting: System {
     /// S numbers, one per surface, in the order of declaration.
     type Gaps: StateVector;
@@ -226,7 +290,12 @@ pub trait Impacting: System {
     ///
     /// # Errors
     /// [`Fault`]; [`Fault::SingularSurface`] where `dh(pi_D grad h)` is not positive.
-    fn contact(&self, surface: usize, t: f64, state: &Self::State) -> Result<Contact<Self::Vector>, Fault>;
+    fn contact(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Contact<Self::Vector>, Fault>;
 }
 
 /// A system whose divergence with respect to the invariant-volume candidate `mu_C` was derived.

@@ -150,7 +150,9 @@ pub struct Description {
 }
 
 /// A model's self-description. Implemented by `model!` for every model.
-#[diagnostic::on_unimplemented(message = "`{Self}` is not a model declared with `dalembert::model!`")]
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a model declared with `dalembert::model!`"
+)]
 pub trait Described: System + Clone {
     /// Names, docs, topology, parameters, surfaces, scenes, source text.
     const DESCRIPTION: Description;

@@ -41,7 +41,11 @@ impl<Sys: System, Step: Stepper<Sys>> StepView<'_, Sys, Step> {
     /// Time at a part of the step; exact at both ends.
     #[inline(always)]
     pub fn time(&self, theta: f64) -> f64 {
-        if theta >= 1.0 { self.t_end() } else { self.t_start() + theta * self.length() }
+        if theta >= 1.0 {
+            self.t_end()
+        } else {
+            self.t_start() + theta * self.length()
+        }
     }
 
     /// State at the start.
@@ -75,7 +79,11 @@ impl<Sys: System, Step: Stepper<Sys>> StepView<'_, Sys, Step> {
     /// [`StepView::prepare`].
     #[inline(always)]
     pub fn state(&self, theta: f64) -> Sys::State {
-        if theta >= 1.0 { *self.end() } else { self.stepper.interpolate(theta) }
+        if theta >= 1.0 {
+            *self.end()
+        } else {
+            self.stepper.interpolate(theta)
+        }
     }
 }
 
@@ -126,7 +134,11 @@ pub trait Effect<Sys: System> {
     ///
     /// # Errors
     /// The [`Outcome`] that ends the run.
-    fn begin<O: Observer<Sys>>(&mut self, now: &mut Moment<'_, Sys>, observer: &mut O) -> Result<(), Outcome> {
+    fn begin<O: Observer<Sys>>(
+        &mut self,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
         let _ = (now, observer);
         Ok(())
     }
@@ -135,7 +147,10 @@ pub trait Effect<Sys: System> {
     ///
     /// # Errors
     /// The [`Outcome`] that ends the run, at the start of the step.
-    fn propose<Step: Stepper<Sys>>(&mut self, step: &mut StepView<'_, Sys, Step>) -> Result<Option<f64>, Outcome> {
+    fn propose<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<Option<f64>, Outcome> {
         let _ = step;
         Ok(None)
     }

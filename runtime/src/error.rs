@@ -39,9 +39,15 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::MetricNotPositive { pivot, value } => {
-                write!(f, "the metric is not positive definite: pivot {pivot} is {value}")
+                write!(
+                    f,
+                    "the metric is not positive definite: pivot {pivot} is {value}"
+                )
             }
-            Self::SingularConstraint { constraint, condition } => write!(
+            Self::SingularConstraint {
+                constraint,
+                condition,
+            } => write!(
                 f,
                 "constraint {constraint} depends on the earlier ones at this state (condition {condition:e})"
             ),
@@ -49,7 +55,9 @@ impl fmt::Display for Fault {
                 f,
                 "surface {surface}: no impulse within the constraints changes its gap rate here"
             ),
-            Self::NonFinite { component } => write!(f, "component {component} of the state is not finite"),
+            Self::NonFinite { component } => {
+                write!(f, "component {component} of the state is not finite")
+            }
         }
     }
 }
@@ -67,7 +75,11 @@ pub struct ParameterError {
 
 impl fmt::Display for ParameterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "parameter `{}` is {}, but must be {}", self.name, self.value, self.expected)
+        write!(
+            f,
+            "parameter `{}` is {}, but must be {}",
+            self.name, self.value, self.expected
+        )
     }
 }
 
@@ -109,13 +121,21 @@ impl fmt::Display for StateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Parameter(error) => error.fmt(f),
-            Self::NotFinite { component } => write!(f, "component {component} of (q, qdot) is not finite"),
-            Self::OffConstraint { constraint, residual, scale } => write!(
+            Self::NotFinite { component } => {
+                write!(f, "component {component} of (q, qdot) is not finite")
+            }
+            Self::OffConstraint {
+                constraint,
+                residual,
+                scale,
+            } => write!(
                 f,
                 "constraint {constraint} is violated: residual {residual:e} against terms of size {scale:e}; \
                  use `state_projected` to project or `state_unchecked` to keep it"
             ),
-            Self::OutsideChart { coordinate } => write!(f, "coordinate {coordinate} lies outside its interval"),
+            Self::OutsideChart { coordinate } => {
+                write!(f, "coordinate {coordinate} lies outside its interval")
+            }
             Self::TooLarge { limit } => write!(f, "the system has more than {limit} coordinates"),
             Self::Fault(fault) => fault.fmt(f),
         }

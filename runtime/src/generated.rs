@@ -25,7 +25,9 @@ pub fn vector<const D: usize>(components: [f64; D]) -> SVector<f64, D> {
 
 /// N components of a state, from `OFFSET` on.
 #[inline(always)]
-pub fn part<const OFFSET: usize, const D: usize, const N: usize>(state: &SVector<f64, D>) -> SVector<f64, N> {
+pub fn part<const OFFSET: usize, const D: usize, const N: usize>(
+    state: &SVector<f64, D>,
+) -> SVector<f64, N> {
     let mut values = [0.0; N];
     for (entry, value) in values.iter_mut().zip(state.as_slice().iter().skip(OFFSET)) {
         *entry = *value;
@@ -35,7 +37,10 @@ pub fn part<const OFFSET: usize, const D: usize, const N: usize>(state: &SVector
 
 /// Positions and momenta as one state.
 #[inline(always)]
-pub fn join<const N: usize, const D: usize>(q: &SVector<f64, N>, p: &SVector<f64, N>) -> SVector<f64, D> {
+pub fn join<const N: usize, const D: usize>(
+    q: &SVector<f64, N>,
+    p: &SVector<f64, N>,
+) -> SVector<f64, D> {
     let mut values = [0.0; D];
     for (entry, value) in values.iter_mut().zip(q.iter().chain(p.iter())) {
         *entry = *value;
@@ -58,7 +63,11 @@ const LEAST_SQUARED_RATIO: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
 
 /// `squared > LEAST_SQUARED_RATIO * reference`, or the fault of a dependent constraint.
 #[inline(always)]
-pub fn independent_constraint(constraint: usize, squared: f64, reference: f64) -> Result<(), Fault> {
+pub fn independent_constraint(
+    constraint: usize,
+    squared: f64,
+    reference: f64,
+) -> Result<(), Fault> {
     match squared > LEAST_SQUARED_RATIO * reference {
         true => Ok(()),
         false => Err(singular_constraint(constraint, squared, reference)),
@@ -68,8 +77,15 @@ pub fn independent_constraint(constraint: usize, squared: f64, reference: f64) -
 #[cold]
 fn singular_constraint(constraint: usize, squared: f64, reference: f64) -> Fault {
     let ratio = reference / squared;
-    let condition = if ratio > 0.0 { crate::math::sqrt(ratio) } else { f64::INFINITY };
-    Fault::SingularConstraint { constraint, condition }
+    let condition = if ratio > 0.0 {
+        crate::math::sqrt(ratio)
+    } else {
+        f64::INFINITY
+    };
+    Fault::SingularConstraint {
+        constraint,
+        condition,
+    }
 }
 
 /// `squared > 0`, or the fault of a surface that no allowed impulse moves.
@@ -89,7 +105,11 @@ pub fn check_parameters<S: Described>(system: &S) -> Result<(), ParameterError> 
     for (index, parameter) in S::DESCRIPTION.parameters.iter().enumerate() {
         let value = system.parameter(index);
         if !parameter.assumption.holds(value) {
-            return Err(ParameterError { name: parameter.name, value, expected: parameter.assumption });
+            return Err(ParameterError {
+                name: parameter.name,
+                value,
+                expected: parameter.assumption,
+            });
         }
     }
     Ok(())
@@ -103,10 +123,14 @@ pub fn admit<S: Constrained>(system: &S, t: f64, state: &S::State) -> Result<(),
     let (residuals, scales) = system.residuals(t, state)?;
     let pairs = residuals.as_slice().iter().zip(scales.as_slice());
     for (constraint, (&residual, &scale)) in pairs.enumerate() {
-        if !(residual.abs() <= ADMITTED_RESIDUAL * scale) {
-            return Err(StateError::OffConstraint { constraint, residual, scale });
+        let holds = residual.abs() <= ADMITTED_RESIDUAL * scale;
+        if !holds {
+            return Err(StateError::OffConstraint {
+                constraint,
+                residual,
+                scale,
+            });
         }
     }
     Ok(())
 }
-

@@ -81,7 +81,11 @@ fn check<Sys: Constrained>(
         let (residual, scale) = residual(form, *affine, velocities);
         let holds = residual.abs() <= ACCEPTED * scale;
         if !holds {
-            return Err(StateError::OffConstraint { constraint, residual, scale });
+            return Err(StateError::OffConstraint {
+                constraint,
+                residual,
+                scale,
+            });
         }
     }
     Ok(())

@@ -1,4 +1,106 @@
-//! Runtime of dalembert: integrates generated systems, `no_std`, without allocation.
+//! Runtime of dalembert: runs mechanical systems with constraints and impacts, `no_std`, without allocation.
+//!
+//! A system says how its state changes ([`VectorField`]), what of it are positions, momenta and energy
+//! ([`System`]), what constrains it ([`Constrained`]) and what it hits ([`Impacting`]). The `model!` macro writes
+//! all of that from a declaration; it can also be written by hand. [`Simulation`] puts a system together with an
+//! integrator ([`Dop853`], [`DormandPrince5`]) and effects ([`Impacts`], [`Projection`], or what
+//! [`Scene::effects`] says), and runs it. A run ends in exactly one [`Outcome`], with the last good state.
+//!
+//! Impacts are roots of the gaps along the dense output of each step: all of them, in order, to the last bits of
+//! the time, and none twice. What cannot be told from rounding is flagged ([`Event::graze`]) or ends the run with
+//! an outcome of its own.
+//!
+//! A ball that bounces on the floor `x = 0`, written by hand:
+//!
+//! ```
+//! use dalembert::{
+//!     Contact, Dop853, EventLog, Fault, Impacting, Impacts, Law, Outcome, ParameterError, Simulation, System,
+//!     Tolerance, VectorField,
+//! };
+//! use nalgebra::SVector;
+//!
+//! /// Mass 1, gravity 1; the state is (x, v).
+//! struct Ball;
+//!
+//! type Height = SVector<f64, 1>;
+//! type State = SVector<f64, 2>;
+//!
+//! impl VectorField for Ball {
+//!     type State = State;
+//!     fn rate(&self, _t: f64, state: &State, rate: &mut State) -> Result<(), Fault> {
+//!         *rate = State::new(state[1], -1.0);
+//!         Ok(())
+//!     }
+//! }
+//!
+//! impl System for Ball {
+//!     type Vector = Height;
+//!     fn position(&self, state: &State) -> Height {
+//!         Height::new(state[0])
+//!     }
+//!     fn velocity(&self, _t: f64, state: &State) -> Result<Height, Fault> {
+//!         Ok(Height::new(state[1]))
+//!     }
+//!     fn momentum(&self, t: f64, state: &State) -> Result<Height, Fault> {
+//!         self.velocity(t, state)
+//!     }
+//!     fn state_unchecked(&self, _t: f64, q: &Height, qdot: &Height) -> Result<State, Fault> {
+//!         Ok(State::new(q[0], qdot[0]))
+//!     }
+//!     fn state_from_momenta(&self, t: f64, q: &Height, p: &Height) -> Result<State, Fault> {
+//!         self.state_unchecked(t, q, p)
+//!     }
+//!     fn energy(&self, _t: f64, state: &State) -> Result<f64, Fault> {
+//!         Ok(0.5 * state[1] * state[1] + state[0])
+//!     }
+//!     fn kick(&self, _t: f64, state: &mut State, size: f64, direction: &Height) -> Result<(), Fault> {
+//!         state[1] += size * direction[0];
+//!         Ok(())
+//!     }
+//!     fn check_parameters(&self) -> Result<(), ParameterError> {
+//!         Ok(())
+//!     }
+//! }
+//!
+//! impl Impacting for Ball {
+//!     type Gaps = Height;
+//!     fn gaps(&self, _t: f64, state: &State) -> Height {
+//!         Height::new(state[0])
+//!     }
+//!     fn gap_rates(&self, _t: f64, state: &State) -> Result<Height, Fault> {
+//!         Ok(Height::new(state[1]))
+//!     }
+//!     fn law(&self, _surface: usize) -> Law {
+//!         Law::Elastic
+//!     }
+//!     fn contact(&self, _surface: usize, _t: f64, state: &State) -> Result<Contact<Height>, Fault> {
+//!         Ok(Contact {
+//!             gap_rate: state[1],
+//!             constrained_rate: state[1],
+//!             surface_rate: 0.0,
+//!             constrained_compliance: 1.0,
+//!             free_compliance: 1.0,
+//!             direction: Height::new(1.0),
+//!         })
+//!     }
+//! }
+//!
+//! let integrator = Dop853::new(Tolerance::new(1e-12)?);
+//! let mut impacts = EventLog::<State, 8>::new();
+//! let mut simulation = Simulation::new(&Ball, integrator, Impacts::declared(&Ball));
+//!
+//! // Thrown up from the floor: back after 2, and again after 4.
+//! let run = simulation.run(0.0, State::new(0.0, 1.0), 5.0, &mut impacts)?;
+//! assert_eq!(run.outcome, Outcome::Done);
+//! let times: Vec<f64> = impacts.iter().map(|event| event.t).collect();
+//! assert!((times[0] - 2.0).abs() < 1e-13 && (times[1] - 4.0).abs() < 1e-13 && times.len() == 2);
+//!
+//! // A floor that takes a tenth of the speed at each impact: infinitely many of them before t = 20.
+//! let effects = Impacts::declared(&Ball).with_law(0, Law::Restitution(0.9));
+//! let run = Simulation::new(&Ball, integrator, effects).run(0.0, State::new(0.0, 1.0), 30.0, &mut ())?;
+//! assert!(matches!(run.outcome, Outcome::Zeno { t, .. } if (t - 20.0).abs() < 1e-9));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]

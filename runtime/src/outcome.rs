@@ -122,24 +122,47 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Done => write!(f, "reached the requested end"),
-            Self::Zeno { t, surface } => write!(f, "impacts on surface {surface} accumulate at t = {t}"),
+            Self::Zeno { t, surface } => {
+                write!(f, "impacts on surface {surface} accumulate at t = {t}")
+            }
             Self::StillPenetrating { surface, rho } => {
-                write!(f, "the law of surface {surface} leaves the state approaching it (rho = {rho})")
+                write!(
+                    f,
+                    "the law of surface {surface} leaves the state approaching it (rho = {rho})"
+                )
             }
-            Self::Contact { surface } => write!(f, "the state rests on surface {surface} and is pressed into it"),
-            Self::TangentialCrossing { surface } => write!(f, "surface {surface} was crossed at gap rate 0"),
-            Self::StartsInside { surface, gap } => write!(f, "surface {surface} counts where its gap is {gap:e}"),
-            Self::LeftChart { coordinate } => write!(f, "coordinate {coordinate} reached the end of its interval"),
-            Self::MetricNotPositive { pivot, value } => Fault::MetricNotPositive { pivot, value }.fmt(f),
-            Self::SingularConstraint { constraint, condition } => {
-                Fault::SingularConstraint { constraint, condition }.fmt(f)
+            Self::Contact { surface } => write!(
+                f,
+                "the state rests on surface {surface} and is pressed into it"
+            ),
+            Self::TangentialCrossing { surface } => {
+                write!(f, "surface {surface} was crossed at gap rate 0")
             }
+            Self::StartsInside { surface, gap } => {
+                write!(f, "surface {surface} counts where its gap is {gap:e}")
+            }
+            Self::LeftChart { coordinate } => {
+                write!(f, "coordinate {coordinate} reached the end of its interval")
+            }
+            Self::MetricNotPositive { pivot, value } => {
+                Fault::MetricNotPositive { pivot, value }.fmt(f)
+            }
+            Self::SingularConstraint {
+                constraint,
+                condition,
+            } => Fault::SingularConstraint {
+                constraint,
+                condition,
+            }
+            .fmt(f),
             Self::SingularSurface { surface } => Fault::SingularSurface { surface }.fmt(f),
             Self::NonFinite { component } => Fault::NonFinite { component }.fmt(f),
             Self::StepUnderflow { t } => StepFailure::StepUnderflow { t }.fmt(f),
             Self::StepBudget => write!(f, "the allowed number of steps was used up"),
             Self::ImpactBudget => write!(f, "the allowed number of impacts was used up"),
-            Self::ProjectionFailed { constraint } => write!(f, "projection to constraint {constraint} failed"),
+            Self::ProjectionFailed { constraint } => {
+                write!(f, "projection to constraint {constraint} failed")
+            }
             Self::Stopped => write!(f, "stopped on request"),
         }
     }
@@ -149,7 +172,13 @@ impl From<Fault> for Outcome {
     fn from(fault: Fault) -> Self {
         match fault {
             Fault::MetricNotPositive { pivot, value } => Self::MetricNotPositive { pivot, value },
-            Fault::SingularConstraint { constraint, condition } => Self::SingularConstraint { constraint, condition },
+            Fault::SingularConstraint {
+                constraint,
+                condition,
+            } => Self::SingularConstraint {
+                constraint,
+                condition,
+            },
             Fault::SingularSurface { surface } => Self::SingularSurface { surface },
             Fault::NonFinite { component } => Self::NonFinite { component },
         }
@@ -198,7 +227,10 @@ impl fmt::Display for StartError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Parameter(error) => error.fmt(f),
-            Self::Times { t0, t_end } => write!(f, "a run goes forward between finite times, not from {t0} to {t_end}"),
+            Self::Times { t0, t_end } => write!(
+                f,
+                "a run goes forward between finite times, not from {t0} to {t_end}"
+            ),
         }
     }
 }

@@ -120,7 +120,10 @@ pub struct EventLog<S, const CAP: usize> {
 impl<S: Copy, const CAP: usize> EventLog<S, CAP> {
     /// An empty log.
     pub const fn new() -> Self {
-        Self { events: [None; CAP], seen: 0 }
+        Self {
+            events: [None; CAP],
+            seen: 0,
+        }
     }
 
     /// The impacts that were kept, in order.

@@ -28,7 +28,12 @@ pub struct Simulation<'a, Sys, Step, Effects> {
 impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, Sys, Step, Effects> {
     /// Puts the three together. [`Scene::effects`](crate::Scene::effects) are the effects a system declares.
     pub fn new(system: &'a Sys, stepper: Step, effects: Effects) -> Self {
-        Self { system, stepper, effects, step_budget: STEP_BUDGET }
+        Self {
+            system,
+            stepper,
+            effects,
+            step_budget: STEP_BUDGET,
+        }
     }
 
     /// Ends runs after this many accepted steps instead of [`STEP_BUDGET`].
@@ -74,7 +79,12 @@ impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, S
             Ok(()) => Outcome::Done,
             Err(outcome) => outcome,
         };
-        Ok(Run { outcome, t: course.t, state: course.state, counters: course.counters })
+        Ok(Run {
+            outcome,
+            t: course.t,
+            state: course.state,
+            counters: course.counters,
+        })
     }
 }
 
@@ -95,25 +105,38 @@ struct Course<'a, Sys: System, Step, Effects> {
 
 impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step, Effects> {
     fn follow<O: Observer<Sys>>(&mut self, t_end: f64, observer: &mut O) -> Result<(), Outcome> {
-        if let Some(component) = self.state.as_slice().iter().position(|value| !value.is_finite()) {
+        if let Some(component) = self
+            .state
+            .as_slice()
+            .iter()
+            .position(|value| !value.is_finite())
+        {
             return Err(Outcome::NonFinite { component });
         }
         if let Some(coordinate) = self.system.outside_chart(&self.state) {
             return Err(Outcome::LeftChart { coordinate });
         }
-        let mut now =
-            Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
+        let mut now = Moment {
+            system: self.system,
+            t: self.t,
+            state: &mut self.state,
+            counters: &mut self.counters,
+        };
         self.effects.begin(&mut now, observer)?;
         if self.t < t_end {
-            self.stepper.start(self.system, self.t, &self.state, t_end, &mut self.counters)?;
+            self.stepper
+                .start(self.system, self.t, &self.state, t_end, &mut self.counters)?;
         }
         while self.t < t_end {
             if self.counters.accepted >= self.budget {
                 return Err(Outcome::StepBudget);
             }
             self.stepper.step(self.system, t_end, &mut self.counters)?;
-            let mut view =
-                StepView { system: self.system, counters: &mut self.counters, stepper: &mut *self.stepper };
+            let mut view = StepView {
+                system: self.system,
+                counters: &mut self.counters,
+                stepper: &mut *self.stepper,
+            };
             match self.effects.propose(&mut view)? {
                 None => self.pass(observer)?,
                 Some(theta) => self.cut(theta, observer)?,
@@ -126,32 +149,50 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     #[inline(always)]
     fn pass<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
         if let Some(coordinate) = self.system.outside_chart(self.stepper.end_state()) {
-            return self.leave_chart(coordinate, observer);
+            return self.leave_chart(1.0, coordinate, observer);
         }
         self.t = self.stepper.t_end();
         self.flight += self.t - self.stepper.t_start();
         self.state = *self.stepper.end_state();
-        let mut now =
-            Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
+        let mut now = Moment {
+            system: self.system,
+            t: self.t,
+            state: &mut self.state,
+            counters: &mut self.counters,
+        };
         if self.effects.settle(&mut now, false)? == Change::Changed {
-            self.stepper.replace_end(self.system, &self.state, &mut self.counters)?;
+            self.stepper
+                .replace_end(self.system, &self.state, &mut self.counters)?;
         }
         self.show(observer)
     }
 
     /// The step ends at `theta`, where the effects act.
     fn cut<O: Observer<Sys>>(&mut self, theta: f64, observer: &mut O) -> Result<(), Outcome> {
-        let limit = FLIGHTS * (self.flight + theta * (self.stepper.t_end() - self.stepper.t_start()));
+        let limit =
+            FLIGHTS * (self.flight + theta * (self.stepper.t_end() - self.stepper.t_start()));
         self.flight = 0.0;
         self.arrive(theta)?;
-        let mut now =
-            Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
+        if let Some(coordinate) = self.system.outside_chart(&self.state) {
+            return self.leave_chart(theta, coordinate, observer);
+        }
+        let mut now = Moment {
+            system: self.system,
+            t: self.t,
+            state: &mut self.state,
+            counters: &mut self.counters,
+        };
         self.effects.settle(&mut now, true)?;
         self.show(observer)?;
-        let mut now =
-            Moment { system: self.system, t: self.t, state: &mut self.state, counters: &mut self.counters };
+        let mut now = Moment {
+            system: self.system,
+            t: self.t,
+            state: &mut self.state,
+            counters: &mut self.counters,
+        };
         self.effects.act(theta, &mut now, observer)?;
-        self.stepper.restart(self.system, self.t, &self.state, limit, &mut self.counters)?;
+        self.stepper
+            .restart(self.system, self.t, &self.state, limit, &mut self.counters)?;
         Ok(())
     }
 
@@ -163,7 +204,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             self.state = *self.stepper.end_state();
             return Ok(());
         }
-        self.stepper.prepare_dense(self.system, &mut self.counters)?;
+        self.stepper
+            .prepare_dense(self.system, &mut self.counters)?;
         let length = theta * (end - start) + self.late;
         self.t = (start + length).min(end);
         self.late = length - (self.t - start);
@@ -176,18 +218,32 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     fn show<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
         let t = [self.stepper.t_start(), self.t];
         let step = self.stepper.t_end() - t[0];
-        let mut source =
-            StepView { system: self.system, counters: &mut self.counters, stepper: &mut *self.stepper };
-        match observer.step(&mut Segment { t, end: &self.state, step, source: &mut source }) {
+        let mut source = StepView {
+            system: self.system,
+            counters: &mut self.counters,
+            stepper: &mut *self.stepper,
+        };
+        match observer.step(&mut Segment {
+            t,
+            end: &self.state,
+            step,
+            source: &mut source,
+        }) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(Outcome::Stopped),
         }
     }
 
-    /// The step ends outside the chart: goes to the last state inside it, by bisection.
-    fn leave_chart<O: Observer<Sys>>(&mut self, coordinate: usize, observer: &mut O) -> Result<(), Outcome> {
-        self.stepper.prepare_dense(self.system, &mut self.counters)?;
-        let (mut inside, mut outside, mut left) = (0.0, 1.0, coordinate);
+    /// At `theta` the motion is outside the chart: goes to the last state inside it, by bisection.
+    fn leave_chart<O: Observer<Sys>>(
+        &mut self,
+        theta: f64,
+        coordinate: usize,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        self.stepper
+            .prepare_dense(self.system, &mut self.counters)?;
+        let (mut inside, mut outside, mut left) = (0.0, theta, coordinate);
         loop {
             let middle = 0.5 * (inside + outside);
             if middle <= inside || middle >= outside {

@@ -24,7 +24,9 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
 
     /// Whether every component is finite.
     fn is_finite(&self) -> bool {
-        self.as_slice().iter().all(|component| component.is_finite())
+        self.as_slice()
+            .iter()
+            .all(|component| component.is_finite())
     }
 }
 

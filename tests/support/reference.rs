@@ -29,7 +29,8 @@ pub fn number(value: &Value) -> f64 {
 }
 
 fn parse(text: &str) -> f64 {
-    text.parse().unwrap_or_else(|_| panic!("not a number: {text}"))
+    text.parse()
+        .unwrap_or_else(|_| panic!("not a number: {text}"))
 }
 
 /// The numbers of an array.
@@ -37,7 +38,12 @@ fn parse(text: &str) -> f64 {
 /// # Panics
 /// When it is not an array of numbers.
 pub fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap_or_else(|| panic!("not an array: {value}")).iter().map(number).collect()
+    value
+        .as_array()
+        .unwrap_or_else(|| panic!("not an array: {value}"))
+        .iter()
+        .map(number)
+        .collect()
 }
 
 /// Compares nested arrays of numbers component by component: relative error at most `tolerance`, absolute where
@@ -48,10 +54,16 @@ pub fn numbers(value: &Value) -> Vec<f64> {
 pub fn compare(path: &str, actual: &Value, expected: &Value, tolerance: f64) -> Result<(), String> {
     if let (Some(actual), Some(expected)) = (actual.as_array(), expected.as_array()) {
         if actual.len() != expected.len() {
-            return Err(format!("{path}: {} entries for {}", actual.len(), expected.len()));
+            return Err(format!(
+                "{path}: {} entries for {}",
+                actual.len(),
+                expected.len()
+            ));
         }
         let pairs = actual.iter().zip(expected).enumerate();
-        return pairs.into_iter().try_for_each(|(i, (a, e))| compare(&format!("{path}[{i}]"), a, e, tolerance));
+        return pairs
+            .into_iter()
+            .try_for_each(|(i, (a, e))| compare(&format!("{path}[{i}]"), a, e, tolerance));
     }
     if actual.is_null() {
         return Err(format!("{path}: nothing for {expected}"));
@@ -59,5 +71,11 @@ pub fn compare(path: &str, actual: &Value, expected: &Value, tolerance: f64) -> 
     let (actual, expected) = (number(actual), number(expected));
     let size = if expected == 0.0 { 1.0 } else { expected.abs() };
     let error = (actual - expected).abs() / size;
-    if error <= tolerance { Ok(()) } else { Err(format!("{path}: {actual:e} for {expected:e}, error {error:.2e}")) }
+    if error <= tolerance {
+        Ok(())
+    } else {
+        Err(format!(
+            "{path}: {actual:e} for {expected:e}, error {error:.2e}"
+        ))
+    }
 }

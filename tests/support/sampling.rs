@@ -29,7 +29,10 @@ impl Random {
     /// A vector with components in `[low, high)`.
     pub fn vector<V: StateVector>(&mut self, low: f64, high: f64) -> V {
         let mut vector = V::zeros();
-        vector.as_mut_slice().iter_mut().for_each(|component| *component = self.within(low, high));
+        vector
+            .as_mut_slice()
+            .iter_mut()
+            .for_each(|component| *component = self.within(low, high));
         vector
     }
 }
@@ -59,12 +62,13 @@ pub trait Visitor {
 /// Visits every shipped model and every system of [`crate::systems`], at their defaults.
 pub fn visit_all(visitor: &mut impl Visitor) {
     use crate::systems::{
-        AffineSleigh, DampedSleigh, IntegrableBead, MagneticDisk, MovingWallDisk, Rheonomic, TableWall, WalkerFootSlip,
-        WalkerWithMultiplier,
+        AffineSleigh, DampedSleigh, IntegrableBead, MagneticDisk, MovingWallDisk, Rheonomic,
+        TableWall, WalkerFootSlip, WalkerWithMultiplier,
     };
     use dalembert_models::{
-        BallOnRotatingTable, BouncingBall, Chain2, Chain3, Chain4, Chain8, Chain16, ChaplyginSleigh, DoublePendulum,
-        HarmonicOscillator, HolonomicBeadOnEllipses, PointBilliard, RollingBallEuler, RollingDisk, TwoWheelsRod,
+        BallOnRotatingTable, BouncingBall, Chain2, Chain3, Chain4, Chain8, Chain16,
+        ChaplyginSleigh, DoublePendulum, HarmonicOscillator, HolonomicBeadOnEllipses,
+        PointBilliard, RollingBallEuler, RollingDisk, TwoWheelsRod,
     };
     visitor.visit(BallOnRotatingTable::default());
     visitor.visit(BouncingBall::default());

@@ -9,12 +9,15 @@ use crate::program::Constrained;
 
 /// `impl Constrained`, if there are constraints.
 pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
-    let Some(functions) = &context.program.constrained else { return TokenStream::new() };
+    let Some(functions) = &context.program.constrained else {
+        return TokenStream::new();
+    };
     let type_name = &context.names.type_name;
     let m = context.model.constraints.len();
     let levels = functions.levels.outputs.len();
     let solve = emit_multipliers(context, functions);
     let forms = emit_forms(context, functions);
+    let restore = emit_restore(context, functions);
     let positions = emit_levels(context, functions);
     quote! {
         #[automatically_derived]
@@ -24,6 +27,7 @@ pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
             type Levels = ::dalembert::__private::SVector<f64, #levels>;
             #solve
             #forms
+            #restore
             #positions
         }
     }
@@ -69,7 +73,10 @@ fn emit_multipliers(context: &Context<'_>, functions: &Constrained) -> TokenStre
 
 fn emit_forms(context: &Context<'_>, functions: &Constrained) -> TokenStream {
     let (n, m) = (context.dimension(), context.model.constraints.len());
-    let Body { statements, outputs } = context.position_body(&functions.forms);
+    let Body {
+        statements,
+        outputs,
+    } = context.position_body(&functions.forms);
     let (forms, affine) = outputs.split_at(n * m);
     quote! {
         #[inline]
@@ -83,11 +90,35 @@ fn emit_forms(context: &Context<'_>, functions: &Constrained) -> TokenStream {
     }
 }
 
+fn emit_restore(context: &Context<'_>, functions: &Constrained) -> TokenStream {
+    let documentation = doc::formula(
+        "p + g (change of the dependent velocities)",
+        &functions.restore.cost,
+    );
+    let Body {
+        statements,
+        outputs,
+    } = context.state_body(&functions.restore);
+    quote! {
+        #documentation
+        #[inline]
+        fn restore(&self, t: f64, state: &mut Self::State) -> ::core::result::Result<(), ::dalembert::Fault> {
+            #statements
+            let p = ::dalembert::__private::vector([#(#outputs),*]);
+            *state = ::dalembert::__private::join(&<Self as ::dalembert::System>::position(self, state), &p);
+            ::core::result::Result::Ok(())
+        }
+    }
+}
+
 fn emit_levels(context: &Context<'_>, functions: &Constrained) -> TokenStream {
     let levels = context.position_body(&functions.levels);
     let (level_statements, values) = (levels.statements, levels.outputs);
     let correction = context.position_body(&functions.level_correction);
-    let documentation = doc::formula("g^-1 nu_k eta^k, m nu = -excess", &functions.level_correction.cost);
+    let documentation = doc::formula(
+        "g^-1 nu_k eta^k, m nu = -excess",
+        &functions.level_correction.cost,
+    );
     let (correction_statements, change) = (correction.statements, correction.outputs);
     quote! {
         #[inline]
@@ -113,9 +144,17 @@ fn emit_levels(context: &Context<'_>, functions: &Constrained) -> TokenStream {
 
 /// What a system with constraints answers where others accept every state.
 pub(super) fn emit_system_hooks(context: &Context<'_>) -> TokenStream {
-    let Some(functions) = &context.program.constrained else { return TokenStream::new() };
-    let documentation = doc::formula("p + mu_a eta^a, m mu = -(eta(qdot) + eta_0)", &functions.project.cost);
-    let Body { statements, outputs } = context.state_body(&functions.project);
+    let Some(functions) = &context.program.constrained else {
+        return TokenStream::new();
+    };
+    let documentation = doc::formula(
+        "p + mu_a eta^a, m mu = -(eta(qdot) + eta_0)",
+        &functions.project.cost,
+    );
+    let Body {
+        statements,
+        outputs,
+    } = context.state_body(&functions.project);
     quote! {
         fn admit(&self, t: f64, state: &Self::State) -> ::core::result::Result<(), ::dalembert::StateError> {
             ::dalembert::__private::admit(self, t, state)

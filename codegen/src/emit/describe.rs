@@ -36,7 +36,12 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
 fn emit_description(context: &Context<'_>) -> TokenStream {
     let model = context.model;
     let (type_name, name) = (&model.name, &model.snake_name);
-    let documentation = model.documentation.iter().map(|line| line.trim()).collect::<Vec<_>>().join("\n");
+    let documentation = model
+        .documentation
+        .iter()
+        .map(|line| line.trim())
+        .collect::<Vec<_>>()
+        .join("\n");
     let source = &model.source;
     let coordinates = emit_coordinate_infos(context);
     let parameters = emit_parameter_infos(context);
@@ -152,7 +157,9 @@ fn emit_surface_infos(context: &Context<'_>) -> TokenStream {
 }
 
 fn emit_view_info(context: &Context<'_>) -> TokenStream {
-    let Some(view) = &context.model.view else { return quote!(::core::option::Option::None) };
+    let Some(view) = &context.model.view else {
+        return quote!(::core::option::Option::None);
+    };
     let labels = &view.labels;
     let plane = match view.plane {
         Some([i, j]) => quote!(::core::option::Option::Some([#i, #j])),
@@ -171,8 +178,14 @@ fn emit_view_info(context: &Context<'_>) -> TokenStream {
 /// `parameter` and `set_parameter`.
 fn emit_parameter_access(context: &Context<'_>) -> TokenStream {
     let places: Vec<_> = context.names.parameters.iter().collect();
-    let get = places.iter().enumerate().map(|(k, place)| quote!(#k => #place,));
-    let set = places.iter().enumerate().map(|(k, place)| quote!(#k => #place = value,));
+    let get = places
+        .iter()
+        .enumerate()
+        .map(|(k, place)| quote!(#k => #place,));
+    let set = places
+        .iter()
+        .enumerate()
+        .map(|(k, place)| quote!(#k => #place = value,));
     quote! {
         fn parameter(&self, index: usize) -> f64 {
             match index {
@@ -193,12 +206,22 @@ fn emit_parameter_access(context: &Context<'_>) -> TokenStream {
 
 fn emit_initial(context: &Context<'_>) -> TokenStream {
     let (model, program) = (context.model, context.program);
-    let Body { statements, outputs } = emit_body(&program.initial, &context.names);
+    let Body {
+        statements,
+        outputs,
+    } = emit_body(&program.initial, &context.names);
     let (q, qdot) = outputs.split_at(context.dimension());
-    let named = model.initial.qdot.iter().map(|value| number(f64::from(u8::from(value.is_some()))));
+    let named = model
+        .initial
+        .qdot
+        .iter()
+        .map(|value| number(f64::from(u8::from(value.is_some()))));
     let until = match &program.until {
         Some(function) => {
-            let Body { statements, outputs } = emit_body(function, &context.names);
+            let Body {
+                statements,
+                outputs,
+            } = emit_body(function, &context.names);
             quote!({ #statements ::core::option::Option::Some(#(#outputs)*) })
         }
         None => quote!(::core::option::Option::None),
@@ -221,7 +244,10 @@ fn emit_declared(context: &Context<'_>) -> TokenStream {
     let program = context.program;
     let outputs = match &program.outputs {
         Some(function) => {
-            let Body { statements, outputs } = context.state_body(function);
+            let Body {
+                statements,
+                outputs,
+            } = context.state_body(function);
             quote! {
                 #statements
                 for (entry, value) in values.iter_mut().zip([#(#outputs),*]) {
@@ -233,14 +259,20 @@ fn emit_declared(context: &Context<'_>) -> TokenStream {
     };
     let path = match &program.view_path {
         Some(function) => {
-            let Body { statements, outputs } = context.state_body(function);
+            let Body {
+                statements,
+                outputs,
+            } = context.state_body(function);
             quote!(#statements ::core::option::Option::Some([#(#outputs),*]))
         }
         None => quote!(let _ = (t, state); ::core::option::Option::None),
     };
     let region = match &program.view_region {
         Some(function) => {
-            let Body { statements, outputs } = context.position_body(function);
+            let Body {
+                statements,
+                outputs,
+            } = context.position_body(function);
             quote!(#statements ::core::option::Option::Some(#(#outputs)*))
         }
         None => quote!(let _ = (t, q); ::core::option::Option::None),
@@ -265,7 +297,10 @@ fn emit_declared(context: &Context<'_>) -> TokenStream {
 fn emit_inspect(context: &Context<'_>) -> TokenStream {
     let geometry = &context.program.geometry;
     let n = context.dimension();
-    let Body { statements, outputs } = context.state_body(&geometry.function);
+    let Body {
+        statements,
+        outputs,
+    } = context.state_body(&geometry.function);
     let mut rest = outputs.as_slice();
     let reports = geometry.groups.iter().map(|group| {
         let (values, tail) = rest.split_at(group.shape.len());
@@ -274,7 +309,9 @@ fn emit_inspect(context: &Context<'_>) -> TokenStream {
         match group.shape {
             Shape::Scalar => quote!(report.scalar(#name, #(#values)*);),
             Shape::Vector(_) => quote!(report.vector(#name, &[#(#values),*]);),
-            Shape::Matrix(rows, columns) => quote!(report.matrix(#name, #rows, #columns, &[#(#values),*]);),
+            Shape::Matrix(rows, columns) => {
+                quote!(report.matrix(#name, #rows, #columns, &[#(#values),*]);)
+            }
         }
     });
     let reports: Vec<TokenStream> = reports.collect();

@@ -10,7 +10,11 @@ use crate::program::Cost;
 pub(super) fn lines<S: AsRef<str>>(lines: &[S]) -> TokenStream {
     let lines = lines.iter().map(|line| {
         let text = line.as_ref();
-        let text = if text.is_empty() || text.starts_with(' ') { text.to_string() } else { format!(" {text}") };
+        let text = if text.is_empty() || text.starts_with(' ') {
+            text.to_string()
+        } else {
+            format!(" {text}")
+        };
         quote!(#[doc = #text])
     });
     quote!(#(#lines)*)
@@ -24,7 +28,11 @@ pub(super) fn formula(text: &str, cost: &Cost) -> TokenStream {
 /// The order of the components of the state: `x, y, p_x, p_y`.
 pub(super) fn state_order(model: &Model) -> String {
     let names = |prefix: &str| -> Vec<String> {
-        model.coordinates.iter().map(|coordinate| format!("{prefix}{}", coordinate.name.display)).collect()
+        model
+            .coordinates
+            .iter()
+            .map(|coordinate| format!("{prefix}{}", coordinate.name.display))
+            .collect()
     };
     [names(""), names("p_")].concat().join(", ")
 }

@@ -16,25 +16,40 @@ impl Context<'_> {
 
     /// `let [x, y, _] = components(q);` with the coordinates that the function uses.
     pub(super) fn bind_coordinates(&self, function: &Function) -> TokenStream {
-        let pattern = pattern(&self.names.coordinates, |i| uses(function, |input| input == Input::Coordinate(i)));
+        let pattern = pattern(&self.names.coordinates, |i| {
+            uses(function, |input| input == Input::Coordinate(i))
+        });
         bind(&[pattern], &quote!(q))
     }
 
     /// `let [x, _, p_x, p_y] = components(state);` with what the function uses.
     pub(super) fn bind_state(&self, function: &Function) -> TokenStream {
-        let coordinates = pattern(&self.names.coordinates, |i| uses(function, |input| input == Input::Coordinate(i)));
-        let momenta = pattern(&self.names.momenta, |i| uses(function, |input| input == Input::Momentum(i)));
+        let coordinates = pattern(&self.names.coordinates, |i| {
+            uses(function, |input| input == Input::Coordinate(i))
+        });
+        let momenta = pattern(&self.names.momenta, |i| {
+            uses(function, |input| input == Input::Momentum(i))
+        });
         bind(&[coordinates, momenta], &quote!(state))
     }
 
     fn bind_velocities(&self, function: &Function) -> TokenStream {
-        let velocities = pattern(&self.names.velocities, |i| uses(function, |input| input == Input::Velocity(i)));
+        let velocities = pattern(&self.names.velocities, |i| {
+            uses(function, |input| input == Input::Velocity(i))
+        });
         bind(&[velocities], &quote!(qdot))
     }
 
-    /// The statements of a function of `(t, q, p)` and its results.
+    /// The statements of a function of `(t, q, p)` and its results; where it takes velocities too, they are computed
+    /// first.
     pub(super) fn state_body(&self, function: &Function) -> Body {
-        self.body(self.bind_state(function), function)
+        let state = self.bind_state(function);
+        if !uses(function, |input| matches!(input, Input::Velocity(_))) {
+            return self.body(state, function);
+        }
+        let velocities = self.bind_velocities(function);
+        let compute = quote!(let qdot = &<Self as ::dalembert::System>::velocity(self, t, state)?;);
+        self.body(quote!(#compute #velocities #state), function)
     }
 
     /// The statements of a function of `(t, q)` and its results.
@@ -44,12 +59,18 @@ impl Context<'_> {
 
     /// The statements of a function after what binds its arguments.
     fn body(&self, bindings: TokenStream, function: &Function) -> Body {
-        let Body { statements, outputs } = emit_body(function, &self.names);
+        let Body {
+            statements,
+            outputs,
+        } = emit_body(function, &self.names);
         let time = match uses(function, |input| input == Input::Time) {
             true => TokenStream::new(),
             false => quote!(let _ = t;),
         };
-        Body { statements: quote!(#time #bindings #statements), outputs }
+        Body {
+            statements: quote!(#time #bindings #statements),
+            outputs,
+        }
     }
 }
 
@@ -85,8 +106,14 @@ pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
         None => "qdot = g^-1 (p - A), pdot = dL/dq + F",
     };
     let documentation = doc::formula(formula, &program.rate.cost);
-    let order = doc::lines(&[String::new(), format!("State: `{}`.", doc::state_order(context.model))]);
-    let Body { statements, outputs } = context.state_body(&program.rate);
+    let order = doc::lines(&[
+        String::new(),
+        format!("State: `{}`.", doc::state_order(context.model)),
+    ]);
+    let Body {
+        statements,
+        outputs,
+    } = context.state_body(&program.rate);
     let scale = context.position_body(&program.scale);
     let (units, momenta) = ((0..n).map(|_| quote!(1.0)), scale.outputs);
     let scale_statements = scale.statements;
@@ -170,8 +197,14 @@ fn emit_momentum_functions(context: &Context<'_>) -> TokenStream {
     let n = context.dimension();
     let function = &context.program.momentum;
     let documentation = doc::formula("p = g qdot + A", &function.cost);
-    let bindings = [context.bind_coordinates(function), context.bind_velocities(function)];
-    let Body { statements, outputs } = context.body(quote!(#(#bindings)*), function);
+    let bindings = [
+        context.bind_coordinates(function),
+        context.bind_velocities(function),
+    ];
+    let Body {
+        statements,
+        outputs,
+    } = context.body(quote!(#(#bindings)*), function);
     quote! {
         #documentation
         #[inline]
@@ -252,9 +285,14 @@ fn emit_chart(context: &Context<'_>) -> TokenStream {
         .iter()
         .enumerate()
         .filter_map(|(i, coordinate)| {
-            let Topology::Interval { low, high } = coordinate.topology else { return None };
+            let Topology::Interval { low, high } = coordinate.topology else {
+                return None;
+            };
             let ends = context.model.pool.eval(&[low, high], &|_| f64::NAN);
-            let (low, high) = (super::function::number(ends[0]), super::function::number(ends[1]));
+            let (low, high) = (
+                super::function::number(ends[0]),
+                super::function::number(ends[1]),
+            );
             Some(quote! {
                 if !(#low < state[#i] && state[#i] < #high) {
                     return ::core::option::Option::Some(#i);

@@ -42,7 +42,10 @@ pub(super) struct Body {
 
 /// Which inputs the function uses, for binding them.
 pub(super) fn uses(function: &Function, wanted: impl Fn(Input) -> bool) -> bool {
-    function.ops.iter().any(|op| matches!(op, Op::Input(input) if wanted(*input)))
+    function
+        .ops
+        .iter()
+        .any(|op| matches!(op, Op::Input(input) if wanted(*input)))
 }
 
 /// Writes a function down. Inputs must be bound to the locals of `names` before the statements.
@@ -51,8 +54,15 @@ pub(super) fn emit_body(function: &Function, names: &Names) -> Body {
     for index in 0..function.ops.len() {
         writer.write(index);
     }
-    let outputs = function.outputs.iter().map(|&output| writer.pieces[output.index()].tokens.clone()).collect();
-    Body { statements: writer.statements, outputs }
+    let outputs = function
+        .outputs
+        .iter()
+        .map(|&output| writer.pieces[output.index()].tokens.clone())
+        .collect();
+    Body {
+        statements: writer.statements,
+        outputs,
+    }
 }
 
 struct Writer<'a> {
@@ -71,12 +81,25 @@ impl<'a> Writer<'a> {
         for op in &function.ops {
             // What a guard reads becomes a local, since a guard reads it twice.
             let weight = if matches!(op, Op::Guard(_)) { 2 } else { 1 };
-            op.operands().iter().for_each(|operand| uses[operand.index()] += weight);
+            op.operands()
+                .iter()
+                .for_each(|operand| uses[operand.index()] += weight);
         }
-        function.outputs.iter().for_each(|output| uses[output.index()] += 1);
+        function
+            .outputs
+            .iter()
+            .for_each(|output| uses[output.index()] += 1);
         let paired = vec![None; function.ops.len()];
         let pieces = Vec::with_capacity(function.ops.len());
-        Self { function, names, taken: names.taken(function), uses, pieces, paired, statements: TokenStream::new() }
+        Self {
+            function,
+            names,
+            taken: names.taken(function),
+            uses,
+            pieces,
+            paired,
+            statements: TokenStream::new(),
+        }
     }
 
     fn write(&mut self, index: usize) {
@@ -95,7 +118,11 @@ impl<'a> Writer<'a> {
                 || self.function.names[index].is_some()
                 || piece.size >= LONGEST_EXPRESSION
                 || matches!(op, Op::Call(..)));
-        let piece = if is_local && !matches!(op, Op::Neg(_)) { self.bind(index, piece.tokens) } else { piece };
+        let piece = if is_local && !matches!(op, Op::Neg(_)) {
+            self.bind(index, piece.tokens)
+        } else {
+            piece
+        };
         self.pieces.push(piece);
     }
 
@@ -106,16 +133,30 @@ impl<'a> Writer<'a> {
             self.pieces.push(atom(quote!(#local)));
             return true;
         }
-        let Op::Call(function @ (Elementary::Sin | Elementary::Cos), argument) = self.function.ops[index] else {
+        let Op::Call(function @ (Elementary::Sin | Elementary::Cos), argument) =
+            self.function.ops[index]
+        else {
             return false;
         };
-        let partner = if function == Elementary::Sin { Elementary::Cos } else { Elementary::Sin };
+        let partner = if function == Elementary::Sin {
+            Elementary::Cos
+        } else {
+            Elementary::Sin
+        };
         let wanted = Op::Call(partner, argument);
-        let Some(other) = self.function.ops.iter().position(|op| *op == wanted) else { return false };
+        let Some(other) = self.function.ops.iter().position(|op| *op == wanted) else {
+            return false;
+        };
         let (first, second) = (self.local(index), self.local(other));
-        let (sine, cosine) = if function == Elementary::Sin { (&first, &second) } else { (&second, &first) };
+        let (sine, cosine) = if function == Elementary::Sin {
+            (&first, &second)
+        } else {
+            (&second, &first)
+        };
         let argument = &self.pieces[argument.index()].tokens;
-        self.statements.extend(quote!(let (#sine, #cosine) = ::dalembert::__private::math::sin_cos(#argument);));
+        self.statements.extend(
+            quote!(let (#sine, #cosine) = ::dalembert::__private::math::sin_cos(#argument);),
+        );
         self.pieces.push(atom(quote!(#first)));
         self.paired[other] = Some(second);
         true
@@ -123,7 +164,9 @@ impl<'a> Writer<'a> {
 
     /// A fresh local for a value, named after it.
     fn local(&mut self, index: usize) -> Ident {
-        let wished = self.function.names[index].clone().unwrap_or_else(|| format!("v{index}"));
+        let wished = self.function.names[index]
+            .clone()
+            .unwrap_or_else(|| format!("v{index}"));
         Ident::new(&claim(&mut self.taken, &wished), Span::mixed_site())
     }
 
@@ -140,7 +183,11 @@ impl<'a> Writer<'a> {
                 let value = at(value);
                 quote!(::dalembert::__private::positive_pivot(#pivot, #value)?;)
             }
-            Guard::Constraint { constraint, squared, reference } => {
+            Guard::Constraint {
+                constraint,
+                squared,
+                reference,
+            } => {
                 let squared = at(squared);
                 let reference = match reference {
                     Some(reference) => at(reference),
@@ -159,19 +206,33 @@ impl<'a> Writer<'a> {
     fn operand(&self, value: Value, least: Binding) -> (TokenStream, usize) {
         let piece = &self.pieces[value.index()];
         let tokens = &piece.tokens;
-        let tokens = if piece.binding < least { quote!((#tokens)) } else { tokens.clone() };
+        let tokens = if piece.binding < least {
+            quote!((#tokens))
+        } else {
+            tokens.clone()
+        };
         (tokens, piece.size)
     }
 
     fn binary(&self, a: Value, b: Value, operator: TokenStream, binding: Binding) -> Piece {
-        let tighter = if binding == Binding::Sum { Binding::Product } else { Binding::Unary };
+        let tighter = if binding == Binding::Sum {
+            Binding::Product
+        } else {
+            Binding::Unary
+        };
         let ((left, m), (right, n)) = (self.operand(a, binding), self.operand(b, tighter));
-        Piece { tokens: quote!(#left #operator #right), binding, size: m + n + 1 }
+        Piece {
+            tokens: quote!(#left #operator #right),
+            binding,
+            size: m + n + 1,
+        }
     }
 
     fn call(&self, name: &str, arguments: &[Value]) -> Piece {
         let name = Ident::new(name, Span::call_site());
-        let arguments = arguments.iter().map(|value| self.pieces[value.index()].tokens.clone());
+        let arguments = arguments
+            .iter()
+            .map(|value| self.pieces[value.index()].tokens.clone());
         atom(quote!(::dalembert::__private::math::#name(#(#arguments),*)))
     }
 
@@ -182,7 +243,11 @@ impl<'a> Writer<'a> {
             Op::Pi => atom(quote!(::core::f64::consts::PI)),
             Op::Neg(a) => {
                 let (tokens, size) = self.operand(*a, Binding::Product);
-                Piece { tokens: quote!(-#tokens), binding: Binding::Unary, size: size + 1 }
+                Piece {
+                    tokens: quote!(-#tokens),
+                    binding: Binding::Unary,
+                    size: size + 1,
+                }
             }
             Op::Add(a, b) => self.binary(*a, *b, quote!(+), Binding::Sum),
             Op::Sub(a, b) => self.binary(*a, *b, quote!(-), Binding::Sum),
@@ -219,7 +284,11 @@ impl<'a> Writer<'a> {
 }
 
 fn atom(tokens: TokenStream) -> Piece {
-    Piece { tokens, binding: Binding::Atom, size: 0 }
+    Piece {
+        tokens,
+        binding: Binding::Atom,
+        size: 0,
+    }
 }
 
 /// A number. A value too large for `f64` was refused when the model was checked; were one to come this far, it
@@ -230,7 +299,11 @@ fn literal(number: f64) -> Piece {
     }
     let size = Literal::f64_unsuffixed(number.abs());
     match number.is_sign_negative() && number != 0.0 {
-        true => Piece { tokens: quote!(-#size), binding: Binding::Unary, size: 0 },
+        true => Piece {
+            tokens: quote!(-#size),
+            binding: Binding::Unary,
+            size: 0,
+        },
         false => atom(quote!(#size)),
     }
 }
@@ -241,7 +314,11 @@ pub(super) fn number(value: f64) -> TokenStream {
         return quote!(::core::f64::NAN);
     }
     if value.is_infinite() {
-        return if value > 0.0 { quote!(::core::f64::INFINITY) } else { quote!(::core::f64::NEG_INFINITY) };
+        return if value > 0.0 {
+            quote!(::core::f64::INFINITY)
+        } else {
+            quote!(::core::f64::NEG_INFINITY)
+        };
     }
     literal(value).tokens
 }

@@ -10,7 +10,9 @@ use crate::program::Impacting;
 
 /// `impl Impacting`, if there are surfaces.
 pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
-    let Some(functions) = &context.program.impacting else { return TokenStream::new() };
+    let Some(functions) = &context.program.impacting else {
+        return TokenStream::new();
+    };
     let type_name = &context.names.type_name;
     let s = context.model.surfaces.len();
     let gaps = emit_gaps(context, functions);
@@ -62,10 +64,17 @@ fn emit_conditions(context: &Context<'_>, functions: &Impacting) -> TokenStream 
     if functions.conditions.iter().all(Option::is_none) {
         return TokenStream::new();
     }
-    let arms = functions.conditions.iter().enumerate().filter_map(|(s, function)| {
-        let Body { statements, outputs } = context.state_body(function.as_ref()?);
-        Some(quote!(#s => { #statements #(#outputs > 0.0)&&* }))
-    });
+    let arms = functions
+        .conditions
+        .iter()
+        .enumerate()
+        .filter_map(|(s, function)| {
+            let Body {
+                statements,
+                outputs,
+            } = context.state_body(function.as_ref()?);
+            Some(quote!(#s => { #statements #(#outputs > 0.0)&&* }))
+        });
     quote! {
         #[inline]
         fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
@@ -78,8 +87,13 @@ fn emit_conditions(context: &Context<'_>, functions: &Impacting) -> TokenStream 
 }
 
 fn emit_laws(context: &Context<'_>, functions: &Impacting) -> TokenStream {
-    let arms = context.model.surfaces.iter().zip(&functions.coefficients).enumerate().map(
-        |(s, (surface, coefficient))| {
+    let arms = context
+        .model
+        .surfaces
+        .iter()
+        .zip(&functions.coefficients)
+        .enumerate()
+        .map(|(s, (surface, coefficient))| {
             let law = match surface.law {
                 Law::Elastic => quote!(Elastic),
                 Law::Restitution(_) => quote!(Restitution),
@@ -90,13 +104,15 @@ fn emit_laws(context: &Context<'_>, functions: &Impacting) -> TokenStream {
             };
             match coefficient {
                 Some(function) => {
-                    let Body { statements, outputs } = super::function::emit_body(function, &context.names);
+                    let Body {
+                        statements,
+                        outputs,
+                    } = super::function::emit_body(function, &context.names);
                     quote!(#s => { #statements ::dalembert::impacts::law::Law::#law(#(#outputs)*) })
                 }
                 None => quote!(#s => ::dalembert::impacts::law::Law::#law,),
             }
-        },
-    );
+        });
     quote! {
         #[inline]
         fn law(&self, surface: usize) -> ::dalembert::impacts::law::Law {
@@ -110,9 +126,18 @@ fn emit_laws(context: &Context<'_>, functions: &Impacting) -> TokenStream {
 
 fn emit_contacts(context: &Context<'_>, functions: &Impacting) -> TokenStream {
     let arms = functions.contacts.iter().enumerate().map(|(s, function)| {
-        let Body { statements, outputs } = context.state_body(function);
-        let [gap_rate, constrained_rate, surface_rate, constrained_compliance, free_compliance, direction @ ..] =
-            outputs.as_slice()
+        let Body {
+            statements,
+            outputs,
+        } = context.state_body(function);
+        let [
+            gap_rate,
+            constrained_rate,
+            surface_rate,
+            constrained_compliance,
+            free_compliance,
+            direction @ ..,
+        ] = outputs.as_slice()
         else {
             return TokenStream::new();
         };

@@ -28,7 +28,11 @@ struct Context<'a> {
 
 /// The generated items of a model.
 pub fn tokens(model: &Model, program: &Program) -> TokenStream {
-    let context = Context { model, program, names: Names::of(model) };
+    let context = Context {
+        model,
+        program,
+        names: Names::of(model),
+    };
     let items = [
         parameters::emit_parameters(&context),
         parameters::emit_indices(&context),

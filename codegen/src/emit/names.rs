@@ -26,7 +26,19 @@ pub(super) struct Names {
 
 /// Names that generated functions use for their own arguments.
 const ARGUMENTS: [&str; 14] = [
-    "t", "state", "rate", "q", "qdot", "p", "excess", "forms", "affine", "surface", "values", "report", "size",
+    "t",
+    "state",
+    "rate",
+    "q",
+    "qdot",
+    "p",
+    "excess",
+    "forms",
+    "affine",
+    "surface",
+    "values",
+    "report",
+    "size",
     "direction",
 ];
 
@@ -35,17 +47,27 @@ impl Names {
         let mut taken = arguments();
         let mut locals = |prefix: &str, suffix: &str| -> Vec<Ident> {
             let wished = |name: &Name| format!("{prefix}{}{suffix}", name.display);
-            let names = model.coordinates.iter().map(|coordinate| claim(&mut taken, &wished(&coordinate.name)));
-            names.map(|name| Ident::new(&name, Span::call_site())).collect()
+            let names = model
+                .coordinates
+                .iter()
+                .map(|coordinate| claim(&mut taken, &wished(&coordinate.name)));
+            names
+                .map(|name| Ident::new(&name, Span::call_site()))
+                .collect()
         };
-        let (coordinates, momenta, velocities) = (locals("", ""), locals("p_", ""), locals("", "_dot"));
+        let (coordinates, momenta, velocities) =
+            (locals("", ""), locals("p_", ""), locals("", "_dot"));
         Self {
             type_name: Ident::new(&model.name, Span::call_site()),
             module: Ident::new(&model.snake_name, Span::call_site()),
             coordinates,
             momenta,
             velocities,
-            parameters: model.parameters.iter().map(|parameter| place(&parameter.name)).collect(),
+            parameters: model
+                .parameters
+                .iter()
+                .map(|parameter| place(&parameter.name))
+                .collect(),
         }
     }
 
@@ -96,5 +118,5 @@ pub(super) fn claim(taken: &mut BTreeSet<String>, wished: &str) -> String {
 
 /// Whether Rust would not take the name as a local.
 fn is_keyword(name: &str) -> bool {
-    name == "_" || syn::parse_str::<Ident>(name).is_err()
+    name == "_" || crate::spec::is_rust_keyword(name)
 }

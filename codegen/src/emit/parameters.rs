@@ -12,7 +12,9 @@ pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let visibility: TokenStream = model.visibility.parse().unwrap_or_default();
     let documentation = doc::lines(&documentation(model));
-    let fields = families(&model.parameters).into_iter().map(|family| emit_field_of(model, family));
+    let fields = families(&model.parameters)
+        .into_iter()
+        .map(|family| emit_field_of(model, family));
     let default = emit_default(context);
     quote! {
         #documentation
@@ -63,19 +65,25 @@ fn describe(model: &Model, parameter: &Parameter) -> String {
 
 /// Parameters grouped into scalars and whole families.
 pub(super) fn families(parameters: &[Parameter]) -> Vec<&[Parameter]> {
-    parameters.chunk_by(|a, b| a.name.member.is_some() && a.name.field == b.name.field).collect()
+    parameters
+        .chunk_by(|a, b| a.name.member.is_some() && a.name.field == b.name.field)
+        .collect()
 }
 
 /// The declared default as a number.
 pub(super) fn default_value(model: &Model, parameter: &Parameter) -> Option<f64> {
-    parameter.default.map(|default| model.pool.eval(&[default], &|_| f64::NAN)[0])
+    parameter
+        .default
+        .map(|default| model.pool.eval(&[default], &|_| f64::NAN)[0])
 }
 
 /// The struct with declared defaults, NaN where there is none.
 pub(super) fn with_defaults(model: &Model) -> TokenStream {
     let fields = families(&model.parameters).into_iter().map(|family| {
         let field = Ident::new(&family[0].name.field, Span::call_site());
-        let values = family.iter().map(|parameter| number(default_value(model, parameter).unwrap_or(f64::NAN)));
+        let values = family
+            .iter()
+            .map(|parameter| number(default_value(model, parameter).unwrap_or(f64::NAN)));
         match family[0].name.member {
             Some(_) => quote!(#field: [#(#values),*]),
             None => quote!(#field: #(#values)*),
@@ -86,7 +94,11 @@ pub(super) fn with_defaults(model: &Model) -> TokenStream {
 
 fn emit_default(context: &Context<'_>) -> TokenStream {
     let model = context.model;
-    if model.parameters.iter().any(|parameter| parameter.default.is_none()) {
+    if model
+        .parameters
+        .iter()
+        .any(|parameter| parameter.default.is_none())
+    {
         return TokenStream::new();
     }
     let type_name = &context.names.type_name;
@@ -110,8 +122,16 @@ pub(super) fn emit_indices(context: &Context<'_>) -> TokenStream {
     };
     let module = &context.names.module;
     let title = format!("Indices of the names declared in [`{}`].", model.name);
-    let coordinates: Vec<&Name> = model.coordinates.iter().map(|coordinate| &coordinate.name).collect();
-    let constraints: Vec<&Name> = model.constraints.iter().map(|constraint| &constraint.name).collect();
+    let coordinates: Vec<&Name> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| &coordinate.name)
+        .collect();
+    let constraints: Vec<&Name> = model
+        .constraints
+        .iter()
+        .map(|constraint| &constraint.name)
+        .collect();
     let surfaces: Vec<&Name> = model.surfaces.iter().map(|surface| &surface.name).collect();
     let outputs: Vec<&Name> = model.outputs.iter().map(|output| &output.name).collect();
     let parts = [

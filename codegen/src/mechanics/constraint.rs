@@ -30,7 +30,10 @@ pub struct ConstraintForm {
 }
 
 /// Differentiates every constraint.
-pub(super) fn derive_constraints(model: &mut Model, coordinates: &Coordinates) -> Vec<ConstraintForm> {
+pub(super) fn derive_constraints(
+    model: &mut Model,
+    coordinates: &Coordinates,
+) -> Vec<ConstraintForm> {
     let motion = coordinates.motion(model);
     (0..model.constraints.len())
         .map(|a| {
@@ -53,7 +56,12 @@ pub(super) fn derive_constraints(model: &mut Model, coordinates: &Coordinates) -
 }
 
 /// `eta(qdot) + eta_0`.
-fn derive_residual(model: &mut Model, coordinates: &Coordinates, form: &[ExprId], affine: ExprId) -> ExprId {
+fn derive_residual(
+    model: &mut Model,
+    coordinates: &Coordinates,
+    form: &[ExprId],
+    affine: ExprId,
+) -> ExprId {
     let mut terms = vec![affine];
     for (&component, &qdot) in form.iter().zip(&coordinates.qdot) {
         let velocity = model.pool.variable(qdot);
@@ -62,17 +70,28 @@ fn derive_residual(model: &mut Model, coordinates: &Coordinates, form: &[ExprId]
     model.pool.sum(&terms)
 }
 
-fn derive_form_gradient(model: &mut Model, coordinates: &Coordinates, form: &[ExprId]) -> Vec<Entry<2>> {
+fn derive_form_gradient(
+    model: &mut Model,
+    coordinates: &Coordinates,
+    form: &[ExprId],
+) -> Vec<Entry<2>> {
     let mut entries = Vec::new();
     for (j, &component) in form.iter().enumerate() {
         for Entry { index: [k], value } in gradient(model, component, &coordinates.q) {
-            entries.push(Entry { index: [j, k], value });
+            entries.push(Entry {
+                index: [j, k],
+                value,
+            });
         }
     }
     entries
 }
 
-fn derive_form_rate(model: &mut Model, coordinates: &Coordinates, form: &[ExprId]) -> Vec<Entry<1>> {
+fn derive_form_rate(
+    model: &mut Model,
+    coordinates: &Coordinates,
+    form: &[ExprId],
+) -> Vec<Entry<1>> {
     let mut entries = Vec::new();
     for (j, &component) in form.iter().enumerate() {
         for Entry { value, .. } in gradient(model, component, &[coordinates.time]) {
@@ -100,36 +119,55 @@ fn amplitude(pool: &mut Pool, expression: ExprId) -> ExprId {
             let mut bounds = Vec::with_capacity(factors.len());
             for (base, exponent) in factors.iter() {
                 // A small denominator is what it is: only numerators may be counted by their bound.
-                let bound = if exponent.is_positive() { amplitude(pool, *base) } else { pool.call(Function::Abs, *base) };
+                let bound = if exponent.is_positive() {
+                    amplitude(pool, *base)
+                } else {
+                    pool.call(Function::Abs, *base)
+                };
                 bounds.push(pool.pow(bound, exponent.clone()));
             }
             pool.product(&bounds)
         }
-        Node::Pi | Node::Symbol(_) | Node::Call(..) | Node::Atan2(..) => pool.call(Function::Abs, expression),
+        Node::Pi | Node::Symbol(_) | Node::Call(..) | Node::Atan2(..) => {
+            pool.call(Function::Abs, expression)
+        }
     }
 }
 
-/// Whether the forms are independent at every state because, after a permutation, some M columns are
-/// triangular with entries on the diagonal that are never zero: rows and columns are taken away as long as a
-/// column holds a single entry and that entry cannot vanish.
-pub(crate) fn has_regular_minor(pool: &Pool, constraints: &[ConstraintForm]) -> bool {
+/// A coordinate for each constraint such that the velocities of these coordinates follow from the others at every
+/// state: pairs of constraint and coordinate in an order in which they can be solved for, each entry on the
+/// diagonal never zero. `None` if no order of rows and columns makes such a minor triangular.
+pub(crate) fn regular_minor(
+    pool: &Pool,
+    constraints: &[ConstraintForm],
+) -> Option<Vec<(usize, usize)>> {
     let mut rows: Vec<usize> = (0..constraints.len()).collect();
-    let columns = constraints.first().map_or(0, |constraint| constraint.form.len());
+    let columns = constraints
+        .first()
+        .map_or(0, |constraint| constraint.form.len());
+    let mut pairs = Vec::with_capacity(rows.len());
     while !rows.is_empty() {
-        let removable = rows.iter().position(|&a| {
-            (0..columns).any(|j| {
-                let alone = rows.iter().all(|&b| b == a || pool.is_syntactic_zero(constraints[b].form[j]));
-                alone && never_zero(pool, constraints[a].form[j])
-            })
-        });
-        match removable {
-            Some(position) => drop(rows.remove(position)),
-            None => return false,
-        }
+        let removable = |&a: &usize| {
+            let alone = |j: usize| {
+                rows.iter()
+                    .all(|&b| b == a || pool.is_syntactic_zero(constraints[b].form[j]))
+            };
+            let column =
+                (0..columns).find(|&j| alone(j) && never_zero(pool, constraints[a].form[j]))?;
+            Some((a, column))
+        };
+        let pair = rows.iter().find_map(removable)?;
+        rows.retain(|&row| row != pair.0);
+        pairs.push(pair);
     }
-    true
+    // A row taken away early may hold the columns of later ones, never the other way round.
+    pairs.reverse();
+    Some(pairs)
 }
 
 fn never_zero(pool: &Pool, expression: ExprId) -> bool {
-    matches!(pool.sign(expression), Sign::Positive | Sign::Negative | Sign::NonZero)
+    matches!(
+        pool.sign(expression),
+        Sign::Positive | Sign::Negative | Sign::NonZero
+    )
 }

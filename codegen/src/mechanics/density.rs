@@ -32,8 +32,14 @@ pub(super) fn derive_density(
         let components: Vec<_> = model.forces.iter().map(|named| named.form[i]).collect();
         let force = model.pool.sum(&components);
         for Entry { index: [j], value } in gradient(model, force, &coordinates.qdot) {
-            force_velocity.push(Entry { index: [i, j], value });
+            force_velocity.push(Entry {
+                index: [i, j],
+                value,
+            });
         }
     }
-    DensityTerms { metric, force_velocity }
+    DensityTerms {
+        metric,
+        force_velocity,
+    }
 }

@@ -19,13 +19,18 @@ pub struct FieldTerms {
 pub(super) fn derive_field(model: &mut Model, coordinates: &Coordinates) -> FieldTerms {
     let motion = coordinates.motion(model);
     let whole = model.lagrangian.whole;
-    let mut terms = FieldTerms { force: Vec::new(), drift: Vec::new() };
+    let mut terms = FieldTerms {
+        force: Vec::new(),
+        drift: Vec::new(),
+    };
     for k in 0..coordinates.q.len() {
         let mut force = vec![model.pool.diff(whole, coordinates.q[k])];
         force.extend(model.forces.iter().map(|named| named.form[k]));
         terms.force.push(model.pool.sum(&force));
         let momentum = model.pool.diff(whole, coordinates.qdot[k]);
-        terms.drift.push(model.pool.derivative_along(momentum, &motion));
+        terms
+            .drift
+            .push(model.pool.derivative_along(momentum, &motion));
     }
     terms
 }

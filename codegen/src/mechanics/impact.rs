@@ -31,7 +31,11 @@ pub(super) fn derive_surfaces(model: &mut Model, coordinates: &Coordinates) -> V
             let gap = model.surfaces[s].gap;
             SurfaceForm {
                 gap,
-                form: coordinates.q.iter().map(|&q| model.pool.diff(gap, q)).collect(),
+                form: coordinates
+                    .q
+                    .iter()
+                    .map(|&q| model.pool.diff(gap, q))
+                    .collect(),
                 rate: model.pool.diff(gap, coordinates.time),
                 gap_rate: model.pool.derivative_along(gap, &motion),
                 conditions: model.surfaces[s].conditions.clone(),

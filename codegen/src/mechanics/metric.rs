@@ -22,10 +22,16 @@ pub(super) fn derive_metric(model: &mut Model, coordinates: &Coordinates) -> Met
         for j in i..coordinates.q.len() {
             let g_ij = model.lagrangian.metric[i][j];
             for Entry { index: [k], value } in gradient(model, g_ij, &coordinates.q) {
-                derivatives.by_coordinate.push(Entry { index: [i, j, k], value });
+                derivatives.by_coordinate.push(Entry {
+                    index: [i, j, k],
+                    value,
+                });
             }
             for Entry { value, .. } in gradient(model, g_ij, &[coordinates.time]) {
-                derivatives.by_time.push(Entry { index: [i, j], value });
+                derivatives.by_time.push(Entry {
+                    index: [i, j],
+                    value,
+                });
             }
         }
     }

@@ -44,7 +44,11 @@ pub struct Derivation {
 impl Derivation {
     /// The constraints that are integrable with a known function.
     pub fn levelled(&self) -> impl Iterator<Item = usize> {
-        self.constraints.iter().enumerate().filter(|(_, constraint)| constraint.level.is_some()).map(|(a, _)| a)
+        self.constraints
+            .iter()
+            .enumerate()
+            .filter(|(_, constraint)| constraint.level.is_some())
+            .map(|(a, _)| a)
     }
 }
 
@@ -85,16 +89,28 @@ pub struct Coordinates {
 impl Coordinates {
     fn of(model: &Model) -> Self {
         Self {
-            q: model.coordinates.iter().map(|coordinate| coordinate.q).collect(),
-            qdot: model.coordinates.iter().map(|coordinate| coordinate.qdot).collect(),
+            q: model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.q)
+                .collect(),
+            qdot: model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.qdot)
+                .collect(),
             time: model.time,
         }
     }
 
     /// The direction of the motion in `(q, t)`: `qdot` for q, 1 for t.
     fn motion(&self, model: &mut Model) -> Vec<(SymbolId, ExprId)> {
-        let mut direction: Vec<_> =
-            self.q.iter().zip(&self.qdot).map(|(&q, &qdot)| (q, model.pool.variable(qdot))).collect();
+        let mut direction: Vec<_> = self
+            .q
+            .iter()
+            .zip(&self.qdot)
+            .map(|(&q, &qdot)| (q, model.pool.variable(qdot)))
+            .collect();
         direction.push((self.time, model.pool.one()));
         direction
     }

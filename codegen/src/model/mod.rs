@@ -1,6 +1,6 @@
 //! Stage 2, check: from what was written to a model with every name resolved and nothing derived yet.
 //!
-//! A [`Model`] can only be had from [`check`], so it satisfies every rule a declaration must: the Lagrangian is
+//! A [`Model`] can only be had from [`check()`], so it satisfies every rule a declaration must: the Lagrangian is
 //! natural, the metric is not degenerate, the constraints are linear or affine and independent, surfaces can be
 //! reached. Indices are in order of declaration throughout: `i, j, k` coordinates, `a, b` constraints, `s` surfaces.
 

@@ -73,9 +73,10 @@ fn refuse_term<T>(
 
 /// Refuses a metric that is singular, or not positive for any values of the parameters.
 pub(super) fn check_metric(resolver: &mut Resolver<'_>, written: &Scalar, lagrangian: &Lagrangian) {
-    let absent = check_velocities(resolver, lagrangian);
+    let before = resolver.diagnostics.len();
+    check_velocities(resolver, lagrangian);
     check_diagonal(resolver, written, lagrangian);
-    if absent > 0 || !resolver.diagnostics.is_empty() {
+    if resolver.diagnostics.len() > before {
         return;
     }
     let report = resolver.pool.rank(&lagrangian.metric);
@@ -89,18 +90,17 @@ pub(super) fn check_metric(resolver: &mut Resolver<'_>, written: &Scalar, lagran
     resolver.refuse::<()>(written.at, text, &help);
 }
 
-/// Refuses coordinates whose velocity does not appear; gives their number.
-fn check_velocities(resolver: &mut Resolver<'_>, lagrangian: &Lagrangian) -> usize {
-    let mut absent = 0;
+/// Refuses coordinates whose velocity does not appear, one of each family.
+fn check_velocities(resolver: &mut Resolver<'_>, lagrangian: &Lagrangian) {
+    let mut refused: Vec<ItemId> = Vec::new();
     for (index, row) in lagrangian.metric.iter().enumerate() {
         let coordinate = &resolver.symbols.coordinates[index];
-        if !row
-            .iter()
-            .all(|entry| resolver.pool.is_syntactic_zero(*entry))
-        {
+        let item = coordinate.item;
+        let is_zero = |entry: &ExprId| resolver.pool.is_syntactic_zero(*entry);
+        if !row.iter().all(is_zero) || refused.contains(&item) {
             continue;
         }
-        absent += 1;
+        refused.push(item);
         let name = &coordinate.name.display;
         let how = if resolver.pool.depends_on(lagrangian.whole, coordinate.qdot) {
             "appears only linearly"
@@ -108,11 +108,9 @@ fn check_velocities(resolver: &mut Resolver<'_>, lagrangian: &Lagrangian) -> usi
             "does not appear"
         };
         let text = format!("the metric is singular: `dot({name})` {how}");
-        let at = resolver.spec.location(coordinate.item);
         let help = format!("make `{name}` a parameter, or add its kinetic term");
-        resolver.refuse::<()>(at, text, &help);
+        resolver.refuse::<()>(resolver.spec.location(item), text, &help);
     }
-    absent
 }
 
 /// Refuses diagonal entries that are known not to be positive.

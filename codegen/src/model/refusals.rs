@@ -1,5 +1,7 @@
 //! One case for each error of the check: the message, and the part of the text it points at, marked `«..»`.
 
+#![allow(clippy::unwrap_used)] // a test may stop at the first surprise
+
 use super::check;
 use crate::diagnostics::{Diagnostics, reported, unmarked};
 use crate::spec;
@@ -141,6 +143,8 @@ fn a_metric_that_is_not_positive_is_refused() {
         singular,
         "the metric is singular: `dot(z)` does not appear\nhelp: make `z` a parameter",
     );
+    let family = "P { coordinates { x; «q»[9]; } lagrangian = dot(x)^2 - q[1]; }";
+    refused(family, "the metric is singular: `dot(q.1)` does not appear");
     let dependent = "P { coordinates { x; y; } lagrangian = «(dot(x) + dot(y))^2»; }";
     refused(dependent, "the metric is singular: rank 1 of 2");
     let indefinite = "P { coordinates { x; y; } lagrangian = dot(x)^2 - «dot(y)^2»; }";
@@ -404,7 +408,7 @@ fn parameters_satisfy_their_assumptions() {
 
 #[test]
 fn a_model_has_at_most_64_coordinates() {
-    let source = "P { coordinates { «q»[65]; } lagrangian = sum(i in 1..=1: dot(q[i])^2); }";
+    let source = "P { coordinates { «q»[65]; } lagrangian = sum(i in 1..=65: dot(q[i])^2); }";
     refused(source, "65 coordinates; the limit is 64");
 }
 
@@ -424,6 +428,9 @@ fn initial_values_are_given_for_coordinates() {
         "initial value of `x` given again",
     );
     refused_in("initial { until = «-1»; }", "a run until -1 is empty");
+    let chart =
+        "P { coordinates { u in (0, pi); } lagrangian = dot(u)^2; initial { u = «2*pi»; } }";
+    refused(chart, "`2*pi` lies outside of the interval of `u`");
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Models that are right, and what is said of those that are not.
 
+#![allow(clippy::unwrap_used)] // a test may stop at the first surprise
+
 use dalembert_expr::{Pool, SymbolId};
 
 use super::{Assumption, Law, Model, Topology, check};

@@ -233,6 +233,11 @@ impl Builder {
     pub fn finish(self, outputs: Vec<Value>) -> Function {
         let (ops, names, outputs) = schedule::prune(self.ops, self.names, outputs);
         let cost = Cost::of(&ops);
-        Function { ops, names, outputs, cost }
+        Function {
+            ops,
+            names,
+            outputs,
+            cost,
+        }
     }
 }

@@ -25,7 +25,11 @@ pub struct Expressions<'a> {
 impl<'a> Expressions<'a> {
     /// Nothing bound yet.
     pub fn new(pool: &'a Pool) -> Self {
-        Self { pool, values: HashMap::new(), bindings: HashMap::new() }
+        Self {
+            pool,
+            values: HashMap::new(),
+            bindings: HashMap::new(),
+        }
     }
 
     /// Says what a symbol's value is.
@@ -73,7 +77,10 @@ impl<'a> Expressions<'a> {
                 None => builder.zero(),
             },
             Node::Sum { constant, terms } => {
-                let terms = terms.iter().map(|(coefficient, id)| (coefficient.clone(), self.factors(*id))).collect();
+                let terms = terms
+                    .iter()
+                    .map(|(coefficient, id)| (coefficient.clone(), self.factors(*id)))
+                    .collect();
                 let sum = self.lower_sum(builder, terms);
                 let constant = builder.number(constant.clone());
                 builder.add(sum, constant)
@@ -122,7 +129,8 @@ impl<'a> Expressions<'a> {
     /// A sum whose terms share no factor; a coefficient that all terms share up to sign is applied once.
     fn lower_plain_sum(&self, builder: &mut Builder, terms: Vec<Term>) -> Value {
         let size = terms.first().map(|(coefficient, _)| coefficient.abs());
-        let common = size.filter(|size| terms.len() > 1 && terms.iter().all(|(c, _)| c.abs() == *size));
+        let common =
+            size.filter(|size| terms.len() > 1 && terms.iter().all(|(c, _)| c.abs() == *size));
         let mut total = builder.zero();
         for (coefficient, factors) in terms {
             let product = self.lower_product(builder, &factors);
@@ -166,7 +174,12 @@ impl<'a> Expressions<'a> {
     fn is_moving(&self, builder: &Builder, id: ExprId) -> bool {
         self.pool.symbols(id).iter().any(|symbol| {
             let value = self.bindings.get(symbol);
-            !value.is_some_and(|&value| matches!(builder.op(value), super::Op::Input(super::Input::Parameter(_))))
+            !value.is_some_and(|&value| {
+                matches!(
+                    builder.op(value),
+                    super::Op::Input(super::Input::Parameter(_))
+                )
+            })
         })
     }
 
@@ -211,13 +224,22 @@ fn most_frequent_factor(terms: &[Term]) -> Option<ExprId> {
             }
         }
     }
-    let best = counts.iter().map(|&(_, count)| count).max().filter(|&count| count > 1)?;
-    counts.into_iter().find(|&(_, count)| count == best).map(|(base, _)| base)
+    let best = counts
+        .iter()
+        .map(|&(_, count)| count)
+        .max()
+        .filter(|&count| count > 1)?;
+    counts
+        .into_iter()
+        .find(|&(_, count)| count == best)
+        .map(|(base, _)| base)
 }
 
 /// Lowers the exponent of `base` by one, if it is a positive integer.
 fn take_factor(factors: &mut Vec<(ExprId, Rational)>, base: ExprId) -> bool {
-    let found = factors.iter().position(|(b, e)| *b == base && e.is_integer() && e.is_positive());
+    let found = factors
+        .iter()
+        .position(|(b, e)| *b == base && e.is_integer() && e.is_positive());
     let Some(position) = found else { return false };
     match factors[position].1.is_one() {
         true => drop(factors.remove(position)),

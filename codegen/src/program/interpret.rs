@@ -14,7 +14,11 @@ pub fn interpret(function: &Function, input: &dyn Fn(Input) -> f64) -> Result<Ve
         let value = execute(op, &values, input)?;
         values.push(value);
     }
-    Ok(function.outputs.iter().map(|output| values[output.index()]).collect())
+    Ok(function
+        .outputs
+        .iter()
+        .map(|output| values[output.index()])
+        .collect())
 }
 
 fn execute(op: &Op, values: &[f64], input: &dyn Fn(Input) -> f64) -> Result<f64, Guard> {
@@ -40,12 +44,17 @@ fn execute(op: &Op, values: &[f64], input: &dyn Fn(Input) -> f64) -> Result<f64,
 fn holds(guard: &Guard, values: &[f64]) -> bool {
     match *guard {
         Guard::Pivot { value, .. } => values[value.index()] > 0.0,
-        Guard::Constraint { squared, reference: None, .. } | Guard::Surface { squared, .. } => {
-            values[squared.index()] > 0.0
+        Guard::Constraint {
+            squared,
+            reference: None,
+            ..
         }
-        Guard::Constraint { squared, reference: Some(reference), .. } => {
-            values[squared.index()] > Guard::LEAST_SQUARED_RATIO * values[reference.index()]
-        }
+        | Guard::Surface { squared, .. } => values[squared.index()] > 0.0,
+        Guard::Constraint {
+            squared,
+            reference: Some(reference),
+            ..
+        } => values[squared.index()] > Guard::LEAST_SQUARED_RATIO * values[reference.index()],
     }
 }
 

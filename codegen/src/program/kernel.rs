@@ -8,7 +8,7 @@ use super::expression::Expressions;
 use super::linear::{Ldlt, Orthogonal};
 use super::{Function, Input, Value};
 use crate::mechanics::Derivation;
-use crate::mechanics::constraint::has_regular_minor;
+use crate::mechanics::constraint::regular_minor;
 use crate::model::Model;
 
 /// What the second half of a function's arguments is.
@@ -20,6 +20,9 @@ pub enum Arguments {
     Momenta,
     /// `(t, q, qdot)`
     Velocities,
+    /// `(t, q, p)` with `qdot` computed beforehand: for functions that would repeat the solve of a function that
+    /// exists anyway.
+    Both,
 }
 
 /// A function under construction together with the model it belongs to.
@@ -56,8 +59,10 @@ impl<'a> Kernel<'a> {
         for (i, coordinate) in model.coordinates.iter().enumerate() {
             kernel.bind(coordinate.q, Input::Coordinate(i));
         }
-        if arguments == Arguments::Velocities {
-            let inputs = (0..model.coordinates.len()).map(|i| kernel.builder.input(Input::Velocity(i))).collect();
+        if matches!(arguments, Arguments::Velocities | Arguments::Both) {
+            let inputs = (0..model.coordinates.len())
+                .map(|i| kernel.builder.input(Input::Velocity(i)))
+                .collect();
             kernel.bind_velocity(inputs);
         }
         kernel
@@ -93,7 +98,12 @@ impl<'a> Kernel<'a> {
     /// The value of an expression of time, positions, velocities and parameters.
     pub fn value(&mut self, expression: ExprId) -> Value {
         if self.qdot.is_none() {
-            let qdot: Vec<SymbolId> = self.model.coordinates.iter().map(|coordinate| coordinate.qdot).collect();
+            let qdot: Vec<SymbolId> = self
+                .model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.qdot)
+                .collect();
             if self.model.pool.depends_on_any(expression, &qdot) {
                 self.velocity();
             }
@@ -103,13 +113,19 @@ impl<'a> Kernel<'a> {
 
     /// The values of several expressions.
     pub fn values(&mut self, expressions: &[ExprId]) -> Vec<Value> {
-        expressions.iter().map(|&expression| self.value(expression)).collect()
+        expressions
+            .iter()
+            .map(|&expression| self.value(expression))
+            .collect()
     }
 
     /// Names values after the coordinates: `x_dot` for the suffix `_dot`.
     pub fn name_by_coordinate(&mut self, values: &[Value], prefix: &str, suffix: &str) {
         for (coordinate, &value) in self.model.coordinates.iter().zip(values) {
-            self.builder.name(value, format!("{prefix}{}{suffix}", coordinate.name.display));
+            self.builder.name(
+                value,
+                format!("{prefix}{}{suffix}", coordinate.name.display),
+            );
         }
     }
 
@@ -174,7 +190,7 @@ impl<'a> Kernel<'a> {
 
     /// `p - A = g qdot`.
     pub fn lowered_velocity(&mut self) -> Vec<Value> {
-        if self.arguments == Arguments::Momenta {
+        if matches!(self.arguments, Arguments::Momenta | Arguments::Both) {
             return self.kinetic_momenta();
         }
         let qdot = self.velocity();
@@ -207,6 +223,11 @@ impl<'a> Kernel<'a> {
             .collect()
     }
 
+    /// Pairs of constraint and coordinate whose velocity follows from it, in an order to solve for them.
+    pub fn regular_minor(&self) -> Option<Vec<(usize, usize)>> {
+        regular_minor(&self.model.pool, &self.derivation.constraints)
+    }
+
     fn orthogonalise(&mut self, which: &[usize]) -> Orthogonal {
         let mut columns = Vec::new();
         for &a in which {
@@ -214,12 +235,15 @@ impl<'a> Kernel<'a> {
             let form = self.values(&form);
             columns.push(self.forward(&form));
         }
-        let independent = has_regular_minor(&self.model.pool, &self.derivation.constraints);
+        let independent = self.regular_minor().is_some();
         self.with_ldlt(|builder, ldlt| Orthogonal::factor(builder, ldlt, columns, independent))
     }
 
     /// Runs `work` with the factors of all constraint forms.
-    pub fn with_constraints<T>(&mut self, work: impl FnOnce(&mut Builder, &Ldlt, &Orthogonal) -> T) -> T {
+    pub fn with_constraints<T>(
+        &mut self,
+        work: impl FnOnce(&mut Builder, &Ldlt, &Orthogonal) -> T,
+    ) -> T {
         let factors = match self.orthogonal.take() {
             Some(factors) => factors,
             None => self.orthogonalise(&(0..self.constraints()).collect::<Vec<_>>()),
@@ -255,11 +279,17 @@ impl<'a> Kernel<'a> {
             return multipliers.clone();
         }
         let free = self.force_without_drift();
-        let curvature: Vec<ExprId> = self.derivation.constraints.iter().map(|c| c.curvature).collect();
+        let curvature: Vec<ExprId> = self
+            .derivation
+            .constraints
+            .iter()
+            .map(|c| c.curvature)
+            .collect();
         let curvature = self.values(&curvature);
         let multipliers = self.constraint_solve(&free, &curvature);
         for (constraint, &value) in self.model.constraints.iter().zip(&multipliers) {
-            self.builder.name(value, format!("lambda_{}", constraint.name.display));
+            self.builder
+                .name(value, format!("lambda_{}", constraint.name.display));
         }
         self.multipliers = Some(multipliers.clone());
         multipliers
@@ -270,11 +300,19 @@ impl<'a> Kernel<'a> {
         let force = self.force();
         let drift = self.derivation.field.drift.clone();
         let drift = self.values(&drift);
-        force.iter().zip(drift).map(|(&f, d)| self.builder.sub(f, d)).collect()
+        force
+            .iter()
+            .zip(drift)
+            .map(|(&f, d)| self.builder.sub(f, d))
+            .collect()
     }
 
     /// `covector + lambda_a eta^a`
-    pub fn add_constraint_force(&mut self, covector: &[Value], multipliers: &[Value]) -> Vec<Value> {
+    pub fn add_constraint_force(
+        &mut self,
+        covector: &[Value],
+        multipliers: &[Value],
+    ) -> Vec<Value> {
         let forms = self.forms();
         let mut total = covector.to_vec();
         for (form, &multiplier) in forms.iter().zip(multipliers) {

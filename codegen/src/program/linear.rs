@@ -37,18 +37,26 @@ impl Ldlt {
                 }
                 scaled.push(entry);
             }
-            let row: Vec<Value> = (0..i).map(|j| builder.mul(scaled[j], inverse_pivots[j])).collect();
+            let row: Vec<Value> = (0..i)
+                .map(|j| builder.mul(scaled[j], inverse_pivots[j]))
+                .collect();
             let mut pivot = metric[i][i];
             for j in 0..i {
                 pivot = builder.sub_product(pivot, scaled[j], row[j]);
             }
             if !(positive[i] && pivot == metric[i][i]) {
-                builder.guard(Guard::Pivot { pivot: i, value: pivot });
+                builder.guard(Guard::Pivot {
+                    pivot: i,
+                    value: pivot,
+                });
             }
             inverse_pivots.push(builder.reciprocal(pivot));
             below.push(row);
         }
-        Self { below, inverse_pivots }
+        Self {
+            below,
+            inverse_pivots,
+        }
     }
 
     /// `L^{-1} b`
@@ -66,7 +74,9 @@ impl Ldlt {
 
     /// `L^{-T} D^{-1} y`: the second half of a solve.
     pub fn backward(&self, builder: &mut Builder, y: &[Value]) -> Vec<Value> {
-        let mut x: Vec<Value> = (0..y.len()).map(|i| builder.mul(y[i], self.inverse_pivots[i])).collect();
+        let mut x: Vec<Value> = (0..y.len())
+            .map(|i| builder.mul(y[i], self.inverse_pivots[i]))
+            .collect();
         for i in (0..y.len()).rev() {
             for j in i + 1..y.len() {
                 x[i] = builder.sub_product(x[i], self.below[j][i], x[j]);
@@ -122,13 +132,26 @@ pub struct Orthogonal {
 impl Orthogonal {
     /// Orthogonalises the columns `L^{-1} eta^a`. With `independent`, a proof of independence, guards only ask
     /// for positive norms.
-    pub fn factor(builder: &mut Builder, ldlt: &Ldlt, columns: Vec<Vec<Value>>, independent: bool) -> Self {
-        let mut factors = Self { columns: Vec::new(), above: Vec::new(), inverse_squares: Vec::new() };
+    pub fn factor(
+        builder: &mut Builder,
+        ldlt: &Ldlt,
+        columns: Vec<Vec<Value>>,
+        independent: bool,
+    ) -> Self {
+        let mut factors = Self {
+            columns: Vec::new(),
+            above: Vec::new(),
+            inverse_squares: Vec::new(),
+        };
         for (a, column) in columns.into_iter().enumerate() {
             let reference = (a > 0 && !independent).then(|| ldlt.inner(builder, &column, &column));
             let (coefficients, rest) = factors.reduce(builder, ldlt, column);
             let squared = ldlt.inner(builder, &rest, &rest);
-            builder.guard(Guard::Constraint { constraint: a, squared, reference });
+            builder.guard(Guard::Constraint {
+                constraint: a,
+                squared,
+                reference,
+            });
             factors.inverse_squares.push(builder.reciprocal(squared));
             factors.above.push(coefficients);
             factors.columns.push(rest);
@@ -137,7 +160,12 @@ impl Orthogonal {
     }
 
     /// Removes from `y` its components along the columns, one after the other: the components, and what is left.
-    pub fn reduce(&self, builder: &mut Builder, ldlt: &Ldlt, mut y: Vec<Value>) -> (Vec<Value>, Vec<Value>) {
+    pub fn reduce(
+        &self,
+        builder: &mut Builder,
+        ldlt: &Ldlt,
+        mut y: Vec<Value>,
+    ) -> (Vec<Value>, Vec<Value>) {
         let mut coefficients = Vec::with_capacity(self.columns.len());
         for (column, &inverse) in self.columns.iter().zip(&self.inverse_squares) {
             let product = ldlt.inner(builder, column, &y);
@@ -151,7 +179,13 @@ impl Orthogonal {
     }
 
     /// The `lambda` with `m lambda = -(C^T D^{-1} y + s)`.
-    pub fn solve(&self, builder: &mut Builder, ldlt: &Ldlt, y: Vec<Value>, s: &[Value]) -> Vec<Value> {
+    pub fn solve(
+        &self,
+        builder: &mut Builder,
+        ldlt: &Ldlt,
+        y: Vec<Value>,
+        s: &[Value],
+    ) -> Vec<Value> {
         let (components, _) = self.reduce(builder, ldlt, y);
         let shifts = self.transposed_solve(builder, s);
         let right = (0..s.len())

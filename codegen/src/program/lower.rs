@@ -19,13 +19,19 @@ pub fn lower(model: &Model, derivation: &Derivation) -> Program {
         divergence: geometry::divergence(model, derivation),
         density_form: geometry::density_form(model, derivation),
         outputs: declared::outputs(model, derivation),
-        view_path: model.view.as_ref().map(|view| declared::position_function(model, derivation, &view.path)),
+        view_path: model
+            .view
+            .as_ref()
+            .map(|view| declared::position_function(model, derivation, &view.path)),
         view_region: model
             .view
             .as_ref()
             .and_then(|view| view.region)
             .map(|region| declared::position_function(model, derivation, &[region])),
         initial: declared::initial(model, derivation),
-        until: model.initial.until.map(|until| declared::position_function(model, derivation, &[until])),
+        until: model
+            .initial
+            .until
+            .map(|until| declared::position_function(model, derivation, &[until])),
     }
 }

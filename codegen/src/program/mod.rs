@@ -122,7 +122,9 @@ impl Guard {
     pub fn operands(&self) -> impl Iterator<Item = Value> {
         let (first, second) = match *self {
             Self::Pivot { value, .. } => (value, None),
-            Self::Constraint { squared, reference, .. } => (squared, reference),
+            Self::Constraint {
+                squared, reference, ..
+            } => (squared, reference),
             Self::Surface { squared, .. } => (squared, None),
         };
         core::iter::once(first).chain(second)
@@ -135,7 +137,11 @@ impl Op {
         match self {
             Self::Input(_) | Self::Number(_) | Self::Pi => Vec::new(),
             Self::Neg(a) | Self::Sqrt(a) | Self::Power(a, _) | Self::Call(_, a) => vec![*a],
-            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) | Self::Div(a, b) | Self::Atan2(a, b) => {
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Mul(a, b)
+            | Self::Div(a, b)
+            | Self::Atan2(a, b) => {
                 vec![*a, *b]
             }
             Self::Guard(guard) => guard.operands().collect(),
@@ -179,9 +185,9 @@ pub struct Program {
     pub velocity: Function,
     /// `(t, q, qdot) -> p`
     pub momentum: Function,
-    /// `(t, q, p) -> energy`
+    /// `(t, q, p, qdot) -> energy`
     pub energy: Function,
-    /// `(t, q, p)` to everything that is derived, by name.
+    /// `(t, q, p, qdot)` to everything that is derived, by name.
     pub geometry: recipes::Geometry,
     /// With constraints.
     pub constrained: Option<Constrained>,
@@ -214,6 +220,8 @@ pub struct Constrained {
     pub forms: Function,
     /// `(t, q, p) -> p` on D*.
     pub project: Function,
+    /// `(t, q, p) -> p` on D*, after a step.
+    pub restore: Function,
     /// `(t, q) -> f`, one per integrable constraint.
     pub levels: Function,
     /// `(t, q, excess) -> change of q`

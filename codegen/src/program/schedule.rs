@@ -31,7 +31,10 @@ pub(super) fn prune(
             kept_names.push(name);
         }
     }
-    let outputs = outputs.into_iter().map(|value| renumbered[value.index()]).collect();
+    let outputs = outputs
+        .into_iter()
+        .map(|value| renumbered[value.index()])
+        .collect();
     (kept, kept_names, outputs)
 }
 
@@ -53,10 +56,22 @@ fn map_operands(op: Op, map: impl Fn(Value) -> Value) -> Op {
 
 fn map_guard(guard: Guard, map: impl Fn(Value) -> Value) -> Guard {
     match guard {
-        Guard::Pivot { pivot, value } => Guard::Pivot { pivot, value: map(value) },
-        Guard::Constraint { constraint, squared, reference } => {
-            Guard::Constraint { constraint, squared: map(squared), reference: reference.map(map) }
-        }
-        Guard::Surface { surface, squared } => Guard::Surface { surface, squared: map(squared) },
+        Guard::Pivot { pivot, value } => Guard::Pivot {
+            pivot,
+            value: map(value),
+        },
+        Guard::Constraint {
+            constraint,
+            squared,
+            reference,
+        } => Guard::Constraint {
+            constraint,
+            squared: map(squared),
+            reference: reference.map(map),
+        },
+        Guard::Surface { surface, squared } => Guard::Surface {
+            surface,
+            squared: map(squared),
+        },
     }
 }

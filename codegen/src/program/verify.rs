@@ -20,11 +20,19 @@ pub fn verify(function: &Function) -> Result<(), Malformed> {
         value.index() < end && !matches!(function.ops[value.index()], Op::Guard(_))
     };
     for (index, op) in function.ops.iter().enumerate() {
-        if !op.operands().into_iter().all(|operand| is_value(operand, index)) {
+        if !op
+            .operands()
+            .into_iter()
+            .all(|operand| is_value(operand, index))
+        {
             return Err(Malformed::Operand(index));
         }
     }
-    match function.outputs.iter().position(|&output| !is_value(output, function.ops.len())) {
+    match function
+        .outputs
+        .iter()
+        .position(|&output| !is_value(output, function.ops.len()))
+    {
         Some(output) => Err(Malformed::Output(output)),
         None => Ok(()),
     }

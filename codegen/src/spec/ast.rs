@@ -198,7 +198,7 @@ pub enum Topology {
     /// `x: angle;`
     Angle,
     /// `x in (a, b);`
-    Interval(Scalar, Scalar),
+    Interval(Box<[Scalar; 2]>),
 }
 
 /// `m[N] > 0 = [1, 2];`
@@ -228,7 +228,7 @@ pub enum Assumption {
     /// `!= 0`
     NonZero,
     /// `in [a, b]`
-    Within(Scalar, Scalar),
+    Within(Box<[Scalar; 2]>),
 }
 
 /// The default of a parameter or of all members of a family.

@@ -199,7 +199,7 @@ impl<'a> Cursor<'a> {
             let text = format!("`{}` is {reason}", name.text);
             self.diagnostics.error(name.at, text).help(format!(
                 "choose another name, for example `{}_1`",
-                name.text
+                name.text.trim_start_matches("r#")
             ));
         }
         Ok(name)

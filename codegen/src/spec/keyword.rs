@@ -107,6 +107,11 @@ const RUST: [&str; 52] = [
     "override", "priv", "try", "typeof", "unsized", "virtual", "yield",
 ];
 
+/// Whether Rust has this word for itself.
+pub fn is_rust_keyword(name: &str) -> bool {
+    RUST.contains(&name)
+}
+
 /// Functions and operators that take their arguments in parentheses.
 pub fn is_function(name: &str) -> bool {
     FUNCTIONS.contains(&name) || matches!(name, "d" | "dot" | "sum" | "momentum" | "multiplier")

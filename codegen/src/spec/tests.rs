@@ -1,5 +1,7 @@
 //! What the parser reads, and what it says of what it cannot read.
 
+#![allow(clippy::unwrap_used)] // a test may stop at the first surprise
+
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 use super::{ScalarKind, Spec, parse};

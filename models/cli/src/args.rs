@@ -223,8 +223,8 @@ pub struct SimulateArgs {
     /// Relative error allowed per step, between 1e-15 and 0.1.
     #[arg(long, value_name = "X", default_value = "1e-10", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
     pub tol: f64,
-    /// Number of equally spaced times from 0 to the end, both included, to record (at most 10000000).
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(0..=10_000_000), default_value_t = 1000)]
+    /// Number of equally spaced times from 0 to the end, both included, to record (at most 1000000).
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(0..=1_000_000), default_value_t = 1000)]
     pub samples: u64,
     /// Write samples and impacts as a table; `-` is the standard output.
     #[arg(long, value_name = "FILE")]

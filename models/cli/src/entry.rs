@@ -277,8 +277,8 @@ impl<M: Model> AnyModel for Typed<M> {
             direction: vector(&contact.direction),
         };
         let mut state = vector(state);
-        self.0
-            .kick(t, &mut state, contact.impulse(law), &contact.direction)?;
+        let eps = contact.impulse(law);
+        self.0.kick(t, &mut state, eps, &contact.direction)?;
         Ok(state.as_slice().to_vec())
     }
 

@@ -11,19 +11,79 @@ use core::f64::consts::FRAC_1_SQRT_2;
 pub(crate) const SAMPLES: usize = 9;
 
 /// `(1 - cos(j pi / 8)) / 2`: where in the unit interval the samples lie.
-pub(crate) const NODES: [f64; SAMPLES] = [0.0, 0.038060233744356624, 0.14644660940672624, 0.30865828381745514, 0.5, 0.6913417161825449, 0.8535533905932737, 0.9619397662556434, 1.0];
+pub(crate) const NODES: [f64; SAMPLES] = [
+    0.0,
+    0.038060233744356624,
+    0.14644660940672624,
+    0.30865828381745514,
+    0.5,
+    0.6913417161825449,
+    0.8535533905932737,
+    0.9619397662556434,
+    1.0,
+];
 
 /// From samples to the Bernstein coefficients 1 to 4. Coefficients 0 and 8 are the end samples, 5 to 7 follow by
 /// reflection.
 const TO_BERNSTEIN: [[f64; SAMPLES]; 4] = [
-    [-4.375, 6.568535592272045, -1.7071067811865475, 0.8099572022108875, -0.5, 0.3616156730429224, -0.2928932188134525, 0.259891532474145, -0.125],
-    [9.75, -18.25275486114713, 14.22828282092095, -7.581239029125371, 4.857142857142857, -3.570028757024018, 2.914574321936191, -2.5959773527034806, 1.25],
-    [-12.767857142857142, 25.51152560426028, -25.112909700267398, 23.09799209414256, -17.071428571428573, 13.306068923678326, -11.172804585446888, 10.084413377918832, -4.875],
-    [10.214285714285714, -20.91764997160261, 22.4, -24.7966357426831, 27.2, -24.7966357426831, 22.4, -20.91764997160261, 10.214285714285714],
+    [
+        -4.375,
+        6.568535592272045,
+        -1.7071067811865475,
+        0.8099572022108875,
+        -0.5,
+        0.3616156730429224,
+        -0.2928932188134525,
+        0.259891532474145,
+        -0.125,
+    ],
+    [
+        9.75,
+        -18.25275486114713,
+        14.22828282092095,
+        -7.581239029125371,
+        4.857142857142857,
+        -3.570028757024018,
+        2.914574321936191,
+        -2.5959773527034806,
+        1.25,
+    ],
+    [
+        -12.767857142857142,
+        25.51152560426028,
+        -25.112909700267398,
+        23.09799209414256,
+        -17.071428571428573,
+        13.306068923678326,
+        -11.172804585446888,
+        10.084413377918832,
+        -4.875,
+    ],
+    [
+        10.214285714285714,
+        -20.91764997160261,
+        22.4,
+        -24.7966357426831,
+        27.2,
+        -24.7966357426831,
+        22.4,
+        -20.91764997160261,
+        10.214285714285714,
+    ],
 ];
 
 /// `cos(7 j pi / 8)`: the Chebyshev polynomial of degree 7 at the samples.
-const SEVENTH: [f64; SAMPLES] = [1.0, -0.9238795325112867, FRAC_1_SQRT_2, -0.3826834323650898, 0.0, 0.3826834323650898, -FRAC_1_SQRT_2, 0.9238795325112867, -1.0];
+const SEVENTH: [f64; SAMPLES] = [
+    1.0,
+    -0.9238795325112867,
+    FRAC_1_SQRT_2,
+    -0.3826834323650898,
+    0.0,
+    0.3826834323650898,
+    -FRAC_1_SQRT_2,
+    0.9238795325112867,
+    -1.0,
+];
 
 /// Rounding of the conversion relative to the largest sample: the largest row sum of the table is 184, and each
 /// product is rounded.
@@ -104,7 +164,11 @@ fn doubt(samples: &[f64; SAMPLES]) -> f64 {
     for j in 0..SAMPLES {
         let weight = if j == 0 || j == SAMPLES - 1 { 0.5 } else { 1.0 };
         seventh += weight * SEVENTH[j] * samples[j];
-        eighth += if j % 2 == 0 { weight * samples[j] } else { -weight * samples[j] };
+        eighth += if j % 2 == 0 {
+            weight * samples[j]
+        } else {
+            -weight * samples[j]
+        };
         largest = largest.max(samples[j].abs());
     }
     let doubt = 0.25 * seventh.abs() + 0.125 * eighth.abs() + ROUNDING * largest;
@@ -125,10 +189,15 @@ pub(crate) fn clear(values: [f64; 2], slopes: [f64; 2], probe: f64) -> bool {
     let [v0, v1] = values;
     let (b1, b2) = (v0 + slopes[0] / 3.0, v1 - slopes[1] / 3.0);
     const S: f64 = 1.0 - PROBE;
-    let cubic = S * S * S * v0 + 3.0 * S * PROBE * (S * b1 + PROBE * b2) + PROBE * PROBE * PROBE * v1;
+    let cubic =
+        S * S * S * v0 + 3.0 * S * PROBE * (S * b1 + PROBE * b2) + PROBE * PROBE * PROBE * v1;
     let quartic = (probe - cubic) / (PROBE * PROBE * S * S);
-    let coefficients =
-        [0.25 * (v0 + 3.0 * b1), 0.5 * (b1 + b2) + quartic / 6.0, 0.25 * (3.0 * b2 + v1), v1];
+    let coefficients = [
+        0.25 * (v0 + 3.0 * b1),
+        0.5 * (b1 + b2) + quartic / 6.0,
+        0.25 * (3.0 * b2 + v1),
+        v1,
+    ];
     let (mut least, mut largest) = (v1, v1);
     for value in coefficients {
         least = least.min(value);
@@ -164,7 +233,11 @@ mod tests {
                 }
             }
             let exact = x * x * x * x * x * x * x * x - 0.5 * x * x * x + 2.0;
-            assert!((row[0] - exact).abs() < 2.5 * ROUNDING, "{}", row[0] - exact);
+            assert!(
+                (row[0] - exact).abs() < 2.5 * ROUNDING,
+                "{}",
+                row[0] - exact
+            );
         }
     }
 
@@ -189,6 +262,10 @@ mod tests {
         assert!(clear([1.0, 2.0], [1.0, 1.0], 1.0 + PROBE));
         // Just left with rate 1, and falling back before the end or not.
         assert!(clear([0.0, 0.5], [1.0, 0.0], PROBE - 0.5 * PROBE * PROBE));
-        assert!(!clear([0.0, -0.5], [1.0, -2.0], PROBE - 1.5 * PROBE * PROBE));
+        assert!(!clear(
+            [0.0, -0.5],
+            [1.0, -2.0],
+            PROBE - 1.5 * PROBE * PROBE
+        ));
     }
 }

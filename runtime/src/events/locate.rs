@@ -87,7 +87,11 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
                 },
                 Signs::Unclear => {
                     let known = depth >= DOUBTFUL;
-                    let floor = if known { *floor.get_or_insert_with(&mut self.rounding) } else { -1.0 };
+                    let floor = if known {
+                        *floor.get_or_insert_with(&mut self.rounding)
+                    } else {
+                        -1.0
+                    };
                     let flat = samples.iter().all(|gap| gap.abs() <= floor);
                     if !flat && depth < DEPTH {
                         (index, depth) = (2 * index, depth + 1);
@@ -111,13 +115,28 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
 
     /// Narrows the interval in which the gap falls.
     fn narrow(&mut self, drop: Drop) -> Search {
-        let [after, before, _] = drop.x;
+        let Bracket { before, after } = drop.bracket();
         if before > self.start.until {
             return Search::Clear;
         }
         let slope = self.start.slope;
-        let found = narrow(drop, |theta| deflated((self.gap)(theta), theta, slope));
-        found.map_or(Search::Pole(after), Search::Falls)
+        let narrowed = narrow(drop, |theta| deflated((self.gap)(theta), theta, slope));
+        // A pole is told from a root by gaps that grow towards it.
+        let size = |drop: &Drop| {
+            let gap = |i: usize| {
+                if slope.is_some() {
+                    drop.f[i] * drop.x[i]
+                } else {
+                    drop.f[i]
+                }
+            };
+            gap(0).abs().max(gap(1).abs())
+        };
+        if size(&narrowed) > size(&drop) {
+            Search::Pole(after)
+        } else {
+            Search::Falls(narrowed.bracket())
+        }
     }
 
     fn samples(&mut self, left: f64, right: f64) -> [f64; SAMPLES] {
@@ -131,13 +150,23 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
 /// The ends of a stretch.
 fn stretch(from: f64, index: u64, depth: u32) -> [f64; 2] {
     let count = (1_u64 << depth) as f64;
-    let end = |index: u64| if index as f64 == count { 1.0 } else { from + (1.0 - from) * (index as f64 / count) };
+    let end = |index: u64| {
+        if index as f64 == count {
+            1.0
+        } else {
+            from + (1.0 - from) * (index as f64 / count)
+        }
+    };
     [end(index), end(index + 1)]
 }
 
 /// The point at part `node` of a stretch, exact at both ends.
 fn inside(left: f64, right: f64, node: f64) -> f64 {
-    if node >= 1.0 { right } else { left + (right - left) * node }
+    if node >= 1.0 {
+        right
+    } else {
+        left + (right - left) * node
+    }
 }
 
 /// A gap divided by the part of the step it is taken at, over a surface just left; its limit is the slope.
@@ -152,7 +181,11 @@ fn deflated(gap: f64, theta: f64, slope: Option<f64>) -> f64 {
 }
 
 /// All samples of a stretch, deflated.
-fn deflate(samples: &[f64; SAMPLES], [left, right]: [f64; 2], slope: Option<f64>) -> [f64; SAMPLES] {
+fn deflate(
+    samples: &[f64; SAMPLES],
+    [left, right]: [f64; 2],
+    slope: Option<f64>,
+) -> [f64; SAMPLES] {
     let mut values = *samples;
     if slope.is_some() {
         for (value, node) in values.iter_mut().zip(NODES) {
@@ -170,20 +203,31 @@ struct Drop {
     f: [f64; 3],
 }
 
+impl Drop {
+    fn bracket(&self) -> Bracket {
+        let [before, after] = if self.f[0] >= 0.0 {
+            [self.x[0], self.x[1]]
+        } else {
+            [self.x[1], self.x[0]]
+        };
+        Bracket { before, after }
+    }
+}
+
 /// The first value that is negative after one that is not.
 fn first_drop(values: &[f64; SAMPLES], [left, right]: [f64; 2]) -> Option<Drop> {
     let j = (1..SAMPLES).find(|&j| values[j - 1] >= 0.0 && values[j] < 0.0)?;
     let beside = if j + 1 < SAMPLES { j + 1 } else { j - 2 };
     let at = [j, j - 1, beside];
-    Some(Drop { x: at.map(|j| inside(left, right, NODES[j])), f: at.map(|j| values[j]) })
+    Some(Drop {
+        x: at.map(|j| inside(left, right, NODES[j])),
+        f: at.map(|j| values[j]),
+    })
 }
 
 /// Chandrupatla's method: inverse quadratic interpolation where it is safe, else bisection.
-///
-/// A pole is told from a root by values that grew.
-fn narrow(drop: Drop, mut value: impl FnMut(f64) -> f64) -> Option<Bracket> {
+fn narrow(drop: Drop, mut value: impl FnMut(f64) -> f64) -> Drop {
     let Drop { mut x, mut f } = drop;
-    let largest = f[0].abs().max(f[1].abs());
     let mut reach = 1.0;
     // Bisection alone ends within 64 halvings, but for roots next to 0.
     for _ in 0..200 {
@@ -197,8 +241,16 @@ fn narrow(drop: Drop, mut value: impl FnMut(f64) -> f64) -> Option<Bracket> {
         // change of sign there, for all is rounding, reaches further the next time.
         let part = next_part(x, f);
         let margin = (reach * resolution / width).min(0.5);
-        reach *= if part <= margin || part >= 1.0 - margin { 4.0 } else { 1.0 };
-        let trial = x[0] + part.clamp(margin, 1.0 - margin) * (x[1] - x[0]);
+        let trial = if part >= 1.0 - margin {
+            x[1] - margin * (x[1] - x[0])
+        } else {
+            x[0] + part.max(margin) * (x[1] - x[0])
+        };
+        reach *= if part <= margin || part >= 1.0 - margin {
+            4.0
+        } else {
+            1.0
+        };
         if trial == x[0] || trial == x[1] {
             break;
         }
@@ -212,8 +264,7 @@ fn narrow(drop: Drop, mut value: impl FnMut(f64) -> f64) -> Option<Bracket> {
         }
         (x[0], f[0]) = (trial, at_trial);
     }
-    let [before, after] = if f[0] >= 0.0 { [x[0], x[1]] } else { [x[1], x[0]] };
-    (f[0].abs().max(f[1].abs()) <= largest).then_some(Bracket { before, after })
+    Drop { x, f }
 }
 
 /// Where to go next between `x[0]` and `x[1]`.
@@ -249,14 +300,27 @@ mod tests {
             evaluations += 1;
             function(theta)
         };
-        let found = Line { gap, rounding: || 1e-15, whole: &whole, start }.first_fall();
+        let found = Line {
+            gap,
+            rounding: || 1e-15,
+            whole: &whole,
+            start,
+        }
+        .first_fall();
         (found, evaluations)
     }
 
-    const FROM_ABOVE: Start = Start { from: 0.0, above: true, slope: None, until: 1.0 };
+    const FROM_ABOVE: Start = Start {
+        from: 0.0,
+        above: true,
+        slope: None,
+        until: 1.0,
+    };
 
     fn assert_falls_at(found: Search, root: f64) {
-        let Search::Falls(Bracket { before, after }) = found else { panic!("{found:?}") };
+        let Search::Falls(Bracket { before, after }) = found else {
+            panic!("{found:?}")
+        };
         assert!(before < after && after - before <= 4.0 * f64::EPSILON * root);
         assert!((before - root).abs() <= 1e-15, "{before} for {root}");
     }
@@ -274,7 +338,10 @@ mod tests {
     #[test]
     fn root_at_the_start_is_divided_out() {
         for root in [0.9, 1e-3, 1e-9] {
-            let start = Start { slope: Some(root), ..FROM_ABOVE };
+            let start = Start {
+                slope: Some(root),
+                ..FROM_ABOVE
+            };
             let (found, evaluations) = first(|x| x * (root - x), start);
             assert_falls_at(found, root);
             assert!(evaluations <= 8, "{evaluations}");
@@ -285,8 +352,13 @@ mod tests {
     fn first_of_two_close_roots_is_found() {
         for distance in [1e-1, 1e-3, 1e-6] {
             let (found, _) = first(|x| (x - 0.4) * (x - 0.4 - distance), FROM_ABOVE);
-            let Search::Falls(bracket) = found else { panic!("{distance}: {found:?}") };
-            assert!((bracket.before - 0.4).abs() < 1e-9, "{distance}: {bracket:?}");
+            let Search::Falls(bracket) = found else {
+                panic!("{distance}: {found:?}")
+            };
+            assert!(
+                (bracket.before - 0.4).abs() < 1e-9,
+                "{distance}: {bracket:?}"
+            );
         }
         let (found, _) = first(|x| (x - 0.4) * (x - 0.4) + 1e-12, FROM_ABOVE);
         assert_eq!(found, Search::Clear);
@@ -294,7 +366,10 @@ mod tests {
 
     #[test]
     fn from_below_only_the_second_root_is_a_fall() {
-        let start = Start { above: false, ..FROM_ABOVE };
+        let start = Start {
+            above: false,
+            ..FROM_ABOVE
+        };
         let (found, _) = first(|x| (x - 0.25) * (0.625 - x), start);
         assert_falls_at(found, 0.625);
         assert_eq!(first(|x| x - 0.3, start).0, Search::Clear);
@@ -303,7 +378,9 @@ mod tests {
     #[test]
     fn fast_oscillations_are_resolved_from_the_left() {
         let (found, _) = first(|x| 1.2 + (500.0 * x).cos() - x, FROM_ABOVE);
-        let Search::Falls(bracket) = found else { panic!("{found:?}") };
+        let Search::Falls(bracket) = found else {
+            panic!("{found:?}")
+        };
         // Falls before the third minimum at 5 pi / 500; the level 1.2 - x first meets the minima there or later.
         let mut x = 0.0;
         while 1.2 + (500.0_f64 * x).cos() - x >= 0.0 {
@@ -314,8 +391,14 @@ mod tests {
 
     #[test]
     fn pole_and_rest_are_told_from_roots() {
-        assert!(matches!(first(|x| 1.0 / (0.3 - x), FROM_ABOVE).0, Search::Pole(_)));
-        let resting = Start { slope: Some(0.0), ..FROM_ABOVE };
+        assert!(matches!(
+            first(|x| 1.0 / (0.3 - x), FROM_ABOVE).0,
+            Search::Pole(_)
+        ));
+        let resting = Start {
+            slope: Some(0.0),
+            ..FROM_ABOVE
+        };
         assert_eq!(first(|x| -x * x, resting).0, Search::Sinks(0.0));
         assert_eq!(first(|x| x * x, resting).0, Search::Clear);
         assert_eq!(first(|_| 0.0, resting).0, Search::Clear);

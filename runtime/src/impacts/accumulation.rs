@@ -41,25 +41,47 @@ impl<V: StateVector> Accumulation<V> {
         let mut flights = V::zeros();
         flights.as_mut_slice().fill(f64::INFINITY);
         let zeros = V::zeros();
-        Self { last: f64::NEG_INFINITY, repeated: 0, times, flights, rates: zeros, shrunk: zeros, factors: zeros }
+        Self {
+            last: f64::NEG_INFINITY,
+            repeated: 0,
+            times,
+            flights,
+            rates: zeros,
+            shrunk: zeros,
+            factors: zeros,
+        }
     }
 
     /// Takes in an impact after which the gap rate is `rate`, 0 for one that does not bounce. `rounding` gives the
     /// size of the gap's rounding errors. Returns the time of accumulation, if impacts accumulate.
-    pub(super) fn add(&mut self, surface: usize, t: f64, rate: f64, rounding: impl FnOnce() -> f64) -> Option<f64> {
+    pub(super) fn add(
+        &mut self,
+        surface: usize,
+        t: f64,
+        rate: f64,
+        rounding: impl FnOnce() -> f64,
+    ) -> Option<f64> {
         self.repeated = if t == self.last { self.repeated + 1 } else { 0 };
         self.last = t;
         let flight = t - self.times.as_slice()[surface];
         let before = self.rates.as_slice()[surface];
         let shrunk = &mut self.shrunk.as_mut_slice()[surface];
-        *shrunk = if flight < self.flights.as_slice()[surface] { *shrunk + 1.0 } else { 0.0 };
+        *shrunk = if flight < self.flights.as_slice()[surface] {
+            *shrunk + 1.0
+        } else {
+            0.0
+        };
         let shrinking = *shrunk > SHRUNK && rate < before;
         self.times.as_mut_slice()[surface] = t;
         self.flights.as_mut_slice()[surface] = flight;
         self.rates.as_mut_slice()[surface] = rate;
         let factor = &mut self.factors.as_mut_slice()[surface];
         let weight = if *factor > 0.0 { MEMORY } else { 1.0 };
-        *factor += if before > 0.0 { weight * (rate / before - *factor) } else { 0.0 };
+        *factor += if before > 0.0 {
+            weight * (rate / before - *factor)
+        } else {
+            0.0
+        };
         if self.repeated >= AT_ONE_TIME {
             return Some(t);
         }
@@ -75,8 +97,15 @@ impl<V: StateVector> Accumulation<V> {
 
     /// Where flights end that go on shrinking by the factor their rates do: a geometric series.
     fn limit(&self, surface: usize, t: f64) -> f64 {
-        let (flight, factor) = (self.flights.as_slice()[surface], self.factors.as_slice()[surface]);
+        let (flight, factor) = (
+            self.flights.as_slice()[surface],
+            self.factors.as_slice()[surface],
+        );
         let rest = flight * factor / (1.0 - factor);
-        if rest.is_finite() && rest > 0.0 { t + rest } else { t }
+        if rest.is_finite() && rest > 0.0 {
+            t + rest
+        } else {
+            t
+        }
     }
 }

@@ -3,9 +3,10 @@
 use core::ops::ControlFlow;
 
 use super::accumulation::Accumulation;
+use super::hits::Hits;
 use super::law::Law;
 use super::override_table::Overrides;
-use super::watch::{Hits, Watch};
+use super::watch::Watch;
 use crate::contract::Impacting;
 use crate::effects::{Effect, Moment, SceneEffects, StepView};
 use crate::events::resolution::resolution;
@@ -62,7 +63,9 @@ impl<Sys: Impacting> Impacts<Sys> {
 
     /// The law in force on a surface.
     pub fn law_of(&self, system: &Sys, surface: usize) -> Law {
-        self.overrides.get(surface).unwrap_or_else(|| system.law(surface))
+        self.overrides
+            .get(surface)
+            .unwrap_or_else(|| system.law(surface))
     }
 
     /// Carries out impacts until none of the surfaces at hand is approached.
@@ -107,20 +110,35 @@ impl<Sys: Impacting> Impacts<Sys> {
         *now.state = after;
         now.counters.impacts += 1;
         let graze = self.watch.is_graze(surface);
-        let event = Event { t, surface, law, before, after, simultaneous, graze };
+        let event = Event {
+            t,
+            surface,
+            law,
+            before,
+            after,
+            simultaneous,
+            graze,
+        };
         if let ControlFlow::Break(()) = observer.event(&event) {
             return Err(Outcome::Stopped);
         }
         let rate_after = rates.as_slice()[surface];
         if rate_after < -STILL * rate.abs() {
-            return Err(Outcome::StillPenetrating { surface, rho: contact.rho() });
+            return Err(Outcome::StillPenetrating {
+                surface,
+                rho: contact.rho(),
+            });
         }
         if now.counters.impacts >= self.budget {
             return Err(Outcome::ImpactBudget);
         }
         let evaluations = &mut now.counters.event_evaluations;
         let rounding = || resolution(system, surface, t, &after, &after, evaluations);
-        let bounce = if rate_after > STILL * rate.abs() { rate_after } else { 0.0 };
+        let bounce = if rate_after > STILL * rate.abs() {
+            rate_after
+        } else {
+            0.0
+        };
         match self.accumulation.add(surface, t, bounce, rounding) {
             Some(t) => Err(Outcome::Zeno { t, surface }),
             None => Ok(rates),
@@ -129,20 +147,29 @@ impl<Sys: Impacting> Impacts<Sys> {
 }
 
 impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
-    fn begin<O: Observer<Sys>>(&mut self, now: &mut Moment<'_, Sys>, observer: &mut O) -> Result<(), Outcome> {
+    fn begin<O: Observer<Sys>>(
+        &mut self,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
         self.accumulation = Accumulation::none();
         let hits = self.watch.begin(now)?;
         self.strike(hits, now, observer)
     }
 
     #[inline]
-    fn propose<Step: Stepper<Sys>>(&mut self, step: &mut StepView<'_, Sys, Step>) -> Result<Option<f64>, Outcome> {
+    fn propose<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<Option<f64>, Outcome> {
         self.watch.look(step).map_err(|outcome| match outcome {
             // Hops have become too small to rise from the surface at all.
-            Outcome::Contact { surface } => match self.accumulation.ends_at(surface, step.t_start()) {
-                Some(t) => Outcome::Zeno { t, surface },
-                None => outcome,
-            },
+            Outcome::Contact { surface } => {
+                match self.accumulation.ends_at(surface, step.t_start()) {
+                    Some(t) => Outcome::Zeno { t, surface },
+                    None => outcome,
+                }
+            }
             outcome => outcome,
         })
     }

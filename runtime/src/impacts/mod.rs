@@ -1,6 +1,8 @@
 //! Impacts: the laws, and the effect that carries them out.
 
 mod accumulation;
+mod glance;
+mod hits;
 mod impulse;
 pub mod law;
 mod override_table;

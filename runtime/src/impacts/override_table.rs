@@ -19,7 +19,10 @@ impl<V: StateVector> Overrides<V> {
     pub(super) fn none() -> Self {
         let mut places = V::zeros();
         places.as_mut_slice().fill(DECLARED);
-        Self { places, coefficients: V::zeros() }
+        Self {
+            places,
+            coefficients: V::zeros(),
+        }
     }
 
     /// Puts a law in place of the declared one; a surface past the end changes nothing.

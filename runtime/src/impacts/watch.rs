@@ -4,17 +4,16 @@
 //! exactly 0 at the start of a step stands for a surface at hand: it was just hit, or touched within rounding.
 //! Its root there is divided out, so it is neither found again nor hides a later one.
 
+use super::glance::{Glance, SAME_TIME, finite, glance};
+use super::hits::Hits;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
-use crate::events::crossing::{NODES, PROBE, SAMPLES, clear};
+use crate::events::crossing::{NODES, SAMPLES, clear};
 use crate::events::locate::{Line, Search, Start};
 use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
-
-/// Times closer than this many units in the last place are the same time.
-const SAME_TIME: f64 = 4.0 * f64::EPSILON;
 
 /// Falls looked at in one step on one surface before the step is cut: those that are no impacts are passed over.
 const FALLS: u32 = 1024;
@@ -40,55 +39,18 @@ pub(super) struct Watch<Sys: Impacting> {
     sizes: Sys::State,
 }
 
-/// Surfaces at hand at one moment.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Hits<G> {
-    /// 1 for surfaces at hand.
-    at_hand: G,
-    /// Gap rates above minus this count as not approaching.
-    still: G,
-}
-
-impl<G: StateVector> Hits<G> {
-    fn none() -> Self {
-        Self { at_hand: G::zeros(), still: G::zeros() }
-    }
-
-    fn is_approached(&self, surface: usize, rates: &G) -> bool {
-        self.at_hand.as_slice()[surface] == 1.0 && rates.as_slice()[surface] < -self.still.as_slice()[surface]
-    }
-
-    /// Number of surfaces at hand that are approached.
-    pub(super) fn approached(&self, rates: &G) -> usize {
-        (0..G::LEN).filter(|&surface| self.is_approached(surface, rates)).count()
-    }
-
-    /// The first of them.
-    pub(super) fn first_approached(&self, rates: &G) -> Option<usize> {
-        (0..G::LEN).find(|&surface| self.is_approached(surface, rates))
-    }
-
-    /// From now on, gap rates above `-rate` count as not approaching.
-    pub(super) fn set_still(&mut self, surface: usize, rate: f64) {
-        let still = &mut self.still.as_mut_slice()[surface];
-        *still = still.max(rate);
-    }
-}
-
-/// What the cheap test of a step looks at: gaps and rates at its end, gaps at a probe inside.
-struct Glance<G> {
-    gaps: G,
-    rates: G,
-    probe: G,
-    /// Length of the step, and the larger of the absolute values of its times.
-    length: f64,
-    latest: f64,
-}
-
 impl<Sys: Impacting> Watch<Sys> {
     pub(super) fn new() -> Self {
         let zeros = Sys::Gaps::zeros();
-        Self { gaps: zeros, rates: zeros, proposed: None, parts: zeros, grazes: zeros, length: 0.0, sizes: Sys::State::zeros() }
+        Self {
+            gaps: zeros,
+            rates: zeros,
+            proposed: None,
+            parts: zeros,
+            grazes: zeros,
+            length: 0.0,
+            sizes: Sys::State::zeros(),
+        }
     }
 
     /// The surfaces at hand at the first instant of a run.
@@ -128,10 +90,19 @@ impl<Sys: Impacting> Watch<Sys> {
     }
 
     /// The surfaces hit where the step was cut.
-    pub(super) fn hits(&mut self, theta: f64, now: &Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
+    pub(super) fn hits(
+        &mut self,
+        theta: f64,
+        now: &Moment<'_, Sys>,
+    ) -> Result<Hits<Sys::Gaps>, Outcome> {
         let mut hits = Hits::<Sys::Gaps>::none();
         if self.proposed.is_some() {
-            for (hit, part) in hits.at_hand.as_mut_slice().iter_mut().zip(self.parts.as_slice()) {
+            for (hit, part) in hits
+                .at_hand
+                .as_mut_slice()
+                .iter_mut()
+                .zip(self.parts.as_slice())
+            {
                 if (part - theta) * self.length <= SAME_TIME * now.t.abs() {
                     *hit = 1.0;
                 }
@@ -153,7 +124,12 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Result<Option<f64>, Outcome> {
         let glance = glance(step)?;
         self.proposed = None;
-        for (size, value) in self.sizes.as_mut_slice().iter_mut().zip(step.end().as_slice()) {
+        for (size, value) in self
+            .sizes
+            .as_mut_slice()
+            .iter_mut()
+            .zip(step.end().as_slice())
+        {
             *size = size.abs().max(value.abs());
         }
         if !(0..Sys::Gaps::LEN).all(|surface| self.is_clear(surface, &glance)) {
@@ -179,14 +155,22 @@ impl<Sys: Impacting> Watch<Sys> {
             return Ok(());
         }
         for surface in 0..Sys::Gaps::LEN {
-            let (gap, at_hand) = (self.gaps.as_slice()[surface], before.as_slice()[surface] == 0.0);
+            let (gap, at_hand) = (
+                self.gaps.as_slice()[surface],
+                before.as_slice()[surface] == 0.0,
+            );
             if at_hand && gap < 0.0 && !self.is_pressed(surface, step, glance) {
                 self.gaps.as_mut_slice()[surface] = 0.0;
             }
         }
         let (t, mut state) = (step.t_end(), *step.end());
         let counters = &mut *step.counters;
-        self.check_negative(&mut Moment { system: step.system, t, state: &mut state, counters })
+        self.check_negative(&mut Moment {
+            system: step.system,
+            t,
+            state: &mut state,
+            counters,
+        })
     }
 
     /// Whether the motion goes into a surface at hand, rather than along it within rounding. Rounding adds up
@@ -207,8 +191,16 @@ impl<Sys: Impacting> Watch<Sys> {
     #[inline(always)]
     fn is_clear(&self, surface: usize, glance: &Glance<Sys::Gaps>) -> bool {
         let at = |values: &Sys::Gaps| values.as_slice()[surface];
-        let slopes = [at(&self.rates) * glance.length, at(&glance.rates) * glance.length];
-        !is_due(surface, glance) && clear([at(&self.gaps), at(&glance.gaps)], slopes, at(&glance.probe))
+        let slopes = [
+            at(&self.rates) * glance.length,
+            at(&glance.rates) * glance.length,
+        ];
+        !glance.is_due(surface)
+            && clear(
+                [at(&self.gaps), at(&glance.gaps)],
+                slopes,
+                at(&glance.probe),
+            )
     }
 
     /// Looks for the earliest hit along the dense output.
@@ -229,7 +221,9 @@ impl<Sys: Impacting> Watch<Sys> {
             let (part, is_hit) = match self.first_hit(surface, step, &samples, glance)? {
                 Found::Hit(part) => (part, true),
                 Found::Unfinished(part) => (part, false),
-                Found::Nothing if is_due(surface, glance) && is_active(surface, step, 1.0) => (1.0, true),
+                Found::Nothing if glance.is_due(surface) && is_active(surface, step, 1.0) => {
+                    (1.0, true)
+                }
                 Found::Nothing => continue,
             };
             if is_hit {
@@ -252,17 +246,31 @@ impl<Sys: Impacting> Watch<Sys> {
         let gap = self.gaps.as_slice()[surface];
         let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
         let until = self.proposed.unwrap_or(1.0);
-        let mut start = Start { from: 0.0, above: gap >= 0.0, slope, until };
+        let mut start = Start {
+            from: 0.0,
+            above: gap >= 0.0,
+            slope,
+            until,
+        };
         let mut tangential = false;
         for _ in 0..FALLS {
             let (part, after) = match first_fall(surface, step, &self.sizes, samples, start) {
                 Search::Clear => {
                     let sunk = tangential && glance.gaps.as_slice()[surface] < 0.0;
-                    return if sunk { Err(Outcome::TangentialCrossing { surface }) } else { Ok(Found::Nothing) };
+                    return if sunk {
+                        Err(Outcome::TangentialCrossing { surface })
+                    } else {
+                        Ok(Found::Nothing)
+                    };
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
                 Search::Pole(after) => {
-                    start = Start { from: after, above: false, slope: None, until };
+                    start = Start {
+                        from: after,
+                        above: false,
+                        slope: None,
+                        until,
+                    };
                     continue;
                 }
                 Search::Sinks(part) => (part, part),
@@ -272,14 +280,23 @@ impl<Sys: Impacting> Watch<Sys> {
             if is_active(surface, step, part) {
                 if part == 0.0 && start.slope.is_some() {
                     let pressed = self.is_pressed(surface, step, glance);
-                    return if pressed { Err(Outcome::Contact { surface }) } else { Ok(Found::Nothing) };
+                    return if pressed {
+                        Err(Outcome::Contact { surface })
+                    } else {
+                        Ok(Found::Nothing)
+                    };
                 }
                 if is_approached(surface, step, part)? || is_approached(surface, step, after)? {
                     return Ok(Found::Hit(if part > 0.0 { part } else { after }));
                 }
                 tangential = true;
             }
-            start = Start { from: after, above: false, slope: None, until };
+            start = Start {
+                from: after,
+                above: false,
+                slope: None,
+                until,
+            };
             if after >= 1.0 {
                 return Ok(Found::Nothing);
             }
@@ -295,16 +312,25 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
     ) -> Result<(), Outcome> {
-        let ends = [self.rates.as_slice()[surface], glance.rates.as_slice()[surface]];
+        let ends = [
+            self.rates.as_slice()[surface],
+            glance.rates.as_slice()[surface],
+        ];
         let state = step.state(part);
         let rate = step.system.gap_rates(step.time(part), &state)?.as_slice()[surface];
         let mut graze = 0.0;
         if rate.abs() <= SLOW * ends[0].abs().max(ends[1].abs()) {
             let start = part > 0.5;
-            let (other, part) = if start { (ends[0], part) } else { (ends[1], 1.0 - part) };
+            let (other, part) = if start {
+                (ends[0], part)
+            } else {
+                (ends[1], 1.0 - part)
+            };
             let bend = (other - rate).abs() / (part * self.length);
             let mut evaluations = 0;
-            if rate * rate < 4.0 * bend * rounding_along(surface, step, &self.sizes, &mut evaluations) {
+            if rate * rate
+                < 4.0 * bend * rounding_along(surface, step, &self.sizes, &mut evaluations)
+            {
                 graze = 1.0;
             }
             step.counters.event_evaluations += evaluations;
@@ -336,30 +362,22 @@ enum Found {
     Unfinished(f64),
 }
 
-/// The gap vanishes at the end of the step as far as times can tell.
-#[inline(always)]
-fn is_due<G: StateVector>(surface: usize, glance: &Glance<G>) -> bool {
-    let (gap, rate) = (glance.gaps.as_slice()[surface], glance.rates.as_slice()[surface]);
-    rate < 0.0 && gap >= 0.0 && gap <= SAME_TIME * glance.latest * -rate
-}
-
 /// Gaps at a moment, all finite.
 fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outcome> {
     now.counters.event_evaluations += 1;
     finite::<Sys>(now.system.gaps(now.t, now.state))
 }
 
-#[inline(always)]
-fn finite<Sys: Impacting>(gaps: Sys::Gaps) -> Result<Sys::Gaps, Outcome> {
-    match gaps.as_slice().iter().position(|gap| !gap.is_finite()) {
-        Some(surface) => Err(Outcome::NonFinite { component: Sys::State::LEN + surface }),
-        None => Ok(gaps),
-    }
-}
-
 /// The size of a gap's rounding errors at a moment.
 fn rounding<Sys: Impacting>(now: &mut Moment<'_, Sys>, surface: usize) -> f64 {
-    resolution(now.system, surface, now.t, now.state, now.state, &mut now.counters.event_evaluations)
+    resolution(
+        now.system,
+        surface,
+        now.t,
+        now.state,
+        now.state,
+        &mut now.counters.event_evaluations,
+    )
 }
 
 /// The size of a gap's rounding errors along a step, from components that have had these sizes.
@@ -369,11 +387,23 @@ fn rounding_along<Sys: Impacting, Step: Stepper<Sys>>(
     sizes: &Sys::State,
     evaluations: &mut u64,
 ) -> f64 {
-    resolution(step.system, surface, step.t_end(), step.end(), sizes, evaluations)
+    resolution(
+        step.system,
+        surface,
+        step.t_end(),
+        step.end(),
+        sizes,
+        evaluations,
+    )
 }
 
-fn is_active<Sys: Impacting, Step: Stepper<Sys>>(surface: usize, step: &StepView<'_, Sys, Step>, part: f64) -> bool {
-    step.system.surface_active(surface, step.time(part), &step.state(part))
+fn is_active<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    part: f64,
+) -> bool {
+    step.system
+        .surface_active(surface, step.time(part), &step.state(part))
 }
 
 fn is_approached<Sys: Impacting, Step: Stepper<Sys>>(
@@ -397,7 +427,9 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     let line = Line {
         gap: |part: f64| {
             evaluations += 1;
-            step.system.gaps(step.time(part), &step.state(part)).as_slice()[surface]
+            step.system
+                .gaps(step.time(part), &step.state(part))
+                .as_slice()[surface]
         },
         rounding: || rounding_along(surface, step, sizes, &mut more),
         whole,
@@ -406,35 +438,6 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     let found = line.first_fall();
     step.counters.event_evaluations += evaluations + more;
     found
-}
-
-/// Gaps at the ends of the step and at the probe.
-#[inline(always)]
-fn glance<Sys: Impacting, Step: Stepper<Sys>>(
-    step: &mut StepView<'_, Sys, Step>,
-) -> Result<Glance<Sys::Gaps>, Outcome> {
-    let (t, length) = (step.t_end(), step.length());
-    let gaps = finite::<Sys>(step.system.gaps(t, step.end()))?;
-    let rates = step.system.gap_rates(t, step.end())?;
-    let probe = step.system.gaps(step.time(PROBE), &hermite(step));
-    step.counters.event_evaluations += 2;
-    Ok(Glance { gaps, rates, probe, length, latest: t.abs().max(step.t_start().abs()) })
-}
-
-/// The state at the probe by the cubic through the ends: good enough to measure how far the gap is from a cubic.
-#[inline(always)]
-fn hermite<Sys: Impacting, Step: Stepper<Sys>>(step: &StepView<'_, Sys, Step>) -> Sys::State {
-    const P: f64 = PROBE;
-    const Q: f64 = 1.0 - PROBE;
-    let (start, end, [first, last]) = (step.start(), step.end(), step.rates());
-    let length = step.length();
-    let mut state = *start;
-    for i in 0..Sys::State::LEN {
-        state.as_mut_slice()[i] = Q * Q * (Q + 3.0 * P) * start.as_slice()[i]
-            + P * P * (P + 3.0 * Q) * end.as_slice()[i]
-            + length * (Q * Q * P * first.as_slice()[i] - Q * P * P * last.as_slice()[i]);
-    }
-    state
 }
 
 /// Gaps at the samples over a whole step; those at the ends are known.

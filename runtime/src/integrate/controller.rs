@@ -36,7 +36,10 @@ pub(super) struct Memory {
 impl Memory {
     /// Nothing known yet.
     pub(super) const fn new() -> Self {
-        Self { last_error: LEAST_ERROR, rejected: false }
+        Self {
+            last_error: LEAST_ERROR,
+            rejected: false,
+        }
     }
 
     /// The factor for the next step size after a step with this error (at most 1) was accepted.
@@ -48,7 +51,10 @@ impl Memory {
         }
         // After a rejection the step does not grow at once, or it would be rejected again.
         let grow = if self.rejected { 1.0 } else { control.grow };
-        *self = Self { last_error: error.max(LEAST_ERROR), rejected: false };
+        *self = Self {
+            last_error: error.max(LEAST_ERROR),
+            rejected: false,
+        };
         predicted.clamp(control.shrink, grow)
     }
 
@@ -69,7 +75,11 @@ impl Memory {
 /// `x^e`, where `x = 0` with negative `e` means: as large as you like.
 #[inline]
 fn power(x: f64, e: f64) -> f64 {
-    if x > 0.0 { math::powf(x, e) } else { f64::INFINITY }
+    if x > 0.0 {
+        math::powf(x, e)
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// Error weights: component `i` may err by `absolute * scale_i + relative * size_i`.
@@ -88,13 +98,17 @@ impl<S: StateVector> Weights<S> {
             let usable = *value > 0.0 && value.is_finite();
             *value = tolerance.absolute() * if usable { *value } else { 1.0 };
         }
-        Self { relative: tolerance.relative(), floor }
+        Self {
+            relative: tolerance.relative(),
+            floor,
+        }
     }
 
     /// The error allowed in component `i` between two states.
     #[inline(always)]
     pub(super) fn allowed(&self, i: usize, y0: &S, y1: &S) -> f64 {
-        self.floor.as_slice()[i] + self.relative * y0.as_slice()[i].abs().max(y1.as_slice()[i].abs())
+        self.floor.as_slice()[i]
+            + self.relative * y0.as_slice()[i].abs().max(y1.as_slice()[i].abs())
     }
 
     /// Root mean square of `value(i)` over the error allowed at a state.
@@ -123,11 +137,77 @@ pub(super) fn first_step<S: StateVector>(
     let size = weights.norm(state, |i| state.as_slice()[i]);
     let speed = weights.norm(state, |i| rate.as_slice()[i]);
     let known = size >= 1e-5 && speed * span >= 1e-5;
-    let unit = if known { (size / speed).min(100.0 * span) } else { 1e-4 * span };
+    let unit = if known {
+        (size / speed).min(100.0 * span)
+    } else {
+        1e-4 * span
+    };
     let cautious = 0.01 * unit;
-    let Some(after) = rate_after(cautious) else { return cautious };
+    let Some(after) = rate_after(cautious) else {
+        return cautious;
+    };
     let bend = weights.norm(state, |i| after.as_slice()[i] - rate.as_slice()[i]) / cautious;
     let change = (speed * unit).max(bend * unit * unit);
-    let step = if change > 1e-15 { unit * math::powf(0.01 / change, 1.0 / power) } else { unit };
-    if step.is_finite() { step.min(unit).min(span) } else { cautious }
+    let step = if change > 1e-15 {
+        unit * math::powf(0.01 / change, 1.0 / power)
+    } else {
+        unit
+    };
+    if step.is_finite() {
+        step.min(unit).min(span)
+    } else {
+        cautious
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+    use nalgebra::SVector;
+
+    const CONTROL: Control = Control {
+        power: 5.0,
+        beta: 0.04,
+        shrink: 0.2,
+        grow: 10.0,
+    };
+
+    #[test]
+    fn steps_grow_after_small_errors_but_not_right_after_a_rejection() {
+        let mut memory = Memory::new();
+        assert_eq!(memory.accept(&CONTROL, 0.0), CONTROL.grow);
+        assert!(memory.reject(&CONTROL, 1e3) < 0.3);
+        assert_eq!(memory.accept(&CONTROL, 1e-8), 1.0);
+        assert!(memory.accept(&CONTROL, 1e-8) > 1.0);
+    }
+
+    #[test]
+    fn first_step_does_not_depend_on_units() {
+        type State = SVector<f64, 2>;
+        let tolerance = Tolerance::new(1e-9).unwrap();
+        // An oscillator in units of length and time that are powers of two.
+        let step = |length: f64, time: f64| {
+            let (state, rate) = (State::new(length, 0.0), State::new(0.0, -length / time));
+            let weights = Weights::new(tolerance, &State::repeat(length));
+            first_step(8.0, 10.0 * time, &weights, (&state, &rate), |h| {
+                Some(State::new(h * rate[1] / time, -length / time))
+            }) / time
+        };
+        assert_eq!(step(1.0, 1.0), step(1024.0, 0.125));
+    }
+
+    #[test]
+    fn unusable_scales_count_as_one() {
+        let tolerance = Tolerance::new(1e-3).unwrap();
+        let weights = Weights::new(tolerance, &SVector::<f64, 2>::new(f64::NAN, 10.0));
+        let zero = SVector::<f64, 2>::zeros();
+        assert_eq!(
+            [
+                weights.allowed(0, &zero, &zero),
+                weights.allowed(1, &zero, &zero)
+            ],
+            [1e-3, 1e-2]
+        );
+    }
 }

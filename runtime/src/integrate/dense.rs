@@ -18,7 +18,10 @@ pub struct Polynomial<S, const K: usize> {
 impl<S: StateVector, const K: usize> Polynomial<S, K> {
     /// The polynomial 0.
     pub(super) fn zero() -> Self {
-        Self { base: S::zeros(), coefficients: [S::zeros(); K] }
+        Self {
+            base: S::zeros(),
+            coefficients: [S::zeros(); K],
+        }
     }
 
     /// Sets the part every scheme shares: a cubic through the ends `y0`, `y1` with `h` times the rates `k0`, `k1`.

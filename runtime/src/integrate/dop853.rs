@@ -29,7 +29,12 @@ impl Scheme for Dop853Scheme {
     const DENSE_ORDER: usize = 7;
     const LAST: usize = 12;
     const ERROR_TAKES_LAST: bool = false;
-    const CONTROL: Control = Control { power: 8.0, beta: 0.0, shrink: 0.333, grow: 6.0 };
+    const CONTROL: Control = Control {
+        power: 8.0,
+        beta: 0.0,
+        shrink: 0.333,
+        grow: 6.0,
+    };
 
     type Stages<S: StateVector> = [S; STAGES];
     type Dense<S: StateVector> = Polynomial<S, 7>;
@@ -108,5 +113,38 @@ impl Scheme for Dop853Scheme {
     #[inline(always)]
     fn interpolate<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> S {
         dense.at(theta)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tableau::{Term, check};
+    use super::*;
+
+    const ROWS: [&[Term]; STAGES] = [
+        &[],
+        &A1,
+        &A2,
+        &A3,
+        &A4,
+        &A5,
+        &A6,
+        &A7,
+        &A8,
+        &A9,
+        &A10,
+        &A11,
+        &B,
+        &A13,
+        &A14,
+        &A15,
+    ];
+
+    #[test]
+    fn table_satisfies_its_order_conditions() {
+        check::rows_sum_to_nodes(&ROWS, &NODES);
+        check::weights_have_order(8, &B, &ROWS, &NODES);
+        check::estimate_has_order(5, &E5, &NODES);
+        check::estimate_has_order(3, &E3, &NODES);
     }
 }

@@ -27,7 +27,12 @@ const NODES: [f64; STAGES] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 
 const A1: [Term; 1] = [(0, 1.0 / 5.0)];
 const A2: [Term; 2] = [(0, 3.0 / 40.0), (1, 9.0 / 40.0)];
 const A3: [Term; 3] = [(0, 44.0 / 45.0), (1, -56.0 / 15.0), (2, 32.0 / 9.0)];
-const A4: [Term; 4] = [(0, 19372.0 / 6561.0), (1, -25360.0 / 2187.0), (2, 64448.0 / 6561.0), (3, -212.0 / 729.0)];
+const A4: [Term; 4] = [
+    (0, 19372.0 / 6561.0),
+    (1, -25360.0 / 2187.0),
+    (2, 64448.0 / 6561.0),
+    (3, -212.0 / 729.0),
+];
 const A5: [Term; 5] = [
     (0, 9017.0 / 3168.0),
     (1, -355.0 / 33.0),
@@ -71,7 +76,12 @@ impl Scheme for DormandPrince5Scheme {
     const DENSE_ORDER: usize = 4;
     const LAST: usize = 6;
     const ERROR_TAKES_LAST: bool = true;
-    const CONTROL: Control = Control { power: 5.0, beta: 0.04, shrink: 0.2, grow: 10.0 };
+    const CONTROL: Control = Control {
+        power: 5.0,
+        beta: 0.04,
+        shrink: 0.2,
+        grow: 10.0,
+    };
 
     type Stages<S: StateVector> = [S; STAGES];
     type Dense<S: StateVector> = Polynomial<S, 4>;
@@ -132,5 +142,20 @@ impl Scheme for DormandPrince5Scheme {
     #[inline(always)]
     fn interpolate<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> S {
         dense.at(theta)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tableau::check;
+    use super::*;
+
+    const ROWS: [&[Term]; STAGES] = [&[], &A1, &A2, &A3, &A4, &A5, &B];
+
+    #[test]
+    fn table_satisfies_its_order_conditions() {
+        check::rows_sum_to_nodes(&ROWS, &NODES);
+        check::weights_have_order(5, &B, &ROWS, &NODES);
+        check::estimate_has_order(4, &E, &NODES);
     }
 }

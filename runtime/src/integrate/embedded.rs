@@ -20,7 +20,12 @@ pub struct Counted<'a, F> {
 impl<F: VectorField> Counted<'_, F> {
     /// One evaluation.
     #[inline(always)]
-    pub(super) fn rate(&mut self, t: f64, state: &F::State, rate: &mut F::State) -> Result<(), Fault> {
+    pub(super) fn rate(
+        &mut self,
+        t: f64,
+        state: &F::State,
+        rate: &mut F::State,
+    ) -> Result<(), Fault> {
         self.counters.rate_evaluations += 1;
         self.field.rate(t, state, rate)
     }
@@ -132,7 +137,11 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
     /// With no step longer than `max_step`. Anything but a positive number lifts the limit.
     #[must_use]
     pub fn with_max_step(mut self, max_step: f64) -> Self {
-        self.max_step = if max_step > 0.0 { max_step } else { f64::INFINITY };
+        self.max_step = if max_step > 0.0 {
+            max_step
+        } else {
+            f64::INFINITY
+        };
         self
     }
 
@@ -181,14 +190,20 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
 
     /// One trial of `h`: the error over what is allowed, at most 1 if and only if the step is good.
     #[inline(always)]
-    fn attempt<F: VectorField<State = S>>(&mut self, field: &mut Counted<'_, F>, h: f64) -> Result<f64, StepFailure> {
+    fn attempt<F: VectorField<State = S>>(
+        &mut self,
+        field: &mut Counted<'_, F>,
+        h: f64,
+    ) -> Result<f64, StepFailure> {
         let t = self.t[0];
         let stages = self.stages.as_mut();
         M::advance(field, t, h, &self.start, stages, &mut self.end)?;
         if M::ERROR_TAKES_LAST {
             field.rate(t + h, &self.end, &mut stages[M::LAST])?;
         }
-        let error = M::error(h, stages, |i| self.weights.allowed(i, &self.start, &self.end));
+        let error = M::error(h, stages, |i| {
+            self.weights.allowed(i, &self.start, &self.end)
+        });
         if error > 1.0 {
             return Ok(error);
         }
@@ -253,7 +268,13 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         };
         self.next = match self.first_step {
             Some(h) => h,
-            None => first_step(M::CONTROL.power, t_end - t, &self.weights, (state, &rate), rate_after),
+            None => first_step(
+                M::CONTROL.power,
+                t_end - t,
+                &self.weights,
+                (state, &rate),
+                rate_after,
+            ),
         };
         Ok(())
     }
@@ -304,7 +325,12 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         }
     }
 
-    fn replace_end(&mut self, field: &F, state: &F::State, counters: &mut Counters) -> Result<(), StepFailure> {
+    fn replace_end(
+        &mut self,
+        field: &F,
+        state: &F::State,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
         self.end = *state;
         let rate = &mut self.stages.as_mut()[M::LAST];
         Counted { field, counters }.rate(self.t[1], state, rate)?;
@@ -348,8 +374,18 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
             return Ok(());
         }
         counters.dense_constructions += 1;
-        let span = Span { t: self.t[0], h: self.t[1] - self.t[0], start: &self.start, end: &self.end };
-        M::build_dense(&mut Counted { field, counters }, span, self.stages.as_mut(), &mut self.dense)?;
+        let span = Span {
+            t: self.t[0],
+            h: self.t[1] - self.t[0],
+            start: &self.start,
+            end: &self.end,
+        };
+        M::build_dense(
+            &mut Counted { field, counters },
+            span,
+            self.stages.as_mut(),
+            &mut self.dense,
+        )?;
         self.dense_ready = true;
         Ok(())
     }

@@ -51,14 +51,19 @@ pub trait Stepper<F: VectorField> {
     /// are shortened here; only what no step size cures is reported.
     ///
     /// # Errors
-    /// [`StepFailure`]; the last good state is still [`Stepper::end`].
+    /// [`StepFailure`]; the last good state is still [`Stepper::end_state`].
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure>;
 
     /// Takes `state` for the end of the last step, as a projection does, and evaluates the rate there anew.
     ///
     /// # Errors
     /// [`StepFailure`] where the vector field does not exist at `state`.
-    fn replace_end(&mut self, field: &F, state: &F::State, counters: &mut Counters) -> Result<(), StepFailure>;
+    fn replace_end(
+        &mut self,
+        field: &F,
+        state: &F::State,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure>;
 
     /// Time at the start of the last step.
     fn t_start(&self) -> f64;
@@ -113,7 +118,10 @@ impl fmt::Display for StepFailure {
         match *self {
             Self::StepUnderflow { t } => write!(f, "the step size underflows at t = {t}"),
             Self::Fault(fault) => fault.fmt(f),
-            Self::NonFinite { component } => write!(f, "component {component} of the state or its rate is not finite"),
+            Self::NonFinite { component } => write!(
+                f,
+                "component {component} of the state or its rate is not finite"
+            ),
         }
     }
 }

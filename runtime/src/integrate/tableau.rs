@@ -22,3 +22,68 @@ pub(super) fn combine<S: StateVector>(base: &S, h: f64, stages: &[S], terms: &[T
         out.as_mut_slice()[i] = base.as_slice()[i] + h * sum(stages, terms, i);
     }
 }
+
+/// Checks of tables, for the tests of the schemes.
+#[cfg(test)]
+pub(super) mod check {
+    use super::Term;
+
+    fn row_sum(row: &[Term]) -> f64 {
+        row.iter().map(|&(_, coefficient)| coefficient).sum()
+    }
+
+    /// Every row sums to its node: stages are exact for constant rates.
+    pub(crate) fn rows_sum_to_nodes(rows: &[&[Term]], nodes: &[f64]) {
+        for (row, node) in rows.iter().zip(nodes) {
+            assert!(
+                (row_sum(row) - node).abs() < 1e-13,
+                "{} for {node}",
+                row_sum(row)
+            );
+        }
+    }
+
+    /// The order conditions of bushy trees, `sum b_i c_i^(k-1) = 1/k`, and of those with one more edge at the
+    /// root, `sum b_i a_ij c_j^(k-1) = 1/(k (k+1))`. `rows[i]` belongs to stage `i`.
+    pub(crate) fn weights_have_order(
+        order: i32,
+        weights: &[Term],
+        rows: &[&[Term]],
+        nodes: &[f64],
+    ) {
+        for k in 1..=order {
+            let bushy: f64 = weights.iter().map(|&(i, b)| b * nodes[i].powi(k - 1)).sum();
+            assert!(
+                (bushy - 1.0 / f64::from(k)).abs() < 1e-13,
+                "order {k}: {bushy}"
+            );
+        }
+        for k in 1..order {
+            let inner = |i: usize| {
+                rows[i]
+                    .iter()
+                    .map(|&(j, a)| a * nodes[j].powi(k - 1))
+                    .sum::<f64>()
+            };
+            let tall: f64 = weights.iter().map(|&(i, b)| b * inner(i)).sum();
+            assert!(
+                (tall - 1.0 / f64::from(k * (k + 1))).abs() < 1e-12,
+                "order {k}: {tall}"
+            );
+        }
+    }
+
+    /// An error estimate vanishes on polynomial motion up to the order of the embedded solution, not beyond.
+    pub(crate) fn estimate_has_order(order: i32, estimate: &[Term], nodes: &[f64]) {
+        let moment = |k: i32| {
+            estimate
+                .iter()
+                .map(|&(i, e)| e * nodes[i].powi(k - 1))
+                .sum::<f64>()
+        };
+        for k in 1..=order {
+            assert!(moment(k).abs() < 1e-13, "order {k}: {}", moment(k));
+        }
+        assert!(moment(order + 1).abs() > 1e-6);
+    }
+}

@@ -52,7 +52,11 @@ pub struct ToleranceError {
 
 impl fmt::Display for ToleranceError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a tolerance must be a positive finite number, not {}", self.value)
+        write!(
+            f,
+            "a tolerance must be a positive finite number, not {}",
+            self.value
+        )
     }
 }
 
@@ -68,6 +72,9 @@ mod tests {
             assert!(Tolerance::new(value).is_err());
             assert!(Tolerance::of(1e-6, value).is_err());
         }
-        assert_eq!(Tolerance::of(1e-6, 1e-9).map(|tolerance| tolerance.absolute()), Ok(1e-9));
+        assert_eq!(
+            Tolerance::of(1e-6, 1e-9).map(|tolerance| tolerance.absolute()),
+            Ok(1e-9)
+        );
     }
 }

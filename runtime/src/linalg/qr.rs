@@ -19,7 +19,9 @@ pub(crate) fn least_norm(rows: &mut [f64], width: usize, values: &[f64], solutio
     }
     for (i, value) in values.iter().enumerate() {
         let (earlier, rest) = rows.split_at_mut(i * width);
-        let Some(row) = rest.get_mut(..width) else { return };
+        let Some(row) = rest.get_mut(..width) else {
+            return;
+        };
         let before = math::sqrt(dot(row, row));
         // What the solution so far gives this equation: exact on the earlier rows, nothing across them.
         let reached = dot(row, solution);

@@ -2,8 +2,8 @@
 #![allow(dead_code, missing_docs, reason = "each test uses its part")]
 
 use dalembert::{
-    Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Impacting, Impacts, Law, Outcome, ParameterError, Run,
-    Simulation, Stepper, System, Tolerance, VectorField,
+    Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Impacting, Impacts, Law, Outcome,
+    ParameterError, Run, Simulation, Stepper, System, Tolerance, VectorField,
 };
 use nalgebra::SVector;
 
@@ -24,7 +24,12 @@ pub struct Particle<const S: usize> {
 
 impl<const S: usize> Particle<S> {
     pub fn new(force: [f64; 2], surfaces: [Gap; S]) -> Self {
-        Self { force, surfaces, law: Law::Elastic, active: |_, _| true }
+        Self {
+            force,
+            surfaces,
+            law: Law::Elastic,
+            active: |_, _| true,
+        }
     }
 
     pub fn with_law(mut self, law: Law) -> Self {
@@ -171,11 +176,24 @@ pub fn run_with<const S: usize>(
     t_end: f64,
     log: &mut Log,
 ) -> Run<State> {
-    Simulation::new(particle, stepper, Impacts::declared(particle)).run(0.0, state, t_end, log).unwrap()
+    Simulation::new(particle, stepper, Impacts::declared(particle))
+        .run(0.0, state, t_end, log)
+        .unwrap()
 }
 
-pub fn run<const S: usize>(particle: &Particle<S>, state: State, t_end: f64, log: &mut Log) -> Run<State> {
-    run_with(particle, Dop853::new(Tolerance::new(1e-12).unwrap()), state, t_end, log)
+pub fn run<const S: usize>(
+    particle: &Particle<S>,
+    state: State,
+    t_end: f64,
+    log: &mut Log,
+) -> Run<State> {
+    run_with(
+        particle,
+        Dop853::new(Tolerance::new(1e-12).unwrap()),
+        state,
+        t_end,
+        log,
+    )
 }
 
 pub fn times(log: &Log) -> Vec<f64> {
@@ -191,6 +209,9 @@ pub fn assert_times(log: &Log, exact: &[f64], tolerance: f64, case: &str) {
     let times = times(log);
     assert_eq!(times.len(), exact.len(), "{case}: {times:?}");
     for (time, exact) in times.iter().zip(exact) {
-        assert!((time - exact).abs() <= tolerance, "{case}: {time} for {exact}");
+        assert!(
+            (time - exact).abs() <= tolerance,
+            "{case}: {time} for {exact}"
+        );
     }
 }

@@ -23,6 +23,10 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}
 }
 
+/// The compiled core library names this even where panics abort; nothing ever calls it.
+#[unsafe(no_mangle)]
+pub extern "C" fn rust_eh_personality() {}
+
 fn bounces() -> Option<u64> {
     let ball = Ball::default();
     let state = ball.state(0.0, &[0.5].into(), &[0.0].into()).ok()?;

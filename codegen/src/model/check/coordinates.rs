@@ -73,7 +73,8 @@ impl<'s> Resolver<'s> {
         match &written.topology {
             spec::Topology::Line => Topology::Line,
             spec::Topology::Angle => Topology::Angle,
-            spec::Topology::Interval(low, high) => {
+            spec::Topology::Interval(ends) => {
+                let [low, high] = ends.as_ref();
                 let ends = (
                     self.constant_expression(low, "the end of an interval"),
                     self.constant_expression(high, "the end of an interval"),

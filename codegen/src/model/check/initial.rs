@@ -2,9 +2,9 @@
 
 use dalembert_expr::ExprId;
 
-use super::super::Initial;
 use super::super::resolve::{Resolver, Scope};
 use super::super::symbols::Meaning;
+use super::super::{Initial, Topology};
 use crate::diagnostics::{Location, nearest};
 use crate::spec::{Declared, Index, InitialTarget, InitialValue, Scalar};
 
@@ -20,19 +20,8 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Initial {
     let mut given: Vec<(InitialTarget, usize, Location)> = Vec::new();
     for entry in &spec.initial {
         for (index, scope) in resolver.targets(entry) {
-            let at = entry.declared.name.at;
-            if given
-                .iter()
-                .any(|(target, other, _)| (*target, *other) == (entry.target, index))
-            {
-                resolver.refuse::<()>(
-                    at,
-                    format!("initial value of `{}` given again", target_text(entry)),
-                    "keep one of them",
-                );
-            }
-            given.push((entry.target, index, at));
-            let Some(value) = resolver.initial_value(&entry.value, entry, scope) else {
+            resolver.given_once(&mut given, entry, index);
+            let Some(value) = resolver.initial_value(entry, index, scope) else {
                 break;
             };
             match entry.target {
@@ -43,6 +32,20 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Initial {
         }
     }
     initial
+}
+
+/// Remarks on coordinates that would start outside of their interval.
+pub(super) fn notes(resolver: &Resolver<'_>, initial: &Initial) -> Vec<String> {
+    let coordinates = resolver.symbols.coordinates.iter().zip(&initial.q);
+    let outside = coordinates.filter(|(coordinate, value)| {
+        value.is_none() && !resolver.is_in_chart(coordinate.topology, resolver.pool.zero())
+    });
+    outside
+        .map(|(coordinate, _)| {
+            let name = &coordinate.name.display;
+            format!("`{name}` starts at 0, outside of its interval, unless `initial` names it")
+        })
+        .collect()
 }
 
 fn target_text(entry: &InitialValue) -> String {
@@ -58,21 +61,67 @@ fn target_text(entry: &InitialValue) -> String {
 }
 
 impl Resolver<'_> {
+    /// Refuses a second value for the same quantity.
+    fn given_once(
+        &mut self,
+        given: &mut Vec<(InitialTarget, usize, Location)>,
+        entry: &InitialValue,
+        index: usize,
+    ) {
+        let at = entry.declared.name.at;
+        let first = given
+            .iter()
+            .find(|(target, other, _)| (*target, *other) == (entry.target, index));
+        if let Some((_, _, first)) = first {
+            let text = format!("initial value of `{}` given again", target_text(entry));
+            let error = self.diagnostics.error(at, text);
+            error
+                .help("keep one of them")
+                .also(*first, "first given here");
+        }
+        given.push((entry.target, index, at));
+    }
+
     fn initial_value(
         &mut self,
-        written: &Scalar,
         entry: &InitialValue,
+        index: usize,
         mut scope: Scope,
     ) -> Option<ExprId> {
+        let written = &entry.value;
         let value = self.parameter_expression(written, &mut scope, "an initial value")?;
         if entry.target == InitialTarget::Until && self.pool.sign(value).is_nonpositive() {
-            return self.refuse(
-                written.at,
-                format!("a run until {written} is empty"),
-                "`until` is positive",
-            );
+            let text = format!("a run until {written} is empty");
+            return self.refuse(written.at, text, "`until` is positive");
+        }
+        if entry.target == InitialTarget::Position {
+            self.check_in_chart(written, index, value)?;
         }
         Some(value)
+    }
+
+    /// Refuses a constant outside of the interval of its coordinate.
+    fn check_in_chart(&mut self, written: &Scalar, index: usize, value: ExprId) -> Option<()> {
+        let coordinate = &self.symbols.coordinates[index];
+        if self.is_in_chart(coordinate.topology, value) {
+            return Some(());
+        }
+        let name = &coordinate.name.display;
+        let text = format!("`{written}` lies outside of the interval of `{name}`");
+        self.refuse(
+            written.at,
+            text,
+            "a chart is open: its ends do not belong to it",
+        )
+    }
+
+    /// Whether a value may lie in the set that a coordinate runs through; one that depends on parameters may.
+    fn is_in_chart(&self, topology: Topology, value: ExprId) -> bool {
+        let Topology::Interval { low, high } = topology else {
+            return true;
+        };
+        let value = self.constant_value(value);
+        value.is_nan() || (self.constant_value(low) < value && value < self.constant_value(high))
     }
 
     /// The coordinates that an entry is about, each with what its index stands for; one without meaning for `until`.

@@ -1,7 +1,7 @@
 //! The rules a declaration must satisfy: one file per topic.
 //!
-//! Every declaration is resolved and checked by itself first, so that independent mistakes are all reported; what
-//! concerns several of them (ranks, surfaces against constraints) follows only for declarations without a fault.
+//! Every declaration is resolved and checked by itself first; what concerns several of them (ranks, surfaces against
+//! constraints) follows for those without a fault. So independent mistakes are all reported.
 
 mod constraints;
 mod coordinates;
@@ -68,18 +68,10 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     if let (Some(lagrangian), Some(written)) = (&parts.lagrangian, &resolver.spec.lagrangian) {
         natural::check_metric(resolver, &written.value, lagrangian);
     }
-    // A constraint or surface that was refused is missing here; ranks would then name the wrong ones.
-    let constraints = check_complete(resolver, parts);
-    if constraints {
-        constraints::check_independent(resolver, &parts.constraints);
-        surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
-    }
+    // Rules broken by some of the constraints are broken by all of them: those that were refused may be missing.
+    constraints::check_independent(resolver, &parts.constraints);
+    surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
     surfaces::check_distinct(resolver, &parts.surfaces);
-}
-
-/// Whether every declared constraint and surface was resolved.
-fn check_complete(resolver: &Resolver<'_>, parts: &Parts) -> bool {
-    parts.constraints.len() >= resolver.spec.constraints.len()
 }
 
 fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model {
@@ -120,6 +112,7 @@ fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec
         &parts.surfaces,
         &parts.constraints,
     ));
+    notes.extend(initial::notes(resolver, &parts.initial));
     notes.extend(parameters::unused(
         resolver,
         &used_symbols(&resolver.pool, lagrangian, parts),

@@ -100,7 +100,8 @@ impl<'s> Resolver<'s> {
             spec::Assumption::Positive => Assumption::Positive,
             spec::Assumption::NonNegative => Assumption::NonNegative,
             spec::Assumption::NonZero => Assumption::NonZero,
-            spec::Assumption::Within(low, high) => {
+            spec::Assumption::Within(ends) => {
+                let [low, high] = ends.as_ref();
                 let ends = (self.bound(low), self.bound(high));
                 let (Some(low_value), Some(high_value)) = ends else {
                     return Assumption::Finite;

@@ -15,6 +15,7 @@ pub fn constrained(model: &Model, derivation: &Derivation) -> Option<Constrained
         residuals: residuals(model, derivation),
         forms: forms(model, derivation),
         project: project(model, derivation),
+        restore: restore(model, derivation),
         levels: levels(model, derivation),
         level_correction: level_correction(model, derivation),
     })
@@ -29,8 +30,14 @@ fn multipliers(model: &Model, derivation: &Derivation) -> Function {
 /// `eta^a(qdot) + eta^a_0`, then their natural sizes.
 fn residuals(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
-    let residuals = derivation.constraints.iter().map(|constraint| constraint.residual);
-    let scales = derivation.constraints.iter().map(|constraint| constraint.scale);
+    let residuals = derivation
+        .constraints
+        .iter()
+        .map(|constraint| constraint.residual);
+    let scales = derivation
+        .constraints
+        .iter()
+        .map(|constraint| constraint.scale);
     let expressions: Vec<_> = residuals.chain(scales).collect();
     let outputs = kernel.values(&expressions);
     kernel.finish(outputs)
@@ -40,7 +47,11 @@ fn residuals(model: &Model, derivation: &Derivation) -> Function {
 fn forms(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
     let mut outputs = kernel.forms().concat();
-    let affine: Vec<_> = derivation.constraints.iter().map(|constraint| constraint.affine).collect();
+    let affine: Vec<_> = derivation
+        .constraints
+        .iter()
+        .map(|constraint| constraint.affine)
+        .collect();
     outputs.extend(kernel.values(&affine));
     kernel.finish(outputs)
 }
@@ -49,18 +60,64 @@ fn forms(model: &Model, derivation: &Derivation) -> Function {
 fn project(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
     let kinetic = kernel.lowered_velocity();
-    let affine: Vec<_> = derivation.constraints.iter().map(|constraint| constraint.affine).collect();
+    let affine: Vec<_> = derivation
+        .constraints
+        .iter()
+        .map(|constraint| constraint.affine)
+        .collect();
     let affine = kernel.values(&affine);
     let shift = kernel.constraint_solve(&kinetic, &affine);
-    let momenta: Vec<Value> =
-        (0..kernel.dimension()).map(|i| kernel.builder.input(Input::Momentum(i))).collect();
+    let momenta: Vec<Value> = (0..kernel.dimension())
+        .map(|i| kernel.builder.input(Input::Momentum(i)))
+        .collect();
     let outputs = kernel.add_constraint_force(&momenta, &shift);
+    kernel.finish(outputs)
+}
+
+/// The momenta with the velocities of dependent coordinates taken from the others, where a minor that is regular
+/// everywhere gives them; the nearest momenta otherwise.
+///
+/// What integration got right, the independent velocities, is not touched: an orthogonal projection would spread
+/// the error of the dependent ones over them, and with it over the energy.
+fn restore(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+    let Some(pairs) = kernel.regular_minor() else {
+        return project(model, derivation);
+    };
+    let before = kernel.velocity();
+    let mut qdot = before.clone();
+    let forms = kernel.forms();
+    for &(a, j) in &pairs {
+        let mut rest = kernel.value(derivation.constraints[a].affine);
+        for (i, &component) in forms[a].iter().enumerate().filter(|(i, _)| *i != j) {
+            rest = kernel.builder.add_product(rest, component, qdot[i]);
+        }
+        let solved = kernel.builder.div(rest, forms[a][j]);
+        qdot[j] = kernel.builder.neg(solved);
+    }
+    let changes: Vec<(usize, Value)> = pairs
+        .iter()
+        .map(|&(_, j)| (j, kernel.builder.sub(qdot[j], before[j])))
+        .collect();
+    let outputs = (0..kernel.dimension())
+        .map(|i| {
+            let momentum = kernel.builder.input(Input::Momentum(i));
+            changes.iter().fold(momentum, |momentum, &(j, change)| {
+                let weight = kernel.value(model.lagrangian.metric[i][j]);
+                kernel.builder.add_product(momentum, weight, change)
+            })
+        })
+        .collect();
     kernel.finish(outputs)
 }
 
 fn levels(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
-    let levels: Vec<_> = derivation.constraints.iter().filter_map(|constraint| constraint.level).collect();
+    let levels: Vec<_> = derivation
+        .constraints
+        .iter()
+        .filter_map(|constraint| constraint.level)
+        .collect();
     let outputs = kernel.values(&levels);
     kernel.finish(outputs)
 }
@@ -73,7 +130,9 @@ fn level_correction(model: &Model, derivation: &Derivation) -> Function {
     let zero = kernel.builder.zero();
     let mut covector = vec![zero; n];
     if !which.is_empty() {
-        let excess: Vec<Value> = (0..which.len()).map(|k| kernel.builder.input(Input::Excess(k))).collect();
+        let excess: Vec<Value> = (0..which.len())
+            .map(|k| kernel.builder.input(Input::Excess(k)))
+            .collect();
         let weights = kernel.partial_solve(&which, &excess);
         let forms = kernel.forms();
         for (&a, &weight) in which.iter().zip(&weights) {

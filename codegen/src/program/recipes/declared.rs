@@ -23,7 +23,11 @@ pub fn outputs(model: &Model, derivation: &Derivation) -> Option<Function> {
 /// Binds the derived quantities that the expressions name, and no others.
 fn bind_derived(kernel: &mut Kernel<'_>, expressions: &[ExprId]) {
     let model = kernel.model;
-    let named = |symbol| expressions.iter().any(|&expression| model.pool.depends_on(expression, symbol));
+    let named = |symbol| {
+        expressions
+            .iter()
+            .any(|&expression| model.pool.depends_on(expression, symbol))
+    };
     if named(model.derived.energy) {
         let energy = energy_value(kernel);
         kernel.bind_value(model.derived.energy, energy);
@@ -34,7 +38,12 @@ fn bind_derived(kernel: &mut Kernel<'_>, expressions: &[ExprId]) {
             kernel.bind_value(symbol, momentum);
         }
     }
-    if model.derived.multipliers.iter().any(|&symbol| named(symbol)) {
+    if model
+        .derived
+        .multipliers
+        .iter()
+        .any(|&symbol| named(symbol))
+    {
         let multipliers = kernel.multipliers();
         for (&symbol, value) in model.derived.multipliers.iter().zip(multipliers) {
             kernel.bind_value(symbol, value);
@@ -43,7 +52,11 @@ fn bind_derived(kernel: &mut Kernel<'_>, expressions: &[ExprId]) {
 }
 
 /// A function of time and position.
-pub fn position_function(model: &Model, derivation: &Derivation, expressions: &[ExprId]) -> Function {
+pub fn position_function(
+    model: &Model,
+    derivation: &Derivation,
+    expressions: &[ExprId],
+) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
     let values = kernel.values(expressions);
     kernel.finish(values)

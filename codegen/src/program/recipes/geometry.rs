@@ -64,7 +64,11 @@ impl Results {
     }
 
     fn matrix(&mut self, name: &str, rows: Vec<Vec<Value>>, columns: usize) {
-        self.push(name.into(), Shape::Matrix(rows.len(), columns), rows.concat());
+        self.push(
+            name.into(),
+            Shape::Matrix(rows.len(), columns),
+            rows.concat(),
+        );
     }
 
     fn push(&mut self, name: String, shape: Shape, values: Vec<Value>) {
@@ -75,12 +79,18 @@ impl Results {
 
 /// `(t, q, p)` to everything.
 pub fn geometry(model: &Model, derivation: &Derivation) -> Geometry {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
-    let mut results = Results { groups: Vec::new(), values: Vec::new() };
+    let mut kernel = Kernel::new(model, derivation, Arguments::Both);
+    let mut results = Results {
+        groups: Vec::new(),
+        values: Vec::new(),
+    };
     report_motion(&mut kernel, &mut results);
     report_constraints(&mut kernel, &mut results);
     report_surfaces(&mut kernel, &mut results);
-    Geometry { function: kernel.finish(results.values), groups: results.groups }
+    Geometry {
+        function: kernel.finish(results.values),
+        groups: results.groups,
+    }
 }
 
 fn report_motion(kernel: &mut Kernel<'_>, results: &mut Results) {
@@ -89,17 +99,30 @@ fn report_motion(kernel: &mut Kernel<'_>, results: &mut Results) {
     let rate = motion::momentum_rate(kernel);
     let drift = kernel.derivation.field.drift.clone();
     let drift = kernel.values(&drift);
-    let inertial: Vec<Value> = rate.iter().zip(drift).map(|(&rate, d)| kernel.builder.sub(rate, d)).collect();
+    let inertial: Vec<Value> = rate
+        .iter()
+        .zip(drift)
+        .map(|(&rate, d)| kernel.builder.sub(rate, d))
+        .collect();
     results.vector("pdot", rate);
     let acceleration = kernel.raise(&inertial);
     results.vector("acceleration", acceleration);
-    let multipliers = if kernel.constraints() > 0 { kernel.multipliers() } else { Vec::new() };
+    let multipliers = if kernel.constraints() > 0 {
+        kernel.multipliers()
+    } else {
+        Vec::new()
+    };
     results.vector("multipliers", multipliers);
     let energy = motion::energy_value(kernel);
     results.scalar("energy", energy);
     let n = kernel.dimension();
     let model = kernel.model;
-    let rows = model.lagrangian.metric.iter().map(|row| kernel.values(row)).collect();
+    let rows = model
+        .lagrangian
+        .metric
+        .iter()
+        .map(|row| kernel.values(row))
+        .collect();
     results.matrix("metric", rows, n);
 }
 
@@ -119,18 +142,15 @@ fn report_constraints(kernel: &mut Kernel<'_>, results: &mut Results) {
 }
 
 fn report_surfaces(kernel: &mut Kernel<'_>, results: &mut Results) {
-    const SCALARS: [&str; 5] =
-        ["gap_rate", "constrained_rate", "surface_rate", "constrained_compliance", "free_compliance"];
     for s in 0..kernel.derivation.surfaces.len() {
-        let name = kernel.model.surfaces[s].name.display.clone();
+        let name = &kernel.model.surfaces[s].name.display;
         let gap = kernel.value(kernel.derivation.surfaces[s].gap);
         results.scalar(format!("impacts.{name}.gap"), gap);
-        let mut values = impact::contact_values(kernel, s);
-        let direction = values.split_off(SCALARS.len());
-        for (quantity, value) in SCALARS.iter().zip(values) {
+        let contact = impact::contact_values(kernel, s);
+        for (quantity, value) in impact::SCALARS.iter().zip(contact.scalars) {
             results.scalar(format!("impacts.{name}.{quantity}"), value);
         }
-        results.vector(format!("impacts.{name}.direction"), direction);
+        results.vector(format!("impacts.{name}.direction"), contact.direction);
     }
 }
 
@@ -166,13 +186,25 @@ impl DualFrame {
             true => Vec::new(),
             false => kernel.with_constraints(|builder, _, factors| factors.inverse_mass(builder)),
         };
-        Self { forms, dual_fields, inverse_mass }
+        Self {
+            forms,
+            dual_fields,
+            inverse_mass,
+        }
     }
 
     /// `m^{ab} = eta^a(W^b)`
     fn mass(&self, kernel: &mut Kernel<'_>) -> Vec<Vec<Value>> {
         let entry = |kernel: &mut Kernel<'_>, a: &Vec<Value>, b: &Vec<Value>| kernel.dot(a, b);
-        self.forms.iter().map(|a| self.dual_fields.iter().map(|b| entry(kernel, a, b)).collect()).collect()
+        self.forms
+            .iter()
+            .map(|a| {
+                self.dual_fields
+                    .iter()
+                    .map(|b| entry(kernel, a, b))
+                    .collect()
+            })
+            .collect()
     }
 
     /// `m_ab W^b`, M rows of N.
@@ -198,7 +230,9 @@ impl DualFrame {
         let inverse_fields = self.inverse_fields(kernel);
         let mut rows = Vec::with_capacity(n);
         for i in 0..n {
-            let mut row: Vec<Value> = (0..n).map(|j| kernel.builder.integer(i64::from(i == j))).collect();
+            let mut row: Vec<Value> = (0..n)
+                .map(|j| kernel.builder.integer(i64::from(i == j)))
+                .collect();
             for (form, field) in self.forms.iter().zip(&inverse_fields) {
                 for (entry, &component) in row.iter_mut().zip(form) {
                     *entry = kernel.builder.sub_product(*entry, field[i], component);
@@ -215,13 +249,21 @@ impl DualFrame {
         let inverse_fields = self.inverse_fields(kernel);
         let mut theta = vec![kernel.builder.zero(); kernel.dimension()];
         for (a, field) in inverse_fields.iter().enumerate() {
-            for &Entry { index: [j, k], value } in &derivation.constraints[a].form_gradient {
+            for &Entry {
+                index: [j, k],
+                value,
+            } in &derivation.constraints[a].form_gradient
+            {
                 let value = kernel.value(value);
                 theta[j] = kernel.builder.add_product(theta[j], field[k], value);
                 theta[k] = kernel.builder.add_product(theta[k], field[j], value);
             }
         }
-        for &Entry { index: [i, j, k], value } in &derivation.density.metric.by_coordinate {
+        for &Entry {
+            index: [i, j, k],
+            value,
+        } in &derivation.density.metric.by_coordinate
+        {
             let value = kernel.value(value);
             let weight = self.cometric_part(kernel, &inverse_fields, i, j);
             theta[k] = kernel.builder.sub_product(theta[k], weight, value);
@@ -230,7 +272,13 @@ impl DualFrame {
     }
 
     /// `m_ab W^{a,i} W^{b,j}`, with both orders of `i != j` added up.
-    fn cometric_part(&self, kernel: &mut Kernel<'_>, inverse_fields: &[Vec<Value>], i: usize, j: usize) -> Value {
+    fn cometric_part(
+        &self,
+        kernel: &mut Kernel<'_>,
+        inverse_fields: &[Vec<Value>],
+        i: usize,
+        j: usize,
+    ) -> Value {
         let mut weight = kernel.builder.zero();
         for (field, inverse) in self.dual_fields.iter().zip(inverse_fields) {
             weight = kernel.builder.add_product(weight, field[i], inverse[j]);
@@ -252,12 +300,20 @@ impl DualFrame {
         let derivation = kernel.derivation;
         let inverse_fields = self.inverse_fields(kernel);
         for (constraint, field) in derivation.constraints.iter().zip(&inverse_fields) {
-            for &Entry { index: [k], value } in constraint.affine_gradient.iter().chain(&constraint.form_rate) {
+            for &Entry { index: [k], value } in constraint
+                .affine_gradient
+                .iter()
+                .chain(&constraint.form_rate)
+            {
                 let value = kernel.value(value);
                 total = kernel.builder.sub_product(total, field[k], value);
             }
         }
-        for &Entry { index: [i, j], value } in &derivation.density.metric.by_time {
+        for &Entry {
+            index: [i, j],
+            value,
+        } in &derivation.density.metric.by_time
+        {
             let value = kernel.value(value);
             let weight = self.cometric_part(kernel, &inverse_fields, i, j);
             total = kernel.builder.add_product(total, weight, value);
@@ -269,10 +325,15 @@ impl DualFrame {
     fn add_force_terms(&self, kernel: &mut Kernel<'_>, mut total: Value) -> Value {
         let derivation = kernel.derivation;
         let inverse_fields = self.inverse_fields(kernel);
-        for &Entry { index: [i, j], value } in &derivation.density.force_velocity {
+        for &Entry {
+            index: [i, j],
+            value,
+        } in &derivation.density.force_velocity
+        {
             let value = kernel.value(value);
-            let unit: Vec<Value> =
-                (0..kernel.dimension()).map(|k| kernel.builder.integer(i64::from(k == i))).collect();
+            let unit: Vec<Value> = (0..kernel.dimension())
+                .map(|k| kernel.builder.integer(i64::from(k == i)))
+                .collect();
             let column = kernel.raise(&unit);
             let mut weight = column[j];
             for (field, inverse) in self.dual_fields.iter().zip(&inverse_fields) {

@@ -18,11 +18,22 @@ pub fn impacting(model: &Model, derivation: &Derivation) -> Option<Impacting> {
     }
     let surfaces = 0..derivation.surfaces.len();
     Some(Impacting {
-        gaps: evaluate(model, derivation, Arguments::Position, |surface| vec![surface.gap]),
-        gap_rates: evaluate(model, derivation, Arguments::Momenta, |surface| vec![surface.gap_rate]),
-        conditions: surfaces.clone().map(|s| conditions(model, derivation, s)).collect(),
+        gaps: evaluate(model, derivation, Arguments::Position, |surface| {
+            vec![surface.gap]
+        }),
+        gap_rates: evaluate(model, derivation, Arguments::Momenta, |surface| {
+            vec![surface.gap_rate]
+        }),
+        conditions: surfaces
+            .clone()
+            .map(|s| conditions(model, derivation, s))
+            .collect(),
         contacts: surfaces.map(|s| contact(model, derivation, s)).collect(),
-        coefficients: model.surfaces.iter().map(|surface| coefficient(model, derivation, surface.law)).collect(),
+        coefficients: model
+            .surfaces
+            .iter()
+            .map(|surface| coefficient(model, derivation, surface.law))
+            .collect(),
     })
 }
 
@@ -49,7 +60,9 @@ fn conditions(model: &Model, derivation: &Derivation, s: usize) -> Option<Functi
 }
 
 fn coefficient(model: &Model, derivation: &Derivation, law: Law) -> Option<Function> {
-    let (Law::Restitution(coefficient) | Law::Newton(coefficient)) = law else { return None };
+    let (Law::Restitution(coefficient) | Law::Newton(coefficient)) = law else {
+        return None;
+    };
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
     let value = kernel.value(coefficient);
     Some(kernel.finish(vec![value]))
@@ -57,39 +70,56 @@ fn coefficient(model: &Model, derivation: &Derivation, law: Law) -> Option<Funct
 
 fn contact(model: &Model, derivation: &Derivation, s: usize) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
-    let mut outputs = contact_values(&mut kernel, s);
-    let squared = outputs[3];
-    kernel.builder.guard(Guard::Surface { surface: s, squared });
-    let direction = outputs.split_off(5);
-    kernel.name_by_coordinate(&direction, "direction_", "");
-    outputs.extend(direction);
-    kernel.finish(outputs)
+    let contact = contact_values(&mut kernel, s);
+    let [_, _, _, squared, _] = contact.scalars;
+    kernel.builder.guard(Guard::Surface {
+        surface: s,
+        squared,
+    });
+    kernel.finish([contact.scalars.to_vec(), contact.direction].concat())
 }
 
-/// `gap_rate, constrained_rate, surface_rate, constrained_compliance, free_compliance, direction`.
-pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> Vec<Value> {
+/// What a contact consists of.
+pub(super) struct ContactValues {
+    /// In the order of [`SCALARS`].
+    pub scalars: [Value; 5],
+    /// `pi_D^* dh`
+    pub direction: Vec<Value>,
+}
+
+/// Names of a contact's numbers.
+pub(super) const SCALARS: [&str; 5] = [
+    "gap_rate",
+    "constrained_rate",
+    "surface_rate",
+    "constrained_compliance",
+    "free_compliance",
+];
+
+/// The contact of a surface.
+pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues {
     let surface = &kernel.derivation.surfaces[s];
-    let (gap_rate, surface_rate, form) = (surface.gap_rate, surface.rate, surface.form.clone());
     let qdot = kernel.velocity();
-    let gap_rate = kernel.value(gap_rate);
-    kernel.builder.name(gap_rate, "gap_rate");
-    let surface_rate = kernel.value(surface_rate);
-    let form = kernel.values(&form);
+    let gap_rate = kernel.value(surface.gap_rate);
+    let surface_rate = kernel.value(surface.rate);
+    let form = kernel.values(&surface.form);
     let free = kernel.forward(&form);
     let rest = match kernel.constraints() {
         0 => free.clone(),
-        _ => kernel.with_constraints(|builder, ldlt, factors| factors.reduce(builder, ldlt, free.clone()).1),
+        _ => kernel.with_constraints(|builder, ldlt, factors| {
+            factors.reduce(builder, ldlt, free.clone()).1
+        }),
     };
-    let (free_compliance, constrained_compliance, direction) = kernel.with_ldlt(|builder, ldlt| {
-        let free_compliance = ldlt.inner(builder, &free, &free);
-        let constrained_compliance = ldlt.inner(builder, &rest, &rest);
-        (free_compliance, constrained_compliance, ldlt.lower_times(builder, &rest))
+    let (compliances, direction) = kernel.with_ldlt(|builder, ldlt| {
+        let compliances = [&rest, &free].map(|y| ldlt.inner(builder, y, y));
+        (compliances, ldlt.lower_times(builder, &rest))
     });
-    kernel.builder.name(free_compliance, "free_compliance");
-    kernel.builder.name(constrained_compliance, "constrained_compliance");
     let constrained_rate = kernel.dot(&direction, &qdot);
-    kernel.builder.name(constrained_rate, "constrained_rate");
-    let mut values = vec![gap_rate, constrained_rate, surface_rate, constrained_compliance, free_compliance];
-    values.extend(direction);
-    values
+    let [constrained, free] = compliances;
+    let scalars = [gap_rate, constrained_rate, surface_rate, constrained, free];
+    for (&value, name) in scalars.iter().zip(SCALARS) {
+        kernel.builder.name(value, name);
+    }
+    kernel.name_by_coordinate(&direction, "direction_", "");
+    ContactValues { scalars, direction }
 }

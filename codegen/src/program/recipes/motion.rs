@@ -29,7 +29,9 @@ pub(super) fn momentum_rate(kernel: &mut Kernel<'_>) -> Vec<Value> {
 /// `(t, q) -> g_ii`
 pub fn scale(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
-    let diagonal: Vec<_> = (0..kernel.dimension()).map(|i| model.lagrangian.metric[i][i]).collect();
+    let diagonal: Vec<_> = (0..kernel.dimension())
+        .map(|i| model.lagrangian.metric[i][i])
+        .collect();
     let outputs = kernel.values(&diagonal);
     kernel.finish(outputs)
 }
@@ -46,15 +48,18 @@ pub fn momentum(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Velocities);
     let kinetic = kernel.lowered_velocity();
     let linear = kernel.values(&model.lagrangian.linear);
-    let outputs: Vec<Value> =
-        kinetic.iter().zip(linear).map(|(&p, a)| kernel.builder.add(p, a)).collect();
+    let outputs: Vec<Value> = kinetic
+        .iter()
+        .zip(linear)
+        .map(|(&p, a)| kernel.builder.add(p, a))
+        .collect();
     kernel.name_by_coordinate(&outputs, "p_", "");
     kernel.finish(outputs)
 }
 
 /// `(t, q, p) -> 1/2 (p - A).qdot + V`
 pub fn energy(model: &Model, derivation: &Derivation) -> Function {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+    let mut kernel = Kernel::new(model, derivation, Arguments::Both);
     let energy = energy_value(&mut kernel);
     kernel.finish(vec![energy])
 }

@@ -45,8 +45,8 @@ fn topology(cursor: &mut Cursor<'_>) -> Read<Topology> {
         let Some(group) = cursor.eat_group(Delimiter::Parenthesis) else {
             return Err(cursor.unexpected("expected an open interval `(a, b)`", HELP));
         };
-        let [low, high] = pair(cursor, group, "the ends of an interval")?;
-        return Ok(Topology::Interval(low, high));
+        let ends = pair(cursor, group, "the ends of an interval")?;
+        return Ok(Topology::Interval(Box::new(ends)));
     }
     let last = cursor.last();
     Err(cursor.refuse(last, "expected `;`", HELP))

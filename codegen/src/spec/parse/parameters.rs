@@ -52,8 +52,8 @@ fn assumption(cursor: &mut Cursor<'_>) -> Read<Assumption> {
     let Some(group) = cursor.eat_group(Delimiter::Bracket) else {
         return Err(cursor.unexpected("expected a closed interval `[a, b]`", HELP));
     };
-    let [low, high] = pair(cursor, group, "the ends of an interval")?;
-    Ok(Assumption::Within(low, high))
+    let ends = pair(cursor, group, "the ends of an interval")?;
+    Ok(Assumption::Within(Box::new(ends)))
 }
 
 /// The `0` that an assumption compares with.

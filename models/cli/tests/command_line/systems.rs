@@ -270,6 +270,7 @@ impl Described for BouncingBall {
         );
         report.scalar("impacts.floor.free_compliance", contact.free_compliance);
         report.vector("impacts.floor.direction", contact.direction.as_slice());
+        report.vector("impacts.floor.velocity_direction", &[1.0 / self.m]);
         Ok(())
     }
 }

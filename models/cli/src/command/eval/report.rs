@@ -43,16 +43,19 @@ impl Collected {
     /// The contact of a surface, where an impulse can change its gap rate.
     pub fn contact(&self, surface: &str) -> Option<Contacted> {
         let scalar = |name| self.contact_scalar(surface, name);
+        let vector = |name| {
+            let found = self
+                .contact_vectors
+                .get(&format!("impacts.{surface}.{name}"));
+            found.cloned()
+        };
         let contact = Contacted {
             gap_rate: scalar("gap_rate")?,
             constrained_rate: scalar("constrained_rate")?,
             surface_rate: scalar("surface_rate")?,
             constrained_compliance: scalar("constrained_compliance")?,
             free_compliance: scalar("free_compliance")?,
-            direction: self
-                .contact_vectors
-                .get(&format!("impacts.{surface}.direction"))?
-                .clone(),
+            direction: vector("direction")?,
         };
         (contact.constrained_compliance > 0.0 && contact.constrained_compliance.is_finite())
             .then_some(contact)

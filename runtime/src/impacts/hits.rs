@@ -1,0 +1,45 @@
+//! Which surfaces are at hand at one moment, and which of them are approached.
+
+use crate::state::StateVector;
+
+/// Surfaces at hand at one moment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hits<G> {
+    /// 1 for surfaces at hand.
+    pub(super) at_hand: G,
+    /// Gap rates above minus this count as not approaching.
+    still: G,
+}
+
+impl<G: StateVector> Hits<G> {
+    /// No surface.
+    pub(super) fn none() -> Self {
+        Self {
+            at_hand: G::zeros(),
+            still: G::zeros(),
+        }
+    }
+
+    fn is_approached(&self, surface: usize, rates: &G) -> bool {
+        self.at_hand.as_slice()[surface] == 1.0
+            && rates.as_slice()[surface] < -self.still.as_slice()[surface]
+    }
+
+    /// Number of surfaces at hand that are approached.
+    pub(super) fn approached(&self, rates: &G) -> usize {
+        (0..G::LEN)
+            .filter(|&surface| self.is_approached(surface, rates))
+            .count()
+    }
+
+    /// The first of them.
+    pub(super) fn first_approached(&self, rates: &G) -> Option<usize> {
+        (0..G::LEN).find(|&surface| self.is_approached(surface, rates))
+    }
+
+    /// From now on, gap rates above `-rate` count as not approaching.
+    pub(super) fn set_still(&mut self, surface: usize, rate: f64) {
+        let still = &mut self.still.as_mut_slice()[surface];
+        *still = still.max(rate);
+    }
+}

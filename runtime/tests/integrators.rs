@@ -1,0 +1,328 @@
+//! Orders of the integrators and of their dense output, and how runs without impacts end.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+use core::ops::ControlFlow;
+
+use dalembert::{
+    Dop853, DormandPrince5, Fault, Observer, Outcome, ParameterError, Segment, Simulation,
+    StartError, Stepper, System, Tolerance, VectorField, describe::Assumption, integrate::Embedded,
+    integrate::Scheme,
+};
+use nalgebra::SVector;
+
+type Scalar = SVector<f64, 1>;
+type Plane = SVector<f64, 2>;
+
+/// `x'' = force(t, x, v)` on a line.
+#[derive(Clone, Copy)]
+struct Line {
+    force: fn(f64, f64, f64) -> Result<f64, Fault>,
+    chart: f64,
+    mass: f64,
+}
+
+impl Line {
+    fn new(force: fn(f64, f64, f64) -> Result<f64, Fault>) -> Self {
+        Self {
+            force,
+            chart: f64::INFINITY,
+            mass: 1.0,
+        }
+    }
+}
+
+impl VectorField for Line {
+    type State = Plane;
+
+    fn rate(&self, t: f64, state: &Plane, rate: &mut Plane) -> Result<(), Fault> {
+        *rate = Plane::new(state[1], (self.force)(t, state[0], state[1])?);
+        Ok(())
+    }
+}
+
+impl System for Line {
+    type Vector = Scalar;
+
+    fn position(&self, state: &Plane) -> Scalar {
+        Scalar::new(state[0])
+    }
+
+    fn velocity(&self, _: f64, state: &Plane) -> Result<Scalar, Fault> {
+        Ok(Scalar::new(state[1]))
+    }
+
+    fn momentum(&self, t: f64, state: &Plane) -> Result<Scalar, Fault> {
+        self.velocity(t, state)
+    }
+
+    fn state_unchecked(&self, _: f64, q: &Scalar, qdot: &Scalar) -> Result<Plane, Fault> {
+        Ok(Plane::new(q[0], qdot[0]))
+    }
+
+    fn state_from_momenta(&self, t: f64, q: &Scalar, p: &Scalar) -> Result<Plane, Fault> {
+        self.state_unchecked(t, q, p)
+    }
+
+    fn energy(&self, _: f64, state: &Plane) -> Result<f64, Fault> {
+        Ok(0.5 * state[1] * state[1])
+    }
+
+    fn kick(&self, _: f64, state: &mut Plane, size: f64, direction: &Scalar) -> Result<(), Fault> {
+        state[1] += size * direction[0];
+        Ok(())
+    }
+
+    fn check_parameters(&self) -> Result<(), ParameterError> {
+        if self.mass > 0.0 {
+            return Ok(());
+        }
+        Err(ParameterError {
+            name: "mass",
+            value: self.mass,
+            expected: Assumption::Positive,
+        })
+    }
+
+    fn outside_chart(&self, state: &Plane) -> Option<usize> {
+        (state[0] >= self.chart).then_some(0)
+    }
+}
+
+/// A nonlinear problem with a closed form: `x = sech(t)` solves `x'' = x - 2 x^3`.
+fn soliton() -> Line {
+    Line::new(|_, x, _| Ok(x - 2.0 * x * x * x))
+}
+
+fn sech(t: f64) -> f64 {
+    1.0 / t.cosh()
+}
+
+fn soliton_at(t: f64) -> Plane {
+    Plane::new(sech(t), -sech(t) * t.tanh())
+}
+
+/// Largest errors at the ends of `count` equal steps, and inside them.
+fn errors<M: Scheme>(count: u32) -> [f64; 2] {
+    struct Watch([f64; 2]);
+    impl Observer<Line> for Watch {
+        fn step(&mut self, segment: &mut Segment<'_, Plane>) -> ControlFlow<()> {
+            let (start, end) = (segment.t_start(), segment.t_end());
+            self.0[0] = self.0[0].max((segment.end() - soliton_at(end)).amax());
+            for part in [0.2, 0.4, 0.6, 0.8] {
+                let t = start + part * (end - start);
+                self.0[1] = self.0[1].max((segment.at(t).unwrap() - soliton_at(t)).amax());
+            }
+            ControlFlow::Continue(())
+        }
+    }
+    let h = 2.0 / f64::from(count);
+    // A tolerance so loose that the step limit alone decides.
+    let stepper = Embedded::<Plane, M>::new(Tolerance::new(1e3).unwrap())
+        .with_max_step(h)
+        .with_first_step(h);
+    let mut watch = Watch([0.0; 2]);
+    let system = soliton();
+    let run = Simulation::new(&system, stepper, ())
+        .run(-1.0, soliton_at(-1.0), 1.0, &mut watch)
+        .unwrap();
+    assert_eq!(run.counters.accepted, u64::from(count));
+    watch.0
+}
+
+fn assert_orders<M: Scheme>(count: u32) {
+    let (coarse, fine) = (errors::<M>(count), errors::<M>(2 * count));
+    let observed = [0, 1].map(|i| (coarse[i] / fine[i]).log2());
+    for (observed, nominal) in observed.into_iter().zip([M::ORDER, M::DENSE_ORDER + 1]) {
+        assert!(
+            (observed - nominal as f64).abs() <= 0.1 * nominal as f64,
+            "{}: {observed} for {nominal}",
+            M::NAME
+        );
+    }
+}
+
+#[test]
+fn dormand_prince_converges_at_its_orders() {
+    assert_orders::<dalembert::integrate::DormandPrince5Scheme>(20);
+}
+
+#[test]
+fn dop853_converges_at_its_orders() {
+    assert_orders::<dalembert::integrate::Dop853Scheme>(8);
+}
+
+#[test]
+fn time_reaches_every_stage() {
+    // x'' = 30 t^4: polynomial motion x = t^6, which both quadratures get right to rounding.
+    let system = Line::new(|t, _, _| Ok(30.0 * t * t * t * t));
+    fn end(system: &Line, stepper: impl Stepper<Line>) -> f64 {
+        Simulation::new(system, stepper, ())
+            .run(0.0, Plane::zeros(), 1.0, &mut ())
+            .unwrap()
+            .state[0]
+    }
+    let tolerance = Tolerance::new(1e-9).unwrap();
+    assert!((end(&system, Dop853::new(tolerance)) - 1.0).abs() < 1e-9);
+    assert!((end(&system, DormandPrince5::new(tolerance)) - 1.0).abs() < 1e-9);
+}
+
+fn run(system: &Line, state: [f64; 2], t_end: f64) -> dalembert::Run<Plane> {
+    let stepper = Dop853::new(Tolerance::new(1e-10).unwrap());
+    Simulation::new(system, stepper, ())
+        .run(0.0, Plane::from(state), t_end, &mut ())
+        .unwrap()
+}
+
+#[test]
+fn a21_collapse_is_a_step_underflow_where_it_happens() {
+    let system = Line::new(|_, x, _| Ok(-1.0 / (x * x)));
+    let run = run(&system, [1.0, 0.0], 2.0);
+    assert!(
+        matches!(
+            run.outcome,
+            Outcome::StepUnderflow { .. } | Outcome::NonFinite { .. }
+        ),
+        "{}",
+        run.outcome
+    );
+    assert!((run.t - 1.110_720_734_539_592).abs() <= 1e-8, "{}", run.t);
+    assert!(run.state[0].is_finite() && run.state[1].is_finite());
+}
+
+#[test]
+fn a22_blow_up_ends_just_before_it() {
+    let system = Line::new(|_, x, _| Ok(2.0 * x * x * x));
+    let run = run(&system, [1.0, 1.0], 2.0);
+    assert!(
+        matches!(
+            run.outcome,
+            Outcome::StepUnderflow { .. } | Outcome::NonFinite { .. }
+        ),
+        "{}",
+        run.outcome
+    );
+    assert!(run.t > 1.0 - 1e-6 && run.t <= 1.0 + 1e-9, "{}", run.t);
+    assert!(run.state[0].is_finite() && run.state[1].is_finite());
+}
+
+#[test]
+fn a_fault_ahead_is_reached_before_it_is_reported() {
+    let fault = Fault::MetricNotPositive {
+        pivot: 0,
+        value: -1.0,
+    };
+    let system = Line::new(|_, x, _| {
+        if x > 2.0 {
+            Err(Fault::MetricNotPositive {
+                pivot: 0,
+                value: -1.0,
+            })
+        } else {
+            Ok(0.0)
+        }
+    });
+    let run = run(&system, [0.0, 1.0], 10.0);
+    assert_eq!(run.outcome, fault.into());
+    assert!((run.t - 2.0).abs() < 1e-12, "{}", run.t);
+}
+
+#[test]
+fn a_chart_is_left_at_its_end() {
+    let mut system = Line::new(|_, _, _| Ok(0.0));
+    system.chart = 2.0;
+    let run = run(&system, [0.0, 1.0], 10.0);
+    assert_eq!(run.outcome, Outcome::LeftChart { coordinate: 0 });
+    assert!(
+        (run.t - 2.0).abs() < 1e-14 && run.state[0] < 2.0,
+        "{}",
+        run.t
+    );
+}
+
+#[test]
+fn bad_requests_are_refused() {
+    let mut system = soliton();
+    let start = |system: &Line, t0: f64, t_end: f64, x: f64| {
+        let stepper = Dop853::new(Tolerance::new(1e-10).unwrap());
+        Simulation::new(system, stepper, ()).run(t0, Plane::new(x, 0.0), t_end, &mut ())
+    };
+    for (t0, t_end) in [
+        (1.0, 0.0),
+        (f64::NAN, 1.0),
+        (0.0, f64::NAN),
+        (0.0, f64::INFINITY),
+    ] {
+        assert!(matches!(
+            start(&system, t0, t_end, 1.0),
+            Err(StartError::Times { .. })
+        ));
+    }
+    assert_eq!(
+        start(&system, 0.0, 1.0, f64::NAN).unwrap().outcome,
+        Outcome::NonFinite { component: 0 }
+    );
+    assert_eq!(
+        start(&system, 1.0, 1.0, 1.0).unwrap().outcome,
+        Outcome::Done
+    );
+    system.mass = -1.0;
+    assert!(matches!(
+        start(&system, 0.0, 1.0, 1.0),
+        Err(StartError::Parameter(_))
+    ));
+}
+
+#[test]
+fn budgets_and_observers_stop_a_run() {
+    struct Stop(u32);
+    impl Observer<Line> for Stop {
+        fn step(&mut self, _: &mut Segment<'_, Plane>) -> ControlFlow<()> {
+            self.0 -= 1;
+            if self.0 == 0 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        }
+    }
+    let system = soliton();
+    let stepper = Dop853::new(Tolerance::new(1e-10).unwrap());
+    let mut simulation = Simulation::new(&system, stepper, ()).with_step_budget(4);
+    let run = simulation
+        .run(0.0, soliton_at(0.0), 100.0, &mut ())
+        .unwrap();
+    assert_eq!(
+        (run.outcome, run.counters.accepted),
+        (Outcome::StepBudget, 4)
+    );
+    assert!((run.state - soliton_at(run.t)).amax() < 1e-9);
+    let run = simulation
+        .run(0.0, soliton_at(0.0), 100.0, &mut Stop(3))
+        .unwrap();
+    assert_eq!((run.outcome, run.counters.accepted), (Outcome::Stopped, 3));
+}
+
+#[test]
+fn dense_output_is_paid_for_only_where_it_is_read() {
+    struct Read(f64);
+    impl Observer<Line> for Read {
+        fn step(&mut self, segment: &mut Segment<'_, Plane>) -> ControlFlow<()> {
+            if segment.t_start() < self.0 && self.0 <= segment.t_end() {
+                assert!((segment.at(self.0).unwrap() - soliton_at(self.0)).amax() < 1e-9);
+            }
+            ControlFlow::Continue(())
+        }
+    }
+    let system = soliton();
+    let stepper = Dop853::new(Tolerance::new(1e-10).unwrap());
+    let mut simulation = Simulation::new(&system, stepper, ());
+    let run = simulation
+        .run(0.0, soliton_at(0.0), 2.0, &mut Read(1.0))
+        .unwrap();
+    assert_eq!(run.counters.dense_constructions, 1);
+    let run = simulation
+        .run(0.0, soliton_at(0.0), 2.0, &mut Read(2.0))
+        .unwrap();
+    assert_eq!(run.counters.dense_constructions, 0);
+    assert_eq!(run.t, 2.0);
+}
