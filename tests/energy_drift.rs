@@ -3,8 +3,8 @@
 use core::ops::ControlFlow;
 
 use dalembert::{
-    Constrained, Dop853, Observer, Outcome, Scene, SceneEffects, Segment, Simulation, StateVector,
-    System, Tolerance,
+    Constrained, Dop853, Observer, Outcome, Scene, SceneEffects, Segment, Simulation, System,
+    Tolerance,
 };
 use dalembert_models::RollingDisk;
 

@@ -27,6 +27,10 @@ fn sources(folder: &str) -> Vec<(PathBuf, String)> {
 /// Asserts that no code line (comments aside) of a folder holds a text.
 fn assert_absent(folder: &str, forbidden: &[&str]) {
     for (path, text) in sources(folder) {
+        // Tests of a stage may run the later ones.
+        if path.ends_with("tests.rs") {
+            continue;
+        }
         for (number, line) in text.lines().enumerate() {
             let code = line.split("//").next().unwrap_or_default();
             for word in forbidden {

@@ -1,6 +1,6 @@
 //! A run allocates nothing, and the same run gives the same bits twice.
 
-use dalembert::{Dop853, DormandPrince5, Scene, Simulation, Stepper, System, Tolerance};
+use dalembert::{Dop853, DormandPrince5, Scene, Simulation, Stepper, Tolerance};
 use dalembert_models::{ChaplyginSleigh, RollingDisk};
 use dalembert_tests::allocation::{Counting, allocations};
 

@@ -19,9 +19,9 @@ pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
     let forms = emit_forms(context, functions);
     let restore = emit_restore(context, functions);
     let positions = emit_levels(context, functions);
+    let attributes = super::attributes();
     quote! {
-        #[automatically_derived]
-        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        #attributes
         impl ::dalembert::Constrained for #type_name {
             type Multipliers = ::dalembert::__private::SVector<f64, #m>;
             type Levels = ::dalembert::__private::SVector<f64, #levels>;
@@ -135,7 +135,6 @@ fn emit_levels(context: &Context<'_>, functions: &Constrained) -> TokenStream {
             q: &Self::Vector,
             excess: &Self::Levels,
         ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
-            let _ = excess;
             #correction_statements
             ::core::result::Result::Ok(::dalembert::__private::vector([#(#change),*]))
         }

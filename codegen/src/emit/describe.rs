@@ -17,9 +17,9 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
     let initial = emit_initial(context);
     let declared = emit_declared(context);
     let inspect = emit_inspect(context);
+    let attributes = super::attributes();
     quote! {
-        #[automatically_derived]
-        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        #attributes
         impl ::dalembert::Described for #type_name {
             const DESCRIPTION: ::dalembert::describe::Description = #description;
 
@@ -195,7 +195,6 @@ fn emit_parameter_access(context: &Context<'_>) -> TokenStream {
         }
 
         fn set_parameter(&mut self, index: usize, value: f64) {
-            let _ = value;
             match index {
                 #(#set)*
                 _ => {}
@@ -255,7 +254,7 @@ fn emit_declared(context: &Context<'_>) -> TokenStream {
                 }
             }
         }
-        None => quote!(let _ = (t, state, values);),
+        None => TokenStream::new(),
     };
     let path = match &program.view_path {
         Some(function) => {
@@ -265,7 +264,7 @@ fn emit_declared(context: &Context<'_>) -> TokenStream {
             } = context.state_body(function);
             quote!(#statements ::core::option::Option::Some([#(#outputs),*]))
         }
-        None => quote!(let _ = (t, state); ::core::option::Option::None),
+        None => quote!(::core::option::Option::None),
     };
     let region = match &program.view_region {
         Some(function) => {
@@ -275,7 +274,7 @@ fn emit_declared(context: &Context<'_>) -> TokenStream {
             } = context.position_body(function);
             quote!(#statements ::core::option::Option::Some(#(#outputs)*))
         }
-        None => quote!(let _ = (t, q); ::core::option::Option::None),
+        None => quote!(::core::option::Option::None),
     };
     quote! {
         fn outputs(
@@ -303,7 +302,7 @@ fn emit_inspect(context: &Context<'_>) -> TokenStream {
     } = context.state_body(&geometry.function);
     let mut rest = outputs.as_slice();
     let reports = geometry.groups.iter().map(|group| {
-        let (values, tail) = rest.split_at(group.shape.len());
+        let (values, tail) = rest.split_at(group.shape.count());
         rest = tail;
         let name = &group.name;
         match group.shape {
@@ -346,8 +345,9 @@ pub(super) fn emit_scene(context: &Context<'_>) -> TokenStream {
         types.push(quote!(::dalembert::Impacts<Self>));
         values.push(quote!(::dalembert::Impacts::declared(self)));
     }
+    let attributes = super::attributes();
     quote! {
-        #[automatically_derived]
+        #attributes
         impl ::dalembert::Scene for #type_name {
             type Effects = (#(#types,)*);
 

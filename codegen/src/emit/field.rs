@@ -63,12 +63,8 @@ impl Context<'_> {
             statements,
             outputs,
         } = emit_body(function, &self.names);
-        let time = match uses(function, |input| input == Input::Time) {
-            true => TokenStream::new(),
-            false => quote!(let _ = t;),
-        };
         Body {
-            statements: quote!(#time #bindings #statements),
+            statements: quote!(#bindings #statements),
             outputs,
         }
     }
@@ -90,7 +86,7 @@ fn pattern(locals: &[Ident], used: impl Fn(usize) -> bool) -> (TokenStream, bool
 
 fn bind(patterns: &[(TokenStream, bool)], source: &TokenStream) -> TokenStream {
     if !patterns.iter().any(|(_, any)| *any) {
-        return quote!(let _ = #source;);
+        return TokenStream::new();
     }
     let parts = patterns.iter().map(|(tokens, _)| tokens);
     quote!(let [#(#parts),*] = ::dalembert::__private::components(#source);)
@@ -117,9 +113,9 @@ pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
     let scale = context.position_body(&program.scale);
     let (units, momenta) = ((0..n).map(|_| quote!(1.0)), scale.outputs);
     let scale_statements = scale.statements;
+    let attributes = super::attributes();
     quote! {
-        #[automatically_derived]
-        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        #attributes
         impl ::dalembert::VectorField for #type_name {
             type State = ::dalembert::__private::SVector<f64, #size>;
 
@@ -158,9 +154,9 @@ pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
         Some(_) => super::constraint::emit_system_hooks(context),
         None => TokenStream::new(),
     };
+    let attributes = super::attributes();
     quote! {
-        #[automatically_derived]
-        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        #attributes
         impl ::dalembert::System for #type_name {
             type Vector = ::dalembert::__private::SVector<f64, #n>;
 
@@ -175,8 +171,7 @@ pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
                 t: f64,
                 state: &Self::State,
             ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
-                let _ = t;
-                ::core::result::Result::Ok(::dalembert::__private::part::<#n, _, _>(state))
+                                ::core::result::Result::Ok(::dalembert::__private::part::<#n, _, _>(state))
             }
 
             #momenta
@@ -226,8 +221,7 @@ fn emit_momentum_functions(context: &Context<'_>) -> TokenStream {
             q: &Self::Vector,
             p: &Self::Vector,
         ) -> ::core::result::Result<Self::State, ::dalembert::Fault> {
-            let _ = t;
-            ::core::result::Result::Ok(::dalembert::__private::join(q, p))
+                        ::core::result::Result::Ok(::dalembert::__private::join(q, p))
         }
 
         #[inline]
@@ -238,8 +232,7 @@ fn emit_momentum_functions(context: &Context<'_>) -> TokenStream {
             size: f64,
             direction: &Self::Vector,
         ) -> ::core::result::Result<(), ::dalembert::Fault> {
-            let _ = t;
-            for i in 0..#n {
+                        for i in 0..#n {
                 state[#n + i] += size * direction[i];
             }
             ::core::result::Result::Ok(())

@@ -19,9 +19,9 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
     let conditions = emit_conditions(context, functions);
     let laws = emit_laws(context, functions);
     let contacts = emit_contacts(context, functions);
+    let attributes = super::attributes();
     quote! {
-        #[automatically_derived]
-        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        #attributes
         impl ::dalembert::Impacting for #type_name {
             type Gaps = ::dalembert::__private::SVector<f64, #s>;
             #gaps

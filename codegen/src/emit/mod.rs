@@ -46,3 +46,12 @@ pub fn tokens(model: &Model, program: &Program) -> TokenStream {
     ];
     quote!(#(#items)*)
 }
+
+/// What every generated item says of itself: it was not written by hand, so lints on style have nothing to say,
+/// and a function need not use all that the contract hands it.
+fn attributes() -> TokenStream {
+    quote! {
+        #[automatically_derived]
+        #[allow(non_snake_case, unused_variables, clippy::all, clippy::pedantic, clippy::nursery)]
+    }
+}

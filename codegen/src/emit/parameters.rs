@@ -18,7 +18,7 @@ pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
     let default = emit_default(context);
     quote! {
         #documentation
-        #[allow(non_snake_case)]
+        #[allow(non_snake_case, clippy::all, clippy::pedantic, clippy::nursery)]
         #[derive(Debug, Clone, Copy, PartialEq)]
         #visibility struct #type_name { #(#fields)* }
         #default
@@ -103,11 +103,11 @@ fn emit_default(context: &Context<'_>) -> TokenStream {
     }
     let type_name = &context.names.type_name;
     let value = with_defaults(model);
+    let attributes = super::attributes();
     quote! {
-        #[automatically_derived]
+        #attributes
         impl ::core::default::Default for #type_name {
             /// The declared defaults.
-            #[allow(clippy::excessive_precision)]
             fn default() -> Self { #value }
         }
     }

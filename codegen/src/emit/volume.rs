@@ -17,9 +17,9 @@ pub(super) fn emit_divergence(context: &Context<'_>) -> TokenStream {
     let form = context.position_body(&program.density_form);
     let form_doc = doc::formula("theta = m_ab L_{W^a} eta^b", &program.density_form.cost);
     let (form_statements, theta) = (form.statements, form.outputs);
+    let attributes = super::attributes();
     quote! {
-        #[automatically_derived]
-        #[allow(non_snake_case, clippy::excessive_precision, clippy::let_unit_value)]
+        #attributes
         impl ::dalembert::Divergence for #type_name {
             #divergence_doc
             #[inline]

@@ -30,7 +30,7 @@ pub enum Shape {
 
 impl Shape {
     /// Number of results.
-    pub fn len(self) -> usize {
+    pub fn count(self) -> usize {
         match self {
             Self::Scalar => 1,
             Self::Vector(n) => n,
