@@ -30,8 +30,25 @@ pub struct Report {
 pub struct Section {
     /// Its title.
     pub title: &'static str,
+    /// The equation it is about, as text and as LaTeX; empty if there is none.
+    pub equation: [&'static str; 2],
     /// Its lines.
     pub items: Vec<Item>,
+}
+
+impl Section {
+    /// The title of the section with the model's remarks.
+    pub const NOTES: &'static str = "Notes";
+
+    /// A section without an equation of its own.
+    fn plain(title: &'static str, items: Vec<Item>) -> Self {
+        let equation = ["", ""];
+        Self {
+            title,
+            equation,
+            items,
+        }
+    }
 }
 
 /// A line of a report.
@@ -105,7 +122,7 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
         writer.surfaces(),
         writer.declared_outputs(),
     ];
-    sections.push(work(&program));
+    sections.push(work(&model, &program));
     sections.push(notes(&model));
     sections.retain(|section| !section.items.is_empty());
     Ok(Report {
@@ -188,10 +205,7 @@ impl Writer<'_> {
                 default.unwrap_or_default()
             )));
         }
-        Section {
-            title: "Declared",
-            items,
-        }
+        Section::plain("Declared", items)
     }
 
     fn lagrangian(&mut self) -> Section {
@@ -214,8 +228,13 @@ impl Writer<'_> {
         }
         let potential = self.model.lagrangian.potential;
         items.push(self.formula("V", "V", potential));
+        let equation = [
+            "L = g(qdot, qdot)/2 + A.qdot - V",
+            r"L = \tfrac12 g(\dot q, \dot q) + A \cdot \dot q - V",
+        ];
         Section {
-            title: "Lagrangian L = g(qdot, qdot)/2 + A.qdot - V",
+            title: "Lagrangian",
+            equation,
             items,
         }
     }
@@ -238,11 +257,22 @@ impl Writer<'_> {
                 ));
             }
         }
-        let title = match self.derivation.constraints.is_empty() {
-            true => "Motion: qdot = g^-1 (p - A), pdot = f",
-            false => "Motion: qdot = g^-1 (p - A), pdot = f + lambda_a eta^a",
+        let equation = match self.derivation.constraints.is_empty() {
+            true => [
+                "qdot = g^-1 (p - A), pdot = f",
+                r"\dot q = g^{-1}(p - A), \quad \dot p = f",
+            ],
+            false => [
+                "qdot = g^-1 (p - A), pdot = f + lambda_a eta^a",
+                r"\dot q = g^{-1}(p - A), \quad \dot p = f + \lambda_a \eta^a",
+            ],
         };
-        Section { title, items }
+        let title = "Motion";
+        Section {
+            title,
+            equation,
+            items,
+        }
     }
 
     fn constraints(&mut self) -> Section {
@@ -283,8 +313,14 @@ impl Writer<'_> {
                 ));
             }
         }
+        let equation = [
+            "m^ab lambda_b = -[ W^a.(f - drift) + curvature_a ], W^a = g^-1 eta^a, m^ab = eta^a(W^b)",
+            r"m^{ab} \lambda_b = -\left[ W^a \cdot (f - \dot g \dot q - \dot A) + \text{curvature}^a \right], \quad
+              W^a = g^{-1} \eta^a, \quad m^{ab} = \eta^a(W^b)",
+        ];
         Section {
-            title: "Constraints: m^ab lambda_b = -[ W^a.(f - drift) + curvature_a ], W^a = g^-1 eta^a",
+            title: "Constraints",
+            equation,
             items,
         }
     }
@@ -321,7 +357,11 @@ impl Writer<'_> {
             }
         }
         Section {
-            title: "Impacts: p+ = p + eps pi_D^* dh",
+            title: "Impacts",
+            equation: [
+                "p+ = p + eps pi_D^* dh",
+                r"p^+ = p + \epsilon\, \pi_D^*\, dh",
+            ],
             items,
         }
     }
@@ -352,10 +392,7 @@ impl Writer<'_> {
                 self.formula(name, latex, value)
             })
             .collect();
-        Section {
-            title: "Outputs",
-            items,
-        }
+        Section::plain("Outputs", items)
     }
 }
 
@@ -365,7 +402,7 @@ fn escape(name: &str) -> String {
 }
 
 /// Operation counts of the emitted functions.
-fn work(program: &Program) -> Section {
+fn work(model: &Model, program: &Program) -> Section {
     let line = |name: &str, cost: &Cost| Item::Words(format!("{name}: {cost}"));
     let mut items = vec![
         line("rate", &program.rate.cost),
@@ -373,26 +410,21 @@ fn work(program: &Program) -> Section {
     ];
     if let Some(constrained) = &program.constrained {
         items.push(line("multipliers", &constrained.multipliers.cost));
-        items.push(line("project", &constrained.project.cost));
+        items.push(line("projection after a step", &constrained.restore.cost));
     }
     if let Some(impacting) = &program.impacting {
-        items.push(line("gaps", &impacting.gaps.cost));
-        items.extend(
-            impacting
-                .contacts
-                .iter()
-                .map(|contact| line("contact", &contact.cost)),
-        );
+        items.push(line("all gaps", &impacting.gaps.cost));
+        for (surface, contact) in model.surfaces.iter().zip(&impacting.contacts) {
+            items.push(line(
+                &format!("impact on {}", surface.name.display),
+                &contact.cost,
+            ));
+        }
     }
-    Section {
-        title: "Work of the emitted functions",
-        items,
-    }
+    Section::plain("Work of the emitted functions", items)
 }
 
 fn notes(model: &Model) -> Section {
-    Section {
-        title: "Notes",
-        items: model.notes.iter().cloned().map(Item::Words).collect(),
-    }
+    let items = model.notes.iter().cloned().map(Item::Words).collect();
+    Section::plain(Section::NOTES, items)
 }

@@ -51,6 +51,9 @@ fn metric(pool: &mut Pool, slopes: &[ExprId], velocities: &[SymbolId]) -> Vec<Ve
         for j in i..size {
             let second = pool.diff(slopes[i], velocities[j]);
             let entry = at_zero(pool, second, velocities);
+            // A diagonal entry is a sum of squares, where `cos^2 + sin^2` collects: often down to a constant, whose
+            // sign is known and whose pivot needs no check.
+            let entry = if i == j { pool.simplify(entry) } else { entry };
             metric[i][j] = entry;
             metric[j][i] = entry;
         }

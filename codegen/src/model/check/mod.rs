@@ -42,6 +42,7 @@ pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
     resolver.constants();
     resolver.all_coordinates();
     resolver.all_parameters();
+    resolver.order_symbols();
     resolver.all_definitions();
     let parts = Parts {
         lagrangian: lagrangian(&mut resolver),
@@ -236,6 +237,18 @@ impl Names {
 }
 
 impl Resolver<'_> {
+    /// Makes the variables in the order in which a person writes a product: parameters, coordinates, velocities.
+    /// What is made first is printed first.
+    fn order_symbols(&mut self) {
+        let (parameters, coordinates) = (&self.symbols.parameters, &self.symbols.coordinates);
+        let parameters = parameters.iter().map(|parameter| parameter.symbol);
+        let positions = coordinates.iter().map(|coordinate| coordinate.q);
+        let velocities = coordinates.iter().map(|coordinate| coordinate.qdot);
+        for symbol in parameters.chain(positions).chain(velocities) {
+            self.pool.variable(symbol);
+        }
+    }
+
     /// The members that a declaration declares, each with what its index stands for.
     fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
         let field = &declared.name.text;

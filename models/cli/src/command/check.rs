@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use dalembert::describe::{Description, Report, Topology};
+use dalembert_codegen::report::{Item, Section, report};
 use serde_json::{Value, json};
 
 use crate::args::{CheckArgs, Format, OffConstraint};
@@ -113,8 +114,26 @@ fn notes(model: &dyn AnyModel) -> Vec<String> {
     if model.initial().until.is_none() {
         notes.push("no `until` is declared: runs need --until T or --impacts N".to_owned());
     }
+    notes.extend(remarks(description.source));
     notes.push("claims are not checked yet by this version".to_owned());
     notes
+}
+
+/// What the generator remarks on the declaration: velocity-linear terms, integrable constraints, unused parameters.
+fn remarks(source: &str) -> Vec<String> {
+    let sections = report(source)
+        .map(|report| report.sections)
+        .unwrap_or_default();
+    let remarks = sections
+        .into_iter()
+        .filter(|section| section.title == Section::NOTES);
+    let items = remarks.flat_map(|section| section.items);
+    items
+        .filter_map(|item| match item {
+            Item::Words(words) => Some(words),
+            _ => None,
+        })
+        .collect()
 }
 
 fn write_text(

@@ -35,7 +35,9 @@ const LATEX: usize = 1;
 fn text(report: &Report) -> String {
     let mut out = format!("{}\n{}\n", report.name, report.documentation);
     for section in &report.sections {
-        out += &format!("\n{}\n", section.title);
+        let [equation, _] = section.equation;
+        let colon = if equation.is_empty() { "" } else { ": " };
+        out += &format!("\n{}{colon}{equation}\n", section.title);
         for item in &section.items {
             out += &match item {
                 Item::Words(words) => format!("  {words}\n"),
@@ -83,6 +85,10 @@ fn latex(report: &Report) -> String {
     );
     for section in &report.sections {
         out += &format!("\n\\subsection*{{{}}}\n", escape(section.title));
+        let [_, equation] = section.equation;
+        if !equation.is_empty() {
+            out += &format!("\\[ {equation} \\]\n");
+        }
         for item in &section.items {
             out += &match item {
                 Item::Words(words) => format!("\\noindent {}\\par\n", escape(words)),
@@ -129,13 +135,16 @@ fn json(report: &Report) -> Value {
     let sections: Vec<Value> = report
         .sections
         .iter()
-        .map(|section| json!({ "title": section.title, "items": section.items.iter().map(item_json).collect::<Vec<_>>() }))
+        .map(|section| json!({ "title": section.title, "equation": both(&section.equation.map(String::from)), "items": section.items.iter().map(item_json).collect::<Vec<_>>() }))
         .collect();
     json!({ "model": report.name, "documentation": report.documentation, "sections": sections })
 }
 
+fn both(pair: &[String; 2]) -> Value {
+    json!({ "text": pair[TEXT], "latex": pair[LATEX] })
+}
+
 fn item_json(item: &Item) -> Value {
-    let both = |pair: &[String; 2]| json!({ "text": pair[TEXT], "latex": pair[LATEX] });
     match item {
         Item::Words(words) => json!({ "words": words }),
         Item::Formula { left, right } => json!({ "left": both(left), "right": both(right) }),
