@@ -1,8 +1,18 @@
 //! What the tests share: reference values, the command line inside the process, systems that only tests declare,
 //! an allocation counter.
 
+/// Makes every Rust block of the language reference a doctest.
+#[doc = include_str!("../../docs/language.md")]
+#[cfg(doctest)]
+struct LanguageReference;
+
 pub mod allocation;
 pub mod command;
 pub mod reference;
 pub mod sampling;
 pub mod systems;
+
+/// The examples of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
