@@ -2,56 +2,9 @@
 //!
 //! Implemented by `model!` for every model, so that a tool can list, set and re-derive any of them.
 
-use core::fmt;
-
+pub use crate::assumption::Assumption;
 use crate::contract::System;
 use crate::error::Fault;
-
-/// What a declaration demands of a parameter. Checked when a state is made.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Assumption {
-    /// Any finite number.
-    Finite,
-    /// `> 0`
-    Positive,
-    /// `>= 0`
-    NonNegative,
-    /// `!= 0`
-    NonZero,
-    /// `in [low, high]`, ends included.
-    Within {
-        /// Lower end.
-        low: f64,
-        /// Upper end.
-        high: f64,
-    },
-}
-
-impl Assumption {
-    /// Whether `value` is finite and satisfies the assumption.
-    pub fn holds(&self, value: f64) -> bool {
-        value.is_finite()
-            && match *self {
-                Self::Finite => true,
-                Self::Positive => value > 0.0,
-                Self::NonNegative => value >= 0.0,
-                Self::NonZero => value != 0.0,
-                Self::Within { low, high } => low <= value && value <= high,
-            }
-    }
-}
-
-impl fmt::Display for Assumption {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::Finite => write!(f, "finite"),
-            Self::Positive => write!(f, "> 0"),
-            Self::NonNegative => write!(f, ">= 0"),
-            Self::NonZero => write!(f, "!= 0"),
-            Self::Within { low, high } => write!(f, "in [{low}, {high}]"),
-        }
-    }
-}
 
 /// The set a coordinate runs through.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -105,6 +105,7 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
+mod assumption;
 pub mod contract;
 pub mod describe;
 pub mod effects;

@@ -155,7 +155,16 @@ fn emit_contacts(context: &Context<'_>, functions: &Impacting) -> TokenStream {
             }
         }
     });
+    let mut lines = vec![
+        "`dh(pi_D grad h)`, `dh(grad h)` and the impulse's direction `pi_D^* dh`.".to_string(),
+        String::new(),
+    ];
+    for (surface, function) in context.model.surfaces.iter().zip(&functions.contacts) {
+        lines.push(format!("* `{}`: {}.", surface.name.display, function.cost));
+    }
+    let documentation = doc::lines(&lines);
     quote! {
+        #documentation
         #[inline]
         fn contact(
             &self,

@@ -121,7 +121,7 @@ pub(super) fn emit_indices(context: &Context<'_>) -> TokenStream {
         written => written.parse().unwrap_or_default(),
     };
     let module = &context.names.module;
-    let title = format!("Indices of the names declared in [`{}`].", model.name);
+    let title = format!(" Indices of the names declared in [`{}`].", model.name);
     let coordinates: Vec<&Name> = model
         .coordinates
         .iter()
@@ -152,12 +152,12 @@ fn emit_index_module(module: &str, plural: &str, names: &[&Name]) -> TokenStream
         return TokenStream::new();
     }
     let module = Ident::new(module, Span::call_site());
-    let title = format!("Indices of the {plural}, in order of declaration.");
+    let title = format!(" Indices of the {plural}, in order of declaration.");
     let mut constants = Vec::new();
     let mut next = 0;
     for family in names.chunk_by(|a, b| a.member.is_some() && a.field == b.field) {
         let constant = Ident::new(&family[0].field.to_uppercase(), Span::call_site());
-        let text = format!("`{}`", family[0].field);
+        let text = format!(" `{}`", family[0].field);
         let indices = next..next + family.len();
         next += family.len();
         constants.push(match family[0].member {
