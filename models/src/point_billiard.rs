@@ -36,7 +36,7 @@ mod tests {
             .state_unchecked(0.0, &[1.5, 0.0].into(), &[2.0, 0.0].into())
             .unwrap();
         let contact = table
-            .contact(point_billiard::surface::WALL, 0.0, &state)
+            .contact(point_billiard::surface::wall, 0.0, &state)
             .unwrap();
         table
             .kick(

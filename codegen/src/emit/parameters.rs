@@ -156,7 +156,7 @@ fn emit_index_module(module: &str, plural: &str, names: &[&Name]) -> TokenStream
     let mut constants = Vec::new();
     let mut next = 0;
     for family in names.chunk_by(|a, b| a.member.is_some() && a.field == b.field) {
-        let constant = Ident::new(&family[0].field.to_uppercase(), Span::call_site());
+        let constant = Ident::new(&family[0].field, Span::call_site());
         let text = format!(" `{}`", family[0].field);
         let indices = next..next + family.len();
         next += family.len();

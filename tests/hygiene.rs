@@ -1,0 +1,107 @@
+//! Generated code compiles whatever the user's names and surroundings are.
+
+/// Names that generated functions use themselves, names that differ in case only, and Greek ones.
+mod names {
+    dalembert::model! {
+        pub Awkward {
+            coordinates { state; rate; q; p; qdot; forms; X; x; excess[2]: angle; φ: angle; v1; }
+            parameters { values > 0 = 1; report[2] > 0 = [1, 2]; M > 0 = 2; }
+            lagrangian = values/2*(dot(state)^2 + dot(rate)^2 + dot(q)^2 + dot(p)^2 + dot(qdot)^2 + dot(forms)^2)
+                + M/2*(dot(X)^2 + dot(x)^2 + dot(v1)^2) + report[2]/2*(dot(excess[1])^2 + dot(excess[2])^2 + dot(φ)^2)
+                - report[1]*cos(excess[1] - φ)*state;
+            constraints {
+                surface: d(X) - state*d(x) = 0;
+                affine: d(q) - rate*d(p) - sin(φ)*d(t) = 0;
+            }
+            impacts { direction: qdot >= 0; size: X + 1 >= 0 => newton(1/2); }
+            outputs { x_dot: dot(x); energy_: energy; lambda: multiplier(affine); }
+            view { path: (q, p); region: 1 - q^2 - p^2 >= 0; }
+        }
+    }
+}
+
+/// Items that shadow what generated code relies on, and constants where it binds locals.
+#[allow(dead_code, non_upper_case_globals, clippy::upper_case_acronyms)]
+mod surroundings {
+    struct Option;
+    struct Result;
+    struct Some;
+    struct Ok;
+    struct Default;
+    const x: f64 = 1.0;
+    const M: f64 = 2.0;
+    fn components() {}
+
+    dalembert::model! {
+        pub(crate) Shadowed {
+            coordinates { y; L; }
+            parameters { m > 0 = 1; }
+            lagrangian = m/2*(dot(y)^2 + dot(L)^2) - y;
+            constraints { slide: d(L) - y*d(y) = 0; }
+            impacts { floor: y >= 0; }
+        }
+    }
+}
+
+/// Nothing is in scope but `dalembert` and `core`.
+mod bare {
+    #![no_implicit_prelude]
+
+    ::dalembert::model! {
+        pub Bare {
+            coordinates { y; theta in (0, pi); }
+            parameters { m > 0 = 1; g; }
+            lagrangian = m/2*(dot(y)^2 + dot(theta)^2) - m*g*y;
+            forces { drag: -dot(y)*d(y); }
+            impacts { floor: y >= 0 when theta > 1 => restitution(1/2); }
+            initial { y = m; theta = 1; until = m + 1; }
+        }
+    }
+}
+
+/// A model inside a function.
+fn local() -> f64 {
+    dalembert::model! {
+        Local {
+            coordinates { x; }
+            parameters { m > 0 = 3; }
+            lagrangian = m/2*dot(x)^2;
+        }
+    }
+    Local::default().m
+}
+
+#[test]
+fn awkward_names_mean_what_was_declared() {
+    use dalembert::{Described, Impacting, System};
+    use names::{Awkward, awkward};
+    let system = Awkward::default();
+    let mut q = <Awkward as System>::Vector::zeros();
+    q[awkward::coordinate::state] = 0.25;
+    q[awkward::coordinate::qdot] = 0.75;
+    let state = system
+        .state_projected(0.0, &q, &<Awkward as System>::Vector::repeat(0.5))
+        .expect("a state");
+    assert_eq!(system.gaps(0.0, &state)[awkward::surface::direction], 0.75);
+    assert_eq!(
+        Awkward::DESCRIPTION.coordinates[awkward::coordinate::excess[1]].name,
+        "excess.2"
+    );
+    assert_eq!(system.report, [1.0, 2.0]);
+    let qdot = system.velocity(0.0, &state).expect("a velocity");
+    let expected = 0.25 * qdot[awkward::coordinate::x];
+    assert!((qdot[awkward::coordinate::X] - expected).abs() < 1e-15);
+}
+
+#[test]
+fn models_compile_in_hostile_surroundings() {
+    use dalembert::{Described, System};
+    assert_eq!(local(), 3.0);
+    assert_eq!(surroundings::Shadowed::DESCRIPTION.name, "shadowed");
+    // A parameter without default: no `Default`, and a refusal until it is set.
+    let mut bare = bare::Bare::with_defaults();
+    assert!(bare.check_parameters().is_err());
+    bare.g = 9.81;
+    assert_eq!(bare.check_parameters(), Ok(()));
+    assert_eq!(bare.initial().until, Some(2.0));
+}
