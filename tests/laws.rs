@@ -145,3 +145,30 @@ fn newton_sets_the_gap_rate_where_elastic_does_not() {
         "with an affine constraint elastic does not reverse the gap rate"
     );
 }
+
+dalembert::model! {
+    /// A ball whose restitution is an expression.
+    pub Lossy {
+        coordinates { x; }
+        parameters { m > 0 = 1; loss = 0.25; }
+        lagrangian = m/2*dot(x)^2 - m*x;
+        impacts { floor: x >= 0 => restitution(1 - loss); }
+    }
+}
+
+#[test]
+fn a_coefficient_that_adds_energy_is_refused_when_a_state_is_made() {
+    let state = |loss: f64| {
+        Lossy {
+            loss,
+            ..Lossy::default()
+        }
+        .state(0.0, &[1.0].into(), &[0.0].into())
+    };
+    assert!(state(0.25).is_ok() && state(0.0).is_ok() && state(1.0).is_ok());
+    let refused = state(-0.5).expect_err("restitution 1.5");
+    assert_eq!(
+        refused.to_string(),
+        "parameter `restitution at floor` is 1.5, but must be in [0, 1]"
+    );
+}

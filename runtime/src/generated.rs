@@ -2,6 +2,7 @@
 
 use nalgebra::SVector;
 
+use crate::assumption::Assumption;
 use crate::contract::Constrained;
 use crate::describe::Described;
 use crate::error::{Fault, ParameterError, StateError};
@@ -113,6 +114,26 @@ pub fn check_parameters<S: Described>(system: &S) -> Result<(), ParameterError> 
         }
     }
     Ok(())
+}
+
+/// A declared coefficient of restitution against \[0, 1\]. A caller who wants a surface that adds energy sets its
+/// law at run time.
+///
+/// # Errors
+/// [`ParameterError`] naming the surface.
+pub fn check_coefficient(name: &'static str, value: f64) -> Result<(), ParameterError> {
+    let expected = Assumption::Within {
+        low: 0.0,
+        high: 1.0,
+    };
+    match expected.holds(value) {
+        true => Ok(()),
+        false => Err(ParameterError {
+            name,
+            value,
+            expected,
+        }),
+    }
 }
 
 /// Refuses a state off the constraints.

@@ -150,6 +150,7 @@ pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
     let momenta = emit_momentum_functions(context);
     let derived = emit_derived_functions(context);
     let chart = emit_chart(context);
+    let coefficients = super::impact::emit_coefficient_checks(context);
     let constrained = match context.program.constrained {
         Some(_) => super::constraint::emit_system_hooks(context),
         None => TokenStream::new(),
@@ -178,7 +179,9 @@ pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
             #derived
 
             fn check_parameters(&self) -> ::core::result::Result<(), ::dalembert::ParameterError> {
-                ::dalembert::__private::check_parameters(self)
+                ::dalembert::__private::check_parameters(self)?;
+                #coefficients
+                ::core::result::Result::Ok(())
             }
 
             #chart

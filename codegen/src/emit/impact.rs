@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::function::Body;
+use super::function::{Body, emit_body};
 use super::{Context, doc};
 use crate::model::Law;
 use crate::program::Impacting;
@@ -107,7 +107,7 @@ fn emit_laws(context: &Context<'_>, functions: &Impacting) -> TokenStream {
                     let Body {
                         statements,
                         outputs,
-                    } = super::function::emit_body(function, &context.names);
+                    } = emit_body(function, &context.names);
                     quote!(#s => { #statements ::dalembert::impacts::law::Law::#law(#(#outputs)*) })
                 }
                 None => quote!(#s => ::dalembert::impacts::law::Law::#law,),
@@ -122,6 +122,20 @@ fn emit_laws(context: &Context<'_>, functions: &Impacting) -> TokenStream {
             }
         }
     }
+}
+
+/// Coefficients of restitution against \[0, 1\]: an expression of the parameters shows its value only then.
+pub(super) fn emit_coefficient_checks(context: &Context<'_>) -> TokenStream {
+    let Some(functions) = &context.program.impacting else {
+        return TokenStream::new();
+    };
+    let coefficients = context.model.surfaces.iter().zip(&functions.coefficients);
+    let checks = coefficients.filter_map(|(surface, coefficient)| {
+        let Body { statements, outputs } = emit_body(coefficient.as_ref()?, &context.names);
+        let name = format!("restitution at {}", surface.name.display);
+        Some(quote!({ #statements ::dalembert::__private::check_coefficient(#name, #(#outputs)*)?; }))
+    });
+    quote!(#(#checks)*)
 }
 
 fn emit_contacts(context: &Context<'_>, functions: &Impacting) -> TokenStream {
