@@ -80,3 +80,16 @@ fn the_chain_grows_no_faster_than_its_factorisation() {
     assert!(work <= 3.0, "operations grow like N^{work}");
     assert!(time <= 3.3, "expansion time grows like N^{time}");
 }
+
+#[test]
+fn a_model_that_is_too_large_is_refused_with_its_size() {
+    let source = Chain16::DESCRIPTION.source;
+    let larger = source.replace("16", "48");
+    let refused = try_expand(larger.parse().expect("tokens")).expect_err("48 links");
+    let message = refused.iter().next().expect("a message").message();
+    assert!(
+        message.contains("operations; the limit is 50000"),
+        "{message}"
+    );
+    assert!(try_expand(source.replace("16", "24").parse().expect("tokens")).is_ok());
+}

@@ -33,9 +33,36 @@ pub fn expand(input: TokenStream) -> TokenStream {
 /// # Errors
 /// Every mistake of the first stage that found any.
 pub fn try_expand(input: TokenStream) -> Result<TokenStream, diagnostics::Diagnostics> {
+    let (model, program) = compile(input)?;
+    Ok(emit::tokens(&model, &program))
+}
+
+/// All stages but the last.
+fn compile(
+    input: TokenStream,
+) -> Result<(model::Model, program::Program), diagnostics::Diagnostics> {
     let spec = spec::parse(input)?;
     let mut model = model::check(&spec)?;
     let derivation = mechanics::derive(&mut model);
     let program = program::lower(&model, &derivation);
-    Ok(emit::tokens(&model, &program))
+    refuse_oversize(&spec, &program)?;
+    Ok((model, program))
+}
+
+/// Refuses a model whose code no compiler would finish in reasonable time, rather than handing it over.
+fn refuse_oversize(
+    spec: &spec::Spec,
+    program: &program::Program,
+) -> Result<(), diagnostics::Diagnostics> {
+    let (longest, limit) = (program.longest(), program::Program::OPERATIONS);
+    let mut diagnostics = diagnostics::Diagnostics::new();
+    if longest > limit {
+        let text = format!(
+            "the equations of `{}` take {longest} operations; the limit is {limit}",
+            spec.name.text
+        );
+        let help = "use fewer coordinates, or coordinates in which the metric has more zeros";
+        diagnostics.error(spec.name.at, text).help(help);
+    }
+    diagnostics.finish(())
 }

@@ -172,7 +172,7 @@ pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
                 t: f64,
                 state: &Self::State,
             ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
-                                ::core::result::Result::Ok(::dalembert::__private::part::<#n, _, _>(state))
+                ::core::result::Result::Ok(::dalembert::__private::part::<#n, _, _>(state))
             }
 
             #momenta
@@ -224,7 +224,7 @@ fn emit_momentum_functions(context: &Context<'_>) -> TokenStream {
             q: &Self::Vector,
             p: &Self::Vector,
         ) -> ::core::result::Result<Self::State, ::dalembert::Fault> {
-                        ::core::result::Result::Ok(::dalembert::__private::join(q, p))
+            ::core::result::Result::Ok(::dalembert::__private::join(q, p))
         }
 
         #[inline]
@@ -235,7 +235,7 @@ fn emit_momentum_functions(context: &Context<'_>) -> TokenStream {
             size: f64,
             direction: &Self::Vector,
         ) -> ::core::result::Result<(), ::dalembert::Fault> {
-                        for i in 0..#n {
+            for i in 0..#n {
                 state[#n + i] += size * direction[i];
             }
             ::core::result::Result::Ok(())

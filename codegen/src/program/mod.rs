@@ -209,6 +209,18 @@ pub struct Program {
     pub until: Option<Function>,
 }
 
+impl Program {
+    /// Operations that one function may have. An N-link chain reaches it near N = 40; a compiler takes minutes over
+    /// what is longer.
+    pub const OPERATIONS: usize = 50_000;
+
+    /// The length of the longest function: the one that evaluates everything contains the others' work.
+    pub fn longest(&self) -> usize {
+        let geometry = self.geometry.function.cost.total();
+        geometry.max(self.rate.cost.total())
+    }
+}
+
 /// Functions of a system with constraints.
 #[derive(Debug)]
 pub struct Constrained {
