@@ -8,8 +8,8 @@ use core::ops::ControlFlow;
 
 use dalembert::impacts::law::Law;
 use dalembert::{
-    Described, Dop853, DormandPrince5, Event, Impacting, Observer, Outcome, Run, Scene,
-    SceneEffects, Simulation, Stepper, System, Tolerance,
+    Constrained, Described, Dop853, DormandPrince5, Event, Impacting, Observer, Outcome,
+    Projection, Run, Scene, SceneEffects, Simulation, Stepper, System, Tolerance,
 };
 use dalembert_models::{
     BouncingBall, ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk,
@@ -399,4 +399,55 @@ fn errors_fall_with_the_tolerance() {
             "{name}: slope {slope}, {errors:?}"
         );
     }
+}
+
+/// Free motion (surfaces left out) of a system from a reference file, against every checkpoint.
+fn check_free_runs<S: Described + Constrained>(system: &S, bound: f64) {
+    let file = read(S::DESCRIPTION.name);
+    let runs = file["free_runs"].as_array().cloned();
+    let runs = runs.unwrap_or_else(|| vec![file["free_run"].clone()]);
+    for run in &runs {
+        let vector = |key: &str| {
+            let mut vector = <S::Vector as dalembert::StateVector>::zeros();
+            dalembert::StateVector::as_mut_slice(&mut vector).copy_from_slice(&numbers(&run[key]));
+            vector
+        };
+        let t0 = run.get("t_initial").map_or(0.0, number);
+        let state = system
+            .state(t0, &vector("q_initial"), &vector("qdot_initial"))
+            .expect("a state");
+        for checkpoint in run["checkpoints"].as_array().expect("checkpoints") {
+            let t = number(&checkpoint["t"]);
+            let mut simulation = Simulation::new(system, dop853(1e-13), (Projection::<S>::new(),));
+            let end = simulation.run(t0, state, t, &mut ()).expect("a start");
+            assert_eq!(end.outcome, Outcome::Done, "{}", S::DESCRIPTION.name);
+            let qdot = system.velocity(t, &end.state).expect("a velocity");
+            let q = system.position(&end.state);
+            for (key, actual) in [("q", q), ("qdot", qdot)] {
+                let pairs = dalembert::StateVector::as_slice(&actual)
+                    .iter()
+                    .zip(numbers(&checkpoint[key]));
+                for (a, e) in pairs {
+                    let error = (a - e).abs() / e.abs().max(1.0);
+                    assert!(
+                        error < bound,
+                        "{} at t = {t}: {key} {a} for {e}, {error:.1e}",
+                        S::DESCRIPTION.name
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn free_motions_pass_their_checkpoints() {
+    use dalembert_tests::systems::{
+        AffineSleigh, DampedSleigh, IntegrableBead, MagneticDisk, Rheonomic,
+    };
+    check_free_runs(&AffineSleigh::default(), 1e-10);
+    check_free_runs(&MagneticDisk::default(), 1e-10);
+    check_free_runs(&DampedSleigh::default(), 1e-10);
+    check_free_runs(&Rheonomic::default(), 1e-10);
+    check_free_runs(&IntegrableBead::default(), 1e-8);
 }
