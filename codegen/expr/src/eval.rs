@@ -7,12 +7,21 @@ use crate::rational::Rational;
 impl Pool {
     /// The values of `roots`, in order; undefined ones are infinite or NaN.
     pub fn eval(&self, roots: &[ExprId], symbol: &dyn Fn(SymbolId) -> f64) -> Vec<f64> {
-        let order = self.reachable(roots);
+        let values = self.eval_ordered(&self.reachable(roots), symbol);
+        roots.iter().map(|root| values[root.index()]).collect()
+    }
+
+    /// The values of all expressions in `order`, by id.
+    pub(crate) fn eval_ordered(
+        &self,
+        order: &[ExprId],
+        symbol: &dyn Fn(SymbolId) -> f64,
+    ) -> Vec<f64> {
         let mut values = vec![0.0; order.last().map_or(0, |id| id.index() + 1)];
         for id in order {
-            values[id.index()] = self.eval_node(id, symbol, &values);
+            values[id.index()] = self.eval_node(*id, symbol, &values);
         }
-        roots.iter().map(|root| values[root.index()]).collect()
+        values
     }
 
     /// The value, and the sum of the absolute values of the terms it is made of.

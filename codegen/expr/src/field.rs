@@ -70,8 +70,12 @@ impl Modulus {
 
     /// `a b`
     pub fn mul(self, a: u64, b: u64) -> u64 {
-        let wide = u128::from(a) * u128::from(b);
-        // 2^61 = c mod p: the first fold leaves less than 2^61 (1 + c), the second less than 2 p.
+        self.reduce(u128::from(a) * u128::from(b))
+    }
+
+    /// The residue of any number of 128 bits.
+    pub(crate) fn reduce(self, wide: u128) -> u64 {
+        // 2^61 = c mod p, c < 2^18: the first fold leaves less than 2^86, the second less than 2^61 + 2^43 < 2 p.
         let fold = u128::from(wide as u64 & MASK) + (wide >> BITS) * u128::from(self.deficit);
         self.reduce_once((fold as u64 & MASK) + (fold >> BITS) as u64 * self.deficit)
     }

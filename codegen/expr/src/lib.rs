@@ -11,6 +11,7 @@
 //! | `construct.rs`, `sum.rs`, `product.rs`, `call.rs` | the constructors and every rewrite they make |
 //! | `sign.rs` | what is known of signs and finiteness |
 //! | `diff.rs`, `subst.rs`, `eval.rs` | calculus and evaluation |
+//! | `taylor/` | truncated series, modulo a prime or in double precision |
 //! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and what it decides |
 //! | `simplify.rs`, `print/` | presentation |
 //!
@@ -58,13 +59,16 @@ mod sign;
 mod simplify;
 mod subst;
 mod sum;
+mod taylor;
 mod zero;
 
 pub use field::Modulus;
 pub use node::{Assumption, ExprId, Function, Node, SymbolId};
 pub use point::{ModularFailure, ModularPoint};
 pub use pool::Pool;
+pub use profile::Profile;
 pub use rank::RankReport;
 pub use rational::{MAX_BITS, Rational};
 pub use sign::Sign;
-pub use zero::Verdict;
+pub use taylor::{Arithmetic, ExpansionPoint, JetSpace, Jets, RealPoint, Reals, Series};
+pub use zero::{SamplePoints, Verdict};

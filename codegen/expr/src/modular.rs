@@ -37,11 +37,21 @@ impl Pool {
         roots: &[ExprId],
         point: &mut ModularPoint,
     ) -> Result<Vec<u64>, ModularFailure> {
+        let values = self.residues(order, point)?;
+        Ok(roots.iter().map(|root| values[root.index()]).collect())
+    }
+
+    /// The residues of all expressions in `order`, by id.
+    pub(crate) fn residues(
+        &self,
+        order: &[ExprId],
+        point: &mut ModularPoint,
+    ) -> Result<Vec<u64>, ModularFailure> {
         let mut values = vec![0; order.last().map_or(0, |id| id.index() + 1)];
         for id in order {
             values[id.index()] = self.residue(*id, &values, point)?;
         }
-        Ok(roots.iter().map(|root| values[root.index()]).collect())
+        Ok(values)
     }
 
     fn residue(
@@ -100,14 +110,8 @@ impl Pool {
                 divide(sine, cosine)
             }
             Function::Exp => Ok(self.exponentials(argument, values, point)?.0),
-            Function::Sinh => {
-                let (up, down) = self.exponentials(argument, values, point)?;
-                Ok(field.mul(field.sub(up, down), half()?))
-            }
-            Function::Cosh => {
-                let (up, down) = self.exponentials(argument, values, point)?;
-                Ok(field.mul(field.add(up, down), half()?))
-            }
+            Function::Sinh => Ok(self.hyperbolic(argument, values, point)?.0),
+            Function::Cosh => Ok(self.hyperbolic(argument, values, point)?.1),
             Function::Tanh => {
                 let (up, down) = self.exponentials(argument, values, point)?;
                 divide(field.sub(up, down), field.add(up, down))
@@ -126,8 +130,22 @@ impl Pool {
         }
     }
 
+    /// `(sinh, cosh)` of a rational combination of exponents.
+    pub(crate) fn hyperbolic(
+        &self,
+        argument: ExprId,
+        values: &[u64],
+        point: &mut ModularPoint,
+    ) -> Result<(u64, u64), ModularFailure> {
+        let field = point.modulus();
+        let half = field.inv(2).ok_or(ModularFailure::DivisionByZero)?;
+        let (up, down) = self.exponentials(argument, values, point)?;
+        let (sine, cosine) = (field.sub(up, down), field.add(up, down));
+        Ok((field.mul(sine, half), field.mul(cosine, half)))
+    }
+
     /// `(sin, cos)` of a rational combination of angles.
-    fn sine_cosine(
+    pub(crate) fn sine_cosine(
         &self,
         argument: ExprId,
         values: &[u64],

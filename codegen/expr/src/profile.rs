@@ -6,20 +6,20 @@ use crate::rational::Rational;
 
 /// The properties of the expressions below some roots.
 #[derive(Clone, Debug)]
-pub(crate) struct Profile {
+pub struct Profile {
     /// Roots or absolute values occur: their branches modulo a prime are not the real ones.
-    pub(crate) branches: bool,
+    pub branches: bool,
     /// Atoms occur that may be related in ways the residues do not show, as `ln(x y)` to `ln x` and `ln y`.
-    pub(crate) hidden_relations: bool,
+    pub hidden_relations: bool,
     /// Common denominator of the coefficients inside sin, cos and exp; `None` if there is no small one.
-    pub(crate) denominator: Option<i64>,
+    pub denominator: Option<i64>,
     /// Bound for the degrees of numerators and denominators as polynomials in the drawn residues.
-    pub(crate) degree: f64,
+    pub degree: f64,
 }
 
 impl Profile {
     /// Whether a value other than 0 modulo a prime proves that an expression is not 0.
-    pub(crate) fn is_exact(&self) -> bool {
+    pub fn is_exact(&self) -> bool {
         !self.branches && !self.hidden_relations
     }
 }
@@ -28,6 +28,11 @@ impl Profile {
 const MAX_DENOMINATOR: i64 = 1 << 40;
 
 impl Pool {
+    /// The profile of some expressions.
+    pub fn profile_of(&self, roots: &[ExprId]) -> Profile {
+        self.profile(&self.reachable(roots))
+    }
+
     /// The profile of the expressions in `order`, which is [`Pool::reachable`] of some roots.
     pub(crate) fn profile(&self, order: &[ExprId]) -> Profile {
         let mut profile = Profile {

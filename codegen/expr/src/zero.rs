@@ -123,7 +123,9 @@ fn sample_count(profile: &Profile) -> Option<usize> {
 }
 
 /// Random points, each with the next prime.
-pub(crate) struct SamplePoints {
+#[derive(Clone, Debug)]
+pub struct SamplePoints {
+    seed: u64,
     denominator: i64,
     moduli: &'static [Modulus],
     drawn: usize,
@@ -133,6 +135,12 @@ pub(crate) struct SamplePoints {
 impl SamplePoints {
     /// For expressions of a profile and size; `None` if their coefficients have no common denominator in reach.
     pub(crate) fn new(profile: &Profile, nodes: usize) -> Option<Self> {
+        Self::seeded(profile, nodes, 0)
+    }
+
+    /// As points for expressions of a profile and size, drawn with a seed; `None` if the coefficients inside sin,
+    /// cos and exp have no common denominator in reach.
+    pub fn seeded(profile: &Profile, nodes: usize, seed: u64) -> Option<Self> {
         let limit = (DRAW_WORK / nodes.max(1)).clamp(DRAWS.0, DRAWS.1);
         let moduli: &[Modulus] = if profile.branches {
             &Modulus::POSITIVE
@@ -140,6 +148,7 @@ impl SamplePoints {
             &Modulus::ALL
         };
         Some(Self {
+            seed,
             denominator: profile.denominator?,
             moduli,
             drawn: 0,
@@ -147,15 +156,17 @@ impl SamplePoints {
         })
     }
 
-    /// The first result that is not `None` at the next points.
-    pub(crate) fn find<T>(
-        &mut self,
-        mut f: impl FnMut(&mut ModularPoint) -> Option<T>,
-    ) -> Option<T> {
+    /// The primes that are used in turn.
+    pub fn moduli(&self) -> &'static [Modulus] {
+        self.moduli
+    }
+
+    /// The first result that is not `None` at the next points; `None` if all that may be drawn for one value fail.
+    pub fn find<T>(&mut self, mut f: impl FnMut(&mut ModularPoint) -> Option<T>) -> Option<T> {
         (0..self.limit).find_map(|_| {
             let modulus = self.moduli[self.drawn % self.moduli.len()];
             self.drawn += 1;
-            let seed = mix(self.drawn as u64);
+            let seed = mix(self.seed ^ self.drawn as u64);
             f(&mut ModularPoint::with_denominator(
                 modulus,
                 seed,
