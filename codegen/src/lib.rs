@@ -10,6 +10,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod claims;
 pub mod diagnostics;
 pub mod emit;
 pub mod mechanics;

@@ -11,6 +11,7 @@ pub mod command;
 pub mod reference;
 pub mod sampling;
 pub mod systems;
+pub mod verdict;
 
 /// The examples of the README, compiled and run.
 #[cfg(doctest)]

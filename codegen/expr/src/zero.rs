@@ -161,12 +161,19 @@ impl SamplePoints {
         self.moduli
     }
 
+    /// The same points, all modulo one of the primes.
+    pub fn modulo(mut self, position: usize) -> Self {
+        let position = position % self.moduli.len();
+        self.moduli = &self.moduli[position..=position];
+        self
+    }
+
     /// The first result that is not `None` at the next points; `None` if all that may be drawn for one value fail.
     pub fn find<T>(&mut self, mut f: impl FnMut(&mut ModularPoint) -> Option<T>) -> Option<T> {
         (0..self.limit).find_map(|_| {
             let modulus = self.moduli[self.drawn % self.moduli.len()];
             self.drawn += 1;
-            let seed = mix(self.seed ^ self.drawn as u64);
+            let seed = mix(mix(self.seed).wrapping_add(self.drawn as u64));
             f(&mut ModularPoint::with_denominator(
                 modulus,
                 seed,

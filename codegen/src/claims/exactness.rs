@@ -1,0 +1,242 @@
+//! Does a local density exist? Ranks of the hull of the demands at random points modulo primes.
+//!
+//! A rank at a point never exceeds the generic rank, so the largest of a few samples counts. With all components in
+//! the hull an obstruction at one point is a proof; everything else is wrong with a chance below the stated bound.
+
+use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, SamplePoints, SymbolId};
+
+use super::closure::{Hull, close};
+use super::frame::frame;
+use super::global::{self, Global};
+use super::potential::{Candidates, Certified, Potential, certify, fit};
+use super::problem::Problem;
+use crate::model::Model;
+
+/// Points that are sampled, each modulo the next prime.
+const SAMPLES: usize = 3;
+/// Monomials of a series beyond which no higher order is tried.
+const MONOMIALS: usize = 20_000;
+/// The order of the first attempt; most hulls are closed within three brackets.
+const FIRST_ORDER: usize = 3;
+
+/// Values that symbols are fixed to: conditions on parameters.
+pub(super) type Conditions = [(SymbolId, Fixed)];
+
+/// What a symbol is fixed to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fixed {
+    /// An integer.
+    Value(i64),
+    /// The value of another symbol.
+    Same(SymbolId),
+}
+
+/// Where the hull of the demands ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Local {
+    /// Whether a local density exists at generic points.
+    pub exists: bool,
+    /// The rank of the hull of D, drift included.
+    pub rank: usize,
+    /// The rank of the hull of the demands: one more if there is an obstruction.
+    pub extended_rank: usize,
+    /// The rank after each depth of brackets, D itself first.
+    pub growth: Vec<usize>,
+    /// Whether an obstruction is certain, not only overwhelmingly likely.
+    pub is_proof: bool,
+    /// A bound of the chance that the answer is wrong.
+    pub error: f64,
+    /// The primes that were used.
+    pub primes: Vec<u64>,
+    pub(super) hull: Hull,
+    pub(super) dependent: Vec<usize>,
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Undecided {
+    /// No point was found where metric, constraints and all expressions are regular.
+    Degenerate,
+    /// Brackets up to this depth did not close the hull, and deeper ones are out of reach.
+    Depth(usize),
+    /// Forces whose dependence on velocities is neither absent, linear nor quadratic.
+    Forces,
+    /// Coefficients inside sin, cos and exp without a common denominator.
+    Denominators,
+    /// The parts named may be related in ways that residues do not show.
+    Relations(Vec<String>),
+}
+
+/// Decides whether a local density exists.
+///
+/// # Errors
+/// [`Undecided`].
+pub fn decide_local(pool: &Pool, problem: &Problem, seed: u64) -> Result<Local, Undecided> {
+    decide_local_where(pool, problem, seed, &[])
+}
+
+/// As [`decide_local`], under conditions on symbols.
+pub(super) fn decide_local_where(
+    pool: &Pool,
+    problem: &Problem,
+    seed: u64,
+    conditions: &Conditions,
+) -> Result<Local, Undecided> {
+    if problem
+        .friction
+        .as_ref()
+        .is_some_and(|own| !own.is_quadratic)
+    {
+        return Err(Undecided::Forces);
+    }
+    let roots = problem.roots();
+    let profile = pool.profile_of(&roots);
+    let mut points = sample_points(pool, &roots, &profile, seed)?;
+    let mut best: Option<(Hull, Vec<usize>)> = None;
+    let mut primes = Vec::new();
+    for _ in 0..SAMPLES {
+        let (sample, prime) = points
+            .find(|point| {
+                fix(pool, point, conditions);
+                sample(pool, problem, point).map(|sample| (sample, point.modulus().prime()))
+            })
+            .ok_or(Undecided::Degenerate)?;
+        let sample = sample.map_err(Undecided::Depth)?;
+        primes.push(prime);
+        let ranks = |(hull, _): &(Hull, Vec<usize>)| (hull.rank, hull.extended_rank);
+        if best
+            .as_ref()
+            .is_none_or(|best| ranks(best) < ranks(&sample))
+        {
+            best = Some(sample);
+        }
+    }
+    let (hull, dependent) = best.ok_or(Undecided::Degenerate)?;
+    primes.sort_unstable();
+    primes.dedup();
+    let chance = chance_of_accident(&profile, problem, hull.growth.len());
+    let is_proof = hull.extended_rank > problem.components() && profile.is_exact();
+    Ok(Local {
+        exists: hull.rank == hull.extended_rank,
+        rank: hull.rank,
+        extended_rank: hull.extended_rank,
+        growth: hull.growth.clone(),
+        is_proof,
+        error: if is_proof {
+            0.0
+        } else {
+            chance.powi(SAMPLES as i32)
+        },
+        primes,
+        hull,
+        dependent,
+    })
+}
+
+/// Points for the expressions of a problem.
+pub(super) fn sample_points(
+    pool: &Pool,
+    roots: &[ExprId],
+    profile: &Profile,
+    seed: u64,
+) -> Result<SamplePoints, Undecided> {
+    let nodes = pool.reachable(roots).len();
+    SamplePoints::seeded(profile, nodes, seed).ok_or(Undecided::Denominators)
+}
+
+/// Sets the symbols of conditions.
+pub(super) fn fix(pool: &Pool, point: &mut ModularPoint, conditions: &Conditions) {
+    for (symbol, fixed) in conditions {
+        let value = match fixed {
+            Fixed::Value(value) => point.modulus().integer(*value),
+            Fixed::Same(other) => point.value(*other, pool.symbol_assumption(*other)),
+        };
+        point.set(*symbol, value);
+    }
+}
+
+/// The hull at a point, with series of increasing order until it is closed, and the dependent velocities; or the depth
+/// that was reached. `None` at a singular point.
+fn sample(
+    pool: &Pool,
+    problem: &Problem,
+    point: &mut ModularPoint,
+) -> Option<Result<(Hull, Vec<usize>), usize>> {
+    let field = point.modulus();
+    let variables = problem.variables.len();
+    // D has a hull after at most as many depths as components are missing, and one more shows that it is closed.
+    let deepest = problem.forms.len() + 2 + usize::from(problem.is_time_dependent());
+    let mut order = FIRST_ORDER.min(deepest);
+    loop {
+        let Some(space) = JetSpace::new(variables, order, MONOMIALS) else {
+            return Some(Err(order - 1));
+        };
+        let jets = Jets::new(field, &space);
+        let frame = frame(pool, problem, &jets, point, None)?;
+        let hull = close(jets.lower(), &problem.variables, &frame.demands);
+        if hull.is_closed {
+            return Some(Ok((hull, frame.dependent)));
+        }
+        order += 1;
+    }
+}
+
+/// A bound for the chance that a minor of the hull vanishes at a random point although it is not 0 (Schwartz,
+/// Zippel): its degree over the smallest prime.
+///
+/// With entries of degree d in numerator and denominator, `W`, `m_ab` and the frame have common denominators of
+/// degree below `8 (N + M)^3 d`. A bracket adds at most twice the degrees of both sides, so depth k has degree below
+/// `4^k` times that of the frame, and a minor has at most one row for each component and the demand.
+fn chance_of_accident(profile: &Profile, problem: &Problem, depth: usize) -> f64 {
+    let sizes = (problem.coordinates + problem.forms.len()) as f64;
+    let frame = 8.0 * sizes.powi(3) * profile.degree.max(1.0);
+    let minor = (problem.components() + 1) as f64 * 4f64.powi(depth as i32) * frame;
+    minor / 2f64.powi(60)
+}
+
+/// Everything that is known about the densities of a model that depend on the configuration alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exactness {
+    /// Near generic points.
+    pub local: Local,
+    /// A density in closed form with its certificate, if one was found.
+    pub density: Option<(Potential, Certified)>,
+    /// On all of Q; `None` if there is none locally.
+    pub global: Option<Global>,
+}
+
+/// Decides existence, and looks for the density.
+///
+/// # Errors
+/// [`Undecided`].
+pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactness, Undecided> {
+    let local = decide_local(&model.pool, problem, seed)?;
+    if !local.exists {
+        return Ok(Exactness {
+            local,
+            density: None,
+            global: None,
+        });
+    }
+    let candidates = Candidates::of(&mut model.pool, problem, &model.coordinates);
+    for many_valued in [false, true] {
+        let found = fit(&mut model.pool, problem, &candidates, many_valued, seed);
+        let Some(found) = found else {
+            continue;
+        };
+        if let Some(certified) = certify(&model.pool, problem, &found, seed)? {
+            let global = global::from_angles(model, problem, &local, &found);
+            return Ok(Exactness {
+                local,
+                density: Some((found, certified)),
+                global: Some(global),
+            });
+        }
+    }
+    let global = global::from_periods(model, problem, &local);
+    Ok(Exactness {
+        local,
+        density: None,
+        global: Some(global),
+    })
+}

@@ -1,0 +1,186 @@
+//! Why there is no density, in real numbers: a bracket that is a combination of others as a vector field, and the
+//! demand that is not.
+
+use dalembert_expr::{JetSpace, Jets, RealPoint, Reals};
+
+use super::closure::{Hull, Origin, bracket};
+use super::exactness::Local;
+use super::frame::{Demand, frame};
+use super::problem::Problem;
+use super::sample::{Sample, sample, uses};
+use crate::model::Model;
+
+/// An obstruction at a real point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Obstruction {
+    /// Where.
+    pub sample: Sample,
+    /// The frame: the name of each generator and its components.
+    pub frame: Vec<(String, Vec<f64>)>,
+    /// The bracket, `[X2,[X1,X2]]`.
+    pub bracket: String,
+    /// Its coefficients in the elements before it, as a vector field; those that are 0 are left out.
+    pub relation: Vec<(String, f64)>,
+    /// What the bracket demands of the derivative of `G` less what the combination demands.
+    pub delta: f64,
+    /// Sizes below which `delta` would be rounding.
+    pub scale: f64,
+}
+
+/// Points that are tried.
+const ATTEMPTS: usize = 12;
+/// A delta counts from this part of its scale on.
+const CLEAR: f64 = 1e-7;
+
+/// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none.
+pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Option<Obstruction> {
+    let roots = problem.roots();
+    (0..ATTEMPTS).find_map(|attempt| {
+        let sample = sample(model, attempt, uses(&model.pool, &roots));
+        let found = obstruction_at(model, problem, local, sample)?;
+        (found.delta.abs() > CLEAR * found.scale).then_some(found)
+    })
+}
+
+/// The obstruction at a point.
+pub(super) fn obstruction_at(
+    model: &Model,
+    problem: &Problem,
+    local: &Local,
+    sample: Sample,
+) -> Option<Obstruction> {
+    let mut point = sample.point();
+    let elements = elements_at(
+        &model.pool,
+        problem,
+        &local.hull,
+        Some(&local.dependent),
+        &mut point,
+    )?;
+    let names = names(
+        &local.hull,
+        local.hull.elements.len(),
+        drift(problem, &model.pool),
+    );
+    let position = local.hull.obstruction?;
+    let before: Vec<usize> = local
+        .hull
+        .basis
+        .iter()
+        .copied()
+        .filter(|element| *element < position)
+        .collect();
+    let width = elements[position].len() - 1;
+    let vector = |element: usize| &elements[element][..width];
+    let coefficients = combine(
+        &before.iter().map(|e| vector(*e)).collect::<Vec<_>>(),
+        vector(position),
+    )?;
+    let (mut delta, mut scale) = (elements[position][width], elements[position][width].abs());
+    for (coefficient, element) in coefficients.iter().zip(&before) {
+        delta -= coefficient * elements[*element][width];
+        scale += (coefficient * elements[*element][width]).abs();
+    }
+    let relation = before
+        .iter()
+        .zip(&coefficients)
+        .filter(|(_, coefficient)| coefficient.abs() > 1e-12)
+        .map(|(element, coefficient)| (names[*element].clone(), *coefficient))
+        .collect();
+    let is_generator =
+        |element: &usize| matches!(local.hull.elements[*element], Origin::Generator(_));
+    Some(Obstruction {
+        frame: (0..elements.len())
+            .filter(is_generator)
+            .map(|element| (names[element].clone(), vector(element).to_vec()))
+            .collect(),
+        sample,
+        bracket: names[position].clone(),
+        relation,
+        delta,
+        scale,
+    })
+}
+
+/// Whether the first generator is the drift.
+fn drift(problem: &Problem, pool: &dalembert_expr::Pool) -> bool {
+    problem.has_drift(pool)
+}
+
+/// The values of a hull's elements at a real point, the demand last.
+pub(super) fn elements_at(
+    pool: &dalembert_expr::Pool,
+    problem: &Problem,
+    hull: &Hull,
+    dependent: Option<&[usize]>,
+    point: &mut RealPoint,
+) -> Option<Vec<Vec<f64>>> {
+    let order = hull.growth.len();
+    let space = JetSpace::new(problem.variables.len(), order, usize::MAX)?;
+    let jets = Jets::new(Reals, &space);
+    let frame = frame(pool, problem, &jets, point, dependent)?;
+    let mut elements: Vec<Demand<Reals>> = Vec::new();
+    for origin in &hull.elements {
+        let element = match origin {
+            Origin::Generator(i) => frame.demands[*i].clone(),
+            // NOTE: brackets are cut off by no order of their own; coefficients beyond their validity reach no value.
+            Origin::Bracket(i, position) => bracket(
+                &jets,
+                &problem.variables,
+                &frame.demands[*i],
+                &elements[*position],
+            ),
+        };
+        elements.push(element);
+    }
+    let values = |element: &Demand<Reals>| element.iter().map(|own| jets.value(own)).collect();
+    Some(elements.iter().map(values).collect())
+}
+
+/// `X1`, `[X1,X2]`, .. for the first elements of a hull; the drift is `X0`.
+fn names(hull: &Hull, count: usize, has_drift: bool) -> Vec<String> {
+    let generator = |i: usize| format!("X{}", if has_drift { i } else { i + 1 });
+    let mut names: Vec<String> = Vec::new();
+    for origin in &hull.elements[..count] {
+        names.push(match origin {
+            Origin::Generator(i) => generator(*i),
+            Origin::Bracket(i, position) => format!("[{},{}]", generator(*i), names[*position]),
+        });
+    }
+    names
+}
+
+/// The coefficients of `target` in independent vectors that span it, by elimination with pivots; `None` if they are
+/// dependent here.
+pub(super) fn combine(vectors: &[&[f64]], target: &[f64]) -> Option<Vec<f64>> {
+    let mut rows: Vec<Vec<f64>> = (0..target.len())
+        .map(|i| {
+            let mut row: Vec<f64> = vectors.iter().map(|vector| vector[i]).collect();
+            row.push(target[i]);
+            row
+        })
+        .collect();
+    let unknowns = vectors.len();
+    for step in 0..unknowns {
+        let pivot = (step..rows.len())
+            .max_by(|a, b| rows[*a][step].abs().total_cmp(&rows[*b][step].abs()))?;
+        rows.swap(step, pivot);
+        let pivot = rows[step].clone();
+        if pivot[step].abs() < 1e-9 {
+            return None;
+        }
+        for (position, row) in rows.iter_mut().enumerate() {
+            if position != step {
+                let factor = row[step] / pivot[step];
+                for (entry, pivot) in row.iter_mut().zip(&pivot) {
+                    *entry -= factor * pivot;
+                }
+            }
+        }
+    }
+    Some(
+        (0..unknowns)
+            .map(|step| rows[step][unknowns] / rows[step][step])
+            .collect(),
+    )
+}

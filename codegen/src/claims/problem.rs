@@ -1,0 +1,148 @@
+//! What the density of a model depends on: metric, constraints, and how its forces depend on velocities.
+
+use dalembert_expr::{ExprId, Pool, SymbolId, Verdict};
+
+use crate::mechanics::Derivation;
+use crate::model::Model;
+
+/// The data of the question whether an invariant volume exists.
+///
+/// Components are the coordinates in order and, if `t` occurs, time after them.
+#[derive(Debug, Clone)]
+pub struct Problem {
+    /// `g`, N rows of N.
+    pub(super) metric: Vec<Vec<ExprId>>,
+    /// `eta^a`, M rows of N.
+    pub(super) forms: Vec<Vec<ExprId>>,
+    /// `eta_0^a`; all the zero node if the constraints are linear.
+    pub(super) affine: Vec<ExprId>,
+    /// `dF_i/dqdot^j` at rest, N rows of N, and its derivatives by velocities `[i][j][k]`; `None` without forces
+    /// that depend on velocities.
+    pub(super) friction: Option<Friction>,
+    /// The symbols of the components.
+    pub(super) symbols: Vec<SymbolId>,
+    /// The velocities.
+    pub(super) velocities: Vec<SymbolId>,
+    /// The components on which anything depends, in order: the variables of all series.
+    pub(super) variables: Vec<usize>,
+    /// The number of coordinates, N.
+    pub(super) coordinates: usize,
+}
+
+/// The part of the forces that depends on velocities.
+#[derive(Debug, Clone)]
+pub(super) struct Friction {
+    /// `dF_i/dqdot^j` at `qdot = 0`.
+    pub(super) at_rest: Vec<Vec<ExprId>>,
+    /// `d^2F_i/dqdot^j dqdot^k`, which is free of velocities if [`Friction::is_quadratic`].
+    pub(super) slope: Vec<Vec<Vec<ExprId>>>,
+    /// Whether the forces are polynomials of degree 2 in the velocities.
+    pub(super) is_quadratic: bool,
+}
+
+impl Problem {
+    /// The problem of a model.
+    pub fn of(model: &mut Model, derivation: &Derivation) -> Self {
+        let metric = model.lagrangian.metric.clone();
+        let forms: Vec<_> = derivation
+            .constraints
+            .iter()
+            .map(|constraint| constraint.form.clone())
+            .collect();
+        let affine: Vec<_> = derivation
+            .constraints
+            .iter()
+            .map(|constraint| constraint.affine)
+            .collect();
+        let mut symbols: Vec<_> = model.coordinates.iter().map(|own| own.q).collect();
+        let velocities: Vec<_> = model.coordinates.iter().map(|own| own.qdot).collect();
+        let friction = friction(model, derivation, &velocities);
+        let coordinates = symbols.len();
+        symbols.push(model.time);
+        let mut problem = Self {
+            metric,
+            forms,
+            affine,
+            friction,
+            symbols,
+            velocities,
+            variables: Vec::new(),
+            coordinates,
+        };
+        let roots = problem.roots();
+        let occurs = |symbol: SymbolId| roots.iter().any(|id| model.pool.depends_on(*id, symbol));
+        if !occurs(model.time) {
+            problem.symbols.pop();
+        }
+        problem.variables = (0..problem.symbols.len())
+            .filter(|i| occurs(problem.symbols[*i]))
+            .collect();
+        problem
+    }
+
+    /// Whether time occurs.
+    pub(super) fn is_time_dependent(&self) -> bool {
+        self.symbols.len() > self.coordinates
+    }
+
+    /// The number of components: coordinates, and time if it occurs.
+    pub(super) fn components(&self) -> usize {
+        self.symbols.len()
+    }
+
+    /// The symbols of the variables.
+    pub(super) fn variable_symbols(&self) -> Vec<SymbolId> {
+        self.variables.iter().map(|i| self.symbols[*i]).collect()
+    }
+
+    /// All expressions that are expanded.
+    pub(super) fn roots(&self) -> Vec<ExprId> {
+        let mut roots: Vec<_> = self.metric.iter().flatten().copied().collect();
+        roots.extend(self.forms.iter().flatten());
+        roots.extend(&self.affine);
+        if let Some(friction) = &self.friction {
+            roots.extend(friction.at_rest.iter().flatten());
+            roots.extend(friction.slope.iter().flatten().flatten());
+        }
+        roots
+    }
+
+    /// Whether the motion on D has a part that does not vanish with the velocities, or the volume a rate at rest.
+    pub(super) fn has_drift(&self, pool: &Pool) -> bool {
+        self.is_time_dependent()
+            || self.friction.is_some()
+            || self.affine.iter().any(|id| !pool.is_syntactic_zero(*id))
+    }
+}
+
+fn friction(
+    model: &mut Model,
+    derivation: &Derivation,
+    velocities: &[SymbolId],
+) -> Option<Friction> {
+    if derivation.density.force_velocity.is_empty() {
+        return None;
+    }
+    let (n, zero) = (velocities.len(), model.pool.zero());
+    let mut at_rest = vec![vec![zero; n]; n];
+    let mut slope = vec![vec![vec![zero; n]; n]; n];
+    let mut is_quadratic = true;
+    let rest: Vec<_> = velocities.iter().map(|qdot| (*qdot, zero)).collect();
+    for entry in &derivation.density.force_velocity {
+        let [i, j] = entry.index;
+        at_rest[i][j] = model.pool.substitute(entry.value, &rest);
+        for (k, qdot) in velocities.iter().enumerate() {
+            let second = model.pool.diff(entry.value, *qdot);
+            is_quadratic &= velocities.iter().all(|other| {
+                let third = model.pool.diff(second, *other);
+                model.pool.zero_test(third) == Verdict::Proved
+            });
+            slope[i][j][k] = model.pool.substitute(second, &rest);
+        }
+    }
+    Some(Friction {
+        at_rest,
+        slope,
+        is_quadratic,
+    })
+}

@@ -1,0 +1,128 @@
+//! Real points with short coordinates, at which a person can follow a computation.
+
+use dalembert_expr::{Assumption as Known, Pool, RealPoint, SymbolId};
+
+use crate::model::{Assumption, Model, Topology};
+
+/// A real point: values of parameters and coordinates that a person can type.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// Names and values, coordinates first.
+    pub values: Vec<(String, f64)>,
+    symbols: Vec<SymbolId>,
+}
+
+impl Sample {
+    /// The point as an expansion takes it.
+    pub(super) fn point(&self) -> RealPoint {
+        let mut point = RealPoint::default();
+        for (symbol, (_, value)) in self.symbols.iter().zip(&self.values) {
+            point.set(*symbol, *value);
+        }
+        point
+    }
+
+    /// The value of a symbol.
+    pub(super) fn value(&self, symbol: SymbolId) -> Option<f64> {
+        let position = self.symbols.iter().position(|own| *own == symbol)?;
+        Some(self.values[position].1)
+    }
+
+    /// Sets a symbol that the sample has.
+    pub(super) fn set(&mut self, symbol: SymbolId, value: f64) {
+        if let Some(position) = self.symbols.iter().position(|own| *own == symbol) {
+            self.values[position].1 = value;
+        }
+    }
+
+    /// Adds a symbol.
+    pub(super) fn push(&mut self, name: String, symbol: SymbolId, value: f64) {
+        self.values.push((name, value));
+        self.symbols.push(symbol);
+    }
+
+    /// `x = 0.36, y = -0.53, m = 2`, without the names in `omit`.
+    pub fn text(&self) -> String {
+        let entries: Vec<String> = self
+            .values
+            .iter()
+            .map(|(name, value)| format!("{name} = {value}"))
+            .collect();
+        entries.join(", ")
+    }
+}
+
+/// Hundredths in `(-1, 1)`, none of them near 0, in no pattern that a model could share.
+const HUNDREDTHS: [i32; 16] = [
+    36, -53, 39, 81, -28, 67, -74, 45, 92, -17, 58, -86, 23, 71, -42, 64,
+];
+
+/// The `attempt`-th sample for the symbols that `uses` accepts, time included: parameters at their defaults where
+/// they have one.
+pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> bool) -> Sample {
+    let mut sample = Sample {
+        values: Vec::new(),
+        symbols: Vec::new(),
+    };
+    let mut drawn = attempt * 5;
+    let mut next = || {
+        drawn += 1;
+        f64::from(HUNDREDTHS[(drawn - 1) % HUNDREDTHS.len()]) / 100.0
+    };
+    for coordinate in &model.coordinates {
+        let unit = next();
+        let value = match coordinate.topology {
+            Topology::Interval { low, high } => {
+                let ends = model.pool.eval(&[low, high], &|_| 0.0);
+                round(ends[0] + (ends[1] - ends[0]) * (0.5 + 0.4 * unit))
+            }
+            _ => match model.pool.symbol_assumption(coordinate.q) {
+                Known::Positive | Known::NonNegative => unit.abs(),
+                _ => unit,
+            },
+        };
+        if uses(coordinate.q) {
+            sample.push(coordinate.name.display.clone(), coordinate.q, value);
+        }
+    }
+    if uses(model.time) {
+        sample.push("t".to_owned(), model.time, next().abs());
+    }
+    for parameter in &model.parameters {
+        let unit = next();
+        let default = parameter
+            .default
+            .map(|default| model.pool.eval(&[default], &|_| 0.0)[0]);
+        // A default of 0 hides what depends on the parameter.
+        let value = match (&parameter.assumption, default) {
+            (_, Some(default)) if default != 0.0 || attempt == 0 => default,
+            (Assumption::Positive | Assumption::NonNegative, _) => round(1.0 + unit.abs()),
+            (Assumption::Within { low, high }, _) => {
+                let (low, high) = (low.to_f64(), high.to_f64());
+                round(low + (high - low) * (0.5 + 0.4 * unit))
+            }
+            (Assumption::Finite | Assumption::NonZero, _) => unit,
+        };
+        if uses(parameter.symbol) {
+            sample.push(parameter.name.display.clone(), parameter.symbol, value);
+        }
+    }
+    sample
+}
+
+/// To hundredths, where that leaves more than two digits.
+fn round(value: f64) -> f64 {
+    if value.abs() > 0.1 && value.abs() < 1e6 {
+        (value * 100.0).round() / 100.0
+    } else {
+        value
+    }
+}
+
+/// Whether any expression below `roots` contains a symbol.
+pub(super) fn uses<'a>(
+    pool: &'a Pool,
+    roots: &'a [dalembert_expr::ExprId],
+) -> impl Fn(SymbolId) -> bool + 'a {
+    move |symbol| roots.iter().any(|root| pool.depends_on(*root, symbol))
+}
