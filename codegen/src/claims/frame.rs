@@ -151,7 +151,10 @@ fn identity<A: Arithmetic>(jets: &Jets<'_, A>, size: usize) -> Matrix<A> {
 ///
 /// NOTE: coordinates that place a body are mostly declared first and its shape last, yet a wheel's angle often has
 /// constant coefficients nowhere; any choice is right, and this one is the documented order of the volume.
-fn choose_dependent<A: Arithmetic>(jets: &Jets<'_, A>, forms: &Matrix<A>) -> Option<Vec<usize>> {
+pub(super) fn choose_dependent<A: Arithmetic>(
+    jets: &Jets<'_, A>,
+    forms: &Matrix<A>,
+) -> Option<Vec<usize>> {
     let field = jets.field;
     let mut rows: Vec<Vec<A::Scalar>> = forms
         .iter()
@@ -293,7 +296,8 @@ impl<A: Arithmetic> Calculus<'_, '_, A> {
     }
 }
 
-fn column<T: Clone>(rows: &[Vec<T>], j: usize) -> Vec<T> {
+/// A column.
+pub(super) fn column<T: Clone>(rows: &[Vec<T>], j: usize) -> Vec<T> {
     rows.iter().map(|row| row[j].clone()).collect()
 }
 

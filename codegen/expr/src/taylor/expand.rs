@@ -16,6 +16,12 @@ pub trait ExpansionPoint {
     /// The coefficients' field.
     fn field(&self) -> Self::Field;
 
+    /// The value of a symbol.
+    fn symbol(&self, pool: &Pool, symbol: SymbolId) -> Scalar<Self>;
+
+    /// Gives a symbol a value.
+    fn set_symbol(&mut self, symbol: SymbolId, value: Scalar<Self>);
+
     /// The values of the expressions in `order`, by id; `None` if one has no value here.
     fn values(&mut self, pool: &Pool, order: &[ExprId]) -> Option<Vec<Scalar<Self>>>;
 
@@ -40,6 +46,14 @@ impl ExpansionPoint for ModularPoint {
 
     fn field(&self) -> Modulus {
         self.modulus()
+    }
+
+    fn symbol(&self, pool: &Pool, symbol: SymbolId) -> u64 {
+        self.value(symbol, pool.symbol_assumption(symbol))
+    }
+
+    fn set_symbol(&mut self, symbol: SymbolId, value: u64) {
+        self.set(symbol, value);
     }
 
     fn values(&mut self, pool: &Pool, order: &[ExprId]) -> Option<Vec<u64>> {
@@ -96,6 +110,14 @@ impl ExpansionPoint for RealPoint {
 
     fn field(&self) -> Reals {
         Reals
+    }
+
+    fn symbol(&self, _: &Pool, symbol: SymbolId) -> f64 {
+        self.value(symbol)
+    }
+
+    fn set_symbol(&mut self, symbol: SymbolId, value: f64) {
+        self.set(symbol, value);
     }
 
     fn values(&mut self, pool: &Pool, order: &[ExprId]) -> Option<Vec<f64>> {

@@ -1,0 +1,238 @@
+//! The motion on D at a point: velocities that satisfy the constraints, and their rates.
+//!
+//! ```text
+//! eta^a(qdot) + eta^a_0 = 0                       solved for the dependent velocities
+//! g qddot = f - drift + lambda_a eta^a            eta^a(qddot) = -curvature_a
+//! m^{ab} lambda_b = -[ W^a.(f - drift) + curvature_a ]
+//! ```
+//!
+//! The terms are those that the emitted field is made of (see [`crate::mechanics`]): metric, velocity-linear part,
+//! potential and forces may depend on time, forces on velocities, constraints may be affine.
+
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Pool, Series, SymbolId};
+
+use super::frame::{choose_dependent, column};
+use super::linear::{Matrix, dot, solve, transpose};
+use crate::mechanics::Derivation;
+use crate::model::Model;
+
+/// A number of a point.
+pub(super) type Number<P> = <<P as ExpansionPoint>::Field as Arithmetic>::Scalar;
+
+/// The equations of motion of a model, to be evaluated at points.
+#[derive(Debug, Clone)]
+pub struct Dynamics {
+    /// `eta^a` and `eta^a_0` at the end, M rows of N + 1, with the order in which they are evaluated.
+    forms: Rows,
+    /// `g` and `f - drift` at the end, N rows of N + 1, then one row of the M curvatures.
+    motion: Rows,
+    q: Vec<SymbolId>,
+    qdot: Vec<SymbolId>,
+    time: SymbolId,
+}
+
+/// The motion at a state on D.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion<S> {
+    /// The velocities.
+    pub qdot: Vec<S>,
+    /// The accelerations.
+    pub qddot: Vec<S>,
+    /// The multipliers of the constraints.
+    pub multipliers: Vec<S>,
+}
+
+/// Rows of expressions.
+#[derive(Debug, Clone)]
+struct Rows {
+    rows: Vec<Vec<ExprId>>,
+    order: Vec<ExprId>,
+}
+
+impl Rows {
+    fn new(pool: &Pool, rows: Vec<Vec<ExprId>>) -> Self {
+        let roots: Vec<_> = rows.iter().flatten().copied().collect();
+        let order = pool.reachable(&roots);
+        Self { rows, order }
+    }
+
+    fn at<P: ExpansionPoint>(&self, pool: &Pool, point: &mut P) -> Option<Vec<Vec<Number<P>>>> {
+        let values = point.values(pool, &self.order)?;
+        let of = |row: &Vec<ExprId>| row.iter().map(|id| values[id.index()]).collect();
+        Some(self.rows.iter().map(of).collect())
+    }
+}
+
+impl Dynamics {
+    /// The equations of a model.
+    pub fn of(model: &mut Model, derivation: &Derivation) -> Self {
+        let mut forms = Vec::new();
+        for constraint in &derivation.constraints {
+            let mut row = constraint.form.clone();
+            row.push(constraint.affine);
+            forms.push(row);
+        }
+        let field = &derivation.field;
+        let mut motion = model.lagrangian.metric.clone();
+        for ((row, force), drift) in motion.iter_mut().zip(&field.force).zip(&field.drift) {
+            row.push(model.pool.sub(*force, *drift));
+        }
+        let curvature = |own: &crate::mechanics::ConstraintForm| own.curvature;
+        motion.push(derivation.constraints.iter().map(curvature).collect());
+        Self {
+            forms: Rows::new(&model.pool, forms),
+            motion: Rows::new(&model.pool, motion),
+            q: model.coordinates.iter().map(|own| own.q).collect(),
+            qdot: model.coordinates.iter().map(|own| own.qdot).collect(),
+            time: model.time,
+        }
+    }
+
+    /// All expressions that are evaluated.
+    pub(super) fn roots(&self) -> Vec<ExprId> {
+        let rows = self.forms.rows.iter().chain(&self.motion.rows);
+        rows.flatten().copied().collect()
+    }
+
+    /// The motion at the state on D with the point's coordinates and independent velocities; the dependent velocities
+    /// are set, and chosen as in [`super::frame`] unless they are given. `None` at a singular point.
+    pub fn motion<P: ExpansionPoint>(
+        &self,
+        pool: &Pool,
+        point: &mut P,
+        dependent: Option<&[usize]>,
+    ) -> Option<Motion<Number<P>>> {
+        let space = JetSpace::new(0, 0, 1)?;
+        let jets = Jets::new(point.field(), &space);
+        let constants = |rows: Vec<Vec<Number<P>>>| -> Matrix<P::Field> {
+            let row = |row: Vec<_>| row.into_iter().map(|own| jets.constant(own)).collect();
+            rows.into_iter().map(row).collect()
+        };
+        let forms = constants(self.forms.at(pool, point)?);
+        let qdot = self.settle(pool, point, &jets, &forms, dependent)?;
+        let mut rows = self.motion.at(pool, point)?;
+        let curvature = constants(vec![rows.pop()?]).pop()?;
+        let rows = constants(rows);
+        let [qddot, multipliers] = accelerate(&jets, rows, &forms, &curvature)?;
+        let numbers =
+            |series: Vec<Vec<_>>| series.iter().map(|own| jets.value(own)).collect::<Vec<_>>();
+        Some(Motion {
+            qdot,
+            qddot: numbers(qddot),
+            multipliers: numbers(multipliers),
+        })
+    }
+
+    /// Sets the dependent velocities, and gives all velocities.
+    fn settle<P: ExpansionPoint>(
+        &self,
+        pool: &Pool,
+        point: &mut P,
+        jets: &Jets<'_, P::Field>,
+        forms: &Matrix<P::Field>,
+        dependent: Option<&[usize]>,
+    ) -> Option<Vec<Number<P>>> {
+        let n = self.q.len();
+        let dependent = match dependent {
+            Some(given) => given.to_vec(),
+            None => {
+                let linear: Vec<_> = forms.iter().map(|row| row[..n].to_vec()).collect();
+                choose_dependent(jets, &linear)?
+            }
+        };
+        let field = jets.field;
+        let mut right = Vec::new();
+        for row in forms {
+            let mut sum = jets.value(&row[n]);
+            for i in (0..n).filter(|i| !dependent.contains(i)) {
+                let velocity = point.symbol(pool, self.qdot[i]);
+                sum = field.add(sum, field.mul(jets.value(&row[i]), velocity));
+            }
+            right.push(vec![jets.constant(field.neg(sum))]);
+        }
+        let minor = forms
+            .iter()
+            .map(|row| dependent.iter().map(|j| row[*j].clone()).collect())
+            .collect();
+        let solved = solve(jets, minor, right)?.unknowns;
+        for (j, row) in dependent.iter().zip(&solved) {
+            point.set_symbol(self.qdot[*j], jets.value(&row[0]));
+        }
+        Some(
+            self.qdot
+                .iter()
+                .map(|own| point.symbol(pool, *own))
+                .collect(),
+        )
+    }
+
+    /// The rates of expressions of coordinates, velocities and time along a motion, at the point it was computed at.
+    pub fn rates<P: ExpansionPoint>(
+        &self,
+        pool: &Pool,
+        expressions: &[ExprId],
+        motion: &Motion<Number<P>>,
+        point: &mut P,
+    ) -> Option<Vec<Number<P>>> {
+        let mut variables = self.q.clone();
+        variables.extend(&self.qdot);
+        variables.push(self.time);
+        let field = point.field();
+        let mut direction = motion.qdot.clone();
+        direction.extend(&motion.qddot);
+        direction.push(field.integer(1));
+        let space = JetSpace::new(variables.len(), 1, usize::MAX)?;
+        let jets = Jets::new(field, &space);
+        let series = pool.taylor(expressions, &variables, &jets, point)?;
+        let along = |series: &Vec<Number<P>>| {
+            let mut sum = field.integer(0);
+            for (slope, rate) in series.iter().skip(1).zip(&direction) {
+                sum = field.add(sum, field.mul(*slope, *rate));
+            }
+            sum
+        };
+        Some(series.iter().map(along).collect())
+    }
+}
+
+/// Accelerations and multipliers. `rows` are `(g | f - drift)`, `forms` are `(eta | eta_0)`.
+fn accelerate<A: Arithmetic>(
+    jets: &Jets<'_, A>,
+    rows: Matrix<A>,
+    forms: &Matrix<A>,
+    curvature: &[Series<A>],
+) -> Option<[Vec<Series<A>>; 2]> {
+    let n = rows.len();
+    let force = column(&rows, n);
+    let metric = rows.iter().map(|row| row[..n].to_vec()).collect();
+    // g^{-1} (eta^1 .. eta^M | f - drift)
+    let right = (0..n)
+        .map(|i| {
+            let mut row = column(forms, i);
+            row.push(force[i].clone());
+            row
+        })
+        .collect();
+    let mut raised = transpose(&solve(jets, metric, right)?.unknowns);
+    let mut qddot = raised.pop()?;
+    let mass = forms
+        .iter()
+        .map(|form| {
+            raised
+                .iter()
+                .map(|dual| dot(jets, &form[..n], dual))
+                .collect()
+        })
+        .collect();
+    let lacking = forms.iter().zip(curvature).map(|(form, curvature)| {
+        let missing = jets.add(&dot(jets, &form[..n], &qddot), curvature);
+        vec![jets.scale(jets.field.integer(-1), &missing)]
+    });
+    let multipliers = column(&solve(jets, mass, lacking.collect())?.unknowns, 0);
+    for (multiplier, dual) in multipliers.iter().zip(&raised) {
+        for (own, w) in qddot.iter_mut().zip(dual) {
+            *own = jets.add(own, &jets.mul(multiplier, w));
+        }
+    }
+    Some([qddot, multipliers])
+}

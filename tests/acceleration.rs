@@ -1,0 +1,152 @@
+//! The motion on D that claims are tested with, against values computed independently with 50 digits.
+
+use dalembert::{Described, Scene};
+use dalembert_codegen::claims::Dynamics;
+use dalembert_codegen::mechanics::{self, Derivation};
+use dalembert_codegen::model::{self, Model};
+use dalembert_codegen::spec;
+use dalembert_expr::{ExprId, RealPoint, SamplePoints, SymbolId};
+use dalembert_models::{ChaplyginSleigh, RollingBallEuler, RollingDisk, TwoWheelsRod};
+use dalembert_tests::reference::{number, numbers, read};
+use dalembert_tests::systems::{
+    AffineSleigh, DampedSleigh, IntegrableBead, MagneticDisk, Rheonomic, TableWall,
+};
+
+/// The accelerations are of the size of the forces over the inertias, a hundred at most in the files; the given
+/// velocities are rounded to `f64`.
+const TOLERANCE: f64 = 1e-12;
+
+/// A model derived again from its own source text.
+fn derive<S: Described + Scene>() -> (Model, Derivation, Dynamics) {
+    let spec = spec::parse(S::DESCRIPTION.source.parse().expect("tokens")).expect("a declaration");
+    let mut model = model::check(&spec).expect("a model");
+    let derivation = mechanics::derive(&mut model);
+    let dynamics = Dynamics::of(&mut model, &derivation);
+    (model, derivation, dynamics)
+}
+
+fn check<S: Described + Scene>(file: &str) {
+    let (model, _, dynamics) = derive::<S>();
+    let file = read(file);
+    let states = file["states"].as_array().expect("states");
+    assert!(states.len() >= 3);
+    for state in states {
+        let mut point = RealPoint::default();
+        let mut set = |symbols: Vec<SymbolId>, key: &str| {
+            for (symbol, value) in symbols.into_iter().zip(numbers(&state[key])) {
+                point.set(symbol, value);
+            }
+        };
+        set(model.coordinates.iter().map(|own| own.q).collect(), "q");
+        set(
+            model.coordinates.iter().map(|own| own.qdot).collect(),
+            "qdot",
+        );
+        for parameter in &model.parameters {
+            let default = model
+                .pool
+                .eval(&[parameter.default.expect("a default")], &|_| 0.0);
+            point.set(parameter.symbol, default[0]);
+        }
+        point.set(model.time, state.get("t").map_or(0.0, number));
+        let motion = dynamics
+            .motion(&model.pool, &mut point, None)
+            .expect("a regular point");
+        for (found, key) in [
+            (&motion.qdot, "qdot"),
+            (&motion.qddot, "acceleration"),
+            (&motion.multipliers, "multipliers"),
+        ] {
+            let expected = numbers(&state[key]);
+            let size = expected
+                .iter()
+                .fold(1.0, |size: f64, own| size.max(own.abs()));
+            for (found, expected) in found.iter().zip(&expected) {
+                let error = (found - expected).abs() / size;
+                assert!(
+                    error <= TOLERANCE,
+                    "{} {key}: {found} {expected}",
+                    S::DESCRIPTION.name
+                );
+            }
+        }
+    }
+}
+
+/// The rates of expressions on D modulo a prime.
+fn rates_modulo_a_prime(model: &Model, dynamics: &Dynamics, expressions: &[ExprId]) -> Vec<u64> {
+    let profile = model.pool.profile_of(expressions);
+    SamplePoints::seeded(&profile, 1, 7)
+        .expect("points")
+        .find(|point| {
+            let motion = dynamics.motion(&model.pool, point, None)?;
+            dynamics.rates(&model.pool, expressions, &motion, point)
+        })
+        .expect("a regular point")
+}
+
+fn check_constraints<S: Described + Scene>() {
+    let (model, derivation, dynamics) = derive::<S>();
+    let residuals: Vec<_> = derivation
+        .constraints
+        .iter()
+        .map(|own| own.residual)
+        .collect();
+    let rates = rates_modulo_a_prime(&model, &dynamics, &residuals);
+    assert_eq!(rates, vec![0; residuals.len()], "{}", S::DESCRIPTION.name);
+}
+
+/// `dE/dt = -d_t L + F(qdot) + lambda_a eta^a(qdot)`, which is 0 without time, forces and affine parts.
+fn check_energy<S: Described + Scene>(is_kept: bool) {
+    let (mut model, _, dynamics) = derive::<S>();
+    let lagrangian = model.lagrangian.whole;
+    let mut terms = vec![model.pool.neg(lagrangian)];
+    for coordinate in model.coordinates.clone() {
+        let momentum = model.pool.diff(lagrangian, coordinate.qdot);
+        let velocity = model.pool.variable(coordinate.qdot);
+        terms.push(model.pool.mul(velocity, momentum));
+    }
+    let energy = model.pool.sum(&terms);
+    let rate = rates_modulo_a_prime(&model, &dynamics, &[energy])[0];
+    assert_eq!(rate == 0, is_kept, "{}", S::DESCRIPTION.name);
+}
+
+#[test]
+fn constraints_are_kept_modulo_a_prime() {
+    check_constraints::<ChaplyginSleigh>();
+    check_constraints::<RollingBallEuler>();
+    check_constraints::<AffineSleigh>();
+    check_constraints::<Rheonomic>();
+}
+
+#[test]
+fn energy_is_kept_modulo_a_prime_where_nothing_changes_it() {
+    check_energy::<ChaplyginSleigh>(true);
+    check_energy::<RollingBallEuler>(true);
+    check_energy::<MagneticDisk>(true);
+    check_energy::<AffineSleigh>(false);
+    check_energy::<DampedSleigh>(false);
+    check_energy::<Rheonomic>(false);
+}
+
+macro_rules! agrees {
+    ($($test:ident $system:ident $file:literal;)*) => {$(
+        #[test]
+        fn $test() {
+            check::<$system>($file);
+        }
+    )*};
+}
+
+agrees! {
+    chaplygin_sleigh_agrees ChaplyginSleigh "chaplygin_sleigh";
+    rolling_disk_agrees RollingDisk "rolling_disk";
+    rolling_ball_agrees RollingBallEuler "rolling_ball_euler";
+    two_wheels_agree TwoWheelsRod "cv64_two_wheels";
+    affine_sleigh_agrees AffineSleigh "affine_sleigh";
+    table_wall_agrees TableWall "table_wall";
+    magnetic_disk_agrees MagneticDisk "magnetic_disk";
+    damped_sleigh_agrees DampedSleigh "damped_sleigh";
+    integrable_bead_agrees IntegrableBead "integrable_bead";
+    rheonomic_agrees Rheonomic "rheonomic";
+}
