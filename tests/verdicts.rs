@@ -41,7 +41,15 @@ fn verdicts_hull_ranks_and_growth_agree() {
             .collect();
         assert_eq!(Value::Bool(local.exists), verdict["local_exists"], "{name}");
         let global = exactness.global == Some(Global::Exists);
-        println!("{name} {:?} {:?}", exactness.global, exactness.density.as_ref().map(|(p, _)| p.terms.iter().map(|(k, t)| format!("{} {:?}", model.pool.text(*k), t)).collect::<Vec<_>>()));
+        println!(
+            "{name} {:?} {:?}",
+            exactness.global,
+            exactness.density.as_ref().map(|(p, _)| p
+                .terms
+                .iter()
+                .map(|(k, t)| format!("{} {:?}", model.pool.text(*k), t))
+                .collect::<Vec<_>>())
+        );
         assert_eq!(Value::Bool(global), verdict["global_exists"], "{name}");
         assert_eq!(local.rank, number("hull_rank"), "{name}");
         assert_eq!(local.extended_rank, number("extended_hull_rank"), "{name}");

@@ -2,11 +2,12 @@
 //!
 //! ```text
 //! TokenStream --spec::parse--> Spec --model::check--> Model --mechanics::derive--> Derivation
+//!     --claims::examine--> Finding ..
 //!     --program::lower--> Program --emit::tokens--> TokenStream
 //! ```
 //!
 //! Each stage takes the previous type and returns a new one. The first two can fail, with every mistake of the
-//! stage at once, at the user's tokens; the others cannot.
+//! stage at once, at the user's tokens; so can the claims. The others cannot.
 
 #![forbid(unsafe_code)]
 
@@ -45,9 +46,31 @@ fn compile(
     let spec = spec::parse(input)?;
     let mut model = model::check(&spec)?;
     let derivation = mechanics::derive(&mut model);
+    let findings = claims::examine(&mut model, &derivation);
+    refuse_claims(&spec, &findings)?;
     let program = program::lower(&model, &derivation);
     refuse_oversize(&spec, &program)?;
+    model
+        .notes
+        .extend(findings.iter().map(claims::Finding::note));
     Ok((model, program))
+}
+
+/// Refuses claims that are false, and those that stay open without being assumed.
+fn refuse_claims(
+    spec: &spec::Spec,
+    findings: &[claims::Finding],
+) -> Result<(), diagnostics::Diagnostics> {
+    let mut diagnostics = diagnostics::Diagnostics::new();
+    for finding in findings {
+        if let Some((text, help)) = finding.refusal() {
+            let error = diagnostics.error(spec.location(finding.item), text);
+            if !help.is_empty() {
+                error.help(help);
+            }
+        }
+    }
+    diagnostics.finish(())
 }
 
 /// Refuses a model whose code no compiler would finish in reasonable time, rather than handing it over.

@@ -26,6 +26,11 @@ dalembert::model! {
         initial { x = 1; theta = 1.2; dot(theta) = 0.1; dot(psi) = 0.1; until = 30; }
         view { path: (x, y); }
         outputs { omega_z: dot(phi)*cos(theta) + dot(psi); }
+        claims {
+            density: exact;
+            conserved: dot(phi)*cos(theta) + dot(psi);
+            not conserved: energy;
+        }
     }
 }
 

@@ -17,6 +17,10 @@ dalembert::model! {
         lagrangian = m/2*dot(x)^2 - m*g*x;
         impacts { floor: x >= 0; }
         initial { x = 1; until = 10; }
+        claims {
+            conserved: energy;
+            conserved under floor: energy;
+        }
     }
 }
 

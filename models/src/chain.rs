@@ -25,6 +25,9 @@ macro_rules! chain {
                 lagrangian = sum(i in 1..=N: m/2*(dot(X[i])^2 + dot(Y[i])^2) - m*g*Y[i]);
                 initial { theta[1] = 1; until = 10; }
                 view { path: (X[N], Y[N]); }
+                claims {
+                    conserved: energy;
+                }
             }
         }
     };

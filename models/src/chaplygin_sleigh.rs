@@ -33,6 +33,14 @@ dalembert::model! {
         initial { theta = 0.5; dot(x) = 0.8775825618903728; dot(y) = 0.479425538604203; dot(theta) = 0.5; until = 40; }
         view { path: (x, y); region: table(x, y) >= 0; }
         outputs { forward_speed: dot(x)*cos(theta) + dot(y)*sin(theta); side_force: multiplier(blade); }
+        claims {
+            density: none;
+            density = 1/abs(dot(theta));
+            conserved: energy;
+            conserved under front_tip: energy;
+            not conserved under front_tip: dot(theta);
+            symmetry: partial(theta) - y*partial(x) + x*partial(y);
+        }
     }
 }
 

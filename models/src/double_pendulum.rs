@@ -26,6 +26,9 @@ dalembert::model! {
         lagrangian = m1/2*(dot(x1)^2 + dot(y1)^2) + m2/2*(dot(x2)^2 + dot(y2)^2) - m1*g*y1 - m2*g*y2;
         initial { theta1 = 2; theta2 = 5/2; until = 20; }
         view { path: (x2, y2); }
+        claims {
+            conserved: energy;
+        }
     }
 }
 

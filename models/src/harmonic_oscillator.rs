@@ -15,6 +15,9 @@ dalembert::model! {
         lagrangian = m/2*dot(x)^2 - k/2*x^2;
         initial { x = 1; until = 20; }
         outputs { spring_force: -k*x; }
+        claims {
+            conserved: energy;
+        }
     }
 }
 

@@ -20,6 +20,12 @@ dalembert::model! {
         impacts { line: y >= 0; }
         initial { y = 1; dot(x) = 1; until = 20; }
         view { path: (x, y); region: y >= 0; }
+        claims {
+            density: exact;
+            conserved: energy;
+            conserved: x^2/A^2 + y^2/B^2;
+            conserved under line: energy;
+        }
     }
 }
 

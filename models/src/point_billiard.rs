@@ -20,6 +20,12 @@ dalembert::model! {
         initial { x = 0.25; y = 0.1; dot(x) = 0.8; dot(y) = 0.6; until = 50; }
         view { path: (x, y); region: 1 - x^2/ta^2 - y^2/tb^2 >= 0; }
         outputs { angular_momentum: m*(x*dot(y) - y*dot(x)); }
+        claims {
+            conserved: energy;
+            conserved: dot(x);
+            conserved under wall: energy;
+            not conserved under wall: dot(x);
+        }
     }
 }
 

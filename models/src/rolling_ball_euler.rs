@@ -29,6 +29,13 @@ dalembert::model! {
         initial { theta = 1; dot(phi) = 1; dot(theta) = 0.5; until = 20; }
         view { path: (x, y); region: 1 - x^2/ta^2 - y^2/tb^2 >= 0; }
         outputs { omega_z: dot(phi)*cos(theta) + dot(psi); }
+        claims {
+            density: exact;
+            conserved: energy;
+            conserved: dot(x);
+            conserved: dot(phi)*cos(theta) + dot(psi);
+            conserved under table_edge: dot(phi)*cos(theta) + dot(psi);
+        }
     }
 }
 

@@ -34,6 +34,14 @@ dalembert::model! {
         }
         initial { phi = pi/2; dot(theta) = 10; dot(phi) = 0.2; until = 20; }
         view { path: (x, y); region: table(x, y) >= 0; }
+        claims {
+            density: exact;
+            conserved: energy;
+            conserved: dot(theta);
+            conserved: dot(phi);
+            conserved under leading_edge: energy;
+            symmetry: partial(phi) - y*partial(x) + x*partial(y);
+        }
     }
 }
 

@@ -29,6 +29,12 @@ dalembert::model! {
         }
         initial { x2 = 2; dot(theta1) = 1; dot(theta2) = -0.25; until = 20; }
         outputs { rod: length; }
+        claims {
+            density: exact;
+            conserved: energy;
+            conserved: dot(theta1);
+            conserved under rod_max: energy;
+        }
     }
 }
 

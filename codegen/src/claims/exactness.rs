@@ -10,6 +10,7 @@ use super::frame::frame;
 use super::global::{self, Global};
 use super::potential::{Candidates, Certified, Potential, certify, fit};
 use super::problem::Problem;
+use super::undecided::Undecided;
 use crate::model::Model;
 
 /// Points that are sampled, each modulo the next prime.
@@ -50,21 +51,6 @@ pub struct Local {
     pub primes: Vec<u64>,
     pub(super) hull: Hull,
     pub(super) dependent: Vec<usize>,
-}
-
-/// Why there is no answer.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Undecided {
-    /// No point was found where metric, constraints and all expressions are regular.
-    Degenerate,
-    /// Brackets up to this depth did not close the hull, and deeper ones are out of reach.
-    Depth(usize),
-    /// Forces whose dependence on velocities is neither absent, linear nor quadratic.
-    Forces,
-    /// Coefficients inside sin, cos and exp without a common denominator.
-    Denominators,
-    /// The parts named may be related in ways that residues do not show.
-    Relations(Vec<String>),
 }
 
 /// Decides whether a local density exists.

@@ -7,23 +7,175 @@
 //! | `exactness.rs` | does a local density exist? |
 //! | `potential.rs`, `global.rs` | the density in closed form; is it single-valued? |
 //! | `dynamics.rs` | the motion on D at a point |
-//! | `obstruction.rs`, `sample.rs` | why there is none, at a point that a person can follow |
+//! | `evidence.rs` | does something vanish at all states? |
+//! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
+//! | `obstruction.rs`, `sample.rs` | points that a person can follow |
+//! | `finding.rs`, `undecided.rs` | verdicts in words |
+//!
+//! Decisions are taken modulo 61-bit primes at random points; values in double precision are for witnesses, and where
+//! residues alone do not decide.
 
 mod closure;
+mod conserved;
+mod density;
 pub mod dynamics;
+mod evidence;
 pub mod exactness;
+mod existence;
+mod finding;
 mod frame;
 mod global;
+mod impact;
 mod linear;
 mod obstruction;
 mod potential;
 pub mod problem;
 mod sample;
+mod symmetry;
+mod undecided;
+
+use dalembert_expr::{ExprId, Rational, SymbolId};
 
 pub use dynamics::{Dynamics, Motion};
-pub use exactness::{Exactness, Local, Undecided, decide, decide_local};
+pub use exactness::{Exactness, Local, decide, decide_local};
+pub use existence::{Decision, potential_text};
+pub use finding::{Certificate, Finding, Verdict, Witness};
 pub use global::Global;
 pub use obstruction::{Obstruction, find_obstruction};
 pub use potential::{Certified, Potential, Term};
 pub use problem::Problem;
 pub use sample::Sample;
+pub use undecided::Undecided;
+
+use crate::mechanics::Derivation;
+use crate::model::{Claim, Model, Statement};
+
+/// The verdicts on all claims of a model, in order; without claims nothing is done.
+pub fn examine(model: &mut Model, derivation: &Derivation) -> Vec<Finding> {
+    if model.claims.is_empty() {
+        return Vec::new();
+    }
+    let mut examiner = Examiner {
+        seed: finding::seed_of(&model.snake_name),
+        problem: Problem::of(model, derivation),
+        dynamics: Dynamics::of(model, derivation),
+        decision: None,
+        model,
+        derivation,
+    };
+    let claims = examiner.model.claims.clone();
+    claims.iter().map(|claim| examiner.finding(claim)).collect()
+}
+
+/// What the verdicts on several claims share.
+struct Examiner<'e> {
+    model: &'e mut Model,
+    derivation: &'e Derivation,
+    problem: Problem,
+    dynamics: Dynamics,
+    decision: Option<Decision>,
+    seed: u64,
+}
+
+impl Examiner<'_> {
+    fn finding(&mut self, claim: &Claim) -> Finding {
+        let mut remarks = Vec::new();
+        let verdict = match &claim.statement {
+            Statement::Existence(existence) => {
+                let decision = match self.decision.take() {
+                    Some(decision) => decision,
+                    None => decide(self.model, &self.problem, self.seed),
+                };
+                let verdict = existence::check_existence(
+                    self.model,
+                    &self.problem,
+                    &decision,
+                    *existence,
+                    self.seed,
+                );
+                if decision.as_ref().is_ok_and(|own| own.global.is_some()) {
+                    remarks = impact::volume_remarks(self.model, self.derivation);
+                }
+                self.decision = Some(decision);
+                verdict
+            }
+            Statement::Density(value) => {
+                let value = self.explicit(*value);
+                let written = claim.text.trim_start_matches("density = ");
+                let (problem, dynamics) = (&self.problem, &self.dynamics);
+                density::check_density(self.model, problem, dynamics, (value, written), self.seed)
+            }
+            Statement::Conserved {
+                value,
+                under,
+                holds,
+            } => {
+                let value = self.explicit(*value);
+                let written = claim.text.split_once(": ").map_or("", |(_, value)| value);
+                let quantity = (value, written);
+                match under {
+                    None => conserved::check_conserved(
+                        self.model,
+                        &self.dynamics,
+                        quantity,
+                        *holds,
+                        self.seed,
+                    ),
+                    Some(surface) => impact::check_conserved_under(
+                        self.model,
+                        self.derivation,
+                        &self.dynamics,
+                        *surface,
+                        quantity,
+                        *holds,
+                        self.seed,
+                    ),
+                }
+            }
+            Statement::Symmetry(field) => {
+                let (verdict, equation) = symmetry::check_symmetry(self.model, field);
+                remarks = equation;
+                verdict
+            }
+        };
+        Finding {
+            claim: claim.text.clone(),
+            is_assumed: claim.is_assumed,
+            item: claim.item,
+            verdict,
+            remarks,
+        }
+    }
+
+    /// The expression with energy and momenta written out.
+    fn explicit(&mut self, value: ExprId) -> ExprId {
+        let model = &mut *self.model;
+        let whole = model.lagrangian.whole;
+        let mut replacements: Vec<(SymbolId, ExprId)> = Vec::new();
+        for i in 0..model.coordinates.len() {
+            let momentum = model.pool.diff(whole, model.coordinates[i].qdot);
+            replacements.push((model.derived.momenta[i], momentum));
+        }
+        let energy = energy(model);
+        replacements.push((model.derived.energy, energy));
+        model.pool.substitute(value, &replacements)
+    }
+}
+
+/// `1/2 g(qdot, qdot) + V`
+fn energy(model: &mut Model) -> ExprId {
+    let mut terms = vec![model.lagrangian.potential];
+    for i in 0..model.coordinates.len() {
+        for j in 0..=i {
+            let factor = if i == j {
+                Rational::new(1, 2)
+            } else {
+                Rational::from(1)
+            };
+            let [a, b] = [i, j].map(|k| model.pool.variable(model.coordinates[k].qdot));
+            let product = model.pool.product(&[model.lagrangian.metric[i][j], a, b]);
+            terms.push(model.pool.scale(&factor, product));
+        }
+    }
+    model.pool.sum(&terms)
+}

@@ -8,9 +8,10 @@ use dalembert_expr::{
     ExprId, Function, JetSpace, Jets, ModularPoint, Modulus, Node, Pool, Rational, SymbolId,
 };
 
-use super::exactness::{Undecided, sample_points};
+use super::exactness::sample_points;
 use super::frame::{Demand, frame};
 use super::problem::Problem;
+use super::undecided::Undecided;
 use crate::model::{Coordinate, Topology};
 
 /// Numerators and denominators of coefficients up to this size are believed.

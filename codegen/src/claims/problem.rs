@@ -21,8 +21,6 @@ pub struct Problem {
     pub(super) friction: Option<Friction>,
     /// The symbols of the components.
     pub(super) symbols: Vec<SymbolId>,
-    /// The velocities.
-    pub(super) velocities: Vec<SymbolId>,
     /// The components on which anything depends, in order: the variables of all series.
     pub(super) variables: Vec<usize>,
     /// The number of coordinates, N.
@@ -65,7 +63,6 @@ impl Problem {
             affine,
             friction,
             symbols,
-            velocities,
             variables: Vec::new(),
             coordinates,
         };

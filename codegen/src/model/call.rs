@@ -3,7 +3,7 @@
 use dalembert_expr::{ExprId, Function, Node, Rational, SymbolId};
 
 use super::definitions::Definition;
-use super::resolve::{Resolver, Scope, Value};
+use super::resolve::{DerivedNames, Resolver, Scope, Value};
 use super::symbols::Meaning;
 use crate::diagnostics::Location;
 use crate::spec::{EXPONENT, NUMBER_BITS, Scalar, ScalarKind, Word};
@@ -71,6 +71,7 @@ impl<'s> Resolver<'s> {
         match name.text.as_str() {
             "dot" | "d" => self.derivative(at, name, arguments, scope),
             "momentum" | "multiplier" => self.derived_quantity(name, arguments, scope),
+            "partial" => self.partial(name, arguments, scope),
             "sqrt" | "atan2" => self.elementary(at, name, None, arguments, scope),
             text => match Function::from_name(text) {
                 Some(function) => self.elementary(at, name, Some(function), arguments, scope),
@@ -193,9 +194,17 @@ impl<'s> Resolver<'s> {
         arguments: &[Scalar],
         scope: &mut Scope,
     ) -> Option<Value> {
-        if !self.derived_allowed {
+        let is_momentum = name.text == "momentum";
+        let help = match self.derived_names {
+            DerivedNames::Nowhere if is_momentum => "it may be used in `outputs` and `claims`",
+            DerivedNames::Nowhere | DerivedNames::Claims if !is_momentum => {
+                "it may be used in `outputs`"
+            }
+            _ => "",
+        };
+        if !help.is_empty() {
             let text = format!("`{}` is derived and not known here", name.text);
-            return self.refuse(name.at, text, "it may be used in `outputs`");
+            return self.refuse(name.at, text, help);
         }
         let [argument] = arguments else {
             return self.refuse(
@@ -208,7 +217,7 @@ impl<'s> Resolver<'s> {
                 "",
             );
         };
-        let symbol = if name.text == "momentum" {
+        let symbol = if is_momentum {
             let index = self.coordinate(argument, scope)?;
             self.symbols.derived.momenta[index]
         } else {
@@ -224,6 +233,20 @@ impl<'s> Resolver<'s> {
             *symbol
         };
         Some(self.pool.variable(symbol).into())
+    }
+
+    /// `partial(x)`, in a claim of symmetry.
+    fn partial(&mut self, name: &Word, arguments: &[Scalar], scope: &mut Scope) -> Option<Value> {
+        if self.partials.is_empty() {
+            let help = "`symmetry: partial(theta);` in `claims` is where it belongs";
+            return self.refuse(name.at, "`partial` is not known here", help);
+        }
+        let [argument] = arguments else {
+            let text = format!("`partial` takes 1 argument, found {}", arguments.len());
+            return self.refuse(name.at, text, "");
+        };
+        let index = self.coordinate(argument, scope)?;
+        Some(self.pool.variable(self.partials[index]).into())
     }
 
     /// The coordinate that an expression is.

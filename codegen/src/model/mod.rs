@@ -26,6 +26,7 @@ use dalembert_expr::{ExprId, Pool, Rational, SymbolId};
 
 use crate::spec::ItemId;
 
+pub use crate::spec::Existence;
 pub use check::check;
 
 /// A checked model: all expressions live in `pool`.
@@ -63,7 +64,9 @@ pub struct Model {
     pub view: Option<View>,
     /// The declared outputs.
     pub outputs: Vec<Output>,
-    /// Symbols that stand for derived quantities in outputs.
+    /// The declared claims.
+    pub claims: Vec<Claim>,
+    /// Symbols that stand for derived quantities in outputs and claims.
     pub derived: DerivedSymbols,
     /// Remarks a person should see: velocity-linear terms, integrable constraints, unused parameters.
     pub notes: Vec<String>,
@@ -256,7 +259,40 @@ pub struct Output {
     pub item: ItemId,
 }
 
-/// Symbols that stand for derived quantities where outputs name them.
+/// A theorem about the model that its author states.
+#[derive(Debug, Clone)]
+pub struct Claim {
+    /// What is claimed.
+    pub statement: Statement,
+    /// The claim as written: `conserved: energy`.
+    pub text: String,
+    /// Whether an answer that stays open is accepted.
+    pub is_assumed: bool,
+    /// Where it was declared.
+    pub item: ItemId,
+}
+
+/// What is claimed; expressions of coordinates, velocities, parameters, time and [`DerivedSymbols`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Statement {
+    /// Where a density of the configuration exists.
+    Existence(Existence),
+    /// This function times `mu_C` is invariant.
+    Density(ExprId),
+    /// A quantity is conserved, or not.
+    Conserved {
+        /// The quantity.
+        value: ExprId,
+        /// The index of the surface across which it is; along the motion if there is none.
+        under: Option<usize>,
+        /// Whether it is claimed to be conserved.
+        holds: bool,
+    },
+    /// The flow of this vector field, N components, keeps the Lagrangian and the constraints.
+    Symmetry(Vec<ExprId>),
+}
+
+/// Symbols that stand for derived quantities where outputs and claims name them.
 #[derive(Debug)]
 pub struct DerivedSymbols {
     /// `energy`

@@ -63,6 +63,17 @@ impl Scope {
     }
 }
 
+/// Where an expression stands, as far as it decides which derived quantities it may name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum DerivedNames {
+    /// Where none may be named.
+    Nowhere,
+    /// In `outputs`: all.
+    Outputs,
+    /// In `claims`: `energy` and `momentum`.
+    Claims,
+}
+
 /// Turns expressions as written into expressions of the pool. What cannot be resolved is recorded and gives `None`,
 /// so that every independent mistake is found.
 pub(super) struct Resolver<'s> {
@@ -75,8 +86,10 @@ pub(super) struct Resolver<'s> {
     pub(super) calls: BTreeMap<(&'s str, Vec<ExprId>), Option<Value>>,
     /// The symbols of multipliers by the display name of their constraint.
     pub(super) multipliers: BTreeMap<String, SymbolId>,
-    /// Whether derived quantities may be named: in `outputs`.
-    pub(super) derived_allowed: bool,
+    /// Which derived quantities may be named.
+    pub(super) derived_names: DerivedNames,
+    /// The fields `partial(x)` of the coordinates, where they may be named.
+    pub(super) partials: Vec<SymbolId>,
     parts: usize,
     depth: usize,
 }
@@ -94,7 +107,8 @@ impl<'s> Resolver<'s> {
             definitions: BTreeMap::new(),
             calls: BTreeMap::new(),
             multipliers: BTreeMap::new(),
-            derived_allowed: false,
+            derived_names: DerivedNames::Nowhere,
+            partials: Vec::new(),
             parts: 0,
             depth: 0,
         }
@@ -369,11 +383,11 @@ impl<'s> Resolver<'s> {
     }
 
     fn energy(&mut self, at: Location) -> Option<Value> {
-        if !self.derived_allowed {
+        if self.derived_names == DerivedNames::Nowhere {
             return self.refuse(
                 at,
                 "`energy` is derived and not known here",
-                "it may be used in `outputs`",
+                "it may be used in `outputs` and `claims`",
             );
         }
         Some(self.pool.variable(self.symbols.derived.energy).into())

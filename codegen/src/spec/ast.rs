@@ -42,6 +42,8 @@ pub struct Spec {
     pub view: View,
     /// `outputs { .. }`
     pub outputs: Vec<Quantity>,
+    /// `claims { .. }`
+    pub claims: Vec<Claim>,
     items: Vec<Location>,
 }
 
@@ -64,6 +66,7 @@ impl Spec {
             initial: Vec::new(),
             view: View::default(),
             outputs: Vec::new(),
+            claims: Vec::new(),
             items: Vec::new(),
         }
     }
@@ -348,4 +351,46 @@ pub struct View {
     pub path: Option<[Scalar; 2]>,
     /// The allowed region.
     pub region: Option<Comparison>,
+}
+
+/// A theorem about the model, to be proved or refuted while it builds.
+#[derive(Debug)]
+pub struct Claim {
+    /// What is claimed.
+    pub statement: Statement,
+    /// Whether an answer that stays open is accepted: `assume ..`.
+    pub is_assumed: bool,
+    /// The declaration.
+    pub item: ItemId,
+}
+
+/// What is claimed.
+#[derive(Debug)]
+pub enum Statement {
+    /// `density: exact`
+    Existence(Existence),
+    /// `density = e`
+    Density(Scalar),
+    /// `conserved: e`, `not conserved: e`, `conserved under surface: e`
+    Conserved {
+        /// The quantity.
+        value: Scalar,
+        /// The surface across which it is conserved; along the motion if there is none.
+        under: Option<Declared>,
+        /// Whether it is claimed to be conserved.
+        holds: bool,
+    },
+    /// `symmetry: e`, with `partial(x)` for the fields of the coordinates.
+    Symmetry(Scalar),
+}
+
+/// Where a density that depends on the configuration alone exists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existence {
+    /// On all of Q.
+    Global,
+    /// Near generic configurations, and not on all of Q.
+    Local,
+    /// Nowhere.
+    None,
 }

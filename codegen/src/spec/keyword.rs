@@ -1,7 +1,7 @@
 //! The words of the language: sections, functions, laws, and names that cannot be declared.
 
 /// The section keywords of this version, as they may begin a declaration of a model.
-pub const SECTIONS: [&str; 11] = [
+pub const SECTIONS: [&str; 12] = [
     "const",
     "coordinates",
     "parameters",
@@ -13,11 +13,11 @@ pub const SECTIONS: [&str; 11] = [
     "initial",
     "view",
     "outputs",
+    "claims",
 ];
 
 /// Words of the language that this version does not implement, each with what can be written instead.
-pub const NOT_IMPLEMENTED: [(&str, &str); 9] = [
-    ("claims", "leave it out"),
+pub const NOT_IMPLEMENTED: [(&str, &str); 8] = [
     (
         "scenes",
         "leave it out; the model itself uses every declared force and surface",
@@ -114,7 +114,11 @@ pub fn is_rust_keyword(name: &str) -> bool {
 
 /// Functions and operators that take their arguments in parentheses.
 pub fn is_function(name: &str) -> bool {
-    FUNCTIONS.contains(&name) || matches!(name, "d" | "dot" | "sum" | "momentum" | "multiplier")
+    FUNCTIONS.contains(&name)
+        || matches!(
+            name,
+            "d" | "dot" | "sum" | "momentum" | "multiplier" | "partial"
+        )
 }
 
 /// Why `name` cannot be declared, if it cannot.

@@ -299,15 +299,7 @@ fn declarations_are_known() {
 
 #[test]
 fn declarations_to_come_are_refused_by_name() {
-    for word in [
-        "claims",
-        "scenes",
-        "frame",
-        "modes",
-        "transitions",
-        "field",
-        "inputs",
-    ] {
+    for word in ["scenes", "frame", "modes", "transitions", "field", "inputs"] {
         let message = format!("`{word}` is not implemented in this version\nhelp: ");
         refused_in(&format!("«{word}» {{ a: b; }}"), &message);
     }
@@ -381,7 +373,7 @@ fn sections_keep_their_forms() {
 
 #[test]
 fn independent_mistakes_are_all_reported() {
-    let source = "P { coordinates { x y; z; } lagrangian = 2x; constraints { a: d(x) == 0; b: d(z) = 0; c: = 0; } claims { } }";
+    let source = "P { coordinates { x y; z; } lagrangian = 2x; constraints { a: d(x) == 0; b: d(z) = 0; c: = 0; } modes { } }";
     assert_eq!(read(source).unwrap_err().len(), 5);
 }
 

@@ -3,6 +3,7 @@
 //! Every declaration is resolved and checked by itself first; what concerns several of them (ranks, surfaces against
 //! constraints) follows for those without a fault. So independent mistakes are all reported.
 
+mod claims;
 mod constraints;
 mod coordinates;
 mod initial;
@@ -18,7 +19,7 @@ use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 use super::natural;
 use super::resolve::{Resolver, Scope};
 use super::symbols::{member_name, snake_case};
-use super::{Constraint, Force, Initial, Lagrangian, Model, Name, Output, Surface, View};
+use super::{Claim, Constraint, Force, Initial, Lagrangian, Model, Name, Output, Surface, View};
 use crate::diagnostics::{Diagnostics, Location};
 use crate::spec::{Declared, Index, PIECEWISE, Scalar, Spec, Word};
 
@@ -31,6 +32,7 @@ struct Parts {
     initial: Initial,
     view: Option<View>,
     outputs: Vec<Output>,
+    claims: Vec<Claim>,
 }
 
 /// Checks a declaration and resolves every name in it.
@@ -44,7 +46,7 @@ pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
     resolver.all_parameters();
     resolver.order_symbols();
     resolver.all_definitions();
-    let parts = Parts {
+    let mut parts = Parts {
         lagrangian: lagrangian(&mut resolver),
         constraints: constraints::resolve(&mut resolver),
         forces: forces(&mut resolver),
@@ -52,7 +54,9 @@ pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
         initial: initial::resolve(&mut resolver),
         view: outputs::view(&mut resolver),
         outputs: outputs::resolve(&mut resolver),
+        claims: Vec::new(),
     };
+    parts.claims = claims::resolve(&mut resolver, &parts.surfaces);
     together(&mut resolver, &parts);
     let (Some(lagrangian), true) = (parts.lagrangian, resolver.diagnostics.is_empty()) else {
         return Err(resolver.diagnostics);
@@ -100,6 +104,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
         initial: parts.initial,
         view: parts.view,
         outputs: parts.outputs,
+        claims: parts.claims,
         derived: symbols.derived,
         notes,
     }

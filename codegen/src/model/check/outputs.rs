@@ -1,6 +1,6 @@
 //! The declared view and outputs.
 
-use super::super::resolve::{Resolver, Scope};
+use super::super::resolve::{DerivedNames, Resolver, Scope};
 use super::super::{Output, View};
 use super::Names;
 
@@ -42,7 +42,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Output> {
     let spec = resolver.spec;
     let mut outputs = Vec::new();
     let mut names = Names::new("output");
-    resolver.derived_allowed = true;
+    resolver.derived_names = DerivedNames::Outputs;
     for output in &spec.outputs {
         for (name, mut scope) in resolver.members(&output.declared) {
             names.add(resolver, &name, &output.declared.name);

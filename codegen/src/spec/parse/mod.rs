@@ -1,5 +1,6 @@
 //! The declarations of the language: one file per section.
 
+mod claims;
 mod constraints;
 mod coordinates;
 mod definitions;
@@ -182,6 +183,7 @@ fn declare(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         "impacts" => section(&word, cursor, spec, impacts::surface),
         "initial" => section(&word, cursor, spec, initial::value),
         "view" => section(&word, cursor, spec, view::entry),
+        "claims" => claims_section(&word, cursor, spec),
         _ => Err(unknown_declaration(&word, cursor)),
     }
 }
@@ -238,6 +240,17 @@ fn section(
         }
     }
     Ok(())
+}
+
+/// `claims { .. }`; claims about a scene wait for scenes.
+fn claims_section(keyword: &Word, cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
+    if cursor.is_word("for") {
+        let help = "claims are about the whole model: write `claims { .. }`";
+        let text = "claims for a scene are not implemented in this version";
+        let word = cursor.name("a scene")?;
+        return Err(cursor.refuse(word.at, text, help));
+    }
+    section(keyword, cursor, spec, claims::claim)
 }
 
 /// How many tokens stand before the next `;`.

@@ -1,0 +1,182 @@
+//! Conserved quantities: the rate of an expression along the motion on D, `d_i e qdot^i + de/dqdot^i qddot^i + d_t e`.
+
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, ModularPoint, RealPoint, SymbolId};
+
+use super::dynamics::{Dynamics, Motion, Number};
+use super::evidence::{Vanishing, Wording, evidence};
+use super::finding::Verdict;
+use super::sample::{Sample, sample, uses};
+use crate::model::Model;
+
+/// The verdict on `conserved: value` or `not conserved: value`; `written` is the value as written.
+pub(super) fn check_conserved(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    (value, written): (ExprId, &str),
+    holds: bool,
+    seed: u64,
+) -> Verdict {
+    let rate = Rate {
+        quantity: Quantity::of(model, value),
+        dynamics,
+        written,
+    };
+    let wording = Wording {
+        vanishes: format!("the rate of `{written}` along the motion on D is 0"),
+        differs: format!("`{written}` changes along the motion"),
+        help: [
+            format!("write `not conserved: {written};`"),
+            format!("write `conserved: {written};`"),
+        ],
+    };
+    evidence(model, &rate, seed).verdict(holds, wording, seed)
+}
+
+/// A quantity with its derivatives by coordinates, velocities and time.
+#[derive(Debug)]
+pub(super) struct Quantity {
+    /// Its value.
+    pub(super) value: ExprId,
+    slopes: Vec<ExprId>,
+}
+
+impl Quantity {
+    /// Differentiates a function of coordinates, velocities and time.
+    pub(super) fn of(model: &mut Model, value: ExprId) -> Self {
+        let positions = model.coordinates.iter().map(|own| own.q);
+        let velocities = model.coordinates.iter().map(|own| own.qdot);
+        let mut symbols: Vec<SymbolId> = positions.chain(velocities).collect();
+        symbols.push(model.time);
+        let slopes = symbols
+            .into_iter()
+            .map(|symbol| model.pool.diff(value, symbol));
+        Self {
+            value,
+            slopes: slopes.collect(),
+        }
+    }
+
+    /// The expressions that are evaluated.
+    pub(super) fn roots(&self) -> Vec<ExprId> {
+        let mut roots = self.slopes.clone();
+        roots.push(self.value);
+        roots
+    }
+
+    /// The value and the terms of its rate along a motion; `None` where there is none.
+    pub(super) fn terms<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        motion: &Motion<Number<P>>,
+        point: &mut P,
+    ) -> Option<(Number<P>, Vec<Number<P>>)> {
+        let field = point.field();
+        let order = model.pool.reachable(&self.roots());
+        let values = point.values(&model.pool, &order)?;
+        let mut direction = motion.qdot.clone();
+        direction.extend(&motion.qddot);
+        direction.push(field.integer(1));
+        let term = |(slope, rate): (&ExprId, &Number<P>)| field.mul(values[slope.index()], *rate);
+        let terms = self.slopes.iter().zip(&direction).map(term).collect();
+        Some((values[self.value.index()], terms))
+    }
+}
+
+/// The size of the terms of a rate, were every velocity and every acceleration as large as the largest: an
+/// acceleration may be the small difference of large ones.
+pub(super) fn rate_scale(
+    quantity: &Quantity,
+    model: &Model,
+    motion: &Motion<f64>,
+    point: &mut RealPoint,
+) -> Option<f64> {
+    let largest = |values: &[f64]| {
+        values
+            .iter()
+            .fold(0.0, |size: f64, value| size.max(value.abs()))
+    };
+    let velocity = largest(&motion.qdot);
+    let acceleration = largest(&motion.qddot).max(velocity * velocity);
+    let n = motion.qdot.len();
+    let level = Motion {
+        qdot: vec![velocity; n],
+        qddot: vec![acceleration; n],
+        multipliers: Vec::new(),
+    };
+    let (_, terms) = quantity.terms(model, &level, point)?;
+    Some(terms.iter().map(|term| term.abs()).sum())
+}
+
+/// The rate of a quantity.
+struct Rate<'r> {
+    quantity: Quantity,
+    dynamics: &'r Dynamics,
+    written: &'r str,
+}
+
+impl Vanishing for Rate<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        let mut roots = self.dynamics.roots();
+        roots.extend(self.quantity.roots());
+        roots
+    }
+
+    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
+        self.dynamics.motion(&model.pool, point, None).map(|_| ())
+    }
+
+    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
+        state_on_d(model, self.dynamics, &self.roots(), attempt)
+    }
+
+    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+        let motion = self.dynamics.motion(&model.pool, point, None)?;
+        self.quantity
+            .terms(model, &motion, point)
+            .map(|(_, terms)| terms)
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
+        let motion = self.dynamics.motion(&model.pool, point, None)?;
+        rate_scale(&self.quantity, model, &motion, point)
+    }
+
+    fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+        let rate = terms.iter().sum();
+        vec![(format!("d/dt({})", self.written), rate)]
+    }
+}
+
+/// A real state on D with short independent velocities; what is shown of it includes all velocities.
+pub(super) fn state_on_d(
+    model: &Model,
+    dynamics: &Dynamics,
+    roots: &[ExprId],
+    attempt: usize,
+) -> Option<(Sample, RealPoint)> {
+    let sample = sample(model, attempt, uses(&model.pool, roots));
+    with_velocities(model, dynamics, sample, attempt)
+}
+
+/// The sample with velocities on D, and its point.
+pub(super) fn with_velocities(
+    model: &Model,
+    dynamics: &Dynamics,
+    mut sample: Sample,
+    attempt: usize,
+) -> Option<(Sample, RealPoint)> {
+    let mut point = sample.point();
+    for (i, coordinate) in model.coordinates.iter().enumerate() {
+        let velocity = VELOCITIES[(i + attempt) % VELOCITIES.len()];
+        point.set(coordinate.qdot, velocity);
+    }
+    let motion = dynamics.motion(&model.pool, &mut point, None)?;
+    for (coordinate, value) in model.coordinates.iter().zip(&motion.qdot) {
+        let name = format!("dot({})", coordinate.name.display);
+        sample.push(name, coordinate.qdot, *value);
+    }
+    Some((sample, point))
+}
+
+/// Independent velocities of real states.
+const VELOCITIES: [f64; 7] = [0.5, -0.75, 1.25, 0.25, -1.5, 1.75, -0.25];

@@ -1,0 +1,119 @@
+//! `density = e`: is `e mu_C` invariant? With `qdot = X_0 + u^i X_i`, the rate of `ln e` along the motion must be
+//! `c_0 + u^i c_i` (see [`super::frame`]), which is minus the divergence of the motion with respect to `mu_C`.
+//!
+//! A factor `abs(l)^s` counts as `l^s` where `l` is not 0: its logarithmic derivative is the same.
+
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, RealPoint};
+
+use super::conserved::{Quantity, rate_scale, state_on_d};
+use super::dynamics::{Dynamics, Number};
+use super::evidence::{Vanishing, Wording, evidence};
+use super::finding::Verdict;
+use super::frame::frame;
+use super::problem::Problem;
+use super::sample::Sample;
+use crate::model::Model;
+
+/// The verdict on `density = value`; `written` is the value as written.
+pub(super) fn check_density(
+    model: &mut Model,
+    problem: &Problem,
+    dynamics: &Dynamics,
+    (value, written): (ExprId, &str),
+    seed: u64,
+) -> Verdict {
+    if problem
+        .friction
+        .as_ref()
+        .is_some_and(|own| !own.is_quadratic)
+    {
+        return Verdict::Undecided(super::Undecided::Forces.to_string());
+    }
+    let balance = Balance {
+        quantity: Quantity::of(model, value),
+        problem,
+        dynamics,
+        written,
+    };
+    let wording = Wording {
+        vanishes: format!("{written} times mu_C is invariant on D* where it is not 0"),
+        differs: format!("{written} times mu_C is not invariant"),
+        help: [
+            "the density is relative to mu_C = det g/|det A_dep| dq dv; `density: exact;` looks for one".to_owned(),
+            String::new(),
+        ],
+    };
+    evidence(model, &balance, seed).verdict(true, wording, seed)
+}
+
+/// `d ln(e)/dt + div`
+struct Balance<'b> {
+    quantity: Quantity,
+    problem: &'b Problem,
+    dynamics: &'b Dynamics,
+    written: &'b str,
+}
+
+impl Vanishing for Balance<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        let mut roots = self.dynamics.roots();
+        roots.extend(self.quantity.roots());
+        roots.extend(self.problem.roots());
+        roots
+    }
+
+    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
+        self.dynamics.motion(&model.pool, point, None).map(|_| ())
+    }
+
+    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
+        state_on_d(model, self.dynamics, &self.roots(), attempt)
+    }
+
+    /// The rate of `ln e`, then the divergence.
+    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+        let field = point.field();
+        let motion = self.dynamics.motion(&model.pool, point, None)?;
+        let (value, terms) = self.quantity.terms(model, &motion, point)?;
+        let add = |sum, term: &Number<P>| field.add(sum, *term);
+        let rate = terms.iter().fold(field.integer(0), add);
+        let mut balance = vec![field.mul(rate, field.inv(value)?)];
+        let space = JetSpace::new(self.problem.variables.len(), 1, usize::MAX)?;
+        let jets = Jets::new(field, &space);
+        let frame = frame(&model.pool, self.problem, &jets, point, None)?;
+        // Independent velocities are the coefficients of the frame's fields; the drift, if any, comes first.
+        let independent: Vec<_> = (0..self.problem.coordinates)
+            .filter(|i| !frame.dependent.contains(i))
+            .map(|i| motion.qdot[i])
+            .collect();
+        let drifts = frame.demands.len() - independent.len();
+        let mut divergence = field.integer(0);
+        for (i, demand) in frame.demands.iter().enumerate() {
+            let weight = match i.checked_sub(drifts) {
+                Some(i) => independent[i],
+                None => field.integer(1),
+            };
+            let demand = demand.last().map_or(field.integer(0), |c| jets.value(c));
+            divergence = field.sub(divergence, field.mul(weight, demand));
+        }
+        balance.push(divergence);
+        Some(balance)
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
+        let motion = self.dynamics.motion(&model.pool, point, None)?;
+        let (value, _) = self.quantity.terms(model, &motion, point)?;
+        let rate = rate_scale(&self.quantity, model, &motion, point)? / value.abs();
+        // The divergence is a combination of velocities whose coefficients have cancelled before.
+        let velocity = motion.qdot.iter().map(|own| own.abs()).sum::<f64>();
+        Some(rate + velocity)
+    }
+
+    fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+        let names = [
+            format!("d/dt(ln({}))", self.written),
+            "divergence".to_owned(),
+        ];
+        names.into_iter().zip(terms.iter().copied()).collect()
+    }
+}

@@ -1,0 +1,200 @@
+//! Does something vanish at all states? What residues at random states and values at real states say.
+
+use dalembert_expr::{ExpansionPoint, ExprId, ModularPoint, RealPoint};
+
+use super::dynamics::Number;
+use super::exactness::sample_points;
+use super::finding::{Certificate, Verdict, Witness, digits};
+use super::sample::Sample;
+use super::undecided::Undecided;
+use crate::model::Model;
+
+/// Random states at which a sum must vanish; more where roots may hide it by a choice of branches.
+const STATES: (usize, usize) = (12, 40);
+/// Real states that are tried.
+const ATTEMPTS: usize = 24;
+/// A sum counts as different from 0 beyond this part of its scale: a factor 1e9 above rounding.
+const CLEAR: f64 = 1e-6;
+/// As [`CLEAR`], where residues have shown that it is not 0 and only a point to show it at is looked for.
+const VISIBLE: f64 = 1e-10;
+
+/// A sum of terms at states that may vanish identically.
+pub(super) trait Vanishing {
+    /// Everything that is evaluated.
+    fn roots(&self) -> Vec<ExprId>;
+
+    /// Moves a random point to a state; `None` if that fails there.
+    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()>;
+
+    /// A real state with short coordinates and its point.
+    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)>;
+
+    /// The terms at a state.
+    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>>;
+
+    /// The size of what the terms were computed from at a real state: rounding is below this times `1e-16`, with
+    /// room for the conditioning of metric and constraints.
+    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64>;
+
+    /// What a person is shown at a real state, given the terms.
+    fn shown(&self, model: &Model, terms: &[f64]) -> Vec<(String, f64)>;
+}
+
+/// What residues and real numbers say about a quantity that is claimed to vanish.
+pub(super) struct Evidence {
+    /// Whether all residues are 0, with the primes; `None` if there were too few.
+    pub(super) vanishes: Option<bool>,
+    /// Whether residues alone decide.
+    pub(super) is_exact: bool,
+    /// The number of random points.
+    pub(super) points: usize,
+    /// The primes.
+    pub(super) primes: Vec<u64>,
+    /// A bound of the chance of error.
+    pub(super) error: f64,
+    /// A real point at which it is clearly not 0, with what is shown there.
+    pub(super) witness: Option<(Sample, Vec<(String, f64)>)>,
+    /// Whether it has a value at any real point that was tried.
+    pub(super) is_real: bool,
+}
+
+/// The two answers to a claim that something vanishes, or does not.
+pub(super) struct Wording {
+    /// Said if it vanishes.
+    pub(super) vanishes: String,
+    /// Said if it does not.
+    pub(super) differs: String,
+    /// What to write instead of a claim that it vanishes, and of one that it does not.
+    pub(super) help: [String; 2],
+}
+
+impl Evidence {
+    /// The verdict on the claim that the quantity vanishes, or that it does not.
+    pub(super) fn verdict(self, holds: bool, wording: Wording, seed: u64) -> Verdict {
+        let certificate = |shown: String, error: f64| Certificate {
+            shown,
+            points: self.points,
+            primes: self.primes.clone(),
+            error,
+            seed,
+        };
+        if !self.is_real {
+            let text = "it has no value at any of the real points that were tried";
+            return Verdict::Undecided(text.to_owned());
+        }
+        let differs = self.witness.is_some() || (self.vanishes == Some(false) && self.is_exact);
+        let vanishes = self.vanishes == Some(true) && self.witness.is_none();
+        match (holds, vanishes, differs) {
+            (true, true, _) => Verdict::Proved(certificate(wording.vanishes, self.error)),
+            (false, _, true) => {
+                let at = match &self.witness {
+                    Some((sample, values)) => format!(": {}", sentence(sample, values)),
+                    None => String::new(),
+                };
+                Verdict::Proved(certificate(format!("{}{at}", wording.differs), 0.0))
+            }
+            (true, _, true) => {
+                let (sample, values) = self.witness.unzip();
+                Verdict::Refuted(Witness {
+                    reason: wording.differs,
+                    sample,
+                    values: values.unwrap_or_default(),
+                    help: wording.help[0].clone(),
+                })
+            }
+            (false, true, _) => Verdict::Refuted(Witness {
+                reason: wording.vanishes,
+                sample: None,
+                values: Vec::new(),
+                help: wording.help[1].clone(),
+            }),
+            _ => Verdict::Undecided(Undecided::Relations(Vec::new()).to_string()),
+        }
+    }
+}
+
+fn sentence(sample: &Sample, values: &[(String, f64)]) -> String {
+    let values: Vec<String> = values
+        .iter()
+        .map(|(name, value)| format!("{name} = {}", digits(*value)))
+        .collect();
+    format!("{} at {}", values.join(", "), sample.text())
+}
+
+/// The evidence on a sum of terms.
+pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> Evidence {
+    let roots = question.roots();
+    let profile = model.pool.profile_of(&roots);
+    let wanted = if profile.branches { STATES.1 } else { STATES.0 };
+    let mut primes = Vec::new();
+    let mut vanishes = None;
+    if let Ok(mut points) = sample_points(&model.pool, &roots, &profile, seed) {
+        vanishes = Some(true);
+        for _ in 0..wanted {
+            let sum = points.find(|point| {
+                question.settle(model, point)?;
+                let terms = question.terms(model, point)?;
+                primes.push(point.modulus().prime());
+                let field = point.modulus();
+                Some(terms.into_iter().fold(0, |sum, term| field.add(sum, term)))
+            });
+            match sum {
+                None => vanishes = None,
+                Some(0) => continue,
+                Some(_) => vanishes = Some(false),
+            }
+            break;
+        }
+    }
+    primes.sort_unstable();
+    primes.dedup();
+    let is_exact = profile.is_exact();
+    let threshold = match (is_exact, vanishes) {
+        (true, Some(true)) => f64::INFINITY,
+        (true, Some(false)) => VISIBLE,
+        _ => CLEAR,
+    };
+    let (witness, is_real) = real_evidence(model, question, threshold);
+    Evidence {
+        vanishes,
+        is_exact,
+        points: wanted,
+        primes,
+        error: chance_of_accident(model, profile.degree),
+        witness,
+        is_real,
+    }
+}
+
+/// The degree of a rate over the prime, for each of the states (Schwartz, Zippel): the saddle system of acceleration
+/// and multipliers has N + M rows whose entries have the degree of the profile, over as many denominators.
+fn chance_of_accident(model: &Model, degree: f64) -> f64 {
+    let sizes = (2 * model.coordinates.len() + model.constraints.len()) as f64;
+    let degree = 64.0 * sizes.powi(3) * degree.max(1.0);
+    (degree / 2f64.powi(60)).powi(STATES.0 as i32)
+}
+
+fn real_evidence(
+    model: &Model,
+    question: &impl Vanishing,
+    threshold: f64,
+) -> (Option<(Sample, Vec<(String, f64)>)>, bool) {
+    let mut is_real = false;
+    for attempt in 0..ATTEMPTS {
+        let Some((sample, mut point)) = question.sample(model, attempt) else {
+            continue;
+        };
+        let Some(terms) = question.terms(model, &mut point) else {
+            continue;
+        };
+        is_real = true;
+        let sum: f64 = terms.iter().sum();
+        let Some(scale) = question.scale(model, &mut point) else {
+            continue;
+        };
+        if sum.is_finite() && sum.abs() > threshold * scale {
+            return (Some((sample, question.shown(model, &terms))), true);
+        }
+    }
+    (None, is_real)
+}

@@ -1,0 +1,337 @@
+//! `density: exact`, `locally_exact`, `none`: the verdict on the existence of a density, in words.
+
+use dalembert_expr::{Pool, Verdict as Zero};
+
+use super::exactness::Exactness;
+use super::finding::{Certificate, Verdict, Witness, digits};
+use super::global::Global;
+use super::obstruction::{Obstruction, find_obstruction};
+use super::potential::{Certified, Potential, Term};
+use super::problem::Problem;
+use super::undecided::Undecided;
+use crate::model::{Existence, Model};
+
+/// What was found out about densities, or why nothing was.
+pub type Decision = Result<Exactness, Undecided>;
+
+/// The verdict on a claim of existence.
+pub(super) fn check_existence(
+    model: &Model,
+    problem: &Problem,
+    decision: &Decision,
+    claimed: Existence,
+    seed: u64,
+) -> Verdict {
+    let exactness = match decision {
+        Ok(exactness) => exactness,
+        Err(undecided) => return Verdict::Undecided(undecided.to_string()),
+    };
+    let writer = Writer {
+        model,
+        problem,
+        exactness,
+        seed,
+    };
+    match (&exactness.global, claimed) {
+        (None, Existence::None) => writer.proved_absent(),
+        (None, _) => writer.obstructed(),
+        (Some(_), Existence::None) => writer.refuted_by_existence("a density exists"),
+        (Some(Global::Exists), Existence::Global)
+        | (Some(Global::Many { .. }), Existence::Local) => Verdict::Proved(writer.existence()),
+        (Some(Global::Exists), Existence::Local) => {
+            writer.refuted_by_existence("a density exists on all of Q")
+        }
+        (Some(Global::Many { .. }), Existence::Global) => writer.many_valued(),
+        (Some(Global::Undecided(reason)), _) => {
+            Verdict::Undecided(format!("a density exists locally; on all of Q, {reason}"))
+        }
+    }
+}
+
+struct Writer<'w> {
+    model: &'w Model,
+    problem: &'w Problem,
+    exactness: &'w Exactness,
+    seed: u64,
+}
+
+impl Writer<'_> {
+    fn existence(&self) -> Certificate {
+        let depends = if self.problem.is_time_dependent() {
+            " (of q and t)"
+        } else {
+            ""
+        };
+        let circle = match &self.exactness.global {
+            Some(Global::Many { turns, period, .. }) => format!(
+                " on the universal cover; it is multiplied by exp({}) {}",
+                digits(*period),
+                self.turns(turns)
+            ),
+            _ => String::new(),
+        };
+        match &self.exactness.density {
+            Some((potential, certified)) => {
+                let text = potential_text(&self.model.pool, potential);
+                let shown = format!("exp(G)*mu_C is invariant{depends}{circle} with G = {text}");
+                self.certificate(shown, certified)
+            }
+            None => Certificate {
+                shown: format!(
+                    "an invariant exp(G)*mu_C exists{depends}{circle}; G was found in no closed form, \
+                     the periods on the circles are numeric"
+                ),
+                points: 3,
+                primes: self.exactness.local.primes.clone(),
+                error: self.exactness.local.error,
+                seed: self.seed,
+            },
+        }
+    }
+
+    fn certificate(&self, shown: String, certified: &Certified) -> Certificate {
+        Certificate {
+            shown,
+            points: certified.points,
+            primes: certified.primes.clone(),
+            error: certified.error,
+            seed: self.seed,
+        }
+    }
+
+    fn proved_absent(&self) -> Verdict {
+        let local = &self.exactness.local;
+        let obstruction = find_obstruction(self.model, self.problem, local);
+        if obstruction.is_none() && !local.is_proof {
+            return self.unconfirmed();
+        }
+        let rest = match self.is_free() {
+            true => {
+                "; as the potential is constant, no positive density near rest depends on velocities either"
+            }
+            false => "",
+        };
+        Verdict::Proved(Certificate {
+            shown: format!(
+                "no density depends on q alone: the hull of D has rank {}, with the demands {}{rest}",
+                local.rank, local.extended_rank
+            ),
+            points: 3,
+            primes: local.primes.clone(),
+            error: local.error,
+            seed: self.seed,
+        })
+    }
+
+    /// Whether nothing but inertia moves the system.
+    fn is_free(&self) -> bool {
+        let pool = &self.model.pool;
+        let potential = self.model.lagrangian.potential;
+        let coordinates = self.model.coordinates.iter().map(|own| own.q);
+        !self.problem.has_drift(pool)
+            && coordinates
+                .into_iter()
+                .all(|q| !pool.depends_on(potential, q))
+    }
+
+    fn unconfirmed(&self) -> Verdict {
+        Verdict::Undecided(
+            Undecided::Relations(unrelated_atoms(&self.model.pool, self.problem)).to_string(),
+        )
+    }
+
+    fn obstructed(&self) -> Verdict {
+        let local = &self.exactness.local;
+        let Some(found) = find_obstruction(self.model, self.problem, local) else {
+            return match local.is_proof {
+                true => Verdict::Refuted(Witness {
+                    reason: format!(
+                        "no density depends on q alone (hull of rank {}, with the demands {})",
+                        local.rank, local.extended_rank
+                    ),
+                    sample: None,
+                    values: Vec::new(),
+                    help: "write `density: none;`".to_owned(),
+                }),
+                false => self.unconfirmed(),
+            };
+        };
+        Verdict::Refuted(self.obstruction(found))
+    }
+
+    fn obstruction(&self, found: Obstruction) -> Witness {
+        let frame: Vec<String> = found
+            .frame
+            .iter()
+            .map(|(name, components)| format!("{name} = {}", self.vector(components)))
+            .collect();
+        let relation = match found.relation.is_empty() {
+            true => "0".to_owned(),
+            false => found
+                .relation
+                .iter()
+                .map(|(name, value)| format!("{}*{name}", digits(*value)))
+                .collect::<Vec<_>>()
+                .join(" + "),
+        };
+        let bracket = &found.bracket;
+        let reason = format!(
+            "no density depends on q alone\n{bracket} = {relation} as a vector field, \
+             but the same combination of the demands on dG is off by delta\n\
+             frame of D there: {}",
+            frame.join(", ")
+        );
+        Witness {
+            reason,
+            values: vec![("delta".to_owned(), found.delta)],
+            sample: Some(found.sample),
+            help: "write `density: none;`".to_owned(),
+        }
+    }
+
+    /// `d_x + 0.41 d_y`
+    fn vector(&self, components: &[f64]) -> String {
+        let mut text = String::new();
+        for (i, value) in components.iter().enumerate() {
+            if *value == 0.0 {
+                continue;
+            }
+            let name = match self.model.coordinates.get(i) {
+                Some(coordinate) => coordinate.name.display.as_str(),
+                None => "t",
+            };
+            let size = match value.abs() {
+                1.0 => String::new(),
+                size => format!("{}*", digits(size)),
+            };
+            text += match (text.is_empty(), *value < 0.0) {
+                (true, false) => "",
+                (true, true) => "-",
+                (false, false) => " + ",
+                (false, true) => " - ",
+            };
+            text += &format!("{size}d_{name}");
+        }
+        if text.is_empty() {
+            "0".to_owned()
+        } else {
+            text
+        }
+    }
+
+    fn refuted_by_existence(&self, what: &str) -> Verdict {
+        let certificate = self.existence();
+        let help = match &self.exactness.global {
+            Some(Global::Exists) => "write `density: exact;`",
+            _ => "write `density: locally_exact;`",
+        };
+        Verdict::Refuted(Witness {
+            reason: format!("{what}: {}", certificate.shown),
+            sample: None,
+            values: Vec::new(),
+            help: help.to_owned(),
+        })
+    }
+
+    fn many_valued(&self) -> Verdict {
+        let Some(Global::Many {
+            turns,
+            period,
+            sample,
+        }) = &self.exactness.global
+        else {
+            return self.unconfirmed();
+        };
+        let names: Vec<&str> = turns
+            .iter()
+            .map(|(i, _)| self.model.coordinates[*i].name.field.as_str())
+            .collect();
+        let reason = format!(
+            "a density exists locally, but G grows by `period` {}",
+            self.turns(turns)
+        );
+        Verdict::Refuted(Witness {
+            reason,
+            sample: Some(sample.clone()),
+            values: vec![("period".to_owned(), *period)],
+            help: format!(
+                "write `density: locally_exact;`, or declare {} as a line instead of an angle",
+                crate::diagnostics::listed(names)
+            ),
+        })
+    }
+
+    /// `when psi1 makes a turn`
+    fn turns(&self, turns: &[(usize, i64)]) -> String {
+        let each: Vec<String> = turns
+            .iter()
+            .map(|(i, count)| {
+                let name = &self.model.coordinates[*i].name.display;
+                let back = if *count < 0 { " backwards" } else { "" };
+                format!("{name} makes a turn{back}")
+            })
+            .collect();
+        format!("when {}", each.join(" and "))
+    }
+}
+
+/// Calls whose relations to each other residues do not show.
+fn unrelated_atoms(pool: &Pool, problem: &Problem) -> Vec<String> {
+    let parts = pool.reachable(&problem.roots());
+    let is_atom = |id: &dalembert_expr::ExprId| {
+        let profile = pool.profile_of(&[*id]);
+        matches!(
+            pool.node(*id),
+            dalembert_expr::Node::Call(..) | dalembert_expr::Node::Product(_)
+        ) && !profile.is_exact()
+            && pool.zero_test(*id) != Zero::Proved
+    };
+    parts
+        .into_iter()
+        .filter(is_atom)
+        .take(4)
+        .map(|id| pool.text(id))
+        .collect()
+}
+
+/// `1/2*ln(det m) - z`; `0` for the density 1.
+pub fn potential_text(pool: &Pool, potential: &Potential) -> String {
+    let term = |term: &Term| match term {
+        Term::MassDeterminant => "ln(det m)".to_owned(),
+        Term::MetricDeterminant => "ln(det g)".to_owned(),
+        Term::DependentDeterminant => "ln|det A_dep|".to_owned(),
+        Term::Logarithm(f) => format!("ln|{}|", pool.text(*f)),
+        Term::Plain(f) => match pool.node(*f) {
+            dalembert_expr::Node::Sum { .. } => format!("({})", pool.text(*f)),
+            _ => pool.text(*f),
+        },
+    };
+    let mut text = String::new();
+    for (coefficient, own) in &potential.terms {
+        let (number, rest) = pool.as_multiple(*coefficient);
+        let sign = match (text.is_empty(), number.is_negative()) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        let mut factors = Vec::new();
+        if !number.abs().is_one() {
+            factors.push(number.abs().to_string());
+        }
+        if rest != pool.one() {
+            factors.push(match pool.node(rest) {
+                dalembert_expr::Node::Sum { .. } => format!("({})", pool.text(rest)),
+                _ => pool.text(rest),
+            });
+        }
+        factors.push(term(own));
+        text += sign;
+        text += &factors.join("*");
+    }
+    if text.is_empty() {
+        "0".to_owned()
+    } else {
+        text
+    }
+}

@@ -1,0 +1,189 @@
+//! What became of a claim: proved with a certificate, refuted with a witness, or left open with the reason.
+
+use std::fmt;
+
+use super::sample::Sample;
+use crate::spec::ItemId;
+
+/// A claim and its verdict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// The claim as written.
+    pub claim: String,
+    /// Whether an open answer is accepted.
+    pub is_assumed: bool,
+    /// Where it was declared.
+    pub item: ItemId,
+    /// Whether it holds.
+    pub verdict: Verdict,
+    /// What else was found out: a momentum equation, what impacts do to the volume.
+    pub remarks: Vec<String>,
+}
+
+/// Whether a claim holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Verdict {
+    /// It does.
+    Proved(Certificate),
+    /// It does not.
+    Refuted(Witness),
+    /// Neither was shown.
+    Undecided(String),
+}
+
+/// How a claim was proved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certificate {
+    /// What was shown, in a sentence.
+    pub shown: String,
+    /// Random points at which it was tested.
+    pub points: usize,
+    /// The primes modulo which.
+    pub primes: Vec<u64>,
+    /// A bound of the chance that it is wrong; 0 for a proof without chance.
+    pub error: f64,
+    /// The seed of the points.
+    pub seed: u64,
+}
+
+/// Why a claim fails, at a point that a person can follow.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Witness {
+    /// What is wrong, in words.
+    pub reason: String,
+    /// The point, if one is needed.
+    pub sample: Option<Sample>,
+    /// Names and values of what was computed there.
+    pub values: Vec<(String, f64)>,
+    /// What to write instead.
+    pub help: String,
+}
+
+impl Finding {
+    /// Whether the build goes on.
+    pub fn is_accepted(&self) -> bool {
+        match &self.verdict {
+            Verdict::Proved(_) => true,
+            Verdict::Refuted(_) => false,
+            Verdict::Undecided(_) => self.is_assumed,
+        }
+    }
+
+    /// The verdict in a word.
+    pub fn word(&self) -> &'static str {
+        match &self.verdict {
+            Verdict::Proved(_) => "proved",
+            Verdict::Refuted(_) => "refuted",
+            Verdict::Undecided(_) if self.is_assumed => "assumed",
+            Verdict::Undecided(_) => "undecided",
+        }
+    }
+
+    /// The finding as a remark in the documentation of the model.
+    pub fn note(&self) -> String {
+        let reason = match &self.verdict {
+            Verdict::Proved(certificate) => certificate.to_string(),
+            Verdict::Refuted(witness) => witness.to_string(),
+            Verdict::Undecided(reason) => reason.clone(),
+        };
+        let mut note = format!("`{}` is {}: {reason}", self.claim, self.word());
+        for remark in &self.remarks {
+            note += "; ";
+            note += remark;
+        }
+        note
+    }
+
+    /// The message of a claim that is not accepted, and its help.
+    pub fn refusal(&self) -> Option<(String, String)> {
+        match &self.verdict {
+            _ if self.is_accepted() => None,
+            Verdict::Proved(_) => None,
+            Verdict::Refuted(witness) => {
+                let text = format!("`{}` is refuted: {witness}", self.claim);
+                Some((text, witness.help.clone()))
+            }
+            Verdict::Undecided(reason) => {
+                let text = format!("`{}` is undecided: {reason}", self.claim);
+                let help = format!("write `assume {};` to go on without a proof", self.claim);
+                Some((text, help))
+            }
+        }
+    }
+}
+
+impl fmt::Display for Certificate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.shown)?;
+        if self.points == 0 {
+            return Ok(());
+        }
+        let primes = match self.primes.as_slice() {
+            [only] => format!("the prime {only}"),
+            [first, rest @ ..] => format!("{} primes from {first} on", rest.len() + 1),
+            [] => "no prime".to_owned(),
+        };
+        write!(
+            f,
+            "; tested at {} random points modulo {primes}, seed {:#018x}",
+            self.points, self.seed
+        )?;
+        if self.error > 0.0 {
+            write!(f, ", chance of error below {:.0e}", self.error.max(1e-300))
+        } else {
+            write!(f, ", no chance of error")
+        }
+    }
+}
+
+impl fmt::Display for Witness {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.reason)?;
+        for (name, value) in &self.values {
+            write!(f, "\n{name} = {}", digits(*value))?;
+        }
+        match &self.sample {
+            Some(sample) if !sample.values.is_empty() => write!(f, "\nat {}", sample.text()),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Twelve digits, as a person compares them.
+pub(super) fn digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let exponent = value.abs().log10().floor();
+    if (-4.0..9.0).contains(&exponent) {
+        let decimals = (11.0 - exponent).max(0.0) as usize;
+        let text = format!("{value:.decimals$}");
+        match text.contains('.') {
+            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+            false => text,
+        }
+    } else {
+        format!("{value:.11e}")
+    }
+}
+
+/// The seed of a model: the same for every build of it (FNV-1a of its name).
+pub(super) fn seed_of(name: &str) -> u64 {
+    name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_with_twelve_digits_and_no_more() {
+        assert_eq!(digits(-0.393_159_046_028_225), "-0.393159046028");
+        assert_eq!(digits(2.0), "2");
+        assert_eq!(digits(0.0), "0");
+        assert_eq!(digits(1e-9), "1.00000000000e-9");
+        assert_eq!(digits(1200.5), "1200.5");
+    }
+}

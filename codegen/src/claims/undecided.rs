@@ -1,0 +1,48 @@
+//! Why a question stays open, in words.
+
+use std::fmt;
+
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Undecided {
+    /// No point was found where metric, constraints and all expressions are regular.
+    Degenerate,
+    /// Brackets up to this depth did not close the hull, and deeper ones are out of reach.
+    Depth(usize),
+    /// Forces whose dependence on velocities is neither absent, linear nor quadratic.
+    Forces,
+    /// Coefficients inside sin, cos and exp without a common denominator.
+    Denominators,
+    /// The parts named may be related in ways that residues do not show.
+    Relations(Vec<String>),
+}
+
+impl fmt::Display for Undecided {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Degenerate => write!(
+                f,
+                "no point was found where the metric, the constraints and all expressions are regular"
+            ),
+            Self::Depth(depth) => write!(
+                f,
+                "brackets up to depth {depth} did not close the hull of D, deeper ones are out of reach"
+            ),
+            Self::Forces => write!(f, "a force is no polynomial of degree 2 in the velocities"),
+            Self::Denominators => write!(
+                f,
+                "the coefficients inside of sin, cos and exp have no common denominator in reach"
+            ),
+            Self::Relations(atoms) if atoms.is_empty() => {
+                write!(f, "values at real points do not confirm what residues say")
+            }
+            Self::Relations(atoms) => write!(
+                f,
+                "values at real points do not confirm what residues say, as these may be related: {}",
+                atoms.join(", ")
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Undecided {}

@@ -1,0 +1,167 @@
+//! The declared claims, resolved; whether they hold is decided later.
+
+use dalembert_expr::{Assumption as Known, ExprId, Node};
+
+use super::super::resolve::{DerivedNames, Resolver, Scope};
+use super::super::{Claim, Name, Statement, Surface};
+use crate::diagnostics::listed;
+use crate::spec;
+
+/// All claims.
+pub(super) fn resolve(resolver: &mut Resolver<'_>, surfaces: &[Surface]) -> Vec<Claim> {
+    let spec = resolver.spec;
+    resolver.derived_names = DerivedNames::Claims;
+    let mut claims: Vec<Claim> = Vec::new();
+    for claim in &spec.claims {
+        let Some((statement, text)) = resolver.statement(&claim.statement, surfaces) else {
+            continue;
+        };
+        if let Some(first) = claims.iter().find(|other| other.text == text) {
+            let (at, first) = (spec.location(claim.item), spec.location(first.item));
+            let error = resolver
+                .diagnostics
+                .error(at, format!("`{text}` claimed again"));
+            error
+                .help("keep one of the two")
+                .also(first, "first claimed here");
+            continue;
+        }
+        claims.push(Claim {
+            statement,
+            text,
+            is_assumed: claim.is_assumed,
+            item: claim.item,
+        });
+    }
+    claims
+}
+
+impl Resolver<'_> {
+    /// The statement, and its text.
+    fn statement(
+        &mut self,
+        written: &spec::Statement,
+        surfaces: &[Surface],
+    ) -> Option<(Statement, String)> {
+        Some(match written {
+            spec::Statement::Existence(existence) => {
+                let word = match existence {
+                    spec::Existence::Global => "exact",
+                    spec::Existence::Local => "locally_exact",
+                    spec::Existence::None => "none",
+                };
+                (Statement::Existence(*existence), format!("density: {word}"))
+            }
+            spec::Statement::Density(value) => {
+                let expr = self.quantity(value)?;
+                self.check_periodic(&[value], &Scope::default(), expr);
+                if self.pool.is_syntactic_zero(expr) || self.pool.sign(expr).is_nonpositive() {
+                    let text = format!("`{value}` is not positive anywhere");
+                    return self.refuse(value.at, text, "a density is positive");
+                }
+                (Statement::Density(expr), format!("density = {value}"))
+            }
+            spec::Statement::Conserved {
+                value,
+                under,
+                holds,
+            } => {
+                let expr = self.quantity(value)?;
+                let (under, across) = match under {
+                    Some(declared) => {
+                        let surface = self.surface(declared, surfaces)?;
+                        let name = &surfaces[surface].name.display;
+                        (Some(surface), format!(" under {name}"))
+                    }
+                    None => (None, String::new()),
+                };
+                let not = if *holds { "" } else { "not " };
+                let statement = Statement::Conserved {
+                    value: expr,
+                    under,
+                    holds: *holds,
+                };
+                (statement, format!("{not}conserved{across}: {value}"))
+            }
+            spec::Statement::Symmetry(field) => {
+                let components = self.vector_field(field)?;
+                (
+                    Statement::Symmetry(components),
+                    format!("symmetry: {field}"),
+                )
+            }
+        })
+    }
+
+    /// A function of time, positions and velocities.
+    fn quantity(&mut self, written: &spec::Scalar) -> Option<ExprId> {
+        let mut scope = Scope::default();
+        let expr = self.expression(written, &mut scope)?;
+        let differentials = self.symbols.all_differentials();
+        let text = "a claim contains no differentials";
+        let help = "velocities are written `dot(x)`";
+        self.forbid(written, &scope, expr, &differentials, text, help)?;
+        Some(expr)
+    }
+
+    /// The surface of a declared name.
+    fn surface(&mut self, declared: &spec::Declared, surfaces: &[Surface]) -> Option<usize> {
+        let members: Vec<(Name, Scope)> = self.members(declared);
+        let display = &members.first()?.0.display;
+        let found = surfaces.iter().position(|own| own.name.display == *display);
+        found.or_else(|| {
+            let names: Vec<&str> = surfaces
+                .iter()
+                .map(|own| own.name.display.as_str())
+                .collect();
+            let help = if names.is_empty() {
+                "the model declares no surfaces".to_owned()
+            } else {
+                format!("the surfaces are {}", listed(names))
+            };
+            let text = format!("`{display}` is not a surface");
+            self.refuse(declared.name.at, text, &help)
+        })
+    }
+
+    /// The components of a field `sum of f_i partial(x_i)`.
+    fn vector_field(&mut self, written: &spec::Scalar) -> Option<Vec<ExprId>> {
+        let partials: Vec<_> = self
+            .symbols
+            .coordinates
+            .iter()
+            .map(|own| format!("partial({})", own.name.display))
+            .collect();
+        let partials: Vec<_> = partials
+            .iter()
+            .map(|name| self.pool.symbol(name, name, Known::None))
+            .collect();
+        self.partials.clone_from(&partials);
+        let resolved = self.quantity(written);
+        self.partials.clear();
+        let field = resolved?;
+        let mut rest = field;
+        let mut components = Vec::new();
+        for partial in &partials {
+            let component = self.pool.diff(field, *partial);
+            let term = self.pool.variable(*partial);
+            let term = self.pool.mul(component, term);
+            rest = self.pool.sub(rest, term);
+            components.push(component);
+        }
+        let mut moving = self.symbols.velocities();
+        moving.extend(&partials);
+        let is_field = components
+            .iter()
+            .all(|component| !self.pool.depends_on_any(*component, &moving))
+            && super::super::degree::is_zero(&self.pool, rest);
+        let vanishes =
+            |own: &ExprId| matches!(self.pool.node(*own), Node::Number(n) if n.is_zero());
+        if !is_field || components.iter().all(vanishes) {
+            let text = format!("`{written}` is not a vector field");
+            let help = "write a sum such as `partial(theta) - y*partial(x) + x*partial(y)`";
+            return self.refuse(written.at, text, help);
+        }
+        Some(components)
+    }
+}

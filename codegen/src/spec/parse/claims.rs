@@ -1,0 +1,98 @@
+//! `claims { density: exact; conserved: energy; symmetry: partial(theta); }`
+
+use super::super::ast::{Claim, Existence, Spec, Statement};
+use super::super::cursor::{Cursor, Read};
+use super::declared;
+use crate::diagnostics::{Location, listed, nearest};
+
+const KINDS: [&str; 5] = ["density", "conserved", "not", "symmetry", "assume"];
+const EXISTENCE: [(&str, Existence); 3] = [
+    ("exact", Existence::Global),
+    ("locally_exact", Existence::Local),
+    ("none", Existence::None),
+];
+
+/// Reads one claim.
+pub(super) fn claim(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
+    super::documentation(cursor)?;
+    let start = cursor.here();
+    let is_assumed = cursor.eat_word("assume");
+    let statement = match cursor.eat_word("not") {
+        true => {
+            expect_word(cursor, "conserved", "not conserved: energy;")?;
+            conserved(cursor, false)?
+        }
+        false => {
+            let kind = cursor.name("a claim")?;
+            match kind.text.as_str() {
+                "density" => density(cursor)?,
+                "conserved" => conserved(cursor, true)?,
+                "symmetry" => symmetry(cursor)?,
+                unknown => {
+                    let help = match nearest(unknown, KINDS) {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => {
+                            "claims are `density: exact`, `conserved: energy` and `symmetry: partial(theta)`"
+                                .to_owned()
+                        }
+                    };
+                    let text = format!("unknown claim `{unknown}`");
+                    return Err(cursor.refuse(kind.at, text, &help));
+                }
+            }
+        }
+    };
+    let item = spec.item(start.to(cursor.last()));
+    spec.claims.push(Claim {
+        statement,
+        is_assumed,
+        item,
+    });
+    Ok(())
+}
+
+/// `density: exact` or `density = e`
+fn density(cursor: &mut Cursor<'_>) -> Read<Statement> {
+    if cursor.eat_operator("=").is_some() {
+        return Ok(Statement::Density(cursor.scalar()?));
+    }
+    cursor.expect_operator(":", "density: exact;")?;
+    let word = cursor.name("`exact`, `locally_exact` or `none`")?;
+    let known = EXISTENCE.iter().find(|(name, _)| *name == word.text);
+    match known {
+        Some((_, existence)) => Ok(Statement::Existence(*existence)),
+        None => {
+            let words = EXISTENCE.map(|(name, _)| name);
+            let text = format!("expected {}, found `{}`", listed(words), word.text);
+            Err(cursor.refuse(word.at, text, "a stated density is written `density = ..;`"))
+        }
+    }
+}
+
+/// `conserved: e` or `conserved under surface: e`, after the first word.
+fn conserved(cursor: &mut Cursor<'_>, holds: bool) -> Read<Statement> {
+    let under = match cursor.eat_word("under") {
+        true => Some(declared(cursor, "the name of a surface")?),
+        false => None,
+    };
+    cursor.expect_operator(":", "conserved: energy;")?;
+    Ok(Statement::Conserved {
+        value: cursor.scalar()?,
+        under,
+        holds,
+    })
+}
+
+/// `symmetry: partial(theta) - y*partial(x)`, after the first word.
+fn symmetry(cursor: &mut Cursor<'_>) -> Read<Statement> {
+    cursor.expect_operator(":", "symmetry: partial(theta);")?;
+    Ok(Statement::Symmetry(cursor.scalar()?))
+}
+
+fn expect_word(cursor: &mut Cursor<'_>, word: &str, form: &str) -> Read<Location> {
+    if cursor.eat_word(word) {
+        return Ok(cursor.last());
+    }
+    let help = format!("write `{form}`");
+    Err(cursor.unexpected(&format!("expected `{word}`"), &help))
+}
