@@ -1,0 +1,37 @@
+//! The generated functions in the shape of those written by hand: a state in, the result out.
+//!
+//! All panic on a fault; at the states that are compared and timed there is none.
+
+use dalembert::{Impacting, Law, StateVector, System, VectorField};
+
+use crate::State;
+
+/// The rate of a state.
+#[inline(always)]
+pub fn rate<S: VectorField>(system: &S, state: &State<S>) -> State<S> {
+    let mut rate = State::<S>::zeros();
+    system
+        .rate(0.0, state, &mut rate)
+        .expect("no fault at this state");
+    rate
+}
+
+/// The energy of a state.
+#[inline(always)]
+pub fn energy<S: System>(system: &S, state: &State<S>) -> f64 {
+    system.energy(0.0, state).expect("no fault at this state")
+}
+
+/// The state after an elastic impact on a surface.
+#[inline(always)]
+pub fn impact<S: Impacting>(system: &S, surface: usize, state: &State<S>) -> State<S> {
+    let contact = system
+        .contact(surface, 0.0, state)
+        .expect("no fault at this state");
+    let mut after = *state;
+    let size = contact.impulse(Law::Elastic);
+    system
+        .kick(0.0, &mut after, size, &contact.direction)
+        .expect("no fault at this state");
+    after
+}

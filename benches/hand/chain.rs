@@ -1,0 +1,225 @@
+//! The chain of N links, twice: with the metric as a matrix, and link by link in O(N).
+
+use dalembert::{StateVector, VectorField};
+use dalembert_models::{Chain4, Chain16};
+
+use crate::State;
+
+/// A shipped chain of N links.
+pub trait Chain<const N: usize>: VectorField {
+    /// Its parameters.
+    fn rods(&self) -> Rods;
+}
+
+/// The parameters of a chain: mass of a bob, length of a rod, gravity.
+#[derive(Debug, Clone, Copy)]
+pub struct Rods {
+    m: f64,
+    l: f64,
+    g: f64,
+}
+
+macro_rules! chains {
+    ($($chain:ident $links:literal)*) => {$(
+        impl Chain<$links> for $chain {
+            #[inline(always)]
+            fn rods(&self) -> Rods {
+                Rods { m: self.m, l: self.l, g: self.g }
+            }
+        }
+    )*};
+}
+
+chains! { Chain4 4 Chain16 16 }
+
+/// Angles and momenta of a state.
+#[inline(always)]
+fn halves<const N: usize>(state: &impl StateVector) -> ([f64; N], [f64; N]) {
+    let components = state.as_slice();
+    let (mut theta, mut p) = ([0.0; N], [0.0; N]);
+    theta.copy_from_slice(&components[..N]);
+    p.copy_from_slice(&components[N..2 * N]);
+    (theta, p)
+}
+
+/// The state with these halves.
+#[inline(always)]
+fn join<const N: usize, S: StateVector>(first: [f64; N], second: [f64; N]) -> S {
+    let mut state = S::zeros();
+    let components = state.as_mut_slice();
+    components[..N].copy_from_slice(&first);
+    components[N..2 * N].copy_from_slice(&second);
+    state
+}
+
+/// Sines and cosines of the angles.
+#[inline(always)]
+fn directions<const N: usize>(theta: &[f64; N]) -> ([f64; N], [f64; N]) {
+    let (mut sin, mut cos) = ([0.0; N], [0.0; N]);
+    for i in 0..N {
+        (sin[i], cos[i]) = theta[i].sin_cos();
+    }
+    (sin, cos)
+}
+
+/// `g^{-1} p` by LDL^T of the metric `g_jk = (N - max(j, k)) m l^2 cos(theta_j - theta_k)`, counted from 0. Rows of the
+/// upper triangle, so that the inner loops run through memory in order.
+#[inline(always)]
+fn velocities<const N: usize>(rods: Rods, sin: &[f64; N], cos: &[f64; N], p: [f64; N]) -> [f64; N] {
+    let unit = rods.m * rods.l * rods.l;
+    let mut g = [[0.0; N]; N];
+    for j in 0..N {
+        for k in j..N {
+            g[j][k] = (N - k) as f64 * unit * (cos[j] * cos[k] + sin[j] * sin[k]);
+        }
+    }
+    let mut omega = p;
+    let mut inverse_pivot = [0.0; N];
+    for j in 0..N {
+        let pivot_row = g[j];
+        inverse_pivot[j] = 1.0 / pivot_row[j];
+        for i in j + 1..N {
+            let factor = pivot_row[i] * inverse_pivot[j];
+            for k in i..N {
+                g[i][k] -= factor * pivot_row[k];
+            }
+            omega[i] -= factor * omega[j];
+        }
+    }
+    for i in (0..N).rev() {
+        let mut rest = omega[i];
+        for k in i + 1..N {
+            rest -= g[i][k] * omega[k];
+        }
+        omega[i] = rest * inverse_pivot[i];
+    }
+    omega
+}
+
+/// `g^{-1} p`, then `dL/dtheta` as the double sum that it is.
+#[inline]
+pub fn rate<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> State<S> {
+    let rods = chain.rods();
+    let (theta, p) = halves::<N>(state);
+    let (sin, cos) = directions(&theta);
+    let omega = velocities(rods, &sin, &cos, p);
+    let unit = rods.m * rods.l * rods.l;
+    let mut force = [0.0; N];
+    for i in 0..N {
+        let weight = (N - i) as f64;
+        for j in 0..i {
+            let sine = sin[i] * cos[j] - cos[i] * sin[j];
+            let turning = weight * unit * sine * omega[i] * omega[j];
+            force[i] -= turning;
+            force[j] += turning;
+        }
+        force[i] -= weight * rods.m * rods.g * rods.l * sin[i];
+    }
+    join(omega, force)
+}
+
+/// Kinetic and potential energy.
+#[inline]
+pub fn energy<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> f64 {
+    let rods = chain.rods();
+    let (theta, p) = halves::<N>(state);
+    let (sin, cos) = directions(&theta);
+    let omega = velocities(rods, &sin, &cos, p);
+    total(rods, &cos, &p, &omega)
+}
+
+/// `p.omega/2 + V`.
+#[inline(always)]
+fn total<const N: usize>(rods: Rods, cos: &[f64; N], p: &[f64; N], omega: &[f64; N]) -> f64 {
+    let (mut kinetic, mut drop) = (0.0, 0.0);
+    for i in 0..N {
+        kinetic += 0.5 * p[i] * omega[i];
+        drop += (N - i) as f64 * cos[i];
+    }
+    kinetic - rods.m * rods.g * rods.l * drop
+}
+
+/// Velocities and what the links below carry along, in two passes over the chain.
+///
+/// Let `P_i` be the momentum of all bobs from link `i` down; then `p_i = l t_i.P_i` with `t_i = (cos, sin)` along the
+/// motion of the link. From the last link up, `P_i = A_i v_{i-1} + b_i` with a symmetric matrix `A_i`: the inertia that
+/// the bob above feels. From the first link down, the velocities follow one by one.
+#[inline(always)]
+fn link_by_link<const N: usize>(
+    rods: Rods,
+    sin: &[f64; N],
+    cos: &[f64; N],
+    p: &[f64; N],
+) -> ([f64; N], [[f64; 2]; N]) {
+    // What carrying link i and all below it takes: B = m + A_{i+1}, applied to t; 1/(l t.B t); p/l - t.b.
+    let (mut carried, mut inverse, mut excess) = ([[0.0; 2]; N], [0.0; N], [0.0; N]);
+    let (mut matrices, mut offsets) = ([[0.0; 3]; N], [[0.0; 2]; N]);
+    let (mut a, mut b) = ([0.0; 3], [0.0; 2]);
+    for i in (0..N).rev() {
+        let [xx, xy, yy] = [a[0] + rods.m, a[1], a[2] + rods.m];
+        let [x, y] = [xx * cos[i] + xy * sin[i], xy * cos[i] + yy * sin[i]];
+        let scale = 1.0 / (cos[i] * x + sin[i] * y);
+        let missing = p[i] / rods.l - (cos[i] * b[0] + sin[i] * b[1]);
+        (matrices[i], offsets[i]) = ([xx, xy, yy], b);
+        (carried[i], inverse[i], excess[i]) = ([x, y], scale, missing);
+        a = [xx - x * x * scale, xy - x * y * scale, yy - y * y * scale];
+        b = [b[0] + x * missing * scale, b[1] + y * missing * scale];
+    }
+    let (mut omega, mut momenta, mut v) = ([0.0; N], [[0.0; 2]; N], [0.0; 2]);
+    for i in 0..N {
+        let speed = (excess[i] - (carried[i][0] * v[0] + carried[i][1] * v[1])) * inverse[i];
+        omega[i] = speed / rods.l;
+        v = [v[0] + speed * cos[i], v[1] + speed * sin[i]];
+        let ([xx, xy, yy], b) = (matrices[i], offsets[i]);
+        momenta[i] = [xx * v[0] + xy * v[1] + b[0], xy * v[0] + yy * v[1] + b[1]];
+    }
+    (omega, momenta)
+}
+
+/// Link by link: `dL/dtheta_i = l omega_i n_i.P_i - (N - i) m g l sin(theta_i)`, with `n_i` the derivative of `t_i`.
+#[inline]
+pub fn rate_by_links<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> State<S> {
+    let rods = chain.rods();
+    let (theta, p) = halves::<N>(state);
+    let (sin, cos) = directions(&theta);
+    let (omega, momenta) = link_by_link(rods, &sin, &cos, &p);
+    let mut force = [0.0; N];
+    for i in 0..N {
+        let across = cos[i] * momenta[i][1] - sin[i] * momenta[i][0];
+        let weight = (N - i) as f64 * rods.m * rods.g;
+        force[i] = rods.l * (omega[i] * across - weight * sin[i]);
+    }
+    join(omega, force)
+}
+
+/// The energy with the velocities found link by link.
+#[inline]
+pub fn energy_by_links<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> f64 {
+    let rods = chain.rods();
+    let (theta, p) = halves::<N>(state);
+    let (sin, cos) = directions(&theta);
+    let (omega, _) = link_by_link(rods, &sin, &cos, &p);
+    total(rods, &cos, &p, &omega)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generated;
+    use crate::hand::agreement::{assert_numbers_agree, assert_states_agree};
+    use dalembert::Described;
+
+    fn compare<const N: usize, S: Chain<N> + Described>(chain: S) {
+        assert_states_agree(&chain, generated::rate, rate);
+        assert_states_agree(&chain, generated::rate, rate_by_links);
+        assert_numbers_agree(&chain, generated::energy, energy);
+        assert_numbers_agree(&chain, generated::energy, energy_by_links);
+    }
+
+    #[test]
+    fn the_chain_by_hand_is_the_generated_one() {
+        let (m, l, g) = (1.3, 0.7, 9.81);
+        compare(Chain4 { m, l, g });
+        compare(Chain16 { m, l, g });
+    }
+}

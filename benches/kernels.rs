@@ -1,0 +1,269 @@
+//! Times of single calls, generated and by hand: rate, energy, impact; of a step; of what an impact adds to a run.
+//!
+//! `cargo bench --package dalembert-benches --bench kernels [-- FILTER]`
+
+use core::hint::black_box;
+use core::time::Duration;
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
+use dalembert::{
+    Counters, Described, Dop853, DormandPrince5, Effect, Impacts, Outcome, Scene, Simulation,
+    Stepper, System, Tolerance,
+};
+use dalembert_benches::hand::{
+    chain, chaplygin_sleigh, double_pendulum, point_billiard, rolling_disk,
+};
+use dalembert_benches::{State, generated};
+use dalembert_models::{
+    Chain4, Chain16, ChaplyginSleigh, DoublePendulum, PointBilliard, RollingDisk,
+};
+use dalembert_tests::sampling;
+
+/// States that a kernel is called with, one after the other.
+const STATES: usize = 64;
+
+/// Times functions of a state of one system, at the declared parameters.
+struct Kernels<'c, S: Described> {
+    group: BenchmarkGroup<'c, WallTime>,
+    system: S,
+    states: [State<S>; STATES],
+}
+
+impl<'c, S: Described> Kernels<'c, S> {
+    fn new(criterion: &'c mut Criterion, kind: &str) -> Self {
+        let system = S::with_defaults();
+        let states = sampling::states(&system, STATES, 1);
+        Self {
+            group: criterion.benchmark_group(format!("{kind}/{}", S::DESCRIPTION.name)),
+            system,
+            states: states.try_into().expect("as many as asked for"),
+        }
+    }
+
+    /// Times a function. The system is hidden from the optimiser at each call: parameters are read, and their quotients
+    /// formed, as often as the function is called.
+    fn time<R>(mut self, form: &str, function: impl Fn(&S, &State<S>) -> R) -> Self {
+        let mut k = 0;
+        self.group.bench_function(form, |bencher| {
+            bencher.iter(|| {
+                k = (k + 1) % STATES;
+                function(black_box(&self.system), &self.states[k])
+            });
+        });
+        self
+    }
+}
+
+fn rates(criterion: &mut Criterion) {
+    const KIND: &str = "rate";
+    Kernels::<PointBilliard>::new(criterion, KIND)
+        .time("generated", generated::rate)
+        .time("by hand", point_billiard::rate);
+    Kernels::<RollingDisk>::new(criterion, KIND)
+        .time("generated", generated::rate)
+        .time("by hand", rolling_disk::rate)
+        .time("in closed form", rolling_disk::rate_in_closed_form);
+    Kernels::<ChaplyginSleigh>::new(criterion, KIND)
+        .time("generated", generated::rate)
+        .time("by hand", chaplygin_sleigh::rate)
+        .time("in the frame", chaplygin_sleigh::rate_in_frame);
+    Kernels::<DoublePendulum>::new(criterion, KIND)
+        .time("generated", generated::rate)
+        .time("by hand", double_pendulum::rate);
+    Kernels::<Chain4>::new(criterion, KIND)
+        .time("generated", generated::rate)
+        .time("by hand", chain::rate)
+        .time("by links", chain::rate_by_links);
+    Kernels::<Chain16>::new(criterion, KIND)
+        .time("generated", generated::rate)
+        .time("by hand", chain::rate)
+        .time("by links", chain::rate_by_links);
+}
+
+fn energies(criterion: &mut Criterion) {
+    const KIND: &str = "energy";
+    Kernels::<PointBilliard>::new(criterion, KIND)
+        .time("generated", generated::energy)
+        .time("by hand", point_billiard::energy);
+    Kernels::<RollingDisk>::new(criterion, KIND)
+        .time("generated", generated::energy)
+        .time("by hand", rolling_disk::energy);
+    Kernels::<ChaplyginSleigh>::new(criterion, KIND)
+        .time("generated", generated::energy)
+        .time("by hand", chaplygin_sleigh::energy);
+    Kernels::<DoublePendulum>::new(criterion, KIND)
+        .time("generated", generated::energy)
+        .time("by hand", double_pendulum::energy);
+    Kernels::<Chain4>::new(criterion, KIND)
+        .time("generated", generated::energy)
+        .time("by hand", chain::energy)
+        .time("by links", chain::energy_by_links);
+    Kernels::<Chain16>::new(criterion, KIND)
+        .time("generated", generated::energy)
+        .time("by hand", chain::energy)
+        .time("by links", chain::energy_by_links);
+}
+
+/// Elastic impacts, each kernel for any surface of its system.
+fn impacts(criterion: &mut Criterion) {
+    const KIND: &str = "impact";
+    let surface = || black_box(0);
+    Kernels::<PointBilliard>::new(criterion, KIND)
+        .time("generated", |point, state| {
+            generated::impact(point, surface(), state)
+        })
+        .time("by hand", point_billiard::impact);
+    Kernels::<RollingDisk>::new(criterion, KIND)
+        .time("generated", |disk, state| {
+            generated::impact(disk, surface(), state)
+        })
+        .time("by hand", |disk, state| {
+            rolling_disk::impact(disk, surface(), state)
+        });
+    Kernels::<ChaplyginSleigh>::new(criterion, KIND)
+        .time("generated", |sleigh, state| {
+            generated::impact(sleigh, surface(), state)
+        })
+        .time("by hand", |sleigh, state| {
+            chaplygin_sleigh::impact(sleigh, surface(), state)
+        });
+}
+
+/// Tolerance of the steps and runs that are timed.
+const TOLERANCE: f64 = 1e-9;
+
+fn tolerance() -> Tolerance {
+    Tolerance::new(TOLERANCE).expect("a tolerance")
+}
+
+/// The declared initial state.
+fn start<S: Described>(system: &S) -> State<S> {
+    let initial = system.initial();
+    let qdot = system.complete_velocity(0.0, &initial.q, &initial.qdot, &initial.named);
+    let qdot = qdot.expect("velocities that satisfy the constraints");
+    system
+        .state(0.0, &initial.q, &qdot)
+        .expect("an admissible state")
+}
+
+/// Time of one accepted step: the mean over smooth runs of ten seconds from the declared initial state, one after the
+/// other, with the trials they reject.
+fn step<S: Described, Step: Stepper<S>>(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    system: &S,
+    mut stepper: Step,
+) {
+    const UNTIL: f64 = 10.0;
+    let state = start(system);
+    let mut counters = Counters::default();
+    let name = format!("{}/{}", S::DESCRIPTION.name, Step::NAME);
+    group.bench_function(name, |bencher| {
+        stepper
+            .start(system, 0.0, &state, UNTIL, &mut counters)
+            .expect("a start");
+        bencher.iter(|| {
+            if stepper.t_end() >= UNTIL {
+                stepper
+                    .start(system, 0.0, &state, UNTIL, &mut counters)
+                    .expect("a start");
+            }
+            stepper
+                .step(black_box(system), UNTIL, &mut counters)
+                .expect("a step");
+        });
+    });
+}
+
+fn steps(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("step");
+    macro_rules! steps {
+        ($($model:ty),*) => {$(
+            step(&mut group, &<$model>::default(), Dop853::new(tolerance()));
+            step(&mut group, &<$model>::default(), DormandPrince5::new(tolerance()));
+        )*};
+    }
+    steps!(
+        RollingDisk,
+        ChaplyginSleigh,
+        DoublePendulum,
+        Chain4,
+        Chain16
+    );
+}
+
+/// Times a run of one flight, and asserts the number of impacts in it.
+fn flight<S: System, E: Effect<S> + Clone>(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    name: &str,
+    system: &S,
+    (state, until): (State<S>, f64),
+    (effects, impacts): (E, u64),
+) {
+    let fly = || {
+        Simulation::new(black_box(system), Dop853::new(tolerance()), effects.clone())
+            .run(0.0, state, until, &mut ())
+            .expect("a start")
+    };
+    let run = fly();
+    assert_eq!(
+        (run.outcome, run.counters.impacts),
+        (Outcome::Done, impacts)
+    );
+    group.bench_function(name, |bencher| bencher.iter(fly));
+}
+
+/// What one impact adds to a run: the difference of the first two times, locating it, carrying it out, starting again
+/// and the steps that takes. The other table is so large that there is no impact. The last run does not look for one.
+fn located(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("flight/point_billiard");
+    let point = PointBilliard::default();
+    let large = PointBilliard {
+        ta: 150.0,
+        tb: 100.0,
+        ..point
+    };
+    let way = (start(&point), 1.5);
+    flight(
+        &mut group,
+        "one impact",
+        &point,
+        way,
+        (Impacts::declared(&point), 1),
+    );
+    flight(
+        &mut group,
+        "none",
+        &large,
+        way,
+        (Impacts::declared(&large), 0),
+    );
+    flight(&mut group, "not watched", &point, way, ((), 0));
+    group.finish();
+
+    let mut group = criterion.benchmark_group("flight/rolling_disk");
+    let disk = RollingDisk::default();
+    let large = RollingDisk {
+        ta: 15.0,
+        tb: 20.0,
+        ..disk
+    };
+    let way = (start(&disk), 2.2);
+    flight(&mut group, "one impact", &disk, way, (disk.effects(), 1));
+    flight(&mut group, "none", &large, way, (large.effects(), 0));
+    flight(&mut group, "not watched", &disk, way, ((), 0));
+}
+
+fn configuration() -> Criterion {
+    Criterion::default()
+        .without_plots()
+        .warm_up_time(Duration::from_millis(500))
+        .measurement_time(Duration::from_secs(2))
+}
+
+criterion_group! {
+    name = kernels;
+    config = configuration();
+    targets = rates, energies, impacts, steps, located
+}
+criterion_main!(kernels);

@@ -1,0 +1,301 @@
+//! Problems with known solutions: each is solved, and the error of what came out is measured.
+//!
+//! The definitions and where the solutions are from: `benches/README.md`.
+
+use std::time::Duration;
+
+use dalembert::{
+    Counters, Dop853, DormandPrince5, Effect, Impacts, Law, Outcome, Projection, Run, Scene,
+    SceneEffects, Simulation, Stepper, System, Tolerance,
+};
+use dalembert_models::{BouncingBall, ChaplyginSleigh, DoublePendulum, RollingDisk};
+
+use crate::State;
+use crate::timing::timed;
+
+/// An integrator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// [`Dop853`].
+    Dop853,
+    /// [`DormandPrince5`].
+    DormandPrince5,
+}
+
+impl Method {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Dop853, Self::DormandPrince5];
+
+    /// The name the command line gives it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Dop853 => "dop853",
+            Self::DormandPrince5 => "dopri5",
+        }
+    }
+}
+
+/// How a problem is to be solved.
+#[derive(Debug, Clone, Copy)]
+pub struct Manner {
+    /// With what.
+    pub method: Method,
+    /// At which tolerance, relative and absolute.
+    pub tolerance: Tolerance,
+    /// How many times; the time is that of one of them.
+    pub times: u32,
+}
+
+/// A solution.
+#[derive(Debug, Clone, Copy)]
+pub struct Solved {
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// When it ended.
+    pub t: f64,
+    /// Distance from the known solution; NaN if the run ended for another reason than it should have.
+    pub error: f64,
+    /// The work.
+    pub counters: Counters,
+    /// The wall time of one run.
+    pub time: Duration,
+}
+
+/// A problem: its name, and how it is solved.
+#[derive(Clone, Copy)]
+pub struct Problem {
+    /// Snake case.
+    pub name: &'static str,
+    /// Solves it.
+    pub solve: fn(Manner) -> Solved,
+}
+
+/// All of them.
+pub const ALL: [Problem; 5] = [
+    Problem {
+        name: "disk_billiard",
+        solve: disk_billiard,
+    },
+    Problem {
+        name: "sleigh",
+        solve: sleigh,
+    },
+    Problem {
+        name: "sleigh_billiard",
+        solve: sleigh_billiard,
+    },
+    Problem {
+        name: "double_pendulum",
+        solve: double_pendulum,
+    },
+    Problem {
+        name: "bouncing_ball",
+        solve: bouncing_ball,
+    },
+];
+
+/// Impacts after which the billiards are compared.
+const IMPACTS: u64 = 20;
+
+/// Longer than any billiard takes to its last impact.
+const LATE: f64 = 1e3;
+
+/// The disk on the elliptical table, up to impact 20.
+fn disk_billiard(manner: Manner) -> Solved {
+    let disk = RollingDisk::default();
+    let phi = core::f64::consts::FRAC_PI_2;
+    let qdot = [
+        disk.R * phi.cos() * 10.0,
+        disk.R * phi.sin() * 10.0,
+        10.0,
+        0.2,
+    ];
+    let state = disk.state(0.0, &[0.0, 0.0, 0.0, phi].into(), &qdot.into());
+    let run = solve(
+        &disk,
+        state.expect("an admissible state"),
+        billiard(&disk),
+        LATE,
+        manner,
+    );
+    solved(run, Outcome::ImpactBudget, |run| {
+        (run.t - 23.767_117_735_750_162).abs()
+    })
+}
+
+/// The sleigh without table: it turns round once and slides away.
+fn sleigh(manner: Manner) -> Solved {
+    let sleigh = ChaplyginSleigh {
+        a: 0.3,
+        ..ChaplyginSleigh::default()
+    };
+    let state = sleigh.state(0.0, &[0.0; 3].into(), &[-1.0, 0.0, 0.2].into());
+    let state = state.expect("an admissible state");
+    let run = solve(&sleigh, state, Projection::new(), 1000.0, manner);
+    solved(run, Outcome::Done, |run| {
+        let [x, y, theta, ..]: [f64; 6] = run.state.into();
+        let differences = [
+            x + 711.407_841_646_589_8,
+            y + 713.335_210_810_974_3,
+            theta - 10.216_689_681_437_405,
+        ];
+        largest(&differences)
+    })
+}
+
+/// The sleigh with both tips on an elliptical table, up to impact 20.
+fn sleigh_billiard(manner: Manner) -> Solved {
+    let sleigh = ChaplyginSleigh {
+        a: 0.3,
+        len: 0.5,
+        ta: 3.0,
+        tb: 4.0,
+        ..ChaplyginSleigh::default()
+    };
+    let theta = 0.3_f64;
+    let qdot = [theta.cos(), theta.sin(), 1.0];
+    let state = sleigh.state(0.0, &[0.0, 0.0, theta].into(), &qdot.into());
+    let state = state.expect("an admissible state");
+    let run = solve(&sleigh, state, billiard(&sleigh), LATE, manner);
+    solved(run, Outcome::ImpactBudget, |run| {
+        (run.t - 56.157_098_795_242_376).abs()
+    })
+}
+
+/// The double pendulum from high up, for ten seconds.
+fn double_pendulum(manner: Manner) -> Solved {
+    let pendulum = DoublePendulum::default();
+    let state = pendulum.state(0.0, &[2.0, 2.5].into(), &[0.0, 0.0].into());
+    let run = solve(
+        &pendulum,
+        state.expect("an admissible state"),
+        (),
+        10.0,
+        manner,
+    );
+    solved(run, Outcome::Done, |run| {
+        let [theta1, theta2, ..]: [f64; 4] = run.state.into();
+        largest(&[
+            theta1 + 0.753_128_874_294_911_4,
+            theta2 - 1.627_933_082_053_704_1,
+        ])
+    })
+}
+
+/// The ball that loses a tenth of its speed at each impact, up to where the impacts accumulate.
+fn bouncing_ball(manner: Manner) -> Solved {
+    let ball = BouncingBall { m: 1.0, g: 9.81 };
+    let state = ball.state(0.0, &[1.0].into(), &[0.0].into());
+    let effects = Impacts::declared(&ball).with_law(0, Law::Newton(0.9));
+    let run = solve(
+        &ball,
+        state.expect("an admissible state"),
+        effects,
+        20.0,
+        manner,
+    );
+    let accumulation = match run.0.outcome {
+        Outcome::Zeno { t, .. } => t,
+        _ => f64::NAN,
+    };
+    solved(run, run.0.outcome, |_| {
+        (accumulation - 8.578_949_178_728_887).abs()
+    })
+}
+
+/// The declared effects, up to the last impact.
+fn billiard<S: Scene>(system: &S) -> S::Effects {
+    let mut effects = system.effects();
+    effects.set_impact_budget(Some(IMPACTS));
+    effects
+}
+
+fn largest(differences: &[f64]) -> f64 {
+    differences
+        .iter()
+        .fold(0.0, |largest, difference| largest.max(difference.abs()))
+}
+
+/// Runs from `t = 0`.
+fn solve<S: System, E: Effect<S> + Clone>(
+    system: &S,
+    state: State<S>,
+    effects: E,
+    until: f64,
+    manner: Manner,
+) -> (Run<State<S>>, Duration) {
+    match manner.method {
+        Method::Dop853 => {
+            let stepper = Dop853::new(manner.tolerance);
+            repeat(system, state, (stepper, effects), until, manner.times)
+        }
+        Method::DormandPrince5 => {
+            let stepper = DormandPrince5::new(manner.tolerance);
+            repeat(system, state, (stepper, effects), until, manner.times)
+        }
+    }
+}
+
+/// Runs as often as asked for; the last run and the mean time.
+fn repeat<S: System, Step: Stepper<S> + Copy, E: Effect<S> + Clone>(
+    system: &S,
+    state: State<S>,
+    (stepper, effects): (Step, E),
+    until: f64,
+    times: u32,
+) -> (Run<State<S>>, Duration) {
+    let once = || {
+        Simulation::new(system, stepper, effects.clone())
+            .run(0.0, state, until, &mut ())
+            .expect("a start")
+    };
+    let (time, run) = timed(|| {
+        for _ in 1..times {
+            core::hint::black_box(once());
+        }
+        once()
+    });
+    (run, time / times)
+}
+
+/// Measures the error of a run, if it ended as it should have.
+fn solved<S: Copy>(
+    (run, time): (Run<S>, Duration),
+    expected: Outcome,
+    error: impl FnOnce(&Run<S>) -> f64,
+) -> Solved {
+    let as_expected = run.outcome == expected;
+    Solved {
+        outcome: run.outcome,
+        t: run.t,
+        error: if as_expected { error(&run) } else { f64::NAN },
+        counters: run.counters,
+        time,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both integrators come ten thousand times closer to every stored solution at 1e-13 than at 1e-6: were a stored
+    /// digit wrong that matters there, they would not.
+    #[test]
+    fn errors_fall_with_the_tolerance() {
+        for problem in ALL {
+            for method in Method::ALL {
+                let error = |tolerance: f64| {
+                    let manner = Manner {
+                        method,
+                        tolerance: Tolerance::new(tolerance).expect("a tolerance"),
+                        times: 1,
+                    };
+                    (problem.solve)(manner).error
+                };
+                let (loose, tight) = (error(1e-6), error(1e-13));
+                let label = format!("{} {}: {loose:e}, {tight:e}", problem.name, method.name());
+                assert!(tight < 1e-4 * loose || tight < 1e-12, "{label}");
+            }
+        }
+    }
+}
