@@ -1,0 +1,144 @@
+//! Names, numbers, definitions and families that cannot be used as written.
+
+use super::{refused, refused_in, refused_term};
+
+#[test]
+fn unknown_names_come_with_what_was_meant() {
+    refused_term(
+        "«thta»",
+        "unknown name `thta`\nhelp: did you mean the coordinate `theta`?",
+    );
+    refused_term(
+        "«x·y»",
+        "unknown name `x·y`\nhelp: the middle dot is part of the name; write `x*y`",
+    );
+    refused_term(
+        "«xdot»",
+        "unknown name `xdot`\nhelp: the velocity of `x` is written `dot(x)`",
+    );
+    refused_term("«dx»*x", "the differential of `x` is written `d(x)`");
+    refused_term(
+        "«banana»",
+        "unknown name `banana`\nhelp: a parameter is declared with `parameters { banana; }`",
+    );
+    refused_term("«ẋ»", "unknown name `ẋ`\nhelp: did you mean `dot(x)`?");
+    refused_term(
+        "«ν»*x",
+        "`ν` (Greek nu) is not the declared `v`\nhelp: write `v`",
+    );
+    refused_term(
+        "«θ»",
+        "`θ` (Greek theta) is not the declared `theta`\nhelp: write `theta`",
+    );
+}
+
+#[test]
+fn unknown_functions_come_with_the_list() {
+    refused_term(
+        "«sinn»(x)",
+        "unknown function `sinn`\nhelp: did you mean `sin`?",
+    );
+    refused_term("«log»(x)", "unknown function `log`\nhelp: write `ln(..)`");
+    refused_term("«max»(x, y)", "`max` is not differentiable");
+    refused_term(
+        "«m»(x + y)",
+        "`m` is a parameter, not a function\nhelp: a product is written `m*(x + y)`",
+    );
+    refused_term("«sin»(x, y)", "`sin` takes 1 argument, found 2");
+}
+
+#[test]
+fn numbers_without_a_value_are_refused() {
+    refused_term("x/«0»", "division by zero");
+    refused_term("«0^-1»", "division by zero");
+    refused_term("«0^0»", "`0^0` is not defined");
+    refused_term("«(-8)^(1/3)»", "is not a real number");
+    refused_term("«ln(0)»", "`ln(0)` is not a real number");
+    refused_term("«sqrt(-2)»", "`sqrt(-2)` is not a real number");
+    refused_term(
+        "x^«1000000000»",
+        "the exponent `1000000000` is too large; the limit is 4096",
+    );
+    refused_term("2^«(2^40)»", "is too large; the limit is 4096");
+    refused_term("«(10^30)^4000»", "an exact number of more than 4096 bits");
+    refused_term(
+        "x^«y»",
+        "the exponent `y` is not a constant rational number\nhelp: write `exp(y*ln(x))`",
+    );
+}
+
+#[test]
+fn names_are_declared_once() {
+    let twice = "P { coordinates { x; «x»; } lagrangian = dot(x)^2; }";
+    refused(twice, "`x` declared again");
+    let both = "P { coordinates { x; } parameters { «x» > 0; } lagrangian = dot(x)^2; }";
+    refused(both, "`x` declared again");
+    refused_in("let «m» = 2;", "`m` declared again");
+    refused_in(
+        "constraints { c: d(x) = 0; «c»: d(y) = 0; }",
+        "constraint `c` declared again",
+    );
+    refused_in("outputs { o: x; «o»: y; }", "output `o` declared again");
+}
+
+#[test]
+fn definitions_use_what_stands_above() {
+    refused_in(
+        "let p = «q»; let q = p;",
+        "defined in terms of itself: p -> q -> p",
+    );
+    refused_in("let p = «p» + 1;", "defined in terms of itself: p -> p");
+    refused_in(
+        "let f(u) = «f»(u - 1);",
+        "defined in terms of itself: f -> f",
+    );
+    refused_in(
+        "let p = «q»; let q = 1;",
+        "`q` is used before it is defined\nhelp: move `let q` above `let p`",
+    );
+    refused_in("let f(u) = u + «thta»;", "unknown name `thta`");
+    refused_in(
+        "let X[i in 1..=3] = X[«i - 1»] + 1;",
+        "`X[0]` is not defined above\nhelp: begin with `let X[0] = ..;`",
+    );
+    refused_in(
+        "let f(u) = u; outputs { o: «f»; }",
+        "`f` is a function\nhelp: write `f(u)`",
+    );
+    refused_in(
+        "let f(u) = u; outputs { o: «f»(x, y); }",
+        "`f` takes 1 argument, found 2",
+    );
+}
+
+#[test]
+fn families_have_members() {
+    let chain = |rest: &str| {
+        format!(
+            "C {{ const N = 3; coordinates {{ q[N]; }} parameters {{ m[N] > 0 = 1; }}
+                lagrangian = sum(i in 1..=N: m[i]*dot(q[i])^2); {rest} }}"
+        )
+    };
+    refused(
+        &chain("outputs { o: q[«4»]; }"),
+        "`q[4]` does not exist\nhelp: `q` has the members 1 to 3",
+    );
+    refused(
+        &chain("outputs { o: «q»; }"),
+        "`q` is a family of 3\nhelp: write `q[1]`",
+    );
+    refused(&chain("outputs { o: «N»[1]; }"), "`N` is not a family");
+    refused(
+        &chain("outputs { o: q[«m[1]»]; }"),
+        "`m[1]` is not an integer known while building",
+    );
+    refused(&chain("initial { «q» = 1; }"), "`q` is a family of 3");
+    refused(
+        &chain("outputs { o: sum(i in «1..=10000»: x); }"),
+        "takes more than 4096 values",
+    );
+    refused(
+        "P { coordinates { q[«0»]; } lagrangian = dot(q[1])^2; }",
+        "a family of 0",
+    );
+}

@@ -1,0 +1,237 @@
+//! One case for each error of the parser: the message, and the part of the text it points at, marked `«..»`.
+
+use super::{lagrangian, read};
+use crate::diagnostics::{reported, unmarked};
+
+/// Exactly one error, with this message, at the marked place.
+#[track_caller]
+fn refused(source: &str, message: &str) {
+    let (source, marked) = unmarked(source);
+    let diagnostics = read(&source).expect_err("accepted");
+    let errors = reported(&source, &diagnostics);
+    assert_eq!(errors.len(), 1, "{errors:?}");
+    assert!(errors[0].0.contains(message), "{}", errors[0].0);
+    assert_eq!(errors[0].1, marked, "{}", errors[0].0);
+}
+
+#[track_caller]
+fn refused_expression(expression: &str, message: &str) {
+    refused(&lagrangian(expression), message);
+}
+
+#[track_caller]
+fn refused_in(rest: &str, message: &str) {
+    refused(
+        &format!("P {{ coordinates {{ x; }} lagrangian = x; {rest} }}"),
+        message,
+    );
+}
+
+#[test]
+fn slips_in_expressions_are_named() {
+    refused_expression("«2x»", "missing `*` between `2` and `x`\nhelp: write `2*x`");
+    refused_expression("«1.5e3m»", "missing `*` between `1.5e3` and `m`");
+    refused_expression("«2f64»", "numbers have no type: `f64`\nhelp: write `2`");
+    refused_expression("«0x10»", "numbers are decimal");
+    refused_expression("«1e400»", "`1e400` is not a finite number");
+    refused_expression(
+        "x «**» 2",
+        "no `**` operator\nhelp: a power is written `x^2`",
+    );
+    refused_expression(
+        "sin «x»",
+        "function call needs parentheses\nhelp: write `sin(x)`",
+    );
+    refused_expression("«sin»^2*x", "the power of a function is written `sin(x)^2`");
+    refused_expression("m «v»^2", "missing operator before `v`");
+    refused_expression("x «<» 1", "`<` is not differentiable");
+    refused_expression("x «==» 1", "`==` is not differentiable");
+    refused_expression("«if»(x)", "`if` is not differentiable");
+    refused_expression("x «if» y", "an expression has no cases");
+    refused_expression("«|»x|", "the absolute value is written `abs(x)`");
+    refused_expression("theta«.»3", "a member of a family is written `theta[3]`");
+    refused_expression("«\"text\"»", "expected an expression, found a text");
+    refused_expression("x «+»", "expected an expression");
+    refused_expression("«(»)", "expected an expression");
+    refused_expression("sum(i in 1«.».N: x)", "expected `..=`");
+}
+
+#[test]
+fn long_words_are_refused_with_short_messages() {
+    let name = "a".repeat(10_000);
+    refused_expression(
+        &format!("«{name}»"),
+        "the name `aaaaaaaaaaaa..` has 10000 letters; the limit is 64",
+    );
+    let number = "1".repeat(1 << 16);
+    refused_expression(
+        &format!("«{number}»"),
+        "a number of 65536 digits; the limit is 40",
+    );
+}
+
+#[test]
+fn nesting_is_bounded() {
+    let nested = |depth: usize| format!("{}x{}", "(".repeat(depth), ")".repeat(depth));
+    assert!(read(&lagrangian(&nested(255))).is_ok());
+    let errors = read(&lagrangian(&nested(1000))).unwrap_err();
+    assert!(
+        errors
+            .iter()
+            .next()
+            .unwrap()
+            .message()
+            .starts_with("nested 1001 deep; the limit is 256")
+    );
+    let exponents = format!("{}x", "x^".repeat(1000));
+    let errors = read(&lagrangian(&exponents)).unwrap_err();
+    assert!(
+        errors
+            .iter()
+            .next()
+            .unwrap()
+            .message()
+            .starts_with("more than 256 exponents above each other")
+    );
+    assert!(read(&lagrangian(&format!("x{}x", "-".repeat(100_000)))).is_ok());
+}
+
+#[test]
+fn missing_semicolons_are_named_behind_the_last_token() {
+    refused(
+        "P { coordinates { «x» y; } lagrangian = x; }",
+        "expected `;`",
+    );
+    refused(
+        "P { coordinates { x; «y» } lagrangian = x; }",
+        "expected `;`",
+    );
+    refused(
+        "P { lagrangian = x^«2» coordinates { x; } }",
+        "expected `;`",
+    );
+    refused(
+        "P { coordinates { x; } parameters { m > 0 = 1 «k» > 0 = 1; } lagrangian = x; }",
+        "missing operator before `k`",
+    );
+    refused(
+        "P { coordinates { x; } parameters { m > «0» k > 0 = 1; } lagrangian = x; }",
+        "expected `;`",
+    );
+    refused("P { coordinates { x; } lagrangian = «x» }", "expected `;`");
+}
+
+#[test]
+fn declarations_are_known() {
+    refused_in(
+        "«constriants» { c: d(x) = 0; }",
+        "unknown declaration `constriants`\nhelp: did you mean `constraints`?",
+    );
+    refused_in(
+        "«banana» = 3;",
+        "unknown declaration `banana`\nhelp: a model consists of `const`",
+    );
+    refused_in("«lagrangian» = 2;", "second `lagrangian`");
+    refused(
+        "P { «coordinates» { } lagrangian = 1; }",
+        "a model needs at least one coordinate",
+    );
+    refused_in("initial «=» 3;", "expected `{ .. }` after `initial`");
+    refused_in(
+        "«#»[cfg(test)] let a = 1;",
+        "attributes are not part of a model",
+    );
+    refused(
+        "P { coordinates { x; } lagrangian = x; } «Q» {}",
+        "declare one model in each `model!`",
+    );
+    refused("pub «{ }»", "expected the name of a model");
+}
+
+#[test]
+fn declarations_to_come_are_refused_by_name() {
+    for word in [
+        "claims",
+        "scenes",
+        "frame",
+        "modes",
+        "transitions",
+        "field",
+        "inputs",
+    ] {
+        let message = format!("`{word}` is not implemented in this version\nhelp: ");
+        refused_in(&format!("«{word}» {{ a: b; }}"), &message);
+    }
+    refused_in(
+        "impacts { w: x >= 0 => «reset» { x = 1; }; }",
+        "`reset` is not implemented in this version",
+    );
+    refused_in(
+        "impacts { w: x >= 0 => elastic, «instantaneous» { }; }",
+        "`instantaneous` is not implemented",
+    );
+}
+
+#[test]
+fn reserved_words_are_not_declared() {
+    refused(
+        "P { coordinates { «dot»; } lagrangian = 1; }",
+        "`dot` is reserved",
+    );
+    refused(
+        "P { coordinates { «sin»; } lagrangian = 1; }",
+        "`sin` is reserved",
+    );
+    refused(
+        "P { coordinates { «move»; } lagrangian = 1; }",
+        "`move` is a word of Rust",
+    );
+    refused_in("let «t» = 1;", "`t` is reserved");
+    refused_in("let f(«pi») = 1;", "`pi` is reserved");
+    refused_in(
+        "constraints { «energy»: d(x) = 0; }",
+        "`energy` is reserved",
+    );
+}
+
+#[test]
+fn sections_keep_their_forms() {
+    refused_in(
+        "constraints { c: d(x) «==» 0; }",
+        "expected `=`, found `==`",
+    );
+    refused_in("constraints { c: d«(x)»; }", "expected `=`");
+    refused_in(
+        "impacts { w: x «>» 0; }",
+        "expected `>=` or `<=`, found `>`",
+    );
+    refused_in(
+        "impacts { w: x >= 0 when y «>=» 0; }",
+        "expected `>` or `<`, found `>=`",
+    );
+    refused_in(
+        "impacts { w: x >= 0 when y > 0 «and» z > 0; }",
+        "several conditions are written",
+    );
+    refused_in(
+        "impacts { w: x >= 0 => elastic «when» y > 0; }",
+        "conditions stand before the law",
+    );
+    refused_in("parameters { m > «1»; }", "assumptions compare with 0");
+    refused_in("parameters { m «<» 0; }", "expected an assumption");
+    refused_in(
+        "view { path: «(x)»; }",
+        "the components of a path are two expressions, found 1",
+    );
+    refused_in("view { «paht»: (x, y); }", "unknown entry `paht` of `view`");
+    refused(
+        "P { coordinates { x: «circle»; } lagrangian = x; }",
+        "expected `angle`, found `circle`",
+    );
+}
+
+#[test]
+fn independent_mistakes_are_all_reported() {
+    let source = "P { coordinates { x y; z; } lagrangian = 2x; constraints { a: d(x) == 0; b: d(z) = 0; c: = 0; } claims { } }";
+    assert_eq!(read(source).unwrap_err().len(), 5);
+}
