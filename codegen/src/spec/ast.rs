@@ -14,6 +14,8 @@ pub struct ItemId(u32);
 pub struct Spec {
     /// The type's name.
     pub name: Word,
+    /// Its snake case, which names the module of indices.
+    pub snake_name: String,
     /// Nothing, `pub`, `pub(crate)`.
     pub visibility: String,
     /// Lines of the doc comment.
@@ -47,9 +49,10 @@ pub struct Spec {
 
 impl Spec {
     /// A model of which only the name is known.
-    pub(super) fn new(name: Word) -> Self {
+    pub(super) fn new(name: Word, snake_name: String) -> Self {
         Self {
             name,
+            snake_name,
             visibility: String::new(),
             documentation: Vec::new(),
             source: String::new(),

@@ -17,7 +17,7 @@ use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 
 use super::natural;
 use super::resolve::{Resolver, Scope};
-use super::symbols::{member_name, snake_case};
+use super::symbols::member_name;
 use super::{Constraint, Force, Initial, Lagrangian, Model, Name, Output, Surface, View};
 use crate::diagnostics::{Diagnostics, Location};
 use crate::spec::{Declared, Index, PIECEWISE, Scalar, Spec, Word};
@@ -86,7 +86,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
     Model {
         pool,
         name: spec.name.text.clone(),
-        snake_name: snake_case(&spec.name.text),
+        snake_name: spec.snake_name.clone(),
         visibility: spec.visibility.clone(),
         documentation: spec.documentation.clone(),
         source: spec.source.clone(),

@@ -3,6 +3,7 @@
 mod constraints;
 mod coordinates;
 mod definitions;
+mod header;
 mod impacts;
 mod initial;
 mod parameters;
@@ -29,46 +30,13 @@ pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
         .first()
         .map_or_else(|| Location::from(Span::call_site()), Location::of);
     let mut cursor = Cursor::new(&tokens, start, &mut diagnostics);
-    match header(&mut cursor) {
+    match header::read(&mut cursor) {
         Ok((mut spec, body)) => {
             let tokens = tokens_of(body.stream());
             declarations(&tokens, &body, &mut spec, &mut diagnostics);
             diagnostics.finish(spec)
         }
         Err(_) => Err(diagnostics),
-    }
-}
-
-/// Documentation, visibility, name; and the group with the declarations.
-fn header(cursor: &mut Cursor<'_>) -> Read<(Spec, Group)> {
-    const FORM: &str = "a model is written `pub Name { coordinates { .. } lagrangian = ..; }`";
-    let documentation = documentation(cursor)?;
-    let visibility = visibility(cursor);
-    let name = cursor.new_name("the name of a model")?;
-    let Some(body) = cursor.eat_group(Delimiter::Brace) else {
-        return Err(cursor.unexpected("expected `{ .. }` after the name of the model", FORM));
-    };
-    if !cursor.is_at_end() {
-        return Err(cursor.unexpected(
-            "expected nothing after the model",
-            "declare one model in each `model!`",
-        ));
-    }
-    let mut spec = Spec::new(name);
-    spec.source = source::text(&documentation, &visibility, &spec.name.text, body);
-    spec.documentation = documentation;
-    spec.visibility = visibility;
-    Ok((spec, body.clone()))
-}
-
-/// `pub`, `pub(crate)` or nothing.
-fn visibility(cursor: &mut Cursor<'_>) -> String {
-    if !cursor.eat_word("pub") {
-        return String::new();
-    }
-    match cursor.eat_group(Delimiter::Parenthesis) {
-        Some(scope) => format!("pub({})", scope.stream()),
-        None => "pub".to_owned(),
     }
 }
 

@@ -235,3 +235,32 @@ fn independent_mistakes_are_all_reported() {
     let source = "P { coordinates { x y; z; } lagrangian = 2x; constraints { a: d(x) == 0; b: d(z) = 0; c: = 0; } claims { } }";
     assert_eq!(read(source).unwrap_err().len(), 5);
 }
+
+#[test]
+fn a_model_and_its_module_have_two_names() {
+    let named = |name: &str| format!("{name} {{ coordinates {{ x; }} lagrangian = x; }}");
+    refused(
+        &named("pub «pendulum»"),
+        "`pendulum` would name both the type and its module\nhelp: write the type in camel case: `Pendulum`",
+    );
+    refused(&named("«rolling_disk»"), "camel case: `RollingDisk`");
+    refused(&named("«t»"), "camel case: `T`");
+    refused(&named("«__»"), "camel case, like `RollingDisk`");
+    refused(
+        &named("pub «Loop»"),
+        "the module of `Loop` cannot be called `loop`, a word of Rust\nhelp: choose another name, for example `LoopModel`",
+    );
+    refused(&named("«Match»"), "cannot be called `match`");
+    refused(&named("«Box»"), "cannot be called `box`");
+    refused(&named("«Type»"), "cannot be called `type`");
+    refused(&named("«Self»"), "`Self` is a word of Rust");
+    refused(&named("«r#Loop»"), "`r#Loop` is a word of Rust");
+    refused(
+        &named("pub «struct» P"),
+        "expected the name of a model, found `struct`\nhelp: a model is written `pub Name",
+    );
+    refused(
+        "«coordinates» { x; } lagrangian = x;",
+        "expected the name of a model, found `coordinates`",
+    );
+}
