@@ -7,6 +7,7 @@ mod constraints;
 mod coordinates;
 mod initial;
 mod integrable;
+mod laws;
 mod outputs;
 mod parameters;
 mod surfaces;
@@ -108,11 +109,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
 fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec<String> {
     let mut notes = natural::notes(resolver, lagrangian);
     notes.extend(integrable::notes(resolver, &parts.constraints));
-    notes.extend(surfaces::notes(
-        resolver,
-        &parts.surfaces,
-        &parts.constraints,
-    ));
+    notes.extend(laws::notes(resolver, &parts.surfaces, &parts.constraints));
     notes.extend(initial::notes(resolver, &parts.initial));
     notes.extend(parameters::unused(
         resolver,
@@ -135,7 +132,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
                 .iter()
                 .chain([&surface.gap])
                 .copied()
-                .chain(surfaces::coefficient(&surface.law)),
+                .chain(laws::coefficient(&surface.law)),
         );
     }
     used.extend(

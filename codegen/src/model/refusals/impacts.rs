@@ -62,3 +62,21 @@ fn laws_are_known_and_have_their_coefficients() {
         "the coefficient of a law depends on parameters only",
     );
 }
+
+#[test]
+fn coefficients_lie_between_0_and_1() {
+    let law = |coefficient: &str| format!("impacts {{ w: x >= 0 => newton({coefficient}); }}");
+    refused_in(&law("«6/5»"), "newton 6/5 adds energy");
+    refused_in(&law("«1 + 1/2»"), "newton 1 + 1/2 adds energy");
+    refused_in(&law("«pi/3»"), "newton pi/3 adds energy");
+    refused_in(&law("«-1»"), "newton -1 goes on into the wall");
+    refused_in(&law("«1 - sqrt(2)»"), "goes on into the wall");
+    refused_in(
+        &law("«2*k»"),
+        "`2*k` is 2 at the default of `k`\nhelp: the coefficient lies in [0, 1]; change it or the default",
+    );
+    refused_in(
+        &law("«m/2 - k»"),
+        "`m/2 - k` is -0.5 at the defaults of `m` and `k`",
+    );
+}
