@@ -327,3 +327,17 @@ fn coefficients_that_may_leave_the_unit_interval_are_noted() {
     }
     assert_eq!(notes("e >= 0", "1/(1 + e)"), "");
 }
+
+#[test]
+fn members_of_a_family_may_stand_anywhere_in_a_section() {
+    let model = model(
+        "P { coordinates { x; y; } lagrangian = dot(x)^2 + dot(y)^2;
+            impacts { side[2]: x <= 1; floor: y >= 0; side[1]: x >= -1; side[3]: x + y <= 3; } }",
+    );
+    let names: Vec<&str> = model
+        .surfaces
+        .iter()
+        .map(|surface| surface.name.display.as_str())
+        .collect();
+    assert_eq!(names, ["side.2", "floor", "side.1", "side.3"]);
+}

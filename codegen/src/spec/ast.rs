@@ -187,6 +187,8 @@ pub struct Constant {
 pub struct Coordinate {
     /// Its name; the index is the size of the family.
     pub declared: Declared,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// The set it runs through.
     pub topology: Topology,
     /// The declaration.
@@ -268,6 +270,8 @@ pub struct Lagrangian {
 pub struct Equation {
     /// Its name, with the index of a family.
     pub declared: Declared,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// The left side.
     pub left: Scalar,
     /// The right side.
@@ -281,6 +285,8 @@ pub struct Equation {
 pub struct Quantity {
     /// Its name, with the index of a family.
     pub declared: Declared,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// Its value.
     pub value: Scalar,
     /// The declaration.
@@ -303,6 +309,8 @@ pub struct Comparison {
 pub struct Surface {
     /// Its name, with the index of a family.
     pub declared: Declared,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// The allowed side.
     pub gap: Comparison,
     /// Where the surface counts.

@@ -8,6 +8,7 @@ mod coordinates;
 mod initial;
 mod integrable;
 mod laws;
+mod names;
 mod outputs;
 mod parameters;
 mod surfaces;
@@ -18,10 +19,10 @@ use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 
 use super::natural;
 use super::resolve::{Resolver, Scope};
-use super::symbols::member_name;
-use super::{Constraint, Force, Initial, Lagrangian, Model, Name, Output, Surface, View};
-use crate::diagnostics::{Diagnostics, Location};
-use crate::spec::{Declared, Index, PIECEWISE, Scalar, Spec, Word};
+use super::{Constraint, Force, Initial, Lagrangian, Model, Output, Surface, View};
+use crate::diagnostics::Diagnostics;
+use crate::spec::{PIECEWISE, Scalar, Spec};
+use names::Names;
 
 /// What was declared of the motion, resolved.
 struct Parts {
@@ -185,7 +186,7 @@ fn lagrangian(resolver: &mut Resolver<'_>) -> Option<Lagrangian> {
 fn forces(resolver: &mut Resolver<'_>) -> Vec<Force> {
     let spec = resolver.spec;
     let mut forces = Vec::new();
-    let mut names = Names::new("force");
+    let mut names = Names::new(resolver, "force");
     for force in &spec.forces {
         for (name, mut scope) in resolver.members(&force.declared) {
             names.add(resolver, &name, &force.declared.name);
@@ -202,35 +203,8 @@ fn forces(resolver: &mut Resolver<'_>) -> Vec<Force> {
             });
         }
     }
+    names.check_families(resolver);
     forces
-}
-
-/// The names of the members of a section, each allowed once.
-struct Names {
-    noun: &'static str,
-    first: Vec<(String, Location)>,
-}
-
-impl Names {
-    fn new(noun: &'static str) -> Self {
-        Self {
-            noun,
-            first: Vec::new(),
-        }
-    }
-
-    fn add(&mut self, resolver: &mut Resolver<'_>, name: &Name, written: &Word) {
-        match self.first.iter().find(|(first, _)| *first == name.display) {
-            Some((_, first)) => {
-                let text = format!("{} `{}` declared again", self.noun, name.display);
-                let error = resolver.diagnostics.error(written.at, text);
-                error
-                    .help("choose another name")
-                    .also(*first, format!("`{}` first declared here", name.display));
-            }
-            None => self.first.push((name.display.clone(), written.at)),
-        }
-    }
 }
 
 impl Resolver<'_> {
@@ -243,48 +217,6 @@ impl Resolver<'_> {
         let velocities = coordinates.iter().map(|coordinate| coordinate.qdot);
         for symbol in parameters.chain(positions).chain(velocities) {
             self.pool.variable(symbol);
-        }
-    }
-
-    /// The members that a declaration declares, each with what its index stands for.
-    fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
-        let field = &declared.name.text;
-        let mut scope = Scope::default();
-        match &declared.index {
-            None => vec![(member_name(field, None), scope)],
-            Some(Index::One(index)) => {
-                let member = self
-                    .integer(index, &mut scope)
-                    .and_then(|member| self.member_index(index, member));
-                member
-                    .map(|member| (member_name(field, Some(member)), scope))
-                    .into_iter()
-                    .collect()
-            }
-            Some(Index::Each(binder)) => {
-                let mut members = Vec::new();
-                for member in self.range(binder, &mut scope).into_iter().flatten() {
-                    let Some(index) = self.member_index(&binder.low, member) else {
-                        break;
-                    };
-                    let value = self.pool.int(member);
-                    let mut scope = Scope::default();
-                    scope.bind(&binder.name.text, value.into());
-                    members.push((member_name(field, Some(index)), scope));
-                }
-                members
-            }
-        }
-    }
-
-    fn member_index(&mut self, written: &Scalar, member: i64) -> Option<usize> {
-        match usize::try_from(member) {
-            Ok(index) if index > 0 => Some(index),
-            _ => self.refuse(
-                written.at,
-                format!("members are counted from 1, found {member}"),
-                "write `[i in 1..=N]`",
-            ),
         }
     }
 

@@ -5,7 +5,7 @@ use dalembert_expr::{ExprId, Node, Rational};
 use super::super::degree::is_zero;
 use super::super::resolve::{Resolver, Scope};
 use super::super::{Constraint, Surface};
-use super::Names;
+use super::names::Names;
 use crate::diagnostics::listed;
 use crate::spec::{self, Comparison};
 
@@ -13,7 +13,7 @@ use crate::spec::{self, Comparison};
 pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
     let spec = resolver.spec;
     let mut surfaces = Vec::new();
-    let mut names = Names::new("surface");
+    let mut names = Names::new(resolver, "surface");
     for surface in &spec.surfaces {
         for (name, mut scope) in resolver.members(&surface.declared) {
             names.add(resolver, &name, &surface.declared.name);
@@ -30,6 +30,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
             };
             surfaces.push(Surface {
                 name,
+                documentation: surface.documentation.clone(),
                 gap,
                 conditions,
                 law,
@@ -37,6 +38,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
             });
         }
     }
+    names.check_families(resolver);
     surfaces
 }
 

@@ -142,3 +142,27 @@ fn families_have_members() {
         "a family of 0",
     );
 }
+
+#[test]
+fn families_of_entries_have_no_gaps() {
+    refused_in(
+        "impacts { w[1]: x >= 0; v: y >= 0; «w»[3]: x <= 2; }",
+        "surface `w[2]` is not declared\nhelp: the members of `w` are counted from 1 without a gap",
+    );
+    refused_in(
+        "constraints { «c»[i in 2..=3]: d(x) = i*y*d(y); }",
+        "constraint `c[1]` is not declared",
+    );
+    refused_in(
+        "outputs { o: x; «o»[1]: y; }",
+        "output `o` declared alone and as a family\nhelp: choose another name",
+    );
+    refused_in(
+        "forces { f[1]: d(x); «f»[1]: d(y); }",
+        "force `f.1` declared again",
+    );
+    refused_in(
+        "outputs { o[«0»]: y; }",
+        "members are counted from 1, found 0",
+    );
+}

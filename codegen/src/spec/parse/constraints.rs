@@ -7,7 +7,7 @@ use super::labelled;
 /// Reads one constraint.
 pub(super) fn constraint(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     const FORM: &str = "name: d(x) - R*d(theta) = 0;";
-    let declared = labelled(cursor, "the name of a constraint", FORM)?;
+    let (documentation, declared) = labelled(cursor, "the name of a constraint", FORM)?;
     let left = cursor.scalar()?;
     if cursor.is_operator("==") {
         return Err(cursor.refuse_operator(
@@ -21,6 +21,7 @@ pub(super) fn constraint(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let item = spec.item(left.at.to(right.at));
     spec.constraints.push(Equation {
         declared,
+        documentation,
         left,
         right,
         item,
@@ -48,11 +49,12 @@ pub(super) fn output(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
 }
 
 fn quantity(cursor: &mut Cursor<'_>, spec: &mut Spec, what: &str, form: &str) -> Read<Quantity> {
-    let declared = labelled(cursor, what, form)?;
+    let (documentation, declared) = labelled(cursor, what, form)?;
     let value = cursor.scalar()?;
     let item = spec.item(value.at);
     Ok(Quantity {
         declared,
+        documentation,
         value,
         item,
     })

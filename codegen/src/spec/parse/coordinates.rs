@@ -18,12 +18,13 @@ pub(super) fn section(keyword: &Word, cursor: &mut Cursor<'_>, spec: &mut Spec) 
 }
 
 fn coordinate(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
-    documentation(cursor)?;
+    let documentation = documentation(cursor)?;
     let declared = declared(cursor, "the name of a coordinate")?;
     let topology = topology(cursor)?;
     let item = spec.item(declared.name.at);
     spec.coordinates.push(Coordinate {
         declared,
+        documentation,
         topology,
         item,
     });

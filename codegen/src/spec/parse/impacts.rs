@@ -10,7 +10,7 @@ const FORM: &str = "name: h >= 0 when g > 0 => LAW;";
 
 /// Reads one surface.
 pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
-    let declared = labelled(cursor, "the name of a surface", FORM)?;
+    let (documentation, declared) = labelled(cursor, "the name of a surface", FORM)?;
     let gap = comparison(cursor, Strictness::Weak)?;
     let mut conditions = Vec::new();
     while cursor.eat_word("when") {
@@ -23,6 +23,7 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let item = spec.item(gap.at);
     spec.surfaces.push(Surface {
         declared,
+        documentation,
         gap,
         conditions,
         law,

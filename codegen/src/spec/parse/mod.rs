@@ -263,12 +263,12 @@ fn index(cursor: &mut Cursor<'_>) -> Read<Option<Index>> {
     Ok(Some(Index::Each(binder)))
 }
 
-/// A name with an index and the `:` behind it.
-fn labelled(cursor: &mut Cursor<'_>, what: &str, form: &str) -> Read<Declared> {
-    documentation(cursor)?;
+/// A doc comment, a name with an index, and the `:` behind it.
+fn labelled(cursor: &mut Cursor<'_>, what: &str, form: &str) -> Read<(Vec<String>, Declared)> {
+    let documentation = documentation(cursor)?;
     let declared = declared(cursor, what)?;
     cursor.expect_operator(":", form)?;
-    Ok(declared)
+    Ok((documentation, declared))
 }
 
 /// The reserved word that this version refuses, if it comes next.

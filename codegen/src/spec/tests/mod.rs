@@ -21,11 +21,11 @@ const MODEL: &str = "
         let X[0] = 0;
         let X[i in 1..=N] = X[i - 1] + l*sin(theta[i % N + 1]);
         lagrangian = sum(i in 1..=N: m[i]/2*dot(X[i])^2) + dot(x)^2 + dot(u)^2 - f(x, u);
-        constraints { joint[i in 1..=2]: d(theta[i]) - 2*d(x) = 3*d(t); }
+        constraints { /** joint */ joint[i in 1..=2]: d(theta[i]) - 2*d(x) = 3*d(t); }
         forces { drag: -k*dot(x)*d(x); }
         impacts { wall: x <= 1 + l/2 when u > 1 when x < 2 => restitution(e); floor: x >= -1; }
         initial { theta[i in 1..=N] = 0.1*i; dot(theta[1]) = 1; until = 10; }
-        view { path: (x, X[N]); region: 1 - x >= 0; }
+        view { /** seen */ path: (x, X[N]); region: 1 - x >= 0; }
         outputs { load[i in 1..=2]: multiplier(joint[i]); }
     }";
 
@@ -85,6 +85,7 @@ fn every_declaration_is_read() {
     assert_eq!(spec.documentation, ["A model."]);
     assert_eq!(spec.coordinates.len(), 3);
     assert_eq!(spec.parameters[0].documentation, ["mass"]);
+    assert_eq!(spec.constraints[0].documentation, ["joint"]);
     assert_eq!(spec.definitions.len(), 3);
     assert_eq!(spec.surfaces[0].conditions.len(), 2);
     assert_eq!(spec.surfaces[0].gap.greater.to_string(), "1 + l/2");
