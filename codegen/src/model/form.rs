@@ -2,7 +2,9 @@
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
-use super::degree::{at_zero, coefficients, degree_bound, has_degree, is_zero};
+use super::degree::{
+    at_zero, coefficients, degree_bound, has_degree, is_zero, without_hidden_zero,
+};
 use super::resolve::{Resolver, Scope, Value};
 use crate::spec::{Equation, Quantity, Scalar, ScalarKind};
 
@@ -79,6 +81,7 @@ impl Resolver<'_> {
         self.check_linear(sides, velocities, scope)?;
         let form = coefficients(&mut self.pool, value.expr, velocities);
         let affine = at_zero(&mut self.pool, value.expr, velocities);
+        let affine = without_hidden_zero(&self.pool, affine);
         self.nonzero_form(
             OneForm {
                 form,

@@ -341,3 +341,21 @@ fn members_of_a_family_may_stand_anywhere_in_a_section() {
         .collect();
     assert_eq!(names, ["side.2", "floor", "side.1", "side.3"]);
 }
+
+#[test]
+fn what_cancels_is_not_there() {
+    let model = model(
+        "P { coordinates { x; y; } parameters { m > 0; }
+            let one = sin(x)^2 + cos(x)^2;
+            lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (one - 1)*(dot(x)*dot(y) + dot(x) - y)
+                + x*dot(x) - dot(x)*x;
+            constraints { c: one*dot(x) = y*dot(y) + (x + 1)^2 - x^2 - 2*x - one; } }",
+    );
+    let lagrangian = &model.lagrangian;
+    assert_eq!(text(&model.pool, &lagrangian.linear), ["0", "0"]);
+    assert_eq!(text(&model.pool, &lagrangian.metric[0]), ["m", "0"]);
+    assert_eq!(text(&model.pool, &[lagrangian.potential]), ["0"]);
+    assert_eq!(text(&model.pool, &[model.constraints[0].affine]), ["0"]);
+    let says_linear = |note: &String| note.contains("terms linear in the velocities");
+    assert!(!model.notes.iter().any(says_linear), "{:?}", model.notes);
+}

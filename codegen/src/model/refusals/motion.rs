@@ -6,7 +6,19 @@ use super::{diagnostics, particle, refused, refused_in, refused_term, with_lagra
 fn a_lagrangian_that_is_not_natural_is_refused_at_its_term() {
     refused_term("«dot(x)^3»", "not natural: `dot(x)^3`");
     refused_term("«dot(x)^2*dot(y)»", "not natural: `dot(x)^2*dot(y)`");
-    refused_term("«sqrt(1 - dot(x)^2)»", "not natural: `sqrt(1 - dot(x)^2)`");
+    refused_term(
+        "«sqrt(1 - dot(x)^2)»",
+        "not natural: `sqrt(1 - dot(x)^2)` is no polynomial in the velocities",
+    );
+    // The value is a polynomial, the text is none.
+    refused_term(
+        "«sqrt(dot(x)^4)»/2",
+        "not natural: `sqrt(dot(x)^4)` is no polynomial in the velocities",
+    );
+    refused_term(
+        "sum(i in 1..=2: i*«(dot(x)^3/dot(x))»)",
+        "not natural: `dot(x)^3/dot(x)` is no polynomial",
+    );
     refused_term(
         "«abs(x)»",
         "`abs(x)`: `abs` is not differentiable and not allowed in `lagrangian`",
@@ -25,6 +37,14 @@ fn a_metric_that_is_not_positive_is_refused() {
     refused(
         singular,
         "the metric is singular: `dot(z)` does not appear\nhelp: make `z` a parameter",
+    );
+    let cancels =
+        "P { coordinates { x; «z»; } lagrangian = dot(x)^2 + (sin(x)^2 + cos(x)^2 - 1)*dot(z)^2; }";
+    refused(cancels, "the metric is singular: `dot(z)` cancels");
+    let linear = "P { coordinates { x; «z»; } lagrangian = dot(x)^2 + x*dot(z); }";
+    refused(
+        linear,
+        "the metric is singular: `dot(z)` appears only linearly",
     );
     let family = "P { coordinates { x; «q»[9]; } lagrangian = dot(x)^2 - q[1]; }";
     refused(family, "the metric is singular: `dot(q.1)` does not appear");
