@@ -14,6 +14,7 @@ mod latex;
 mod natural;
 mod order;
 mod periodic;
+mod polynomial;
 mod range;
 #[cfg(test)]
 mod refusals;

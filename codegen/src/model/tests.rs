@@ -359,3 +359,25 @@ fn what_cancels_is_not_there() {
     let says_linear = |note: &String| note.contains("terms linear in the velocities");
     assert!(!model.notes.iter().any(says_linear), "{:?}", model.notes);
 }
+
+#[test]
+fn regular_gaps_are_accepted() {
+    let gaps = [
+        "1 - x^2/k^2 - y^2/m^2",
+        "x*y",
+        "x^2 - y^2",
+        "abs(x) - 1",
+        "k^2*x^2 - 2*k*x + m",
+        // The repeated factor is never zero, or zero outside of the chart only.
+        "(x^2 + 1)^2*(x - 1)",
+        "(u - 2)^2*(u - 1/2)",
+        "(u - 2)^2*(y - u)",
+        "(y - t)*(y - t - 1)",
+    ];
+    for gap in gaps {
+        model(&format!(
+            "P {{ coordinates {{ x; y; u in (0, 1); }} parameters {{ m > 0; k > 0; }}
+                lagrangian = dot(x)^2 + dot(y)^2 + dot(u)^2; impacts {{ w: {gap} >= 0; }} }}"
+        ));
+    }
+}

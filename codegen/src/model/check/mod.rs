@@ -11,6 +11,7 @@ mod laws;
 mod names;
 mod outputs;
 mod parameters;
+mod regular;
 mod surfaces;
 
 use std::collections::BTreeSet;

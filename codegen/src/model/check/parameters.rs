@@ -128,18 +128,21 @@ impl<'s> Resolver<'s> {
         if let Some(number) = self.pool.as_number(expr) {
             return Some(number.clone());
         }
-        let value = self.constant_value(expr);
-        let size = Rational::from_decimal(&format!("{:e}", value.abs()));
-        match size {
-            Some(size) if value < 0.0 => Some(-size),
-            Some(size) => Some(size),
-            None => self.refuse(
+        let value = nearest_rational(self.constant_value(expr));
+        value.or_else(|| {
+            self.refuse(
                 written.at,
                 format!("`{written}` is not a finite number"),
                 "",
-            ),
-        }
+            )
+        })
     }
+}
+
+/// The shortest decimal that reads back as this number.
+pub(super) fn nearest_rational(value: f64) -> Option<Rational> {
+    let size = Rational::from_decimal(&format!("{:e}", value.abs()))?;
+    Some(if value < 0.0 { -size } else { size })
 }
 
 fn known(assumption: &Assumption) -> Known {

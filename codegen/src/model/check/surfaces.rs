@@ -1,6 +1,6 @@
 //! Impact surfaces: functions of position with a regular zero set that allowed motion can reach.
 
-use dalembert_expr::{ExprId, Node, Rational};
+use dalembert_expr::ExprId;
 
 use super::super::degree::is_zero;
 use super::super::resolve::{Resolver, Scope};
@@ -72,33 +72,9 @@ impl Resolver<'_> {
                 "write `name: h >= 0;`",
             );
         }
-        if self.pool.sign(gap).is_nonzero() {
-            return self.refuse(at, "surface has no zero set: it is never zero", "");
-        }
-        if let Some(base) = perfect_power(self, gap) {
-            let text = "not regular: the gradient vanishes where the surface is zero";
-            let base = self.pool.text(base);
-            return self.refuse(at, text, &format!("write `{base} >= 0`"));
-        }
+        self.check_regular(at, gap)?;
         Some(gap)
     }
-}
-
-/// The base of which the gap is a constant times a power of at least 2.
-fn perfect_power(resolver: &Resolver<'_>, gap: ExprId) -> Option<ExprId> {
-    let (_, power) = resolver.pool.as_multiple(gap);
-    let Node::Product(factors) = resolver.pool.node(power) else {
-        return None;
-    };
-    let is_multiple = |(base, exponent): &&(ExprId, Rational)| {
-        *exponent >= Rational::from(2) || resolver.is_constant(*base)
-    };
-    let all_multiple = factors.iter().all(|factor| is_multiple(&factor));
-    let base = factors
-        .iter()
-        .find(|(base, _)| !resolver.is_constant(*base))
-        .map(|(base, _)| *base);
-    base.filter(|_| all_multiple)
 }
 
 /// Refuses surfaces that no allowed motion reaches: `dh` in the annihilator of D.

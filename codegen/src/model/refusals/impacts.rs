@@ -1,6 +1,6 @@
 //! Surfaces and laws that are refused.
 
-use super::refused_in;
+use super::{refused, refused_in};
 
 #[test]
 fn surfaces_are_regular_and_can_be_reached() {
@@ -79,4 +79,42 @@ fn coefficients_lie_between_0_and_1() {
         &law("«m/2 - k»"),
         "`m/2 - k` is -0.5 at the defaults of `m` and `k`",
     );
+}
+
+#[test]
+fn gaps_change_their_sign_where_they_are_zero() {
+    let gap = |gap: &str| format!("impacts {{ w: «{gap} >= 0»; }}");
+    for power in ["(x - 1)^2", "2*k*(x - y)^3", "-x^2", "cos(a)^2"] {
+        let message = "not regular: the gradient vanishes where the surface is zero\nhelp: write `";
+        refused_in(&gap(power), message);
+    }
+    for bounded in [
+        "x^2 + y^2",
+        "m*x^2 + k*(y - t)^4",
+        "abs(x)",
+        "exp(y)*(x - y)^2",
+    ] {
+        refused_in(&gap(bounded), "not regular: the gap is never negative");
+    }
+    refused_in(
+        "impacts { w: «x^2 + y^2 <= 0»; }",
+        "not regular: the gap is never positive",
+    );
+    for repeated in [
+        "x^2 - 2*x + 1",
+        "x^2 - 2*pi*x + pi^2",
+        "x^2 + 2*x*y + y^2",
+        "k^2*x^2 - 2*k*x*t + t^2",
+        "x^4 - 2*x^2 + 1",
+        "x^2*(x - 1)",
+        "1 - 2*(x^2/k^2 + y^2/m^2) + (x^2/k^2 + y^2/m^2)^2",
+    ] {
+        refused_in(&gap(repeated), "not regular: a factor is repeated");
+    }
+    for positive in ["x^2 - 2*x + 2", "x^2 + x + 1", "2 + x^4 - 2*x^2"] {
+        refused_in(&gap(positive), "surface has no zero set: it is never zero");
+    }
+    let chart =
+        "P { coordinates { u in (0, 1); } lagrangian = dot(u)^2; impacts { w: «u^2 >= 4»; } }";
+    refused(chart, "surface has no zero set: it is never zero");
 }
