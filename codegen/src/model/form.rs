@@ -44,7 +44,7 @@ impl Resolver<'_> {
             (true, true) => self.refuse_mixture(&sides, &differentials, &velocities, scope),
             (true, false) => self.differential_form(&sides, value, &differentials, scope),
             (false, true) => self.velocity_form(&sides, value, &velocities, scope),
-            (false, false) => self.refuse_without_differential(equation),
+            (false, false) => self.refuse_without_differential(equation, scope),
         }
     }
 
@@ -192,13 +192,26 @@ impl Resolver<'_> {
         )
     }
 
-    fn refuse_without_differential<T>(&mut self, equation: &Equation) -> Option<T> {
+    fn refuse_without_differential<T>(&mut self, equation: &Equation, scope: &Scope) -> Option<T> {
         let at = equation.left.at.to(equation.right.at);
         if mentions_rate(&equation.left) || mentions_rate(&equation.right) {
             return self.refuse(
                 at,
                 "this form is zero",
                 "a constraint restricts the velocities",
+            );
+        }
+        let sides = [&equation.left, &equation.right];
+        let moves = sides.into_iter().any(|side| {
+            let value = self.expression(side, &mut scope.clone());
+            value.is_some_and(|value| !self.is_constant(value))
+        });
+        if !moves {
+            let text = "a constraint is a one-form, and this equation has no coordinates";
+            return self.refuse(
+                at,
+                text,
+                "write `d(x) - R*d(theta) = 0` or `dot(x) = R*dot(theta)`",
             );
         }
         let help = match &equation.right.kind {
@@ -228,6 +241,9 @@ impl Resolver<'_> {
             HELP,
         )?;
         let differentials = self.symbols.differentials.clone();
+        if is_zero(&self.pool, expr) {
+            return self.refuse(force.value.at, "this force is zero", "leave it out");
+        }
         if !self.pool.depends_on_any(expr, &differentials) {
             return self.refuse(force.value.at, "a force is a one-form", HELP);
         }

@@ -10,6 +10,7 @@ mod culprit;
 mod definitions;
 mod degree;
 mod form;
+mod index;
 mod latex;
 mod natural;
 mod order;

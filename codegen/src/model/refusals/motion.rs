@@ -100,6 +100,10 @@ fn constraints_are_linear_one_forms() {
         "a constraint is a one-form\nhelp: write `d(x + y - (1)) = 0`",
     );
     refused_in(
+        "constraints { c: «1 = k»; }",
+        "a constraint is a one-form, and this equation has no coordinates\nhelp: write `d(x) - R*d(theta) = 0`",
+    );
+    refused_in(
         "constraints { c: «d(x)*d(y)» = 0; }",
         "`d(x)*d(y)`: constraints are linear in velocities",
     );
@@ -139,6 +143,15 @@ fn constraints_are_independent() {
 #[test]
 fn forces_are_one_forms() {
     refused_in("forces { f: «-k*x»; }", "a force is a one-form");
+    for zero in [
+        "0",
+        "(k - k)*d(x)",
+        "d(x) - d(x)",
+        "(sin(a)^2 + cos(a)^2 - 1)*d(x)",
+    ] {
+        let force = format!("forces {{ f: «{zero}»; }}");
+        refused_in(&force, "this force is zero\nhelp: leave it out");
+    }
     refused_in("forces { f: -k*d(x) - «k»; }", "`k` has no differential");
     refused_in(
         "forces { f: «d(x)*d(y)»; }",

@@ -17,6 +17,17 @@ fn unknown_names_come_with_what_was_meant() {
         "unknown name `xdot`\nhelp: the velocity of `x` is written `dot(x)`",
     );
     refused_term("«dx»*x", "the differential of `x` is written `d(x)`");
+    refused_term("«PI»*x", "unknown name `PI`\nhelp: write `pi`");
+    refused_term("«inf»", "`inf` is not a number\nhelp: numbers are finite");
+    refused_term("«time»", "help: time is written `t`");
+    refused_in(
+        "outputs { o: «E»; }",
+        "unknown name `E`\nhelp: the energy is written `energy`",
+    );
+    refused_in(
+        "outputs { o: «p_x»; }",
+        "help: in `outputs`, the momentum of `x` is written `momentum(x)`",
+    );
     refused_term(
         "«banana»",
         "unknown name `banana`\nhelp: a parameter is declared with `parameters { banana; }`",
@@ -45,6 +56,16 @@ fn unknown_functions_come_with_the_list() {
         "`m` is a parameter, not a function\nhelp: a product is written `m*(x + y)`",
     );
     refused_term("«sin»(x, y)", "`sin` takes 1 argument, found 2");
+    refused_term(
+        "«atan»(y, x)",
+        "`atan` takes 1 argument, found 2\nhelp: the angle of a point is written `atan2(y, x)`",
+    );
+    refused_term(
+        "«ddot»(x)",
+        "unknown function `ddot`\nhelp: a declaration has no accelerations",
+    );
+    refused_term("«norm»(x, y)", "help: write `sqrt(x^2 + y^2)`");
+    refused_term("«pi»()", "`pi` is not a function\nhelp: write `pi`");
 }
 
 #[test]
@@ -60,6 +81,10 @@ fn numbers_without_a_value_are_refused() {
         "the exponent `1000000000` is too large; the limit is 4096",
     );
     refused_term("2^«(2^40)»", "is too large; the limit is 4096");
+    refused_term(
+        "x^«(1/4096)»",
+        "the denominator of the exponent `1/4096` is too large; the limit is 4095\nhelp: a third is written `(1/3)`",
+    );
     refused_term("«(10^30)^4000»", "an exact number of more than 4096 bits");
     refused_term(
         "x^«y»",
@@ -128,6 +153,24 @@ fn families_have_members() {
         "`q` is a family of 3\nhelp: write `q[1]`",
     );
     refused(&chain("outputs { o: «N»[1]; }"), "`N` is not a family");
+    for slip in ["q1", "q_1"] {
+        refused(
+            &chain(&format!("outputs {{ o: «{slip}»; }}")),
+            &format!("unknown name `{slip}`\nhelp: a member of `q` is written `q[1]`"),
+        );
+    }
+    refused(
+        &chain("outputs { o: «q»(2); }"),
+        "`q` is a family, not a function\nhelp: write `q[2]`",
+    );
+    refused(
+        &chain("initial { «q_dot»[1] = 1; }"),
+        "unknown coordinate `q_dot`\nhelp: the velocity of `q[1]` is written `dot(q[1])`",
+    );
+    refused(
+        &chain("outputs { o: q[«M»]; }"),
+        "unknown name `M`\nhelp: a size is declared with `const M = 8;`",
+    );
     refused(
         &chain("outputs { o: q[«m[1]»]; }"),
         "`m[1]` is not an integer known while building",
@@ -164,5 +207,41 @@ fn families_of_entries_have_no_gaps() {
     refused_in(
         "outputs { o[«0»]: y; }",
         "members are counted from 1, found 0",
+    );
+}
+
+#[test]
+fn constants_are_made_of_constants_above() {
+    let with = |rest: &str| {
+        format!("P {{ coordinates {{ x; }} parameters {{ m; }} lagrangian = dot(x)^2; {rest} }}")
+    };
+    refused(
+        &with("const A = «B» + 1; const B = 3;"),
+        "`B` is used before it is declared\nhelp: a `const` uses only a `const` above it",
+    );
+    refused(
+        &with("const A = «m»;"),
+        "`m` is a parameter, and a constant is expected here\nhelp: write numbers, `pi` and constants",
+    );
+    refused(
+        &with("const G = «9.81»;"),
+        "`9.81` is not an integer known while building\nhelp: a `const` is a size or an index",
+    );
+    let interval = |end: &str| {
+        format!(
+            "P {{ coordinates {{ x; u in (0, {end}); }} parameters {{ m; }} lagrangian = dot(x)^2 + dot(u)^2; }}"
+        )
+    };
+    refused(
+        &interval("«m»"),
+        "`m` is a parameter, and a constant is expected",
+    );
+    refused(
+        &interval("2*«x»"),
+        "`x`: the end of an interval is a constant",
+    );
+    refused(
+        &interval("«inf»"),
+        "where an interval has no end, write a large one, for example `1e6`",
     );
 }

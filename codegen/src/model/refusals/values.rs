@@ -13,6 +13,10 @@ fn parameters_satisfy_their_assumptions() {
         "the default `2` violates `in [0, 1]`",
     );
     refused(
+        &with("m in [0, 0.1*pi] = «0.5»"),
+        "the default `0.5` violates `in [0, 0.1*pi]`",
+    );
+    refused(
         &with("m in [«2, 1»]"),
         "the interval from `2` to `1` is empty",
     );
@@ -27,6 +31,17 @@ fn parameters_satisfy_their_assumptions() {
 #[test]
 fn initial_values_are_given_for_coordinates() {
     refused_in("initial { «z» = 1; }", "unknown coordinate `z`");
+    for slip in ["x_dot", "xdot"] {
+        refused_in(
+            &format!("initial {{ «{slip}» = 1; }}"),
+            &format!("unknown coordinate `{slip}`\nhelp: the velocity of `x` is written `dot(x)`"),
+        );
+    }
+    refused_in("initial { «t» = 0; }", "help: a run starts at time 0");
+    refused_in(
+        "initial { «t_end» = 9; }",
+        "help: the end of a run is written `until = 10;`",
+    );
     refused_in(
         "initial { «m» = 1; }",
         "`m` is a parameter, not a coordinate",

@@ -159,9 +159,14 @@ fn unknown_declaration(word: &Word, cursor: &mut Cursor<'_>) -> super::cursor::R
     if let Some(instead) = not_implemented(&word.text) {
         return refuse_not_implemented(word, instead, cursor);
     }
-    let help = match nearest(&word.text, SECTIONS) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("a model consists of {}", listed(SECTIONS)),
+    let help = if let Some(section) = keyword::foreign_section(&word.text) {
+        section.to_owned()
+    } else if let Some(near) = nearest(&word.text, SECTIONS) {
+        format!("did you mean `{near}`?")
+    } else if cursor.is_operator("=") {
+        format!("a definition is written `let {} = ..;`", word.text)
+    } else {
+        format!("a model consists of {}", listed(SECTIONS))
     };
     cursor.refuse(
         word.at,
@@ -254,21 +259,53 @@ fn index(cursor: &mut Cursor<'_>) -> Read<Option<Index>> {
     };
     let tokens = tokens_of(group.stream());
     let mut inside = cursor.inside(&tokens, group);
-    let is_binder = matches!(inside.peek_second(), Some(TokenTree::Ident(word)) if *word == "in");
+    let is_binder = match inside.peek_second() {
+        Some(TokenTree::Ident(word)) => *word == "in",
+        Some(TokenTree::Punct(punct)) => punct.as_char() == '=',
+        _ => false,
+    };
     if !is_binder {
-        return Ok(Some(Index::One(inside.whole_scalar()?)));
+        let index = inside.scalar()?;
+        if inside.is_operator("..=") || inside.is_operator("..") {
+            let help = "write `name[i in 1..=N]`; a family is declared by its size: `name[N]`";
+            return Err(inside.refuse(inside.here(), "a range in brackets needs an index", help));
+        }
+        inside.end()?;
+        return Ok(Some(Index::One(index)));
     }
     let binder = inside.binder("name[i in 1..=N]")?;
     inside.end()?;
     Ok(Some(Index::Each(binder)))
 }
 
-/// A doc comment, a name with an index, and the `:` behind it.
-fn labelled(cursor: &mut Cursor<'_>, what: &str, form: &str) -> Read<(Vec<String>, Declared)> {
+/// A doc comment, a name with an index, and the `:` behind it. `entry` is `a surface`, `form` how one is written.
+fn labelled(cursor: &mut Cursor<'_>, entry: &str, form: &str) -> Read<(Vec<String>, Declared)> {
     let documentation = documentation(cursor)?;
-    let declared = declared(cursor, what)?;
+    if !begins_with_name(cursor.remaining()) {
+        let help = format!("write `{form}`");
+        return Err(cursor.refuse(
+            cursor.here(),
+            format!("{entry} begins with its name"),
+            &help,
+        ));
+    }
+    let declared = declared(cursor, &format!("the name of {entry}"))?;
     cursor.expect_operator(":", form)?;
     Ok((documentation, declared))
+}
+
+/// Whether the first token of an entry can be its name: what comes next, behind an index, is no part of an
+/// expression.
+fn begins_with_name(tokens: &[TokenTree]) -> bool {
+    let is_index = |token: &TokenTree| matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Bracket);
+    let [TokenTree::Ident(_), rest @ ..] = tokens else {
+        return false;
+    };
+    match rest.iter().find(|token| !is_index(token)) {
+        Some(TokenTree::Punct(punct)) => matches!(punct.as_char(), ':' | '='),
+        Some(TokenTree::Group(_)) | None => false,
+        Some(_) => true,
+    }
 }
 
 /// The reserved word that this version refuses, if it comes next.

@@ -25,7 +25,7 @@ pub(super) fn entry(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         "region" => spec
             .view
             .region
-            .replace(comparison(cursor, Strictness::Weak)?)
+            .replace(comparison(cursor, Strictness::Weak, "region: h >= 0;")?)
             .is_some(),
         _ => {
             return Err(cursor.refuse(

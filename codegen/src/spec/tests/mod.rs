@@ -4,6 +4,7 @@
 
 mod missing_tokens;
 mod refusals;
+mod slips;
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 

@@ -5,7 +5,7 @@ use crate::diagnostics::{reported, unmarked};
 
 /// Exactly one error, with this message, at the marked place.
 #[track_caller]
-fn refused(source: &str, message: &str) {
+pub(super) fn refused(source: &str, message: &str) {
     let (source, marked) = unmarked(source);
     let diagnostics = read(&source).expect_err("accepted");
     let errors = reported(&source, &diagnostics);
@@ -15,45 +15,16 @@ fn refused(source: &str, message: &str) {
 }
 
 #[track_caller]
-fn refused_expression(expression: &str, message: &str) {
+pub(super) fn refused_expression(expression: &str, message: &str) {
     refused(&lagrangian(expression), message);
 }
 
 #[track_caller]
-fn refused_in(rest: &str, message: &str) {
+pub(super) fn refused_in(rest: &str, message: &str) {
     refused(
         &format!("P {{ coordinates {{ x; }} lagrangian = x; {rest} }}"),
         message,
     );
-}
-
-#[test]
-fn slips_in_expressions_are_named() {
-    refused_expression("«2x»", "missing `*` between `2` and `x`\nhelp: write `2*x`");
-    refused_expression("«1.5e3m»", "missing `*` between `1.5e3` and `m`");
-    refused_expression("«2f64»", "numbers have no type: `f64`\nhelp: write `2`");
-    refused_expression("«0x10»", "numbers are decimal");
-    refused_expression("«1e400»", "`1e400` is not a finite number");
-    refused_expression(
-        "x «**» 2",
-        "no `**` operator\nhelp: a power is written `x^2`",
-    );
-    refused_expression(
-        "sin «x»",
-        "function call needs parentheses\nhelp: write `sin(x)`",
-    );
-    refused_expression("«sin»^2*x", "the power of a function is written `sin(x)^2`");
-    refused_expression("m «v»^2", "missing operator before `v`");
-    refused_expression("x «<» 1", "`<` is not differentiable");
-    refused_expression("x «==» 1", "`==` is not differentiable");
-    refused_expression("«if»(x)", "`if` is not differentiable");
-    refused_expression("x «if» y", "an expression has no cases");
-    refused_expression("«|»x|", "the absolute value is written `abs(x)`");
-    refused_expression("theta«.»3", "a member of a family is written `theta[3]`");
-    refused_expression("«\"text\"»", "expected an expression, found a text");
-    refused_expression("x «+»", "expected an expression");
-    refused_expression("«(»)", "expected an expression");
-    refused_expression("sum(i in 1«.».N: x)", "expected `..=`");
 }
 
 #[test]
@@ -128,8 +99,18 @@ fn declarations_are_known() {
         "unknown declaration `constriants`\nhelp: did you mean `constraints`?",
     );
     refused_in(
-        "«banana» = 3;",
+        "«banana» { }",
         "unknown declaration `banana`\nhelp: a model consists of `const`",
+    );
+    refused_in(
+        "«banana» = 3;",
+        "unknown declaration `banana`\nhelp: a definition is written `let banana = ..;`",
+    );
+    refused_in("«L» = x;", "help: write `lagrangian = ..;`");
+    refused_in("«params» { m; }", "help: write `parameters { .. }`");
+    refused_in(
+        "«potential» = x;",
+        "help: the Lagrangian is kinetic minus potential energy",
     );
     refused_in("«lagrangian» = 2;", "second `lagrangian`");
     refused(
