@@ -59,6 +59,19 @@ mod bare {
     }
 }
 
+/// Members of families in any order, with other entries between them.
+mod families {
+    dalembert::model! {
+        pub Scattered {
+            coordinates { x; y; z; u; v; w; }
+            lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(u)^2 + dot(v)^2 + dot(w)^2)/2;
+            constraints { roll[2]: d(u) - y*d(x) = 0; hold: d(v) = z*d(x); roll[1]: d(w) = x*d(z); }
+            impacts { side[2]: x <= 3; floor: y >= 2; side[1]: x >= -1; top[i in 1..=2]: z <= 10*i; side[3]: x + z <= 5; }
+            outputs { o[1]: x; p: y; o[2]: z; }
+        }
+    }
+}
+
 /// A model inside a function.
 fn local() -> f64 {
     dalembert::model! {
@@ -104,4 +117,36 @@ fn models_compile_in_hostile_surroundings() {
     bare.g = 9.81;
     assert_eq!(bare.check_parameters(), Ok(()));
     assert_eq!(bare.initial().until, Some(2.0));
+}
+
+#[test]
+fn the_indices_of_a_family_are_in_the_order_of_its_members() {
+    use dalembert::{Described, Impacting, System};
+    use families::{Scattered, scattered};
+    let described = Scattered::DESCRIPTION;
+    let names = |indices: &[usize]| {
+        indices
+            .iter()
+            .map(|s| described.surfaces[*s].name)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        names(&scattered::surface::side),
+        ["side.1", "side.2", "side.3"]
+    );
+    assert_eq!(names(&scattered::surface::top), ["top.1", "top.2"]);
+    assert_eq!(names(&[scattered::surface::floor]), ["floor"]);
+    let constraints = scattered::constraint::roll.map(|a| described.constraints[a].name);
+    assert_eq!(constraints, ["roll.1", "roll.2"]);
+    assert_eq!(
+        scattered::output::o.map(|o| described.outputs[o]),
+        ["o.1", "o.2"]
+    );
+    let system = Scattered {};
+    let q = [0.5, 4.0, 1.0, 0.0, 0.0, 0.0].into();
+    let state = system
+        .state_unchecked(0.0, &q, &[0.0; 6].into())
+        .expect("a state");
+    let gaps = system.gaps(0.0, &state);
+    assert_eq!(scattered::surface::side.map(|s| gaps[s]), [1.5, 2.5, 3.5]);
 }

@@ -7,7 +7,16 @@
 dalembert::model! {
     /// Vertical rolling disk on an elliptical table (W. Clark, thesis, section 6.4).
     pub RollingDisk {
-        coordinates { x; y; theta: angle; phi: angle; }
+        coordinates {
+            /// Point of contact.
+            x;
+            /// Point of contact.
+            y;
+            /// Angle of rolling.
+            theta: angle;
+            /// Direction of rolling.
+            phi: angle;
+        }
         parameters {
             /// Mass.
             m > 0 = 0.0025;
@@ -25,11 +34,15 @@ dalembert::model! {
         let table(u, v) = 1 - u^2/ta^2 - v^2/tb^2;
         lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + J/2*dot(phi)^2;
         constraints {
+            /// The point of contact does not slip along x.
             rolling_x: d(x) - R*cos(phi)*d(theta) = 0;
+            /// The point of contact does not slip along y.
             rolling_y: dot(y) = R*sin(phi)*dot(theta);
         }
         impacts {
+            /// The end of the disk towards `(cos phi, sin phi)` stays above the table.
             leading_edge: table(x + R*cos(phi), y + R*sin(phi)) >= 0;
+            /// The opposite end stays above the table.
             trailing_edge: table(x - R*cos(phi), y - R*sin(phi)) >= 0;
         }
         initial { phi = pi/2; dot(theta) = 10; dot(phi) = 0.2; until = 20; }

@@ -8,6 +8,7 @@ mod doc;
 mod field;
 mod function;
 mod impact;
+mod indices;
 mod names;
 mod parameters;
 mod volume;
@@ -35,7 +36,7 @@ pub fn tokens(model: &Model, program: &Program) -> TokenStream {
     };
     let items = [
         parameters::emit_parameters(&context),
-        parameters::emit_indices(&context),
+        indices::emit_indices(&context),
         field::emit_field(&context),
         field::emit_system(&context),
         constraint::emit_constrained(&context),

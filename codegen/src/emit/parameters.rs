@@ -1,10 +1,10 @@
-//! The model's type: its parameters as public fields, their defaults, and the indices of its names.
+//! The model's type: its parameters as public fields, and their defaults.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use super::{Context, doc, function::number};
-use crate::model::{Assumption, Model, Name, Parameter};
+use crate::model::{Assumption, Model, Parameter};
 
 /// The struct, and `Default` when every parameter has one.
 pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
@@ -111,62 +111,4 @@ fn emit_default(context: &Context<'_>) -> TokenStream {
             fn default() -> Self { #value }
         }
     }
-}
-
-/// A module with the indices of coordinates, constraints and surfaces under the user's names.
-pub(super) fn emit_indices(context: &Context<'_>) -> TokenStream {
-    let model = context.model;
-    let visibility: TokenStream = match model.visibility.as_str() {
-        "" => quote!(pub(crate)),
-        written => written.parse().unwrap_or_default(),
-    };
-    let module = &context.names.module;
-    let title = format!(" Indices of the names declared in [`{}`].", model.name);
-    let coordinates: Vec<&Name> = model
-        .coordinates
-        .iter()
-        .map(|coordinate| &coordinate.name)
-        .collect();
-    let constraints: Vec<&Name> = model
-        .constraints
-        .iter()
-        .map(|constraint| &constraint.name)
-        .collect();
-    let surfaces: Vec<&Name> = model.surfaces.iter().map(|surface| &surface.name).collect();
-    let outputs: Vec<&Name> = model.outputs.iter().map(|output| &output.name).collect();
-    let parts = [
-        emit_index_module("coordinate", "coordinates", &coordinates),
-        emit_index_module("constraint", "constraints", &constraints),
-        emit_index_module("surface", "impact surfaces", &surfaces),
-        emit_index_module("output", "outputs", &outputs),
-    ];
-    quote! {
-        #[doc = #title]
-        #[allow(dead_code, non_upper_case_globals)]
-        #visibility mod #module { #(#parts)* }
-    }
-}
-
-fn emit_index_module(module: &str, plural: &str, names: &[&Name]) -> TokenStream {
-    if names.is_empty() {
-        return TokenStream::new();
-    }
-    let module = Ident::new(module, Span::call_site());
-    let title = format!(" Indices of the {plural}, in order of declaration.");
-    let mut constants = Vec::new();
-    let mut next = 0;
-    for family in names.chunk_by(|a, b| a.member.is_some() && a.field == b.field) {
-        let constant = Ident::new(&family[0].field, Span::call_site());
-        let text = format!(" `{}`", family[0].field);
-        let indices = next..next + family.len();
-        next += family.len();
-        constants.push(match family[0].member {
-            Some(_) => {
-                let count = family.len();
-                quote!(#[doc = #text] pub const #constant: [usize; #count] = [#(#indices),*];)
-            }
-            None => quote!(#[doc = #text] pub const #constant: usize = #(#indices)*;),
-        });
-    }
-    quote!(#[doc = #title] pub mod #module { #(#constants)* })
 }

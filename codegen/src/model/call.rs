@@ -6,7 +6,7 @@ use super::definitions::Definition;
 use super::resolve::{DerivedNames, Resolver, Scope, Value};
 use super::symbols::Meaning;
 use crate::diagnostics::Location;
-use crate::spec::{EXPONENT, NUMBER_BITS, Scalar, ScalarKind, Word};
+use crate::spec::{EXPONENT, EXPONENT_DENOMINATOR_BITS, NUMBER_BITS, Scalar, ScalarKind, Word};
 
 impl<'s> Resolver<'s> {
     pub(super) fn power(
@@ -26,9 +26,16 @@ impl<'s> Resolver<'s> {
                 &format!("write `exp({exponent}*ln({base}))`"),
             );
         };
-        if power.abs() > Rational::from(EXPONENT) || power.denom().bits() > 12 {
+        if power.abs() > Rational::from(EXPONENT) {
             let text = format!("the exponent `{exponent}` is too large; the limit is {EXPONENT}");
             return self.refuse(exponent.at, text, "");
+        }
+        if power.denom().bits() > EXPONENT_DENOMINATOR_BITS {
+            let limit = (1 << EXPONENT_DENOMINATOR_BITS) - 1;
+            let text = format!(
+                "the denominator of the exponent `{exponent}` is too large; the limit is {limit}"
+            );
+            return self.refuse(exponent.at, text, "a third is written `(1/3)`");
         }
         let value = value?;
         if let Some(number) = self.pool.as_number(value).cloned() {
@@ -99,7 +106,13 @@ impl<'s> Resolver<'s> {
                 name.text,
                 values.len()
             );
-            return self.refuse(name.at, text, "");
+            let is_angle_of_point = name.text == "atan" && values.len() == 2;
+            let help = if is_angle_of_point {
+                "the angle of a point is written `atan2(y, x)`"
+            } else {
+                ""
+            };
+            return self.refuse(name.at, text, help);
         }
         values.into_iter().collect()
     }
@@ -330,22 +343,29 @@ impl<'s> Resolver<'s> {
             Some(Meaning::Definition) => "not a function",
             Some(meaning) => meaning.noun(),
             None if scope.get(&name.text).is_some() => "not a function",
+            None if matches!(name.text.as_str(), "t" | "pi" | "energy") => "not a function",
             None => return self.unknown_function(name),
         };
+        if let (Some(Meaning::Coordinates(..) | Meaning::Parameters(..)), [member]) =
+            (meaning, arguments)
+        {
+            let text = format!("`{}` is a family, not a function", name.text);
+            return self.refuse(name.at, text, &format!("write `{}[{member}]`", name.text));
+        }
         let text = match noun {
             "not a function" => format!("`{}` is not a function", name.text),
             noun => format!("`{}` is a {noun}, not a function", name.text),
         };
         let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
-        self.refuse(
-            name.at,
-            text,
-            &format!(
+        let help = match arguments.as_slice() {
+            [] => format!("write `{}`", name.text),
+            _ => format!(
                 "a product is written `{}*({})`",
                 name.text,
                 arguments.join(", ")
             ),
-        )
+        };
+        self.refuse(name.at, text, &help)
     }
 }
 

@@ -48,7 +48,8 @@ impl<'s> Resolver<'s> {
     /// All `const`.
     pub(super) fn constants(&mut self) {
         for constant in &self.spec.constants {
-            let value = self.integer(&constant.value, &mut Scope::default());
+            let help = "a `const` is a size or an index; write a number as `let` or as a parameter";
+            let value = self.integer_or(&constant.value, &mut Scope::default(), help);
             // A faulty constant stays known, so that its uses are not reported as unknown names.
             self.declare(&constant.name, Meaning::Constant(value.unwrap_or(1)));
         }

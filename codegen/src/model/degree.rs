@@ -55,11 +55,14 @@ fn power_degree(base: u32, exponent: &Rational) -> Option<u32> {
     base.checked_mul(exponent)
 }
 
-/// Whether `expr` is a polynomial of at most this degree in `symbols`: by its structure, or because its derivative of
-/// the next order along a general direction is zero.
+/// Whether `expr` is written as a polynomial in `symbols` and has at most this degree: by its structure, or because
+/// its derivative of the next order along a general direction is zero. What is no polynomial as written may not have
+/// a value where the symbols are 0, so that its coefficients cannot be read off.
 pub(super) fn has_degree(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId], degree: u32) -> bool {
-    if degree_bound(pool, expr, symbols).is_some_and(|bound| bound <= degree) {
-        return true;
+    match degree_bound(pool, expr, symbols) {
+        None => return false,
+        Some(bound) if bound <= degree => return true,
+        Some(_) => {}
     }
     let mut directions = Vec::with_capacity(symbols.len());
     for symbol in symbols {
@@ -78,6 +81,15 @@ pub(super) fn is_zero(pool: &Pool, expr: ExprId) -> bool {
     pool.is_syntactic_zero(expr) || pool.zero_test(expr) == Verdict::Proved
 }
 
+/// The number 0 for an expression that is proved to be zero and has a value everywhere, else the expression.
+pub(super) fn without_hidden_zero(pool: &Pool, expr: ExprId) -> ExprId {
+    if pool.is_finite(expr) && is_zero(pool, expr) {
+        pool.zero()
+    } else {
+        expr
+    }
+}
+
 /// `expr` with every one of `symbols` set to 0.
 pub(super) fn at_zero(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) -> ExprId {
     if !pool.depends_on_any(expr, symbols) {
@@ -89,7 +101,7 @@ pub(super) fn at_zero(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) -> Ex
     pool.substitute(expr, &replacements)
 }
 
-/// The coefficients of `symbols` in an expression that is linear in them.
+/// The coefficients of `symbols` in an expression that is linear in them; those that are zero are the number 0.
 pub(super) fn coefficients(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) -> Vec<ExprId> {
     let derivatives: Vec<ExprId> = symbols
         .iter()
@@ -97,13 +109,17 @@ pub(super) fn coefficients(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) 
         .collect();
     derivatives
         .into_iter()
-        .map(|coefficient| at_zero(pool, coefficient, symbols))
+        .map(|coefficient| {
+            let coefficient = at_zero(pool, coefficient, symbols);
+            without_hidden_zero(pool, coefficient)
+        })
         .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use dalembert_expr::Function;
 
     #[test]
     fn a_polynomial_in_disguise_is_recognised() {
@@ -118,5 +134,37 @@ mod tests {
         assert_eq!(degree_bound(&pool, quadratic, &[symbol]), Some(3));
         assert!(has_degree(&mut pool, quadratic, &[symbol], 2));
         assert!(!has_degree(&mut pool, cube, &[symbol], 2));
+    }
+
+    #[test]
+    fn a_quotient_is_no_polynomial() {
+        let mut pool = Pool::new();
+        let symbol = pool.symbol("v", "v", Assumption::None);
+        let v = pool.variable(symbol);
+        let v_cubed = pool.pow(v, Rational::from(3));
+        let quotient = pool.div(v_cubed, v);
+        assert_eq!(degree_bound(&pool, quotient, &[symbol]), None);
+        assert!(!has_degree(&mut pool, quotient, &[symbol], 2));
+    }
+
+    #[test]
+    fn a_hidden_zero_is_taken_for_the_number_where_it_has_a_value() {
+        let mut pool = Pool::new();
+        let symbol = pool.symbol("x", "x", Assumption::None);
+        let x = pool.variable(symbol);
+        let (sine, cosine) = (pool.call(Function::Sin, x), pool.call(Function::Cos, x));
+        let two = Rational::from(2);
+        let squares = [
+            pool.pow(sine, two.clone()),
+            pool.pow(cosine, two),
+            pool.int(-1),
+        ];
+        let hidden = pool.sum(&squares);
+        assert!(!pool.is_syntactic_zero(hidden));
+        let zero = without_hidden_zero(&pool, hidden);
+        assert!(pool.is_syntactic_zero(zero));
+        let nowhere = pool.div(hidden, x);
+        assert_eq!(without_hidden_zero(&pool, nowhere), nowhere);
+        assert_eq!(without_hidden_zero(&pool, sine), sine);
     }
 }

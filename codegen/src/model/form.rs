@@ -2,7 +2,9 @@
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
-use super::degree::{at_zero, coefficients, degree_bound, has_degree, is_zero};
+use super::degree::{
+    at_zero, coefficients, degree_bound, has_degree, is_zero, without_hidden_zero,
+};
 use super::resolve::{Resolver, Scope, Value};
 use crate::spec::{Equation, Quantity, Scalar, ScalarKind};
 
@@ -42,7 +44,7 @@ impl Resolver<'_> {
             (true, true) => self.refuse_mixture(&sides, &differentials, &velocities, scope),
             (true, false) => self.differential_form(&sides, value, &differentials, scope),
             (false, true) => self.velocity_form(&sides, value, &velocities, scope),
-            (false, false) => self.refuse_without_differential(equation),
+            (false, false) => self.refuse_without_differential(equation, scope),
         }
     }
 
@@ -79,6 +81,7 @@ impl Resolver<'_> {
         self.check_linear(sides, velocities, scope)?;
         let form = coefficients(&mut self.pool, value.expr, velocities);
         let affine = at_zero(&mut self.pool, value.expr, velocities);
+        let affine = without_hidden_zero(&self.pool, affine);
         self.nonzero_form(
             OneForm {
                 form,
@@ -189,13 +192,26 @@ impl Resolver<'_> {
         )
     }
 
-    fn refuse_without_differential<T>(&mut self, equation: &Equation) -> Option<T> {
+    fn refuse_without_differential<T>(&mut self, equation: &Equation, scope: &Scope) -> Option<T> {
         let at = equation.left.at.to(equation.right.at);
         if mentions_rate(&equation.left) || mentions_rate(&equation.right) {
             return self.refuse(
                 at,
                 "this form is zero",
                 "a constraint restricts the velocities",
+            );
+        }
+        let sides = [&equation.left, &equation.right];
+        let moves = sides.into_iter().any(|side| {
+            let value = self.expression(side, &mut scope.clone());
+            value.is_some_and(|value| !self.is_constant(value))
+        });
+        if !moves {
+            let text = "a constraint is a one-form, and this equation has no coordinates";
+            return self.refuse(
+                at,
+                text,
+                "write `d(x) - R*d(theta) = 0` or `dot(x) = R*dot(theta)`",
             );
         }
         let help = match &equation.right.kind {
@@ -225,6 +241,9 @@ impl Resolver<'_> {
             HELP,
         )?;
         let differentials = self.symbols.differentials.clone();
+        if is_zero(&self.pool, expr) {
+            return self.refuse(force.value.at, "this force is zero", "leave it out");
+        }
         if !self.pool.depends_on_any(expr, &differentials) {
             return self.refuse(force.value.at, "a force is a one-form", HELP);
         }

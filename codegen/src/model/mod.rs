@@ -10,10 +10,13 @@ mod culprit;
 mod definitions;
 mod degree;
 mod form;
+mod index;
 mod latex;
 mod natural;
 mod order;
 mod periodic;
+mod polynomial;
+mod range;
 #[cfg(test)]
 mod refusals;
 mod resolve;
@@ -88,6 +91,8 @@ pub struct Name {
 pub struct Coordinate {
     /// Its name.
     pub name: Name,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// The set it runs through.
     pub topology: Topology,
     /// The symbol of the coordinate.
@@ -171,6 +176,8 @@ pub struct Lagrangian {
 pub struct Constraint {
     /// Its name.
     pub name: Name,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// `eta`, N entries: left side minus right side, exactly as written.
     pub form: Vec<ExprId>,
     /// `eta_0`.
@@ -197,6 +204,8 @@ pub struct Force {
 pub struct Surface {
     /// Its name.
     pub name: Name,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// `h(t, q)`.
     pub gap: ExprId,
     /// Functions of `(t, q)` that must all be positive for the surface to count.
@@ -253,6 +262,8 @@ pub struct View {
 pub struct Output {
     /// Its name.
     pub name: Name,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// An expression of coordinates, velocities, parameters, time and [`DerivedSymbols`].
     pub value: ExprId,
     /// Where it was declared.

@@ -4,7 +4,7 @@
 use dalembert_expr::{ExprId, Pool, Sign, SymbolId};
 
 use super::Lagrangian;
-use super::degree::{at_zero, degree_bound, has_degree};
+use super::degree::{at_zero, degree_bound, has_degree, is_zero, without_hidden_zero};
 use super::resolve::{Resolver, Scope};
 use crate::spec::{ItemId, Scalar, ScalarKind};
 
@@ -21,7 +21,7 @@ pub(super) fn split(
         return resolver.refuse(written.at, "no kinetic term: the metric is zero", help);
     }
     if !has_degree(&mut resolver.pool, whole, &velocities, 2) {
-        return refuse_term(resolver, written, &velocities);
+        return refuse_term(resolver, written, whole, &velocities);
     }
     let pool = &mut resolver.pool;
     let slopes: Vec<ExprId> = velocities
@@ -31,10 +31,14 @@ pub(super) fn split(
     let metric = metric(pool, &slopes, &velocities);
     let linear = slopes
         .iter()
-        .map(|slope| at_zero(pool, *slope, &velocities))
+        .map(|slope| {
+            let entry = at_zero(pool, *slope, &velocities);
+            without_hidden_zero(pool, entry)
+        })
         .collect();
     let rest = at_zero(pool, whole, &velocities);
     let potential = pool.neg(rest);
+    let potential = without_hidden_zero(pool, potential);
     Some(Lagrangian {
         whole,
         metric,
@@ -54,6 +58,7 @@ fn metric(pool: &mut Pool, slopes: &[ExprId], velocities: &[SymbolId]) -> Vec<Ve
             // A diagonal entry is a sum of squares, where `cos^2 + sin^2` collects: often down to a constant, whose
             // sign is known and whose pivot needs no check.
             let entry = if i == j { pool.simplify(entry) } else { entry };
+            let entry = without_hidden_zero(pool, entry);
             metric[i][j] = entry;
             metric[j][i] = entry;
         }
@@ -64,14 +69,22 @@ fn metric(pool: &mut Pool, slopes: &[ExprId], velocities: &[SymbolId]) -> Vec<Ve
 fn refuse_term<T>(
     resolver: &mut Resolver<'_>,
     written: &Scalar,
+    whole: ExprId,
     velocities: &[SymbolId],
 ) -> Option<T> {
-    let too_high = |pool: &mut Pool, expr: ExprId| {
-        degree_bound(pool, expr, velocities).is_none_or(|degree| degree > 2)
+    let is_polynomial = degree_bound(&resolver.pool, whole, velocities).is_some();
+    let is_cause = |pool: &mut Pool, expr: ExprId| match degree_bound(pool, expr, velocities) {
+        None => true,
+        Some(degree) => is_polynomial && degree > 2,
     };
-    let term = resolver.culprit(written, &Scope::default(), &too_high);
+    let term = resolver.culprit(written, &Scope::default(), &is_cause);
+    let text = if is_polynomial {
+        format!("not natural: `{term}`")
+    } else {
+        format!("not natural: `{term}` is no polynomial in the velocities")
+    };
     let help = "a Lagrangian is natural: terms quadratic, linear and constant in the velocities";
-    resolver.refuse(term.at, format!("not natural: `{term}`"), help)
+    resolver.refuse(term.at, text, help)
 }
 
 /// Refuses a metric that is singular, or not positive for any values of the parameters.
@@ -105,8 +118,10 @@ fn check_velocities(resolver: &mut Resolver<'_>, lagrangian: &Lagrangian) {
         }
         refused.push(item);
         let name = &coordinate.name.display;
-        let how = if resolver.pool.depends_on(lagrangian.whole, coordinate.qdot) {
+        let how = if !is_zero(&lagrangian.linear[index]) {
             "appears only linearly"
+        } else if resolver.pool.depends_on(lagrangian.whole, coordinate.qdot) {
+            "cancels"
         } else {
             "does not appear"
         };
@@ -167,7 +182,7 @@ pub(super) fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian) -> Vec<Str
         .linear
         .iter()
         .zip(&resolver.symbols.coordinates)
-        .filter(|(entry, _)| !resolver.pool.is_syntactic_zero(**entry))
+        .filter(|(entry, _)| !is_zero(&resolver.pool, **entry))
         .map(|(_, coordinate)| coordinate.name.display.as_str())
         .collect();
     if !linear.is_empty() {

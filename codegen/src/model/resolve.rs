@@ -12,8 +12,8 @@ use super::definitions::Definition;
 use super::symbols::{Meaning, Symbols};
 use crate::diagnostics::{Diagnostics, Location};
 use crate::spec::{
-    Binder, EXPRESSIONS, FAMILY, NUMBER_BITS, Operator, RESOLVED_DEPTH, RESOLVED_PARTS, Scalar,
-    ScalarKind, Spec, Word,
+    Binder, EXPRESSIONS, NUMBER_BITS, Operator, RESOLVED_DEPTH, RESOLVED_PARTS, Scalar, ScalarKind,
+    Spec,
 };
 
 /// A resolved expression.
@@ -290,55 +290,6 @@ impl<'s> Resolver<'s> {
         Some(self.pool.div(left.expr, right.expr).into())
     }
 
-    /// `a % b` of indices, in `0..b`.
-    fn remainder(&mut self, left: Value, right: Value, divisor: &Scalar) -> Option<Value> {
-        match (self.as_integer(left.expr), self.as_integer(right.expr)) {
-            (Some(left), Some(right)) if right > 0 => {
-                Some(self.pool.int(left.rem_euclid(right)).into())
-            }
-            (Some(_), Some(_)) => self.refuse(divisor.at, "`%` needs a positive divisor", ""),
-            _ => self.refuse(
-                divisor.at,
-                "`%` is defined for indices only",
-                "both sides are integers known while building",
-            ),
-        }
-    }
-
-    fn as_integer(&self, expr: ExprId) -> Option<i64> {
-        self.pool.as_number(expr).and_then(Rational::to_i64)
-    }
-
-    /// The value of an index.
-    pub(super) fn integer(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<i64> {
-        let value = self.expression(scalar, scope)?;
-        let integer = self.as_integer(value);
-        integer.or_else(|| {
-            let text = format!("`{scalar}` is not an integer known while building");
-            self.refuse(
-                scalar.at,
-                text,
-                "indices are made of integers, constants and indices of families",
-            )
-        })
-    }
-
-    /// The values an index takes; none if the last one is before the first.
-    pub(super) fn range(
-        &mut self,
-        binder: &Binder,
-        scope: &mut Scope,
-    ) -> Option<std::ops::RangeInclusive<i64>> {
-        let low = self.integer(&binder.low, scope);
-        let high = self.integer(&binder.high, scope);
-        let (low, high) = (low?, high?);
-        if high.saturating_sub(low) >= FAMILY {
-            let text = format!("`{binder}` takes more than {FAMILY} values");
-            return self.refuse(binder.low.at.to(binder.high.at), text, "");
-        }
-        Some(low..=high)
-    }
-
     fn sum_over(&mut self, binder: &Binder, body: &Scalar, scope: &mut Scope) -> Option<Value> {
         let mut terms = Vec::new();
         for index in self.range(binder, scope)? {
@@ -391,57 +342,5 @@ impl<'s> Resolver<'s> {
             );
         }
         Some(self.pool.variable(self.symbols.derived.energy).into())
-    }
-
-    fn member(&mut self, name: &Word, index: &Scalar, scope: &mut Scope) -> Option<Value> {
-        let member = self.integer(index, scope);
-        let Some((meaning, _)) = self.symbols.names.get(&name.text).copied() else {
-            return self.unknown_name(&name.text, name.at, scope);
-        };
-        let member = member?;
-        match meaning {
-            Meaning::Coordinates(first, size) => {
-                let offset = self.offset(name, index, member, size)?;
-                Some(
-                    self.pool
-                        .variable(self.symbols.coordinates[first + offset].q)
-                        .into(),
-                )
-            }
-            Meaning::Parameters(first, size) => {
-                let offset = self.offset(name, index, member, size)?;
-                Some(
-                    self.pool
-                        .variable(self.symbols.parameters[first + offset].symbol)
-                        .into(),
-                )
-            }
-            Meaning::Definition => self.defined_member(name, index, member),
-            _ => {
-                let text = format!("`{}` is not a family", name.text);
-                self.refuse(name.at, text, &format!("write `{}`", name.text))
-            }
-        }
-    }
-
-    /// The offset of a 1-based member in its family.
-    pub(super) fn offset(
-        &mut self,
-        name: &Word,
-        index: &Scalar,
-        member: i64,
-        size: usize,
-    ) -> Option<usize> {
-        match usize::try_from(member) {
-            Ok(member) if (1..=size).contains(&member) => Some(member - 1),
-            _ => {
-                let text = format!("`{}[{member}]` does not exist", name.text);
-                self.refuse(
-                    index.at,
-                    text,
-                    &format!("`{}` has the members 1 to {size}", name.text),
-                )
-            }
-        }
     }
 }

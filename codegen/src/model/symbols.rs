@@ -151,36 +151,3 @@ pub(super) fn member_name(field: &str, member: Option<usize>) -> Name {
         member,
     }
 }
-
-/// `RollingDisk` as `rolling_disk`.
-pub(super) fn snake_case(name: &str) -> String {
-    let mut snake = String::new();
-    let characters: Vec<char> = name.chars().collect();
-    for (index, character) in characters.iter().enumerate() {
-        let after_lower = index > 0
-            && (characters[index - 1].is_lowercase() || characters[index - 1].is_ascii_digit());
-        let before_lower = index > 0
-            && characters[index - 1].is_uppercase()
-            && characters
-                .get(index + 1)
-                .is_some_and(|next| next.is_lowercase());
-        if character.is_uppercase() && (after_lower || before_lower) {
-            snake.push('_');
-        }
-        snake.extend(character.to_lowercase());
-    }
-    snake
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn type_names_become_snake_case() {
-        assert_eq!(snake_case("RollingDisk"), "rolling_disk");
-        assert_eq!(snake_case("Pendulum"), "pendulum");
-        assert_eq!(snake_case("BallOnTable2D"), "ball_on_table2_d");
-        assert_eq!(snake_case("LChain"), "l_chain");
-    }
-}

@@ -256,7 +256,7 @@ fn remarks_name_what_a_person_should_see() {
         "{notes}"
     );
     assert!(
-        notes.contains("`w` may still point into the wall"),
+        notes.contains("`totally_plastic` multiplies the gap rate of `w` by 1 - rho, rho = "),
         "{notes}"
     );
     assert!(notes.contains("the parameter `k` is not used"), "{notes}");
@@ -280,4 +280,104 @@ fn a_chain_of_sixty_lets_doubles_nothing() {
     }
     source.push_str("lagrangian = dot(x)^2 - a59; }");
     assert!(model(&source).pool.len() < 5_000);
+}
+
+#[test]
+fn plastic_laws_say_where_they_leave_the_state_approaching() {
+    let notes = |law: &str, constraint: &str| {
+        let model = model(&format!(
+            "P {{ coordinates {{ x; y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+                constraints {{ {constraint} }} impacts {{ w: x >= 0 => {law}; }} }}"
+        ));
+        model.notes.join("\n")
+    };
+    let rolling = "c: d(x) - z*d(y) = 0;";
+    let half = notes("nonholonomic_plastic", rolling);
+    assert!(half.contains("by 1 - 2 rho"), "{half}");
+    assert!(
+        half.contains("where rho < 1/2 the state still approaches"),
+        "{half}"
+    );
+    let whole = notes("totally_plastic", rolling);
+    assert!(
+        whole.contains("where rho < 1 the state still approaches"),
+        "{whole}"
+    );
+    assert_eq!(notes("impact_plastic", rolling), "");
+    assert_eq!(notes("totally_plastic", ""), "");
+}
+
+#[test]
+fn coefficients_that_may_leave_the_unit_interval_are_noted() {
+    let notes = |parameter: &str, coefficient: &str| {
+        let model = model(&format!(
+            "P {{ coordinates {{ x; }} parameters {{ {parameter}; }} lagrangian = dot(x)^2/2;
+                impacts {{ w: x >= 0 => newton({coefficient}); }} }}"
+        ));
+        model.notes.join("\n")
+    };
+    assert_eq!(
+        notes("e > 0 = 0.5", "e"),
+        "the coefficient `e` of `w` is not known to lie in [0, 1] and checked when a state is made; declare `e in [0, 1]`"
+    );
+    assert!(notes("e > 0", "e/2").ends_with("checked when a state is made"));
+    assert!(notes("e in [0, 2]", "1 - e").contains("`w`"));
+    for inside in ["e", "1 - e", "e^2/2", "sqrt(e)", "exp(-e)", "abs(sin(7*e))"] {
+        assert_eq!(notes("e in [0, 1]", inside), "", "{inside}");
+    }
+    assert_eq!(notes("e >= 0", "1/(1 + e)"), "");
+}
+
+#[test]
+fn members_of_a_family_may_stand_anywhere_in_a_section() {
+    let model = model(
+        "P { coordinates { x; y; } lagrangian = dot(x)^2 + dot(y)^2;
+            impacts { side[2]: x <= 1; floor: y >= 0; side[1]: x >= -1; side[3]: x + y <= 3; } }",
+    );
+    let names: Vec<&str> = model
+        .surfaces
+        .iter()
+        .map(|surface| surface.name.display.as_str())
+        .collect();
+    assert_eq!(names, ["side.2", "floor", "side.1", "side.3"]);
+}
+
+#[test]
+fn what_cancels_is_not_there() {
+    let model = model(
+        "P { coordinates { x; y; } parameters { m > 0; }
+            let one = sin(x)^2 + cos(x)^2;
+            lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (one - 1)*(dot(x)*dot(y) + dot(x) - y)
+                + x*dot(x) - dot(x)*x;
+            constraints { c: one*dot(x) = y*dot(y) + (x + 1)^2 - x^2 - 2*x - one; } }",
+    );
+    let lagrangian = &model.lagrangian;
+    assert_eq!(text(&model.pool, &lagrangian.linear), ["0", "0"]);
+    assert_eq!(text(&model.pool, &lagrangian.metric[0]), ["m", "0"]);
+    assert_eq!(text(&model.pool, &[lagrangian.potential]), ["0"]);
+    assert_eq!(text(&model.pool, &[model.constraints[0].affine]), ["0"]);
+    let says_linear = |note: &String| note.contains("terms linear in the velocities");
+    assert!(!model.notes.iter().any(says_linear), "{:?}", model.notes);
+}
+
+#[test]
+fn regular_gaps_are_accepted() {
+    let gaps = [
+        "1 - x^2/k^2 - y^2/m^2",
+        "x*y",
+        "x^2 - y^2",
+        "abs(x) - 1",
+        "k^2*x^2 - 2*k*x + m",
+        // The repeated factor is never zero, or zero outside of the chart only.
+        "(x^2 + 1)^2*(x - 1)",
+        "(u - 2)^2*(u - 1/2)",
+        "(u - 2)^2*(y - u)",
+        "(y - t)*(y - t - 1)",
+    ];
+    for gap in gaps {
+        model(&format!(
+            "P {{ coordinates {{ x; y; u in (0, 1); }} parameters {{ m > 0; k > 0; }}
+                lagrangian = dot(x)^2 + dot(y)^2 + dot(u)^2; impacts {{ w: {gap} >= 0; }} }}"
+        ));
+    }
 }

@@ -1,9 +1,10 @@
 //! What to say of a name that nothing declares: misspelt, pasted from a paper, or written as in another language.
 
 use super::latex::greek_name;
-use super::resolve::{Resolver, Scope, Value};
+use super::resolve::{DerivedNames, Resolver, Scope, Value};
+use super::symbols::Meaning;
 use crate::diagnostics::{Location, listed, nearest};
-use crate::spec::{FUNCTIONS, PIECEWISE, Word, foreign_function, is_not_differentiable};
+use crate::spec::{Declared, FUNCTIONS, PIECEWISE, Word, foreign_function, is_not_differentiable};
 
 /// Letters with a dot, as papers write velocities.
 const DOTTED: [(char, char); 22] = [
@@ -83,8 +84,52 @@ impl Resolver<'_> {
             let text = format!("`{name}` ({letter}) is not the declared `{declared}`");
             return self.refuse(at, text, &format!("write `{declared}`"));
         }
+        if let Some((text, help)) = self.not_yet_known(name) {
+            return self.refuse(at, text, help);
+        }
+        if matches!(name.to_lowercase().as_str(), "inf" | "infinity" | "nan") {
+            let help = "numbers are finite; where an interval has no end, write a large one, for example `1e6`";
+            return self.refuse(at, format!("`{name}` is not a number"), help);
+        }
         let help = self.unknown_help(name, scope);
         self.refuse(at, format!("unknown name `{name}`"), &help)
+    }
+
+    /// A name that is declared, but not known where constants are read: before everything else, in order.
+    pub(super) fn not_yet_known(&self, name: &str) -> Option<(String, &'static str)> {
+        let spec = self.spec;
+        if spec
+            .constants
+            .iter()
+            .any(|constant| constant.name.text == name)
+        {
+            let text = format!("`{name}` is used before it is declared");
+            return Some((text, "a `const` uses only a `const` above it"));
+        }
+        let declares = |declared: &Declared| declared.name.text == name;
+        let noun = if spec
+            .coordinates
+            .iter()
+            .any(|coordinate| declares(&coordinate.declared))
+        {
+            "coordinate"
+        } else if spec
+            .parameters
+            .iter()
+            .any(|parameter| declares(&parameter.declared))
+        {
+            "parameter"
+        } else if spec
+            .definitions
+            .iter()
+            .any(|definition| declares(&definition.declared))
+        {
+            "definition"
+        } else {
+            return None;
+        };
+        let text = format!("`{name}` is a {noun}, and a constant is expected here");
+        Some((text, "write numbers, `pi` and constants"))
     }
 
     fn unknown_help(&self, name: &str, scope: &Scope) -> String {
@@ -94,7 +139,11 @@ impl Resolver<'_> {
                 name.replace('·', "*")
             );
         }
-        if let Some(help) = self.velocity_help(name) {
+        let special = self
+            .velocity_help(name)
+            .or_else(|| self.member_help(name))
+            .or_else(|| self.foreign_help(name));
+        if let Some(help) = special {
             return help;
         }
         let declared = self
@@ -111,8 +160,69 @@ impl Resolver<'_> {
         }
     }
 
+    /// `q1`, `q_1` and `q_i` for a member of the family `q`.
+    pub(super) fn member_help(&self, name: &str) -> Option<String> {
+        let is_family = |meaning: Meaning| {
+            matches!(meaning, Meaning::Coordinates(..) | Meaning::Parameters(..))
+        };
+        let families = self
+            .symbols
+            .names
+            .iter()
+            .filter(|(_, (meaning, _))| is_family(*meaning));
+        let index = |family: &str| {
+            let rest = name.strip_prefix(family)?;
+            let index = rest.strip_prefix('_').unwrap_or(rest);
+            let is_number = !index.is_empty() && index.chars().all(|digit| digit.is_ascii_digit());
+            let is_letter = rest.starts_with('_') && matches!(index, "i" | "j" | "k" | "n" | "N");
+            (is_number || is_letter)
+                .then(|| format!("a member of `{family}` is written `{family}[{index}]`"))
+        };
+        families
+            .map(|(family, _)| family)
+            .find_map(|family| index(family))
+    }
+
+    /// Names that other notations have for what is written differently here.
+    fn foreign_help(&self, name: &str) -> Option<String> {
+        let momentum = name
+            .strip_prefix("p_")
+            .filter(|field| self.is_coordinate(field));
+        let help = match name {
+            "PI" | "Pi" | "π" => "write `pi`",
+            "e" | "euler" => "declare it; the exponential function is written `exp(x)`",
+            "E" | "H" if self.derived_names != DerivedNames::Nowhere => {
+                "the energy is written `energy`"
+            }
+            "time" => "time is written `t`",
+            _ => {
+                return momentum.map(|field| {
+                    format!(
+                        "in `outputs`, the momentum of `{field}` is written `momentum({field})`"
+                    )
+                });
+            }
+        };
+        Some(help.to_owned())
+    }
+
+    /// How a coordinate is written in an expression: its name, or a member of the family.
+    fn member_or_name(&self, field: &str) -> String {
+        match self.symbols.names.get(field) {
+            Some((Meaning::Coordinates(..), _)) => format!("{field}[1]"),
+            _ => field.to_owned(),
+        }
+    }
+
+    fn is_coordinate(&self, name: &str) -> bool {
+        let coordinates = &self.symbols.coordinates;
+        coordinates
+            .iter()
+            .any(|coordinate| coordinate.name.field == name)
+    }
+
     /// `xdot`, `x_dot` and `ẋ` for `dot(x)`; `dx` for `d(x)`.
-    fn velocity_help(&self, name: &str) -> Option<String> {
+    pub(super) fn velocity_help(&self, name: &str) -> Option<String> {
         if let Some(base) = without_dot(name) {
             let base = self.ascii_name(&base).unwrap_or(base);
             return Some(format!("did you mean `dot({base})`?"));
@@ -127,8 +237,9 @@ impl Resolver<'_> {
                 .strip_prefix(field)
                 .map(|rest| rest.trim_start_matches('_'));
             if rest.is_some_and(|rest| rest == "d" || rest.starts_with("dot")) {
+                let member = self.member_or_name(field);
                 return Some(format!(
-                    "the velocity of `{field}` is written `dot({field})`"
+                    "the velocity of `{member}` is written `dot({member})`"
                 ));
             }
             if name.strip_prefix('d') == Some(field) {

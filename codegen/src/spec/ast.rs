@@ -14,6 +14,8 @@ pub struct ItemId(u32);
 pub struct Spec {
     /// The type's name.
     pub name: Word,
+    /// Its snake case, which names the module of indices.
+    pub snake_name: String,
     /// Nothing, `pub`, `pub(crate)`.
     pub visibility: String,
     /// Lines of the doc comment.
@@ -49,9 +51,10 @@ pub struct Spec {
 
 impl Spec {
     /// A model of which only the name is known.
-    pub(super) fn new(name: Word) -> Self {
+    pub(super) fn new(name: Word, snake_name: String) -> Self {
         Self {
             name,
+            snake_name,
             visibility: String::new(),
             documentation: Vec::new(),
             source: String::new(),
@@ -187,6 +190,8 @@ pub struct Constant {
 pub struct Coordinate {
     /// Its name; the index is the size of the family.
     pub declared: Declared,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// The set it runs through.
     pub topology: Topology,
     /// The declaration.
@@ -268,6 +273,8 @@ pub struct Lagrangian {
 pub struct Equation {
     /// Its name, with the index of a family.
     pub declared: Declared,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// The left side.
     pub left: Scalar,
     /// The right side.
@@ -281,6 +288,8 @@ pub struct Equation {
 pub struct Quantity {
     /// Its name, with the index of a family.
     pub declared: Declared,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// Its value.
     pub value: Scalar,
     /// The declaration.
@@ -303,6 +312,8 @@ pub struct Comparison {
 pub struct Surface {
     /// Its name, with the index of a family.
     pub declared: Declared,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// The allowed side.
     pub gap: Comparison,
     /// Where the surface counts.

@@ -61,6 +61,11 @@ impl<'a> Cursor<'a> {
         self.tokens.get(self.next + 1)
     }
 
+    /// The token read last.
+    pub(super) fn previous(&self) -> Option<&'a TokenTree> {
+        self.tokens.get(self.next.checked_sub(1)?)
+    }
+
     /// Takes the next token.
     pub(super) fn bump(&mut self) -> Option<&'a TokenTree> {
         let token = self.tokens.get(self.next)?;
@@ -86,7 +91,7 @@ impl<'a> Cursor<'a> {
         (taken, !rest.is_empty())
     }
 
-    /// The token read last.
+    /// The place of the token read last.
     pub(super) fn last(&self) -> Location {
         self.last
     }

@@ -43,8 +43,40 @@ pub const FUNCTIONS: [&str; 14] = [
     "tanh", "abs",
 ];
 
+/// Declarations as other languages call them, with what is written here.
+const FOREIGN_SECTIONS: [(&str, &str); 16] = [
+    ("L", "write `lagrangian = ..;`"),
+    ("coords", "write `coordinates { .. }`"),
+    ("variables", "write `coordinates { .. }`"),
+    ("states", "write `coordinates { .. }`"),
+    ("params", "write `parameters { .. }`"),
+    (
+        "constants",
+        "write `parameters { .. }`, or `const N = 8;` for a size",
+    ),
+    ("surfaces", "write `impacts { .. }`"),
+    ("walls", "write `impacts { .. }`"),
+    ("guards", "write `impacts { .. }`"),
+    ("events", "write `impacts { .. }`"),
+    (
+        "kinetic",
+        "the Lagrangian is kinetic minus potential energy: `lagrangian = ..;`",
+    ),
+    (
+        "potential",
+        "the Lagrangian is kinetic minus potential energy: `lagrangian = ..;`",
+    ),
+    (
+        "hamiltonian",
+        "declare the Lagrangian it belongs to: `lagrangian = ..;`",
+    ),
+    ("observables", "write `outputs { .. }`"),
+    ("fn", "a function is written `let f(u) = ..;`"),
+    ("def", "a function is written `let f(u) = ..;`"),
+];
+
 /// Functions of other languages, with what is written here.
-const FOREIGN_FUNCTIONS: [(&str, &str); 14] = [
+const FOREIGN_FUNCTIONS: [(&str, &str); 25] = [
     ("log", "write `ln(..)`"),
     ("log10", "write `ln(..)/ln(10)`"),
     ("log2", "write `ln(..)/ln(2)`"),
@@ -59,6 +91,23 @@ const FOREIGN_FUNCTIONS: [(&str, &str); 14] = [
     ("tg", "write `tan(..)`"),
     ("ddt", "write `dot(..)`"),
     ("diff", "write `dot(..)` for a time derivative"),
+    (
+        "ddot",
+        "a declaration has no accelerations: they follow from it",
+    ),
+    (
+        "dddot",
+        "a declaration has no accelerations: they follow from it",
+    ),
+    ("norm", "write `sqrt(x^2 + y^2)`"),
+    ("hypot", "write `sqrt(x^2 + y^2)`"),
+    ("square", "write `x^2`"),
+    ("sec", "write `1/cos(..)`"),
+    ("csc", "write `1/sin(..)`"),
+    ("cot", "write `1/tan(..)`"),
+    ("fabs", "write `abs(..)`"),
+    ("lambda", "write `multiplier(..)`, in `outputs`"),
+    ("p", "write `momentum(..)`, in `outputs`"),
 ];
 
 /// Functions that are not differentiable and belong nowhere in an expression.
@@ -137,6 +186,14 @@ pub fn not_implemented(word: &str) -> Option<&'static str> {
     NOT_IMPLEMENTED
         .iter()
         .find(|(name, _)| *name == word)
+        .map(|(_, instead)| *instead)
+}
+
+/// What to write instead of a declaration of another language.
+pub fn foreign_section(word: &str) -> Option<&'static str> {
+    FOREIGN_SECTIONS
+        .iter()
+        .find(|(foreign, _)| *foreign == word)
         .map(|(_, instead)| *instead)
 }
 

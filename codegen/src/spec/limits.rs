@@ -14,8 +14,10 @@ pub const LITERAL_DIGITS: usize = 40;
 pub const COORDINATES: usize = 64;
 /// Parameters of a model, families expanded.
 pub const PARAMETERS: usize = 256;
-/// Magnitude of the numerator and denominator of an exponent.
+/// Magnitude of an exponent.
 pub const EXPONENT: i64 = 4096;
+/// Bits of the denominator of an exponent.
+pub const EXPONENT_DENOMINATOR_BITS: u64 = 12;
 /// Bits of an exact number.
 pub const NUMBER_BITS: u64 = 4096;
 /// Nodes of the shared expressions.

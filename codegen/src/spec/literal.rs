@@ -6,6 +6,7 @@ use proc_macro2::Literal;
 use super::ast::{Scalar, ScalarKind};
 use super::cursor::{Cursor, Read};
 use super::limits::LITERAL_DIGITS;
+use super::slips::NUMBERS;
 use crate::diagnostics::Location;
 
 /// Rust's types of numbers, which appear as suffixes.
@@ -36,11 +37,7 @@ impl Cursor<'_> {
 
     fn number(&mut self, text: &str, at: Location) -> Read<Rational> {
         if !text.starts_with(|first: char| first.is_ascii_digit()) {
-            return Err(self.refuse(
-                at,
-                "expected an expression, found a text",
-                "numbers are written `12`, `0.5`, `1.25e-7`",
-            ));
+            return Err(self.refuse(at, "expected an expression, found a text", NUMBERS));
         }
         if text.starts_with("0x") || text.starts_with("0b") || text.starts_with("0o") {
             return Err(self.refuse(at, "numbers are decimal", "write `12`, `0.5`, `1.25e-7`"));

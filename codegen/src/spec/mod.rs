@@ -15,6 +15,7 @@ mod limits;
 mod literal;
 mod parse;
 mod scalar;
+mod slips;
 #[cfg(test)]
 mod tests;
 
@@ -24,7 +25,7 @@ pub use keyword::{
     is_rust_keyword,
 };
 pub use limits::{
-    COORDINATES, EXPONENT, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS, RESOLVED_DEPTH,
-    RESOLVED_PARTS,
+    COORDINATES, EXPONENT, EXPONENT_DENOMINATOR_BITS, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS,
+    RESOLVED_DEPTH, RESOLVED_PARTS,
 };
 pub use parse::parse;

@@ -14,13 +14,10 @@
 use proc_macro2::{Delimiter, Group, Ident, TokenTree};
 
 use super::ast::{Binder, Operator, Scalar, ScalarKind, Word};
-use super::cursor::{Cursor, Read, Refused, token_text, tokens_of};
+use super::cursor::{Cursor, Read, tokens_of};
 use super::keyword;
 use super::limits::NESTING;
 use crate::diagnostics::Location;
-
-/// Signs that end an expression where a relation is not allowed, and make it a matter of cases.
-const COMPARISONS: [&str; 8] = ["<=", ">=", "==", "!=", "<", ">", "&", "|"];
 
 impl Cursor<'_> {
     /// Reads an expression as far as it goes.
@@ -43,52 +40,17 @@ impl Cursor<'_> {
         Ok(scalar)
     }
 
-    /// Refuses what stands behind a complete declaration or expression.
-    pub(super) fn end(&mut self) -> Read<()> {
-        if self.is_at_end() {
-            return Ok(());
-        }
-        if let Some(sign) = COMPARISONS.into_iter().find(|sign| self.is_operator(sign)) {
-            let text = format!("`{sign}` is not differentiable and not part of an expression");
-            return Err(self.refuse_operator(sign, text, keyword::PIECEWISE));
-        }
-        if self.is_operator(".") {
-            return Err(self.unexpected(
-                "unexpected `.`",
-                "a member of a family is written `theta[3]`",
-            ));
-        }
-        Err(self.unexpected("expected `;` or an operator", ""))
-    }
-
-    fn missing_operator(&mut self) -> Refused {
-        if self.is_word("and") || self.is_word("or") {
-            let help = "several conditions are written `when a > 0 when b > 0`";
-            return self.unexpected("expected `when`", help);
-        }
-        if self.is_word("if") || self.is_word("else") {
-            return self.unexpected("an expression has no cases", keyword::PIECEWISE);
-        }
-        if matches!(self.peek_second(), Some(TokenTree::Punct(punct)) if matches!(punct.as_char(), ':' | '='))
-        {
-            return self.refuse(self.last(), "expected `;`", "end the declaration with `;`");
-        }
-        let next = self.peek().map_or_else(String::new, token_text);
-        let help = "write `*` for a product, or `;` to end the declaration";
-        self.refuse(
-            self.here(),
-            format!("missing operator before `{next}`"),
-            help,
-        )
-    }
-
     fn sum(&mut self) -> Read<Scalar> {
         let start = self.here();
         let mut terms = vec![(false, self.product()?)];
         loop {
             let negative = match self.peek() {
                 Some(TokenTree::Punct(punct)) if punct.as_char() == '+' => false,
-                Some(TokenTree::Punct(punct)) if punct.as_char() == '-' => true,
+                Some(TokenTree::Punct(punct))
+                    if punct.as_char() == '-' && !self.is_operator("->") =>
+                {
+                    true
+                }
                 _ => break,
             };
             self.bump();
@@ -194,18 +156,19 @@ impl Cursor<'_> {
                     Delimiter::Brace => Err(self.unexpected("expected an expression", "")),
                 }
             }
-            Some(TokenTree::Punct(punct)) if punct.as_char() == '|' => Err(self.unexpected(
-                "expected an expression",
-                "the absolute value is written `abs(x)`",
-            )),
-            _ => Err(self.unexpected("expected an expression", "")),
+            _ => Err(self.missing_expression()),
         }
     }
 
     fn parenthesised(&mut self, group: &Group) -> Read<Scalar> {
         self.bump();
         let tokens = tokens_of(group.stream());
-        let inner = self.inside(&tokens, group).whole_scalar()?;
+        let mut inside = self.inside(&tokens, group);
+        let inner = inside.scalar()?;
+        if inside.is_operator(",") {
+            return Err(inside.comma_in_parentheses());
+        }
+        inside.end()?;
         Ok(Scalar {
             kind: inner.kind,
             at: Location::from(group.span()),
@@ -216,10 +179,7 @@ impl Cursor<'_> {
     fn named(&mut self, ident: &Ident) -> Read<Scalar> {
         let name = self.word(ident)?;
         if matches!(name.text.as_str(), "if" | "match" | "else") {
-            let text = format!(
-                "`{}` is not differentiable and not part of an expression",
-                name.text
-            );
+            let text = format!("an expression has no cases, found `{}`", name.text);
             return Err(self.refuse(name.at, text, keyword::PIECEWISE));
         }
         if let Some(group) = self.eat_group(Delimiter::Parenthesis) {
@@ -230,6 +190,9 @@ impl Cursor<'_> {
                 at: name.at.to(self.last()),
             });
         }
+        if keyword::is_function(&name.text) {
+            return Err(self.missing_parentheses(&name));
+        }
         if let Some(group) = self.eat_group(Delimiter::Bracket) {
             let tokens = tokens_of(group.stream());
             let index = self.inside(&tokens, group).whole_scalar()?;
@@ -239,35 +202,10 @@ impl Cursor<'_> {
                 at,
             });
         }
-        if keyword::is_function(&name.text) {
-            return Err(self.missing_parentheses(&name));
-        }
         Ok(Scalar {
             kind: ScalarKind::Name(name.text),
             at: name.at,
         })
-    }
-
-    fn missing_parentheses(&mut self, function: &Word) -> Refused {
-        let name = &function.text;
-        match self.peek() {
-            Some(token @ (TokenTree::Ident(_) | TokenTree::Literal(_))) => {
-                let help = format!("write `{name}({})`", token_text(token));
-                self.refuse(
-                    Location::of(token),
-                    "function call needs parentheses",
-                    &help,
-                )
-            }
-            Some(TokenTree::Punct(punct)) if punct.as_char() == '^' => {
-                let help = format!("the power of a function is written `{name}(x)^2`");
-                self.refuse(function.at, "function call needs parentheses", &help)
-            }
-            _ => {
-                let help = format!("write `{name}(..)`");
-                self.refuse(function.at, format!("`{name}` is a function"), &help)
-            }
-        }
     }
 
     /// The inside of the parentheses behind a name.
@@ -301,6 +239,9 @@ impl Cursor<'_> {
             return Err(self.unexpected("expected `in`", &format!("write `{form}`")));
         }
         let low = Box::new(self.scalar()?);
+        if self.is_operator("..") {
+            return Err(self.open_range(&low));
+        }
         self.expect_operator("..=", form)?;
         let high = Box::new(self.scalar()?);
         Ok(Binder { name, low, high })

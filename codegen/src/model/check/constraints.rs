@@ -5,7 +5,7 @@ use dalembert_expr::{Assumption as Known, ExprId, Rational};
 use super::super::Constraint;
 use super::super::form::OneForm;
 use super::super::resolve::{Resolver, Scope};
-use super::Names;
+use super::names::Names;
 use crate::diagnostics::{Location, listed};
 use crate::spec::Equation;
 
@@ -13,7 +13,7 @@ use crate::spec::Equation;
 pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
     let spec = resolver.spec;
     let mut constraints: Vec<Constraint> = Vec::new();
-    let mut names = Names::new("constraint");
+    let mut names = Names::new(resolver, "constraint");
     for equation in &spec.constraints {
         let members = resolver.members(&equation.declared);
         for (name, _) in &members {
@@ -32,6 +32,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
             } = parts;
             constraints.push(Constraint {
                 name,
+                documentation: equation.documentation.clone(),
                 form,
                 affine,
                 level,
@@ -39,6 +40,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
             });
         }
     }
+    names.check_families(resolver);
     constraints
 }
 

@@ -51,6 +51,7 @@ impl<'s> Resolver<'s> {
         let [q, qdot, differential, momentum] = coordinate_symbols(&mut self.pool, &name, known);
         self.symbols.coordinates.push(Coordinate {
             name,
+            documentation: written.documentation.clone(),
             topology,
             q,
             qdot,

@@ -210,11 +210,19 @@ impl Resolver<'_> {
             .coordinates
             .iter()
             .map(|coordinate| coordinate.name.field.as_str());
-        let help = match nearest(&name.text, fields.chain(["until"])) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => {
-                "initial values are given for coordinates, `dot(..)` of coordinates, and `until`"
-                    .to_owned()
+        let help = if let Some(help) = self.velocity_help(&name.text) {
+            help
+        } else if let Some(help) = self.member_help(&name.text) {
+            help
+        } else if let Some(near) = nearest(&name.text, fields.chain(["until"])) {
+            format!("did you mean `{near}`?")
+        } else {
+            match name.text.as_str() {
+                "t" => "a run starts at time 0".to_owned(),
+                "T" | "t_end" | "tend" | "t_max" | "tmax" | "end" | "duration" => {
+                    "the end of a run is written `until = 10;`".to_owned()
+                }
+                _ => "initial values are given for coordinates, `dot(..)` of coordinates, and `until`".to_owned(),
             }
         };
         self.no_target(name.at, format!("unknown coordinate `{}`", name.text), help)

@@ -8,8 +8,11 @@ mod constraints;
 mod coordinates;
 mod initial;
 mod integrable;
+mod laws;
+mod names;
 mod outputs;
 mod parameters;
+mod regular;
 mod surfaces;
 
 use std::collections::BTreeSet;
@@ -18,10 +21,10 @@ use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 
 use super::natural;
 use super::resolve::{Resolver, Scope};
-use super::symbols::{member_name, snake_case};
-use super::{Claim, Constraint, Force, Initial, Lagrangian, Model, Name, Output, Surface, View};
-use crate::diagnostics::{Diagnostics, Location};
-use crate::spec::{Declared, Index, PIECEWISE, Scalar, Spec, Word};
+use super::{Claim, Constraint, Force, Initial, Lagrangian, Model, Output, Surface, View};
+use crate::diagnostics::Diagnostics;
+use crate::spec::{PIECEWISE, Scalar, Spec};
+use names::Names;
 
 /// What was declared of the motion, resolved.
 struct Parts {
@@ -90,7 +93,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
     Model {
         pool,
         name: spec.name.text.clone(),
-        snake_name: snake_case(&spec.name.text),
+        snake_name: spec.snake_name.clone(),
         visibility: spec.visibility.clone(),
         documentation: spec.documentation.clone(),
         source: spec.source.clone(),
@@ -113,11 +116,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
 fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec<String> {
     let mut notes = natural::notes(resolver, lagrangian);
     notes.extend(integrable::notes(resolver, &parts.constraints));
-    notes.extend(surfaces::notes(
-        resolver,
-        &parts.surfaces,
-        &parts.constraints,
-    ));
+    notes.extend(laws::notes(resolver, &parts.surfaces, &parts.constraints));
     notes.extend(initial::notes(resolver, &parts.initial));
     notes.extend(parameters::unused(
         resolver,
@@ -140,7 +139,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
                 .iter()
                 .chain([&surface.gap])
                 .copied()
-                .chain(surfaces::coefficient(&surface.law)),
+                .chain(laws::coefficient(&surface.law)),
         );
     }
     used.extend(
@@ -193,7 +192,7 @@ fn lagrangian(resolver: &mut Resolver<'_>) -> Option<Lagrangian> {
 fn forces(resolver: &mut Resolver<'_>) -> Vec<Force> {
     let spec = resolver.spec;
     let mut forces = Vec::new();
-    let mut names = Names::new("force");
+    let mut names = Names::new(resolver, "force");
     for force in &spec.forces {
         for (name, mut scope) in resolver.members(&force.declared) {
             names.add(resolver, &name, &force.declared.name);
@@ -210,35 +209,8 @@ fn forces(resolver: &mut Resolver<'_>) -> Vec<Force> {
             });
         }
     }
+    names.check_families(resolver);
     forces
-}
-
-/// The names of the members of a section, each allowed once.
-struct Names {
-    noun: &'static str,
-    first: Vec<(String, Location)>,
-}
-
-impl Names {
-    fn new(noun: &'static str) -> Self {
-        Self {
-            noun,
-            first: Vec::new(),
-        }
-    }
-
-    fn add(&mut self, resolver: &mut Resolver<'_>, name: &Name, written: &Word) {
-        match self.first.iter().find(|(first, _)| *first == name.display) {
-            Some((_, first)) => {
-                let text = format!("{} `{}` declared again", self.noun, name.display);
-                let error = resolver.diagnostics.error(written.at, text);
-                error
-                    .help("choose another name")
-                    .also(*first, format!("`{}` first declared here", name.display));
-            }
-            None => self.first.push((name.display.clone(), written.at)),
-        }
-    }
 }
 
 impl Resolver<'_> {
@@ -251,48 +223,6 @@ impl Resolver<'_> {
         let velocities = coordinates.iter().map(|coordinate| coordinate.qdot);
         for symbol in parameters.chain(positions).chain(velocities) {
             self.pool.variable(symbol);
-        }
-    }
-
-    /// The members that a declaration declares, each with what its index stands for.
-    fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
-        let field = &declared.name.text;
-        let mut scope = Scope::default();
-        match &declared.index {
-            None => vec![(member_name(field, None), scope)],
-            Some(Index::One(index)) => {
-                let member = self
-                    .integer(index, &mut scope)
-                    .and_then(|member| self.member_index(index, member));
-                member
-                    .map(|member| (member_name(field, Some(member)), scope))
-                    .into_iter()
-                    .collect()
-            }
-            Some(Index::Each(binder)) => {
-                let mut members = Vec::new();
-                for member in self.range(binder, &mut scope).into_iter().flatten() {
-                    let Some(index) = self.member_index(&binder.low, member) else {
-                        break;
-                    };
-                    let value = self.pool.int(member);
-                    let mut scope = Scope::default();
-                    scope.bind(&binder.name.text, value.into());
-                    members.push((member_name(field, Some(index)), scope));
-                }
-                members
-            }
-        }
-    }
-
-    fn member_index(&mut self, written: &Scalar, member: i64) -> Option<usize> {
-        match usize::try_from(member) {
-            Ok(index) if index > 0 => Some(index),
-            _ => self.refuse(
-                written.at,
-                format!("members are counted from 1, found {member}"),
-                "write `[i in 1..=N]`",
-            ),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::super::resolve::{DerivedNames, Resolver, Scope};
 use super::super::{Output, View};
-use super::Names;
+use super::names::Names;
 
 /// The declared view, if it has a path.
 pub(super) fn view(resolver: &mut Resolver<'_>) -> Option<View> {
@@ -41,7 +41,7 @@ pub(super) fn view(resolver: &mut Resolver<'_>) -> Option<View> {
 pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Output> {
     let spec = resolver.spec;
     let mut outputs = Vec::new();
-    let mut names = Names::new("output");
+    let mut names = Names::new(resolver, "output");
     resolver.derived_names = DerivedNames::Outputs;
     for output in &spec.outputs {
         for (name, mut scope) in resolver.members(&output.declared) {
@@ -62,11 +62,13 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Output> {
             if kept.is_some() {
                 outputs.push(Output {
                     name,
+                    documentation: output.documentation.clone(),
                     value,
                     item: output.item,
                 });
             }
         }
     }
+    names.check_families(resolver);
     outputs
 }

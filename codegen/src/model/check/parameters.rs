@@ -56,7 +56,9 @@ impl<'s> Resolver<'s> {
         let count = size.unwrap_or(1);
         match &written.default {
             None => vec![None; count],
-            Some(ParameterDefault::One(value)) => vec![self.default(value, assumption); count],
+            Some(ParameterDefault::One(value)) => {
+                vec![self.default(value, written, assumption); count]
+            }
             Some(ParameterDefault::List(values, at)) => {
                 if size.is_none() || values.len() != count {
                     let name = &written.declared.name.text;
@@ -71,13 +73,18 @@ impl<'s> Resolver<'s> {
                 }
                 values
                     .iter()
-                    .map(|value| self.default(value, assumption))
+                    .map(|value| self.default(value, written, assumption))
                     .collect()
             }
         }
     }
 
-    fn default(&mut self, written: &Scalar, assumption: &Assumption) -> Option<ExprId> {
+    fn default(
+        &mut self,
+        written: &Scalar,
+        parameter: &spec::Parameter,
+        assumption: &Assumption,
+    ) -> Option<ExprId> {
         let expr = self.constant_expression(written, "a default")?;
         let value = self.constant_value(expr);
         if !value.is_finite() {
@@ -88,7 +95,10 @@ impl<'s> Resolver<'s> {
             );
         }
         if !holds(assumption, value) {
-            let text = format!("the default `{written}` violates `{}`", demand(assumption));
+            let text = format!(
+                "the default `{written}` violates `{}`",
+                demand(&parameter.assumption)
+            );
             return self.refuse(written.at, text, "change the default or the assumption");
         }
         Some(expr)
@@ -128,18 +138,21 @@ impl<'s> Resolver<'s> {
         if let Some(number) = self.pool.as_number(expr) {
             return Some(number.clone());
         }
-        let value = self.constant_value(expr);
-        let size = Rational::from_decimal(&format!("{:e}", value.abs()));
-        match size {
-            Some(size) if value < 0.0 => Some(-size),
-            Some(size) => Some(size),
-            None => self.refuse(
+        let value = nearest_rational(self.constant_value(expr));
+        value.or_else(|| {
+            self.refuse(
                 written.at,
                 format!("`{written}` is not a finite number"),
                 "",
-            ),
-        }
+            )
+        })
     }
+}
+
+/// The shortest decimal that reads back as this number.
+pub(super) fn nearest_rational(value: f64) -> Option<Rational> {
+    let size = Rational::from_decimal(&format!("{:e}", value.abs()))?;
+    Some(if value < 0.0 { -size } else { size })
 }
 
 fn known(assumption: &Assumption) -> Known {
@@ -165,13 +178,14 @@ fn holds(assumption: &Assumption, value: f64) -> bool {
     }
 }
 
-fn demand(assumption: &Assumption) -> String {
+/// An assumption as it was written.
+fn demand(assumption: &spec::Assumption) -> String {
     match assumption {
-        Assumption::Finite => "finite".to_owned(),
-        Assumption::Positive => "> 0".to_owned(),
-        Assumption::NonNegative => ">= 0".to_owned(),
-        Assumption::NonZero => "!= 0".to_owned(),
-        Assumption::Within { low, high } => format!("in [{low}, {high}]"),
+        spec::Assumption::Finite => "finite".to_owned(),
+        spec::Assumption::Positive => "> 0".to_owned(),
+        spec::Assumption::NonNegative => ">= 0".to_owned(),
+        spec::Assumption::NonZero => "!= 0".to_owned(),
+        spec::Assumption::Within(ends) => format!("in [{}, {}]", ends[0], ends[1]),
     }
 }
 

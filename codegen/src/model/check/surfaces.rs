@@ -1,19 +1,19 @@
-//! Impact surfaces: functions of position with a regular zero set that allowed motion can reach, and their laws.
+//! Impact surfaces: functions of position with a regular zero set that allowed motion can reach.
 
-use dalembert_expr::{ExprId, Node, Rational};
+use dalembert_expr::ExprId;
 
 use super::super::degree::is_zero;
 use super::super::resolve::{Resolver, Scope};
-use super::super::{Constraint, Law, Surface};
-use super::Names;
-use crate::diagnostics::{listed, nearest};
-use crate::spec::{self, Comparison, LAWS, Scalar};
+use super::super::{Constraint, Surface};
+use super::names::Names;
+use crate::diagnostics::listed;
+use crate::spec::{self, Comparison};
 
 /// All surfaces, families expanded.
 pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
     let spec = resolver.spec;
     let mut surfaces = Vec::new();
-    let mut names = Names::new("surface");
+    let mut names = Names::new(resolver, "surface");
     for surface in &spec.surfaces {
         for (name, mut scope) in resolver.members(&surface.declared) {
             names.add(resolver, &name, &surface.declared.name);
@@ -30,6 +30,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
             };
             surfaces.push(Surface {
                 name,
+                documentation: surface.documentation.clone(),
                 gap,
                 conditions,
                 law,
@@ -37,6 +38,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
             });
         }
     }
+    names.check_families(resolver);
     surfaces
 }
 
@@ -70,92 +72,9 @@ impl Resolver<'_> {
                 "write `name: h >= 0;`",
             );
         }
-        if self.pool.sign(gap).is_nonzero() {
-            return self.refuse(at, "surface has no zero set: it is never zero", "");
-        }
-        if let Some(base) = perfect_power(self, gap) {
-            let text = "not regular: the gradient vanishes where the surface is zero";
-            let base = self.pool.text(base);
-            return self.refuse(at, text, &format!("write `{base} >= 0`"));
-        }
+        self.check_regular(at, gap)?;
         Some(gap)
     }
-
-    fn law(&mut self, law: Option<&spec::Law>, scope: &mut Scope) -> Option<Law> {
-        let Some(law) = law else {
-            return Some(Law::Elastic);
-        };
-        let name = law.name.text.as_str();
-        let Some((_, count)) = LAWS.into_iter().find(|(known, _)| *known == name) else {
-            let laws = LAWS.map(|(known, _)| known);
-            let near = nearest(name, laws).map(|near| format!("did you mean `{near}`? "));
-            let help = format!("{}the laws are {}", near.unwrap_or_default(), listed(laws));
-            return self.refuse(law.name.at, format!("unknown law `{name}`"), &help);
-        };
-        if law.arguments.len() != count {
-            let (text, help) = match count {
-                0 => (
-                    format!("`{name}` takes no coefficient"),
-                    format!("write `{name}`"),
-                ),
-                _ => (
-                    format!("`{name}` takes one coefficient"),
-                    format!("write `{name}(0.8)`"),
-                ),
-            };
-            return self.refuse(law.name.at, text, &help);
-        }
-        match (name, law.arguments.first()) {
-            ("restitution", Some(coefficient)) => self
-                .coefficient(name, coefficient, scope)
-                .map(Law::Restitution),
-            ("newton", Some(coefficient)) => {
-                self.coefficient(name, coefficient, scope).map(Law::Newton)
-            }
-            ("nonholonomic_plastic", _) => Some(Law::NonholonomicPlastic),
-            ("impact_plastic", _) => Some(Law::ImpactPlastic),
-            ("totally_plastic", _) => Some(Law::TotallyPlastic),
-            _ => Some(Law::Elastic),
-        }
-    }
-
-    /// A coefficient of restitution, in `[0, 1]` if it is a number.
-    fn coefficient(&mut self, law: &str, written: &Scalar, scope: &mut Scope) -> Option<ExprId> {
-        let expr = self.parameter_expression(written, scope, "the coefficient of a law")?;
-        match self.pool.as_number(expr) {
-            Some(value) if *value > Rational::from(1) => {
-                let text = format!("{law} {written} adds energy");
-                self.refuse(
-                    written.at,
-                    text,
-                    "the coefficient lies in [0, 1]; `elastic` keeps the energy",
-                )
-            }
-            Some(value) if value.is_negative() => self.refuse(
-                written.at,
-                format!("{law} {written} goes on into the wall"),
-                "the coefficient lies in [0, 1]",
-            ),
-            _ => Some(expr),
-        }
-    }
-}
-
-/// The base of which the gap is a constant times a power of at least 2.
-fn perfect_power(resolver: &Resolver<'_>, gap: ExprId) -> Option<ExprId> {
-    let (_, power) = resolver.pool.as_multiple(gap);
-    let Node::Product(factors) = resolver.pool.node(power) else {
-        return None;
-    };
-    let is_multiple = |(base, exponent): &&(ExprId, Rational)| {
-        *exponent >= Rational::from(2) || resolver.is_constant(*base)
-    };
-    let all_multiple = factors.iter().all(|factor| is_multiple(&factor));
-    let base = factors
-        .iter()
-        .find(|(base, _)| !resolver.is_constant(*base))
-        .map(|(base, _)| *base);
-    base.filter(|_| all_multiple)
 }
 
 /// Refuses surfaces that no allowed motion reaches: `dh` in the annihilator of D.
@@ -245,43 +164,4 @@ fn is_proportional(resolver: &mut Resolver<'_>, f: ExprId, g: ExprId) -> bool {
         let difference = pool.sub(left, right);
         is_zero(pool, difference)
     })
-}
-
-/// The coefficient of a law.
-pub(super) fn coefficient(law: &Law) -> Option<ExprId> {
-    match law {
-        Law::Restitution(coefficient) | Law::Newton(coefficient) => Some(*coefficient),
-        _ => None,
-    }
-}
-
-/// Remarks on laws that can leave the state approaching the wall.
-pub(super) fn notes(
-    resolver: &Resolver<'_>,
-    surfaces: &[Surface],
-    constraints: &[Constraint],
-) -> Vec<String> {
-    let mut notes = Vec::new();
-    for surface in surfaces.iter().filter(|_| !constraints.is_empty()) {
-        let bound = match surface.law {
-            Law::NonholonomicPlastic => "where rho <= 1/2",
-            Law::TotallyPlastic => "where rho < 1",
-            _ => continue,
-        };
-        let name = &surface.name.display;
-        notes.push(format!("`{name}` may still point into the wall after an impact ({bound}); `impact_plastic` never does"));
-    }
-    let affine = constraints
-        .iter()
-        .any(|constraint| !resolver.pool.is_syntactic_zero(constraint.affine));
-    for surface in surfaces
-        .iter()
-        .filter(|surface| affine && matches!(surface.law, Law::Elastic | Law::Restitution(_)))
-    {
-        let name = &surface.name.display;
-        notes.push(format!(
-            "`{name}` need not reverse the gap rate where constraints are affine; `newton` does"
-        ));
-    }
-    notes
 }

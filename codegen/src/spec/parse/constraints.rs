@@ -7,20 +7,22 @@ use super::labelled;
 /// Reads one constraint.
 pub(super) fn constraint(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     const FORM: &str = "name: d(x) - R*d(theta) = 0;";
-    let declared = labelled(cursor, "the name of a constraint", FORM)?;
+    let (documentation, declared) = labelled(cursor, "a constraint", FORM)?;
     let left = cursor.scalar()?;
-    if cursor.is_operator("==") {
-        return Err(cursor.refuse_operator(
-            "==",
-            "expected `=`, found `==`",
-            &format!("write `{FORM}`"),
-        ));
+    if let Some(sign) = cursor.comparison() {
+        let help = match sign {
+            "==" => format!("write `{FORM}`"),
+            _ => "a constraint is an equation; a wall is declared in `impacts`".to_owned(),
+        };
+        let text = format!("expected `=`, found `{sign}`");
+        return Err(cursor.refuse_operator(sign, text, &help));
     }
     cursor.expect_operator("=", FORM)?;
     let right = cursor.scalar()?;
     let item = spec.item(left.at.to(right.at));
     spec.constraints.push(Equation {
         declared,
+        documentation,
         left,
         right,
         item,
@@ -30,29 +32,25 @@ pub(super) fn constraint(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
 
 /// Reads one force.
 pub(super) fn force(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
-    let force = quantity(cursor, spec, "the name of a force", "name: -c*dot(x)*d(x);")?;
+    let force = quantity(cursor, spec, "a force", "name: -c*dot(x)*d(x);")?;
     spec.forces.push(force);
     Ok(())
 }
 
 /// Reads one output.
 pub(super) fn output(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
-    let output = quantity(
-        cursor,
-        spec,
-        "the name of an output",
-        "name: x + l*sin(theta);",
-    )?;
+    let output = quantity(cursor, spec, "an output", "name: x + l*sin(theta);")?;
     spec.outputs.push(output);
     Ok(())
 }
 
-fn quantity(cursor: &mut Cursor<'_>, spec: &mut Spec, what: &str, form: &str) -> Read<Quantity> {
-    let declared = labelled(cursor, what, form)?;
+fn quantity(cursor: &mut Cursor<'_>, spec: &mut Spec, entry: &str, form: &str) -> Read<Quantity> {
+    let (documentation, declared) = labelled(cursor, entry, form)?;
     let value = cursor.scalar()?;
     let item = spec.item(value.at);
     Ok(Quantity {
         declared,
+        documentation,
         value,
         item,
     })

@@ -21,6 +21,10 @@ pub(super) fn definition(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let declared = declared(cursor, "the name of a definition")?;
     let arguments = arguments(cursor)?;
     cursor.expect_operator("=", "let name = ..;")?;
+    if cursor.is_operator("|") {
+        let help = "a function is written `let f(u) = ..;`, the absolute value `abs(x)`";
+        return Err(cursor.unexpected("expected an expression", help));
+    }
     let value = cursor.scalar()?;
     end_of_declaration(cursor)?;
     spec.definitions.push(Definition {

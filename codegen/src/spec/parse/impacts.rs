@@ -1,20 +1,22 @@
 //! `impacts { wall: h >= 0 when g > 0 => restitution(0.8); }`
 
-use proc_macro2::Delimiter;
+use proc_macro2::{Delimiter, TokenTree};
 
-use super::super::ast::{Comparison, Law, Scalar, Spec, Surface};
-use super::super::cursor::{Cursor, Read, tokens_of};
+use super::super::ast::{Comparison, Law, Scalar, Spec, Surface, Word};
+use super::super::cursor::{Cursor, Read, Refused, tokens_of};
+use super::super::keyword::LAWS;
 use super::{labelled, refused_word};
+use crate::diagnostics::listed;
 
 const FORM: &str = "name: h >= 0 when g > 0 => LAW;";
 
 /// Reads one surface.
 pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
-    let declared = labelled(cursor, "the name of a surface", FORM)?;
-    let gap = comparison(cursor, Strictness::Weak)?;
+    let (documentation, declared) = labelled(cursor, "a surface", FORM)?;
+    let gap = comparison(cursor, Strictness::Weak, FORM)?;
     let mut conditions = Vec::new();
     while cursor.eat_word("when") {
-        conditions.push(comparison(cursor, Strictness::Strict)?);
+        conditions.push(comparison(cursor, Strictness::Strict, FORM)?);
         if cursor.is_operator("&&") || cursor.is_operator(",") {
             return Err(cursor.unexpected("expected `when`", "write `when a > 0 when b > 0`"));
         }
@@ -23,6 +25,7 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let item = spec.item(gap.at);
     spec.surfaces.push(Surface {
         declared,
+        documentation,
         gap,
         conditions,
         law,
@@ -40,16 +43,20 @@ pub(super) enum Strictness {
     Strict,
 }
 
-/// Reads `a >= b`, `a <= b`, or the same without equality.
-pub(super) fn comparison(cursor: &mut Cursor<'_>, strictness: Strictness) -> Read<Comparison> {
+/// Reads `a >= b`, `a <= b`, or the same without equality. `form` is how the whole entry is written.
+pub(super) fn comparison(
+    cursor: &mut Cursor<'_>,
+    strictness: Strictness,
+    form: &str,
+) -> Read<Comparison> {
     let (greater, less, wrong) = match strictness {
-        Strictness::Weak => (">=", "<=", [">", "<", "=="]),
-        Strictness::Strict => (">", "<", [">=", "<=", "=="]),
+        Strictness::Weak => (">=", "<=", [">", "<", "==", "!=", "=>", "=<", "="]),
+        Strictness::Strict => (">", "<", [">=", "<=", "==", "!=", "=>", "=<", "="]),
     };
     let left = cursor.scalar()?;
     if let Some(sign) = wrong.into_iter().find(|sign| cursor.is_operator(sign)) {
         let text = format!("expected `{greater}` or `{less}`, found `{sign}`");
-        return Err(cursor.refuse_operator(sign, text, &format!("write `{FORM}`")));
+        return Err(cursor.refuse_operator(sign, text, &format!("write `{form}`")));
     }
     let turned = if cursor.eat_operator(greater).is_some() {
         false
@@ -57,10 +64,57 @@ pub(super) fn comparison(cursor: &mut Cursor<'_>, strictness: Strictness) -> Rea
         true
     } else {
         let text = format!("expected `{greater}` or `{less}`");
-        return Err(cursor.unexpected(&text, &format!("write `{FORM}`")));
+        return Err(cursor.unexpected(&text, &format!("write `{form}`")));
     };
     let right = cursor.scalar()?;
+    if let Some(sign) = cursor.comparison() {
+        return Err(chained(
+            cursor,
+            [&left, &right],
+            sign,
+            if turned { less } else { greater },
+            strictness,
+        ));
+    }
     Ok(oriented(left, right, turned))
+}
+
+/// A second comparison behind the first: `0 <= x <= 1`, or two of them joined.
+fn chained(
+    cursor: &mut Cursor<'_>,
+    [left, middle]: [&Scalar; 2],
+    second: &str,
+    first: &str,
+    strictness: Strictness,
+) -> Refused {
+    let at = cursor.here();
+    if cursor.eat_operator(second).is_none() {
+        return Refused;
+    }
+    let at = at.to(cursor.last());
+    if matches!(second, "&&" | "||" | "&" | "|") {
+        let help = match strictness {
+            Strictness::Weak => "write a surface for each, or a condition: `x >= 0 when y > 0`",
+            Strictness::Strict => "several conditions are written `when a > 0 when b > 0`",
+        };
+        return cursor.refuse(
+            at,
+            format!("comparisons are not joined with `{second}`"),
+            help,
+        );
+    }
+    let Ok(right) = cursor.scalar() else {
+        return Refused;
+    };
+    let help = match strictness {
+        Strictness::Weak => {
+            format!("write two surfaces, `{left} {first} {middle}` and `{middle} {second} {right}`")
+        }
+        Strictness::Strict => {
+            format!("write `when {left} {first} {middle} when {middle} {second} {right}`")
+        }
+    };
+    cursor.refuse(at, "one comparison is expected, found two", &help)
 }
 
 fn oriented(left: Scalar, right: Scalar, turned: bool) -> Comparison {
@@ -71,18 +125,23 @@ fn oriented(left: Scalar, right: Scalar, turned: bool) -> Comparison {
 
 /// Reads `=> LAW`, if it is there.
 fn law(cursor: &mut Cursor<'_>) -> Read<Option<Law>> {
+    if let Some(sign) = ["->", ",", ":"]
+        .into_iter()
+        .find(|sign| cursor.is_operator(sign))
+    {
+        let text = format!("expected `=>`, found `{sign}`");
+        return Err(cursor.refuse_operator(sign, text, &format!("write `{FORM}`")));
+    }
     if cursor.eat_operator("=>").is_none() {
         return Ok(None);
     }
     refused_word(cursor, &["reset"])?;
+    if !matches!(cursor.peek(), Some(TokenTree::Ident(_))) {
+        let help = format!("the laws are {}", listed(LAWS.map(|(law, _)| law)));
+        return Err(cursor.unexpected("expected an impact law", &help));
+    }
     let name = cursor.name("an impact law")?;
-    let arguments = match cursor.eat_group(Delimiter::Parenthesis) {
-        Some(group) => {
-            let tokens = tokens_of(group.stream());
-            cursor.inside(&tokens, group).list()?
-        }
-        None => Vec::new(),
-    };
+    let arguments = arguments(cursor, &name)?;
     if cursor.eat_operator(",").is_some() {
         refused_word(cursor, &["instantaneous"])?;
         return Err(cursor.unexpected("expected `;`", FORM));
@@ -94,4 +153,24 @@ fn law(cursor: &mut Cursor<'_>) -> Read<Option<Law>> {
         ));
     }
     Ok(Some(Law { name, arguments }))
+}
+
+/// The coefficients of a law.
+fn arguments(cursor: &mut Cursor<'_>, law: &Word) -> Read<Vec<Scalar>> {
+    if let Some(group) = cursor.eat_group(Delimiter::Parenthesis) {
+        let tokens = tokens_of(group.stream());
+        return cursor.inside(&tokens, group).list();
+    }
+    let takes_one = LAWS.contains(&(law.text.as_str(), 1));
+    let goes_on = !cursor.is_at_end() && !cursor.is_operator(",") && !cursor.is_word("when");
+    if takes_one && goes_on {
+        let coefficient = match cursor.peek() {
+            Some(TokenTree::Literal(written)) => written.to_string(),
+            _ => "0.8".to_owned(),
+        };
+        let text = "the coefficient of a law stands in parentheses";
+        let help = format!("write `{}({coefficient})`", law.text);
+        return Err(cursor.refuse(cursor.here(), text, &help));
+    }
+    Ok(Vec::new())
 }

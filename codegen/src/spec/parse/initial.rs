@@ -12,6 +12,12 @@ const FORM: &str = "`x = 1;`, `dot(x) = 2;` or `until = 10;`";
 pub(super) fn value(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     documentation(cursor)?;
     let (target, declared) = target(cursor)?;
+    if cursor.is_operator(".") {
+        return Err(cursor.point());
+    }
+    if cursor.is_operator("==") {
+        return Err(cursor.refuse_operator("==", "expected `=`, found `==`", "write `x = 1;`"));
+    }
     cursor.expect_operator("=", "x = 1;")?;
     let value = cursor.scalar()?;
     spec.initial.push(InitialValue {

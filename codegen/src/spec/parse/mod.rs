@@ -4,6 +4,7 @@ mod claims;
 mod constraints;
 mod coordinates;
 mod definitions;
+mod header;
 mod impacts;
 mod initial;
 mod parameters;
@@ -30,46 +31,13 @@ pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
         .first()
         .map_or_else(|| Location::from(Span::call_site()), Location::of);
     let mut cursor = Cursor::new(&tokens, start, &mut diagnostics);
-    match header(&mut cursor) {
+    match header::read(&mut cursor) {
         Ok((mut spec, body)) => {
             let tokens = tokens_of(body.stream());
             declarations(&tokens, &body, &mut spec, &mut diagnostics);
             diagnostics.finish(spec)
         }
         Err(_) => Err(diagnostics),
-    }
-}
-
-/// Documentation, visibility, name; and the group with the declarations.
-fn header(cursor: &mut Cursor<'_>) -> Read<(Spec, Group)> {
-    const FORM: &str = "a model is written `pub Name { coordinates { .. } lagrangian = ..; }`";
-    let documentation = documentation(cursor)?;
-    let visibility = visibility(cursor);
-    let name = cursor.new_name("the name of a model")?;
-    let Some(body) = cursor.eat_group(Delimiter::Brace) else {
-        return Err(cursor.unexpected("expected `{ .. }` after the name of the model", FORM));
-    };
-    if !cursor.is_at_end() {
-        return Err(cursor.unexpected(
-            "expected nothing after the model",
-            "declare one model in each `model!`",
-        ));
-    }
-    let mut spec = Spec::new(name);
-    spec.source = source::text(&documentation, &visibility, &spec.name.text, body);
-    spec.documentation = documentation;
-    spec.visibility = visibility;
-    Ok((spec, body.clone()))
-}
-
-/// `pub`, `pub(crate)` or nothing.
-fn visibility(cursor: &mut Cursor<'_>) -> String {
-    if !cursor.eat_word("pub") {
-        return String::new();
-    }
-    match cursor.eat_group(Delimiter::Parenthesis) {
-        Some(scope) => format!("pub({})", scope.stream()),
-        None => "pub".to_owned(),
     }
 }
 
@@ -193,9 +161,14 @@ fn unknown_declaration(word: &Word, cursor: &mut Cursor<'_>) -> super::cursor::R
     if let Some(instead) = not_implemented(&word.text) {
         return refuse_not_implemented(word, instead, cursor);
     }
-    let help = match nearest(&word.text, SECTIONS) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("a model consists of {}", listed(SECTIONS)),
+    let help = if let Some(section) = keyword::foreign_section(&word.text) {
+        section.to_owned()
+    } else if let Some(near) = nearest(&word.text, SECTIONS) {
+        format!("did you mean `{near}`?")
+    } else if cursor.is_operator("=") {
+        format!("a definition is written `let {} = ..;`", word.text)
+    } else {
+        format!("a model consists of {}", listed(SECTIONS))
     };
     cursor.refuse(
         word.at,
@@ -299,21 +272,53 @@ fn index(cursor: &mut Cursor<'_>) -> Read<Option<Index>> {
     };
     let tokens = tokens_of(group.stream());
     let mut inside = cursor.inside(&tokens, group);
-    let is_binder = matches!(inside.peek_second(), Some(TokenTree::Ident(word)) if *word == "in");
+    let is_binder = match inside.peek_second() {
+        Some(TokenTree::Ident(word)) => *word == "in",
+        Some(TokenTree::Punct(punct)) => punct.as_char() == '=',
+        _ => false,
+    };
     if !is_binder {
-        return Ok(Some(Index::One(inside.whole_scalar()?)));
+        let index = inside.scalar()?;
+        if inside.is_operator("..=") || inside.is_operator("..") {
+            let help = "write `name[i in 1..=N]`; a family is declared by its size: `name[N]`";
+            return Err(inside.refuse(inside.here(), "a range in brackets needs an index", help));
+        }
+        inside.end()?;
+        return Ok(Some(Index::One(index)));
     }
     let binder = inside.binder("name[i in 1..=N]")?;
     inside.end()?;
     Ok(Some(Index::Each(binder)))
 }
 
-/// A name with an index and the `:` behind it.
-fn labelled(cursor: &mut Cursor<'_>, what: &str, form: &str) -> Read<Declared> {
-    documentation(cursor)?;
-    let declared = declared(cursor, what)?;
+/// A doc comment, a name with an index, and the `:` behind it. `entry` is `a surface`, `form` how one is written.
+fn labelled(cursor: &mut Cursor<'_>, entry: &str, form: &str) -> Read<(Vec<String>, Declared)> {
+    let documentation = documentation(cursor)?;
+    if !begins_with_name(cursor.remaining()) {
+        let help = format!("write `{form}`");
+        return Err(cursor.refuse(
+            cursor.here(),
+            format!("{entry} begins with its name"),
+            &help,
+        ));
+    }
+    let declared = declared(cursor, &format!("the name of {entry}"))?;
     cursor.expect_operator(":", form)?;
-    Ok(declared)
+    Ok((documentation, declared))
+}
+
+/// Whether the first token of an entry can be its name: what comes next, behind an index, is no part of an
+/// expression.
+fn begins_with_name(tokens: &[TokenTree]) -> bool {
+    let is_index = |token: &TokenTree| matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Bracket);
+    let [TokenTree::Ident(_), rest @ ..] = tokens else {
+        return false;
+    };
+    match rest.iter().find(|token| !is_index(token)) {
+        Some(TokenTree::Punct(punct)) => matches!(punct.as_char(), ':' | '='),
+        Some(TokenTree::Group(_)) | None => false,
+        Some(_) => true,
+    }
 }
 
 /// The reserved word that this version refuses, if it comes next.

@@ -1,8 +1,8 @@
 //! `parameters { m > 0 = 0.5; e in [0, 1]; k[N] > 0 = [1, 2, 3]; }`
 
-use proc_macro2::Delimiter;
+use proc_macro2::{Delimiter, Group, TokenTree};
 
-use super::super::ast::{Assumption, Parameter, ParameterDefault, Scalar, Spec};
+use super::super::ast::{Assumption, Parameter, ParameterDefault, Spec};
 use super::super::cursor::{Cursor, Read, tokens_of};
 use super::coordinates::pair;
 use super::{declared, documentation};
@@ -14,6 +14,9 @@ const HELP: &str =
 /// Reads one parameter or family.
 pub(super) fn parameter(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let documentation = documentation(cursor)?;
+    if !matches!(cursor.peek(), Some(TokenTree::Ident(_))) {
+        return Err(cursor.unexpected("expected the name of a parameter", HELP));
+    }
     let declared = declared(cursor, "the name of a parameter")?;
     let assumption = assumption(cursor)?;
     let default = default(cursor)?;
@@ -58,20 +61,35 @@ fn assumption(cursor: &mut Cursor<'_>) -> Read<Assumption> {
 
 /// The `0` that an assumption compares with.
 fn zero(cursor: &mut Cursor<'_>) -> Read<()> {
-    let is_zero = cursor.peek().is_some_and(|token| token.to_string() == "0");
-    if !is_zero {
-        return Err(cursor.unexpected("assumptions compare with 0", HELP));
+    if let Some(TokenTree::Literal(literal)) = cursor.peek()
+        && literal.to_string().parse() == Ok(0.0)
+    {
+        cursor.bump();
+        return Ok(());
     }
-    cursor.bump();
-    Ok(())
+    Err(cursor.unexpected("assumptions compare with 0", HELP))
 }
 
 fn default(cursor: &mut Cursor<'_>) -> Read<Option<ParameterDefault>> {
     if cursor.eat_operator("=").is_none() {
         return Ok(None);
     }
+    if let Some(TokenTree::Group(group)) = cursor.peek()
+        && group.delimiter() == Delimiter::Parenthesis
+        && is_list(group)
+    {
+        let at = cursor.here();
+        let tokens = tokens_of(group.stream());
+        let list = cursor.inside(&tokens, group).list()?;
+        let list: Vec<String> = list.iter().map(ToString::to_string).collect();
+        let help = format!("write `[{}]`", list.join(", "));
+        return Err(cursor.refuse(at, "a list of defaults stands in brackets", &help));
+    }
     let Some(group) = cursor.eat_group(Delimiter::Bracket) else {
-        let value: Scalar = cursor.scalar()?;
+        let value = cursor.scalar()?;
+        if cursor.comparison().is_some() {
+            return Err(cursor.unexpected("expected `;`", HELP));
+        }
         return Ok(Some(ParameterDefault::One(value)));
     };
     let tokens = tokens_of(group.stream());
@@ -80,4 +98,11 @@ fn default(cursor: &mut Cursor<'_>) -> Read<Option<ParameterDefault>> {
         list,
         Location::from(group.span()),
     )))
+}
+
+/// Whether a comma separates the tokens of a group.
+fn is_list(group: &Group) -> bool {
+    let is_comma =
+        |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ',');
+    group.stream().into_iter().any(|token| is_comma(&token))
 }

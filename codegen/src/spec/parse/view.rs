@@ -5,11 +5,13 @@ use proc_macro2::Delimiter;
 use super::super::ast::Spec;
 use super::super::cursor::{Cursor, Read};
 use super::coordinates::pair;
+use super::documentation;
 use super::impacts::{Strictness, comparison};
 
 /// Reads one entry.
 pub(super) fn entry(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     const HELP: &str = "a view is written `path: (x, y);` and `region: h >= 0;`";
+    documentation(cursor)?;
     let key = cursor.name("`path` or `region`")?;
     cursor.expect_operator(":", "path: (x, y);")?;
     let again = match key.text.as_str() {
@@ -23,7 +25,7 @@ pub(super) fn entry(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         "region" => spec
             .view
             .region
-            .replace(comparison(cursor, Strictness::Weak)?)
+            .replace(comparison(cursor, Strictness::Weak, "region: h >= 0;")?)
             .is_some(),
         _ => {
             return Err(cursor.refuse(

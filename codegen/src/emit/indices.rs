@@ -1,0 +1,138 @@
+//! A module with the indices of the declared names: `rolling_disk::surface::leading_edge`.
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
+
+use super::{Context, doc};
+use crate::model::Name;
+
+/// A declared name with its doc comment.
+type Entry<'a> = (&'a Name, &'a [String]);
+
+/// The module, with a module inside for each kind of names that there are.
+pub(super) fn emit_indices(context: &Context<'_>) -> TokenStream {
+    let model = context.model;
+    let visibility: TokenStream = match model.visibility.as_str() {
+        "" => quote!(pub(crate)),
+        written => written.parse().unwrap_or_default(),
+    };
+    let module = &context.names.module;
+    let title = format!(" Indices of the names declared in [`{}`].", model.name);
+    let coordinates = model.coordinates.iter();
+    let constraints = model.constraints.iter();
+    let surfaces = model.surfaces.iter();
+    let outputs = model.outputs.iter();
+    let parts = [
+        emit_module(
+            "coordinate",
+            "coordinates",
+            coordinates.map(|item| (&item.name, item.documentation.as_slice())),
+        ),
+        emit_module(
+            "constraint",
+            "constraints",
+            constraints.map(|item| (&item.name, item.documentation.as_slice())),
+        ),
+        emit_module(
+            "surface",
+            "impact surfaces",
+            surfaces.map(|item| (&item.name, item.documentation.as_slice())),
+        ),
+        emit_module(
+            "output",
+            "outputs",
+            outputs.map(|item| (&item.name, item.documentation.as_slice())),
+        ),
+    ];
+    quote! {
+        #[doc = #title]
+        #[allow(dead_code, non_upper_case_globals)]
+        #visibility mod #module { #(#parts)* }
+    }
+}
+
+fn emit_module<'a>(
+    module: &str,
+    plural: &str,
+    entries: impl Iterator<Item = Entry<'a>>,
+) -> TokenStream {
+    let entries: Vec<Entry<'a>> = entries.collect();
+    if entries.is_empty() {
+        return TokenStream::new();
+    }
+    let module = Ident::new(module, Span::call_site());
+    let title = format!(" Indices of the {plural}, in order of declaration.");
+    let is_first = |index: &usize| {
+        let same = |(name, _): &Entry<'_>| name.field == entries[*index].0.field;
+        !entries[..*index].iter().any(same)
+    };
+    let constants = (0..entries.len())
+        .filter(is_first)
+        .map(|first| emit_constant(first, &entries));
+    quote!(#[doc = #title] pub mod #module { #(#constants)* })
+}
+
+/// The index of a name, or those of a family in the order of its members, wherever they were declared.
+fn emit_constant(first: usize, entries: &[Entry<'_>]) -> TokenStream {
+    let (name, _) = entries[first];
+    let constant = Ident::new(&name.field, Span::call_site());
+    let mut indices: Vec<usize> = (first..entries.len())
+        .filter(|index| entries[*index].0.field == name.field)
+        .collect();
+    indices.sort_by_key(|index| entries[*index].0.member);
+    let documentation = documentation(&indices, entries);
+    let count = indices.len();
+    match name.member {
+        Some(_) => {
+            quote!(#documentation pub const #constant: [usize; #count] = [#(#indices),*];)
+        }
+        None => quote!(#documentation pub const #constant: usize = #(#indices)*;),
+    }
+}
+
+/// What was written of the members, each text once; the name where nothing was.
+fn documentation(indices: &[usize], entries: &[Entry<'_>]) -> TokenStream {
+    let mut texts: Vec<&[String]> = Vec::new();
+    for index in indices {
+        let (_, text) = entries[*index];
+        if !text.is_empty() && !texts.contains(&text) {
+            texts.push(text);
+        }
+    }
+    match indices.first() {
+        Some(first) if texts.is_empty() => doc::lines(&[format!("`{}`", entries[*first].0.field)]),
+        _ => doc::lines(&texts.join(&String::new())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::try_expand;
+
+    #[test]
+    fn doc_comments_of_entries_stand_at_their_indices() {
+        let source = "
+            P {
+                coordinates { /// First arm.
+                    x; y; }
+                lagrangian = dot(x)^2 + dot(y)^2;
+                impacts { /// Left.
+                    side[1]: x >= 0; floor: y >= 0; /// Right.
+                    ///
+                    /// It moves.
+                    side[2]: x <= 1 + t; }
+                outputs { /// Both.
+                    o[i in 1..=2]: x; }
+            }";
+        let items = try_expand(source.parse().expect("tokens")).expect("a model");
+        let text = items.to_string().replace([' ', '\n'], "");
+        for part in [
+            r#"#[doc="Firstarm."]pubconstx:usize=0usize;"#,
+            r#"#[doc="`y`"]pubconsty:usize=1usize;"#,
+            r#"#[doc="Left."]#[doc=""]#[doc="Right."]#[doc=""]#[doc="Itmoves."]pubconstside:[usize;2usize]=[0usize,2usize];"#,
+            r#"#[doc="Both."]pubconsto:[usize;2usize]=[0usize,1usize];"#,
+        ] {
+            assert!(text.contains(part), "{part}");
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! The names of a section: each declared once, and families without gaps, so that their members are found by index.
+
+use super::super::Name;
+use super::super::resolve::{Resolver, Scope};
+use super::super::symbols::member_name;
+use crate::diagnostics::Location;
+use crate::spec::{Declared, Index, Scalar, Word};
+
+/// The names of a section in the order in which they are met.
+pub(super) struct Names {
+    noun: &'static str,
+    met: Vec<(Name, Location)>,
+    /// How many errors there were before the section.
+    errors: usize,
+}
+
+impl Names {
+    /// Of a section whose entries are called `noun`.
+    pub(super) fn new(resolver: &Resolver<'_>, noun: &'static str) -> Self {
+        Self {
+            noun,
+            met: Vec::new(),
+            errors: resolver.diagnostics.len(),
+        }
+    }
+
+    /// Makes a name known, unless it is taken.
+    pub(super) fn add(&mut self, resolver: &mut Resolver<'_>, name: &Name, written: &Word) {
+        let first = self.met.iter().find(|(first, _)| {
+            let both_alone_and_family = first.member.is_some() != name.member.is_some();
+            first.field == name.field && (both_alone_and_family || first.member == name.member)
+        });
+        let Some((first, at)) = first else {
+            self.met.push((name.clone(), written.at));
+            return;
+        };
+        let text = if first.member == name.member {
+            format!("{} `{}` declared again", self.noun, name.display)
+        } else {
+            format!(
+                "{} `{}` declared alone and as a family",
+                self.noun, name.field
+            )
+        };
+        let error = resolver.diagnostics.error(written.at, text);
+        error
+            .help("choose another name")
+            .also(*at, format!("`{}` first declared here", first.display));
+    }
+
+    /// Refuses families that lack a member before their last. Members may stand in any order, with other entries
+    /// between them.
+    pub(super) fn check_families(&self, resolver: &mut Resolver<'_>) {
+        // An entry that was refused may be the one that is missing.
+        if resolver.diagnostics.len() > self.errors {
+            return;
+        }
+        for (name, at) in &self.met {
+            let Some(member) = name.member.filter(|member| *member > 1) else {
+                continue;
+            };
+            let before = (name.field.as_str(), Some(member - 1));
+            let is_there =
+                |(other, _): &(Name, Location)| (other.field.as_str(), other.member) == before;
+            if self.met.iter().any(is_there) {
+                continue;
+            }
+            let text = format!(
+                "{} `{}[{}]` is not declared",
+                self.noun,
+                name.field,
+                member - 1
+            );
+            let help = format!(
+                "the members of `{}` are counted from 1 without a gap",
+                name.field
+            );
+            resolver.refuse::<()>(*at, text, &help);
+        }
+    }
+}
+
+impl Resolver<'_> {
+    /// The members that a declaration declares, each with what its index stands for.
+    pub(super) fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
+        let field = &declared.name.text;
+        let mut scope = Scope::default();
+        match &declared.index {
+            None => vec![(member_name(field, None), scope)],
+            Some(Index::One(index)) => {
+                let member = self
+                    .integer(index, &mut scope)
+                    .and_then(|member| self.member_index(index, member));
+                member
+                    .map(|member| (member_name(field, Some(member)), scope))
+                    .into_iter()
+                    .collect()
+            }
+            Some(Index::Each(binder)) => {
+                let mut members = Vec::new();
+                for member in self.range(binder, &mut scope).into_iter().flatten() {
+                    let Some(index) = self.member_index(&binder.low, member) else {
+                        break;
+                    };
+                    let value = self.pool.int(member);
+                    let mut scope = Scope::default();
+                    scope.bind(&binder.name.text, value.into());
+                    members.push((member_name(field, Some(index)), scope));
+                }
+                members
+            }
+        }
+    }
+
+    fn member_index(&mut self, written: &Scalar, member: i64) -> Option<usize> {
+        match usize::try_from(member) {
+            Ok(index) if index > 0 => Some(index),
+            _ => self.refuse(
+                written.at,
+                format!("members are counted from 1, found {member}"),
+                "write `[i in 1..=N]`",
+            ),
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Lagrangians, angles, constraints and forces that are refused.
+
+use super::{diagnostics, particle, refused, refused_in, refused_term, with_lagrangian};
+
+#[test]
+fn a_lagrangian_that_is_not_natural_is_refused_at_its_term() {
+    refused_term("«dot(x)^3»", "not natural: `dot(x)^3`");
+    refused_term("«dot(x)^2*dot(y)»", "not natural: `dot(x)^2*dot(y)`");
+    refused_term(
+        "«sqrt(1 - dot(x)^2)»",
+        "not natural: `sqrt(1 - dot(x)^2)` is no polynomial in the velocities",
+    );
+    // The value is a polynomial, the text is none.
+    refused_term(
+        "«sqrt(dot(x)^4)»/2",
+        "not natural: `sqrt(dot(x)^4)` is no polynomial in the velocities",
+    );
+    refused_term(
+        "sum(i in 1..=2: i*«(dot(x)^3/dot(x))»)",
+        "not natural: `dot(x)^3/dot(x)` is no polynomial",
+    );
+    refused_term(
+        "«abs(x)»",
+        "`abs(x)`: `abs` is not differentiable and not allowed in `lagrangian`",
+    );
+    refused_term("x*«d(y)»", "a Lagrangian contains no differentials");
+    refused_term("«energy»", "`energy` is derived and not known here");
+    refused(
+        &with_lagrangian("«-m*x^2»"),
+        "no kinetic term: the metric is zero",
+    );
+}
+
+#[test]
+fn a_metric_that_is_not_positive_is_refused() {
+    let singular = "P { coordinates { x; «z»; } lagrangian = dot(x)^2 - z^2; }";
+    refused(
+        singular,
+        "the metric is singular: `dot(z)` does not appear\nhelp: make `z` a parameter",
+    );
+    let cancels =
+        "P { coordinates { x; «z»; } lagrangian = dot(x)^2 + (sin(x)^2 + cos(x)^2 - 1)*dot(z)^2; }";
+    refused(cancels, "the metric is singular: `dot(z)` cancels");
+    let linear = "P { coordinates { x; «z»; } lagrangian = dot(x)^2 + x*dot(z); }";
+    refused(
+        linear,
+        "the metric is singular: `dot(z)` appears only linearly",
+    );
+    let family = "P { coordinates { x; «q»[9]; } lagrangian = dot(x)^2 - q[1]; }";
+    refused(family, "the metric is singular: `dot(q.1)` does not appear");
+    let dependent = "P { coordinates { x; y; } lagrangian = «(dot(x) + dot(y))^2»; }";
+    refused(dependent, "the metric is singular: rank 1 of 2");
+    let indefinite = "P { coordinates { x; y; } lagrangian = dot(x)^2 - «dot(y)^2»; }";
+    refused(indefinite, "the metric is not positive: entry (y, y) = -2");
+}
+
+#[test]
+fn a_model_has_one_lagrangian_and_a_coordinate() {
+    refused("«P» { coordinates { x; } }", "a model needs a `lagrangian`");
+    let errors = diagnostics("P { lagrangian = 0; }");
+    assert!(errors.iter().any(|error| {
+        error
+            .message()
+            .starts_with("a model needs at least one coordinate")
+    }));
+}
+
+#[test]
+fn angles_are_used_periodically() {
+    refused_term(
+        "m*«theta^2»",
+        "`theta` is an angle but `theta^2` is not periodic\nhelp: declare it as a line: `theta;`",
+    );
+    refused_term(
+        "«theta»",
+        "`theta` is an angle and stands outside of `sin`, `cos` and `tan`",
+    );
+    refused_term(
+        "«sin(theta/2)»",
+        "`theta` is an angle but `sin(theta/2)` is not periodic",
+    );
+    refused_in(
+        "constraints { c: d(x) = «k*a*d(y)»; }",
+        "`a` is an angle but `k*a*d(y)` is not periodic",
+    );
+    refused_in(
+        "impacts { w: x - «a» >= 0; }",
+        "`a` is an angle and stands outside",
+    );
+    refused_in(
+        "forces { f: «-k*a*d(a)»; }",
+        "`a` is an angle but `-k*a*d(a)` is not periodic",
+    );
+}
+
+#[test]
+fn constraints_are_linear_one_forms() {
+    refused_in(
+        "constraints { c: «x + y = 1»; }",
+        "a constraint is a one-form\nhelp: write `d(x + y - (1)) = 0`",
+    );
+    refused_in(
+        "constraints { c: «1 = k»; }",
+        "a constraint is a one-form, and this equation has no coordinates\nhelp: write `d(x) - R*d(theta) = 0`",
+    );
+    refused_in(
+        "constraints { c: «d(x)*d(y)» = 0; }",
+        "`d(x)*d(y)`: constraints are linear in velocities",
+    );
+    refused_in(
+        "constraints { c: «dot(x)^2» = k; }",
+        "`dot(x)^2`: constraints are linear in velocities",
+    );
+    refused_in("constraints { c: «d(x) - d(x) = 0»; }", "this form is zero");
+    refused_in(
+        "constraints { c: d(x) - k*«dot(y)» = 0; }",
+        "`dot(y)` and `d(x)` in one equation",
+    );
+    refused_in(
+        "constraints { c: d(x) - «k» = 0; }",
+        "`k` has no differential; every term of a one-form has one",
+    );
+    refused_in(
+        "constraints { c: d(x) = «abs(y)»*d(y); }",
+        "`abs` is not differentiable and not allowed in `constraints`",
+    );
+    refused_in(
+        "constraints { c: dot(x) = «dot(dot(y))»; }",
+        "`dot` of an expression that contains a velocity",
+    );
+}
+
+#[test]
+fn constraints_are_independent() {
+    let twice = "constraints { c: d(x) - k*d(y) = 0; e: «2*d(x) - 2*k*d(y) = 0»; }";
+    refused_in(twice, "`e` is dependent on `c`: it is 2 times that form");
+    let errors = diagnostics(&particle(&twice.replace(['«', '»'], "")));
+    assert_eq!(errors.iter().next().unwrap().places().len(), 2);
+    let all = "constraints { c: d(x) = 0; e: d(y) = 0; f: «d(a) = 0»; }";
+    refused_in(all, "no motion is left: rank 3 of 3");
+}
+
+#[test]
+fn forces_are_one_forms() {
+    refused_in("forces { f: «-k*x»; }", "a force is a one-form");
+    for zero in [
+        "0",
+        "(k - k)*d(x)",
+        "d(x) - d(x)",
+        "(sin(a)^2 + cos(a)^2 - 1)*d(x)",
+    ] {
+        let force = format!("forces {{ f: «{zero}»; }}");
+        refused_in(&force, "this force is zero\nhelp: leave it out");
+    }
+    refused_in("forces { f: -k*d(x) - «k»; }", "`k` has no differential");
+    refused_in(
+        "forces { f: «d(x)*d(y)»; }",
+        "forces are linear in differentials",
+    );
+    refused_in(
+        "forces { f: d(x) - k*«d(t)»; }",
+        "a force does no work along `t`",
+    );
+}

@@ -1,0 +1,79 @@
+//! Parameters, initial values, views and outputs that are refused.
+
+use super::{refused, refused_in};
+
+#[test]
+fn parameters_satisfy_their_assumptions() {
+    let with = |parameter: &str| {
+        format!("P {{ coordinates {{ x; }} parameters {{ {parameter}; }} lagrangian = dot(x)^2; }}")
+    };
+    refused(&with("m > 0 = «-1»"), "the default `-1` violates `> 0`");
+    refused(
+        &with("m in [0, 1] = «2»"),
+        "the default `2` violates `in [0, 1]`",
+    );
+    refused(
+        &with("m in [0, 0.1*pi] = «0.5»"),
+        "the default `0.5` violates `in [0, 0.1*pi]`",
+    );
+    refused(
+        &with("m in [«2, 1»]"),
+        "the interval from `2` to `1` is empty",
+    );
+    refused(&with("m = «x»"), "`x`: a default is a constant");
+    refused(
+        &with("m[2] = «[1, 2, 3]»"),
+        "3 defaults for 2 members of `m`",
+    );
+    refused(&with("«m»[300]"), "300 parameters; the limit is 256");
+}
+
+#[test]
+fn initial_values_are_given_for_coordinates() {
+    refused_in("initial { «z» = 1; }", "unknown coordinate `z`");
+    for slip in ["x_dot", "xdot"] {
+        refused_in(
+            &format!("initial {{ «{slip}» = 1; }}"),
+            &format!("unknown coordinate `{slip}`\nhelp: the velocity of `x` is written `dot(x)`"),
+        );
+    }
+    refused_in("initial { «t» = 0; }", "help: a run starts at time 0");
+    refused_in(
+        "initial { «t_end» = 9; }",
+        "help: the end of a run is written `until = 10;`",
+    );
+    refused_in(
+        "initial { «m» = 1; }",
+        "`m` is a parameter, not a coordinate",
+    );
+    refused_in(
+        "initial { x = «y»; }",
+        "an initial value depends on parameters only",
+    );
+    refused_in(
+        "initial { x = 1; «x» = 2; }",
+        "initial value of `x` given again",
+    );
+    refused_in("initial { until = «-1»; }", "a run until -1 is empty");
+    let chart =
+        "P { coordinates { u in (0, pi); } lagrangian = dot(u)^2; initial { u = «2*pi»; } }";
+    refused(chart, "`2*pi` lies outside of the interval of `u`");
+}
+
+#[test]
+fn outputs_and_views_name_known_quantities() {
+    refused_in(
+        "outputs { o: multiplier(«c»); }",
+        "`c` is not a constraint\nhelp: the model declares no constraints",
+    );
+    refused_in("outputs { o: momentum(«m»); }", "`m` is not a coordinate");
+    refused_in(
+        "outputs { o: «d(x)»; }",
+        "an output contains no differentials",
+    );
+    refused_in(
+        "view { path: (x, «dot(y)»); }",
+        "views depend on position (and time) only",
+    );
+    refused_in("view { region: «x >= 0»; }", "a `view` needs a `path`");
+}

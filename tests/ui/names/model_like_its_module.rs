@@ -1,0 +1,9 @@
+dalembert::model! {
+    pub pendulum {
+        coordinates { x; }
+        parameters { m > 0 = 1; }
+        lagrangian = m/2*dot(x)^2;
+    }
+}
+
+fn main() {}

@@ -1,0 +1,9 @@
+dalembert::model! {
+    pub Loop {
+        coordinates { x; }
+        parameters { m > 0 = 1; }
+        lagrangian = m/2*dot(x)^2;
+    }
+}
+
+fn main() {}
