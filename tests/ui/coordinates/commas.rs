@@ -1,0 +1,9 @@
+dalembert::model! {
+    Particle {
+        coordinates { x, y; }
+        parameters { m > 0 = 1; k > 0 = 1; }
+        lagrangian = m/2*dot(x)^2;
+    }
+}
+
+fn main() {}
