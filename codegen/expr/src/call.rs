@@ -15,23 +15,25 @@ impl Pool {
             return value;
         }
         let (coefficient, term) = self.as_multiple(argument);
+        match (function, self.node(argument)) {
+            (Function::Ln, Node::Call(Function::Exp, exponent)) => return *exponent,
+            (Function::Abs, _) => return self.absolute(&coefficient, term),
+            _ => {}
+        }
         let opposite = coefficient.is_negative();
-        match function {
-            Function::Ln => match self.node(argument) {
-                Node::Call(Function::Exp, exponent) => *exponent,
-                _ => self.intern(Node::Call(function, argument)),
-            },
-            Function::Abs => self.absolute(&coefficient, term),
-            _ if opposite && is_odd(function) => {
+        match Parity::of(function) {
+            Parity::Odd if opposite => {
                 let positive = self.neg(argument);
                 let value = self.intern(Node::Call(function, positive));
                 self.neg(value)
             }
-            Function::Cos | Function::Cosh if opposite => {
+            Parity::Even if opposite => {
                 let positive = self.neg(argument);
                 self.intern(Node::Call(function, positive))
             }
-            _ => self.intern(Node::Call(function, argument)),
+            Parity::Odd | Parity::Even | Parity::Neither => {
+                self.intern(Node::Call(function, argument))
+            }
         }
     }
 
@@ -68,8 +70,8 @@ impl Pool {
         let pi_times = |numer, denom| (Rational::new(numer, denom), self.pi());
         let (coefficient, factor) = match (function, argument) {
             (Function::Exp | Function::Cosh, 0) => (Rational::ONE, self.one()),
-            (Function::Asin | Function::Atan | Function::Sinh | Function::Tanh, 0)
-            | (Function::Ln | Function::Acos, 1) => (Rational::ZERO, self.one()),
+            (Function::Ln | Function::Acos, 1) => (Rational::ZERO, self.one()),
+            (_, 0) if Parity::of(function) == Parity::Odd => (Rational::ZERO, self.one()),
             (Function::Asin, 1) | (Function::Acos, 0) => pi_times(1, 2),
             (Function::Asin, -1) => pi_times(-1, 2),
             (Function::Acos, -1) => pi_times(1, 1),
@@ -114,9 +116,26 @@ impl Pool {
     }
 }
 
-fn is_odd(function: Function) -> bool {
-    use Function::{Asin, Atan, Sin, Sinh, Tan, Tanh};
-    matches!(function, Sin | Tan | Asin | Atan | Sinh | Tanh)
+/// What a function makes of the opposite argument.
+#[derive(Copy, Clone, PartialEq, Eq)]
+enum Parity {
+    /// `f(-x) = -f(x)`
+    Odd,
+    /// `f(-x) = f(x)`
+    Even,
+    /// Something else.
+    Neither,
+}
+
+impl Parity {
+    fn of(function: Function) -> Self {
+        use Function::{Abs, Acos, Asin, Atan, Cos, Cosh, Exp, Ln, Sin, Sinh, Tan, Tanh};
+        match function {
+            Sin | Tan | Asin | Atan | Sinh | Tanh => Self::Odd,
+            Cos | Cosh | Abs => Self::Even,
+            Acos | Exp | Ln => Self::Neither,
+        }
+    }
 }
 
 /// sin, cos or tan of `turns * pi` where it is rational.

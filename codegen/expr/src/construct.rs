@@ -31,8 +31,7 @@
 //! - `f(-x) -> -f(x)` for sin, tan, asin, atan, sinh, tanh; `f(-x) -> f(x)` for cos, cosh, abs;
 //! - sin and cos of `x + k pi/2` lose the multiple of `pi/2`; sin and cos of multiples of `pi` where they are
 //!   rational, tan where it is 0 or +-1;
-//! - values at 0 of sin, cos, tan, asin, atan, exp, sinh, cosh, tanh, abs, at 1 of ln, asin, acos, atan, and acos at
-//!   0 and -1;
+//! - values at 0 of exp, cosh, abs, acos and of all odd functions, at 1 of ln, asin, acos, atan, and acos at -1;
 //! - `ln(exp x) -> x`; `abs(x)` is `x` or `-x` if the sign of `x` is known; `abs(c x) -> |c| abs(x)`;
 //! - `atan2(0, x) -> 0` for `x` known positive and finite.
 

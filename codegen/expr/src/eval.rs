@@ -137,7 +137,7 @@ fn apply(function: Function, x: f64) -> f64 {
     }
 }
 
-/// The derivative of a function.
+/// The derivative of a function, up to its sign.
 fn slope(function: Function, x: f64) -> f64 {
     match function {
         Function::Sin => x.cos(),
@@ -156,7 +156,22 @@ fn slope(function: Function, x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::fixture::Fixture;
+
+    #[test]
+    fn slopes_are_derivatives() {
+        for function in Function::ALL {
+            let (x, h) = (0.4, 1e-6);
+            let difference = (apply(function, x + h) - apply(function, x - h)) / (2.0 * h);
+            let own = slope(function, x).abs();
+            assert!(
+                (own - difference.abs()).abs() < 1e-9,
+                "{}: {own} for {difference}",
+                function.name()
+            );
+        }
+    }
 
     #[test]
     fn values_agree_with_direct_evaluation() {

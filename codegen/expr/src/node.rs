@@ -42,70 +42,57 @@ pub enum Assumption {
     NonZero,
 }
 
-/// The functions of one argument. The square root is the power 1/2.
-#[derive(Copy, Clone, Eq, PartialEq, Ord, PartialOrd, Hash, Debug)]
-pub enum Function {
+/// The functions from one table: what they are, and the name as written in expressions.
+macro_rules! functions {
+    ($(#[doc = $meaning:literal] $variant:ident $name:literal)*) => {
+        /// The functions of one argument. The square root is the power 1/2.
+        #[derive(Copy, Clone, Eq, PartialEq, Ord, PartialOrd, Hash, Debug)]
+        pub enum Function {
+            $(#[doc = $meaning] $variant,)*
+        }
+
+        impl Function {
+            /// All functions, in the order of the enumeration.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$variant),*];
+
+            /// The name as written in expressions: `sin`, `ln`, ...
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)*
+                }
+            }
+        }
+    };
+}
+
+functions! {
     /// Sine.
-    Sin,
+    Sin "sin"
     /// Cosine.
-    Cos,
+    Cos "cos"
     /// Tangent.
-    Tan,
+    Tan "tan"
     /// Inverse sine, in `[-pi/2, pi/2]`.
-    Asin,
+    Asin "asin"
     /// Inverse cosine, in `[0, pi]`.
-    Acos,
+    Acos "acos"
     /// Inverse tangent, in `(-pi/2, pi/2)`.
-    Atan,
+    Atan "atan"
     /// Exponential.
-    Exp,
+    Exp "exp"
     /// Natural logarithm.
-    Ln,
+    Ln "ln"
     /// Hyperbolic sine.
-    Sinh,
+    Sinh "sinh"
     /// Hyperbolic cosine.
-    Cosh,
+    Cosh "cosh"
     /// Hyperbolic tangent.
-    Tanh,
+    Tanh "tanh"
     /// Absolute value.
-    Abs,
+    Abs "abs"
 }
 
 impl Function {
-    /// All functions, in the order of the enumeration.
-    pub const ALL: [Self; 12] = [
-        Self::Sin,
-        Self::Cos,
-        Self::Tan,
-        Self::Asin,
-        Self::Acos,
-        Self::Atan,
-        Self::Exp,
-        Self::Ln,
-        Self::Sinh,
-        Self::Cosh,
-        Self::Tanh,
-        Self::Abs,
-    ];
-
-    /// The name as written in expressions: `sin`, `ln`, ...
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sin => "sin",
-            Self::Cos => "cos",
-            Self::Tan => "tan",
-            Self::Asin => "asin",
-            Self::Acos => "acos",
-            Self::Atan => "atan",
-            Self::Exp => "exp",
-            Self::Ln => "ln",
-            Self::Sinh => "sinh",
-            Self::Cosh => "cosh",
-            Self::Tanh => "tanh",
-            Self::Abs => "abs",
-        }
-    }
-
     /// The function of that name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL

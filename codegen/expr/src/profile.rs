@@ -24,6 +24,36 @@ impl Profile {
     }
 }
 
+/// What a function is modulo a prime, see `modular.rs`.
+#[derive(Copy, Clone, PartialEq, Eq)]
+enum Residue {
+    /// A rational function of the half-angle tangents of base angles.
+    Circular,
+    /// A rational function of exponentials of base exponents.
+    Exponential,
+    /// One atom for each value of the argument.
+    Atom,
+    /// The argument or its opposite.
+    Branch,
+}
+
+impl Residue {
+    fn of(function: Function) -> Self {
+        use Function::{Abs, Acos, Asin, Atan, Cos, Cosh, Exp, Ln, Sin, Sinh, Tan, Tanh};
+        match function {
+            Sin | Cos | Tan => Self::Circular,
+            Exp | Sinh | Cosh | Tanh => Self::Exponential,
+            Asin | Acos | Atan | Ln => Self::Atom,
+            Abs => Self::Branch,
+        }
+    }
+
+    /// Whether it is taken apart into multiples of base angles or exponents.
+    fn has_base(self) -> bool {
+        matches!(self, Self::Circular | Self::Exponential)
+    }
+}
+
 /// Beyond this common denominator the multiples of base angles are refused.
 const MAX_DENOMINATOR: i64 = 1 << 40;
 
@@ -46,7 +76,6 @@ impl Pool {
                 Node::Product(factors) => {
                     profile.branches |= factors.iter().any(|(_, exponent)| !exponent.is_integer());
                 }
-                Node::Call(Function::Abs, _) => profile.branches = true,
                 Node::Call(function, argument) => self.add_call(&mut profile, *function, *argument),
                 Node::Atan2(..) => profile.hidden_relations = true,
                 _ => {}
@@ -57,10 +86,13 @@ impl Pool {
     }
 
     fn add_call(&self, profile: &mut Profile, function: Function, argument: ExprId) {
-        use Function::{Cos, Cosh, Exp, Sin, Sinh, Tan, Tanh};
-        let circular = matches!(function, Sin | Cos | Tan);
-        if !circular && !matches!(function, Exp | Sinh | Cosh | Tanh) {
-            profile.hidden_relations = true;
+        let residue = Residue::of(function);
+        match residue {
+            Residue::Branch => profile.branches = true,
+            Residue::Atom => profile.hidden_relations = true,
+            Residue::Circular | Residue::Exponential => {}
+        }
+        if !residue.has_base() {
             return;
         }
         let (constant, terms) = self.linear_form(argument);
@@ -70,7 +102,8 @@ impl Pool {
         profile.denominator = common(profile.denominator, &constant);
         profile.hidden_relations |= !constant.is_zero();
         for (coefficient, term) in &terms {
-            let exact_turn = (coefficient * &Rational::from(12)).is_integer() && circular;
+            let exact_turn =
+                (coefficient * &Rational::from(12)).is_integer() && residue == Residue::Circular;
             if *term == self.pi() && exact_turn {
                 // NOTE: only sqrt(2) and sqrt(3) enter; which root is taken is settled by their field automorphism.
                 continue;
@@ -123,8 +156,7 @@ impl Pool {
 
     /// Base angles and exponentials have degrees (2, 2) and 2; multiples multiply them.
     fn degree_of_call(&self, function: Function, argument: ExprId, denominator: f64) -> (f64, f64) {
-        use Function::{Abs, Acos, Asin, Atan, Ln};
-        if matches!(function, Abs | Acos | Asin | Atan | Ln) {
+        if !Residue::of(function).has_base() {
             return (1.0, 0.0);
         }
         let (constant, terms) = self.linear_form(argument);

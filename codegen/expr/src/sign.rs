@@ -149,7 +149,7 @@ impl Pool {
                     && (exponent.is_integer() || sign.is_nonnegative())
             }),
             Node::Call(function, argument) => {
-                self.is_finite(*argument) && self.is_defined(*function, *argument)
+                self.is_finite(*argument) && self.has_value(*function, *argument) == Some(true)
             }
             Node::Atan2(y, x) => {
                 let off_origin = self.sign(*y).is_nonzero() || self.sign(*x).is_nonzero();
@@ -158,14 +158,17 @@ impl Pool {
         }
     }
 
-    fn is_defined(&self, function: Function, argument: ExprId) -> bool {
+    /// Whether a function has a value at an argument that has one; `None` if that is not known.
+    fn has_value(&self, function: Function, argument: ExprId) -> Option<bool> {
+        use Function::{Abs, Acos, Asin, Atan, Cos, Cosh, Exp, Ln, Sin, Sinh, Tan, Tanh};
         match function {
-            Function::Tan => false,
-            Function::Ln => self.sign(argument) == Sign::Positive,
-            Function::Asin | Function::Acos => self
-                .as_number(argument)
-                .is_some_and(|value| value.abs() <= Rational::ONE),
-            _ => true,
+            Sin | Cos | Atan | Exp | Sinh | Cosh | Tanh | Abs => Some(true),
+            Tan => None,
+            Ln => match self.sign(argument) {
+                Sign::Positive => Some(true),
+                sign => sign.is_nonpositive().then_some(false),
+            },
+            Asin | Acos => Some(self.as_number(argument)?.abs() <= Rational::ONE),
         }
     }
 
@@ -181,10 +184,9 @@ impl Pool {
                     (sign == Sign::Zero && exponent.is_negative())
                         || (sign == Sign::Negative && !exponent.is_integer())
                 }),
-                Node::Call(Function::Ln, argument) => self.sign(*argument).is_nonpositive(),
-                Node::Call(Function::Asin | Function::Acos, argument) => self
-                    .as_number(*argument)
-                    .is_some_and(|value| value.abs() > Rational::ONE),
+                Node::Call(function, argument) => {
+                    self.has_value(*function, *argument) == Some(false)
+                }
                 _ => false,
             })
     }
