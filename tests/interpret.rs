@@ -1,7 +1,7 @@
 //! Three routes to the same numbers: emitted code, the program's interpreter, and derivatives of the Lagrangian by
 //! differences.
 
-use dalembert::{Described, Scene, StateVector};
+use dalembert::{Described, Scene, StateVector, System};
 use dalembert_codegen::model::Model;
 use dalembert_codegen::program::{Function, Input, Program, interpret::interpret, verify::verify};
 use dalembert_codegen::{mechanics, model, program, spec};
@@ -64,6 +64,43 @@ fn emitted_code_is_what_the_interpreter_executes() {
     let mut visitor = EmittedIsInterpreted(0);
     visit_all(&mut visitor);
     assert!(visitor.0 >= 100);
+}
+
+dalembert::model! {
+    /// Every function of the language, one output each.
+    pub EveryFunction {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        outputs {
+            of_sqrt: sqrt(x); of_atan2: atan2(y, x); of_sin: sin(x); of_cos: cos(y); of_tan: tan(x); of_asin: asin(x);
+            of_acos: acos(x); of_atan: atan(x); of_exp: exp(x); of_ln: ln(x); of_sinh: sinh(x); of_cosh: cosh(x);
+            of_tanh: tanh(x); of_abs: abs(y);
+        }
+    }
+}
+
+#[test]
+fn every_function_is_emitted_as_it_is_interpreted() {
+    let source = EveryFunction::DESCRIPTION.source;
+    for name in spec::FUNCTIONS {
+        let entry = format!("of_{name}");
+        assert!(
+            EveryFunction::DESCRIPTION.outputs.contains(&entry.as_str()),
+            "write `{entry}: {name}(x);` above"
+        );
+    }
+    let system = EveryFunction::default();
+    let state = system
+        .state(0.0, &[0.4, -0.3].into(), &[0.0, 0.0].into())
+        .expect("a state");
+    let mut emitted = [f64::NAN; spec::FUNCTIONS.len()];
+    system
+        .outputs(0.0, &state, &mut emitted)
+        .expect("the outputs");
+    let (_, _, program) = derive(source);
+    let outputs = program.outputs.expect("outputs");
+    let interpreted = interpret(&outputs, &input(&system, 0.0, &state)).expect("the outputs");
+    assert_eq!(emitted.as_slice(), interpreted);
 }
 
 /// The force `f = dL/dq + F` in the program against central differences of L, which is evaluated as an expression.

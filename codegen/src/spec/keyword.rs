@@ -1,5 +1,7 @@
 //! The words of the language: sections, functions, laws, and names that cannot be declared.
 
+use dalembert_expr::Function;
+
 /// The section keywords of this version, as they may begin a declaration of a model.
 pub const SECTIONS: [&str; 12] = [
     "const",
@@ -37,11 +39,17 @@ pub const NOT_IMPLEMENTED: [(&str, &str); 8] = [
     ("instantaneous", "declare the constraint in `constraints`"),
 ];
 
-/// The elementary functions.
-pub const FUNCTIONS: [&str; 14] = [
-    "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "ln", "sinh", "cosh",
-    "tanh", "abs",
-];
+/// The elementary functions: those of one argument, and before and after them the two that are built otherwise.
+pub const FUNCTIONS: [&str; Function::ALL.len() + 2] = {
+    let mut names = ["sqrt"; Function::ALL.len() + 2];
+    let mut index = 0;
+    while index < Function::ALL.len() {
+        names[index + 1] = Function::ALL[index].name();
+        index += 1;
+    }
+    names[index + 1] = "atan2";
+    names
+};
 
 /// Declarations as other languages call them, with what is written here.
 const FOREIGN_SECTIONS: [(&str, &str); 16] = [
