@@ -10,7 +10,7 @@ use proc_macro2::{LexError, TokenStream};
 
 use crate::diagnostics::Diagnostics;
 use crate::mechanics::{self, Derivation};
-use crate::model::{self, Law, Model, Topology};
+use crate::model::{self, Model, Topology};
 use crate::program::{self, Cost, Program};
 use crate::spec;
 
@@ -329,7 +329,7 @@ impl Writer<'_> {
         let mut items = Vec::new();
         for s in 0..self.derivation.surfaces.len() {
             let name = self.model.surfaces[s].name.display.clone();
-            let law = self.law(self.model.surfaces[s].law);
+            let law = self.model.surfaces[s].law.text(&self.model.pool);
             let surface = &self.derivation.surfaces[s];
             let (gap, form, rate) = (surface.gap, surface.form.clone(), surface.rate);
             let conditions = surface.conditions.clone();
@@ -363,18 +363,6 @@ impl Writer<'_> {
                 r"p^+ = p + \epsilon\, \pi_D^*\, dh",
             ],
             items,
-        }
-    }
-
-    fn law(&self, law: Law) -> String {
-        let pool = &self.model.pool;
-        match law {
-            Law::Elastic => "elastic".into(),
-            Law::Restitution(e) => format!("restitution({})", pool.text(e)),
-            Law::Newton(e) => format!("newton({})", pool.text(e)),
-            Law::NonholonomicPlastic => "nonholonomic_plastic".into(),
-            Law::ImpactPlastic => "impact_plastic".into(),
-            Law::TotallyPlastic => "totally_plastic".into(),
         }
     }
 

@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::function::{Body, emit_body, number};
 use super::{Context, parameters};
-use crate::model::{Assumption, Law, Topology};
+use crate::model::{Assumption, Topology};
 use crate::program::recipes::geometry::Shape;
 
 /// `impl Described`
@@ -143,14 +143,7 @@ fn emit_surface_infos(context: &Context<'_>) -> TokenStream {
     let pool = &context.model.pool;
     let infos = context.model.surfaces.iter().map(|surface| {
         let name = &surface.name.display;
-        let law = match surface.law {
-            Law::Elastic => "elastic".to_string(),
-            Law::Restitution(e) => format!("restitution({})", pool.text(e)),
-            Law::Newton(e) => format!("newton({})", pool.text(e)),
-            Law::NonholonomicPlastic => "nonholonomic_plastic".into(),
-            Law::ImpactPlastic => "impact_plastic".into(),
-            Law::TotallyPlastic => "totally_plastic".into(),
-        };
+        let law = surface.law.text(pool);
         quote!(::dalembert::describe::SurfaceInfo { name: #name, law: #law },)
     });
     quote!(#(#infos)*)

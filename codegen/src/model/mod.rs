@@ -12,6 +12,7 @@ mod degree;
 mod form;
 mod index;
 mod latex;
+mod law;
 mod natural;
 mod order;
 mod periodic;
@@ -31,6 +32,7 @@ use crate::spec::ItemId;
 
 pub use crate::spec::Existence;
 pub use check::check;
+pub use law::Law;
 
 /// A checked model: all expressions live in `pool`.
 #[derive(Debug)]
@@ -214,23 +216,6 @@ pub struct Surface {
     pub law: Law,
     /// Where it was declared.
     pub item: ItemId,
-}
-
-/// A declared impact law; coefficients are expressions of the parameters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Law {
-    /// `elastic`
-    Elastic,
-    /// `restitution(e)`
-    Restitution(ExprId),
-    /// `newton(e)`
-    Newton(ExprId),
-    /// `nonholonomic_plastic`
-    NonholonomicPlastic,
-    /// `impact_plastic`
-    ImpactPlastic,
-    /// `totally_plastic`
-    TotallyPlastic,
 }
 
 /// The declared initial condition: expressions of the parameters.

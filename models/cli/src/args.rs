@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use clap::builder::ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use dalembert::impacts::law::Law;
+use dalembert::integrate::{Dop853Scheme, DormandPrince5Scheme, Scheme};
 
 use crate::scalar;
 
@@ -182,8 +184,8 @@ impl Integrator {
     /// The name on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Dop853 => "dop853",
-            Self::Dopri5 => "dopri5",
+            Self::Dop853 => Dop853Scheme::NAME,
+            Self::Dopri5 => DormandPrince5Scheme::NAME,
         }
     }
 }
@@ -195,6 +197,18 @@ pub enum Switch {
     On,
     /// No.
     Off,
+}
+
+/// What `--law` takes.
+fn law_help() -> String {
+    let laws = Law::NAMES.map(|(name, takes_coefficient)| match takes_coefficient {
+        true => format!("{name}:E"),
+        false => name.to_owned(),
+    });
+    format!(
+        "Use this impact law, at one surface or at all; may be repeated. Laws: {}, with E in [0, 1]",
+        laws.join(", ")
+    )
 }
 
 /// `simulate`
@@ -213,9 +227,8 @@ pub struct SimulateArgs {
     /// model's `until` if that is longer, to get there.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
     pub impacts: Option<u64>,
-    /// Use this impact law, at one surface or at all; may be repeated. Laws: elastic, restitution:E, newton:E,
-    /// nonholonomic_plastic, impact_plastic, totally_plastic, with E in [0, 1].
-    #[arg(long, value_name = "[SURFACE=]LAW[:E]")]
+    /// The laws to use instead of the declared ones.
+    #[arg(long, value_name = "[SURFACE=]LAW[:E]", help = law_help())]
     pub law: Vec<String>,
     /// The integrator.
     #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
@@ -266,5 +279,13 @@ mod tests {
     #[test]
     fn the_grammar_is_consistent() {
         CommandLine::command().debug_assert();
+    }
+
+    #[test]
+    fn integrators_are_chosen_by_the_names_they_have() {
+        for integrator in Integrator::value_variants() {
+            let value = integrator.to_possible_value().unwrap();
+            assert_eq!(value.get_name(), integrator.name());
+        }
     }
 }

@@ -106,7 +106,10 @@ impl Law {
     pub const fn coefficient(&self) -> Option<f64> {
         match *self {
             Self::Restitution(e) | Self::Newton(e) => Some(e),
-            _ => None,
+            Self::Elastic
+            | Self::NonholonomicPlastic
+            | Self::ImpactPlastic
+            | Self::TotallyPlastic => None,
         }
     }
 
@@ -130,5 +133,37 @@ impl fmt::Display for Law {
             Some(e) => write!(f, "{}({e})", self.name()),
             None => f.write_str(self.name()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every law in order. A law that is new does not compile here without its place.
+    fn following(law: Law) -> Option<Law> {
+        match law {
+            Law::Elastic => Some(Law::Restitution(0.25)),
+            Law::Restitution(_) => Some(Law::Newton(0.25)),
+            Law::Newton(_) => Some(Law::NonholonomicPlastic),
+            Law::NonholonomicPlastic => Some(Law::ImpactPlastic),
+            Law::ImpactPlastic => Some(Law::TotallyPlastic),
+            Law::TotallyPlastic => None,
+        }
+    }
+
+    #[test]
+    fn every_law_is_had_by_its_name() {
+        let mut names = Law::NAMES.into_iter();
+        let mut next = Some(Law::Elastic);
+        while let Some(law) = next {
+            assert_eq!(
+                names.next(),
+                Some((law.name(), law.coefficient().is_some()))
+            );
+            assert_eq!(Law::from_name(law.name(), 0.25), Some(law));
+            next = following(law);
+        }
+        assert_eq!(names.next(), None);
     }
 }

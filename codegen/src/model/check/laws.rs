@@ -6,7 +6,7 @@ use super::super::range::range;
 use super::super::resolve::{Resolver, Scope};
 use super::super::{Constraint, Law, Parameter, Surface};
 use crate::diagnostics::{listed, nearest};
-use crate::spec::{self, LAWS, Scalar};
+use crate::spec::{self, LAWS, Scalar, Word};
 
 impl Resolver<'_> {
     /// The law of a surface; elastic if none is written.
@@ -16,10 +16,7 @@ impl Resolver<'_> {
         };
         let name = law.name.text.as_str();
         let Some((_, count)) = LAWS.into_iter().find(|(known, _)| *known == name) else {
-            let laws = LAWS.map(|(known, _)| known);
-            let near = nearest(name, laws).map(|near| format!("did you mean `{near}`? "));
-            let help = format!("{}the laws are {}", near.unwrap_or_default(), listed(laws));
-            return self.refuse(law.name.at, format!("unknown law `{name}`"), &help);
+            return self.unknown_law(&law.name);
         };
         if law.arguments.len() != count {
             let (text, help) = match count {
@@ -34,18 +31,18 @@ impl Resolver<'_> {
             };
             return self.refuse(law.name.at, text, &help);
         }
-        match (name, law.arguments.first()) {
-            ("restitution", Some(coefficient)) => self
-                .coefficient(name, coefficient, scope)
-                .map(Law::Restitution),
-            ("newton", Some(coefficient)) => {
-                self.coefficient(name, coefficient, scope).map(Law::Newton)
-            }
-            ("nonholonomic_plastic", _) => Some(Law::NonholonomicPlastic),
-            ("impact_plastic", _) => Some(Law::ImpactPlastic),
-            ("totally_plastic", _) => Some(Law::TotallyPlastic),
-            _ => Some(Law::Elastic),
-        }
+        let coefficient = match law.arguments.first() {
+            Some(written) => Some(self.coefficient(name, written, scope)?),
+            None => None,
+        };
+        Law::named(name, coefficient).or_else(|| self.unknown_law(&law.name))
+    }
+
+    fn unknown_law(&mut self, name: &Word) -> Option<Law> {
+        let laws = LAWS.map(|(known, _)| known);
+        let near = nearest(&name.text, laws).map(|near| format!("did you mean `{near}`? "));
+        let help = format!("{}the laws are {}", near.unwrap_or_default(), listed(laws));
+        self.refuse(name.at, format!("unknown law `{}`", name.text), &help)
     }
 
     /// A coefficient of restitution: a constant lies in `[0, 1]`, an expression of the parameters does so at their
@@ -106,14 +103,6 @@ impl Resolver<'_> {
     }
 }
 
-/// The coefficient of a law.
-pub(super) fn coefficient(law: &Law) -> Option<ExprId> {
-    match law {
-        Law::Restitution(coefficient) | Law::Newton(coefficient) => Some(*coefficient),
-        _ => None,
-    }
-}
-
 /// Remarks on what the laws of a model do not promise.
 pub(super) fn notes(
     resolver: &Resolver<'_>,
@@ -137,12 +126,12 @@ pub(super) fn notes(
 /// `rho = dh(pi_D grad h)/dh(grad h)` lies in `[0, 1]`; a law that multiplies the gap rate by a positive number
 /// leaves the state approaching.
 fn plastic_note(surface: &Surface) -> Option<String> {
-    let (law, factor, approaches) = match surface.law {
-        Law::NonholonomicPlastic => ("nonholonomic_plastic", "1 - 2 rho", "rho < 1/2"),
-        Law::TotallyPlastic => ("totally_plastic", "1 - rho", "rho < 1"),
-        _ => return None,
+    let (factor, approaches) = match surface.law {
+        Law::NonholonomicPlastic => ("1 - 2 rho", "rho < 1/2"),
+        Law::TotallyPlastic => ("1 - rho", "rho < 1"),
+        Law::Elastic | Law::Restitution(_) | Law::Newton(_) | Law::ImpactPlastic => return None,
     };
-    let name = &surface.name.display;
+    let (law, name) = (surface.law.name(), &surface.name.display);
     Some(format!(
         "`{law}` multiplies the gap rate of `{name}` by {factor}, rho = dh(pi_D grad h)/dh(grad h): where {approaches} the state still approaches and the run ends; `impact_plastic` never does"
     ))
@@ -161,7 +150,7 @@ fn coefficient_notes(resolver: &Resolver<'_>, surfaces: &[Surface]) -> Vec<Strin
     let mut notes: Vec<String> = Vec::new();
     for members in surfaces.chunk_by(|a, b| a.item == b.item) {
         let open = members.iter().find_map(|surface| {
-            let coefficient = coefficient(&surface.law)?;
+            let coefficient = surface.law.coefficient()?;
             let range = range(&resolver.pool, coefficient, &resolver.symbols.parameters);
             (!range.is_within(0.0, 1.0)).then_some((surface, coefficient))
         });

@@ -139,7 +139,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
                 .iter()
                 .chain([&surface.gap])
                 .copied()
-                .chain(laws::coefficient(&surface.law)),
+                .chain(surface.law.coefficient()),
         );
     }
     used.extend(

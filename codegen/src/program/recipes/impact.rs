@@ -7,8 +7,9 @@
 use dalembert_expr::ExprId;
 
 use crate::mechanics::Derivation;
-use crate::model::{Law, Model};
+use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
+use crate::program::recipes::declared::position_function;
 use crate::program::{Function, Guard, Impacting, Value};
 
 /// All of them; `None` without surfaces.
@@ -32,7 +33,10 @@ pub fn impacting(model: &Model, derivation: &Derivation) -> Option<Impacting> {
         coefficients: model
             .surfaces
             .iter()
-            .map(|surface| coefficient(model, derivation, surface.law))
+            .map(|surface| {
+                let coefficient = surface.law.coefficient()?;
+                Some(position_function(model, derivation, &[coefficient]))
+            })
             .collect(),
     })
 }
@@ -52,20 +56,7 @@ fn evaluate(
 
 fn conditions(model: &Model, derivation: &Derivation, s: usize) -> Option<Function> {
     let conditions = &derivation.surfaces[s].conditions;
-    (!conditions.is_empty()).then(|| {
-        let mut kernel = Kernel::new(model, derivation, Arguments::Position);
-        let outputs = kernel.values(conditions);
-        kernel.finish(outputs)
-    })
-}
-
-fn coefficient(model: &Model, derivation: &Derivation, law: Law) -> Option<Function> {
-    let (Law::Restitution(coefficient) | Law::Newton(coefficient)) = law else {
-        return None;
-    };
-    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
-    let value = kernel.value(coefficient);
-    Some(kernel.finish(vec![value]))
+    (!conditions.is_empty()).then(|| position_function(model, derivation, conditions))
 }
 
 fn contact(model: &Model, derivation: &Derivation, s: usize) -> Function {

@@ -69,14 +69,14 @@ pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Resu
     Ok(exit)
 }
 
-/// The four laws without a coefficient, and those whose coefficient was given.
+/// The laws without a coefficient, and those whose coefficient was given.
 fn laws(args: &EvalArgs) -> Vec<Law> {
-    let mut laws = vec![
-        Law::Elastic,
-        Law::NonholonomicPlastic,
-        Law::ImpactPlastic,
-        Law::TotallyPlastic,
-    ];
+    let plain = Law::NAMES
+        .iter()
+        .filter(|(_, takes_coefficient)| !takes_coefficient);
+    let mut laws: Vec<Law> = plain
+        .filter_map(|(name, _)| Law::from_name(name, 0.0))
+        .collect();
     laws.extend(args.restitution.map(Law::Restitution));
     laws.extend(args.newton.map(Law::Newton));
     laws
