@@ -3,7 +3,7 @@
 
 use dalembert::{Described, Scene, StateVector, System};
 use dalembert_codegen::model::Model;
-use dalembert_codegen::program::{Function, Input, Program, interpret::interpret, verify::verify};
+use dalembert_codegen::program::{Input, Program, interpret::interpret, verify::verify};
 use dalembert_codegen::{mechanics, model, program, spec};
 use dalembert_expr::SymbolId;
 use dalembert_tests::sampling::{Visitor, states, visit_all};
@@ -177,39 +177,7 @@ struct WellFormed;
 impl Visitor for WellFormed {
     fn visit<S: Described + Scene>(&mut self, _: S) {
         let (_, _, program) = derive(S::DESCRIPTION.source);
-        let mut functions: Vec<&Function> = vec![
-            &program.rate,
-            &program.scale,
-            &program.velocity,
-            &program.momentum,
-            &program.energy,
-            &program.geometry.function,
-            &program.divergence,
-            &program.density_form,
-            &program.initial,
-        ];
-        functions.extend(
-            program
-                .outputs
-                .iter()
-                .chain(&program.view_path)
-                .chain(&program.view_region),
-        );
-        if let Some(constrained) = &program.constrained {
-            functions.extend([
-                &constrained.multipliers,
-                &constrained.residuals,
-                &constrained.forms,
-                &constrained.project,
-                &constrained.levels,
-                &constrained.level_correction,
-            ]);
-        }
-        if let Some(impacting) = &program.impacting {
-            functions.extend([&impacting.gaps, &impacting.gap_rates]);
-            functions.extend(&impacting.contacts);
-        }
-        for function in functions {
+        for function in program.functions() {
             assert_eq!(verify(function), Ok(()), "{}", S::DESCRIPTION.name);
         }
     }

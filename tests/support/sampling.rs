@@ -61,37 +61,44 @@ pub trait Visitor {
 
 /// Visits every shipped model and every system of [`crate::systems`], at their defaults.
 pub fn visit_all(visitor: &mut impl Visitor) {
-    use crate::systems::{
-        AffineSleigh, DampedSleigh, IntegrableBead, MagneticDisk, MovingWallDisk, Rheonomic,
-        TableWall, WalkerFootSlip, WalkerWithMultiplier,
-    };
-    use dalembert_models::{
-        BallOnRotatingTable, BouncingBall, Chain2, Chain3, Chain4, Chain8, Chain16,
-        ChaplyginSleigh, DoublePendulum, HarmonicOscillator, HolonomicBeadOnEllipses,
-        PointBilliard, RollingBallEuler, RollingDisk, TwoWheelsRod,
-    };
-    visitor.visit(BallOnRotatingTable::default());
-    visitor.visit(BouncingBall::default());
-    visitor.visit(Chain2::default());
-    visitor.visit(Chain3::default());
-    visitor.visit(Chain4::default());
-    visitor.visit(Chain8::default());
-    visitor.visit(Chain16::default());
-    visitor.visit(ChaplyginSleigh::default());
-    visitor.visit(DoublePendulum::default());
-    visitor.visit(HarmonicOscillator::default());
-    visitor.visit(HolonomicBeadOnEllipses::default());
-    visitor.visit(PointBilliard::default());
-    visitor.visit(RollingBallEuler::default());
-    visitor.visit(RollingDisk::default());
-    visitor.visit(TwoWheelsRod::default());
-    visitor.visit(AffineSleigh::default());
-    visitor.visit(TableWall::default());
-    visitor.visit(MagneticDisk::default());
-    visitor.visit(DampedSleigh::default());
-    visitor.visit(IntegrableBead::default());
-    visitor.visit(MovingWallDisk::default());
-    visitor.visit(Rheonomic::default());
-    visitor.visit(WalkerWithMultiplier::default());
-    visitor.visit(WalkerFootSlip::default());
+    use crate::systems;
+    macro_rules! visit {
+        ($package:ident: $($model:ident)*) => {
+            $(visitor.visit($package::$model::default());)*
+        };
+    }
+    visit! {
+        dalembert_models:
+        BallOnRotatingTable BouncingBall Chain2 Chain3 Chain4 Chain8 Chain16 ChaplyginSleigh DoublePendulum
+        HarmonicOscillator HolonomicBeadOnEllipses PointBilliard RollingBallEuler RollingDisk TwoWheelsRod
+    }
+    visit! {
+        systems:
+        AffineSleigh TableWall MagneticDisk DampedSleigh IntegrableBead MovingWallDisk Rheonomic
+        WalkerWithMultiplier WalkerFootSlip
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Names(Vec<&'static str>);
+
+    impl Visitor for Names {
+        fn visit<S: Described + dalembert::Scene>(&mut self, _: S) {
+            self.0.push(S::DESCRIPTION.name);
+        }
+    }
+
+    #[test]
+    fn every_model_of_the_command_line_is_visited() {
+        let mut visited = Names(Vec::new());
+        visit_all(&mut visited);
+        let known: Vec<_> = crate::command::models()
+            .iter()
+            .map(|entry| entry.description().name)
+            .collect();
+        assert_eq!(visited.0, known);
+    }
 }

@@ -214,10 +214,42 @@ impl Program {
     /// what is longer.
     pub const OPERATIONS: usize = 50_000;
 
-    /// The length of the longest function: the one that evaluates everything contains the others' work.
+    /// Every function.
+    pub fn functions(&self) -> Vec<&Function> {
+        // NOTE: every field is named, so that a function that is added is not forgotten here.
+        let Self {
+            rate,
+            scale,
+            velocity,
+            momentum,
+            energy,
+            geometry,
+            constrained,
+            impacting,
+            divergence,
+            density_form,
+            outputs,
+            view_path,
+            view_region,
+            initial,
+            until,
+        } = self;
+        let mut functions = vec![rate, scale, velocity, momentum, energy, &geometry.function];
+        functions.extend([divergence, density_form, initial]);
+        let declared = [outputs, view_path, view_region, until];
+        functions.extend(declared.into_iter().flatten());
+        functions.extend(constrained.iter().flat_map(Constrained::functions));
+        functions.extend(impacting.iter().flat_map(Impacting::functions));
+        functions
+    }
+
+    /// The length of the longest function.
     pub fn longest(&self) -> usize {
-        let geometry = self.geometry.function.cost.total();
-        geometry.max(self.rate.cost.total())
+        let lengths = self.functions().into_iter();
+        lengths
+            .map(|function| function.cost.total())
+            .max()
+            .unwrap_or(0)
     }
 }
 
@@ -240,6 +272,29 @@ pub struct Constrained {
     pub level_correction: Function,
 }
 
+impl Constrained {
+    fn functions(&self) -> [&Function; 7] {
+        let Self {
+            multipliers,
+            residuals,
+            forms,
+            project,
+            restore,
+            levels,
+            level_correction,
+        } = self;
+        [
+            multipliers,
+            residuals,
+            forms,
+            project,
+            restore,
+            levels,
+            level_correction,
+        ]
+    }
+}
+
 /// Functions of a system with surfaces.
 #[derive(Debug)]
 pub struct Impacting {
@@ -254,4 +309,22 @@ pub struct Impacting {
     pub contacts: Vec<Function>,
     /// Per surface: the coefficient of its law, a function of the parameters.
     pub coefficients: Vec<Option<Function>>,
+}
+
+impl Impacting {
+    fn functions(&self) -> Vec<&Function> {
+        let Self {
+            gaps,
+            gap_rates,
+            conditions,
+            contacts,
+            coefficients,
+        } = self;
+        let declared = conditions.iter().chain(coefficients).flatten();
+        [gaps, gap_rates]
+            .into_iter()
+            .chain(contacts)
+            .chain(declared)
+            .collect()
+    }
 }

@@ -127,12 +127,22 @@ fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec
 
 /// The symbols that occur in any declaration.
 fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet<SymbolId> {
+    // NOTE: every part is named, so that a declaration that is added is not forgotten here.
+    let Parts {
+        lagrangian: _,
+        constraints,
+        forces,
+        surfaces,
+        initial,
+        view,
+        outputs,
+    } = parts;
     let mut used: Vec<ExprId> = vec![lagrangian.whole];
-    for constraint in &parts.constraints {
+    for constraint in constraints {
         used.extend(constraint.form.iter().chain([&constraint.affine]));
     }
-    used.extend(parts.forces.iter().flat_map(|force| &force.form));
-    for surface in &parts.surfaces {
+    used.extend(forces.iter().flat_map(|force| &force.form));
+    for surface in surfaces {
         used.extend(
             surface
                 .conditions
@@ -143,19 +153,16 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
         );
     }
     used.extend(
-        parts
-            .initial
+        initial
             .q
             .iter()
-            .chain(&parts.initial.qdot)
-            .chain([&parts.initial.until])
+            .chain(&initial.qdot)
+            .chain([&initial.until])
             .flatten(),
     );
-    used.extend(parts.outputs.iter().map(|output| output.value));
+    used.extend(outputs.iter().map(|output| output.value));
     used.extend(
-        parts
-            .view
-            .iter()
+        view.iter()
             .flat_map(|view| view.path.iter().copied().chain(view.region)),
     );
     used.into_iter()

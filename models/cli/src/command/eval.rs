@@ -21,7 +21,8 @@ use crate::state_input::build_model;
 use input::{Given, GivenRates};
 use report::Collected;
 
-/// What is printed of a state besides its impacts, in this order; `null` where a model has no such quantity.
+/// What is printed first of a state, in this order; `null` where a model has no such quantity. Whatever else a model
+/// reports follows, then its impacts.
 const KEYS: [&str; 15] = [
     "q",
     "qdot",
@@ -93,6 +94,7 @@ fn evaluate(model: &dyn AnyModel, given: &Given, laws: &[Law]) -> Result<Value, 
         .iter()
         .map(|&key| (key.to_owned(), collected.take(key)))
         .collect();
+    row.extend(collected.take_others());
     let mut impacts = Map::new();
     for (index, surface) in names::surfaces(&model.description()).enumerate() {
         let laws = evaluate_laws(model, given.t, &state, &collected, index, laws);

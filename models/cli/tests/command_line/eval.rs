@@ -36,6 +36,18 @@ fn a_state_gives_everything_in_order() {
 }
 
 #[test]
+fn what_else_a_model_reports_follows_before_the_impacts() {
+    let given = r#"[{"q": [1, 0], "qdot": [0, 1]}]"#;
+    let rows = run_on(given, &["eval", "oscillator", "--set", "k=2"]).json();
+    let keys: Vec<&String> = rows[0].as_object().unwrap().keys().collect();
+    assert_eq!(
+        keys[keys.len() - 3..],
+        ["log_density", "stiffness", "impacts"]
+    );
+    assert_eq!(numbers(&rows[0]["stiffness"]), [1.0, 2.0]);
+}
+
+#[test]
 fn momenta_are_velocities_times_the_metric() {
     let given = r#"[{"q": [2], "p": [-6]}, {"q": [2], "qdot": [-3]}]"#;
     let rows = run_on(given, &["eval", "bouncing_ball", "--set", "m=2"]).json();

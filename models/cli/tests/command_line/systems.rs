@@ -365,6 +365,7 @@ impl Described for Oscillator {
         }
         inspect_common(self, t, state, report)?;
         report.matrix("metric", 2, 2, &[1.0, 0.0, 0.0, 1.0]);
+        report.vector("stiffness", &[1.0, self.k]);
         Ok(())
     }
 }

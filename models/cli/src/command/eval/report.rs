@@ -30,7 +30,12 @@ impl Collected {
 
     /// Takes out a value; `null` where the model has none of this name.
     pub fn take(&mut self, name: &str) -> Value {
-        self.values.get_mut(name).map_or(Value::Null, Value::take)
+        self.values.shift_remove(name).unwrap_or_default()
+    }
+
+    /// Takes out every value that is left, in the order in which the model reported them.
+    pub fn take_others(&mut self) -> Map<String, Value> {
+        std::mem::take(&mut self.values)
     }
 
     /// A number of a surface's contact.
