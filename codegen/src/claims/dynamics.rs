@@ -174,6 +174,18 @@ impl Dynamics {
         motion: &Motion<Number<P>>,
         point: &mut P,
     ) -> Option<Vec<Number<P>>> {
+        let pairs = self.values_and_rates(pool, expressions, motion, point)?;
+        Some(pairs.into_iter().map(|[_, rate]| rate).collect())
+    }
+
+    /// As [`Dynamics::rates`], each rate after its value.
+    pub fn values_and_rates<P: ExpansionPoint>(
+        &self,
+        pool: &Pool,
+        expressions: &[ExprId],
+        motion: &Motion<Number<P>>,
+        point: &mut P,
+    ) -> Option<Vec<[Number<P>; 2]>> {
         let mut variables = self.q.clone();
         variables.extend(&self.qdot);
         variables.push(self.time);
@@ -189,7 +201,7 @@ impl Dynamics {
             for (slope, rate) in series.iter().skip(1).zip(&direction) {
                 sum = field.add(sum, field.mul(*slope, *rate));
             }
-            sum
+            [jets.value(series), sum]
         };
         Some(series.iter().map(along).collect())
     }

@@ -6,6 +6,7 @@
 //! | `linear.rs`, `frame.rs`, `closure.rs` | the frame of D as series, and its hull under brackets |
 //! | `exactness.rs` | does a local density exist? |
 //! | `potential.rs`, `global.rs` | the density in closed form; is it single-valued? |
+//! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `dynamics.rs` | the motion on D at a point |
 //! | `evidence.rs` | does something vanish at all states? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
@@ -15,10 +16,13 @@
 //! Decisions are taken modulo 61-bit primes at random points; values in double precision are for witnesses, and where
 //! residues alone do not decide.
 
+mod ansatz;
 mod closure;
 mod conserved;
+mod darboux;
 mod density;
 pub mod dynamics;
+mod elimination;
 mod evidence;
 pub mod exactness;
 mod existence;
@@ -27,6 +31,7 @@ mod frame;
 mod global;
 mod impact;
 mod linear;
+mod momentum;
 mod obstruction;
 mod potential;
 pub mod problem;
@@ -41,6 +46,7 @@ pub use exactness::{Exactness, Local, decide, decide_local};
 pub use existence::{Decision, potential_text};
 pub use finding::{Certificate, Finding, Verdict, Witness};
 pub use global::Global;
+pub use momentum::{MomentumDensity, find_momentum_density};
 pub use obstruction::{Obstruction, find_obstruction};
 pub use potential::{Certified, Potential, Term};
 pub use problem::Problem;

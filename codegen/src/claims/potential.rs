@@ -251,7 +251,7 @@ fn equations(
 }
 
 /// The derivatives of `ln |f|` by the variables of a series of first order.
-fn of_logarithm(field: Modulus, series: &[u64]) -> Option<Vec<u64>> {
+pub(super) fn of_logarithm(field: Modulus, series: &[u64]) -> Option<Vec<u64>> {
     let (value, slopes) = series.split_first()?;
     let factor = field.inv(*value)?;
     Some(
@@ -297,7 +297,7 @@ fn solve_rows(field: Modulus, mut rows: Vec<Vec<u64>>, unknowns: usize) -> Optio
 }
 
 /// The rational number of small numerator and denominator with this residue.
-fn reconstruct(field: Modulus, residue: u64) -> Option<Rational> {
+pub(super) fn reconstruct(field: Modulus, residue: u64) -> Option<Rational> {
     let size = |value: u64| value.min(field.prime() - value) as i64;
     (1..=LARGEST).find_map(|denominator| {
         let numerator = field.mul(residue, field.integer(denominator));

@@ -1,0 +1,162 @@
+//! What the factor of a density that depends on velocities is looked for among: functions of the configuration times
+//! velocities and kinetic momenta.
+
+use dalembert_expr::{ExprId, Function, Node, Pool, Rational, SymbolId};
+
+use super::dynamics::Dynamics;
+use super::problem::Problem;
+use crate::model::{Model, Topology};
+
+/// Arguments of sines and cosines that are used as functions of the configuration.
+const ARGUMENTS: usize = 4;
+/// Coordinates whose monomials are used.
+const LINES: usize = 4;
+/// Terms of one stage: elimination takes the cube of their number.
+const TERMS: usize = 120;
+/// The degree of monomials of parameters, and their number.
+const DEGREE: usize = 3;
+const MONOMIALS: usize = 48;
+
+/// Terms of a factor, simple ones first; each stage contains the one before.
+pub(super) fn stages(
+    model: &mut Model,
+    problem: &Problem,
+    dynamics: &Dynamics,
+) -> Vec<Vec<ExprId>> {
+    let roots = dynamics.roots();
+    let pool = &mut model.pool;
+    let mut bases: Vec<ExprId> = Vec::new();
+    for coordinate in &model.coordinates {
+        bases.push(pool.variable(coordinate.qdot));
+    }
+    for (coordinate, linear) in model.coordinates.iter().zip(&model.lagrangian.linear) {
+        let momentum = pool.diff(model.lagrangian.whole, coordinate.qdot);
+        bases.push(pool.sub(momentum, *linear));
+    }
+    // Without these the terms of a homogeneous factor are separately invariant.
+    let linear = &model.lagrangian.linear;
+    if problem.has_drift(pool)
+        || linear.iter().any(|own| !pool.is_syntactic_zero(*own))
+        || pool.depends_on_any(model.lagrangian.potential, &problem.symbols)
+    {
+        bases.push(pool.one());
+    }
+    let circular = circular_functions(pool, &roots, &problem.symbols);
+    let lines: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .filter(|own| !matches!(own.topology, Topology::Angle))
+        .map(|own| own.q)
+        .filter(|own| roots.iter().any(|root| pool.depends_on(*root, *own)))
+        .take(LINES)
+        .collect();
+    let polynomials = monomials(pool, &lines, 2);
+    let mut functions = vec![pool.one()];
+    let mut stages = vec![products(pool, &functions, &bases)];
+    for more in [circular, polynomials[1..].to_vec()] {
+        if !more.is_empty() {
+            functions.extend(more);
+            stages.push(products(pool, &functions, &bases));
+        }
+    }
+    stages
+}
+
+/// Every function times every base, all bases with one function after the other.
+fn products(pool: &mut Pool, functions: &[ExprId], bases: &[ExprId]) -> Vec<ExprId> {
+    let mut terms = Vec::new();
+    for function in functions {
+        for base in bases {
+            let term = pool.mul(*function, *base);
+            if terms.len() < TERMS && !terms.contains(&term) && !pool.is_syntactic_zero(term) {
+                terms.push(term);
+            }
+        }
+    }
+    terms
+}
+
+/// Sines and cosines of the arguments that occur with coordinates inside.
+fn circular_functions(pool: &mut Pool, roots: &[ExprId], symbols: &[SymbolId]) -> Vec<ExprId> {
+    let mut arguments = Vec::new();
+    for id in pool.reachable(roots) {
+        if let Node::Call(Function::Sin | Function::Cos | Function::Tan, argument) = pool.node(id)
+            && pool.depends_on_any(*argument, symbols)
+            && !arguments.contains(argument)
+        {
+            arguments.push(*argument);
+        }
+    }
+    let mut functions = Vec::new();
+    for argument in arguments.into_iter().take(ARGUMENTS) {
+        functions.push(pool.call(Function::Sin, argument));
+        functions.push(pool.call(Function::Cos, argument));
+    }
+    functions
+}
+
+/// Monomials of the parameters, by degree.
+pub(super) fn parameter_monomials(pool: &mut Pool, parameters: &[SymbolId]) -> Vec<ExprId> {
+    let mut monomials = monomials(pool, parameters, DEGREE);
+    monomials.truncate(MONOMIALS);
+    monomials
+}
+
+/// The monomials in some symbols by degree: 1, the symbols, their products, ..
+fn monomials(pool: &mut Pool, symbols: &[SymbolId], degree: usize) -> Vec<ExprId> {
+    let mut all = vec![pool.one()];
+    // The monomials of one degree, each with its last symbol: only later ones are multiplied on.
+    let mut last = vec![(pool.one(), 0)];
+    for _ in 0..degree {
+        let mut next = Vec::new();
+        for (monomial, first) in last {
+            for (position, symbol) in symbols.iter().enumerate().skip(first) {
+                let symbol = pool.variable(*symbol);
+                next.push((pool.mul(monomial, symbol), position));
+            }
+        }
+        all.extend(next.iter().map(|(monomial, _)| *monomial));
+        last = next;
+    }
+    all
+}
+
+/// `sum of coefficient * monomial * term`, without common factors and the first coefficient positive.
+pub(super) fn combination(pool: &mut Pool, parts: &[(Rational, ExprId, ExprId)]) -> ExprId {
+    let Some((first, ..)) = parts.first() else {
+        return pool.zero();
+    };
+    let scaled = |(coefficient, ..): &(Rational, ExprId, ExprId)| coefficient.checked_div(first);
+    let coefficients: Vec<Rational> = parts.iter().filter_map(scaled).collect();
+    let clear = coefficients.iter().fold(1, |common: i64, coefficient| {
+        let denominator = coefficient.to_small().map_or(1, |(_, d)| d);
+        least_common_multiple(common, denominator)
+    });
+    // The monomials of each term, terms in order of appearance.
+    let mut collected: Vec<(ExprId, Vec<(Rational, ExprId)>)> = Vec::new();
+    for (coefficient, (_, monomial, term)) in coefficients.into_iter().zip(parts) {
+        let position = match collected.iter().position(|(known, _)| known == term) {
+            Some(position) => position,
+            None => {
+                collected.push((*term, Vec::new()));
+                collected.len() - 1
+            }
+        };
+        let coefficient = &coefficient * &Rational::from(clear);
+        collected[position].1.push((coefficient, *monomial));
+    }
+    let mut summands = Vec::new();
+    for (term, monomials) in collected {
+        let coefficient = pool.combine(&monomials);
+        summands.push(pool.mul(coefficient, term));
+    }
+    pool.sum(&summands)
+}
+
+fn least_common_multiple(a: i64, b: i64) -> i64 {
+    let (mut common, mut rest) = (a, b);
+    while rest != 0 {
+        (common, rest) = (rest, common % rest);
+    }
+    a / common * b
+}

@@ -1,0 +1,308 @@
+//! Factors of densities that depend on velocities: Darboux polynomials of the motion, linear in the velocities on D.
+//!
+//! `f mu_C` is invariant iff `X(ln f) = c` on D, where `c = c_0 + c_i u^i` is what the demands of [`super::frame`]
+//! make of minus the divergence; for `f = (det m)^k |l|^s`
+//!
+//! ```text
+//! s X(l) = (c - k X(ln det m)) l        on D
+//! ```
+//!
+//! For given `s` and `k` the equation is linear in `l`: a null space modulo a prime over terms `function of q * velocity
+//! or momentum`, at random points of D with parameters frozen. Coefficients are reconstructed as rational numbers, or as
+//! polynomials in the parameters. What was found is certified from itself alone at fresh points modulo other primes.
+
+use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Modulus, Pool, Rational, SymbolId};
+
+use super::ansatz::{combination, parameter_monomials};
+use super::dynamics::Dynamics;
+use super::elimination::{first_relation, independent_columns};
+use super::exactness::{Undecided, sample_points};
+use super::frame::frame;
+use super::potential::{Certified, of_logarithm, reconstruct};
+use super::problem::Problem;
+use crate::model::Model;
+
+/// Exponents of the factor as numerator and denominator; the first is that of an inverse Jacobi multiplier.
+const EXPONENTS: [(i64, i64); 5] = [(-1, 1), (-2, 1), (-1, 2), (1, 1), (2, 1)];
+/// Exponents of `det m`.
+const MASS_EXPONENTS: [(i64, i64); 3] = [(0, 1), (1, 2), (1, 1)];
+/// Terms up to which all exponents are tried; beyond, only the first.
+const FEW: usize = 80;
+/// Unknowns of a search with coefficients that depend on parameters.
+const UNKNOWNS: usize = 160;
+/// Equations beyond the number of unknowns.
+const SURPLUS: usize = 8;
+/// Fresh points at which a factor is certified; more where roots or absolute values occur, whose branches agree by
+/// accident with chance 1/2 per point.
+const CERTIFIED: (usize, usize) = (12, 40);
+/// Turns the seed of a search into that of a certificate: the fractional digits of the square root of 3.
+const FRESH: u64 = 0xbb67_ae85_84ca_a73b;
+
+/// `s` and `k`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Shape {
+    pub(super) exponent: Rational,
+    pub(super) mass_exponent: Rational,
+}
+
+/// What is known at a point of D.
+struct Observation {
+    field: Modulus,
+    /// The value and the rate of each term.
+    terms: Vec<[u64; 2]>,
+    /// `c`
+    demand: u64,
+    /// `X(ln det m)`
+    mass_rate: u64,
+}
+
+impl Observation {
+    /// `s X(b) - (c - k X(ln det m)) b` for each term `b`.
+    fn row(&self, shape: &Shape) -> Option<Vec<u64>> {
+        let field = self.field;
+        let exponent = field.rational(&shape.exponent)?;
+        let mass_exponent = field.rational(&shape.mass_exponent)?;
+        let demand = field.sub(self.demand, field.mul(mass_exponent, self.mass_rate));
+        let entry = |[value, rate]: &[u64; 2]| {
+            field.sub(field.mul(exponent, *rate), field.mul(demand, *value))
+        };
+        Some(self.terms.iter().map(entry).collect())
+    }
+}
+
+/// Terms of a factor with their coefficients at frozen parameters, if these are small numbers.
+pub(super) type Support = Vec<(ExprId, Option<Rational>)>;
+
+/// What a search is about.
+pub(super) struct Search<'s> {
+    pub(super) problem: &'s Problem,
+    pub(super) dynamics: &'s Dynamics,
+    pub(super) seed: u64,
+}
+
+impl Search<'_> {
+    /// The factors at frozen parameters that solve the equation for one of the shapes.
+    pub(super) fn factors(
+        &self,
+        model: &Model,
+        terms: &[ExprId],
+    ) -> Result<Vec<(Shape, Support)>, Undecided> {
+        let parameters: Vec<_> = model.parameters.iter().map(|own| own.symbol).collect();
+        let count = terms.len() + SURPLUS;
+        let seen = self.observe(&model.pool, terms, &parameters, count)?;
+        let Some(field) = seen.first().map(|own| own.field) else {
+            return Ok(Vec::new());
+        };
+        // What vanishes on D is no factor.
+        let values = seen
+            .iter()
+            .map(|own| own.terms.iter().map(|[value, _]| *value).collect())
+            .collect();
+        let independent = independent_columns(field, values);
+        let mut found = Vec::new();
+        for shape in shapes(terms.len()) {
+            let rows: Option<Vec<Vec<u64>>> = seen
+                .iter()
+                .map(|own| {
+                    let row = own.row(&shape)?;
+                    Some(independent.iter().map(|column| row[*column]).collect())
+                })
+                .collect();
+            let Some(relation) = rows.and_then(|rows| first_relation(field, rows)) else {
+                continue;
+            };
+            let support = independent
+                .iter()
+                .zip(&relation)
+                .filter(|(_, coefficient)| **coefficient != 0)
+                .map(|(column, coefficient)| (terms[*column], reconstruct(field, *coefficient)))
+                .collect();
+            found.push((shape, support));
+        }
+        Ok(found)
+    }
+
+    /// Observations at random points modulo one prime, `frozen` symbols the same at all of them.
+    fn observe(
+        &self,
+        pool: &Pool,
+        terms: &[ExprId],
+        frozen: &[SymbolId],
+        count: usize,
+    ) -> Result<Vec<Observation>, Undecided> {
+        let roots = self.roots(terms);
+        let profile = pool.profile_of(&roots);
+        let mut points = sample_points(pool, &roots, &profile, self.seed)?.modulo(1);
+        let mut values: Vec<Option<u64>> = vec![None; frozen.len()];
+        let mut seen = Vec::with_capacity(count);
+        while seen.len() < count {
+            let next = points.find(|point| {
+                for (symbol, value) in frozen.iter().zip(&mut values) {
+                    let own = point.value(*symbol, pool.symbol_assumption(*symbol));
+                    point.set(*symbol, *value.get_or_insert(own));
+                }
+                self.observation(pool, terms, point)
+            });
+            seen.push(next.ok_or(Undecided::Degenerate)?);
+        }
+        Ok(seen)
+    }
+
+    fn roots(&self, terms: &[ExprId]) -> Vec<ExprId> {
+        let mut roots = self.problem.roots();
+        roots.extend(self.dynamics.roots());
+        roots.extend(terms);
+        roots
+    }
+
+    fn observation(
+        &self,
+        pool: &Pool,
+        terms: &[ExprId],
+        point: &mut ModularPoint,
+    ) -> Option<Observation> {
+        let field = point.modulus();
+        let motion = self.dynamics.motion(pool, point, None)?;
+        let terms = self
+            .dynamics
+            .values_and_rates(pool, terms, &motion, point)?;
+        let space = JetSpace::new(self.problem.variables.len(), 1, usize::MAX)?;
+        let frame = frame(pool, self.problem, &Jets::new(field, &space), point, None)?;
+        let mut direction = motion.qdot.clone();
+        direction.push(1);
+        let mut mass_rate = 0;
+        let slopes = of_logarithm(field, &frame.mass_determinant)?;
+        for (slope, component) in slopes.iter().zip(&self.problem.variables) {
+            mass_rate = field.add(mass_rate, field.mul(*slope, direction[*component]));
+        }
+        // The drift comes first and counts once, then the independent velocities.
+        let free = (0..self.problem.coordinates).filter(|i| !frame.dependent.contains(i));
+        let mut coordinates: Vec<u64> = free.map(|i| motion.qdot[i]).collect();
+        if coordinates.len() < frame.demands.len() {
+            coordinates.insert(0, 1);
+        }
+        let mut demand = 0;
+        for (own, u) in frame.demands.iter().zip(coordinates) {
+            let value = own.last().and_then(|series| series.first().copied());
+            demand = field.add(demand, field.mul(value.unwrap_or(0), u));
+        }
+        Some(Observation {
+            field,
+            terms,
+            demand,
+            mass_rate,
+        })
+    }
+
+    /// The factor with coefficients that do not depend on frozen values: numbers if they are small, else polynomials in
+    /// the parameters.
+    pub(super) fn reconstruct(
+        &self,
+        model: &mut Model,
+        shape: &Shape,
+        support: &Support,
+    ) -> Result<Option<ExprId>, Undecided> {
+        let one = model.pool.one();
+        let numbers: Option<Vec<_>> = support
+            .iter()
+            .map(|(term, coefficient)| Some((coefficient.clone()?, one, *term)))
+            .collect();
+        if let Some(numbers) = numbers {
+            return Ok(Some(combination(&mut model.pool, &numbers)));
+        }
+        let mut parts = Vec::new();
+        let parameters = self.parameters(model);
+        for monomial in parameter_monomials(&mut model.pool, &parameters) {
+            parts.extend(support.iter().map(|(term, _)| (monomial, *term)));
+        }
+        parts.truncate(UNKNOWNS);
+        let terms: Vec<_> = parts
+            .iter()
+            .map(|(monomial, term)| model.pool.mul(*monomial, *term))
+            .collect();
+        let seen = self.observe(&model.pool, &terms, &[], terms.len() + SURPLUS)?;
+        let field = seen[0].field;
+        let rows: Option<Vec<_>> = seen.iter().map(|own| own.row(shape)).collect();
+        let Some(relation) = rows.and_then(|rows| first_relation(field, rows)) else {
+            return Ok(None);
+        };
+        let coefficients: Option<Vec<_>> = parts
+            .iter()
+            .zip(&relation)
+            .filter(|(_, coefficient)| **coefficient != 0)
+            .map(|((monomial, term), coefficient)| {
+                Some((reconstruct(field, *coefficient)?, *monomial, *term))
+            })
+            .collect();
+        Ok(coefficients.map(|parts| combination(&mut model.pool, &parts)))
+    }
+
+    /// The parameters on which the motion depends.
+    fn parameters(&self, model: &Model) -> Vec<SymbolId> {
+        let roots = self.dynamics.roots();
+        let occurs = |symbol: &SymbolId| {
+            roots
+                .iter()
+                .any(|root| model.pool.depends_on(*root, *symbol))
+        };
+        let symbols = model.parameters.iter().map(|own| own.symbol);
+        symbols.filter(occurs).collect()
+    }
+
+    /// Whether a factor solves the equation at fresh points, and does not vanish at all of them.
+    pub(super) fn certify(
+        &self,
+        pool: &Pool,
+        shape: &Shape,
+        factor: ExprId,
+    ) -> Result<Option<Certified>, Undecided> {
+        let roots = self.roots(&[factor]);
+        let profile = pool.profile_of(&roots);
+        let mut points = sample_points(pool, &roots, &profile, self.seed ^ FRESH)?;
+        let count = if profile.branches {
+            CERTIFIED.1
+        } else {
+            CERTIFIED.0
+        };
+        let mut primes = Vec::new();
+        let mut is_zero = true;
+        for _ in 0..count {
+            let seen = points
+                .find(|point| self.observation(pool, &[factor], point))
+                .ok_or(Undecided::Degenerate)?;
+            primes.push(seen.field.prime());
+            is_zero &= seen.terms[0][0] == 0;
+            if seen.row(shape) != Some(vec![0]) {
+                return Ok(None);
+            }
+        }
+        if is_zero {
+            return Ok(None);
+        }
+        primes.sort_unstable();
+        primes.dedup();
+        // As for a density of the configuration; the motion adds as much as the demand.
+        let sizes = (self.problem.coordinates + self.problem.forms.len()) as f64;
+        let degree = 128.0 * sizes.powi(3) * profile.degree.max(1.0);
+        let accident = if profile.branches { 0.5 } else { 0.0 };
+        Ok(Some(Certified {
+            points: count,
+            primes,
+            error: (degree / 2f64.powi(60) + accident).powi(count as i32),
+        }))
+    }
+}
+
+fn shapes(terms: usize) -> Vec<Shape> {
+    let count = if terms > FEW { 1 } else { EXPONENTS.len() };
+    let mut shapes = Vec::new();
+    for (n, d) in &EXPONENTS[..count] {
+        for (mass_n, mass_d) in MASS_EXPONENTS {
+            shapes.push(Shape {
+                exponent: Rational::new(*n, *d),
+                mass_exponent: Rational::new(mass_n, mass_d),
+            });
+        }
+    }
+    shapes
+}
