@@ -16,10 +16,11 @@ use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Modulus, Pool, Ration
 use super::ansatz::{combination, parameter_monomials};
 use super::dynamics::Dynamics;
 use super::elimination::{first_relation, independent_columns};
-use super::exactness::{Undecided, sample_points};
+use super::exactness::sample_points;
 use super::frame::frame;
 use super::potential::{Certified, of_logarithm, reconstruct};
 use super::problem::Problem;
+use super::undecided::Undecided;
 use crate::model::Model;
 
 /// Exponents of the factor as numerator and denominator; the first is that of an inverse Jacobi multiplier.
@@ -305,4 +306,62 @@ fn shapes(terms: usize) -> Vec<Shape> {
         }
     }
     shapes
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
+
+    use super::*;
+    use crate::{mechanics, model, spec};
+
+    /// The flat metric with `dz = (x + y) dx`: `sqrt(det m)/|xdot + ydot|` is invariant.
+    const PARTICLE: &str = "Particle {
+        coordinates { x; y; z; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { blade: d(z) - (x + y)*d(x) = 0; }
+        outputs { factor: dot(x) + dot(y); other: dot(x); none: dot(z) - (x + y)*dot(x); }
+    }";
+
+    /// Whether the outputs are certified as factors for `s` and `k`.
+    fn certified(s: (i64, i64), k: (i64, i64)) -> Vec<bool> {
+        let spec = spec::parse(PARTICLE.parse().unwrap()).unwrap();
+        let mut model = model::check(&spec).unwrap();
+        let derivation = mechanics::derive(&mut model);
+        let problem = Problem::of(&mut model, &derivation);
+        let dynamics = Dynamics::of(&mut model, &derivation);
+        let search = Search {
+            problem: &problem,
+            dynamics: &dynamics,
+            seed: 5,
+        };
+        let shape = Shape {
+            exponent: Rational::new(s.0, s.1),
+            mass_exponent: Rational::new(k.0, k.1),
+        };
+        let outputs = model.outputs.iter();
+        outputs
+            .map(|own| {
+                let certified = search.certify(&model.pool, &shape, own.value).unwrap();
+                certified.is_some()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_factor_is_certified_others_and_what_vanishes_on_d_are_not() {
+        assert_eq!(certified((-1, 1), (1, 2)), [true, false, false]);
+    }
+
+    #[test]
+    fn wrong_exponents_are_refused() {
+        for (s, k) in [
+            ((-2, 1), (1, 2)),
+            ((1, 1), (1, 2)),
+            ((-1, 1), (0, 1)),
+            ((-1, 1), (1, 1)),
+        ] {
+            assert_eq!(certified(s, k), [false; 3], "{s:?} {k:?}");
+        }
+    }
 }
