@@ -16,8 +16,10 @@ fn parts(formula: &str) -> (String, f64, f64) {
     let exponent = |text: &str| {
         let text = text.trim_start_matches('^').trim_matches(['(', ')']);
         match text.split_once('/') {
-            Some((n, d)) => n.parse::<f64>().unwrap() / d.parse::<f64>().unwrap(),
-            None => text.parse().unwrap(),
+            Some((n, d)) => {
+                n.parse::<f64>().expect("a number") / d.parse::<f64>().expect("a number")
+            }
+            None => text.parse().expect("a number"),
         }
     };
     let (_, rest) = formula.split_once('|').expect("a factor");

@@ -154,16 +154,24 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
         (true, Some(false)) => VISIBLE,
         _ => CLEAR,
     };
-    let (witness, is_real) = real_evidence(model, question, threshold);
+    let real = real_evidence(model, question, threshold);
     Evidence {
         vanishes,
         is_exact,
         points: wanted,
         primes,
         error: chance_of_accident(model, profile.degree),
-        witness,
-        is_real,
+        witness: real.witness,
+        is_real: real.is_real,
     }
+}
+
+/// What was seen at real points.
+struct Real {
+    /// A point where the sum is clearly not 0, and what to show there.
+    witness: Option<(Sample, Vec<(String, f64)>)>,
+    /// Whether it has a value at any.
+    is_real: bool,
 }
 
 /// The degree of a rate over the prime, for each of the states (Schwartz, Zippel): the saddle system of acceleration
@@ -174,11 +182,7 @@ fn chance_of_accident(model: &Model, degree: f64) -> f64 {
     (degree / 2f64.powi(60)).powi(STATES.0 as i32)
 }
 
-fn real_evidence(
-    model: &Model,
-    question: &impl Vanishing,
-    threshold: f64,
-) -> (Option<(Sample, Vec<(String, f64)>)>, bool) {
+fn real_evidence(model: &Model, question: &impl Vanishing, threshold: f64) -> Real {
     let mut is_real = false;
     for attempt in 0..ATTEMPTS {
         let Some((sample, mut point)) = question.sample(model, attempt) else {
@@ -193,8 +197,15 @@ fn real_evidence(
             continue;
         };
         if sum.is_finite() && sum.abs() > threshold * scale {
-            return (Some((sample, question.shown(model, &terms))), true);
+            let witness = Some((sample, question.shown(model, &terms)));
+            return Real {
+                witness,
+                is_real: true,
+            };
         }
     }
-    (None, is_real)
+    Real {
+        witness: None,
+        is_real,
+    }
 }

@@ -26,8 +26,8 @@ pub(super) type Conditions = [(SymbolId, Fixed)];
 /// What a symbol is fixed to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fixed {
-    /// An integer.
-    Value(i64),
+    /// A fraction.
+    Value(i64, i64),
     /// The value of another symbol.
     Same(SymbolId),
 }
@@ -83,7 +83,7 @@ pub(super) fn decide_local_where(
     for _ in 0..SAMPLES {
         let (sample, prime) = points
             .find(|point| {
-                fix(pool, point, conditions);
+                fix(pool, point, conditions)?;
                 sample(pool, problem, point).map(|sample| (sample, point.modulus().prime()))
             })
             .ok_or(Undecided::Degenerate)?;
@@ -130,15 +130,41 @@ pub(super) fn sample_points(
     SamplePoints::seeded(profile, nodes, seed).ok_or(Undecided::Denominators)
 }
 
-/// Sets the symbols of conditions.
-pub(super) fn fix(pool: &Pool, point: &mut ModularPoint, conditions: &Conditions) {
+/// Sets the symbols of conditions; `None` if the prime divides a denominator.
+fn fix(pool: &Pool, point: &mut ModularPoint, conditions: &Conditions) -> Option<()> {
+    let field = point.modulus();
     for (symbol, fixed) in conditions {
         let value = match fixed {
-            Fixed::Value(value) => point.modulus().integer(*value),
+            Fixed::Value(n, d) => field.mul(field.integer(*n), field.inv(field.integer(*d))?),
             Fixed::Same(other) => point.value(*other, pool.symbol_assumption(*other)),
         };
         point.set(*symbol, value);
     }
+    Some(())
+}
+
+/// Whether the demands are those of a function at the first regular point under conditions; `None` if `attempts` points
+/// are singular, or the hull is not closed within reach.
+pub(super) fn screen(
+    pool: &Pool,
+    problem: &Problem,
+    points: &mut SamplePoints,
+    attempts: usize,
+    conditions: &Conditions,
+) -> Option<bool> {
+    let mut left = attempts;
+    points
+        .find(|point| {
+            left -= 1;
+            let found = fix(pool, point, conditions).and_then(|()| sample(pool, problem, point));
+            match found {
+                None if left > 0 => None,
+                other => Some(other),
+            }
+        })
+        .flatten()
+        .and_then(Result::ok)
+        .map(|(hull, _)| hull.rank == hull.extended_rank)
 }
 
 /// The hull at a point, with series of increasing order until it is closed, and the dependent velocities; or the depth

@@ -39,6 +39,12 @@ pub(super) struct Frame<A: Arithmetic> {
     pub(super) theta: Vec<Series<A>>,
 }
 
+/// `tau` and the N components of `sigma`.
+struct Dissipation<A: Arithmetic> {
+    rest: Series<A>,
+    slope: Vec<Series<A>>,
+}
+
 /// What the expressions of a problem are at a point.
 struct Expanded<A: Arithmetic> {
     metric: Matrix<A>,
@@ -89,14 +95,12 @@ pub(super) fn frame<P: ExpansionPoint>(
     let friction = geometry.friction()?;
     if problem.has_drift(pool) {
         let drift = calculus.drift(&solved.unknowns, &dependent);
-        demands.push(geometry.drift_demand(drift, &theta, friction.as_ref()));
+        demands.push(geometry.drift_demand(drift, &theta, &friction));
     }
     for i in (0..problem.coordinates).filter(|i| !dependent.contains(i)) {
         let field = calculus.field(i, &solved.unknowns, &dependent);
-        let mut demand = dot(jets, &theta, &field[..problem.coordinates]);
-        if let Some((_, slope)) = &friction {
-            demand = jets.sub(&demand, &dot(jets, slope, &field[..problem.coordinates]));
-        }
+        let along = |form: &[Series<P::Field>]| dot(jets, form, &field[..problem.coordinates]);
+        let demand = jets.sub(&along(&theta), &along(&friction.slope));
         demands.push(extended::<P::Field>(field, demand));
     }
     Some(Frame {
@@ -314,7 +318,7 @@ impl<A: Arithmetic> Geometry<'_, '_, A> {
         &self,
         drift: Vec<Series<A>>,
         theta: &[Series<A>],
-        friction: Option<&(Series<A>, Vec<Series<A>>)>,
+        friction: &Dissipation<A>,
     ) -> Demand<A> {
         let jets = &self.calculus.jets.lower();
         let n = self.calculus.problem.coordinates;
@@ -325,10 +329,8 @@ impl<A: Arithmetic> Geometry<'_, '_, A> {
                 demand = jets.add(&demand, &jets.mul(inverse, &rate));
             }
         }
-        if let Some((rest, slope)) = friction {
-            demand = jets.sub(&demand, rest);
-            demand = jets.sub(&demand, &dot(jets, slope, &drift[..n]));
-        }
+        demand = jets.sub(&demand, &friction.rest);
+        demand = jets.sub(&demand, &dot(jets, &friction.slope, &drift[..n]));
         extended::<A>(drift, demand)
     }
 
@@ -353,17 +355,16 @@ impl<A: Arithmetic> Geometry<'_, '_, A> {
         rate
     }
 
-    /// `tau` and `sigma`; `None` inside if no force depends on velocities.
-    #[expect(
-        clippy::option_option,
-        reason = "a singular metric is not the absence of forces"
-    )]
-    fn friction(&self) -> Option<Option<(Series<A>, Vec<Series<A>>)>> {
+    /// `tau` and `sigma`, 0 if no force depends on velocities; `None` if the metric is singular.
+    fn friction(&self) -> Option<Dissipation<A>> {
+        let n = self.calculus.problem.coordinates;
         let Some((at_rest, slope)) = &self.expanded.friction else {
-            return Some(None);
+            return Some(Dissipation {
+                rest: Vec::new(),
+                slope: vec![Vec::new(); n],
+            });
         };
         let jets = &self.calculus.jets;
-        let n = self.calculus.problem.coordinates;
         let cometric = solve(jets, self.expanded.metric.clone(), identity(jets, n))?.unknowns;
         let mut projected = cometric;
         for (a, dual) in self.duals.iter().enumerate() {
@@ -389,6 +390,6 @@ impl<A: Arithmetic> Geometry<'_, '_, A> {
         let slope = (0..n)
             .map(|k| trace(&|i, j| slope[i][j][k].clone()))
             .collect();
-        Some(Some((rest, slope)))
+        Some(Dissipation { rest, slope })
     }
 }

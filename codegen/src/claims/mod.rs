@@ -7,7 +7,8 @@
 //! | `exactness.rs` | does a local density exist? |
 //! | `potential.rs`, `global.rs` | the density in closed form; is it single-valued? |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
-//! | `dynamics.rs` | the motion on D at a point |
+//! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
+//! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
 //! | `evidence.rs` | does something vanish at all states? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
@@ -18,6 +19,7 @@
 
 mod ansatz;
 mod closure;
+mod conditions;
 mod conserved;
 mod darboux;
 mod density;
@@ -25,14 +27,17 @@ pub mod dynamics;
 mod elimination;
 mod evidence;
 pub mod exactness;
+mod exceptional;
 mod existence;
 mod finding;
 mod frame;
+mod geometry;
 mod global;
 mod impact;
 mod linear;
 mod momentum;
 mod obstruction;
+mod polynomial;
 mod potential;
 pub mod problem;
 mod sample;
@@ -41,10 +46,12 @@ mod undecided;
 
 use dalembert_expr::{ExprId, Rational, SymbolId};
 
+pub use conditions::{Condition, Equation, Scan, find_conditions};
 pub use dynamics::{Dynamics, Motion};
 pub use exactness::{Exactness, Local, decide, decide_local};
 pub use existence::{Decision, potential_text};
 pub use finding::{Certificate, Finding, Verdict, Witness};
+pub use geometry::{Geometry, geometry_at};
 pub use global::Global;
 pub use momentum::{MomentumDensity, find_momentum_density};
 pub use obstruction::{Obstruction, find_obstruction};

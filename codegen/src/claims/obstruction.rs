@@ -1,9 +1,10 @@
 //! Why there is no density, in real numbers: a bracket that is a combination of others as a vector field, and the
 //! demand that is not.
 
-use dalembert_expr::{JetSpace, Jets, RealPoint, Reals};
+use dalembert_expr::{ExpansionPoint, JetSpace, Jets, Pool};
 
 use super::closure::{Hull, Origin, bracket};
+use super::dynamics::Number;
 use super::exactness::Local;
 use super::frame::{Demand, frame};
 use super::problem::Problem;
@@ -103,23 +104,23 @@ pub(super) fn obstruction_at(
 }
 
 /// Whether the first generator is the drift.
-fn drift(problem: &Problem, pool: &dalembert_expr::Pool) -> bool {
+fn drift(problem: &Problem, pool: &Pool) -> bool {
     problem.has_drift(pool)
 }
 
-/// The values of a hull's elements at a real point, the demand last.
-pub(super) fn elements_at(
-    pool: &dalembert_expr::Pool,
+/// The values of a hull's elements at a point, the demand last.
+pub(super) fn elements_at<P: ExpansionPoint>(
+    pool: &Pool,
     problem: &Problem,
     hull: &Hull,
     dependent: Option<&[usize]>,
-    point: &mut RealPoint,
-) -> Option<Vec<Vec<f64>>> {
+    point: &mut P,
+) -> Option<Vec<Vec<Number<P>>>> {
     let order = hull.growth.len();
     let space = JetSpace::new(problem.variables.len(), order, usize::MAX)?;
-    let jets = Jets::new(Reals, &space);
+    let jets = Jets::new(point.field(), &space);
     let frame = frame(pool, problem, &jets, point, dependent)?;
-    let mut elements: Vec<Demand<Reals>> = Vec::new();
+    let mut elements: Vec<Demand<P::Field>> = Vec::new();
     for origin in &hull.elements {
         let element = match origin {
             Origin::Generator(i) => frame.demands[*i].clone(),
@@ -133,7 +134,7 @@ pub(super) fn elements_at(
         };
         elements.push(element);
     }
-    let values = |element: &Demand<Reals>| element.iter().map(|own| jets.value(own)).collect();
+    let values = |element: &Demand<P::Field>| element.iter().map(|own| jets.value(own)).collect();
     Some(elements.iter().map(values).collect())
 }
 

@@ -77,6 +77,20 @@ impl Problem {
         problem
     }
 
+    /// The problem with parameters replaced.
+    pub(super) fn substituted(&self, pool: &mut Pool, replacements: &[(SymbolId, ExprId)]) -> Self {
+        let mut problem = self.clone();
+        let mut replace = |ids: &mut Vec<ExprId>| *ids = pool.substitute_all(ids, replacements);
+        problem.metric.iter_mut().for_each(&mut replace);
+        problem.forms.iter_mut().for_each(&mut replace);
+        replace(&mut problem.affine);
+        if let Some(friction) = &mut problem.friction {
+            friction.at_rest.iter_mut().for_each(&mut replace);
+            friction.slope.iter_mut().flatten().for_each(&mut replace);
+        }
+        problem
+    }
+
     /// Whether time occurs.
     pub(super) fn is_time_dependent(&self) -> bool {
         self.symbols.len() > self.coordinates

@@ -288,6 +288,17 @@ pub enum Statement {
     Symmetry(Vec<ExprId>),
 }
 
+impl Statement {
+    /// What it is about.
+    pub fn expressions(&self) -> &[ExprId] {
+        match self {
+            Self::Existence(_) => &[],
+            Self::Density(value) | Self::Conserved { value, .. } => std::slice::from_ref(value),
+            Self::Symmetry(field) => field,
+        }
+    }
+}
+
 /// Symbols that stand for derived quantities where outputs and claims name them.
 #[derive(Debug)]
 pub struct DerivedSymbols {

@@ -106,7 +106,7 @@ impl Range {
                     low: 1.0 / inverse.high,
                     high: 1.0 / low,
                 },
-                Self { low, high } if low == 0.0 => Self {
+                Self { low: 0.0, high } => Self {
                     low: 1.0 / high,
                     ..Self::ALL
                 },

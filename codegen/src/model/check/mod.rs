@@ -136,6 +136,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
         initial,
         view,
         outputs,
+        claims,
     } = parts;
     let mut used: Vec<ExprId> = vec![lagrangian.whole];
     for constraint in constraints {
@@ -161,6 +162,12 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
             .flatten(),
     );
     used.extend(outputs.iter().map(|output| output.value));
+    used.extend(
+        claims
+            .iter()
+            .flat_map(|own| own.statement.expressions())
+            .copied(),
+    );
     used.extend(
         view.iter()
             .flat_map(|view| view.path.iter().copied().chain(view.region)),

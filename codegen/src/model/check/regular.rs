@@ -85,7 +85,7 @@ enum Fault {
 fn polynomial_fault(resolver: &Resolver<'_>, gap: ExprId) -> Option<Fault> {
     let pool = &resolver.pool;
     let degree = degree_bound(pool, gap, &resolver.symbols.positions())?;
-    if degree < 2 || degree > LARGEST_DEGREE {
+    if !(2..=LARGEST_DEGREE).contains(&degree) {
         return None;
     }
     let symbols = pool.symbols(gap);

@@ -1,0 +1,358 @@
+//! Conditions on parameters under which a density exists that does not exist for indeterminate parameters.
+//!
+//! Tried are, within the declared assumptions: one parameter 0; two equal; two 0; one a small fraction, where the
+//! obstruction has a root or a pole; one 0 and two others equal. Every trial is the rank test of [`super::exactness`] with the
+//! parameters fixed; conditions at which the model is degenerate, and those that imply a simpler one that was found, are
+//! left out. There may be others: the answer is about the conditions scanned.
+
+use dalembert_expr::{Rational, SamplePoints, SymbolId};
+
+use super::exactness::{Exactness, Fixed, decide, decide_local_where, sample_points, screen};
+use super::exceptional::exceptional_values;
+use super::global::Global;
+use super::problem::Problem;
+use super::undecided::Undecided;
+use crate::model::{Assumption, Model, Parameter};
+
+/// A condition on parameters, which are named by their position.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Condition {
+    /// All of them hold.
+    pub equations: Vec<Equation>,
+    /// Whether the density then exists on all of Q, not only locally.
+    pub is_global: bool,
+}
+
+/// An equation between parameters.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Equation {
+    /// The parameter is a number.
+    Value(usize, Rational),
+    /// Both parameters are equal.
+    Equal(usize, usize),
+}
+
+/// What a scan found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Scan {
+    /// Conditions under which a density exists, simple ones first.
+    pub found: Vec<Condition>,
+    /// Rank tests and values of obstructions that were computed.
+    pub trials: usize,
+    /// Whether all conditions were tried; else the scan was cut off.
+    pub is_complete: bool,
+}
+
+/// Trials of a scan at most, and at least.
+const TRIALS: (usize, usize) = (16, 400);
+/// Products of coefficients that a scan may take: a second without optimisation.
+const WORK: f64 = 1.5e8;
+/// Trials of a scan for a density on all of Q, each of which looks for the density.
+const GLOBAL_TRIALS: usize = 48;
+/// Singular points after which a model counts as degenerate; more where half of the points have no roots.
+const ATTEMPTS: (usize, usize) = (4, 128);
+
+/// The conditions under which a density exists, for a model without one: locally, or on all of Q if there is one
+/// locally.
+///
+/// # Errors
+/// [`Undecided`], if no points can be had.
+pub fn find_conditions(
+    model: &mut Model,
+    problem: &Problem,
+    exactness: &Exactness,
+    seed: u64,
+) -> Result<Scan, Undecided> {
+    let mut scan = Scan {
+        found: Vec::new(),
+        trials: 0,
+        is_complete: true,
+    };
+    let is_local = exactness.local.exists;
+    if is_local && !matches!(exactness.global, Some(Global::Many { .. })) {
+        return Ok(scan);
+    }
+    let roots = problem.roots();
+    let profile = model.pool.profile_of(&roots);
+    let limit = match is_local {
+        true => GLOBAL_TRIALS,
+        false => trials(problem, exactness.local.growth.len()),
+    };
+    let mut scanner = Scanner {
+        problem,
+        points: sample_points(&model.pool, &roots, &profile, seed)?,
+        attempts: if profile.branches {
+            ATTEMPTS.1
+        } else {
+            ATTEMPTS.0
+        },
+        parameters: occurring(model, problem),
+        wants_global: is_local,
+        seed,
+        left: limit,
+    };
+    let is_complete = scanner.scan(model, exactness, &mut scan.found).is_some();
+    scan.is_complete = is_complete;
+    scan.trials = limit - scanner.left;
+    Ok(scan)
+}
+
+impl Condition {
+    /// `I13 = 0 and I23 = 0`
+    pub fn text(&self, model: &Model) -> String {
+        let name = |position: &usize| &model.parameters[*position].name.display;
+        let equation = |own: &Equation| match own {
+            Equation::Value(p, value) => format!("{} = {value}", name(p)),
+            Equation::Equal(p, q) => format!("{} = {}", name(p), name(q)),
+        };
+        let equations: Vec<String> = self.equations.iter().map(equation).collect();
+        equations.join(" and ")
+    }
+}
+
+impl Scan {
+    /// `a = 0, among the conditions scanned`
+    pub fn text(&self, model: &Model) -> String {
+        let texts: Vec<String> = self
+            .found
+            .iter()
+            .map(|own| match own.is_global {
+                true => own.text(model),
+                false => format!("{} (locally)", own.text(model)),
+            })
+            .collect();
+        let found = match texts.is_empty() {
+            true => "none".to_owned(),
+            false => format!("{},", texts.join("; ")),
+        };
+        let cut = match self.is_complete {
+            true => String::new(),
+            false => format!(", a scan that was cut off after {} trials", self.trials),
+        };
+        format!("{found} among the conditions scanned{cut}")
+    }
+}
+
+/// How many trials are within reach: one takes series of the order of the hull's depth for the inverse metric and for a
+/// bracket of each generator with each element.
+fn trials(problem: &Problem, depth: usize) -> usize {
+    let (n, m) = (problem.coordinates as f64, problem.forms.len() as f64);
+    let products = n.powi(3) + 2.0 * n * (n - m) * (n + 1.0).powi(2);
+    // Pairs of monomials whose product is within the order: those of twice as many variables.
+    let variables = 2 * problem.variables.len();
+    let pairs: f64 = (1..=depth)
+        .map(|k| (variables + k) as f64 / k as f64)
+        .product();
+    ((WORK / (products * pairs)) as usize).clamp(TRIALS.0, TRIALS.1)
+}
+
+/// The positions of the parameters on which existence may depend.
+fn occurring(model: &Model, problem: &Problem) -> Vec<usize> {
+    let roots = problem.roots();
+    let occurs = |position: &usize| {
+        let symbol = model.parameters[*position].symbol;
+        roots.iter().any(|id| model.pool.depends_on(*id, symbol))
+    };
+    (0..model.parameters.len()).filter(occurs).collect()
+}
+
+struct Scanner<'s> {
+    problem: &'s Problem,
+    points: SamplePoints,
+    attempts: usize,
+    /// Positions.
+    parameters: Vec<usize>,
+    wants_global: bool,
+    seed: u64,
+    /// Trials that are left.
+    left: usize,
+}
+
+impl Scanner<'_> {
+    /// Tries everything; `None` if it was cut off.
+    fn scan(
+        &mut self,
+        model: &mut Model,
+        exactness: &Exactness,
+        found: &mut Vec<Condition>,
+    ) -> Option<()> {
+        let zeros = self.zeros();
+        let equals = self.equals();
+        for equation in zeros.iter().chain(&equals) {
+            self.try_condition(model, vec![equation.clone()], found)?;
+        }
+        if self.wants_global {
+            return Some(());
+        }
+        for (i, first) in zeros.iter().enumerate() {
+            for second in &zeros[i + 1..] {
+                self.try_condition(model, vec![first.clone(), second.clone()], found)?;
+            }
+        }
+        for position in self.parameters.clone() {
+            let symbol = model.parameters[position].symbol;
+            let (problem, local) = (self.problem, &exactness.local);
+            let (seed, left) = (self.seed, &mut self.left);
+            let values = exceptional_values(&model.pool, problem, local, symbol, seed, left)?;
+            for value in values.into_iter().filter(|value| !value.is_zero()) {
+                self.try_condition(model, vec![Equation::Value(position, value)], found)?;
+            }
+        }
+        for first in &zeros {
+            for second in &equals {
+                self.try_condition(model, vec![first.clone(), second.clone()], found)?;
+            }
+        }
+        Some(())
+    }
+
+    fn zeros(&self) -> Vec<Equation> {
+        let zero = |position: &usize| Equation::Value(*position, Rational::ZERO);
+        self.parameters.iter().map(zero).collect()
+    }
+
+    fn equals(&self) -> Vec<Equation> {
+        let mut equals = Vec::new();
+        for (i, p) in self.parameters.iter().enumerate() {
+            for q in &self.parameters[i + 1..] {
+                equals.push(Equation::Equal(*p, *q));
+            }
+        }
+        equals
+    }
+
+    /// Adds a condition to those found if a density exists under it; `None` if no trial is left.
+    fn try_condition(
+        &mut self,
+        model: &mut Model,
+        equations: Vec<Equation>,
+        found: &mut Vec<Condition>,
+    ) -> Option<()> {
+        let is_known = found.iter().any(|own| implies(&equations, &own.equations));
+        if is_known || !is_admitted(&model.parameters, &equations) {
+            return Some(());
+        }
+        self.left = self.left.checked_sub(1)?;
+        let fixed: Vec<_> = equations.iter().map(|own| fixed(model, own)).collect();
+        let (pool, problem) = (&model.pool, self.problem);
+        let screened = screen(pool, problem, &mut self.points, self.attempts, &fixed);
+        if screened != Some(true) {
+            return Some(());
+        }
+        let local = decide_local_where(pool, problem, self.seed, &fixed);
+        if !local.is_ok_and(|own| own.exists) {
+            return Some(());
+        }
+        let is_global = self.is_global(model, &equations);
+        if is_global || !self.wants_global {
+            found.push(Condition {
+                equations,
+                is_global,
+            });
+        }
+        Some(())
+    }
+
+    /// Whether the density exists on all of Q under a condition.
+    fn is_global(&self, model: &mut Model, equations: &[Equation]) -> bool {
+        let mut replacements = Vec::new();
+        for equation in equations {
+            let (position, replacement) = match equation {
+                Equation::Value(p, value) => (*p, model.pool.number(value.clone())),
+                Equation::Equal(p, q) => (*p, model.pool.variable(model.parameters[*q].symbol)),
+            };
+            replacements.push((model.parameters[position].symbol, replacement));
+        }
+        let problem = self.problem.substituted(&mut model.pool, &replacements);
+        let exactness = decide(model, &problem, self.seed);
+        exactness.is_ok_and(|own| own.global == Some(Global::Exists))
+    }
+}
+
+fn fixed(model: &Model, equation: &Equation) -> (SymbolId, Fixed) {
+    let symbol = |position: usize| model.parameters[position].symbol;
+    match equation {
+        Equation::Value(p, value) => {
+            let (n, d) = value.to_small().unwrap_or((0, 1));
+            (symbol(*p), Fixed::Value(n, d))
+        }
+        Equation::Equal(p, q) => (symbol(*p), Fixed::Same(symbol(*q))),
+    }
+}
+
+/// Whether `known` follows from `equations`.
+fn implies(equations: &[Equation], known: &[Equation]) -> bool {
+    let value = |position: usize| {
+        equations.iter().find_map(|own| match own {
+            Equation::Value(p, value) if *p == position => Some(value),
+            _ => None,
+        })
+    };
+    known.iter().all(|own| {
+        equations.contains(own)
+            || matches!(own, Equation::Equal(p, q) if value(*p).is_some() && value(*p) == value(*q))
+    })
+}
+
+/// Whether the declared assumptions allow the equations.
+fn is_admitted(parameters: &[Parameter], equations: &[Equation]) -> bool {
+    let mut fixed = Vec::new();
+    equations.iter().all(|own| match own {
+        Equation::Value(p, value) => {
+            fixed.push(*p);
+            Range::of(&parameters[*p].assumption).contains(value)
+        }
+        // What was fixed before is not asked about once more.
+        Equation::Equal(p, q) if fixed.contains(p) || fixed.contains(q) => false,
+        Equation::Equal(p, q) => {
+            let [p, q] = [p, q].map(|own| Range::of(&parameters[*own].assumption));
+            p.meets(&q)
+        }
+    })
+}
+
+/// The values that an assumption admits.
+struct Range {
+    low: Option<Rational>,
+    high: Option<Rational>,
+    without_zero: bool,
+}
+
+impl Range {
+    fn of(assumption: &Assumption) -> Self {
+        let (low, high) = match assumption {
+            Assumption::Finite | Assumption::NonZero => (None, None),
+            Assumption::Positive | Assumption::NonNegative => (Some(Rational::ZERO), None),
+            Assumption::Within { low, high } => (Some(low.clone()), Some(high.clone())),
+        };
+        let without_zero = matches!(assumption, Assumption::Positive | Assumption::NonZero);
+        Self {
+            low,
+            high,
+            without_zero,
+        }
+    }
+
+    fn contains(&self, value: &Rational) -> bool {
+        self.low.as_ref().is_none_or(|low| low <= value)
+            && self.high.as_ref().is_none_or(|high| value <= high)
+            && !(self.without_zero && value.is_zero())
+    }
+
+    /// Whether some value is in both.
+    fn meets(&self, other: &Self) -> bool {
+        let both = Self {
+            low: self.low.clone().max(other.low.clone()),
+            high: match (&self.high, &other.high) {
+                (Some(a), Some(b)) => Some(a.min(b).clone()),
+                (a, b) => a.clone().or(b.clone()),
+            },
+            without_zero: self.without_zero || other.without_zero,
+        };
+        match (&both.low, &both.high) {
+            (Some(low), Some(high)) if low == high => both.contains(low),
+            (Some(low), Some(high)) => low < high,
+            _ => true,
+        }
+    }
+}

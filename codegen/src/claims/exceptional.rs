@@ -1,0 +1,144 @@
+//! Values of one parameter at which an obstruction may vanish: rational roots and poles of delta.
+//!
+//! At a point modulo a prime, all other parameters frozen, delta (see [`super::obstruction`]) is a rational function of
+//! the parameter, known from a few of its values. A root or a pole that is a small fraction is no accident of a random
+//! point; yet it is only a candidate: other obstructions may be left, or the model degenerate there.
+
+use dalembert_expr::{ExprId, ModularPoint, Node, Pool, Rational, SymbolId};
+
+use super::elimination::first_relation;
+use super::exactness::{Local, sample_points};
+use super::obstruction::elements_at;
+use super::polynomial::{Polynomial, rational_function, roots};
+use super::potential::reconstruct;
+use super::problem::Problem;
+
+/// Values of delta after which its degrees are looked for, one after the other.
+const VALUES: [usize; 4] = [8, 16, 32, 48];
+/// Values beyond the number of coefficients.
+const SURPLUS: usize = 2;
+
+/// The small fractions at which delta has a root or a pole as a function of `parameter`; none if delta is no rational
+/// function of it, or of too high a degree. `trials` is how many values may be computed, and what is left of them;
+/// `None` if they did not suffice.
+pub(super) fn exceptional_values(
+    pool: &Pool,
+    problem: &Problem,
+    local: &Local,
+    parameter: SymbolId,
+    seed: u64,
+    trials: &mut usize,
+) -> Option<Vec<Rational>> {
+    let Some(obstruction) = local.hull.obstruction else {
+        return Some(Vec::new());
+    };
+    let column = Column {
+        pool,
+        problem,
+        local,
+        obstruction,
+        parameter,
+    };
+    let Some((base, first)) = column.base(seed).filter(|_| column.is_rational()) else {
+        return Some(Vec::new());
+    };
+    let Some(functions) = column.functions(&base, first, trials)? else {
+        return Some(Vec::new());
+    };
+    let field = base.modulus();
+    let roots = functions.iter().flat_map(|own| roots(field, own));
+    let mut found: Vec<_> = roots.filter_map(|root| reconstruct(field, root)).collect();
+    found.sort();
+    found.dedup();
+    Some(found)
+}
+
+/// Delta as a function of one parameter.
+struct Column<'c> {
+    pool: &'c Pool,
+    problem: &'c Problem,
+    local: &'c Local,
+    obstruction: usize,
+    parameter: SymbolId,
+}
+
+impl Column<'_> {
+    /// Whether the parameter occurs outside of roots and functions only.
+    fn is_rational(&self) -> bool {
+        let depends = |id: ExprId| self.pool.depends_on(id, self.parameter);
+        let order = self.pool.reachable(&self.problem.roots());
+        order.into_iter().all(|id| match self.pool.node(id) {
+            Node::Call(_, argument) => !depends(*argument),
+            Node::Atan2(y, x) => !depends(*y) && !depends(*x),
+            Node::Product(factors) => factors
+                .iter()
+                .all(|(base, exponent)| exponent.is_integer() || !depends(*base)),
+            _ => true,
+        })
+    }
+
+    /// A point where delta has a value, and the value.
+    fn base(&self, seed: u64) -> Option<(ModularPoint, u64)> {
+        let roots = self.problem.roots();
+        let profile = self.pool.profile_of(&roots);
+        let mut points = sample_points(self.pool, &roots, &profile, seed).ok()?;
+        points.find(|point| {
+            let delta = self.delta(&mut point.clone())?;
+            Some((point.clone(), delta))
+        })
+    }
+
+    /// Numerator and denominator of delta, if there are any of low degree; `None` if `trials` do not suffice.
+    #[expect(
+        clippy::option_option,
+        reason = "no function of low degree is not the end of the trials"
+    )]
+    fn functions(
+        &self,
+        base: &ModularPoint,
+        first: u64,
+        trials: &mut usize,
+    ) -> Option<Option<[Polynomial; 2]>> {
+        let field = base.modulus();
+        let assumption = self.pool.symbol_assumption(self.parameter);
+        let mut x = base.value(self.parameter, assumption);
+        let mut values = vec![(x, first)];
+        for count in VALUES {
+            while values.len() < count {
+                *trials = trials.checked_sub(1)?;
+                x = field.add(x, 1);
+                let mut point = base.clone();
+                point.set(self.parameter, x);
+                values.extend(self.delta(&mut point).map(|delta| (x, delta)));
+            }
+            if let Some((above, below)) = rational_function(field, &values, SURPLUS) {
+                return Some(Some([above, below]));
+            }
+        }
+        Some(None)
+    }
+
+    /// What the obstructing element demands less what the combination of others demands that is the same vector field.
+    fn delta(&self, point: &mut ModularPoint) -> Option<u64> {
+        let field = point.modulus();
+        let hull = &self.local.hull;
+        let dependent = Some(self.local.dependent.as_slice());
+        let elements = elements_at(self.pool, self.problem, hull, dependent, point)?;
+        let before = hull.basis.iter().filter(|own| **own < self.obstruction);
+        let columns: Vec<usize> = before.copied().chain([self.obstruction]).collect();
+        let width = self.problem.components();
+        let rows = (0..width)
+            .map(|i| columns.iter().map(|own| elements[*own][i]).collect())
+            .collect();
+        let relation = first_relation(field, rows)?;
+        // The others are independent here too.
+        if relation.last() != Some(&1) {
+            return None;
+        }
+        let mut delta = 0;
+        for (coefficient, element) in relation.iter().zip(&columns) {
+            delta = field.add(delta, field.mul(*coefficient, elements[*element][width]));
+        }
+        Some(delta)
+    }
+}
