@@ -10,6 +10,7 @@ use dalembert::{Described, Scene};
 use dalembert_codegen::{mechanics, model, program, spec, try_expand};
 use dalembert_models::{Chain2, Chain4, Chain8, Chain16};
 use dalembert_tests::sampling::{Visitor, visit_all};
+use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 /// Measurements are made one at a time: tests of one file run side by side.
 static ALONE: Mutex<()> = Mutex::new(());
@@ -31,12 +32,24 @@ fn expansion(source: &str) -> (Duration, usize) {
 
 /// The declaration without its claims.
 fn without_claims(source: &str) -> String {
-    let Some(start) = source.find("claims {") else {
-        return source.to_owned();
+    let tokens: TokenStream = source.parse().expect("tokens");
+    let TokenTree::Group(body) = tokens.clone().into_iter().last().expect("a body") else {
+        panic!("a declaration ends with its body");
     };
-    // Claims contain no braces.
-    let end = start + source[start..].find('}').expect("a section") + 1;
-    format!("{}{}", &source[..start], &source[end..])
+    let mut kept = Vec::new();
+    let mut entries = body.stream().into_iter();
+    while let Some(token) = entries.next() {
+        if matches!(&token, TokenTree::Ident(word) if word == "claims") {
+            entries.next();
+        } else {
+            kept.push(token);
+        }
+    }
+    let body = Group::new(Delimiter::Brace, kept.into_iter().collect());
+    let mut all: Vec<TokenTree> = tokens.into_iter().collect();
+    all.pop();
+    all.push(body.into());
+    all.into_iter().collect::<TokenStream>().to_string()
 }
 
 struct Timed;

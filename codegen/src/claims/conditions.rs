@@ -121,15 +121,7 @@ impl Scan {
                 false => format!("{} (locally)", own.text(model)),
             })
             .collect();
-        let found = match texts.is_empty() {
-            true => "none".to_owned(),
-            false => format!("{},", texts.join("; ")),
-        };
-        let cut = match self.is_complete {
-            true => String::new(),
-            false => format!(", a scan that was cut off after {} trials", self.trials),
-        };
-        format!("{found} among the conditions scanned{cut}")
+        format!("{}, among the conditions scanned", texts.join("; "))
     }
 }
 

@@ -94,17 +94,25 @@ impl Finding {
         note
     }
 
+    /// The remarks, each on a line of its own.
+    fn lines(&self) -> String {
+        self.remarks
+            .iter()
+            .map(|remark| format!("\n{remark}"))
+            .collect()
+    }
+
     /// The message of a claim that is not accepted, and its help.
     pub fn refusal(&self) -> Option<(String, String)> {
         match &self.verdict {
             _ if self.is_accepted() => None,
             Verdict::Proved(_) => None,
             Verdict::Refuted(witness) => {
-                let text = format!("`{}` is refuted: {witness}", self.claim);
+                let text = format!("`{}` is refuted: {witness}{}", self.claim, self.lines());
                 Some((text, witness.help.clone()))
             }
             Verdict::Undecided(reason) => {
-                let text = format!("`{}` is undecided: {reason}", self.claim);
+                let text = format!("`{}` is undecided: {reason}{}", self.claim, self.lines());
                 let help = format!("write `assume {};` to go on without a proof", self.claim);
                 Some((text, help))
             }

@@ -8,6 +8,7 @@
 //! | `potential.rs`, `global.rs` | the density in closed form; is it single-valued? |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
+//! | `alternatives.rs` | both of these in words |
 //! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
 //! | `evidence.rs` | does something vanish at all states? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
@@ -17,6 +18,7 @@
 //! Decisions are taken modulo 61-bit primes at random points; values in double precision are for witnesses, and where
 //! residues alone do not decide.
 
+mod alternatives;
 mod ansatz;
 mod closure;
 mod conditions;
@@ -106,8 +108,8 @@ impl Examiner<'_> {
                     *existence,
                     self.seed,
                 );
-                if decision.as_ref().is_ok_and(|own| own.global.is_some()) {
-                    remarks = impact::volume_remarks(self.model, self.derivation);
+                if let Ok(exactness) = &decision {
+                    remarks = self.volume_remarks(exactness);
                 }
                 self.decision = Some(decision);
                 verdict
@@ -158,6 +160,21 @@ impl Examiner<'_> {
             verdict,
             remarks,
         }
+    }
+
+    /// What impacts do to the volume where there is one, and what there is instead where there is none.
+    fn volume_remarks(&mut self, exactness: &Exactness) -> Vec<String> {
+        let mut remarks = alternatives::alternatives(
+            self.model,
+            self.derivation,
+            &self.problem,
+            exactness,
+            self.seed,
+        );
+        if exactness.global.is_some() {
+            remarks.extend(impact::volume_remarks(self.model, self.derivation));
+        }
+        remarks
     }
 
     /// The expression with energy and momenta written out.

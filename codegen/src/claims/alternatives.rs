@@ -1,0 +1,87 @@
+//! What there is instead where no density of the configuration exists on all of Q: conditions on the parameters, and
+//! densities that depend on velocities.
+
+use super::conditions::{Scan, find_conditions};
+use super::exactness::Exactness;
+use super::global::Global;
+use super::momentum::{MomentumDensity, find_momentum_density};
+use super::problem::Problem;
+use crate::mechanics::Derivation;
+use crate::model::Model;
+
+/// Remarks on a model without a density on all of Q; none on others.
+pub(super) fn alternatives(
+    model: &mut Model,
+    derivation: &Derivation,
+    problem: &Problem,
+    exactness: &Exactness,
+    seed: u64,
+) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if matches!(
+        exactness.global,
+        Some(Global::Exists | Global::Undecided(_))
+    ) {
+        return remarks;
+    }
+    if let Ok(scan) = find_conditions(model, problem, exactness, seed) {
+        remarks.extend(conditions(model, &scan));
+    }
+    if !exactness.local.exists {
+        remarks.push(near_rest(model, problem));
+    }
+    let singular = find_momentum_density(model, derivation, problem, exactness, seed);
+    if let Ok(Some(found)) = singular {
+        remarks.push(singular_density(model, &found));
+    }
+    remarks
+}
+
+/// What the scan found; nothing if there was nothing to scan.
+fn conditions(model: &Model, scan: &Scan) -> Option<String> {
+    let cut = match scan.is_complete {
+        true => String::new(),
+        false => format!("; the scan was cut off after {} trials", scan.trials),
+    };
+    match scan.found.is_empty() {
+        true if scan.trials == 0 => None,
+        true => Some(format!(
+            "none of the conditions on parameters that were scanned gives a density{cut}"
+        )),
+        false => Some(format!("a density exists where {}{cut}", scan.text(model))),
+    }
+}
+
+/// What the absence of a density of `q` says of densities of `q` and `qdot`.
+///
+/// Without potential, other forces and drift, `X(f) = -f div X` has at `qdot = 0` a part that is linear in the
+/// velocities: `f(q, 0)` would be a density of `q`.
+fn near_rest(model: &Model, problem: &Problem) -> String {
+    let pool = &model.pool;
+    let potential = model.lagrangian.potential;
+    let is_free = !problem.has_drift(pool)
+        && model.forces.is_empty()
+        && model
+            .coordinates
+            .iter()
+            .all(|own| !pool.depends_on(potential, own.q))
+        && model
+            .lagrangian
+            .linear
+            .iter()
+            .all(|id| pool.is_syntactic_zero(*id));
+    match is_free {
+        true => "only inertia moves the system: no positive density that is C^1 near rest depends on velocities either",
+        false => "nothing is said of smooth densities that depend on velocities: more than inertia moves the system",
+    }
+    .to_owned()
+}
+
+fn singular_density(model: &Model, found: &MomentumDensity) -> String {
+    let (text, factor) = (found.text(&model.pool), model.pool.text(found.factor));
+    let what = match found.exponent.is_negative() {
+        true => "is singular",
+        false => "is 0",
+    };
+    format!("{text}*mu_C is invariant; it {what} where {factor} = 0, which may attract the motion")
+}
