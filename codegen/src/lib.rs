@@ -35,14 +35,30 @@ pub fn expand(input: TokenStream) -> TokenStream {
 /// # Errors
 /// Every mistake of the first stage that found any.
 pub fn try_expand(input: TokenStream) -> Result<TokenStream, diagnostics::Diagnostics> {
-    let (model, program) = compile(input)?;
-    Ok(emit::tokens(&model, &program))
+    let mut compiled = compile(input)?;
+    let findings = compiled.findings.iter().map(claims::Finding::note);
+    compiled.model.notes.extend(findings);
+    Ok(emit::tokens(&compiled.model, &compiled.program))
+}
+
+/// A model after all stages but the last.
+#[derive(Debug)]
+pub struct Compiled {
+    /// What was declared.
+    pub model: model::Model,
+    /// What follows from it.
+    pub derivation: mechanics::Derivation,
+    /// The verdicts on its claims, in order; all of them accepted.
+    pub findings: Vec<claims::Finding>,
+    /// What is emitted.
+    pub program: program::Program,
 }
 
 /// All stages but the last.
-fn compile(
-    input: TokenStream,
-) -> Result<(model::Model, program::Program), diagnostics::Diagnostics> {
+///
+/// # Errors
+/// As [`try_expand`].
+pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics> {
     let spec = spec::parse(input)?;
     let mut model = model::check(&spec)?;
     let derivation = mechanics::derive(&mut model);
@@ -50,10 +66,12 @@ fn compile(
     refuse_claims(&spec, &findings)?;
     let program = program::lower(&model, &derivation);
     refuse_oversize(&spec, &program)?;
-    model
-        .notes
-        .extend(findings.iter().map(claims::Finding::note));
-    Ok((model, program))
+    Ok(Compiled {
+        model,
+        derivation,
+        findings,
+        program,
+    })
 }
 
 /// Refuses claims that are false, and those that stay open without being assumed.

@@ -8,14 +8,15 @@ use std::fmt;
 use dalembert_expr::ExprId;
 use proc_macro2::{LexError, TokenStream};
 
+use crate::claims::Finding;
 use crate::diagnostics::Diagnostics;
-use crate::mechanics::{self, Derivation};
+use crate::mechanics::Derivation;
 use crate::model::{self, Model, Topology};
-use crate::program::{self, Cost, Program};
-use crate::spec;
+use crate::program::{Cost, Program};
+use crate::{Compiled, compile};
 
 /// A derivation in words and formulas.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// The model's name in snake case.
     pub name: String,
@@ -23,6 +24,8 @@ pub struct Report {
     pub documentation: String,
     /// The parts, in the order of the derivation.
     pub sections: Vec<Section>,
+    /// The verdicts on its claims, in order.
+    pub findings: Vec<Finding>,
 }
 
 /// A part of a report.
@@ -106,10 +109,12 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
     let tokens: TokenStream = source
         .parse()
         .map_err(|error: LexError| ReportError::Tokens(error.to_string()))?;
-    let spec = spec::parse(tokens).map_err(ReportError::Declaration)?;
-    let mut model = model::check(&spec).map_err(ReportError::Declaration)?;
-    let derivation = mechanics::derive(&mut model);
-    let program = program::lower(&model, &derivation);
+    let Compiled {
+        mut model,
+        derivation,
+        findings,
+        program,
+    } = compile(tokens).map_err(ReportError::Declaration)?;
     let mut writer = Writer {
         model: &mut model,
         derivation: &derivation,
@@ -122,6 +127,7 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
         writer.surfaces(),
         writer.declared_outputs(),
     ];
+    sections.push(claims(&findings));
     sections.push(work(&model, &program));
     sections.push(notes(&model));
     sections.retain(|section| !section.items.is_empty());
@@ -134,6 +140,7 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
             .collect::<Vec<_>>()
             .join("\n"),
         sections,
+        findings,
     })
 }
 
@@ -410,6 +417,12 @@ fn work(model: &Model, program: &Program) -> Section {
         }
     }
     Section::plain("Work of the emitted functions", items)
+}
+
+/// The verdicts on what is claimed.
+fn claims(findings: &[Finding]) -> Section {
+    let items = findings.iter().map(|own| Item::Words(own.note())).collect();
+    Section::plain("Claims", items)
 }
 
 fn notes(model: &Model) -> Section {

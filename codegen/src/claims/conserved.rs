@@ -88,8 +88,8 @@ pub(super) fn rate_scale(
     quantity: &Quantity,
     model: &Model,
     motion: &Motion<f64>,
-    point: &mut RealPoint,
-) -> Option<f64> {
+    point: &RealPoint,
+) -> f64 {
     let largest = |values: &[f64]| {
         values
             .iter()
@@ -98,13 +98,21 @@ pub(super) fn rate_scale(
     let velocity = largest(&motion.qdot);
     let acceleration = largest(&motion.qddot).max(velocity * velocity);
     let n = motion.qdot.len();
-    let level = Motion {
-        qdot: vec![velocity; n],
-        qddot: vec![acceleration; n],
-        multipliers: Vec::new(),
+    let rate = |i: usize| match i {
+        i if i < n => velocity,
+        i if i < 2 * n => acceleration,
+        _ => 1.0,
     };
-    let (_, terms) = quantity.terms(model, &level, point)?;
-    Some(terms.iter().map(|term| term.abs()).sum())
+    let slopes = quantity.slopes.iter().enumerate();
+    slopes
+        .map(|(i, slope)| rate(i) * magnitude(model, point, *slope))
+        .sum()
+}
+
+/// The size of what an expression adds up at a point.
+pub(super) fn magnitude(model: &Model, point: &RealPoint, id: ExprId) -> f64 {
+    let (_, magnitude) = model.pool.eval_magnitude(id, &|symbol| point.value(symbol));
+    magnitude
 }
 
 /// The rate of a quantity.
@@ -138,7 +146,7 @@ impl Vanishing for Rate<'_> {
 
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
         let motion = self.dynamics.motion(&model.pool, point, None)?;
-        rate_scale(&self.quantity, model, &motion, point)
+        Some(rate_scale(&self.quantity, model, &motion, point))
     }
 
     fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {

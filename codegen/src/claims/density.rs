@@ -103,7 +103,7 @@ impl Vanishing for Balance<'_> {
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
         let motion = self.dynamics.motion(&model.pool, point, None)?;
         let (value, _) = self.quantity.terms(model, &motion, point)?;
-        let rate = rate_scale(&self.quantity, model, &motion, point)? / value.abs();
+        let rate = rate_scale(&self.quantity, model, &motion, point) / value.abs();
         // The divergence is a combination of velocities whose coefficients have cancelled before.
         let velocity = motion.qdot.iter().map(|own| own.abs()).sum::<f64>();
         Some(rate + velocity)

@@ -79,14 +79,18 @@ impl Finding {
         }
     }
 
-    /// The finding as a remark in the documentation of the model.
-    pub fn note(&self) -> String {
-        let reason = match &self.verdict {
+    /// Why: the certificate, the witness or the reason, in words.
+    pub fn grounds(&self) -> String {
+        match &self.verdict {
             Verdict::Proved(certificate) => certificate.to_string(),
             Verdict::Refuted(witness) => witness.to_string(),
             Verdict::Undecided(reason) => reason.clone(),
-        };
-        let mut note = format!("`{}` is {}: {reason}", self.claim, self.word());
+        }
+    }
+
+    /// The finding as a remark in the documentation of the model.
+    pub fn note(&self) -> String {
+        let mut note = format!("`{}` is {}: {}", self.claim, self.word(), self.grounds());
         for remark in &self.remarks {
             note += "; ";
             note += remark;

@@ -12,6 +12,7 @@
 //! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
 //! | `evidence.rs` | does something vanish at all states? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
+//! | `wall.rs`, `hybrid.rs` | the map of an impact; what it does to a volume |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
 //! | `finding.rs`, `undecided.rs` | verdicts in words |
 //!
@@ -35,6 +36,7 @@ mod finding;
 mod frame;
 mod geometry;
 mod global;
+mod hybrid;
 mod impact;
 mod linear;
 mod momentum;
@@ -45,6 +47,7 @@ pub mod problem;
 mod sample;
 mod symmetry;
 mod undecided;
+mod wall;
 
 use dalembert_expr::{ExprId, Rational, SymbolId};
 
@@ -118,7 +121,13 @@ impl Examiner<'_> {
                 let value = self.explicit(*value);
                 let written = claim.text.trim_start_matches("density = ");
                 let (problem, dynamics) = (&self.problem, &self.dynamics);
-                density::check_density(self.model, problem, dynamics, (value, written), self.seed)
+                let stated = (value, written);
+                let verdict =
+                    density::check_density(self.model, problem, dynamics, stated, self.seed);
+                if matches!(verdict, Verdict::Proved(_)) {
+                    remarks = self.impacts(Some(stated));
+                }
+                verdict
             }
             Statement::Conserved {
                 value,
@@ -172,9 +181,15 @@ impl Examiner<'_> {
             self.seed,
         );
         if exactness.global.is_some() {
-            remarks.extend(impact::volume_remarks(self.model, self.derivation));
+            remarks.extend(self.impacts(None));
         }
         remarks
+    }
+
+    /// What impacts do to a volume.
+    fn impacts(&mut self, stated: Option<(ExprId, &str)>) -> Vec<String> {
+        let (derivation, dynamics) = (self.derivation, &self.dynamics);
+        hybrid::volume_remarks(self.model, derivation, dynamics, stated, self.seed)
     }
 
     /// The expression with energy and momenta written out.

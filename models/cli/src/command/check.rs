@@ -1,9 +1,10 @@
-//! `check`: what a model declares, and whether its defaults and its initial state hold up.
+//! `check`: what a model declares, what became of its claims, and whether its defaults and its initial state hold up.
 
 use std::io::Write;
 
 use dalembert::describe::{Description, Report, Topology};
-use dalembert_codegen::report::{Item, Section, report};
+use dalembert_codegen::claims::{Finding, Verdict};
+use dalembert_codegen::report::{self, Item, Section};
 use serde_json::{Value, json};
 
 use crate::args::{CheckArgs, Format, OffConstraint};
@@ -15,9 +16,16 @@ use crate::names;
 use crate::state_input::{find_model, named_state};
 
 /// One thing that was looked at: what, and what is wrong with it.
-struct Finding {
+struct Check {
     subject: &'static str,
     failure: Option<String>,
+}
+
+/// Everything that was looked at.
+struct Examined {
+    checks: Vec<Check>,
+    claims: Vec<Finding>,
+    notes: Vec<String>,
 }
 
 /// Carries out `check`.
@@ -26,31 +34,46 @@ struct Finding {
 /// An unknown model, or an output that fails.
 pub fn run(models: &[Entry], args: &CheckArgs, output: &mut dyn Write) -> Result<Exit, CliError> {
     let model = find_model(models, &args.model)?.with_defaults(0);
-    let findings = findings(model.as_ref());
-    let notes = notes(model.as_ref());
-    match args.format {
-        Format::Text => write_text(output, model.as_ref(), &findings, &notes)?,
-        Format::Json => write_json(output, model.as_ref(), &findings, &notes)?,
+    let model = model.as_ref();
+    let mut checks = checks(model);
+    // A system that is written by hand has no declaration, and no claims.
+    let source = Some(model.description().source).filter(|source| !source.is_empty());
+    let derived = source.map(report::report).transpose();
+    if source.is_some() {
+        checks.push(Check {
+            subject: "the declaration can be derived again, its claims included",
+            failure: derived.as_ref().err().map(ToString::to_string),
+        });
     }
-    let passed = findings.iter().all(|finding| finding.failure.is_none());
+    let derived = derived.ok().flatten();
+    let examined = Examined {
+        checks,
+        notes: notes(model, derived.as_ref()),
+        claims: derived.map(|report| report.findings).unwrap_or_default(),
+    };
+    match args.format {
+        Format::Text => write_text(output, model, &examined)?,
+        Format::Json => write_json(output, model, &examined)?,
+    }
+    let passed = examined.checks.iter().all(|check| check.failure.is_none());
     Ok(if passed { Exit::Reached } else { Exit::Other })
 }
 
 /// Defaults against assumptions, then the initial state, as far as the defaults allow.
-fn findings(model: &dyn AnyModel) -> Vec<Finding> {
+fn checks(model: &dyn AnyModel) -> Vec<Check> {
     let description = model.description();
     let refused = defaults_against_assumptions(model);
-    let mut findings = vec![Finding {
+    let mut checks = vec![Check {
         subject: "declared defaults satisfy their assumptions",
         failure: refused,
     }];
     // Without a default there is nothing to form the initial state with.
     if model.check_parameters().is_err() {
-        return findings;
+        return checks;
     }
     let initial = named_state(model, &[], OffConstraint::Error);
     let failure = initial.as_ref().err().map(CliError::to_string);
-    findings.push(Finding {
+    checks.push(Check {
         subject: "the initial state is admissible",
         failure,
     });
@@ -59,12 +82,12 @@ fn findings(model: &dyn AnyModel) -> Vec<Finding> {
         let failure = inspected
             .err()
             .map(|fault| fault_text(&description, &fault));
-        findings.push(Finding {
+        checks.push(Check {
             subject: "the equations of motion exist at the initial state",
             failure,
         });
     }
-    findings
+    checks
 }
 
 fn defaults_against_assumptions(model: &dyn AnyModel) -> Option<String> {
@@ -84,7 +107,7 @@ fn defaults_against_assumptions(model: &dyn AnyModel) -> Option<String> {
 }
 
 /// Remarks a person should see.
-fn notes(model: &dyn AnyModel) -> Vec<String> {
+fn notes(model: &dyn AnyModel, report: Option<&report::Report>) -> Vec<String> {
     let description = model.description();
     let mut notes = Vec::new();
     for parameter in description
@@ -114,23 +137,18 @@ fn notes(model: &dyn AnyModel) -> Vec<String> {
     if model.initial().until.is_none() {
         notes.push("no `until` is declared: runs need --until T or --impacts N".to_owned());
     }
-    notes.extend(remarks(description.source));
-    notes.push("claims are not checked yet by this version".to_owned());
+    notes.extend(report.map(remarks).unwrap_or_default());
     notes
 }
 
 /// What the generator remarks on the declaration: velocity-linear terms, integrable constraints, unused parameters.
-fn remarks(source: &str) -> Vec<String> {
-    let sections = report(source)
-        .map(|report| report.sections)
-        .unwrap_or_default();
-    let remarks = sections
-        .into_iter()
-        .filter(|section| section.title == Section::NOTES);
-    let items = remarks.flat_map(|section| section.items);
-    items
+fn remarks(report: &report::Report) -> Vec<String> {
+    let sections = report.sections.iter();
+    let remarks = sections.filter(|section| section.title == Section::NOTES);
+    remarks
+        .flat_map(|section| &section.items)
         .filter_map(|item| match item {
-            Item::Words(words) => Some(words),
+            Item::Words(words) => Some(words.clone()),
             _ => None,
         })
         .collect()
@@ -139,8 +157,7 @@ fn remarks(source: &str) -> Vec<String> {
 fn write_text(
     output: &mut dyn Write,
     model: &dyn AnyModel,
-    findings: &[Finding],
-    notes: &[String],
+    examined: &Examined,
 ) -> Result<(), CliError> {
     let description = model.description();
     writeln!(
@@ -164,15 +181,35 @@ fn write_text(
         )?;
     }
     writeln!(output, "checks")?;
-    for Finding { subject, failure } in findings {
+    for Check { subject, failure } in &examined.checks {
         match failure {
             None => writeln!(output, "  ok    {subject}")?,
             Some(failure) => writeln!(output, "  FAIL  {subject}: {failure}")?,
         }
     }
+    writeln!(output, "claims")?;
+    for claim in &examined.claims {
+        write_claim(output, claim)?;
+    }
+    if examined.claims.is_empty() {
+        writeln!(output, "  none")?;
+    }
     writeln!(output, "notes")?;
-    for note in notes {
+    for note in &examined.notes {
         writeln!(output, "  {note}")?;
+    }
+    Ok(())
+}
+
+/// The verdict, then the claim as written, and below it what was found.
+fn write_claim(output: &mut dyn Write, finding: &Finding) -> Result<(), CliError> {
+    writeln!(output, "  {:9} {}", finding.word(), finding.claim)?;
+    let grounds = finding.grounds();
+    let lines = grounds
+        .lines()
+        .chain(finding.remarks.iter().map(String::as_str));
+    for line in lines {
+        writeln!(output, "            {line}")?;
     }
     Ok(())
 }
@@ -224,8 +261,7 @@ fn or_none(text: &str) -> &str {
 fn write_json(
     output: &mut dyn Write,
     model: &dyn AnyModel,
-    findings: &[Finding],
-    notes: &[String],
+    examined: &Examined,
 ) -> Result<(), CliError> {
     let description = model.description();
     let mut document = Document::begin(output)?;
@@ -258,12 +294,45 @@ fn write_json(
     )?;
     document.field("outputs", description.outputs.to_vec())?;
     document.field("scenes", description.scenes.to_vec())?;
-    document.rows("checks", findings.iter().map(|finding| {
-        json!({ "check": finding.subject, "passed": finding.failure.is_none(), "failure": finding.failure })
+    document.rows("checks", examined.checks.iter().map(|check| {
+        json!({ "check": check.subject, "passed": check.failure.is_none(), "failure": check.failure })
     }))?;
-    document.field("claims", json!({ "checked": false }))?;
-    document.field("notes", notes.to_vec())?;
+    document.rows("claims", examined.claims.iter().map(claim_json))?;
+    document.field("notes", examined.notes.clone())?;
     Ok(document.end()?)
+}
+
+fn claim_json(finding: &Finding) -> Value {
+    let mut claim = json!({
+        "claim": finding.claim,
+        "verdict": finding.word(),
+        "grounds": finding.grounds(),
+        "remarks": finding.remarks,
+    });
+    match &finding.verdict {
+        Verdict::Proved(certificate) => {
+            claim["certificate"] = json!({
+                "shown": certificate.shown,
+                "points": certificate.points,
+                "primes": certificate.primes,
+                "seed": certificate.seed,
+                "error_bound": number(certificate.error),
+            });
+        }
+        Verdict::Refuted(witness) => {
+            let named = |pairs: &[(String, f64)]| -> Value {
+                pairs
+                    .iter()
+                    .map(|(name, value)| (name.clone(), number(*value)))
+                    .collect()
+            };
+            let at = witness.sample.as_ref().map(|sample| named(&sample.values));
+            claim["witness"] =
+                json!({ "reason": witness.reason, "at": at, "values": named(&witness.values) });
+        }
+        Verdict::Undecided(_) => {}
+    }
+    claim
 }
 
 fn topology_json(topology: Topology) -> Value {

@@ -204,6 +204,7 @@ impl Described for BouncingBall {
             parameters { m > 0 = 1; g > 0 = 1; }
             lagrangian = m/2*dot(x)^2 - m*g*x;
             impacts { floor: x >= 0; }
+            claims { conserved: energy; not conserved under floor: dot(x); assume conserved: sin(asin(x)) - x; }
         }",
         coordinates: &[line("x")],
         parameters: &[positive("m", Some(1.0)), positive("g", Some(1.0))],

@@ -1,0 +1,279 @@
+//! The map of an impact on velocities, and points on its surface.
+//!
+//! ```text
+//! qdot+ = qdot + eps pi_D grad h,   rho = dh(pi_D grad h)/dh(grad h),   G = dh(qdot) + d_t h
+//! elastic, restitution e   eps = -(1 + e) (g(qdot, pi_D grad h) + d_t h)/dh(pi_D grad h)
+//! newton e                 eps = -(1 + e) G/dh(pi_D grad h)
+//! nonholonomic plastic     eps = -2 rho G/dh(pi_D grad h)
+//! impact plastic           eps = -G/dh(pi_D grad h)
+//! totally plastic          eps = -rho G/dh(pi_D grad h)
+//! ```
+//!
+//! The Jacobian with respect to `mu_C` is the determinant of the map in a fibre of D* times the ratio of the fluxes
+//! through the surface, `-G+/G-`. The determinant is the factor by which G is multiplied with the other sign, except for
+//! `elastic` and `restitution e` where constraints are affine: there it is e.
+
+use dalembert_expr::{
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Rational, RealPoint,
+    SymbolId, Verdict as Zero,
+};
+
+use super::conserved::with_velocities;
+use super::dynamics::{Dynamics, Number};
+use super::linear::{dot, solve};
+use super::sample::{Sample, sample};
+use crate::mechanics::Derivation;
+use crate::model::{Law, Model};
+
+/// An impact surface with everything that its map is made of.
+#[derive(Debug)]
+pub(super) struct Wall {
+    /// Metric (N N), forms (M N), dh (N), d_t h, coefficient.
+    pub(super) roots: Vec<ExprId>,
+    law: Law,
+    is_affine: bool,
+    pub(super) gap: ExprId,
+    pub(super) gap_rate: ExprId,
+    slope: Vec<ExprId>,
+    /// `d_t h`
+    rate: ExprId,
+    coordinates: Vec<SymbolId>,
+    velocities: Vec<SymbolId>,
+    constraints: usize,
+    polynomials: Vec<Polynomial>,
+}
+
+impl Wall {
+    /// The surface of an index.
+    pub(super) fn of(model: &mut Model, derivation: &Derivation, surface: usize) -> Self {
+        let own = &derivation.surfaces[surface];
+        let law = model.surfaces[surface].law;
+        let coefficient = match law {
+            Law::Restitution(e) | Law::Newton(e) => e,
+            Law::Elastic => model.pool.one(),
+            _ => model.pool.zero(),
+        };
+        let mut roots: Vec<ExprId> = model.lagrangian.metric.iter().flatten().copied().collect();
+        roots.extend(derivation.constraints.iter().flat_map(|own| &own.form));
+        roots.extend(&own.form);
+        roots.extend([own.rate, coefficient]);
+        let coordinates: Vec<_> = model.coordinates.iter().map(|own| own.q).collect();
+        Self {
+            roots,
+            law,
+            is_affine: derivation
+                .constraints
+                .iter()
+                .any(|own| !model.pool.is_syntactic_zero(own.affine)),
+            gap: own.gap,
+            gap_rate: own.gap_rate,
+            slope: own.form.clone(),
+            rate: own.rate,
+            polynomials: polynomials(model, own.gap, &coordinates),
+            coordinates,
+            velocities: model.coordinates.iter().map(|own| own.qdot).collect(),
+            constraints: derivation.constraints.len(),
+        }
+    }
+
+    /// The velocities after an impact with the point's velocities; `None` at a singular point.
+    pub(super) fn after<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+    ) -> Option<Vec<Number<P>>> {
+        let (n, m) = (self.coordinates.len(), self.constraints);
+        let field = point.field();
+        let values = point.values(&model.pool, &model.pool.reachable(&self.roots))?;
+        let space = JetSpace::new(0, 0, 1)?;
+        let jets = Jets::new(field, &space);
+        let mut entries = self
+            .roots
+            .iter()
+            .map(|root| jets.constant(values[root.index()]));
+        let mut rows = |count: usize| -> Vec<Vec<_>> {
+            (0..count)
+                .map(|_| entries.by_ref().take(n).collect())
+                .collect()
+        };
+        let (metric, forms, slope) = (rows(n), rows(m), rows(1).pop()?);
+        let rest: Vec<_> = entries.map(|own| jets.value(&own)).collect();
+        let [rate, coefficient] = rest.as_slice() else {
+            return None;
+        };
+        let right = (0..n)
+            .map(|i| {
+                let mut row: Vec<_> = forms.iter().map(|form| form[i].clone()).collect();
+                row.push(slope[i].clone());
+                row
+            })
+            .collect();
+        let raised = solve(&jets, metric.clone(), right)?.unknowns;
+        let column = |j: usize| -> Vec<_> { raised.iter().map(|row| row[j].clone()).collect() };
+        let gradient = column(m);
+        let duals: Vec<Vec<_>> = (0..m).map(column).collect();
+        let mass = forms
+            .iter()
+            .map(|form| duals.iter().map(|dual| dot(&jets, form, dual)).collect())
+            .collect();
+        let along = forms
+            .iter()
+            .map(|form| vec![dot(&jets, form, &gradient)])
+            .collect();
+        let share = solve(&jets, mass, along)?.unknowns;
+        let mut projected = gradient.clone();
+        for (part, dual) in share.iter().zip(&duals) {
+            for (own, w) in projected.iter_mut().zip(dual) {
+                *own = jets.sub(own, &jets.mul(&part[0], w));
+            }
+        }
+        let velocity: Vec<_> = self
+            .velocities
+            .iter()
+            .map(|own| jets.constant(point.symbol(&model.pool, *own)))
+            .collect();
+        let number = |series: Vec<Number<P>>| jets.value(&series);
+        let steep = number(dot(&jets, &slope, &projected));
+        let gap_rate = field.add(number(dot(&jets, &slope, &velocity)), *rate);
+        let lowered: Vec<_> = metric
+            .iter()
+            .map(|row| dot(&jets, row, &projected))
+            .collect();
+        let momentum = field.add(number(dot(&jets, &velocity, &lowered)), *rate);
+        let ratio = || Some(field.mul(steep, field.inv(number(dot(&jets, &slope, &gradient)))?));
+        let one = field.integer(1);
+        let factor = match self.law {
+            Law::Elastic | Law::Restitution(_) => field.mul(field.add(one, *coefficient), momentum),
+            Law::Newton(_) => field.mul(field.add(one, *coefficient), gap_rate),
+            Law::NonholonomicPlastic => field.mul(field.mul(field.integer(2), ratio()?), gap_rate),
+            Law::ImpactPlastic => gap_rate,
+            Law::TotallyPlastic => field.mul(ratio()?, gap_rate),
+        };
+        let impulse = field.neg(field.mul(factor, field.inv(steep)?));
+        let after = |(own, along): (&Vec<Number<P>>, &Vec<Number<P>>)| {
+            field.add(jets.value(own), field.mul(impulse, jets.value(along)))
+        };
+        Some(velocity.iter().zip(&projected).map(after).collect())
+    }
+
+    /// By how much the map and the flux through the surface multiply `mu_C`, given the velocities after the impact.
+    pub(super) fn jacobian<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        after: &[Number<P>],
+    ) -> Option<Number<P>> {
+        let field = point.field();
+        let values = point.values(&model.pool, &model.pool.reachable(&self.roots))?;
+        let value = |id: ExprId| values[id.index()];
+        let (coefficient, moving) = (value(*self.roots.last()?), value(self.rate));
+        let slope: Vec<_> = self.slope.iter().map(|own| value(*own)).collect();
+        let mut gap_rate = |velocity: &dyn Fn(usize, &mut P) -> Number<P>| {
+            let along = |sum, (i, slope): (usize, &Number<P>)| {
+                field.add(sum, field.mul(*slope, velocity(i, point)))
+            };
+            slope.iter().enumerate().fold(moving, along)
+        };
+        let outgoing = gap_rate(&|i, _| after[i]);
+        let incoming = gap_rate(&|i, point| point.symbol(&model.pool, self.velocities[i]));
+        let ratio = field.mul(outgoing, field.inv(incoming)?);
+        let determinant = match self.law {
+            Law::Elastic | Law::Restitution(_) if self.is_affine => coefficient,
+            _ => field.neg(ratio),
+        };
+        Some(field.mul(determinant, field.neg(ratio)))
+    }
+
+    /// A real state that approaches the surface on it, and its point.
+    pub(super) fn incoming(
+        &self,
+        model: &Model,
+        dynamics: &Dynamics,
+        attempt: usize,
+        uses: impl Fn(SymbolId) -> bool,
+    ) -> Option<(Sample, RealPoint)> {
+        let mut sample = sample(model, attempt, uses);
+        self.settle_sample(model, &mut sample)?;
+        let (sample, point) = with_velocities(model, dynamics, sample, attempt)?;
+        let rate = model.pool.eval(&[self.gap_rate], &|s| point.value(s))[0];
+        (rate < 0.0).then_some((sample, point))
+    }
+
+    /// Moves a point onto the surface by solving for one coordinate in which the gap is a polynomial of degree 1 or 2.
+    pub(super) fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
+        self.polynomials.iter().find_map(|polynomial| {
+            let field = point.modulus();
+            let mut trial = point.clone();
+            trial.set(polynomial.symbol, 0);
+            let values = model
+                .pool
+                .modular_eval(&polynomial.coefficients, &mut trial)
+                .ok()?;
+            let [c, b, a] = values.as_slice() else {
+                return None;
+            };
+            let root = if *a == 0 {
+                field.mul(field.neg(*c), field.inv(*b)?)
+            } else {
+                // a s^2 + b s + c = 0
+                let four = field.integer(4);
+                let square = field.sub(field.mul(*b, *b), field.mul(four, field.mul(*a, *c)));
+                let root = field.sqrt(square)?;
+                let twice = field.inv(field.mul(field.integer(2), *a))?;
+                field.mul(field.sub(root, *b), twice)
+            };
+            point.set(polynomial.symbol, root);
+            Some(())
+        })
+    }
+
+    /// Moves a real sample onto the surface by Newton's method in the coordinate in which the gap is steepest.
+    fn settle_sample(&self, model: &Model, sample: &mut Sample) -> Option<()> {
+        for _ in 0..60 {
+            let at = |symbol: SymbolId| sample.value(symbol).unwrap_or(0.0);
+            let gap = model.pool.eval(&[self.gap], &at)[0];
+            let slopes = model.pool.eval(&self.slope, &at);
+            let (steepest, slope) = slopes
+                .iter()
+                .enumerate()
+                .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+            let step = gap / slope;
+            if !step.is_finite() {
+                return None;
+            }
+            let symbol = self.coordinates[steepest];
+            let value = at(symbol);
+            if step.abs() <= 1e-15 * (1.0 + value.abs()) {
+                return Some(());
+            }
+            sample.set(symbol, value - step.clamp(-0.5, 0.5));
+        }
+        None
+    }
+}
+
+/// A coordinate in which a gap is `c + b s + a s^2`: the expressions of which c, b, a are the values at s = 0.
+#[derive(Debug)]
+struct Polynomial {
+    symbol: SymbolId,
+    coefficients: [ExprId; 3],
+}
+
+/// The coordinates in which a gap is a polynomial of degree 1 or 2.
+fn polynomials(model: &mut Model, gap: ExprId, coordinates: &[SymbolId]) -> Vec<Polynomial> {
+    let mut found = Vec::new();
+    for symbol in coordinates {
+        let first = model.pool.diff(gap, *symbol);
+        let second = model.pool.diff(first, *symbol);
+        let third = model.pool.diff(second, *symbol);
+        let is_constant = model.pool.zero_test(first) == Zero::Proved;
+        if model.pool.zero_test(third) == Zero::Proved && !is_constant {
+            let half = model.pool.scale(&Rational::new(1, 2), second);
+            found.push(Polynomial {
+                symbol: *symbol,
+                coefficients: [gap, first, half],
+            });
+        }
+    }
+    found
+}
