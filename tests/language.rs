@@ -112,6 +112,23 @@ fn every_refused_declaration_gets_the_message_of_the_page() {
 }
 
 #[test]
+fn the_refusal_in_the_readme_is_the_one_that_is_made() {
+    let readme = include_str!("../README.md");
+    let (_, rest) = readme
+        .split_once("```rust,compile_fail")
+        .expect("a refused model");
+    let (code, rest) = rest.split_once("```").expect("its end");
+    let (_, rest) = rest.split_once("```text\nerror: ").expect("its message");
+    let (message, _) = rest.split_once("\n```").expect("its end");
+    let (_, declaration) = code.split_once("model! {").expect("a model");
+    let (declaration, _) = declaration.rsplit_once('}').expect("its end");
+    let tokens: TokenStream = declaration.parse().expect("tokens");
+    let refused = dalembert_codegen::try_expand(tokens).expect_err("a false claim");
+    let messages: Vec<&str> = refused.iter().map(|error| error.message()).collect();
+    assert_eq!(messages.join("\n"), message.replace("\n       ", "\n"));
+}
+
+#[test]
 fn a_wrong_row_is_noticed() {
     let table = |row: &str| format!("{HEAD}\n|---|---|\n{row}\n\nText.\n");
     let checked = |row: &str| rows(&table(row)).iter().find_map(difference);

@@ -3,7 +3,7 @@
 use super::super::ast::{Claim, Existence, Spec, Statement};
 use super::super::cursor::{Cursor, Read};
 use super::declared;
-use crate::diagnostics::{Location, listed, nearest};
+use crate::diagnostics::{Location, nearest};
 
 const KINDS: [&str; 5] = ["density", "conserved", "not", "symmetry", "assume"];
 const EXISTENCE: [(&str, Existence); 3] = [
@@ -11,6 +11,7 @@ const EXISTENCE: [(&str, Existence); 3] = [
     ("locally_exact", Existence::Local),
     ("none", Existence::None),
 ];
+const EXISTENCES: &str = "`exact`, `locally_exact` or `none`";
 
 /// Reads one claim.
 pub(super) fn claim(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
@@ -57,13 +58,12 @@ fn density(cursor: &mut Cursor<'_>) -> Read<Statement> {
         return Ok(Statement::Density(cursor.scalar()?));
     }
     cursor.expect_operator(":", "density: exact;")?;
-    let word = cursor.name("`exact`, `locally_exact` or `none`")?;
+    let word = cursor.name(EXISTENCES)?;
     let known = EXISTENCE.iter().find(|(name, _)| *name == word.text);
     match known {
         Some((_, existence)) => Ok(Statement::Existence(*existence)),
         None => {
-            let words = EXISTENCE.map(|(name, _)| name);
-            let text = format!("expected {}, found `{}`", listed(words), word.text);
+            let text = format!("expected {EXISTENCES}, found `{}`", word.text);
             Err(cursor.refuse(word.at, text, "a stated density is written `density = ..;`"))
         }
     }
