@@ -95,7 +95,7 @@ impl Dynamics {
     }
 
     /// The motion at the state on D with the point's coordinates and independent velocities; the dependent velocities
-    /// are set, and chosen as in [`super::frame`] unless they are given. `None` at a singular point.
+    /// are set, and chosen as in `frame.rs` unless they are given. `None` at a singular point.
     pub fn motion<P: ExpansionPoint>(
         &self,
         pool: &Pool,

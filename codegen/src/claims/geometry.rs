@@ -5,7 +5,7 @@ use dalembert_expr::{JetSpace, Jets, Pool, RealPoint, SymbolId};
 use super::frame::frame;
 use super::problem::Problem;
 
-/// Values at a real point of what `X_i(G) = c_i` is made of; see [`super::frame`] for the formulas.
+/// Values at a real point of what `X_i(G) = c_i` is made of; see `frame.rs` for the formulas.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
     /// The dependent velocities, one for each constraint.

@@ -3,7 +3,7 @@ dalembert::model! {
         coordinates { x y; z; }
         lagrangian = 2x;
         constraints { a: d(x) == 0; b: d(z) = 0; c: = 0; }
-        claims { conserved: energy; }
+        modes { }
     }
 }
 
