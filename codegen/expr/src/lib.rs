@@ -13,7 +13,7 @@
 //! | `diff.rs`, `subst.rs`, `eval.rs` | calculus and evaluation |
 //! | `taylor/` | truncated series, modulo a prime or in double precision |
 //! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and what it decides |
-//! | `simplify.rs`, `print/` | presentation |
+//! | `simplify.rs`, `expand.rs`, `print/` | presentation |
 //!
 //! ```
 //! use dalembert_expr::{Assumption, Function, Pool, Rational, Verdict};
@@ -42,6 +42,7 @@ mod construct;
 mod decimal;
 mod diff;
 mod eval;
+mod expand;
 mod field;
 #[cfg(test)]
 mod fixture;
