@@ -233,7 +233,7 @@ impl<'a> Kernel<'a> {
         for &a in which {
             let form = self.derivation.constraints[a].form.clone();
             let form = self.values(&form);
-            columns.push(self.forward(&form));
+            columns.push((a, self.forward(&form)));
         }
         let independent = self.regular_minor().is_some();
         self.with_ldlt(|builder, ldlt| Orthogonal::factor(builder, ldlt, columns, independent))

@@ -17,6 +17,8 @@ use super::{Guard, Value};
 pub struct Ldlt {
     /// `below[i][j]`, `j < i`: the entries of `L` below the diagonal.
     below: Vec<Vec<Value>>,
+    /// `D_i`; their product is `det g`.
+    pub pivots: Vec<Value>,
     /// `1 / D_i`.
     inverse_pivots: Vec<Value>,
 }
@@ -26,6 +28,7 @@ impl Ldlt {
     pub fn factor(builder: &mut Builder, metric: &[Vec<Value>], positive: &[bool]) -> Self {
         let n = metric.len();
         let mut below: Vec<Vec<Value>> = Vec::with_capacity(n);
+        let mut pivots: Vec<Value> = Vec::with_capacity(n);
         let mut inverse_pivots: Vec<Value> = Vec::with_capacity(n);
         for i in 0..n {
             // Row i of the unscaled factor: scaled[j] = L_ij D_j.
@@ -51,11 +54,23 @@ impl Ldlt {
                 });
             }
             inverse_pivots.push(builder.reciprocal(pivot));
+            pivots.push(pivot);
             below.push(row);
         }
         Self {
             below,
+            pivots,
             inverse_pivots,
+        }
+    }
+
+    /// The factors of the identity: `<u, v>` is the ordinary product of rows.
+    pub fn identity(builder: &mut Builder, n: usize) -> Self {
+        let (zero, one) = (builder.zero(), builder.integer(1));
+        Self {
+            below: (0..n).map(|i| vec![zero; i]).collect(),
+            pivots: vec![one; n],
+            inverse_pivots: vec![one; n],
         }
     }
 
@@ -125,34 +140,40 @@ pub struct Orthogonal {
     columns: Vec<Vec<Value>>,
     /// `above[a][b]`, `b < a`: the entry `U_ba`.
     above: Vec<Vec<Value>>,
+    /// `n_a`; their product is `det m^{ab}`.
+    pub squares: Vec<Value>,
     /// `1 / n_a`
     inverse_squares: Vec<Value>,
 }
 
 impl Orthogonal {
-    /// Orthogonalises the columns `L^{-1} eta^a`. With `independent`, a proof of independence, guards only ask
-    /// for positive norms.
+    /// Orthogonalises the columns `L^{-1} eta^a`, each with the number of its constraint. With `independent`, a proof
+    /// of independence, guards only ask for positive norms.
     pub fn factor(
         builder: &mut Builder,
         ldlt: &Ldlt,
-        columns: Vec<Vec<Value>>,
+        columns: Vec<(usize, Vec<Value>)>,
         independent: bool,
     ) -> Self {
         let mut factors = Self {
             columns: Vec::new(),
             above: Vec::new(),
+            squares: Vec::new(),
             inverse_squares: Vec::new(),
         };
-        for (a, column) in columns.into_iter().enumerate() {
-            let reference = (a > 0 && !independent).then(|| ldlt.inner(builder, &column, &column));
+        for (constraint, column) in columns {
+            let is_first = factors.columns.is_empty();
+            let reference =
+                (!is_first && !independent).then(|| ldlt.inner(builder, &column, &column));
             let (coefficients, rest) = factors.reduce(builder, ldlt, column);
             let squared = ldlt.inner(builder, &rest, &rest);
             builder.guard(Guard::Constraint {
-                constraint: a,
+                constraint,
                 squared,
                 reference,
             });
             factors.inverse_squares.push(builder.reciprocal(squared));
+            factors.squares.push(squared);
             factors.above.push(coefficients);
             factors.columns.push(rest);
         }
