@@ -4,17 +4,14 @@
 use dalembert::{Described, Scene, StateVector, System};
 use dalembert_codegen::model::Model;
 use dalembert_codegen::program::{Input, Program, interpret::interpret, verify::verify};
-use dalembert_codegen::{mechanics, model, program, spec};
+use dalembert_codegen::{compile, mechanics, spec};
 use dalembert_expr::SymbolId;
 use dalembert_tests::sampling::{Visitor, states, visit_all};
 
 /// A model derived again from its own source text.
 fn derive(source: &str) -> (Model, mechanics::Derivation, Program) {
-    let spec = spec::parse(source.parse().expect("tokens")).expect("a declaration");
-    let mut model = model::check(&spec).expect("a model");
-    let derivation = mechanics::derive(&mut model);
-    let program = program::lower(&model, &derivation);
-    (model, derivation, program)
+    let compiled = compile(source.parse().expect("tokens")).expect("a model");
+    (compiled.model, compiled.derivation, compiled.program)
 }
 
 /// The arguments of a function at a state of a system.

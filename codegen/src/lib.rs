@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! TokenStream --spec::parse--> Spec --model::check--> Model --mechanics::derive--> Derivation
-//!     --claims::examine--> Finding ..
+//!     --claims::examine--> Examined
 //!     --program::lower--> Program --emit::tokens--> TokenStream
 //! ```
 //!
@@ -62,9 +62,9 @@ pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics>
     let spec = spec::parse(input)?;
     let mut model = model::check(&spec)?;
     let derivation = mechanics::derive(&mut model);
-    let findings = claims::examine(&mut model, &derivation);
+    let claims::Examined { findings, volume } = claims::examine(&mut model, &derivation);
     refuse_claims(&spec, &findings)?;
-    let program = program::lower(&model, &derivation);
+    let program = program::lower(&model, &derivation, volume.as_ref());
     refuse_oversize(&spec, &program)?;
     Ok(Compiled {
         model,

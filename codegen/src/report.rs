@@ -416,6 +416,9 @@ fn work(model: &Model, program: &Program) -> Section {
             ));
         }
     }
+    if let Some(volume) = &program.volume {
+        items.push(line("density of the volume", &volume.log_density.cost));
+    }
     Section::plain("Work of the emitted functions", items)
 }
 

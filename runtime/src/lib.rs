@@ -124,7 +124,7 @@ pub mod record;
 pub mod simulation;
 pub mod state;
 
-pub use contract::{Constrained, Divergence, Impacting, System, VectorField};
+pub use contract::{Constrained, Divergence, Impacting, InvariantVolume, System, VectorField};
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
 pub use error::{Fault, ParameterError, StateError};

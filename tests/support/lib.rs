@@ -8,10 +8,13 @@ struct LanguageReference;
 
 pub mod allocation;
 pub mod command;
+pub mod flow;
+pub mod golden;
 pub mod reference;
 pub mod sampling;
 pub mod systems;
 pub mod verdict;
+pub mod volume;
 
 /// The examples of the README, compiled and run.
 #[cfg(doctest)]

@@ -75,7 +75,7 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     visit! {
         systems:
         AffineSleigh TableWall MagneticDisk DampedSleigh IntegrableBead MovingWallDisk Rheonomic
-        WalkerWithMultiplier WalkerFootSlip
+        WalkerWithMultiplier WalkerFootSlip FallingDisk MixedDisk NonholonomicParticle HelicalCircle
     }
 }
 

@@ -1,6 +1,6 @@
 //! Systems that only tests declare: affine constraints, velocity-linear terms, time, forces, integrable constraints.
 //!
-//! Names, order, parameters and surfaces are those of the reference files in `tests/reference`.
+//! Names, order, parameters and surfaces are those of the reference files in `tests/reference`, where there is one.
 
 dalembert::model! {
     /// Chaplygin sleigh on a support with a cross flow: affine constraint.
@@ -150,6 +150,58 @@ dalembert::model! {
     }
 }
 
+dalembert::model! {
+    /// Rolling disk that may fall, in Euler angles.
+    pub FallingDisk {
+        coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
+        parameters { m > 0 = 2; R > 0 = 3/4; I > 0 = 1/3; J > 0 = 1/2; gravity > 0 = 1; }
+        let roll = dot(psi) + cos(theta)*dot(phi);
+        let vertical = R*cos(theta)*dot(theta);
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2 + vertical^2)
+            + I/2*(dot(theta)^2 + sin(theta)^2*dot(phi)^2) + J/2*roll^2 - m*gravity*R*sin(theta);
+        constraints {
+            along: cos(phi)*dot(x) + sin(phi)*dot(y) + R*roll = 0;
+            across: -sin(phi)*dot(x) + cos(phi)*dot(y) + R*sin(theta)*dot(theta) = 0;
+        }
+        claims { density: exact; }
+    }
+}
+
+dalembert::model! {
+    /// Vertical disk with its two constraints mixed: every entry stands beside and below another one.
+    pub MixedDisk {
+        coordinates { x; y; theta: angle; phi: angle; }
+        parameters { m > 0 = 2; R > 0 = 1/2; I > 0 = 1/3; J > 0 = 1/5; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + J/2*dot(phi)^2;
+        constraints {
+            first: (2 + x^2)*(d(x) - R*cos(phi)*d(theta)) + y*(d(y) - R*sin(phi)*d(theta)) = 0;
+            second: (1 + y^2)*(d(y) - R*sin(phi)*d(theta)) + sin(theta)*(d(x) - R*cos(phi)*d(theta)) = 0;
+        }
+        claims { density: exact; }
+    }
+}
+
+dalembert::model! {
+    /// Particle with `dz = y dx`; its author states the density.
+    pub NonholonomicParticle {
+        coordinates { x; y; z; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { slope: dot(z) = y*dot(x); }
+        claims { density: exact; density = 3*sqrt(1 + y^2); }
+    }
+}
+
+dalembert::model! {
+    /// A density that is multiplied by `exp(-2 pi/3)` with each turn.
+    pub HelicalCircle {
+        coordinates { phi: angle; x; z; }
+        let slip = dot(z) - dot(x) - z*dot(phi)/3;
+        lagrangian = (dot(phi)^2 + dot(x)^2 + slip^2)/2;
+        constraints { slipping: slip = 0; }
+        claims { density: locally_exact; }
+    }
+}
+
 /// Every system of this file, for the command line.
 pub fn all() -> Vec<dalembert_cli::Entry> {
     dalembert_cli::models![
@@ -162,5 +214,9 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         Rheonomic,
         WalkerWithMultiplier,
         WalkerFootSlip,
+        FallingDisk,
+        MixedDisk,
+        NonholonomicParticle,
+        HelicalCircle,
     ]
 }

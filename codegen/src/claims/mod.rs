@@ -6,6 +6,7 @@
 //! | `linear.rs`, `frame.rs`, `closure.rs` | the frame of D as series, and its hull under brackets |
 //! | `exactness.rs` | does a local density exist? |
 //! | `potential.rs`, `global.rs` | the density in closed form; is it single-valued? |
+//! | `volume.rs` | the volume with that density, as it is lowered |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
 //! | `alternatives.rs` | both of these in words |
@@ -47,6 +48,7 @@ pub mod problem;
 mod sample;
 mod symmetry;
 mod undecided;
+mod volume;
 mod wall;
 
 use dalembert_expr::{ExprId, Rational, SymbolId};
@@ -64,14 +66,25 @@ pub use potential::{Certified, Potential, Term};
 pub use problem::Problem;
 pub use sample::Sample;
 pub use undecided::Undecided;
+pub use volume::Volume;
 
 use crate::mechanics::Derivation;
-use crate::model::{Claim, Model, Statement};
+use crate::model::{Claim, Existence, Model, Statement};
 
-/// The verdicts on all claims of a model, in order; without claims nothing is done.
-pub fn examine(model: &mut Model, derivation: &Derivation) -> Vec<Finding> {
+/// What became of the claims of a model.
+#[derive(Debug, Default)]
+pub struct Examined {
+    /// The verdicts, in order.
+    pub findings: Vec<Finding>,
+    /// The invariant volume whose density is proved and known in closed form, a stated one before one that was found;
+    /// `None` if no claim is about one.
+    pub volume: Option<Volume>,
+}
+
+/// The verdicts on all claims of a model; without claims nothing is done.
+pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
     if model.claims.is_empty() {
-        return Vec::new();
+        return Examined::default();
     }
     let mut examiner = Examiner {
         seed: finding::seed_of(&model.snake_name),
@@ -82,7 +95,15 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Vec<Finding> {
         derivation,
     };
     let claims = examiner.model.claims.clone();
-    claims.iter().map(|claim| examiner.finding(claim)).collect()
+    let findings: Vec<Finding> = claims.iter().map(|claim| examiner.finding(claim)).collect();
+    let proved: Vec<&Statement> = claims
+        .iter()
+        .zip(&findings)
+        .filter(|(_, finding)| matches!(finding.verdict, Verdict::Proved(_)))
+        .map(|(claim, _)| &claim.statement)
+        .collect();
+    let volume = examiner.volume(&proved);
+    Examined { findings, volume }
 }
 
 /// What the verdicts on several claims share.
@@ -190,6 +211,30 @@ impl Examiner<'_> {
     fn impacts(&mut self, stated: Option<(ExprId, &str)>) -> Vec<String> {
         let (derivation, dynamics) = (self.derivation, &self.dynamics);
         hybrid::volume_remarks(self.model, derivation, dynamics, stated, self.seed)
+    }
+
+    /// The volume that these statements are about.
+    fn volume(&mut self, proved: &[&Statement]) -> Option<Volume> {
+        for statement in proved {
+            let Statement::Density(value) = statement else {
+                continue;
+            };
+            let density = self.explicit(*value);
+            let (derivation, problem) = (self.derivation, &self.problem);
+            let stated = Volume::stated(self.model, derivation, problem, density, self.seed);
+            if stated.is_some() {
+                return stated;
+            }
+        }
+        let exists = |own: &&&Statement| {
+            matches!(
+                own,
+                Statement::Existence(Existence::Global | Existence::Local)
+            )
+        };
+        proved.iter().find(exists)?;
+        let exactness = self.decision.as_ref()?.as_ref().ok()?;
+        Volume::found(self.model, self.derivation, exactness)
     }
 
     /// The expression with energy and momenta written out.

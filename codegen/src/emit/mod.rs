@@ -42,6 +42,7 @@ pub fn tokens(model: &Model, program: &Program) -> TokenStream {
         constraint::emit_constrained(&context),
         impact::emit_impacting(&context),
         volume::emit_divergence(&context),
+        volume::emit_invariant_volume(&context),
         describe::emit_described(&context),
         describe::emit_scene(&context),
     ];

@@ -1,4 +1,4 @@
-//! `Divergence`: the density form and the divergence of the motion.
+//! `Divergence` and `InvariantVolume`: density form, divergence of the motion, and the volume it keeps.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -37,6 +37,43 @@ pub(super) fn emit_divergence(context: &Context<'_>) -> TokenStream {
             ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
                 #form_statements
                 ::core::result::Result::Ok(::dalembert::__private::vector([#(#theta),*]))
+            }
+        }
+    }
+}
+
+/// `impl InvariantVolume`, if a volume was found.
+pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
+    let Some(volume) = &context.program.volume else {
+        return TokenStream::new();
+    };
+    let type_name = &context.names.type_name;
+    let (independent, is_single_valued) = (&volume.independent, volume.is_single_valued);
+    let density = context.position_body(&volume.log_density);
+    let density_doc = doc::formula("G", &volume.log_density.cost);
+    let (density_statements, log_density) = (density.statements, &density.outputs[0]);
+    let total = context.position_body(&volume.log_volume);
+    let total_doc = doc::formula("G + ln det g - ln |det A_dep|", &volume.log_volume.cost);
+    let (total_statements, log_volume) = (total.statements, &total.outputs[0]);
+    let attributes = super::attributes();
+    quote! {
+        #attributes
+        impl ::dalembert::InvariantVolume for #type_name {
+            const INDEPENDENT: &'static [usize] = &[#(#independent),*];
+            const IS_SINGLE_VALUED: bool = #is_single_valued;
+
+            #density_doc
+            #[inline]
+            fn log_density(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
+                #density_statements
+                ::core::result::Result::Ok(#log_density)
+            }
+
+            #total_doc
+            #[inline]
+            fn log_volume(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
+                #total_statements
+                ::core::result::Result::Ok(#log_volume)
             }
         }
     }

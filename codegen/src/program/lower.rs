@@ -1,23 +1,25 @@
 //! From a derivation to the program: one function per item of the contract.
 
 use super::Program;
-use super::recipes::{constrained, declared, geometry, impact, motion};
+use super::recipes::{constrained, declared, geometry, impact, motion, volume};
+use crate::claims::Volume;
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
-/// Lowers everything that a model declares.
-pub fn lower(model: &Model, derivation: &Derivation) -> Program {
+/// Lowers everything that a model declares, and the invariant volume that was found for it.
+pub fn lower(model: &Model, derivation: &Derivation, found: Option<&Volume>) -> Program {
     Program {
         rate: motion::rate(model, derivation),
         scale: motion::scale(model, derivation),
         velocity: motion::velocity(model, derivation),
         momentum: motion::momentum(model, derivation),
         energy: motion::energy(model, derivation),
-        geometry: geometry::geometry(model, derivation),
+        geometry: geometry::geometry(model, derivation, found),
         constrained: constrained::constrained(model, derivation),
         impacting: impact::impacting(model, derivation),
         divergence: geometry::divergence(model, derivation),
         density_form: geometry::density_form(model, derivation),
+        volume: found.map(|found| volume::invariant_volume(model, derivation, found)),
         outputs: declared::outputs(model, derivation),
         view_path: model
             .view

@@ -197,6 +197,8 @@ pub struct Program {
     pub divergence: Function,
     /// The density form: `(t, q) -> theta`.
     pub density_form: Function,
+    /// With an invariant volume.
+    pub volume: Option<InvariantVolume>,
     /// The declared outputs: `(t, q, p) -> values`.
     pub outputs: Option<Function>,
     /// The view's path: `(t, q) -> (x, y)`.
@@ -228,6 +230,7 @@ impl Program {
             impacting,
             divergence,
             density_form,
+            volume,
             outputs,
             view_path,
             view_region,
@@ -240,6 +243,7 @@ impl Program {
         functions.extend(declared.into_iter().flatten());
         functions.extend(constrained.iter().flat_map(Constrained::functions));
         functions.extend(impacting.iter().flat_map(Impacting::functions));
+        functions.extend(volume.iter().flat_map(InvariantVolume::functions));
         functions
     }
 
@@ -292,6 +296,31 @@ impl Constrained {
             levels,
             level_correction,
         ]
+    }
+}
+
+/// Functions of a system with an invariant volume `exp(G) mu_C`.
+#[derive(Debug)]
+pub struct InvariantVolume {
+    /// `(t, q) -> G`
+    pub log_density: Function,
+    /// `(t, q) -> G + ln det g - ln |det A_dep|`
+    pub log_volume: Function,
+    /// The velocities that are coordinates of the volume besides the positions, in order.
+    pub independent: Vec<usize>,
+    /// Whether `G` is a function on Q, not only of unwrapped angles.
+    pub is_single_valued: bool,
+}
+
+impl InvariantVolume {
+    fn functions(&self) -> [&Function; 2] {
+        let Self {
+            log_density,
+            log_volume,
+            independent: _,
+            is_single_valued: _,
+        } = self;
+        [log_density, log_volume]
     }
 }
 

@@ -2,10 +2,11 @@
 //!
 //! Formulas of the density form and the divergence: [`crate::mechanics::density`].
 
+use crate::claims::Volume;
 use crate::mechanics::{Derivation, Entry};
 use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
-use crate::program::recipes::{impact, motion};
+use crate::program::recipes::{impact, motion, volume};
 use crate::program::{Function, Value};
 
 /// A named group of results.
@@ -78,7 +79,7 @@ impl Results {
 }
 
 /// `(t, q, p)` to everything.
-pub fn geometry(model: &Model, derivation: &Derivation) -> Geometry {
+pub fn geometry(model: &Model, derivation: &Derivation, found: Option<&Volume>) -> Geometry {
     let mut kernel = Kernel::new(model, derivation, Arguments::Both);
     let mut results = Results {
         groups: Vec::new(),
@@ -86,6 +87,10 @@ pub fn geometry(model: &Model, derivation: &Derivation) -> Geometry {
     };
     report_motion(&mut kernel, &mut results);
     report_constraints(&mut kernel, &mut results);
+    if let Some(found) = found {
+        let density = volume::log_density(&mut kernel, found);
+        results.scalar("log_density", density);
+    }
     report_surfaces(&mut kernel, &mut results);
     Geometry {
         function: kernel.finish(results.values),

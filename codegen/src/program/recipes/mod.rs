@@ -5,5 +5,6 @@ pub mod declared;
 pub mod geometry;
 pub mod impact;
 pub mod motion;
+pub mod volume;
 
 pub use geometry::{Geometry, Group};

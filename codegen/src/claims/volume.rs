@@ -1,0 +1,161 @@
+//! The invariant volume `exp(G) mu_C` of a model, in a form that can be lowered.
+//!
+//! `mu_C = det g / |det A_dep| dq dv_ind`: `A_dep` are the columns of the constraint forms that belong to the
+//! dependent velocities. `mu_C` does not depend on their choice (up to a constant), its coordinates do.
+
+use dalembert_expr::{ExprId, Function, JetSpace, Jets, Node, Pool, Rational};
+
+use super::exactness::{Exactness, sample_points};
+use super::frame::frame;
+use super::global::Global;
+use super::potential::{Potential, Term};
+use super::problem::Problem;
+use crate::mechanics::Derivation;
+use crate::mechanics::constraint::regular_minor;
+use crate::model::Model;
+
+/// An invariant volume with a density in closed form.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Volume {
+    /// `G`
+    pub potential: Potential,
+    /// The columns of the determinant in [`Term::DependentDeterminant`], one for each constraint.
+    pub minor: Vec<usize>,
+    /// The dependent velocities, one for each constraint, in increasing order. The other velocities are the
+    /// coordinates of the volume besides the positions.
+    pub dependent: Vec<usize>,
+    /// Whether `G` is a function on Q; else it is one of the angles as they are stored, unwrapped.
+    pub is_single_valued: bool,
+}
+
+impl Volume {
+    /// The volume that a decision about the model found; `None` if there is none, or none in closed form.
+    pub fn found(model: &Model, derivation: &Derivation, exactness: &Exactness) -> Option<Self> {
+        let (potential, _) = exactness.density.as_ref()?;
+        let minor = exactness.local.dependent.clone();
+        Some(Self {
+            potential: potential.clone(),
+            dependent: nowhere_singular(model, derivation).unwrap_or_else(|| minor.clone()),
+            minor,
+            is_single_valued: exactness.global == Some(Global::Exists),
+        })
+    }
+
+    /// The volume with this density, which was proved; `None` if it depends on velocities.
+    ///
+    /// Stated densities are periodic in every angle: the language asks for it.
+    pub fn stated(
+        model: &mut Model,
+        derivation: &Derivation,
+        problem: &Problem,
+        density: ExprId,
+        seed: u64,
+    ) -> Option<Self> {
+        let velocities: Vec<_> = model.coordinates.iter().map(|own| own.qdot).collect();
+        if model.pool.depends_on_any(density, &velocities) {
+            return None;
+        }
+        let dependent = nowhere_singular(model, derivation)
+            .or_else(|| almost_nowhere_singular(&model.pool, problem, seed))?;
+        Some(Self {
+            potential: Potential {
+                terms: logarithm(&mut model.pool, density),
+            },
+            minor: dependent.clone(),
+            dependent,
+            is_single_valued: true,
+        })
+    }
+}
+
+/// Dependent velocities that follow from the others at every state, if the forms show some: elsewhere the
+/// coordinates of the volume fail at some states, for a wheel already where it points along an axis.
+fn nowhere_singular(model: &Model, derivation: &Derivation) -> Option<Vec<usize>> {
+    let pairs = regular_minor(&model.pool, &derivation.constraints)?;
+    let mut dependent: Vec<usize> = pairs.into_iter().map(|(_, column)| column).collect();
+    dependent.sort_unstable();
+    Some(dependent)
+}
+
+/// Dependent velocities that follow from the others at a random state, hence at almost all.
+fn almost_nowhere_singular(pool: &Pool, problem: &Problem, seed: u64) -> Option<Vec<usize>> {
+    let roots = problem.roots();
+    let mut points = sample_points(pool, &roots, &pool.profile_of(&roots), seed).ok()?;
+    let space = JetSpace::new(problem.variables.len(), 1, usize::MAX)?;
+    points.find(|point| {
+        let jets = Jets::new(point.modulus(), &space);
+        frame(pool, problem, &jets, point, None).map(|frame| frame.dependent)
+    })
+}
+
+/// `ln |f|` as a sum over the factors of `f`: what would overflow as a product does not as a sum.
+fn logarithm(pool: &mut Pool, f: ExprId) -> Vec<(ExprId, Term)> {
+    let mut terms = Vec::new();
+    let mut factors = vec![(Rational::ONE, f)];
+    while let Some((exponent, factor)) = factors.pop() {
+        let (number, rest) = pool.as_multiple(factor);
+        if rest != factor {
+            let number = pool.number(number.abs());
+            factors.extend([(exponent.clone(), rest), (exponent, number)]);
+            continue;
+        }
+        let term = match pool.node(factor) {
+            Node::Product(powers) => {
+                let powers = powers.iter().rev();
+                factors.extend(powers.map(|(base, own)| (own * &exponent, *base)));
+                continue;
+            }
+            Node::Call(Function::Abs, inner) => {
+                factors.push((exponent, *inner));
+                continue;
+            }
+            Node::Call(Function::Exp, inner) => Term::Plain(*inner),
+            Node::Number(number) if number.is_one() => continue,
+            _ => Term::Logarithm(factor),
+        };
+        terms.push((pool.number(exponent), term));
+    }
+    terms
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dalembert_expr::Assumption;
+
+    #[test]
+    fn logarithms_of_products_are_sums() {
+        let mut pool = Pool::new();
+        let symbols = ["x", "y"].map(|name| pool.symbol(name, name, Assumption::None));
+        let [x, y] = symbols.map(|symbol| pool.variable(symbol));
+        let root = pool.pow(x, Rational::new(-1, 2));
+        let y_ten = pool.scale(&Rational::from(10), y);
+        let exponential = pool.call(Function::Exp, y_ten);
+        let one = pool.one();
+        let shifted = pool.sub(y, one);
+        let size = pool.call(Function::Abs, shifted);
+        let number = pool.int(-3);
+        let f = pool.product(&[number, root, exponential, size]);
+        let mut sum = 0.0;
+        let terms = logarithm(&mut pool, f);
+        assert_eq!(terms.len(), 4);
+        for (coefficient, term) in terms {
+            let (own, is_plain) = match term {
+                Term::Plain(own) => (own, true),
+                Term::Logarithm(own) => (own, false),
+                _ => panic!("{term:?}"),
+            };
+            // exp(10 y) alone would be infinite.
+            let value = |symbol| if symbol == symbols[0] { 0.7 } else { 100.0 };
+            let values = pool.eval(&[coefficient, own], &value);
+            let own = if is_plain {
+                values[1]
+            } else {
+                values[1].abs().ln()
+            };
+            sum += values[0] * own;
+        }
+        let expected = 3_f64.ln() - 0.7_f64.ln() / 2.0 + 1000.0 + 99_f64.ln();
+        assert!((sum - expected).abs() < 1e-12, "{sum} for {expected}");
+    }
+}

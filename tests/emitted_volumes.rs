@@ -1,0 +1,295 @@
+//! `InvariantVolume` as it is emitted for claims: stored, kept by the emitted motion, equal to what the interpreter
+//! executes and to reference values; absent where nothing is claimed or known. To accept a difference, see `golden.rs`.
+
+use dalembert::describe::Report;
+use dalembert::{Described, Fault, InvariantVolume, Scene, StateVector};
+use dalembert_models::{
+    BallOnRotatingTable, HolonomicBeadOnEllipses, RollingBallEuler, RollingDisk, TwoWheelsRod,
+};
+use dalembert_tests::flow::Flow;
+use dalembert_tests::golden;
+use dalembert_tests::reference::{number, numbers, read};
+use dalembert_tests::sampling::{Random, Visitor, states, visit_all};
+use dalembert_tests::systems::{FallingDisk, HelicalCircle, MixedDisk, NonholonomicParticle};
+use dalembert_tests::volume::{WithVolume, divergence};
+
+/// Calls a generic function for every system that claims a density and has one, in the order of [`visit_all`].
+macro_rules! of_each_claimed {
+    ($function:ident) => {
+        [
+            $function::<BallOnRotatingTable>(),
+            $function::<HolonomicBeadOnEllipses>(),
+            $function::<RollingBallEuler>(),
+            $function::<RollingDisk>(),
+            $function::<TwoWheelsRod>(),
+            $function::<FallingDisk>(),
+            $function::<MixedDisk>(),
+            $function::<NonholonomicParticle>(),
+            $function::<HelicalCircle>(),
+        ]
+    };
+}
+
+/// The implementation of `InvariantVolume` that a declaration gets, formatted; empty if there is none.
+fn emitted(source: &str) -> String {
+    let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens")).expect(source);
+    let mut file: syn::File = syn::parse2(tokens).expect("items");
+    file.items.retain(|item| {
+        let syn::Item::Impl(item) = item else {
+            return false;
+        };
+        let path = item.trait_.as_ref().map(|(path, _)| path);
+        let last = path.and_then(|path| path.segments.last());
+        last.is_some_and(|segment| segment.ident == "InvariantVolume")
+    });
+    prettyplease::unparse(&file)
+}
+
+#[test]
+fn emitted_volumes_are_as_stored() {
+    let compare = |name: &str, source: &str| golden::compare(name, &emitted(source));
+    compare("falling_disk_volume", FallingDisk::DESCRIPTION.source);
+    compare("mixed_disk_volume", MixedDisk::DESCRIPTION.source);
+}
+
+/// The names of what is reported.
+#[derive(Default)]
+struct Names(Vec<String>);
+
+impl Report for Names {
+    fn scalar(&mut self, name: &str, _: f64) {
+        self.0.push(name.to_owned());
+    }
+    fn vector(&mut self, name: &str, _: &[f64]) {
+        self.0.push(name.to_owned());
+    }
+    fn matrix(&mut self, name: &str, _: usize, _: usize, _: &[f64]) {
+        self.0.push(name.to_owned());
+    }
+}
+
+/// Names of the systems for which a volume is emitted.
+#[derive(Default)]
+struct Emitted(Vec<&'static str>);
+
+impl Visitor for Emitted {
+    fn visit<S: Described + Scene>(&mut self, system: S) {
+        let description = S::DESCRIPTION;
+        let mut names = Names::default();
+        let state = states(&system, 1, 3)[0];
+        system.inspect(0.0, &state, &mut names).expect("a state");
+        let is_reported = names.0.iter().any(|name| name == "log_density");
+        let is_emitted = !emitted(description.source).is_empty();
+        assert_eq!(is_emitted, is_reported, "{}", description.name);
+        if is_emitted {
+            self.0.push(description.name);
+        }
+    }
+}
+
+fn name<S: Described + InvariantVolume>() -> &'static str {
+    S::DESCRIPTION.name
+}
+
+#[test]
+fn a_volume_is_emitted_and_reported_where_a_density_is_claimed_and_nowhere_else() {
+    let mut emitted = Emitted::default();
+    visit_all(&mut emitted);
+    assert_eq!(emitted.0, of_each_claimed!(name));
+}
+
+fn vector<S: Described>(values: &[f64]) -> S::Vector {
+    let mut q = S::Vector::zeros();
+    q.as_mut_slice().copy_from_slice(values);
+    q
+}
+
+/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms, with what
+/// `change` adds to the logarithm of the density.
+fn divergence_of<S: Described + InvariantVolume>(change: fn(f64) -> f64) -> f64 {
+    let system = S::with_defaults();
+    let flow = Flow {
+        system: &system,
+        independent: S::INDEPENDENT,
+    };
+    let n = S::DESCRIPTION.coordinates.len();
+    let log_volume = |t: f64, at: &[f64]| {
+        let q = vector::<S>(&at[..n]);
+        let density = system.log_density(t, &q).expect("a density");
+        system.log_volume(t, &q).expect("a volume") + change(density)
+    };
+    let mut random = Random::new(5);
+    let mut largest = 0.0_f64;
+    for _ in 0..5 {
+        let positions = (0..n).map(|_| (0.2, 1.3));
+        let ranges = positions.chain(S::INDEPENDENT.iter().map(|_| (-1.0, 1.0)));
+        let at: Vec<f64> = ranges.map(|(a, b)| random.within(a, b)).collect();
+        let motion = |t: f64, at: &[f64]| flow.motion(t, at);
+        let [sum, terms] = divergence(0.3, &at, motion, log_volume);
+        largest = largest.max(sum.abs() / terms.max(1.0));
+    }
+    largest
+}
+
+fn assert_kept<S: Described + InvariantVolume>() {
+    let divergence = divergence_of::<S>(|_| 0.0);
+    let name = S::DESCRIPTION.name;
+    println!("{name} {divergence:.1e}");
+    // Two differences of eighth order, one in the other.
+    assert!(divergence < 1e-9, "{name}: {divergence:e}");
+}
+
+#[test]
+fn emitted_volumes_are_kept_by_the_emitted_motion() {
+    of_each_claimed!(assert_kept);
+}
+
+#[test]
+fn other_densities_are_not_kept() {
+    for divergence in [
+        divergence_of::<FallingDisk>(|density| density),
+        divergence_of::<NonholonomicParticle>(|density| 2.0 * density),
+        divergence_of::<HelicalCircle>(|density| -density),
+    ] {
+        assert!(divergence > 1e-3, "{divergence:e}");
+    }
+}
+
+fn assert_interpreted<S: Described + InvariantVolume>() {
+    let own = WithVolume::declared(S::DESCRIPTION.source).expect("a volume");
+    let system = S::with_defaults();
+    let volume = own.program.volume.as_ref().expect("functions");
+    assert_eq!(S::INDEPENDENT, volume.independent);
+    assert_eq!(S::IS_SINGLE_VALUED, volume.is_single_valued);
+    let mut random = Random::new(17);
+    for _ in 0..5 {
+        let values = own.configuration(&mut random);
+        let q = vector::<S>(&values);
+        let [density, total] = [own.log_density(0.2, &values), own.log_volume(0.2, &values)];
+        assert_eq!(system.log_density(0.2, &q), Ok(density));
+        assert_eq!(system.log_volume(0.2, &q), Ok(total));
+    }
+}
+
+#[test]
+fn emitted_volumes_are_what_the_interpreter_executes() {
+    assert_interpreted::<BallOnRotatingTable>();
+    assert_interpreted::<HolonomicBeadOnEllipses>();
+    assert_interpreted::<FallingDisk>();
+    assert_interpreted::<MixedDisk>();
+    assert_interpreted::<HelicalCircle>();
+}
+
+/// Differences of `log_density` against those of the entries of `invariant_densities.json` of this system.
+fn compare_densities<S: Described + InvariantVolume>() -> usize {
+    let file = read("invariant_densities");
+    let systems = file["systems"].as_array().expect("systems").iter();
+    let mut compared = 0;
+    for entry in systems.filter(|own| own["system"] == S::DESCRIPTION.name) {
+        let mut system = S::with_defaults();
+        for (k, parameter) in S::DESCRIPTION.parameters.iter().enumerate() {
+            let value = entry["parameters"].get(parameter.name);
+            system.set_parameter(k, value.map_or(system.parameter(k), number));
+        }
+        let points = entry["points"].as_array().expect("points");
+        let densities = points.iter().map(|point| {
+            let q = vector::<S>(&numbers(&point["q"]));
+            let found = system.log_density(0.0, &q).expect("a density");
+            [found, number(&point["g"])]
+        });
+        let densities: Vec<[f64; 2]> = densities.collect();
+        for [found, expected] in &densities[1..] {
+            let [first_found, first_expected] = densities[0];
+            let error = (found - first_found) - (expected - first_expected);
+            assert!(error.abs() < 1e-13, "{}: {error:e}", S::DESCRIPTION.name);
+            compared += 1;
+        }
+    }
+    compared
+}
+
+#[test]
+fn densities_differ_as_the_listed_ones() {
+    assert_eq!(compare_densities::<RollingDisk>(), 2);
+    assert_eq!(compare_densities::<RollingBallEuler>(), 2);
+    assert_eq!(compare_densities::<HolonomicBeadOnEllipses>(), 2);
+}
+
+#[test]
+fn a_stated_density_is_emitted_as_stated() {
+    let density = |y: f64| NonholonomicParticle {}.log_density(0.0, &[0.3, y, -0.7].into());
+    for y in [-2.0_f64, 0.0, 0.6] {
+        let expected = (3.0 * (1.0 + y * y).sqrt()).ln();
+        assert!((density(y).expect("a density") - expected).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn a_density_on_unwrapped_angles_says_so() {
+    const { assert!(!HelicalCircle::IS_SINGLE_VALUED && FallingDisk::IS_SINGLE_VALUED) };
+    let density = |phi: f64| HelicalCircle {}.log_density(0.0, &[phi, 0.3, -0.7].into());
+    let turn =
+        density(1.0 + std::f64::consts::TAU).expect("a density") - density(1.0).expect("a density");
+    assert!((turn + std::f64::consts::TAU / 3.0).abs() < 1e-14, "{turn}");
+}
+
+/// The particle with other claims.
+fn particle(claims: &str) -> String {
+    format!(
+        "Particle {{ coordinates {{ x; y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+            constraints {{ slope: dot(z) = y*dot(x); }} {claims} }}"
+    )
+}
+
+#[test]
+fn what_is_open_or_about_other_things_emits_no_volume() {
+    for claims in [
+        "",
+        "claims { conserved: energy; conserved: dot(y); }",
+        "claims { density = sqrt(1 + y^2)*dot(y)^2; }",
+        "forces { drag: -dot(y)^3*d(y); } claims { assume density = sqrt(1 + y^2); }",
+    ] {
+        assert_eq!(emitted(&particle(claims)), "", "{claims}");
+    }
+    let found = emitted(&particle("claims { density: exact; }"));
+    assert!(found.contains("fn log_density"), "{found}");
+    // Stated alone, without a search.
+    let stated = emitted(&particle("claims { density = sqrt(1 + y^2); }"));
+    assert!(stated.contains("fn log_density"), "{stated}");
+}
+
+/// A ball with its centre of mass off its centre: the density is none of those that are looked for.
+const ROUTH_SPHERE: &str = "RouthSphere {
+    coordinates { x; y; phi; theta in (0, pi); psi; }
+    parameters { m > 0 = 1; I > 0 = 1/2; J > 0 = 1/3; R > 0 = 1; l > 0 = 1/4; }
+    let spin = dot(psi) + cos(theta)*dot(phi);
+    lagrangian = m/2*((dot(x) + l*dot(sin(theta)*sin(phi)))^2
+            + (dot(y) - l*dot(sin(theta)*cos(phi)))^2 + (l*sin(theta)*dot(theta))^2)
+        + I/2*(dot(theta)^2 + sin(theta)^2*dot(phi)^2) + J/2*spin^2;
+    constraints {
+        rolling_x: dot(x) = R*(dot(theta)*sin(phi) - dot(psi)*sin(theta)*cos(phi));
+        rolling_y: dot(y) = -R*(dot(theta)*cos(phi) + dot(psi)*sin(theta)*sin(phi));
+    }
+    claims { density: exact; }
+}";
+
+#[test]
+fn a_density_without_a_formula_is_said_to_emit_nothing() {
+    assert_eq!(emitted(ROUTH_SPHERE), "");
+    let tokens = dalembert_codegen::try_expand(ROUTH_SPHERE.parse().expect("tokens"));
+    let text = tokens.expect("a model").to_string();
+    let words = "G was found in no closed form, so `InvariantVolume` is not implemented";
+    assert!(text.contains(words));
+}
+
+#[test]
+fn dependent_velocities_that_do_not_follow_are_a_fault() {
+    let system = MixedDisk::default();
+    let q = [0.3, 0.4, 0.2, std::f64::consts::FRAC_PI_2].into();
+    assert!(system.log_density(0.0, &q).is_ok());
+    let fault = system.log_volume(0.0, &q);
+    assert!(
+        matches!(fault, Err(Fault::SingularConstraint { constraint: 1, condition }) if condition > 1e15),
+        "{fault:?}"
+    );
+}

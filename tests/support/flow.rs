@@ -1,0 +1,63 @@
+//! The emitted motion of a system on D, in positions and independent velocities.
+
+use dalembert::{Described, StateVector};
+
+use crate::volume::difference;
+
+/// A system with the indices of its independent velocities.
+#[derive(Debug)]
+pub struct Flow<'s, S> {
+    /// The system.
+    pub system: &'s S,
+    /// The independent velocities, in increasing order.
+    pub independent: &'s [usize],
+}
+
+impl<S: Described> Flow<'_, S> {
+    /// The positions and all velocities at `(q, v_ind)`.
+    ///
+    /// # Panics
+    /// Where the other velocities do not follow from the independent ones.
+    pub fn velocities(&self, t: f64, at: &[f64]) -> [S::Vector; 2] {
+        let (positions, velocities) = at.split_at(S::DESCRIPTION.coordinates.len());
+        let [mut q, mut qdot, mut named] = [S::Vector::zeros(); 3];
+        q.as_mut_slice().copy_from_slice(positions);
+        for (&i, &v) in self.independent.iter().zip(velocities) {
+            qdot.as_mut_slice()[i] = v;
+            named.as_mut_slice()[i] = 1.0;
+        }
+        let completed = self.system.complete_velocity(t, &q, &qdot, &named);
+        [q, completed.expect("velocities that follow")]
+    }
+
+    /// The rates of `(q, v_ind)`: that of `v_ind` is the derivative of the velocity of the emitted momenta along the
+    /// emitted field.
+    ///
+    /// # Panics
+    /// At singular states.
+    pub fn motion(&self, t: f64, at: &[f64]) -> Vec<f64> {
+        let [q, qdot] = self.velocities(t, at);
+        let state = self.system.state_unchecked(t, &q, &qdot).expect("a state");
+        let mut rate = S::State::zeros();
+        self.system.rate(t, &state, &mut rate).expect("a rate");
+        // Fast motion is followed for a short time.
+        let size = rate
+            .as_slice()
+            .iter()
+            .fold(1.0, |size: f64, own| size.max(own.abs()));
+        let velocity = |shift: f64, i: usize| {
+            let mut moved = state;
+            let components = moved.as_mut_slice().iter_mut().zip(rate.as_slice());
+            components.for_each(|(component, rate)| *component += shift * rate);
+            let velocity = self.system.velocity(t + shift, &moved);
+            velocity.expect("a velocity").as_slice()[i]
+        };
+        let acceleration = |&i: &usize| size * difference(|shift| velocity(shift / size, i));
+        let accelerations = self.independent.iter().map(acceleration);
+        qdot.as_slice()
+            .iter()
+            .copied()
+            .chain(accelerations)
+            .collect()
+    }
+}

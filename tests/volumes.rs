@@ -1,0 +1,324 @@
+//! Invariant volumes `exp(G) mu_C`: the densities that are found and lowered, against listed ones and against the
+//! divergence of the motion by differences.
+
+use dalembert::{Described, Scene};
+use dalembert_codegen::claims::{Potential, Term, Volume};
+use dalembert_codegen::model::Model;
+use dalembert_codegen::program::{Guard, interpret::interpret, verify::verify};
+use dalembert_expr::Rational;
+use dalembert_tests::reference::read;
+use dalembert_tests::sampling::{Random, Visitor, visit_all};
+use dalembert_tests::systems::MixedDisk;
+use dalembert_tests::verdict::declaration;
+use dalembert_tests::volume::{WithVolume, determinant, difference};
+use serde_json::Value;
+
+/// Every system of the verdicts, with its declaration.
+fn systems() -> Vec<(Value, String)> {
+    let file = read("verdicts_visible");
+    let systems = file["systems"].as_array().expect("systems");
+    let with_source = |system: &Value| (system.clone(), declaration(system));
+    systems.iter().map(with_source).collect()
+}
+
+/// The declaration of the system of this name.
+fn source_of(name: &str) -> String {
+    let found = systems().into_iter().find(|(own, _)| own["name"] == name);
+    found.expect("a system of this name").1
+}
+
+/// The declaration with the listed `G` as an output; `det(m)` becomes a parameter.
+fn with_listed(source: &str, listed: &str) -> String {
+    let formula = listed
+        .replace("det(m)", "mass_determinant")
+        .replace("**", "^");
+    let source = source.replacen(
+        "parameters { ",
+        "parameters { mass_determinant > 0 = 1; ",
+        1,
+    );
+    let body = source.trim_end().strip_suffix('}').expect("a declaration");
+    format!("{body} outputs {{ listed: {formula}; }} }}")
+}
+
+/// The listed `G`, evaluated as an expression with `det m^{ab}` by elimination.
+fn listed(system: &WithVolume, q: &[f64]) -> f64 {
+    let [_, mass] = system.determinants(0.0, q);
+    let output = system.model.outputs[0].value;
+    let parameter = system.model.parameters[0].symbol;
+    let value = |symbol| {
+        let own = system
+            .model
+            .coordinates
+            .iter()
+            .position(|own| own.q == symbol);
+        match own {
+            Some(i) => q[i],
+            None if symbol == parameter => mass,
+            None => f64::NAN,
+        }
+    };
+    system.model.pool.eval(&[output], &value)[0]
+}
+
+#[test]
+fn densities_are_the_listed_ones() {
+    let mut compared = 0;
+    for (system, source) in systems() {
+        let name = &system["name"];
+        let Some(formula) = system["density"]["g"].as_str() else {
+            assert_eq!(
+                WithVolume::declared(&source).map(|own| own.volume),
+                None,
+                "{name}"
+            );
+            continue;
+        };
+        let Some(own) = WithVolume::declared(&with_listed(&source, formula)) else {
+            assert_ne!(system["density"]["valid"], "global", "{name}");
+            continue;
+        };
+        assert_eq!(
+            own.volume.is_single_valued,
+            system["density"]["valid"] == "global",
+            "{name}"
+        );
+        let mut random = Random::new(11);
+        // What D cannot tell apart, densities may multiply by a function of.
+        let is_unique = own.exactness.local.rank == own.model.coordinates.len();
+        for _ in 0..5 {
+            let q = own.configuration(&mut random);
+            let (found, expected) = if is_unique {
+                let other = own.configuration(&mut random);
+                (
+                    own.log_density(0.0, &q) - own.log_density(0.0, &other),
+                    listed(&own, &q) - listed(&own, &other),
+                )
+            } else {
+                let independent: Vec<f64> = q.iter().map(|_| random.within(-1.0, 1.0)).collect();
+                let qdot = own.velocities(0.0, &q, &independent);
+                let along = |shift: f64| -> Vec<f64> {
+                    q.iter().zip(&qdot).map(|(x, v)| x + shift * v).collect()
+                };
+                (
+                    difference(|shift| own.log_density(0.0, &along(shift))),
+                    difference(|shift| listed(&own, &along(shift))),
+                )
+            };
+            assert!(
+                (found - expected).abs() < 1e-10,
+                "{name}: {found} for {expected}"
+            );
+            compared += 1;
+        }
+    }
+    assert!(compared >= 5 * 13, "{compared}");
+}
+
+/// The largest relative divergence of the motion at random states with respect to a volume.
+fn divergence(system: &WithVolume, states: usize, log_volume: impl Fn(f64, &[f64]) -> f64) -> f64 {
+    let mut random = Random::new(5);
+    let count = system.model.coordinates.len() - system.volume.dependent.len();
+    let at = |_| {
+        let mut at = system.configuration(&mut random);
+        at.extend((0..count).map(|_| random.within(-1.0, 1.0)));
+        let [divergence, terms] = system.divergence(0.3, &at, &log_volume);
+        divergence.abs() / terms.max(1.0)
+    };
+    (0..states).map(at).fold(0.0, f64::max)
+}
+
+fn own_divergence(system: &WithVolume, states: usize) -> f64 {
+    divergence(system, states, |t, at| system.log_volume(t, at))
+}
+
+/// What differences of eighth order leave of 0.
+const KEPT: f64 = 1e-10;
+
+#[test]
+fn volumes_are_kept() {
+    let mut kept = 0;
+    for (system, source) in systems() {
+        let Some(own) = WithVolume::declared(&source) else {
+            continue;
+        };
+        let functions = own.program.volume.as_ref().expect("functions");
+        assert_eq!(verify(&functions.log_density), Ok(()));
+        assert_eq!(verify(&functions.log_volume), Ok(()));
+        let divergence = own_divergence(&own, 6);
+        assert!(divergence < KEPT, "{}: {divergence:e}", system["name"]);
+        kept += 1;
+    }
+    assert!(kept >= 13, "{kept}");
+}
+
+/// Models as they are shipped, and systems with affine constraints, time and forces.
+#[test]
+fn volumes_of_models_are_kept() {
+    struct Kept(Vec<&'static str>);
+    impl Visitor for Kept {
+        fn visit<S: Described + Scene>(&mut self, _: S) {
+            let description = S::DESCRIPTION;
+            // Long chains show nothing that short ones do not.
+            if description.coordinates.len() > 6 {
+                return;
+            }
+            if let Some(own) = WithVolume::declared(description.source) {
+                let divergence = own_divergence(&own, 4);
+                assert!(divergence < KEPT, "{}: {divergence:e}", description.name);
+                self.0.push(description.name);
+            }
+        }
+    }
+    let mut kept = Kept(Vec::new());
+    visit_all(&mut kept);
+    for name in [
+        "ball_on_rotating_table",
+        "chain4",
+        "holonomic_bead_on_ellipses",
+        "magnetic_disk",
+        "rolling_disk",
+        "two_wheels_rod",
+    ] {
+        assert!(kept.0.contains(&name), "{name} of {:?}", kept.0);
+    }
+    for name in ["chaplygin_sleigh", "damped_sleigh"] {
+        assert!(!kept.0.contains(&name), "{name}");
+    }
+}
+
+/// A particle whose mass grows, on a plane that is lifted: everything depends on time.
+const GROWING: &str = "Growing {
+    coordinates { x; y; z; }
+    parameters { a = 1/3; }
+    lagrangian = (2 + t^2)/2*(dot(x)^2 + dot(y)^2 + dot(z)^2);
+    constraints { lifted: (1 + t^4)*(d(z) - y*d(x)) - a*t*y*d(t) = 0; }
+}";
+
+#[test]
+fn volumes_that_depend_on_time_are_kept() {
+    let own = WithVolume::declared(GROWING).expect("a volume");
+    assert!(own_divergence(&own, 6) < KEPT);
+    let q = [0.3, 0.7, -0.2];
+    assert!((own.log_density(0.2, &q) - own.log_density(1.2, &q)).abs() > 0.1);
+    let frozen = divergence(&own, 6, |_, at| own.log_volume(0.3, at));
+    assert!(frozen > 1e-3, "{frozen:e}");
+}
+
+/// The thesis has a factor n at `theta`; densities with it are not kept.
+#[test]
+fn a_factor_n_is_seen() {
+    let mut seen = 0;
+    for (system, source) in systems() {
+        let scaled = WithVolume::with(&source, |model, _, found| {
+            let n = model.coordinates.len() as i64;
+            let factor = model.pool.number(Rational::from(n));
+            let mut volume = found?;
+            for (coefficient, _) in &mut volume.potential.terms {
+                *coefficient = model.pool.mul(*coefficient, factor);
+            }
+            Some(volume)
+        });
+        let Some(own) = scaled.filter(|own| !own.volume.potential.terms.is_empty()) else {
+            continue;
+        };
+        let divergence = own_divergence(&own, 6);
+        assert!(divergence > 1e-3, "{}: {divergence:e}", system["name"]);
+        seen += 1;
+    }
+    assert!(seen >= 7, "{seen}");
+}
+
+fn columns(forms: &[Vec<f64>], columns: &[usize]) -> Vec<Vec<f64>> {
+    let row = |form: &Vec<f64>| columns.iter().map(|&j| form[j]).collect();
+    forms.iter().map(row).collect()
+}
+
+#[test]
+fn mixed_constraints_have_the_same_volume() {
+    let own = WithVolume::declared(MixedDisk::DESCRIPTION.source).expect("a volume");
+    assert_eq!(own.volume.dependent, [1, 2]);
+    assert!(own_divergence(&own, 6) < KEPT);
+    let without_minor =
+        |t: f64, at: &[f64]| own.log_density(t, at) + own.determinants(t, &at[..4])[0].ln();
+    assert!(divergence(&own, 6, without_minor) > 1e-3);
+    // mu_C is divided by the determinant of the mixture, and the density of the disk itself is constant.
+    let mixture = |q: &[f64]| ((2.0 + q[0] * q[0]) * (1.0 + q[1] * q[1]) - q[1] * q[2].sin()).ln();
+    let mut random = Random::new(8);
+    let reference = own.configuration(&mut random);
+    for _ in 0..5 {
+        let q = own.configuration(&mut random);
+        let found = own.log_density(0.0, &q) - own.log_density(0.0, &reference);
+        let expected = mixture(&q) - mixture(&reference);
+        assert!((found - expected).abs() < 1e-12, "{found} for {expected}");
+    }
+}
+
+/// A volume of all kinds of terms; not an invariant one.
+fn of_all_kinds(model: &mut Model, dependent: &[usize]) -> Volume {
+    let [x, y] = [0, 1].map(|i| model.pool.variable(model.coordinates[i].q));
+    let radius = model.pool.variable(model.parameters[1].symbol);
+    let negative = model.pool.neg(x);
+    let coefficient = |model: &mut Model, n, d| model.pool.number(Rational::new(n, d));
+    let terms = vec![
+        (coefficient(model, 1, 2), Term::MassDeterminant),
+        (coefficient(model, -3, 1), Term::MetricDeterminant),
+        (coefficient(model, 2, 7), Term::DependentDeterminant),
+        (radius, Term::Logarithm(negative)),
+        (coefficient(model, 5, 1), Term::Plain(y)),
+    ];
+    Volume {
+        potential: Potential { terms },
+        minor: vec![1, 2],
+        dependent: dependent.to_vec(),
+        is_single_valued: true,
+    }
+}
+
+#[test]
+fn every_term_is_lowered() {
+    for dependent in [[0, 1], [0, 2], [1, 2]] {
+        let choose = |model: &mut Model, _: &_, _| Some(of_all_kinds(model, &dependent));
+        let own =
+            WithVolume::with(MixedDisk::DESCRIPTION.source, choose).expect("the volume given");
+        let mut random = Random::new(9);
+        let q = own.configuration(&mut random);
+        let [metric, mass] = own.determinants(0.0, &q);
+        let forms = own.forms(0.0, &q);
+        let minor = |chosen: &[usize]| determinant(columns(&forms, chosen)).abs().ln();
+        let density = 0.5 * mass.ln() - 3.0 * metric.ln()
+            + 2.0 / 7.0 * minor(&[1, 2])
+            + 0.5 * q[0].abs().ln()
+            + 5.0 * q[1];
+        let volume = density + metric.ln() - minor(&dependent);
+        assert!((own.log_density(0.0, &q) - density).abs() < 1e-12);
+        assert!((own.log_volume(0.0, &q) - volume).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_singular_minor_is_a_fault() {
+    let own = WithVolume::declared(MixedDisk::DESCRIPTION.source).expect("a volume");
+    let functions = own.program.volume.as_ref().expect("functions");
+    // Where the disk points along y, its velocity along x and its spin do not say how it rolls.
+    let q = [0.3, 0.4, 0.2, std::f64::consts::FRAC_PI_2];
+    let at = own.input(0.0, &q, &[], &[]);
+    assert!(interpret(&functions.log_density, &at).is_ok());
+    let fault = interpret(&functions.log_volume, &at);
+    assert!(
+        matches!(fault, Err(Guard::Constraint { constraint: 1, .. })),
+        "{fault:?}"
+    );
+}
+
+#[test]
+fn everything_that_is_reported_includes_the_density() {
+    let own = WithVolume::declared(&source_of("falling_disk")).expect("a volume");
+    let q = own.configuration(&mut Random::new(4));
+    let zero = vec![0.0; q.len()];
+    let values = own.run(&own.program.geometry.function, 0.0, &q, &zero, &zero);
+    let [density] = own.reported("log_density", &values) else {
+        panic!("no density");
+    };
+    assert_eq!(*density, own.log_density(0.0, &q));
+}
