@@ -61,12 +61,36 @@ pub fn decide_local(pool: &Pool, problem: &Problem, seed: u64) -> Result<Local, 
     decide_local_where(pool, problem, seed, &[])
 }
 
+/// As [`decide_local`], in the frame of D whose dependent velocities are given: the verdict and the ranks are the same,
+/// brackets and obstruction are those of this frame.
+///
+/// # Errors
+/// [`Undecided`]; that no regular point was found also where these velocities do not depend on the others.
+pub fn decide_local_in(
+    pool: &Pool,
+    problem: &Problem,
+    dependent: &[usize],
+    seed: u64,
+) -> Result<Local, Undecided> {
+    decide_local_from(pool, problem, seed, &[], Some(dependent))
+}
+
 /// As [`decide_local`], under conditions on symbols.
 pub(super) fn decide_local_where(
     pool: &Pool,
     problem: &Problem,
     seed: u64,
     conditions: &Conditions,
+) -> Result<Local, Undecided> {
+    decide_local_from(pool, problem, seed, conditions, None)
+}
+
+fn decide_local_from(
+    pool: &Pool,
+    problem: &Problem,
+    seed: u64,
+    conditions: &Conditions,
+    dependent: Option<&[usize]>,
 ) -> Result<Local, Undecided> {
     if problem
         .friction
@@ -84,7 +108,8 @@ pub(super) fn decide_local_where(
         let (sample, prime) = points
             .find(|point| {
                 fix(pool, point, conditions)?;
-                sample(pool, problem, point).map(|sample| (sample, point.modulus().prime()))
+                let sample = sample(pool, problem, point, dependent)?;
+                Some((sample, point.modulus().prime()))
             })
             .ok_or(Undecided::Degenerate)?;
         let sample = sample.map_err(Undecided::Depth)?;
@@ -156,7 +181,8 @@ pub(super) fn screen(
     points
         .find(|point| {
             left -= 1;
-            let found = fix(pool, point, conditions).and_then(|()| sample(pool, problem, point));
+            let found =
+                fix(pool, point, conditions).and_then(|()| sample(pool, problem, point, None));
             match found {
                 None if left > 0 => None,
                 other => Some(other),
@@ -173,6 +199,7 @@ fn sample(
     pool: &Pool,
     problem: &Problem,
     point: &mut ModularPoint,
+    dependent: Option<&[usize]>,
 ) -> Option<Result<(Hull, Vec<usize>), usize>> {
     let field = point.modulus();
     let variables = problem.variables.len();
@@ -184,7 +211,7 @@ fn sample(
             return Some(Err(order - 1));
         };
         let jets = Jets::new(field, &space);
-        let frame = frame(pool, problem, &jets, point, None)?;
+        let frame = frame(pool, problem, &jets, point, dependent)?;
         let hull = close(jets.lower(), &problem.variables, &frame.demands);
         if hull.is_closed {
             return Some(Ok((hull, frame.dependent)));

@@ -1,7 +1,7 @@
 //! Why there is no density, in real numbers: a bracket that is a combination of others as a vector field, and the
 //! demand that is not.
 
-use dalembert_expr::{ExpansionPoint, JetSpace, Jets, Pool};
+use dalembert_expr::{ExpansionPoint, JetSpace, Jets, Pool, SymbolId};
 
 use super::closure::{Hull, Origin, bracket};
 use super::dynamics::Number;
@@ -43,8 +43,25 @@ pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Opti
     })
 }
 
-/// The obstruction at a point.
-pub(super) fn obstruction_at(
+impl Obstruction {
+    /// The obstruction where coordinates and parameters have these values; `None` if there is none, or the point is
+    /// singular.
+    pub fn at(
+        model: &Model,
+        problem: &Problem,
+        local: &Local,
+        values: &[(SymbolId, f64)],
+    ) -> Option<Self> {
+        let mut sample = Sample::default();
+        for (symbol, value) in values {
+            let name = model.pool.symbol_name(*symbol).to_owned();
+            sample.push(name, *symbol, *value);
+        }
+        obstruction_at(model, problem, local, sample)
+    }
+}
+
+fn obstruction_at(
     model: &Model,
     problem: &Problem,
     local: &Local,
