@@ -8,8 +8,11 @@ struct LanguageReference;
 
 pub mod allocation;
 pub mod command;
+pub mod curvature;
+pub mod flow;
 pub mod reference;
 pub mod sampling;
+pub mod symbolic;
 pub mod systems;
 pub mod verdict;
 

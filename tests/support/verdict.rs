@@ -1,6 +1,199 @@
-//! Systems of `reference/verdicts_visible.json` as declarations.
+//! Verdicts on densities: systems of `reference/verdicts_visible.json` as declarations, and models with their verdict.
 
+use dalembert_codegen::claims::{
+    Exactness, Global, Problem, Undecided, Verdict, decide, examine, potential_text,
+};
+use dalembert_codegen::mechanics::{self, Derivation};
+use dalembert_codegen::model::{self, Model};
+use dalembert_codegen::{spec, try_expand};
+use dalembert_expr::SymbolId;
 use serde_json::Value;
+
+use crate::reference::{number, read};
+
+/// The systems of `reference/verdicts_visible.json`.
+///
+/// # Panics
+/// If the file has not the documented form.
+pub fn visible_systems() -> Vec<Value> {
+    let file = read("verdicts_visible");
+    let systems = file["systems"].as_array().expect("systems");
+    assert!(systems.len() >= 19);
+    systems.clone()
+}
+
+/// The system of this name.
+///
+/// # Panics
+/// If there is none.
+pub fn visible_system(name: &str) -> Value {
+    let mut systems = visible_systems().into_iter();
+    systems.find(|own| own["name"] == name).expect(name)
+}
+
+/// A model with everything that is decided about densities of its configuration.
+#[derive(Debug)]
+pub struct Decided {
+    /// The model.
+    pub model: Model,
+    /// Its equations.
+    pub derivation: Derivation,
+    /// What a density depends on.
+    pub problem: Problem,
+    /// The verdict.
+    pub exactness: Result<Exactness, Undecided>,
+}
+
+/// The verdict in a word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existence {
+    /// A density exists on all of Q.
+    Global,
+    /// A density exists locally, and none on all of Q.
+    Local,
+    /// A density exists locally; on all of Q, the question stays open.
+    LocalAtLeast,
+    /// No density exists.
+    None,
+    /// The question stays open.
+    Open,
+}
+
+impl Decided {
+    /// The model of a declaration, decided at the points of a seed.
+    ///
+    /// # Panics
+    /// If the declaration is refused.
+    pub fn with_seed(source: &str, seed: u64) -> Self {
+        let spec = spec::parse(source.parse().expect("tokens"))
+            .unwrap_or_else(|refused| panic!("{source}\n{refused:?}"));
+        let mut model =
+            model::check(&spec).unwrap_or_else(|refused| panic!("{source}\n{refused:?}"));
+        let derivation = mechanics::derive(&mut model);
+        let problem = Problem::of(&mut model, &derivation);
+        let exactness = decide(&mut model, &problem, seed);
+        Self {
+            model,
+            derivation,
+            problem,
+            exactness,
+        }
+    }
+
+    /// The model of a declaration, decided.
+    ///
+    /// # Panics
+    /// If the declaration is refused.
+    pub fn of(source: &str) -> Self {
+        Self::with_seed(source, 1)
+    }
+
+    /// The verdict.
+    ///
+    /// # Panics
+    /// If the question stays open.
+    pub fn exactness(&self) -> &Exactness {
+        self.exactness.as_ref().expect("a verdict")
+    }
+
+    /// The verdict in a word.
+    pub fn existence(&self) -> Existence {
+        match &self.exactness {
+            Err(_) => Existence::Open,
+            Ok(found) => match &found.global {
+                None => Existence::None,
+                Some(Global::Exists) => Existence::Global,
+                Some(Global::Many { .. }) => Existence::Local,
+                Some(Global::Undecided(_)) => Existence::LocalAtLeast,
+            },
+        }
+    }
+
+    /// The logarithm of the density, where it was found in closed form.
+    pub fn potential(&self) -> Option<String> {
+        let (potential, _) = self.exactness.as_ref().ok()?.density.as_ref()?;
+        Some(potential_text(&self.model.pool, potential))
+    }
+
+    /// The symbol of a coordinate or parameter.
+    ///
+    /// # Panics
+    /// If there is none of this name.
+    pub fn symbol(&self, name: &str) -> SymbolId {
+        let coordinates = self.model.coordinates.iter().map(|own| (&own.name, own.q));
+        let parameters = self
+            .model
+            .parameters
+            .iter()
+            .map(|own| (&own.name, own.symbol));
+        let mut all = coordinates.chain(parameters);
+        let found = all.find(|(own, _)| own.display == name);
+        found.unwrap_or_else(|| panic!("no `{name}`")).1
+    }
+
+    /// Parameters at their defaults.
+    ///
+    /// # Panics
+    /// If one has no default.
+    pub fn defaults(&self) -> Vec<(SymbolId, f64)> {
+        let pool = &self.model.pool;
+        let value = |own: &model::Parameter| {
+            let default = own.default.expect("a default");
+            (own.symbol, pool.eval(&[default], &|_| 0.0)[0])
+        };
+        self.model.parameters.iter().map(value).collect()
+    }
+
+    /// The point at which the file gives the values of a system: coordinates and parameters.
+    ///
+    /// # Panics
+    /// If the file has not the documented form.
+    pub fn golden_point(&self, system: &Value) -> Vec<(SymbolId, f64)> {
+        let golden = &system["golden"];
+        ["point", "params"]
+            .iter()
+            .flat_map(|key| golden[key].as_object().expect("values"))
+            .map(|(name, value)| (self.symbol(name), number(value)))
+            .collect()
+    }
+
+    /// The positions of the coordinates whose velocities the file takes as dependent.
+    ///
+    /// # Panics
+    /// If the file has not the documented form.
+    pub fn golden_dependent(&self, system: &Value) -> Vec<usize> {
+        let names = system["golden"]["dependent"].as_array().expect("names");
+        let position = |name: &Value| {
+            let mut coordinates = self.model.coordinates.iter();
+            coordinates
+                .position(|own| own.name.display == *name)
+                .expect("a coordinate")
+        };
+        names.iter().map(position).collect()
+    }
+}
+
+/// The messages of a declaration that is refused.
+///
+/// # Panics
+/// If it is accepted.
+pub fn refusal(source: &str) -> Vec<String> {
+    let refused = try_expand(source.parse().expect("tokens")).expect_err(source);
+    refused.iter().map(|own| own.message().to_owned()).collect()
+}
+
+/// The verdict on one claim, as a user is told it.
+///
+/// # Panics
+/// If the declaration is refused for another reason.
+pub fn verdict_on(source: &str, claim: &str) -> Verdict {
+    let body = source.trim_end().strip_suffix('}').expect("a body");
+    let source = format!("{body} claims {{ {claim}; }} }}");
+    let spec = spec::parse(source.parse().expect("tokens")).expect(&source);
+    let mut model = model::check(&spec).expect(&source);
+    let derivation = mechanics::derive(&mut model);
+    examine(&mut model, &derivation).remove(0).verdict
+}
 
 /// The body of a `model!`: the system's coordinates, parameters, Lagrangian and constraints.
 ///
