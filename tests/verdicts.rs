@@ -7,7 +7,8 @@ use dalembert_expr::{ExprId, Function, Pool, Rational, Verdict};
 use dalembert_tests::curvature::Curved;
 use dalembert_tests::reference::{number, numbers};
 use dalembert_tests::symbolic::Geometry;
-use dalembert_tests::verdict::{Decided, Existence, declaration, visible_systems};
+use dalembert_tests::verdict::{Decided, Existence};
+use dalembert_tests::visible::{declaration, visible_systems};
 use serde_json::Value;
 
 /// Every system of the file with its declaration, decided.

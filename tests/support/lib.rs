@@ -15,6 +15,7 @@ pub mod sampling;
 pub mod symbolic;
 pub mod systems;
 pub mod verdict;
+pub mod visible;
 
 /// The examples of the README, compiled and run.
 #[cfg(doctest)]

@@ -1,7 +1,7 @@
-//! Verdicts on densities: systems of `reference/verdicts_visible.json` as declarations, and models with their verdict.
+//! Models with the verdict on their densities.
 
 use dalembert_codegen::claims::{
-    Exactness, Global, Problem, Undecided, Verdict, decide, examine, potential_text,
+    Exactness, Geometry, Global, Problem, Term, Undecided, Verdict, decide, examine, potential_text,
 };
 use dalembert_codegen::mechanics::{self, Derivation};
 use dalembert_codegen::model::{self, Model};
@@ -9,27 +9,7 @@ use dalembert_codegen::{spec, try_expand};
 use dalembert_expr::SymbolId;
 use serde_json::Value;
 
-use crate::reference::{number, read};
-
-/// The systems of `reference/verdicts_visible.json`.
-///
-/// # Panics
-/// If the file has not the documented form.
-pub fn visible_systems() -> Vec<Value> {
-    let file = read("verdicts_visible");
-    let systems = file["systems"].as_array().expect("systems");
-    assert!(systems.len() >= 19);
-    systems.clone()
-}
-
-/// The system of this name.
-///
-/// # Panics
-/// If there is none.
-pub fn visible_system(name: &str) -> Value {
-    let mut systems = visible_systems().into_iter();
-    systems.find(|own| own["name"] == name).expect(name)
-}
+use crate::reference::number;
 
 /// A model with everything that is decided about densities of its configuration.
 #[derive(Debug)]
@@ -115,6 +95,25 @@ impl Decided {
         Some(potential_text(&self.model.pool, potential))
     }
 
+    /// The value of `G` at a point with its geometry, where it was found in closed form.
+    pub fn log_density(&self, values: &[(SymbolId, f64)], geometry: &Geometry) -> Option<f64> {
+        let (potential, _) = self.exactness.as_ref().ok()?.density.as_ref()?;
+        let value = |symbol: SymbolId| {
+            let found = values.iter().find(|(own, _)| *own == symbol);
+            found.map_or(f64::NAN, |(_, value)| *value)
+        };
+        let number = |id| self.model.pool.eval(&[id], &value)[0];
+        let term = |term: &Term| match term {
+            Term::MassDeterminant => geometry.mass_determinant.ln(),
+            Term::MetricDeterminant => geometry.metric_determinant.ln(),
+            Term::DependentDeterminant => geometry.dependent_determinant.abs().ln(),
+            Term::Logarithm(f) => number(*f).abs().ln(),
+            Term::Plain(f) => number(*f),
+        };
+        let terms = potential.terms.iter();
+        Some(terms.map(|(k, own)| number(*k) * term(own)).sum())
+    }
+
     /// The symbol of a coordinate or parameter.
     ///
     /// # Panics
@@ -193,59 +192,4 @@ pub fn verdict_on(source: &str, claim: &str) -> Verdict {
     let mut model = model::check(&spec).expect(&source);
     let derivation = mechanics::derive(&mut model);
     examine(&mut model, &derivation).remove(0).verdict
-}
-
-/// The body of a `model!`: the system's coordinates, parameters, Lagrangian and constraints.
-///
-/// # Panics
-/// If the file has not the documented form.
-pub fn declaration(system: &Value) -> String {
-    let list = |key: &str| system[key].as_array().expect("a list");
-    let text = |value: &Value| value.as_str().expect("a text").to_owned();
-    let mut velocities = Vec::new();
-    let mut coordinates = String::new();
-    for coordinate in list("coordinates") {
-        let name = text(&coordinate["name"]);
-        let domain = text(&coordinate["domain"]);
-        coordinates += &match domain.as_str() {
-            "R" => format!("{name}; "),
-            "S1" => format!("{name}: angle; "),
-            interval => format!("{name} in {interval}; "),
-        };
-        velocities.push(name);
-    }
-    let mut parameters = String::new();
-    for parameter in list("params") {
-        let assumption = if parameter["positive"] == Value::Bool(true) {
-            " > 0"
-        } else {
-            ""
-        };
-        let (name, sample) = (text(&parameter["name"]), text(&parameter["sample"]));
-        parameters += &format!("{name}{assumption} = {sample}; ");
-    }
-    let translate = |formula: &str| {
-        let mut formula = formula.replace("**", "^");
-        for name in &velocities {
-            formula = formula.replace(&format!("{name}_dot"), &format!("dot({name})"));
-        }
-        formula
-    };
-    let mut constraints = String::new();
-    for (a, form) in list("eta").iter().enumerate() {
-        let terms: Vec<String> = form
-            .as_array()
-            .expect("a form")
-            .iter()
-            .zip(&velocities)
-            .map(|(entry, name)| format!("({})*d({name})", translate(&text(entry))))
-            .collect();
-        constraints += &format!("c{}: {} = 0; ", a + 1, terms.join(" + "));
-    }
-    format!(
-        "Sample {{ coordinates {{ {coordinates}}} parameters {{ {parameters}}} lagrangian = {} - ({}); \
-         constraints {{ {constraints}}} }}",
-        translate(&text(&system["kinetic"])),
-        translate(&text(&system["potential"])),
-    )
 }
