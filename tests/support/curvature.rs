@@ -197,3 +197,27 @@ pub fn solve(matrix: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     }
     (0..n).map(|i| rows[i][n] / rows[i][i]).collect()
 }
+
+/// The determinant, by elimination with pivots.
+pub fn determinant(matrix: &[Vec<f64>]) -> f64 {
+    let mut rows = matrix.to_vec();
+    let mut product = 1.0;
+    for step in 0..rows.len() {
+        let pivot = (step..rows.len())
+            .max_by(|a, b| rows[*a][step].abs().total_cmp(&rows[*b][step].abs()))
+            .unwrap_or(step);
+        if pivot != step {
+            rows.swap(step, pivot);
+            product = -product;
+        }
+        let pivot = rows[step].clone();
+        product *= pivot[step];
+        for row in &mut rows[step + 1..] {
+            let factor = row[step] / pivot[step];
+            row.iter_mut()
+                .zip(&pivot)
+                .for_each(|(own, pivot)| *own -= factor * pivot);
+        }
+    }
+    product
+}

@@ -1,6 +1,6 @@
 //! The divergence of the motion on D with respect to `mu_C`, by differences in the coordinates `(q, v_ind)`.
 
-use dalembert_codegen::claims::{Dynamics, Geometry, geometry_at};
+use dalembert_codegen::claims::{Geometry, geometry_at};
 use dalembert_expr::{RealPoint, SymbolId};
 
 use crate::verdict::Decided;
@@ -12,7 +12,6 @@ const STEP: f64 = 1e-3;
 #[derive(Debug)]
 pub struct Flow<'d> {
     decided: &'d Decided,
-    dynamics: Dynamics,
     parameters: Vec<(SymbolId, f64)>,
     dependent: Vec<usize>,
 }
@@ -29,16 +28,10 @@ pub struct State {
 }
 
 impl<'d> Flow<'d> {
-    /// The flow of a model, with the equations of the same model.
-    pub fn new(
-        decided: &'d Decided,
-        dynamics: Dynamics,
-        parameters: &[(SymbolId, f64)],
-        dependent: &[usize],
-    ) -> Self {
+    /// The flow of a model.
+    pub fn new(decided: &'d Decided, parameters: &[(SymbolId, f64)], dependent: &[usize]) -> Self {
         Self {
             decided,
-            dynamics,
             parameters: parameters.to_vec(),
             dependent: dependent.to_vec(),
         }
@@ -60,6 +53,7 @@ impl<'d> Flow<'d> {
             point.set(model.coordinates[i].qdot, *v);
         }
         let motion = self
+            .decided
             .dynamics
             .motion(&model.pool, &mut point, Some(&self.dependent))
             .expect("a regular state");

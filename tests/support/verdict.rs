@@ -1,7 +1,8 @@
 //! Models with the verdict on their densities.
 
 use dalembert_codegen::claims::{
-    Exactness, Geometry, Global, Problem, Term, Undecided, Verdict, decide, examine, potential_text,
+    Dynamics, Exactness, Geometry, Global, Problem, Term, Undecided, Verdict, decide, examine,
+    geometry_at, potential_text,
 };
 use dalembert_codegen::mechanics::{self, Derivation};
 use dalembert_codegen::model::{self, Model};
@@ -18,6 +19,8 @@ pub struct Decided {
     pub model: Model,
     /// Its equations.
     pub derivation: Derivation,
+    /// The motion on D.
+    pub dynamics: Dynamics,
     /// What a density depends on.
     pub problem: Problem,
     /// The verdict.
@@ -51,10 +54,12 @@ impl Decided {
             model::check(&spec).unwrap_or_else(|refused| panic!("{source}\n{refused:?}"));
         let derivation = mechanics::derive(&mut model);
         let problem = Problem::of(&mut model, &derivation);
+        let dynamics = Dynamics::of(&mut model, &derivation);
         let exactness = decide(&mut model, &problem, seed);
         Self {
             model,
             derivation,
+            dynamics,
             problem,
             exactness,
         }
@@ -112,6 +117,12 @@ impl Decided {
         };
         let terms = potential.terms.iter();
         Some(terms.map(|(k, own)| number(*k) * term(own)).sum())
+    }
+
+    /// As [`Decided::log_density`], with the geometry of the point.
+    pub fn log_density_at(&self, values: &[(SymbolId, f64)]) -> Option<f64> {
+        let geometry = geometry_at(&self.model.pool, &self.problem, values, None)?;
+        self.log_density(values, &geometry)
     }
 
     /// The symbol of a coordinate or parameter.
