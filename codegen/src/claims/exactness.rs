@@ -8,8 +8,9 @@ use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, Sample
 use super::closure::{Hull, close};
 use super::frame::frame;
 use super::global::{self, Global};
-use super::potential::{Candidates, Certified, Potential, certify, fit};
+use super::potential::{Allowed, Candidates, Certified, Potential, certify, fit};
 use super::problem::Problem;
+use super::regularity;
 use super::undecided::Undecided;
 use crate::model::Model;
 
@@ -51,6 +52,13 @@ pub struct Local {
     pub primes: Vec<u64>,
     pub(super) hull: Hull,
     pub(super) dependent: Vec<usize>,
+}
+
+impl Local {
+    /// The dependent velocities of the frame whose brackets were taken.
+    pub fn dependent(&self) -> &[usize] {
+        &self.dependent
+    }
 }
 
 /// Decides whether a local density exists.
@@ -258,24 +266,40 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         });
     }
     let candidates = Candidates::of(&mut model.pool, problem, &model.coordinates);
-    for many_valued in [false, true] {
-        let found = fit(&mut model.pool, problem, &candidates, many_valued, seed);
+    let mut singular = None;
+    for allowed in [Allowed::Regular, Allowed::SingleValued, Allowed::All] {
+        let found = fit(&mut model.pool, problem, &candidates, allowed, seed);
         let Some(found) = found else {
             continue;
         };
-        if let Some(certified) = certify(&model.pool, problem, &found, seed)? {
-            let global = global::from_angles(model, problem, &local, &found);
+        let Some(certified) = certify(&model.pool, problem, &found, seed)? else {
+            continue;
+        };
+        let is_regular =
+            allowed == Allowed::Regular || regularity::is_regular(model, problem, &local, &found);
+        let density = Some((found, certified));
+        if is_regular {
+            let global = match &density {
+                Some((found, _)) if allowed == Allowed::All => {
+                    global::from_angles(model, problem, &local, found)
+                }
+                _ => Global::Exists,
+            };
             return Ok(Exactness {
+                global: Some(regularity::restrict(model, problem, global)),
                 local,
-                density: Some((found, certified)),
-                global: Some(global),
+                density,
             });
         }
+        singular.get_or_insert(density);
     }
-    let global = global::from_periods(model, problem, &local);
+    let global = match singular {
+        Some(_) => Global::Undecided(regularity::SINGULAR),
+        None => global::from_periods(model, problem, &local),
+    };
     Ok(Exactness {
+        global: Some(regularity::restrict(model, problem, global)),
         local,
-        density: None,
-        global: Some(global),
+        density: singular.flatten(),
     })
 }

@@ -10,6 +10,7 @@ use super::frame::frame;
 use super::obstruction::{combine, elements_at};
 use super::potential::{Potential, Term};
 use super::problem::Problem;
+use super::regularity::LEAVES;
 use super::sample::{Sample, sample, uses};
 use crate::model::{Model, Topology};
 
@@ -177,9 +178,7 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
         }
         match found {
             None => {
-                return Global::Undecided(
-                    "a circle leaves the domain where the constraints are regular",
-                );
+                return Global::Undecided(LEAVES);
             }
             Some((period, sample)) if period.abs() > PERIOD => {
                 return Global::Many {
@@ -204,7 +203,9 @@ fn period(
     let mut sum = 0.0;
     for k in 0..POINTS {
         let mut point = sample.point();
-        point.set(model.coordinates[i].q, TAU * k as f64 / POINTS as f64);
+        // NOTE: between the multiples of pi/24, where frames of D often have poles that the density does not have.
+        let turn = (k as f64 + 0.5) / POINTS as f64;
+        point.set(model.coordinates[i].q, TAU * turn);
         let elements = elements_at(
             &model.pool,
             problem,

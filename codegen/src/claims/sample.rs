@@ -22,6 +22,12 @@ impl Sample {
         point
     }
 
+    /// Symbols and values.
+    pub(super) fn point_values(&self) -> Vec<(SymbolId, f64)> {
+        let values = self.values.iter().map(|(_, value)| *value);
+        self.symbols.iter().copied().zip(values).collect()
+    }
+
     /// The value of a symbol.
     pub(super) fn value(&self, symbol: SymbolId) -> Option<f64> {
         let position = self.symbols.iter().position(|own| *own == symbol)?;
