@@ -6,7 +6,7 @@ use dalembert_codegen::claims::{Equation, find_conditions};
 use dalembert_expr::SymbolId;
 use dalembert_tests::command::{dalembert, models};
 use dalembert_tests::curvature::determinant;
-use dalembert_tests::flow::{Flow, State};
+use dalembert_tests::divergence::{Flow, State};
 use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::verdict::{Decided, Existence};
 use serde_json::{Value, json};

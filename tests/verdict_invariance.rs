@@ -85,7 +85,13 @@ fn assert_same_verdict_and_volume(scheme: &Scheme, decided: &Decided) -> bool {
     if other.potential().is_some() || known.rank == decided.model.coordinates.len() {
         assert_eq!(other.existence(), decided.existence(), "{source}");
     }
-    let dependent = at_any(decided);
+    let (coordinates, mut values) = (decided.model.coordinates.iter(), decided.defaults());
+    values.extend(
+        coordinates
+            .zip(1..)
+            .map(|(own, i)| (own.q, 0.3 + 0.1 * f64::from(i))),
+    );
+    let dependent = decided.regular_dependent(&values);
     let mut ratios = Vec::new();
     for attempt in 0..4 {
         let (values, before) = at(decided, attempt, &dependent);
@@ -111,20 +117,6 @@ fn assert_same_verdict_and_volume(scheme: &Scheme, decided: &Decided) -> bool {
         assert!((ratio - ratios[0]).abs() < 1e-10, "{source}");
     }
     !ratios.is_empty()
-}
-
-/// Dependent velocities that are regular at a generic point.
-fn at_any(decided: &Decided) -> Vec<usize> {
-    let mut values = decided.defaults();
-    let coordinates = decided.model.coordinates.iter();
-    values.extend(
-        coordinates
-            .enumerate()
-            .map(|(i, own)| (own.q, 0.5 + 0.1 * i as f64)),
-    );
-    let (pool, problem) = (&decided.model.pool, &decided.problem);
-    let geometry = geometry_at(pool, problem, &values, None);
-    geometry.expect("a regular point").dependent
 }
 
 /// The logarithm of `exp(G) mu_C` relative to `dq dv_ind`.

@@ -37,6 +37,18 @@ impl<'d> Flow<'d> {
         }
     }
 
+    /// The flow near a state, at the defaults of the parameters and with regular dependent velocities.
+    pub fn at(decided: &'d Decided, state: &State) -> Self {
+        let mut flow = Self::new(decided, &decided.defaults(), &[]);
+        flow.dependent = decided.regular_dependent(&flow.values(state));
+        flow
+    }
+
+    /// The positions of the dependent velocities.
+    pub fn dependent(&self) -> &[usize] {
+        &self.dependent
+    }
+
     fn independent(&self) -> impl Iterator<Item = usize> + '_ {
         let n = self.decided.model.coordinates.len();
         (0..n).filter(|i| !self.dependent.contains(i))
@@ -96,6 +108,15 @@ impl<'d> Flow<'d> {
         let drift: f64 = demands[..drifts].iter().sum();
         let rest = demands[drifts..].iter().zip(&state.v).map(|(c, v)| c * v);
         drift + rest.sum::<f64>()
+    }
+
+    /// `exp(G)`
+    ///
+    /// # Panics
+    /// If `G` was not found in closed form.
+    pub fn density(&self, state: &State) -> f64 {
+        let logarithm = self.decided.log_density_at(&self.values(state));
+        logarithm.expect("a closed form").exp()
     }
 
     /// The divergence with respect to `weight mu_C`.

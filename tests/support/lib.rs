@@ -9,12 +9,13 @@ struct LanguageReference;
 pub mod allocation;
 pub mod command;
 pub mod curvature;
-pub mod flow;
+pub mod divergence;
 pub mod reference;
 pub mod sampling;
 pub mod symbolic;
 pub mod systems;
 pub mod verdict;
+pub mod verified;
 pub mod visible;
 
 /// The examples of the README, compiled and run.

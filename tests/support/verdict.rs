@@ -1,8 +1,8 @@
 //! Models with the verdict on their densities.
 
 use dalembert_codegen::claims::{
-    Dynamics, Exactness, Geometry, Global, Problem, Term, Undecided, Verdict, decide, examine,
-    geometry_at, potential_text,
+    Dynamics, Exactness, Geometry, Global, Problem, Term, Undecided, decide, geometry_at,
+    potential_text,
 };
 use dalembert_codegen::mechanics::{self, Derivation};
 use dalembert_codegen::model::{self, Model};
@@ -119,7 +119,7 @@ impl Decided {
         Some(terms.map(|(k, own)| number(*k) * term(own)).sum())
     }
 
-    /// As [`Decided::log_density`], with the geometry of the point.
+    /// As [`Decided::log_density`], with the geometry of the point and the generator's choice of dependent velocities.
     pub fn log_density_at(&self, values: &[(SymbolId, f64)]) -> Option<f64> {
         let geometry = geometry_at(&self.model.pool, &self.problem, values, None)?;
         self.log_density(values, &geometry)
@@ -152,6 +152,25 @@ impl Decided {
             (own.symbol, pool.eval(&[default], &|_| 0.0)[0])
         };
         self.model.parameters.iter().map(value).collect()
+    }
+
+    /// The dependent velocities with the largest minor at a point.
+    ///
+    /// # Panics
+    /// If the point is singular.
+    pub fn regular_dependent(&self, values: &[(SymbolId, f64)]) -> Vec<usize> {
+        let (n, m) = (
+            self.model.coordinates.len(),
+            self.model.constraints.len() as u32,
+        );
+        let choices = (0_u32..1 << n).filter(|own| own.count_ones() == m);
+        let minor = |choice: u32| {
+            let dependent: Vec<_> = (0..n).filter(|i| choice >> i & 1 == 1).collect();
+            let geometry = geometry_at(&self.model.pool, &self.problem, values, Some(&dependent))?;
+            Some((geometry.dependent_determinant.abs(), dependent))
+        };
+        let largest = choices.filter_map(minor).max_by(|a, b| a.0.total_cmp(&b.0));
+        largest.expect("a regular point").1
     }
 
     /// The point at which the file gives the values of a system: coordinates and parameters.
@@ -192,15 +211,39 @@ pub fn refusal(source: &str) -> Vec<String> {
     refused.iter().map(|own| own.message().to_owned()).collect()
 }
 
-/// The verdict on one claim, as a user is told it.
+/// The answer to a claim.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Answer {
+    /// It holds.
+    Proved,
+    /// It does not, with the message.
+    Refuted(String),
+    /// It stays open, with the message.
+    Undecided(String),
+}
+
+/// The answer to a claim that is added to a declaration, as a user is told it.
 ///
 /// # Panics
 /// If the declaration is refused for another reason.
-pub fn verdict_on(source: &str, claim: &str) -> Verdict {
+pub fn answer(source: &str, claim: &str) -> Answer {
     let body = source.trim_end().strip_suffix('}').expect("a body");
     let source = format!("{body} claims {{ {claim}; }} }}");
-    let spec = spec::parse(source.parse().expect("tokens")).expect(&source);
-    let mut model = model::check(&spec).expect(&source);
-    let derivation = mechanics::derive(&mut model);
-    examine(&mut model, &derivation).remove(0).verdict
+    let Err(refused) = try_expand(source.parse().expect("tokens")) else {
+        return Answer::Proved;
+    };
+    let message = refused
+        .iter()
+        .next()
+        .expect("a message")
+        .message()
+        .to_owned();
+    if message.contains(&format!("`{claim}` is refuted")) {
+        return Answer::Refuted(message);
+    }
+    assert!(
+        message.contains(&format!("`{claim}` is undecided")),
+        "{message}"
+    );
+    Answer::Undecided(message)
 }
