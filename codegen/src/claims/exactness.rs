@@ -8,7 +8,9 @@ use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, Sample
 use super::closure::{Hull, close};
 use super::frame::frame;
 use super::global::{self, Global};
-use super::potential::{Allowed, Candidates, Certified, Potential, certify, fit};
+use super::potential::{
+    Allowed, Candidates, Certified, Potential, certify, fit, solve_for_coefficients,
+};
 use super::problem::Problem;
 use super::regularity;
 use super::undecided::Undecided;
@@ -295,11 +297,34 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
     }
     let global = match singular {
         Some(_) => Global::Undecided(regularity::SINGULAR),
-        None => global::from_periods(model, problem, &local),
+        None => match global::from_periods(model, problem, &local) {
+            Global::Undecided(_)
+                if exists_for_each_parameter(model, problem, &candidates, seed) =>
+            {
+                Global::Exists
+            }
+            other => other,
+        },
     };
     Ok(Exactness {
         global: Some(regularity::restrict(model, problem, global)),
         local,
         density: singular.flatten(),
+    })
+}
+
+/// Whether regular candidates give a density for each value of the parameters, with coefficients that depend on them
+/// in ways that are not looked for.
+fn exists_for_each_parameter(
+    model: &Model,
+    problem: &Problem,
+    candidates: &Candidates,
+    seed: u64,
+) -> bool {
+    let parameters: Vec<SymbolId> = model.parameters.iter().map(|own| own.symbol).collect();
+    let terms = candidates.allowed(Allowed::Regular);
+    (0..SAMPLES as u64).all(|k| {
+        let seed = seed.wrapping_add(k);
+        solve_for_coefficients(&model.pool, problem, &terms, &parameters, seed).is_some()
     })
 }

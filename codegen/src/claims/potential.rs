@@ -130,7 +130,8 @@ impl Candidates {
         }
     }
 
-    fn allowed(&self, allowed: Allowed) -> Vec<Term> {
+    /// The terms that are allowed.
+    pub(super) fn allowed(&self, allowed: Allowed) -> Vec<Term> {
         let lists: &[&Vec<Term>] = match allowed {
             Allowed::Regular => &[&self.regular],
             Allowed::SingleValued => &[&self.regular, &self.singular],
