@@ -16,8 +16,8 @@ use super::regularity;
 use super::undecided::Undecided;
 use crate::model::Model;
 
-/// Points that are sampled, each modulo the next prime.
-const SAMPLES: usize = 3;
+/// Points that are sampled, each modulo the next prime; more where roots may hide an obstruction by a choice of branches.
+const SAMPLES: (usize, usize) = (3, 40);
 /// Monomials of a series beyond which no higher order is tried.
 const MONOMIALS: usize = 20_000;
 /// The order of the first attempt; most hulls are closed within three brackets.
@@ -114,7 +114,12 @@ fn decide_local_from(
     let mut points = sample_points(pool, &roots, &profile, seed)?;
     let mut best: Option<(Hull, Vec<usize>)> = None;
     let mut primes = Vec::new();
-    for _ in 0..SAMPLES {
+    let samples = if profile.branches {
+        SAMPLES.1
+    } else {
+        SAMPLES.0
+    };
+    for _ in 0..samples {
         let (sample, prime) = points
             .find(|point| {
                 fix(pool, point, conditions)?;
@@ -146,7 +151,7 @@ fn decide_local_from(
         error: if is_proof {
             0.0
         } else {
-            chance.powi(SAMPLES as i32)
+            chance.powi(SAMPLES.0 as i32)
         },
         primes,
         hull,
@@ -259,6 +264,9 @@ pub struct Exactness {
 /// # Errors
 /// [`Undecided`].
 pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactness, Undecided> {
+    if !regularity::is_real(model, problem) {
+        return Err(Undecided::Degenerate);
+    }
     let local = decide_local(&model.pool, problem, seed)?;
     if !local.exists {
         return Ok(Exactness {
@@ -323,7 +331,7 @@ fn exists_for_each_parameter(
 ) -> bool {
     let parameters: Vec<SymbolId> = model.parameters.iter().map(|own| own.symbol).collect();
     let terms = candidates.allowed(Allowed::Regular);
-    (0..SAMPLES as u64).all(|k| {
+    (0..SAMPLES.0 as u64).all(|k| {
         let seed = seed.wrapping_add(k);
         solve_for_coefficients(&model.pool, problem, &terms, &parameters, seed).is_some()
     })

@@ -33,14 +33,28 @@ const ATTEMPTS: usize = 12;
 /// A delta counts from this part of its scale on.
 const CLEAR: f64 = 1e-7;
 
-/// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none.
+/// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none, or, with
+/// roots whose branches residues do not tell, not at all points that are tried.
 pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Option<Obstruction> {
     let roots = problem.roots();
-    (0..ATTEMPTS).find_map(|attempt| {
+    let has_branches = model.pool.profile_of(&roots).branches;
+    let mut shown = None;
+    for attempt in 0..ATTEMPTS {
         let sample = sample(model, attempt, uses(&model.pool, &roots));
-        let found = obstruction_at(model, problem, local, sample)?;
-        (found.delta.abs() > CLEAR * found.scale).then_some(found)
-    })
+        let Some(found) = obstruction_at(model, problem, local, sample) else {
+            continue;
+        };
+        let is_clear = found.delta.abs() > CLEAR * found.scale;
+        match (is_clear, has_branches) {
+            (true, false) => return Some(found),
+            (true, true) => {
+                shown.get_or_insert(found);
+            }
+            (false, true) => return None,
+            (false, false) => {}
+        }
+    }
+    shown
 }
 
 impl Obstruction {
@@ -94,7 +108,13 @@ fn obstruction_at(
         &before.iter().map(|e| vector(*e)).collect::<Vec<_>>(),
         vector(position),
     )?;
-    let (mut delta, mut scale) = (elements[position][width], elements[position][width].abs());
+    let mut delta = elements[position][width];
+    let mut scale = delta.abs();
+    // Where atoms may be related, what cancels is rounding of the size of everything.
+    if !model.pool.profile_of(&problem.roots()).is_exact() {
+        let entries = elements.iter().flatten();
+        scale = entries.fold(scale, |scale, entry| scale.max(entry.abs()));
+    }
     for (coefficient, element) in coefficients.iter().zip(&before) {
         delta -= coefficient * elements[*element][width];
         scale += (coefficient * elements[*element][width]).abs();
