@@ -8,7 +8,7 @@ use dalembert_codegen::model::{self, Model};
 use dalembert_codegen::spec;
 use dalembert_expr::{RealPoint, SymbolId};
 use dalembert_tests::reference::read;
-use dalembert_tests::verdict::declaration;
+use dalembert_tests::visible::declaration;
 use serde_json::Value;
 
 /// `|l|^(s) * det(m)^(k)` as `(l, s, k)`.

@@ -8,7 +8,7 @@ use dalembert_models::ChaplyginSleigh;
 use dalembert_tests::flow::Flow;
 use dalembert_tests::reference::read;
 use dalembert_tests::sampling::Random;
-use dalembert_tests::verdict::declaration;
+use dalembert_tests::visible::declaration;
 use dalembert_tests::volume::{WithVolume, divergence};
 
 /// A system without a density of the configuration alone, with one that depends on velocities.

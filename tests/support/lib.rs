@@ -8,12 +8,17 @@ struct LanguageReference;
 
 pub mod allocation;
 pub mod command;
+pub mod curvature;
+pub mod divergence;
 pub mod flow;
 pub mod golden;
 pub mod reference;
 pub mod sampling;
+pub mod symbolic;
 pub mod systems;
 pub mod verdict;
+pub mod verified;
+pub mod visible;
 pub mod volume;
 
 /// The examples of the README, compiled and run.

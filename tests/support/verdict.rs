@@ -1,58 +1,249 @@
-//! Systems of `reference/verdicts_visible.json` as declarations.
+//! Models with the verdict on their densities.
 
+use dalembert_codegen::claims::{
+    Dynamics, Exactness, Geometry, Global, Problem, Term, Undecided, decide, geometry_at,
+    potential_text,
+};
+use dalembert_codegen::mechanics::{self, Derivation};
+use dalembert_codegen::model::{self, Model};
+use dalembert_codegen::{spec, try_expand};
+use dalembert_expr::SymbolId;
 use serde_json::Value;
 
-/// The body of a `model!`: the system's coordinates, parameters, Lagrangian and constraints.
+use crate::reference::number;
+
+/// A model with everything that is decided about densities of its configuration.
+#[derive(Debug)]
+pub struct Decided {
+    /// The model.
+    pub model: Model,
+    /// Its equations.
+    pub derivation: Derivation,
+    /// The motion on D.
+    pub dynamics: Dynamics,
+    /// What a density depends on.
+    pub problem: Problem,
+    /// The verdict.
+    pub exactness: Result<Exactness, Undecided>,
+}
+
+/// The verdict in a word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existence {
+    /// A density exists on all of Q.
+    Global,
+    /// A density exists locally, and none on all of Q.
+    Local,
+    /// A density exists locally; on all of Q, the question stays open.
+    LocalAtLeast,
+    /// No density exists.
+    None,
+    /// The question stays open.
+    Open,
+}
+
+impl Decided {
+    /// The model of a declaration, decided at the points of a seed.
+    ///
+    /// # Panics
+    /// If the declaration is refused.
+    pub fn with_seed(source: &str, seed: u64) -> Self {
+        let spec = spec::parse(source.parse().expect("tokens"))
+            .unwrap_or_else(|refused| panic!("{source}\n{refused:?}"));
+        let mut model =
+            model::check(&spec).unwrap_or_else(|refused| panic!("{source}\n{refused:?}"));
+        let derivation = mechanics::derive(&mut model);
+        let problem = Problem::of(&mut model, &derivation);
+        let dynamics = Dynamics::of(&mut model, &derivation);
+        let exactness = decide(&mut model, &problem, seed);
+        Self {
+            model,
+            derivation,
+            dynamics,
+            problem,
+            exactness,
+        }
+    }
+
+    /// The model of a declaration, decided.
+    ///
+    /// # Panics
+    /// If the declaration is refused.
+    pub fn of(source: &str) -> Self {
+        Self::with_seed(source, 1)
+    }
+
+    /// The verdict.
+    ///
+    /// # Panics
+    /// If the question stays open.
+    pub fn exactness(&self) -> &Exactness {
+        self.exactness.as_ref().expect("a verdict")
+    }
+
+    /// The verdict in a word.
+    pub fn existence(&self) -> Existence {
+        match &self.exactness {
+            Err(_) => Existence::Open,
+            Ok(found) => match &found.global {
+                None => Existence::None,
+                Some(Global::Exists) => Existence::Global,
+                Some(Global::Many { .. }) => Existence::Local,
+                Some(Global::Undecided(_)) => Existence::LocalAtLeast,
+            },
+        }
+    }
+
+    /// The logarithm of the density, where it was found in closed form.
+    pub fn potential(&self) -> Option<String> {
+        let (potential, _) = self.exactness.as_ref().ok()?.density.as_ref()?;
+        Some(potential_text(&self.model.pool, potential))
+    }
+
+    /// The value of `G` at a point with its geometry, where it was found in closed form.
+    pub fn log_density(&self, values: &[(SymbolId, f64)], geometry: &Geometry) -> Option<f64> {
+        let (potential, _) = self.exactness.as_ref().ok()?.density.as_ref()?;
+        let value = |symbol: SymbolId| {
+            let found = values.iter().find(|(own, _)| *own == symbol);
+            found.map_or(f64::NAN, |(_, value)| *value)
+        };
+        let number = |id| self.model.pool.eval(&[id], &value)[0];
+        let term = |term: &Term| match term {
+            Term::MassDeterminant => geometry.mass_determinant.ln(),
+            Term::MetricDeterminant => geometry.metric_determinant.ln(),
+            Term::DependentDeterminant => geometry.dependent_determinant.abs().ln(),
+            Term::Logarithm(f) => number(*f).abs().ln(),
+            Term::Plain(f) => number(*f),
+        };
+        let terms = potential.terms.iter();
+        Some(terms.map(|(k, own)| number(*k) * term(own)).sum())
+    }
+
+    /// As [`Decided::log_density`], with the geometry of the point and the generator's choice of dependent velocities.
+    pub fn log_density_at(&self, values: &[(SymbolId, f64)]) -> Option<f64> {
+        let geometry = geometry_at(&self.model.pool, &self.problem, values, None)?;
+        self.log_density(values, &geometry)
+    }
+
+    /// The symbol of a coordinate or parameter.
+    ///
+    /// # Panics
+    /// If there is none of this name.
+    pub fn symbol(&self, name: &str) -> SymbolId {
+        let coordinates = self.model.coordinates.iter().map(|own| (&own.name, own.q));
+        let parameters = self
+            .model
+            .parameters
+            .iter()
+            .map(|own| (&own.name, own.symbol));
+        let mut all = coordinates.chain(parameters);
+        let found = all.find(|(own, _)| own.display == name);
+        found.unwrap_or_else(|| panic!("no `{name}`")).1
+    }
+
+    /// Parameters at their defaults.
+    ///
+    /// # Panics
+    /// If one has no default.
+    pub fn defaults(&self) -> Vec<(SymbolId, f64)> {
+        let pool = &self.model.pool;
+        let value = |own: &model::Parameter| {
+            let default = own.default.expect("a default");
+            (own.symbol, pool.eval(&[default], &|_| 0.0)[0])
+        };
+        self.model.parameters.iter().map(value).collect()
+    }
+
+    /// The dependent velocities with the largest minor at a point.
+    ///
+    /// # Panics
+    /// If the point is singular.
+    pub fn regular_dependent(&self, values: &[(SymbolId, f64)]) -> Vec<usize> {
+        let (n, m) = (
+            self.model.coordinates.len(),
+            self.model.constraints.len() as u32,
+        );
+        let choices = (0_u32..1 << n).filter(|own| own.count_ones() == m);
+        let minor = |choice: u32| {
+            let dependent: Vec<_> = (0..n).filter(|i| choice >> i & 1 == 1).collect();
+            let geometry = geometry_at(&self.model.pool, &self.problem, values, Some(&dependent))?;
+            Some((geometry.dependent_determinant.abs(), dependent))
+        };
+        let largest = choices.filter_map(minor).max_by(|a, b| a.0.total_cmp(&b.0));
+        largest.expect("a regular point").1
+    }
+
+    /// The point at which the file gives the values of a system: coordinates and parameters.
+    ///
+    /// # Panics
+    /// If the file has not the documented form.
+    pub fn golden_point(&self, system: &Value) -> Vec<(SymbolId, f64)> {
+        let golden = &system["golden"];
+        ["point", "params"]
+            .iter()
+            .flat_map(|key| golden[key].as_object().expect("values"))
+            .map(|(name, value)| (self.symbol(name), number(value)))
+            .collect()
+    }
+
+    /// The positions of the coordinates whose velocities the file takes as dependent.
+    ///
+    /// # Panics
+    /// If the file has not the documented form.
+    pub fn golden_dependent(&self, system: &Value) -> Vec<usize> {
+        let names = system["golden"]["dependent"].as_array().expect("names");
+        let position = |name: &Value| {
+            let mut coordinates = self.model.coordinates.iter();
+            coordinates
+                .position(|own| own.name.display == *name)
+                .expect("a coordinate")
+        };
+        names.iter().map(position).collect()
+    }
+}
+
+/// The messages of a declaration that is refused.
 ///
 /// # Panics
-/// If the file has not the documented form.
-pub fn declaration(system: &Value) -> String {
-    let list = |key: &str| system[key].as_array().expect("a list");
-    let text = |value: &Value| value.as_str().expect("a text").to_owned();
-    let mut velocities = Vec::new();
-    let mut coordinates = String::new();
-    for coordinate in list("coordinates") {
-        let name = text(&coordinate["name"]);
-        let domain = text(&coordinate["domain"]);
-        coordinates += &match domain.as_str() {
-            "R" => format!("{name}; "),
-            "S1" => format!("{name}: angle; "),
-            interval => format!("{name} in {interval}; "),
-        };
-        velocities.push(name);
-    }
-    let mut parameters = String::new();
-    for parameter in list("params") {
-        let assumption = if parameter["positive"] == Value::Bool(true) {
-            " > 0"
-        } else {
-            ""
-        };
-        let (name, sample) = (text(&parameter["name"]), text(&parameter["sample"]));
-        parameters += &format!("{name}{assumption} = {sample}; ");
-    }
-    let translate = |formula: &str| {
-        let mut formula = formula.replace("**", "^");
-        for name in &velocities {
-            formula = formula.replace(&format!("{name}_dot"), &format!("dot({name})"));
-        }
-        formula
+/// If it is accepted.
+pub fn refusal(source: &str) -> Vec<String> {
+    let refused = try_expand(source.parse().expect("tokens")).expect_err(source);
+    refused.iter().map(|own| own.message().to_owned()).collect()
+}
+
+/// The answer to a claim.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Answer {
+    /// It holds.
+    Proved,
+    /// It does not, with the message.
+    Refuted(String),
+    /// It stays open, with the message.
+    Undecided(String),
+}
+
+/// The answer to a claim that is added to a declaration, as a user is told it.
+///
+/// # Panics
+/// If the declaration is refused for another reason.
+pub fn answer(source: &str, claim: &str) -> Answer {
+    let body = source.trim_end().strip_suffix('}').expect("a body");
+    let source = format!("{body} claims {{ {claim}; }} }}");
+    let Err(refused) = try_expand(source.parse().expect("tokens")) else {
+        return Answer::Proved;
     };
-    let mut constraints = String::new();
-    for (a, form) in list("eta").iter().enumerate() {
-        let terms: Vec<String> = form
-            .as_array()
-            .expect("a form")
-            .iter()
-            .zip(&velocities)
-            .map(|(entry, name)| format!("({})*d({name})", translate(&text(entry))))
-            .collect();
-        constraints += &format!("c{}: {} = 0; ", a + 1, terms.join(" + "));
+    let message = refused
+        .iter()
+        .next()
+        .expect("a message")
+        .message()
+        .to_owned();
+    if message.contains(&format!("`{claim}` is refuted")) {
+        return Answer::Refuted(message);
     }
-    format!(
-        "Sample {{ coordinates {{ {coordinates}}} parameters {{ {parameters}}} lagrangian = {} - ({}); \
-         constraints {{ {constraints}}} }}",
-        translate(&text(&system["kinetic"])),
-        translate(&text(&system["potential"])),
-    )
+    assert!(
+        message.contains(&format!("`{claim}` is undecided")),
+        "{message}"
+    );
+    Answer::Undecided(message)
 }

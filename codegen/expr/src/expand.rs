@@ -94,10 +94,8 @@ mod tests {
     #[test]
     fn what_cancels_after_expansion_is_gone() {
         let mut fixture = Fixture::new();
-        let [id, expected] = fixture.read_all([
-            "m*(y + m*y^2) - m^2*y^2*cos(x)^2 - m^2*y^2*sin(x)^2",
-            "m*y",
-        ]);
+        let [id, expected] =
+            fixture.read_all(["m*(y + m*y^2) - m^2*y^2*cos(x)^2 - m^2*y^2*sin(x)^2", "m*y"]);
         let expanded = fixture.pool.multiply_out(id);
         assert_eq!(fixture.pool.simplify(expanded), expected);
     }

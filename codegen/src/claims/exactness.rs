@@ -8,13 +8,16 @@ use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, Sample
 use super::closure::{Hull, close};
 use super::frame::frame;
 use super::global::{self, Global};
-use super::potential::{Candidates, Certified, Potential, certify, fit};
+use super::potential::{
+    Allowed, Candidates, Certified, Potential, certify, fit, solve_for_coefficients,
+};
 use super::problem::Problem;
+use super::regularity;
 use super::undecided::Undecided;
 use crate::model::Model;
 
-/// Points that are sampled, each modulo the next prime.
-const SAMPLES: usize = 3;
+/// Points that are sampled, each modulo the next prime; more where roots may hide an obstruction by a choice of branches.
+const SAMPLES: (usize, usize) = (3, 40);
 /// Monomials of a series beyond which no higher order is tried.
 const MONOMIALS: usize = 20_000;
 /// The order of the first attempt; most hulls are closed within three brackets.
@@ -53,6 +56,13 @@ pub struct Local {
     pub(super) dependent: Vec<usize>,
 }
 
+impl Local {
+    /// The dependent velocities of the frame whose brackets were taken.
+    pub fn dependent(&self) -> &[usize] {
+        &self.dependent
+    }
+}
+
 /// Decides whether a local density exists.
 ///
 /// # Errors
@@ -61,12 +71,36 @@ pub fn decide_local(pool: &Pool, problem: &Problem, seed: u64) -> Result<Local, 
     decide_local_where(pool, problem, seed, &[])
 }
 
+/// As [`decide_local`], in the frame of D whose dependent velocities are given: the verdict and the ranks are the same,
+/// brackets and obstruction are those of this frame.
+///
+/// # Errors
+/// [`Undecided`]; that no regular point was found also where these velocities do not depend on the others.
+pub fn decide_local_in(
+    pool: &Pool,
+    problem: &Problem,
+    dependent: &[usize],
+    seed: u64,
+) -> Result<Local, Undecided> {
+    decide_local_from(pool, problem, seed, &[], Some(dependent))
+}
+
 /// As [`decide_local`], under conditions on symbols.
 pub(super) fn decide_local_where(
     pool: &Pool,
     problem: &Problem,
     seed: u64,
     conditions: &Conditions,
+) -> Result<Local, Undecided> {
+    decide_local_from(pool, problem, seed, conditions, None)
+}
+
+fn decide_local_from(
+    pool: &Pool,
+    problem: &Problem,
+    seed: u64,
+    conditions: &Conditions,
+    dependent: Option<&[usize]>,
 ) -> Result<Local, Undecided> {
     if problem
         .friction
@@ -80,11 +114,17 @@ pub(super) fn decide_local_where(
     let mut points = sample_points(pool, &roots, &profile, seed)?;
     let mut best: Option<(Hull, Vec<usize>)> = None;
     let mut primes = Vec::new();
-    for _ in 0..SAMPLES {
+    let samples = if profile.branches {
+        SAMPLES.1
+    } else {
+        SAMPLES.0
+    };
+    for _ in 0..samples {
         let (sample, prime) = points
             .find(|point| {
                 fix(pool, point, conditions)?;
-                sample(pool, problem, point).map(|sample| (sample, point.modulus().prime()))
+                let sample = sample(pool, problem, point, dependent)?;
+                Some((sample, point.modulus().prime()))
             })
             .ok_or(Undecided::Degenerate)?;
         let sample = sample.map_err(Undecided::Depth)?;
@@ -111,7 +151,7 @@ pub(super) fn decide_local_where(
         error: if is_proof {
             0.0
         } else {
-            chance.powi(SAMPLES as i32)
+            chance.powi(SAMPLES.0 as i32)
         },
         primes,
         hull,
@@ -156,7 +196,8 @@ pub(super) fn screen(
     points
         .find(|point| {
             left -= 1;
-            let found = fix(pool, point, conditions).and_then(|()| sample(pool, problem, point));
+            let found =
+                fix(pool, point, conditions).and_then(|()| sample(pool, problem, point, None));
             match found {
                 None if left > 0 => None,
                 other => Some(other),
@@ -173,6 +214,7 @@ fn sample(
     pool: &Pool,
     problem: &Problem,
     point: &mut ModularPoint,
+    dependent: Option<&[usize]>,
 ) -> Option<Result<(Hull, Vec<usize>), usize>> {
     let field = point.modulus();
     let variables = problem.variables.len();
@@ -184,7 +226,7 @@ fn sample(
             return Some(Err(order - 1));
         };
         let jets = Jets::new(field, &space);
-        let frame = frame(pool, problem, &jets, point, None)?;
+        let frame = frame(pool, problem, &jets, point, dependent)?;
         let hull = close(jets.lower(), &problem.variables, &frame.demands);
         if hull.is_closed {
             return Some(Ok((hull, frame.dependent)));
@@ -222,6 +264,9 @@ pub struct Exactness {
 /// # Errors
 /// [`Undecided`].
 pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactness, Undecided> {
+    if !regularity::is_real(model, problem) {
+        return Err(Undecided::Degenerate);
+    }
     let local = decide_local(&model.pool, problem, seed)?;
     if !local.exists {
         return Ok(Exactness {
@@ -231,24 +276,63 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         });
     }
     let candidates = Candidates::of(&mut model.pool, problem, &model.coordinates);
-    for many_valued in [false, true] {
-        let found = fit(&mut model.pool, problem, &candidates, many_valued, seed);
+    let mut singular = None;
+    for allowed in [Allowed::Regular, Allowed::SingleValued, Allowed::All] {
+        let found = fit(&mut model.pool, problem, &candidates, allowed, seed);
         let Some(found) = found else {
             continue;
         };
-        if let Some(certified) = certify(&model.pool, problem, &found, seed)? {
-            let global = global::from_angles(model, problem, &local, &found);
+        let Some(certified) = certify(&model.pool, problem, &found, seed)? else {
+            continue;
+        };
+        let is_regular =
+            allowed == Allowed::Regular || regularity::is_regular(model, problem, &local, &found);
+        let density = Some((found, certified));
+        if is_regular {
+            let global = match &density {
+                Some((found, _)) if allowed == Allowed::All => {
+                    global::from_angles(model, problem, &local, found)
+                }
+                _ => Global::Exists,
+            };
             return Ok(Exactness {
+                global: Some(regularity::restrict(model, problem, global)),
                 local,
-                density: Some((found, certified)),
-                global: Some(global),
+                density,
             });
         }
+        singular.get_or_insert(density);
     }
-    let global = global::from_periods(model, problem, &local);
+    let global = match singular {
+        Some(_) => Global::Undecided(regularity::SINGULAR),
+        None => match global::from_periods(model, problem, &local) {
+            Global::Undecided(_)
+                if exists_for_each_parameter(model, problem, &candidates, seed) =>
+            {
+                Global::Exists
+            }
+            other => other,
+        },
+    };
     Ok(Exactness {
+        global: Some(regularity::restrict(model, problem, global)),
         local,
-        density: None,
-        global: Some(global),
+        density: singular.flatten(),
+    })
+}
+
+/// Whether regular candidates give a density for each value of the parameters, with coefficients that depend on them
+/// in ways that are not looked for.
+fn exists_for_each_parameter(
+    model: &Model,
+    problem: &Problem,
+    candidates: &Candidates,
+    seed: u64,
+) -> bool {
+    let parameters: Vec<SymbolId> = model.parameters.iter().map(|own| own.symbol).collect();
+    let terms = candidates.allowed(Allowed::Regular);
+    (0..SAMPLES.0 as u64).all(|k| {
+        let seed = seed.wrapping_add(k);
+        solve_for_coefficients(&model.pool, problem, &terms, &parameters, seed).is_some()
     })
 }

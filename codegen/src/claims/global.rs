@@ -10,6 +10,7 @@ use super::frame::frame;
 use super::obstruction::{combine, elements_at};
 use super::potential::{Potential, Term};
 use super::problem::Problem;
+use super::regularity::LEAVES;
 use super::sample::{Sample, sample, uses};
 use crate::model::{Model, Topology};
 
@@ -154,57 +155,70 @@ fn is_in_hull(pool: &Pool, problem: &Problem, turns: &[(usize, i64)]) -> bool {
     verdict.unwrap_or(false)
 }
 
-/// The periods of `beta`, the unique closed one-form with `beta(X_i) = c_i`, along each circle, in double precision.
-/// For hulls of full rank only.
+/// What the growth of `G` along loops says, in double precision: with all components in the hull of D along each circle,
+/// else along the combinations of circles that lie in leaves.
 pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> Global {
-    if local.rank < problem.components() {
-        return Global::Undecided(
-            "no density was found, and D does not connect all configurations",
-        );
-    }
+    let is_whole = local.rank == problem.components();
+    let angles: Vec<usize> = (0..problem.coordinates)
+        .filter(|i| model.coordinates[*i].topology == Topology::Angle)
+        .collect();
+    let loops = match is_whole {
+        true => angles.iter().map(|i| vec![(*i, 1)]).collect(),
+        false => loops(&angles),
+    };
     let roots = problem.roots();
-    for (i, coordinate) in model.coordinates.iter().enumerate() {
-        if coordinate.topology != Topology::Angle {
+    let mut is_open = false;
+    for turns in loops {
+        if !is_whole && !is_in_hull(&model.pool, problem, &turns) {
             continue;
         }
-        let mut found = None;
-        for attempt in 0..ATTEMPTS {
+        let found = (0..ATTEMPTS).find_map(|attempt| {
             let sample = sample(model, attempt, uses(&model.pool, &roots));
-            if let Some(period) = period(model, problem, local, &sample, i) {
-                found = Some((period, sample));
-                break;
-            }
-        }
+            Some((period(model, problem, local, &sample, &turns)?, sample))
+        });
         match found {
-            None => {
-                return Global::Undecided(
-                    "a circle leaves the domain where the constraints are regular",
-                );
-            }
             Some((period, sample)) if period.abs() > PERIOD => {
                 return Global::Many {
-                    turns: vec![(i, 1)],
+                    turns,
                     period,
                     sample,
                 };
             }
             Some(_) => {}
+            None => is_open = true,
         }
     }
-    Global::Exists
+    match (is_whole, is_open) {
+        (true, false) => Global::Exists,
+        (true, true) => Global::Undecided(LEAVES),
+        (false, _) => {
+            Global::Undecided("no density was found, and D does not connect all configurations")
+        }
+    }
 }
 
+/// How much `G` grows along a loop of the hull of D, which is written by the hull's elements; `None` where they are
+/// dependent.
 fn period(
     model: &Model,
     problem: &Problem,
     local: &Local,
     sample: &Sample,
-    i: usize,
+    turns: &[(usize, i64)],
 ) -> Option<f64> {
+    let width = problem.components();
+    let mut tangent = vec![0.0; width];
+    for (i, count) in turns {
+        tangent[*i] = *count as f64;
+    }
     let mut sum = 0.0;
     for k in 0..POINTS {
+        // NOTE: between the multiples of pi/24, where frames of D often have poles that the density does not have.
+        let turn = (k as f64 + 0.5) / POINTS as f64;
         let mut point = sample.point();
-        point.set(model.coordinates[i].q, TAU * k as f64 / POINTS as f64);
+        for (i, count) in turns {
+            point.set(model.coordinates[*i].q, TAU * turn * *count as f64);
+        }
         let elements = elements_at(
             &model.pool,
             problem,
@@ -212,19 +226,11 @@ fn period(
             Some(&local.dependent),
             &mut point,
         )?;
-        let width = problem.components();
-        // beta in terms of components: elements^T beta = demands.
-        let columns: Vec<Vec<f64>> = (0..width)
-            .map(|j| local.hull.basis.iter().map(|e| elements[*e][j]).collect())
-            .collect();
-        let demands: Vec<f64> = local
-            .hull
-            .basis
-            .iter()
-            .map(|e| elements[*e][width])
-            .collect();
-        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        sum += combine(&columns, &demands)?[i];
+        let basis = || local.hull.basis.iter().map(|e| &elements[*e]);
+        let vectors: Vec<&[f64]> = basis().map(|own| &own[..width]).collect();
+        let coefficients = combine(&vectors, &tangent)?;
+        let demands = basis().map(|own| own[width]);
+        sum += demands.zip(&coefficients).map(|(c, k)| c * k).sum::<f64>();
     }
     Some(sum * TAU / POINTS as f64).filter(|period| period.is_finite())
 }

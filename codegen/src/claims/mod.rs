@@ -5,7 +5,7 @@
 //! | `problem.rs` | what an invariant density depends on |
 //! | `linear.rs`, `frame.rs`, `closure.rs` | the frame of D as series, and its hull under brackets |
 //! | `exactness.rs` | does a local density exist? |
-//! | `potential.rs`, `global.rs` | the density in closed form; is it single-valued? |
+//! | `potential.rs`, `global.rs`, `regularity.rs` | the density in closed form; is it single-valued, and regular? |
 //! | `volume.rs` | the volume with that density, as it is lowered |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
@@ -45,6 +45,7 @@ mod obstruction;
 mod polynomial;
 mod potential;
 pub mod problem;
+mod regularity;
 mod sample;
 mod symmetry;
 mod undecided;

@@ -1,7 +1,7 @@
 //! Why there is no density, in real numbers: a bracket that is a combination of others as a vector field, and the
 //! demand that is not.
 
-use dalembert_expr::{ExpansionPoint, JetSpace, Jets, Pool};
+use dalembert_expr::{ExpansionPoint, JetSpace, Jets, Pool, SymbolId};
 
 use super::closure::{Hull, Origin, bracket};
 use super::dynamics::Number;
@@ -33,18 +33,49 @@ const ATTEMPTS: usize = 12;
 /// A delta counts from this part of its scale on.
 const CLEAR: f64 = 1e-7;
 
-/// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none.
+/// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none, or, with
+/// roots whose branches residues do not tell, not at all points that are tried.
 pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Option<Obstruction> {
     let roots = problem.roots();
-    (0..ATTEMPTS).find_map(|attempt| {
+    let has_branches = model.pool.profile_of(&roots).branches;
+    let mut shown = None;
+    for attempt in 0..ATTEMPTS {
         let sample = sample(model, attempt, uses(&model.pool, &roots));
-        let found = obstruction_at(model, problem, local, sample)?;
-        (found.delta.abs() > CLEAR * found.scale).then_some(found)
-    })
+        let Some(found) = obstruction_at(model, problem, local, sample) else {
+            continue;
+        };
+        let is_clear = found.delta.abs() > CLEAR * found.scale;
+        match (is_clear, has_branches) {
+            (true, false) => return Some(found),
+            (true, true) => {
+                shown.get_or_insert(found);
+            }
+            (false, true) => return None,
+            (false, false) => {}
+        }
+    }
+    shown
 }
 
-/// The obstruction at a point.
-pub(super) fn obstruction_at(
+impl Obstruction {
+    /// The obstruction where coordinates and parameters have these values; `None` if there is none, or the point is
+    /// singular.
+    pub fn at(
+        model: &Model,
+        problem: &Problem,
+        local: &Local,
+        values: &[(SymbolId, f64)],
+    ) -> Option<Self> {
+        let mut sample = Sample::default();
+        for (symbol, value) in values {
+            let name = model.pool.symbol_name(*symbol).to_owned();
+            sample.push(name, *symbol, *value);
+        }
+        obstruction_at(model, problem, local, sample)
+    }
+}
+
+fn obstruction_at(
     model: &Model,
     problem: &Problem,
     local: &Local,
@@ -77,7 +108,13 @@ pub(super) fn obstruction_at(
         &before.iter().map(|e| vector(*e)).collect::<Vec<_>>(),
         vector(position),
     )?;
-    let (mut delta, mut scale) = (elements[position][width], elements[position][width].abs());
+    let mut delta = elements[position][width];
+    let mut scale = delta.abs();
+    // Where atoms may be related, what cancels is rounding of the size of everything.
+    if !model.pool.profile_of(&problem.roots()).is_exact() {
+        let entries = elements.iter().flatten();
+        scale = entries.fold(scale, |scale, entry| scale.max(entry.abs()));
+    }
     for (coefficient, element) in coefficients.iter().zip(&before) {
         delta -= coefficient * elements[*element][width];
         scale += (coefficient * elements[*element][width]).abs();

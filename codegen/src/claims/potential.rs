@@ -56,22 +56,33 @@ pub struct Certified {
     pub error: f64,
 }
 
-/// Terms that may occur, single-valued ones first.
+/// Terms that may occur.
 #[derive(Debug)]
 pub(super) struct Candidates {
-    terms: Vec<Term>,
-    /// How many of them are single-valued on the declared coordinates.
-    single_valued: usize,
+    /// Those that are single-valued and finite wherever metric and constraints are regular.
+    regular: Vec<Term>,
+    /// Multiples of angles.
+    angles: Vec<Term>,
+    /// Single-valued ones that may be infinite where the model is regular.
+    singular: Vec<Term>,
+}
+
+/// Which terms are allowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Allowed {
+    /// Those that are regular.
+    Regular,
+    /// Those that are single-valued.
+    SingleValued,
+    /// All of them.
+    All,
 }
 
 impl Candidates {
     /// The candidates of a problem.
     pub(super) fn of(pool: &mut Pool, problem: &Problem, coordinates: &[Coordinate]) -> Self {
-        let mut terms = vec![
-            Term::MassDeterminant,
-            Term::MetricDeterminant,
-            Term::DependentDeterminant,
-        ];
+        let mut regular = vec![Term::MassDeterminant, Term::MetricDeterminant];
+        let mut singular = vec![Term::DependentDeterminant];
         let symbols = problem.symbols.clone();
         let is_angle = |symbol: &SymbolId| {
             coordinates
@@ -79,58 +90,54 @@ impl Candidates {
                 .any(|own| own.q == *symbol && own.topology == Topology::Angle)
         };
         let (angles, lines): (Vec<_>, Vec<_>) = symbols.iter().partition(|s| is_angle(s));
+        let [angles, lines] = [angles, lines].map(|own| {
+            own.into_iter()
+                .map(|s| pool.variable(s))
+                .collect::<Vec<_>>()
+        });
         let parts: Vec<ExprId> = pool
             .reachable(&problem.roots())
             .into_iter()
             .filter(|id| pool.depends_on_any(*id, &symbols))
             .collect();
-        let calls = |id: &&ExprId| matches!(pool.node(**id), Node::Call(..));
-        let sums = |id: &&ExprId| matches!(pool.node(**id), Node::Sum { .. });
-        let chosen = |kind: &dyn Fn(&&ExprId) -> bool| -> Vec<ExprId> {
-            parts
-                .iter()
-                .filter(kind)
-                .copied()
-                .take(CANDIDATES)
-                .collect()
+        let chosen = |kind: fn(&Node) -> bool| -> Vec<ExprId> {
+            let of_kind = parts.iter().filter(|id| kind(pool.node(**id)));
+            of_kind.copied().take(CANDIDATES).collect()
         };
-        let (calls, sums) = (chosen(&calls), chosen(&sums));
-        let never_zero = |id: &ExprId| !matches!(pool.node(*id), Node::Call(Function::Exp, _));
-        terms.extend(
-            calls
-                .iter()
-                .copied()
-                .filter(never_zero)
-                .map(Term::Logarithm),
-        );
-        terms.extend(sums.iter().copied().map(Term::Logarithm));
-        let lines: Vec<_> = lines.into_iter().map(|s| pool.variable(s)).collect();
-        terms.extend(lines.iter().copied().map(Term::Plain));
+        let calls = chosen(|node| matches!(node, Node::Call(..)));
+        let sums = chosen(|node| matches!(node, Node::Sum { .. }));
+        // The logarithm of an exponential is among the plain ones.
+        let is_exponential = |id: &ExprId| matches!(pool.node(*id), Node::Call(Function::Exp, _));
+        let arguments = calls.iter().filter(|id| !is_exponential(id)).chain(&sums);
+        for id in arguments.chain(&lines) {
+            let kind = match pool.sign(*id).is_nonzero() {
+                true => &mut regular,
+                false => &mut singular,
+            };
+            kind.push(Term::Logarithm(*id));
+        }
+        regular.extend(lines.iter().copied().map(Term::Plain));
         for (i, a) in lines.iter().enumerate() {
             for b in &lines[i..] {
-                terms.push(Term::Plain(pool.mul(*a, *b)));
+                regular.push(Term::Plain(pool.mul(*a, *b)));
             }
         }
-        terms.extend(calls.into_iter().map(Term::Plain));
-        terms.extend(lines.into_iter().map(Term::Logarithm));
-        let single_valued = terms.len();
-        for angle in angles {
-            terms.push(Term::Plain(pool.variable(angle)));
-        }
+        regular.extend(calls.into_iter().map(Term::Plain));
         Self {
-            terms,
-            single_valued,
+            regular,
+            angles: angles.into_iter().map(Term::Plain).collect(),
+            singular,
         }
     }
 
-    /// The terms, or those among them that are single-valued.
-    fn allowed(&self, many_valued: bool) -> &[Term] {
-        let count = if many_valued {
-            self.terms.len()
-        } else {
-            self.single_valued
+    /// The terms that are allowed.
+    pub(super) fn allowed(&self, allowed: Allowed) -> Vec<Term> {
+        let lists: &[&Vec<Term>] = match allowed {
+            Allowed::Regular => &[&self.regular],
+            Allowed::SingleValued => &[&self.regular, &self.singular],
+            Allowed::All => &[&self.regular, &self.angles, &self.singular],
         };
-        &self.terms[..count]
+        lists.iter().copied().flatten().copied().collect()
     }
 }
 
@@ -139,11 +146,11 @@ pub(super) fn fit(
     pool: &mut Pool,
     problem: &Problem,
     candidates: &Candidates,
-    many_valued: bool,
+    allowed: Allowed,
     seed: u64,
 ) -> Option<Potential> {
-    let terms = candidates.allowed(many_valued);
-    let coefficients = solve_for_coefficients(pool, problem, terms, &[], seed)?;
+    let terms = candidates.allowed(allowed);
+    let coefficients = solve_for_coefficients(pool, problem, &terms, &[], seed)?;
     let mut found = Vec::new();
     for (term, (coefficient, field)) in terms.iter().zip(coefficients) {
         if coefficient != 0 {
@@ -192,7 +199,7 @@ fn roots(problem: &Problem, terms: &[Term]) -> Vec<ExprId> {
 }
 
 impl Term {
-    fn expression(self) -> Option<ExprId> {
+    pub(super) fn expression(self) -> Option<ExprId> {
         match self {
             Self::Logarithm(f) | Self::Plain(f) => Some(f),
             _ => None,

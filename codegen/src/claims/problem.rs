@@ -119,7 +119,7 @@ impl Problem {
     }
 
     /// Whether the motion on D has a part that does not vanish with the velocities, or the volume a rate at rest.
-    pub(super) fn has_drift(&self, pool: &Pool) -> bool {
+    pub fn has_drift(&self, pool: &Pool) -> bool {
         self.is_time_dependent()
             || self.friction.is_some()
             || self.affine.iter().any(|id| !pool.is_syntactic_zero(*id))

@@ -5,7 +5,7 @@ use dalembert_expr::{Assumption as Known, Pool, RealPoint, SymbolId};
 use crate::model::{Assumption, Model, Topology};
 
 /// A real point: values of parameters and coordinates that a person can type.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sample {
     /// Names and values, coordinates first.
     pub values: Vec<(String, f64)>,
@@ -20,6 +20,12 @@ impl Sample {
             point.set(*symbol, *value);
         }
         point
+    }
+
+    /// Symbols and values.
+    pub(super) fn point_values(&self) -> Vec<(SymbolId, f64)> {
+        let values = self.values.iter().map(|(_, value)| *value);
+        self.symbols.iter().copied().zip(values).collect()
     }
 
     /// The value of a symbol.
@@ -60,10 +66,7 @@ const HUNDREDTHS: [i32; 16] = [
 /// The `attempt`-th sample for the symbols that `uses` accepts, time included: parameters at their defaults where
 /// they have one.
 pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> bool) -> Sample {
-    let mut sample = Sample {
-        values: Vec::new(),
-        symbols: Vec::new(),
-    };
+    let mut sample = Sample::default();
     let mut drawn = attempt * 5;
     let mut next = || {
         drawn += 1;

@@ -1,0 +1,104 @@
+//! Conditions on parameters under which a density exists that does not exist for all of their values.
+
+use dalembert_codegen::claims::{Condition, find_conditions};
+use dalembert_tests::verdict::{Decided, Existence};
+use dalembert_tests::visible::{Scheme, declaration, visible_system};
+
+/// The conditions of a model, as text.
+fn conditions(source: &str) -> Vec<String> {
+    let mut decided = Decided::of(source);
+    let exactness = decided.exactness().clone();
+    let scan = find_conditions(&mut decided.model, &decided.problem, &exactness, 1);
+    let scan = scan.expect("a scan");
+    assert!(scan.is_complete, "{source}");
+    let text = |own: &Condition| {
+        let place = if own.is_global { "" } else { ", locally" };
+        format!("{}{place}", own.text(&decided.model))
+    };
+    scan.found.iter().map(text).collect()
+}
+
+#[test]
+fn the_sleigh_needs_its_centre_of_mass_over_the_blade() {
+    let sleigh = declaration(&visible_system("chaplygin_sleigh"));
+    assert_eq!(conditions(&sleigh), ["a = 0"]);
+    // Without mass the metric is singular: that is no condition, whatever is assumed of it.
+    assert_eq!(conditions(&sleigh.replace("m > 0", "m")), ["a = 0"]);
+    // Nothing is left where the condition is excluded.
+    assert!(conditions(&sleigh.replace("a =", "a > 0 =")).is_empty());
+    assert!(conditions(&sleigh.replace("a =", "a in [1/2, 1] =")).is_empty());
+}
+
+#[test]
+fn suslov_needs_a_principal_axis() {
+    let suslov = declaration(&visible_system("suslov"));
+    assert_eq!(conditions(&suslov), ["I13 = 0 and I23 = 0"]);
+}
+
+/// `b = 0` alone does not do: it leaves the mass of the rear part off its axis. Without both the blades are in one
+/// point, and the constraints dependent where they are parallel.
+#[test]
+fn the_roller_racer_needs_both_offsets_to_vanish() {
+    let mut scheme = Scheme::of(&visible_system("roller_racer"));
+    scheme.parameters = scheme
+        .parameters
+        .replace("a > 0", "a")
+        .replace("b > 0", "b");
+    assert_eq!(
+        conditions(&scheme.declaration()),
+        ["a = 0 and b = 0, locally"]
+    );
+}
+
+#[test]
+fn the_helical_circle_needs_pitch_zero() {
+    let helix = declaration(&visible_system("helical_circle"));
+    assert_eq!(conditions(&helix), ["k = 0"]);
+}
+
+/// With the metric of a body that depends on equal moments of inertia.
+#[test]
+fn a_suslov_axis_between_two_principal_ones_needs_equal_moments() {
+    let body = "Body {
+        coordinates { phi: angle; theta in (0, pi); psi: angle; }
+        parameters { A > 0 = 3; B > 0 = 4; C > 0 = 5; }
+        let b1 = dot(phi)*sin(theta)*sin(psi) + dot(theta)*cos(psi);
+        let b2 = dot(phi)*sin(theta)*cos(psi) - dot(theta)*sin(psi);
+        let b3 = dot(phi)*cos(theta) + dot(psi);
+        lagrangian = (A*b1^2 + B*b2^2 + C*b3^2)/2;
+        constraints { axis: b1 + 2*b2 = 0; }
+    }";
+    assert_eq!(conditions(body), ["A = B"]);
+}
+
+/// At `l1 = 0` the axle of the trailer is below the hitch, and both blades in one point.
+#[test]
+fn a_trailer_needs_its_axle_below_the_hitch() {
+    let trailer = "Trailer {
+        coordinates { x; y; theta0: angle; theta1: angle; }
+        parameters { m > 0 = 2; m1 > 0 = 1; I0 > 0 = 1; I1 > 0 = 1/2; l1 = 1/3; }
+        let x1 = x - l1*cos(theta1);
+        let y1 = y - l1*sin(theta1);
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I0/2*dot(theta0)^2 + m1/2*(dot(x1)^2 + dot(y1)^2) + I1/2*dot(theta1)^2;
+        constraints {
+            blade: -sin(theta0)*d(x) + cos(theta0)*d(y) = 0;
+            trailer: -sin(theta1)*d(x1) + cos(theta1)*d(y1) = 0;
+        }
+    }";
+    assert_eq!(conditions(trailer), ["l1 = 0, locally"]);
+}
+
+/// A value that is no 0 and no equality; the default does not matter.
+#[test]
+fn values_at_which_the_obstruction_vanishes_are_found() {
+    let particle = "Particle {
+        coordinates { x; y; z; } parameters { k = 1/3; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { c: d(z) - (y + (k - 2)*x)*d(x) = 0; }
+    }";
+    assert_eq!(conditions(particle), ["k = 2"]);
+    assert_eq!(
+        Decided::of(&particle.replace("k = 1/3", "k = 2")).existence(),
+        Existence::None
+    );
+}

@@ -1,0 +1,127 @@
+//! Densities where forces depend on velocities, constraints are affine, or time enters.
+
+use dalembert_tests::verdict::{Decided, Existence};
+use dalembert_tests::verified::{BODY, EULER, verified};
+
+fn sleigh(offset: &str, rest: &str) -> String {
+    format!(
+        "Sleigh {{
+            coordinates {{ x; y; theta: angle; }}
+            parameters {{ m > 0 = 2; I > 0 = 3; c > 0 = 1/2; k = 1/3; }}
+            let xc = x + {offset}*cos(theta); let yc = y + {offset}*sin(theta);
+            lagrangian = m/2*(dot(xc)^2 + dot(yc)^2) + I/2*dot(theta)^2;
+            {rest}
+        }}"
+    )
+}
+
+const BLADE: &str = "constraints { blade: -sin(theta)*d(x) + cos(theta)*d(y) = 0; }";
+
+#[test]
+fn friction_contracts_and_what_does_no_work_on_d_does_not() {
+    let with = |force: &str| sleigh("0", &format!("{BLADE} forces {{ f: {force}; }}"));
+    for friction in ["-c*dot(theta)*d(theta)", "-c*(dot(x)*d(x) + dot(y)*d(y))"] {
+        assert_eq!(verified(&with(friction)), Existence::None, "{friction}");
+    }
+    for harmless in [
+        // Friction across the blade.
+        "-c*(-sin(theta)*dot(x) + cos(theta)*dot(y))*(-sin(theta)*d(x) + cos(theta)*d(y))",
+        // Gyroscopic, and the force of a position.
+        "c*(dot(x)*d(theta) - dot(theta)*d(x))",
+        "(x - y)*d(theta)",
+        // What one friction loses the other gains.
+        "-c*dot(theta)/m*d(theta) + c/I*(dot(x)*d(x) + dot(y)*d(y))",
+    ] {
+        assert_eq!(verified(&with(harmless)), Existence::Global, "{harmless}");
+    }
+}
+
+/// `F = -k xdot^2 dx` has the divergence `-2 k xdot/m`: the density `exp(2 k x/m)` on a line, none on a circle.
+#[test]
+fn drag_quadratic_in_the_velocity_is_a_density_on_a_line() {
+    let bead = |domain: &str, drag: &str| {
+        format!(
+            "Bead {{ coordinates {{ x{domain}; y; }} lagrangian = dot(x)^2 + dot(y)^2/2;
+                forces {{ drag: {drag}*d(x); }} }}"
+        )
+    };
+    assert_eq!(verified(&bead("", "-3*dot(x)^2")), Existence::Global);
+    assert_eq!(verified(&bead(": angle", "-3*dot(x)^2")), Existence::Local);
+    assert_eq!(verified(&bead("", "-3*dot(x)*dot(y)")), Existence::Global);
+    assert_eq!(verified(&bead("", "-3*y*dot(x)^2")), Existence::None);
+    assert_eq!(
+        Decided::of(&bead("", "-dot(x)^3")).existence(),
+        Existence::Open
+    );
+}
+
+#[test]
+fn affine_constraints_add_the_divergence_of_their_drift() {
+    let affine = |offset: &str, drift: &str| {
+        let blade = "-sin(theta)*d(x) + cos(theta)*d(y)";
+        sleigh(
+            offset,
+            &format!("constraints {{ blade: {blade} + ({drift})*d(t) = 0; }}"),
+        )
+    };
+    assert_eq!(verified(&affine("0", "k")), Existence::Global);
+    assert_eq!(
+        verified(&affine("0", "x^2*y + sin(theta)")),
+        Existence::None
+    );
+    assert_eq!(
+        verified(&affine("k", "x^2*y + sin(theta)")),
+        Existence::None
+    );
+    // A turning table: the drift is a motion of the plane.
+    assert_eq!(
+        verified(&affine("0", "k*(x*cos(theta) + y*sin(theta))")),
+        Existence::Global
+    );
+}
+
+#[test]
+fn balls_on_a_turning_table_keep_a_volume() {
+    let table = |inertia: &str| {
+        format!(
+            "Table {{ coordinates {{ x; y; {EULER} }} parameters {{ m > 0 = 2; A > 0 = 3; C > 0 = 5; w = 1/2; }} {BODY}
+                lagrangian = m/2*(dot(x)^2 + dot(y)^2) + ({inertia})/2;
+                constraints {{ rolling_x: dot(x) - s2 = -w*y; rolling_y: dot(y) + s1 = w*x; }} }}"
+        )
+    };
+    assert_eq!(
+        verified(&table("A*(b1^2 + b2^2 + b3^2)")),
+        Existence::Global
+    );
+    verified(&table("A*(b1^2 + b2^2) + C*b3^2"));
+}
+
+/// The volume of phase space is kept although metric and potential depend on time; constraints that turn with time are
+/// another matter.
+#[test]
+fn time_enters_metric_and_constraints() {
+    let free = "Free { coordinates { x; y; }
+        lagrangian = (2 + sin(t))*dot(x)^2/2 + exp(t)*dot(y)^2/2 + t*x*dot(y) - x*y*t; }";
+    assert_eq!(verified(free), Existence::Global);
+    let blade = |metric: &str, form: &str| {
+        format!(
+            "Blade {{ coordinates {{ x; y; theta: angle; }}
+                lagrangian = {metric}*(dot(x)^2 + dot(y)^2)/2 + dot(theta)^2/2;
+                constraints {{ blade: {form} = 0; }} }}"
+        )
+    };
+    let turning = "-sin(theta + t)*d(x) + cos(theta + t)*d(y)";
+    assert_eq!(verified(&blade("1", turning)), Existence::Global);
+    assert_eq!(verified(&blade("exp(t)", turning)), Existence::Global);
+    assert_eq!(
+        verified(&blade("(1 + t^2)", "d(y) - t*d(x)")),
+        Existence::Global
+    );
+    for form in [
+        "d(y) - (t + x)*d(theta) + x*d(t)",
+        "d(y) - (t + x)*d(theta) + y*d(t)",
+    ] {
+        verified(&blade("1", form));
+    }
+    verified(&blade("(1 + x^2*t^2)", "d(y) - t*x*d(theta)"));
+}

@@ -1,0 +1,241 @@
+//! Systems beyond those of the reference file: bodies, balls, trains, particles.
+
+use dalembert_tests::verdict::Existence;
+use dalembert_tests::verified::{BODY, EULER, verified};
+
+fn top(parameters: &str, kinetic: &str, constraint: &str) -> String {
+    format!(
+        "Body {{ coordinates {{ {EULER} }} parameters {{ {parameters} }} {BODY}
+            lagrangian = ({kinetic})/2; constraints {{ axis: {constraint} = 0; }} }}"
+    )
+}
+
+#[test]
+fn suslov_has_a_density_iff_the_axis_is_principal() {
+    let principal = "A > 0 = 3; B > 0 = 4; C > 0 = 5;";
+    let inertia = "A*b1^2 + B*b2^2 + C*b3^2";
+    for axis in ["b1", "b2", "b3"] {
+        assert_eq!(
+            verified(&top(principal, inertia, axis)),
+            Existence::Global,
+            "{axis}"
+        );
+    }
+    for axis in ["b1 + b2", "b1 - 2*b3", "b1 + 2*b2 + 2*b3"] {
+        assert_eq!(
+            verified(&top(principal, inertia, axis)),
+            Existence::None,
+            "{axis}"
+        );
+    }
+    let round = "A > 0 = 3;";
+    assert_eq!(
+        verified(&top(round, "A*(b1^2 + b2^2 + b3^2)", "b1 + 2*b2 + 2*b3")),
+        Existence::Global
+    );
+    let symmetric = "A*(b1^2 + b2^2) + C*b3^2";
+    let parameters = "A > 0 = 3; C > 0 = 5;";
+    assert_eq!(
+        verified(&top(parameters, symmetric, "b1 + 2*b2")),
+        Existence::Global
+    );
+    assert_eq!(
+        verified(&top(parameters, symmetric, "b1 + b3")),
+        Existence::None
+    );
+}
+
+/// Veselova's constraint, of fixed axis in space, keeps a volume whatever the inertia.
+#[test]
+fn constraints_of_fixed_axis_in_space_keep_a_volume() {
+    let parameters = "A > 0 = 3; B > 0 = 4; C > 0 = 5; D = 1/2; E = 1/3;";
+    let inertia = "A*b1^2 + B*b2^2 + C*b3^2 + 2*D*b1*b2 + 2*E*b2*b3";
+    for axis in ["s3", "s1", "s1 + s2"] {
+        assert_eq!(
+            verified(&top(parameters, inertia, axis)),
+            Existence::Global,
+            "{axis}"
+        );
+    }
+}
+
+/// A ball of radius 1 on a plane, its centre of mass at `(l1, l2, l3)` in the body, measured from the centre.
+fn ball(offset: &str, inertia: &str, more: &str) -> String {
+    format!(
+        "Ball {{
+            coordinates {{ x; y; {EULER} }}
+            parameters {{ m > 0 = 2; A > 0 = 3; B > 0 = 4; C > 0 = 5; l = 1/4; k = 1/5; }}
+            {BODY}
+            let sp = sin(psi); let cp = cos(psi); let st = sin(theta); let ct = cos(theta);
+            let sf = sin(phi); let cf = cos(phi);
+            let rx(a, b, c) = (cf*cp - sf*ct*sp)*a + (-cf*sp - sf*ct*cp)*b + sf*st*c;
+            let ry(a, b, c) = (sf*cp + cf*ct*sp)*a + (-sf*sp + cf*ct*cp)*b - cf*st*c;
+            let rz(a, b, c) = st*sp*a + st*cp*b + ct*c;
+            lagrangian = m/2*(dot(x + rx({offset}))^2 + dot(y + ry({offset}))^2 + dot(rz({offset}))^2)
+                + ({inertia})/2;
+            constraints {{ rolling_x: dot(x) - s2 = 0; rolling_y: dot(y) + s1 = 0; {more} }}
+        }}"
+    )
+}
+
+#[test]
+fn balls_on_a_plane() {
+    let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";
+    let symmetric = "A*(b1^2 + b2^2) + C*b3^2";
+    let round = "A*(b1^2 + b2^2 + b3^2)";
+    let rubber = "rubber: s3 = 0;";
+    // Chaplygin's sphere, the homogeneous ball, and both without spinning.
+    assert_eq!(verified(&ball("0, 0, 0", triaxial, "")), Existence::Global);
+    assert_eq!(verified(&ball("0, 0, 0", round, "")), Existence::Global);
+    assert_eq!(
+        verified(&ball("0, 0, 0", triaxial, rubber)),
+        Existence::Global
+    );
+    assert_eq!(verified(&ball("0, 0, 0", round, rubber)), Existence::Global);
+    // Routh's sphere, its centre of mass on the axis of symmetry; off it there is nothing.
+    assert_eq!(verified(&ball("0, 0, l", symmetric, "")), Existence::Global);
+    assert_eq!(verified(&ball("l, 0, 0", symmetric, "")), Existence::None);
+    assert_eq!(verified(&ball("l, 0, k", triaxial, "")), Existence::None);
+}
+
+#[test]
+fn rubber_balls_off_centre() {
+    let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";
+    let symmetric = "A*(b1^2 + b2^2) + C*b3^2";
+    let rubber = "rubber: s3 = 0;";
+    assert_eq!(
+        verified(&ball("l, 0, 0", triaxial, rubber)),
+        Existence::None
+    );
+    assert_eq!(
+        verified(&ball("0, 0, l", symmetric, rubber)),
+        Existence::Global
+    );
+}
+
+/// A sleigh that pulls `count` trailers with masses at their axles.
+fn train(count: usize) -> String {
+    let mut angles = String::from("x; y; theta0: angle; ");
+    let mut constraints = String::from("blade: -sin(theta0)*d(x) + cos(theta0)*d(y) = 0; ");
+    let mut definitions = String::from("let x0 = x; let y0 = y; ");
+    let mut kinetic = String::from("m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta0)^2");
+    for i in 1..=count {
+        let (angle, before) = (format!("theta{i}"), i - 1);
+        angles += &format!("{angle}: angle; ");
+        definitions += &format!(
+            "let x{i} = x{before} - l{i}*cos({angle}); let y{i} = y{before} - l{i}*sin({angle}); "
+        );
+        constraints += &format!("c{i}: -sin({angle})*d(x{i}) + cos({angle})*d(y{i}) = 0; ");
+        kinetic += &format!(" + m{i}/2*(dot(x{i})^2 + dot(y{i})^2) + J{i}/2*dot({angle})^2");
+    }
+    let parameters: String = (1..=count)
+        .map(|i| format!("l{i} = {}/3; m{i} > 0 = {i}/2; J{i} > 0 = {i}; ", i + 1))
+        .collect();
+    format!(
+        "Train {{ coordinates {{ {angles} }} parameters {{ m > 0 = 2; I > 0 = 1; {parameters} }} {definitions}
+            lagrangian = {kinetic}; constraints {{ {constraints} }} }}"
+    )
+}
+
+#[test]
+fn trains_have_no_density() {
+    for count in 1..=3 {
+        assert_eq!(verified(&train(count)), Existence::None, "{count}");
+    }
+}
+
+/// `dz = f dx` with the flat metric.
+fn particle(f: &str) -> String {
+    format!(
+        "Particle {{ coordinates {{ x; y; z; }} parameters {{ k = 1/3; }}
+            lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2; constraints {{ c: d(z) - ({f})*d(x) = 0; }} }}"
+    )
+}
+
+/// `theta = -f f_y dy/(1 + f^2) - ..` is closed for `f(y)`, Martinet's among them, and for holonomic constraints.
+#[test]
+fn particles_with_one_form() {
+    for f in [
+        "y",
+        "y^2",
+        "y^3",
+        "k*y^2 + y",
+        "exp(k*y)",
+        "sin(y)",
+        "x",
+        "z",
+        "1/(1 + y^2)",
+    ] {
+        assert_eq!(verified(&particle(f)), Existence::Global, "{f}");
+    }
+    for f in ["x + y", "x*y", "y*z", "y + z", "y^2 + x", "sin(y) + k*x"] {
+        assert_eq!(verified(&particle(f)), Existence::None, "{f}");
+    }
+}
+
+#[test]
+fn contact_forms_on_five_dimensions() {
+    let contact = |metric: &str, form: &str| {
+        format!(
+            "Contact {{ coordinates {{ x1; y1; x2; y2; z; }} parameters {{ k > 0 = 3; a = 1/2; }}
+                lagrangian = ({metric})/2; constraints {{ c: d(z) - {form} = 0; }} }}"
+        )
+    };
+    let flat = "dot(x1)^2 + dot(y1)^2 + dot(x2)^2 + dot(y2)^2 + dot(z)^2";
+    let squeezed =
+        "k*dot(x1)^2 + dot(y1)^2 + dot(x2)^2 + 2*dot(y2)^2 + dot(z)^2 + a*dot(x1)*dot(y2)";
+    let symmetric = "(y1*d(x1) - x1*d(y1) + y2*d(x2) - x2*d(y2))";
+    let gauge = "(y1*d(x1) + y2*d(x2))";
+    assert_eq!(verified(&contact(flat, symmetric)), Existence::Global);
+    assert_eq!(verified(&contact(flat, gauge)), Existence::Global);
+    assert_eq!(verified(&contact(squeezed, gauge)), Existence::None);
+}
+
+/// Left-invariant metrics on the plane's motions; constraints that are invariant from the right keep a volume.
+#[test]
+fn motions_of_the_plane() {
+    let motions = |constraint: &str| {
+        format!(
+            "Motions {{ coordinates {{ x; y; theta: angle; }}
+                parameters {{ a > 0 = 2; b > 0 = 3; I > 0 = 1; c = 1/4; e = 1/5; }}
+                let u = cos(theta)*dot(x) + sin(theta)*dot(y);
+                let v = -sin(theta)*dot(x) + cos(theta)*dot(y);
+                lagrangian = (a*u^2 + b*v^2 + I*dot(theta)^2)/2 + c*u*dot(theta) + e*v*dot(theta);
+                constraints {{ c: {constraint} = 0; }} }}"
+        )
+    };
+    for right in [
+        "dot(x) + y*dot(theta)",
+        "dot(y) - x*dot(theta)",
+        "dot(theta)",
+    ] {
+        assert_eq!(verified(&motions(right)), Existence::Global, "{right}");
+    }
+    for left in ["v", "u", "u + v", "v - dot(theta)"] {
+        assert_eq!(verified(&motions(left)), Existence::None, "{left}");
+    }
+}
+
+/// D is integrable, so that a density is sought on every leaf.
+#[test]
+fn integrable_constraints_have_a_density() {
+    let surfaces = "Surfaces { coordinates { x; y; z; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { c: (2 + x^2)*(d(z) - y*d(x) - x*d(y)) = 0; } }";
+    assert_eq!(verified(surfaces), Existence::Global);
+    let bead = "Bead { coordinates { x; y; } parameters { k > 0 = 3; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2; constraints { c: d(x^2 + k*y^2) = 0; } }";
+    assert_eq!(verified(bead), Existence::Global);
+    let sphere = "Sphere { coordinates { x; y; z; } parameters { k > 0 = 3; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - z;
+        constraints { c: x*d(x) + y*d(y) + z*d(z) = 0; } }";
+    assert_eq!(verified(sphere), Existence::Global);
+}
+
+/// Without constraints the volume of phase space is kept, whatever the metric.
+#[test]
+fn free_systems_keep_the_volume_of_phase_space() {
+    let free = "Free { coordinates { x; y; theta: angle; } parameters { k > 0 = 3; }
+        lagrangian = (1 + x^2)*dot(x)^2/2 + (2 + sin(theta))*dot(y)^2 + x*dot(x)*dot(theta)/3 + dot(theta)^2 - k*x*y; }";
+    assert_eq!(verified(free), Existence::Global);
+}

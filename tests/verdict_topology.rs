@@ -1,0 +1,128 @@
+//! From local to global: circles, singular configurations, conditions on parameters.
+
+use std::f64::consts::PI;
+
+use dalembert_codegen::claims::Global;
+use dalembert_tests::verdict::{Answer, Decided, Existence, answer};
+use dalembert_tests::verified::verified;
+use dalembert_tests::visible::{declaration, visible_system};
+
+/// A system of the file with some of its circles replaced by lines.
+fn unwrapped(name: &str, angles: &[&str]) -> String {
+    let mut source = declaration(&visible_system(name));
+    for angle in angles {
+        let wrapped = format!("{angle}: angle;");
+        assert!(source.contains(&wrapped), "{source}");
+        source = source.replace(&wrapped, &format!("{angle};"));
+    }
+    source
+}
+
+#[test]
+fn the_helical_circle_has_a_density_on_the_line() {
+    let circle = unwrapped("helical_circle", &[]);
+    assert_eq!(verified(&circle), Existence::Local);
+    let decided = Decided::of(&circle);
+    let Some(Global::Many { turns, period, .. }) = &decided.exactness().global else {
+        panic!("{:?}", decided.exactness().global);
+    };
+    assert_eq!(turns, &[(0, 1)]);
+    // The density is exp(-k phi), k = 1/3.
+    assert!((period + 2.0 * PI / 3.0).abs() < 1e-12, "{period}");
+    assert_eq!(answer(&circle, "density: locally_exact"), Answer::Proved);
+    let Answer::Refuted(message) = answer(&circle, "density: exact") else {
+        panic!("accepted");
+    };
+    assert!(message.contains("period = -2.0943951"), "{message}");
+    assert!(message.contains("phi makes a turn"), "{message}");
+    let line = unwrapped("helical_circle", &["phi"]);
+    assert_eq!(verified(&line), Existence::Global);
+    assert_eq!(answer(&line, "density: exact"), Answer::Proved);
+}
+
+/// A wheeled robot; its centre of mass lies `a` before the axle.
+fn robot(wheels: &str) -> String {
+    format!(
+        "Robot {{
+            coordinates {{ x; y; theta: angle; psi1{wheels}; psi2{wheels}; }}
+            parameters {{ m > 0 = 2; I > 0 = 3; J > 0 = 1/2; a = 3/4; b > 0 = 1; r > 0 = 1/2; }}
+            lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (I + m*a^2)/2*dot(theta)^2
+                + a*m*dot(theta)*(-dot(x)*sin(theta) + dot(y)*cos(theta)) + J/2*(dot(psi1)^2 + dot(psi2)^2);
+            constraints {{
+                blade: -sin(theta)*d(x) + cos(theta)*d(y) = 0;
+                right: cos(theta)*d(x) + sin(theta)*d(y) + b*d(theta) - r*d(psi1) = 0;
+                left: cos(theta)*d(x) + sin(theta)*d(y) - b*d(theta) - r*d(psi2) = 0;
+            }}
+        }}"
+    )
+}
+
+/// With the speed `v = r (psi1dot + psi2dot)/2` and `w = thetadot` the robot is a sleigh, `(I_eff) wdot = -m a v w`, so that
+/// `div = -m a v/I_eff`, and `G = kappa (psi1 + psi2)`.
+#[test]
+fn the_wheels_of_a_robot_decide_whether_there_is_a_density() {
+    let circles = robot(": angle");
+    assert_eq!(verified(&circles), Existence::Local);
+    let decided = Decided::of(&circles);
+    assert_eq!(
+        (
+            decided.exactness().local.rank,
+            decided.exactness().local.extended_rank
+        ),
+        (4, 4)
+    );
+    let Some(Global::Many { turns, period, .. }) = &decided.exactness().global else {
+        panic!("{:?}", decided.exactness().global);
+    };
+    let (m, inertia, wheel, a, b, r) = (2.0, 3.0, 0.5, 0.75, 1.0, 0.5);
+    let effective: f64 = inertia + m * a * a + 2.0 * wheel * b * b / (r * r);
+    let kappa = m * a * r / (2.0 * effective);
+    assert_eq!(turns, &[(3, 1), (4, 1)]);
+    assert!((period - 4.0 * PI * kappa).abs() < 1e-10, "{period}");
+    assert_eq!(verified(&robot("")), Existence::Global);
+}
+
+/// With `dx = x dy` every density is `f(C) m/|x|`, `C` the leaf: on both sides of `x = 0` alike, and on that leaf
+/// `exp(-y)`, which is many-valued if `y` is an angle.
+#[test]
+fn densities_that_are_singular_somewhere_are_none_of_all_of_q() {
+    let leaves = |y: &str| {
+        format!(
+            "Leaves {{ coordinates {{ x; y{y}; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+                constraints {{ c: d(x) - x*d(y) = 0; }} }}"
+        )
+    };
+    assert_eq!(verified(&leaves("")), Existence::Global);
+    assert_eq!(verified(&leaves(": angle")), Existence::LocalAtLeast);
+    // Everything is drawn to y = 0.
+    let attracted = "Attracted { coordinates { x; y; } parameters { k > 0 = 2; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2; constraints { c: dot(y) = -k*y; } }";
+    assert_eq!(verified(attracted), Existence::LocalAtLeast);
+    let half = "Attracted { coordinates { x; y in (0, 9); } parameters { k > 0 = 2; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2; constraints { c: dot(y) = -k*y; } }";
+    assert_eq!(verified(half), Existence::Global);
+}
+
+/// Where both forms of the snakeboard are the same it has no equations.
+#[test]
+fn circles_that_leave_the_regular_domain_leave_the_question_open() {
+    let snakeboard = |phi: &str| {
+        format!(
+            "Snakeboard {{
+                coordinates {{ x; y; theta: angle; psi: angle; phi{phi}; }}
+                parameters {{ m > 0 = 2; r > 0 = 1; J > 0 = 1; Jr > 0 = 1/2; Jw > 0 = 1/3; }}
+                lagrangian = m/2*(dot(x)^2 + dot(y)^2) + J/2*dot(theta)^2 + Jr/2*(dot(psi) + dot(theta))^2
+                    + Jw/2*((dot(phi) + dot(theta))^2 + (dot(phi) - dot(theta))^2);
+                constraints {{
+                    front: -sin(theta + phi)*d(x) + cos(theta + phi)*d(y) + r*cos(phi)*d(theta) = 0;
+                    back: -sin(theta - phi)*d(x) + cos(theta - phi)*d(y) - r*cos(phi)*d(theta) = 0;
+                }}
+            }}"
+        )
+    };
+    assert_eq!(
+        verified(&snakeboard(" in (-pi/2, pi/2)")),
+        Existence::Global
+    );
+    assert_eq!(verified(&snakeboard(": angle")), Existence::LocalAtLeast);
+}
