@@ -26,6 +26,8 @@ pub struct Obstruction {
     pub delta: f64,
     /// Sizes below which `delta` would be rounding.
     pub scale: f64,
+    /// The largest component of the frame, its brackets and their demands.
+    size: f64,
 }
 
 /// Points that are tried.
@@ -36,10 +38,16 @@ const CLEAR: f64 = 1e-7;
 /// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none.
 pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Option<Obstruction> {
     let roots = problem.roots();
+    let is_exact = model.pool.profile_of(&roots).is_exact();
     (0..ATTEMPTS).find_map(|attempt| {
         let sample = sample(model, attempt, uses(&model.pool, &roots));
         let found = obstruction_at(model, problem, local, sample)?;
-        (found.delta.abs() > CLEAR * found.scale).then_some(found)
+        // Where residues do not tell whether there is an obstruction, all that was computed on the way counts.
+        let scale = match is_exact {
+            true => found.scale,
+            false => found.scale + found.size,
+        };
+        (found.delta.abs() > CLEAR * scale).then_some(found)
     })
 }
 
@@ -77,6 +85,25 @@ pub(super) fn obstruction_at(
         &before.iter().map(|e| vector(*e)).collect::<Vec<_>>(),
         vector(position),
     )?;
+    let largest = |values: &[f64]| {
+        values
+            .iter()
+            .fold(0.0, |size: f64, own| size.max(own.abs()))
+    };
+    let size = elements.iter().map(|own| largest(own)).fold(0.0, f64::max);
+    let rest: Vec<f64> = (0..width)
+        .map(|i| {
+            let combined = before
+                .iter()
+                .zip(&coefficients)
+                .map(|(e, coefficient)| coefficient * elements[*e][i]);
+            elements[position][i] - combined.sum::<f64>()
+        })
+        .collect();
+    // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
+    if largest(&rest) > CLEAR * size {
+        return None;
+    }
     let (mut delta, mut scale) = (elements[position][width], elements[position][width].abs());
     for (coefficient, element) in coefficients.iter().zip(&before) {
         delta -= coefficient * elements[*element][width];
@@ -100,6 +127,7 @@ pub(super) fn obstruction_at(
         relation,
         delta,
         scale,
+        size,
     })
 }
 
