@@ -10,7 +10,7 @@
 //! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
 //! | `alternatives.rs` | both of these in words |
 //! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
-//! | `evidence.rs` | does something vanish at all states? |
+//! | `evidence.rs`, `continuity.rs` | does something vanish at all states? may it jump all the same? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
 //! | `wall.rs`, `hybrid.rs` | the map of an impact; what it does to a volume |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
@@ -24,6 +24,7 @@ mod ansatz;
 mod closure;
 mod conditions;
 mod conserved;
+mod continuity;
 mod darboux;
 mod density;
 pub mod dynamics;
@@ -82,7 +83,25 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Vec<Finding> {
         derivation,
     };
     let claims = examiner.model.claims.clone();
-    claims.iter().map(|claim| examiner.finding(claim)).collect()
+    let has_states = conserved::has_states(examiner.model, &examiner.dynamics);
+    claims
+        .iter()
+        .map(|claim| match has_states {
+            true => examiner.finding(claim),
+            false => open(claim, Undecided::Stateless),
+        })
+        .collect()
+}
+
+/// A claim that nothing was found out about.
+fn open(claim: &Claim, reason: Undecided) -> Finding {
+    Finding {
+        claim: claim.text.clone(),
+        is_assumed: claim.is_assumed,
+        item: claim.item,
+        verdict: Verdict::Undecided(reason.to_string()),
+        remarks: Vec::new(),
+    }
 }
 
 /// What the verdicts on several claims share.
@@ -111,7 +130,9 @@ impl Examiner<'_> {
                     *existence,
                     self.seed,
                 );
-                if let Ok(exactness) = &decision {
+                if let Ok(exactness) = &decision
+                    && !matches!(verdict, Verdict::Undecided(_))
+                {
                     remarks = self.volume_remarks(exactness);
                 }
                 self.decision = Some(decision);

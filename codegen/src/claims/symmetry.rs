@@ -10,6 +10,7 @@
 
 use dalembert_expr::{ExprId, Pool, SymbolId, Verdict as Zero};
 
+use super::continuity::possible_jump;
 use super::finding::{Certificate, Verdict, Witness, seed_of};
 use super::sample::{Sample, sample, uses};
 use crate::model::Model;
@@ -48,6 +49,13 @@ pub(super) fn check_symmetry(model: &mut Model, field: &[ExprId]) -> (Verdict, V
             seed: seed_of(&model.snake_name),
         }),
     };
+    let jump = field
+        .iter()
+        .find_map(|own| possible_jump(model, *own, &[], &mut |_, _| false));
+    if let (Verdict::Proved(_), Some(place)) = (&verdict, jump) {
+        let text = format!("where it is smooth it is one, but it may jump {place}");
+        return (Verdict::Undecided(text), Vec::new());
+    }
     let remarks = vec![momentum_equation(model, field)];
     (verdict, remarks)
 }
