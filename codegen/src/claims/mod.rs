@@ -178,7 +178,8 @@ impl Examiner<'_> {
                 }
             }
             Statement::Symmetry(field) => {
-                let (verdict, equation) = symmetry::check_symmetry(self.model, field);
+                let (verdict, equation) =
+                    symmetry::check_symmetry(self.model, &self.dynamics, field);
                 remarks = equation;
                 verdict
             }
