@@ -9,7 +9,7 @@ use dalembert_expr::Rational;
 use dalembert_tests::reference::read;
 use dalembert_tests::sampling::{Random, Visitor, visit_all};
 use dalembert_tests::systems::MixedDisk;
-use dalembert_tests::verdict::declaration;
+use dalembert_tests::visible::declaration;
 use dalembert_tests::volume::{WithVolume, determinant, difference};
 use serde_json::Value;
 

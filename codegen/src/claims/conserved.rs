@@ -2,6 +2,7 @@
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, ModularPoint, RealPoint, SymbolId};
 
+use super::continuity::{poles, possible_jump};
 use super::dynamics::{Dynamics, Motion, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::finding::Verdict;
@@ -29,7 +30,33 @@ pub(super) fn check_conserved(
             format!("write `conserved: {written};`"),
         ],
     };
-    evidence(model, &rate, seed).verdict(holds, wording, seed)
+    let verdict = evidence(model, &rate, seed).verdict(holds, wording, seed);
+    if holds
+        && matches!(verdict, Verdict::Proved(_))
+        && let Some(place) = jump(model, dynamics, value, seed)
+    {
+        let text = format!("its rate is 0 wherever it has one, but it may jump {place}");
+        return Verdict::Undecided(text);
+    }
+    verdict
+}
+
+/// Where a quantity may jump along a motion, in words.
+pub(super) fn jump(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    value: ExprId,
+    seed: u64,
+) -> Option<String> {
+    let singular = poles(&model.pool, &model.pool.reachable(&dynamics.roots()));
+    possible_jump(model, value, &singular, &mut |model, part| {
+        let rate = Rate {
+            quantity: Quantity::of(model, part),
+            dynamics,
+            written: "",
+        };
+        evidence(model, &rate, seed).shows_that_it_vanishes()
+    })
 }
 
 /// A quantity with its derivatives by coordinates, velocities and time.
@@ -155,6 +182,11 @@ impl Vanishing for Rate<'_> {
     }
 }
 
+/// Whether there is a real state on D at which the motion is defined.
+pub(super) fn has_states(model: &Model, dynamics: &Dynamics) -> bool {
+    (0..ATTEMPTS).any(|attempt| state_on_d(model, dynamics, &dynamics.roots(), attempt).is_some())
+}
+
 /// A real state on D with short independent velocities; what is shown of it includes all velocities.
 pub(super) fn state_on_d(
     model: &Model,
@@ -186,5 +218,7 @@ pub(super) fn with_velocities(
     Some((sample, point))
 }
 
+/// States that are tried before a model counts as one without.
+const ATTEMPTS: usize = 24;
 /// Independent velocities of real states.
 const VELOCITIES: [f64; 7] = [0.5, -0.75, 1.25, 0.25, -1.5, 1.75, -0.25];

@@ -3,9 +3,11 @@
 //!
 //! A factor `abs(l)^s` counts as `l^s` where `l` is not 0: its logarithmic derivative is the same.
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, RealPoint};
+use dalembert_expr::{
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Node, RealPoint,
+};
 
-use super::conserved::{Quantity, rate_scale, state_on_d};
+use super::conserved::{Quantity, jump, rate_scale, state_on_d};
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::finding::Verdict;
@@ -43,7 +45,24 @@ pub(super) fn check_density(
             String::new(),
         ],
     };
-    evidence(model, &balance, seed).verdict(true, wording, seed)
+    let verdict = evidence(model, &balance, seed).verdict(true, wording, seed);
+    if !matches!(verdict, Verdict::Proved(_)) {
+        return verdict;
+    }
+    // Where a factor is 0 nothing is claimed.
+    let factors: Vec<ExprId> = match model.pool.node(value) {
+        Node::Product(factors) => factors.iter().map(|(base, _)| *base).collect(),
+        _ => vec![value],
+    };
+    let place = factors
+        .into_iter()
+        .find_map(|factor| jump(model, dynamics, factor, seed));
+    match place {
+        Some(place) => Verdict::Undecided(format!(
+            "the balance holds wherever it can be written down, but the density may jump {place}"
+        )),
+        None => verdict,
+    }
 }
 
 /// `d ln(e)/dt + div`

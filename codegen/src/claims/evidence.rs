@@ -69,6 +69,11 @@ pub(super) struct Wording {
 }
 
 impl Evidence {
+    /// Whether the sum is 0 at all states, of which there are some.
+    pub(super) fn shows_that_it_vanishes(&self) -> bool {
+        self.is_real && self.vanishes == Some(true) && self.witness.is_none()
+    }
+
     /// The verdict on the claim that the quantity vanishes, or that it does not.
     pub(super) fn verdict(self, holds: bool, wording: Wording, seed: u64) -> Verdict {
         let certificate = |shown: String, error: f64| Certificate {
@@ -91,7 +96,13 @@ impl Evidence {
                     Some((sample, values)) => format!(": {}", sentence(sample, values)),
                     None => String::new(),
                 };
-                Verdict::Proved(certificate(format!("{}{at}", wording.differs), 0.0))
+                // A value that is not 0 needs no further points.
+                let points = if at.is_empty() { self.points } else { 0 };
+                let shown = format!("{}{at}", wording.differs);
+                Verdict::Proved(Certificate {
+                    points,
+                    ..certificate(shown, 0.0)
+                })
             }
             (true, _, true) => {
                 let (sample, values) = self.witness.unzip();

@@ -3,10 +3,10 @@
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, ModularPoint, RealPoint};
 
 use super::dynamics::{Dynamics, Number};
-use super::evidence::{Vanishing, Wording, evidence};
+use super::evidence::{Vanishing, Wording};
 use super::finding::{Verdict, Witness};
-use super::sample::{Sample, uses};
-use super::wall::Wall;
+use super::sample::Sample;
+use super::wall::{AtImpact, Place, Wall, evidence_at_impact};
 use crate::mechanics::Derivation;
 use crate::model::{Law, Model};
 
@@ -25,7 +25,7 @@ pub(super) fn volume_remarks(
             wall: Wall::of(model, derivation, surface),
             dynamics,
             stated,
-            anywhere: true,
+            place: Place::Anywhere,
         };
         let effect = match (volume.verdict(model, seed), stated) {
             (Verdict::Proved(_), _) => "keeps it".to_owned(),
@@ -95,23 +95,17 @@ struct Volume<'v> {
     wall: Wall,
     dynamics: &'v Dynamics,
     stated: Option<(ExprId, &'v str)>,
-    /// Whether the position is anywhere, or on the surface.
-    anywhere: bool,
+    place: Place,
 }
 
 impl Volume<'_> {
     fn verdict(mut self, model: &Model, seed: u64) -> Verdict {
-        let wording = || Wording {
+        let wording = Wording {
             vanishes: String::new(),
             differs: String::new(),
             help: [String::new(), String::new()],
         };
-        let everywhere = evidence(model, &self, seed);
-        if everywhere.vanishes == Some(true) {
-            return everywhere.verdict(true, wording(), seed);
-        }
-        self.anywhere = false;
-        evidence(model, &self, seed).verdict(true, wording(), seed)
+        evidence_at_impact(model, &mut self, seed).verdict(true, wording, seed)
     }
 
     /// `f+`, `f-` and `J`
@@ -145,6 +139,12 @@ fn value_at<P: ExpansionPoint>(model: &Model, point: &mut P, value: ExprId) -> O
     Some(values[value.index()])
 }
 
+impl AtImpact for Volume<'_> {
+    fn place(&mut self) -> &mut Place {
+        &mut self.place
+    }
+}
+
 impl Vanishing for Volume<'_> {
     fn roots(&self) -> Vec<ExprId> {
         let mut roots = self.dynamics.roots();
@@ -155,16 +155,13 @@ impl Vanishing for Volume<'_> {
     }
 
     fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        if !self.anywhere {
-            self.wall.settle(model, point)?;
-        }
+        self.wall.settle(model, point, self.place)?;
         self.dynamics.motion(&model.pool, point, None).map(|_| ())
     }
 
     fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-        let roots = self.roots();
-        let uses = uses(&model.pool, &roots);
-        self.wall.incoming(model, self.dynamics, attempt, uses)
+        self.wall
+            .incoming(model, self.dynamics, attempt, self.roots())
     }
 
     /// `(f+ J)^2 - (f-)^2`: both are positive, and squares do not depend on the branch of an absolute value.

@@ -4,10 +4,10 @@ use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, ModularPoint, RealPoint
 
 use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
-use super::evidence::{Vanishing, Wording, evidence};
+use super::evidence::{Vanishing, Wording};
 use super::finding::Verdict;
-use super::sample::{Sample, uses};
-use super::wall::Wall;
+use super::sample::Sample;
+use super::wall::{AtImpact, Place, Wall, evidence_at_impact};
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
@@ -32,9 +32,9 @@ pub(super) fn check_conserved_under(
             .collect(),
         value,
         written,
-        anywhere: true,
+        place: Place::Anywhere,
     };
-    let wording = || Wording {
+    let wording = Wording {
         vanishes: format!("`{written}` is the same before and after an impact at `{name}`"),
         differs: format!("`{written}` changes in an impact at `{name}`"),
         help: [
@@ -42,13 +42,15 @@ pub(super) fn check_conserved_under(
             format!("write `conserved under {name}: {written};`"),
         ],
     };
-    // The map is a formula that makes sense off the surface too; what it keeps there it keeps on the surface.
-    let everywhere = evidence(model, &jump, seed);
-    if everywhere.vanishes == Some(true) {
-        return everywhere.verdict(holds, wording(), seed);
+    let found = evidence_at_impact(model, &mut jump, seed);
+    let is_seen = jump.wall.is_solved() || !found.is_real;
+    match found.verdict(holds, wording, seed) {
+        Verdict::Undecided(_) if !is_seen => Verdict::Undecided(format!(
+            "parts of `{name}` may be out of sight: its gap is in no coordinate a polynomial of degree 1 or 2 whose \
+             leading coefficient is never 0"
+        )),
+        verdict => verdict,
     }
-    jump.anywhere = false;
-    evidence(model, &jump, seed).verdict(holds, wording(), seed)
 }
 
 /// The change of a quantity in an impact.
@@ -59,8 +61,7 @@ struct Jump<'j> {
     /// Its derivatives by the velocities.
     slopes: Vec<ExprId>,
     written: &'j str,
-    /// Whether the position is anywhere, or on the surface.
-    anywhere: bool,
+    place: Place,
 }
 
 impl Jump<'_> {
@@ -88,6 +89,12 @@ impl Jump<'_> {
     }
 }
 
+impl AtImpact for Jump<'_> {
+    fn place(&mut self) -> &mut Place {
+        &mut self.place
+    }
+}
+
 impl Vanishing for Jump<'_> {
     fn roots(&self) -> Vec<ExprId> {
         let mut roots = self.dynamics.roots();
@@ -97,16 +104,13 @@ impl Vanishing for Jump<'_> {
     }
 
     fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        if !self.anywhere {
-            self.wall.settle(model, point)?;
-        }
+        self.wall.settle(model, point, self.place)?;
         self.dynamics.motion(&model.pool, point, None).map(|_| ())
     }
 
     fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-        let roots = self.roots();
-        let uses = uses(&model.pool, &roots);
-        self.wall.incoming(model, self.dynamics, attempt, uses)
+        self.wall
+            .incoming(model, self.dynamics, attempt, self.roots())
     }
 
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {

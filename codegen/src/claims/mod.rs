@@ -11,7 +11,7 @@
 //! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
 //! | `alternatives.rs` | both of these in words |
 //! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
-//! | `evidence.rs` | does something vanish at all states? |
+//! | `evidence.rs`, `continuity.rs` | does something vanish at all states? may it jump all the same? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
 //! | `wall.rs`, `hybrid.rs` | the map of an impact; what it does to a volume |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
@@ -25,6 +25,7 @@ mod ansatz;
 mod closure;
 mod conditions;
 mod conserved;
+mod continuity;
 mod darboux;
 mod density;
 pub mod dynamics;
@@ -96,7 +97,14 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
         derivation,
     };
     let claims = examiner.model.claims.clone();
-    let findings: Vec<Finding> = claims.iter().map(|claim| examiner.finding(claim)).collect();
+    let has_states = conserved::has_states(examiner.model, &examiner.dynamics);
+    let findings: Vec<Finding> = claims
+        .iter()
+        .map(|claim| match has_states {
+            true => examiner.finding(claim),
+            false => open(claim, Undecided::Stateless),
+        })
+        .collect();
     let proved: Vec<&Statement> = claims
         .iter()
         .zip(&findings)
@@ -105,6 +113,17 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
         .collect();
     let volume = examiner.volume(&proved);
     Examined { findings, volume }
+}
+
+/// A claim that nothing was found out about.
+fn open(claim: &Claim, reason: Undecided) -> Finding {
+    Finding {
+        claim: claim.text.clone(),
+        is_assumed: claim.is_assumed,
+        item: claim.item,
+        verdict: Verdict::Undecided(reason.to_string()),
+        remarks: Vec::new(),
+    }
 }
 
 /// What the verdicts on several claims share.
@@ -133,7 +152,9 @@ impl Examiner<'_> {
                     *existence,
                     self.seed,
                 );
-                if let Ok(exactness) = &decision {
+                if let Ok(exactness) = &decision
+                    && !matches!(verdict, Verdict::Undecided(_))
+                {
                     remarks = self.volume_remarks(exactness);
                 }
                 self.decision = Some(decision);
@@ -179,7 +200,8 @@ impl Examiner<'_> {
                 }
             }
             Statement::Symmetry(field) => {
-                let (verdict, equation) = symmetry::check_symmetry(self.model, field);
+                let (verdict, equation) =
+                    symmetry::check_symmetry(self.model, &self.dynamics, field);
                 remarks = equation;
                 verdict
             }

@@ -104,17 +104,19 @@ fn obstruction_at(
         .collect();
     let width = elements[position].len() - 1;
     let vector = |element: usize| &elements[element][..width];
-    let coefficients = combine(
-        &before.iter().map(|e| vector(*e)).collect::<Vec<_>>(),
-        vector(position),
-    )?;
-    let mut delta = elements[position][width];
-    let mut scale = delta.abs();
-    // Where atoms may be related, what cancels is rounding of the size of everything.
-    if !model.pool.profile_of(&problem.roots()).is_exact() {
-        let entries = elements.iter().flatten();
-        scale = entries.fold(scale, |scale, entry| scale.max(entry.abs()));
+    let others: Vec<&[f64]> = before.iter().map(|e| vector(*e)).collect();
+    let coefficients = combine(&others, vector(position))?;
+    let size = elements.iter().map(|own| largest(own)).fold(0.0, f64::max);
+    // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
+    if largest(&remainder(&others, &coefficients, vector(position))) > CLEAR * size {
+        return None;
     }
+    let mut delta = elements[position][width];
+    // Where atoms may be related, what cancels is rounding of the size of everything.
+    let mut scale = match model.pool.profile_of(&problem.roots()).is_exact() {
+        true => delta.abs(),
+        false => size,
+    };
     for (coefficient, element) in coefficients.iter().zip(&before) {
         delta -= coefficient * elements[*element][width];
         scale += (coefficient * elements[*element][width]).abs();
@@ -138,6 +140,23 @@ fn obstruction_at(
         delta,
         scale,
     })
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values
+        .iter()
+        .fold(0.0, |size: f64, own| size.max(own.abs()))
+}
+
+/// `target` less a combination of vectors.
+fn remainder(vectors: &[&[f64]], coefficients: &[f64], target: &[f64]) -> Vec<f64> {
+    let mut rest = target.to_vec();
+    for (vector, coefficient) in vectors.iter().zip(coefficients) {
+        for (own, entry) in rest.iter_mut().zip(*vector) {
+            *own -= coefficient * entry;
+        }
+    }
+    rest
 }
 
 /// Whether the first generator is the drift.

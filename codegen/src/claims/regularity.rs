@@ -203,7 +203,8 @@ impl Field<'_> {
             return false;
         };
         let is_independent = close.1.abs() > SMALL * far.1.abs();
-        is_independent && !((close.0 - far.0).abs() < CLEAR)
+        let growth = (close.0 - far.0).abs();
+        is_independent && (growth >= CLEAR || growth.is_nan())
     }
 }
 

@@ -52,7 +52,10 @@ impl Sample {
         let entries: Vec<String> = self
             .values
             .iter()
-            .map(|(name, value)| format!("{name} = {value}"))
+            .map(|(name, value)| match value.abs() {
+                tiny if tiny > 0.0 && tiny < 1e-9 => format!("{name} = {value:e}"),
+                _ => format!("{name} = {value}"),
+            })
             .collect();
         entries.join(", ")
     }
@@ -62,6 +65,11 @@ impl Sample {
 const HUNDREDTHS: [i32; 16] = [
     36, -53, 39, 81, -28, 67, -74, 45, 92, -17, 58, -86, 23, 71, -42, 64,
 ];
+
+/// Attempts with the declared defaults of parameters.
+const DECLARED: usize = 8;
+/// Attempts with coordinates between -1 and 1, which then are ten times as large.
+const NEAR: usize = 16;
 
 /// The `attempt`-th sample for the symbols that `uses` accepts, time included: parameters at their defaults where
 /// they have one.
@@ -81,7 +89,8 @@ pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> b
             }
             _ => match model.pool.symbol_assumption(coordinate.q) {
                 Known::Positive | Known::NonNegative => unit.abs(),
-                _ => unit,
+                _ if attempt < NEAR => unit,
+                _ => round(10.0 * unit),
             },
         };
         if uses(coordinate.q) {
@@ -96,9 +105,9 @@ pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> b
         let default = parameter
             .default
             .map(|default| model.pool.eval(&[default], &|_| 0.0)[0]);
-        // A default of 0 hides what depends on the parameter.
+        // A default may hide what depends on the parameter, 0 always does.
         let value = match (&parameter.assumption, default) {
-            (_, Some(default)) if default != 0.0 || attempt == 0 => default,
+            (_, Some(default)) if attempt == 0 || (default != 0.0 && attempt < DECLARED) => default,
             (Assumption::Positive | Assumption::NonNegative, _) => round(1.0 + unit.abs()),
             (Assumption::Within { low, high }, _) => {
                 let (low, high) = (low.to_f64(), high.to_f64());

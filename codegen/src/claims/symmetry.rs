@@ -10,13 +10,22 @@
 
 use dalembert_expr::{ExprId, Pool, SymbolId, Verdict as Zero};
 
+use super::conserved::state_on_d;
+use super::continuity::possible_jump;
+use super::dynamics::Dynamics;
 use super::finding::{Certificate, Verdict, Witness, seed_of};
 use super::sample::{Sample, sample, uses};
 use crate::model::Model;
 
 /// The verdict on a symmetry, with remarks.
-pub(super) fn check_symmetry(model: &mut Model, field: &[ExprId]) -> (Verdict, Vec<String>) {
-    let lift = lift(model, field);
+pub(super) fn check_symmetry(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    field: &[ExprId],
+) -> (Verdict, Vec<String>) {
+    let directions = lifted(model, field);
+    let whole = model.lagrangian.whole;
+    let lift = model.pool.derivative_along(whole, &directions);
     let verdict = match model.pool.zero_test(lift) {
         Zero::Refuted => return (refuted_lift(model, lift), Vec::new()),
         Zero::Undecided => Some("whether it keeps the Lagrangian is not decided"),
@@ -25,16 +34,8 @@ pub(super) fn check_symmetry(model: &mut Model, field: &[ExprId]) -> (Verdict, V
     let distribution = keeps_distribution(model, field);
     let verdict = match (verdict, distribution) {
         (_, Some(false)) => {
-            let reason = "its flow keeps the Lagrangian but not the constraints: the Lie derivatives of \
-                          the forms are no combinations of the forms";
-            let witness = Witness {
-                reason: reason.to_owned(),
-                sample: None,
-                values: Vec::new(),
-                help: "leave it out, or add the motion of the coordinates that the forms lack"
-                    .to_owned(),
-            };
-            return (Verdict::Refuted(witness), Vec::new());
+            let verdict = refuted_distribution(model, dynamics, &directions);
+            return (verdict, Vec::new());
         }
         (Some(reason), _) => Verdict::Undecided(reason.to_owned()),
         (None, None) => {
@@ -48,13 +49,19 @@ pub(super) fn check_symmetry(model: &mut Model, field: &[ExprId]) -> (Verdict, V
             seed: seed_of(&model.snake_name),
         }),
     };
+    let jump = field
+        .iter()
+        .find_map(|own| possible_jump(model, *own, &[], &mut |_, _| false));
+    if let (Verdict::Proved(_), Some(place)) = (&verdict, jump) {
+        let text = format!("where it is smooth it is one, but it may jump {place}");
+        return (Verdict::Undecided(text), Vec::new());
+    }
     let remarks = vec![momentum_equation(model, field)];
     (verdict, remarks)
 }
 
-/// The rate of the Lagrangian along the flow, lifted to velocities.
-fn lift(model: &mut Model, field: &[ExprId]) -> ExprId {
-    let whole = model.lagrangian.whole;
+/// The field, lifted to velocities.
+fn lifted(model: &mut Model, field: &[ExprId]) -> Vec<(SymbolId, ExprId)> {
     let motion = motion(model);
     let mut directions = Vec::new();
     for (i, component) in field.iter().enumerate() {
@@ -63,7 +70,7 @@ fn lift(model: &mut Model, field: &[ExprId]) -> ExprId {
         let rate = model.pool.derivative_along(*component, &motion);
         directions.push((qdot, rate));
     }
-    model.pool.derivative_along(whole, &directions)
+    directions
 }
 
 /// `qdot` for q, 1 for t.
@@ -96,6 +103,47 @@ fn refuted_lift(model: &Model, lift: ExprId) -> Verdict {
         sample,
         values,
         help: "leave it out, or correct the field".to_owned(),
+    })
+}
+
+/// A velocity in D that the flow takes out of D.
+fn refuted_distribution(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    directions: &[(SymbolId, ExprId)],
+) -> Verdict {
+    let mut rates = Vec::new();
+    for a in 0..model.constraints.len() {
+        let mut terms = vec![model.constraints[a].affine];
+        for i in 0..model.coordinates.len() {
+            let velocity = model.pool.variable(model.coordinates[i].qdot);
+            let form = model.constraints[a].form[i];
+            terms.push(model.pool.mul(form, velocity));
+        }
+        let left = model.pool.sum(&terms);
+        let rate = model.pool.derivative_along(left, directions);
+        let name = model.constraints[a].name.display.clone();
+        rates.push((
+            format!("rate of the left side of {name} along its flow"),
+            rate,
+        ));
+    }
+    let roots: Vec<ExprId> = rates.iter().map(|(_, rate)| *rate).collect();
+    let found = (0..12).find_map(|attempt| {
+        let (sample, point) = state_on_d(model, dynamics, &roots, attempt)?;
+        rates.iter().find_map(|(name, rate)| {
+            let (value, magnitude) = model.pool.eval_magnitude(*rate, &|s| point.value(s));
+            let is_clear = value.is_finite() && value.abs() > 1e-6 * magnitude;
+            is_clear.then(|| (sample.clone(), vec![(name.clone(), value)]))
+        })
+    });
+    let (sample, values) = found.unzip();
+    Verdict::Refuted(Witness {
+        reason: "its flow takes allowed velocities to others".to_owned(),
+        sample,
+        values: values.unwrap_or_default(),
+        help: "leave it out, or add the motion of the coordinates that the constraints lack"
+            .to_owned(),
     })
 }
 

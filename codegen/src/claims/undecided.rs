@@ -7,6 +7,8 @@ use std::fmt;
 pub enum Undecided {
     /// No point was found where metric, constraints and all expressions are regular.
     Degenerate,
+    /// No real state was found at which the equations of motion have values: of what is not there anything is true.
+    Stateless,
     /// Brackets up to this depth did not close the hull, and deeper ones are out of reach.
     Depth(usize),
     /// Forces whose dependence on velocities is neither absent, linear nor quadratic.
@@ -23,6 +25,10 @@ impl fmt::Display for Undecided {
             Self::Degenerate => write!(
                 f,
                 "no point was found where the metric, the constraints and all expressions are regular"
+            ),
+            Self::Stateless => write!(
+                f,
+                "no real state was found at which metric, forces and constraints have values"
             ),
             Self::Depth(depth) => write!(
                 f,

@@ -14,14 +14,15 @@
 //! `elastic` and `restitution e` where constraints are affine: there it is e.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Rational, RealPoint,
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Pool, Rational, RealPoint,
     SymbolId, Verdict as Zero,
 };
 
 use super::conserved::with_velocities;
 use super::dynamics::{Dynamics, Number};
+use super::evidence::{Evidence, Vanishing, evidence};
 use super::linear::{dot, solve};
-use super::sample::{Sample, sample};
+use super::sample::{Sample, sample, uses};
 use crate::mechanics::Derivation;
 use crate::model::{Law, Model};
 
@@ -40,7 +41,47 @@ pub(super) struct Wall {
     coordinates: Vec<SymbolId>,
     velocities: Vec<SymbolId>,
     constraints: usize,
+    /// Functions that are positive where the surface counts.
+    conditions: Vec<ExprId>,
     polynomials: Vec<Polynomial>,
+}
+
+/// Where the position of a state is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Anywhere: the map is a formula that makes sense off the surface too.
+    Anywhere,
+    /// On the surface, where the position solves an equation of degree 2 by its first root.
+    First,
+    /// By its second root, which may be on another component.
+    Second,
+}
+
+/// A question about states before an impact.
+pub(super) trait AtImpact: Vanishing {
+    /// Where the positions are.
+    fn place(&mut self) -> &mut Place;
+}
+
+/// The evidence on a sum at the states before an impact. What vanishes everywhere does so on the surface; else every
+/// component of the surface is looked at.
+pub(super) fn evidence_at_impact(
+    model: &Model,
+    question: &mut impl AtImpact,
+    seed: u64,
+) -> Evidence {
+    *question.place() = Place::Anywhere;
+    let everywhere = evidence(model, question, seed);
+    if everywhere.vanishes == Some(true) {
+        return everywhere;
+    }
+    *question.place() = Place::First;
+    let first = evidence(model, question, seed);
+    if first.vanishes != Some(true) {
+        return first;
+    }
+    *question.place() = Place::Second;
+    evidence(model, question, seed)
 }
 
 impl Wall {
@@ -69,6 +110,7 @@ impl Wall {
             gap_rate: own.gap_rate,
             slope: own.form.clone(),
             rate: own.rate,
+            conditions: own.conditions.clone(),
             polynomials: polynomials(model, own.gap, &coordinates),
             coordinates,
             velocities: model.coordinates.iter().map(|own| own.qdot).collect(),
@@ -184,23 +226,40 @@ impl Wall {
         Some(field.mul(determinant, field.neg(ratio)))
     }
 
-    /// A real state that approaches the surface on it, and its point.
+    /// A real state that approaches the surface where it counts, and its point. What is shown of it are the symbols of
+    /// `roots`.
     pub(super) fn incoming(
         &self,
         model: &Model,
         dynamics: &Dynamics,
         attempt: usize,
-        uses: impl Fn(SymbolId) -> bool,
+        mut roots: Vec<ExprId>,
     ) -> Option<(Sample, RealPoint)> {
-        let mut sample = sample(model, attempt, uses);
+        roots.extend(&self.conditions);
+        let mut sample = sample(model, attempt, uses(&model.pool, &roots));
         self.settle_sample(model, &mut sample)?;
         let (sample, point) = with_velocities(model, dynamics, sample, attempt)?;
         let rate = model.pool.eval(&[self.gap_rate], &|s| point.value(s))[0];
-        (rate < 0.0).then_some((sample, point))
+        let conditions = model.pool.eval(&self.conditions, &|s| point.value(s));
+        let counts = rate < 0.0 && conditions.iter().all(|own| *own > 0.0);
+        counts.then_some((sample, point))
     }
 
-    /// Moves a point onto the surface by solving for one coordinate in which the gap is a polynomial of degree 1 or 2.
-    pub(super) fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
+    /// Whether there is a coordinate in which every component of the surface is reached.
+    pub(super) fn is_solved(&self) -> bool {
+        !self.polynomials.is_empty()
+    }
+
+    /// Moves a point onto the surface by solving for a coordinate; not at all if it may be anywhere.
+    pub(super) fn settle(
+        &self,
+        model: &Model,
+        point: &mut ModularPoint,
+        place: Place,
+    ) -> Option<()> {
+        if place == Place::Anywhere {
+            return Some(());
+        }
         self.polynomials.iter().find_map(|polynomial| {
             let field = point.modulus();
             let mut trial = point.clone();
@@ -212,17 +271,21 @@ impl Wall {
             let [c, b, a] = values.as_slice() else {
                 return None;
             };
-            let root = if *a == 0 {
+            let solution = if *a == 0 {
                 field.mul(field.neg(*c), field.inv(*b)?)
             } else {
                 // a s^2 + b s + c = 0
                 let four = field.integer(4);
                 let square = field.sub(field.mul(*b, *b), field.mul(four, field.mul(*a, *c)));
                 let root = field.sqrt(square)?;
+                let root = match place {
+                    Place::Second => field.neg(root),
+                    _ => root,
+                };
                 let twice = field.inv(field.mul(field.integer(2), *a))?;
                 field.mul(field.sub(root, *b), twice)
             };
-            point.set(polynomial.symbol, root);
+            point.set(polynomial.symbol, solution);
             Some(())
         })
     }
@@ -246,7 +309,8 @@ impl Wall {
             if step.abs() <= 1e-15 * (1.0 + value.abs()) {
                 return Some(());
             }
-            sample.set(symbol, value - step.clamp(-0.5, 0.5));
+            let longest = 0.5 * (1.0 + value.abs());
+            sample.set(symbol, value - step.clamp(-longest, longest));
         }
         None
     }
@@ -259,16 +323,26 @@ struct Polynomial {
     coefficients: [ExprId; 3],
 }
 
-/// The coordinates in which a gap is a polynomial of degree 1 or 2.
+/// The coordinates in which a gap is a polynomial of degree 1 or 2 whose first coefficient is 0 nowhere.
+///
+/// NOTE: then every component of the surface depends on the coordinate, and a root leads to each. `x*y` has none: the
+/// component `y = 0` is not seen from `x`.
 fn polynomials(model: &mut Model, gap: ExprId, coordinates: &[SymbolId]) -> Vec<Polynomial> {
     let mut found = Vec::new();
+    let mut moving = coordinates.to_vec();
+    moving.push(model.time);
     for symbol in coordinates {
-        let first = model.pool.diff(gap, *symbol);
-        let second = model.pool.diff(first, *symbol);
-        let third = model.pool.diff(second, *symbol);
-        let is_constant = model.pool.zero_test(first) == Zero::Proved;
-        if model.pool.zero_test(third) == Zero::Proved && !is_constant {
-            let half = model.pool.scale(&Rational::new(1, 2), second);
+        let pool = &mut model.pool;
+        let first = pool.diff(gap, *symbol);
+        let second = pool.diff(first, *symbol);
+        let third = pool.diff(second, *symbol);
+        let is_zero = |id: ExprId, pool: &Pool| pool.zero_test(id) == Zero::Proved;
+        let leading = if is_zero(second, pool) { first } else { second };
+        // A function of the parameters alone is no factor that could vanish on a component.
+        let is_unit = !pool.depends_on_any(leading, &moving)
+            || (pool.sign(leading).is_nonzero() && pool.is_finite(leading));
+        if is_zero(third, pool) && !is_zero(leading, pool) && is_unit {
+            let half = pool.scale(&Rational::new(1, 2), second);
             found.push(Polynomial {
                 symbol: *symbol,
                 coefficients: [gap, first, half],

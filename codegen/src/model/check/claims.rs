@@ -67,6 +67,7 @@ impl Resolver<'_> {
                 holds,
             } => {
                 let expr = self.quantity(value)?;
+                self.check_periodic(&[value], &Scope::default(), expr);
                 let (under, across) = match under {
                     Some(declared) => {
                         let surface = self.surface(declared, surfaces)?;
@@ -138,6 +139,9 @@ impl Resolver<'_> {
             .collect();
         self.partials.clone_from(&partials);
         let resolved = self.quantity(written);
+        if let Some(field) = resolved {
+            self.check_periodic(&[written], &Scope::default(), field);
+        }
         self.partials.clear();
         let field = resolved?;
         let mut rest = field;

@@ -123,6 +123,12 @@ impl<'s> Resolver<'s> {
                         format!("the interval from `{low}` to `{high}` is empty"),
                         "write `[low, high]`",
                     );
+                } else if low_value == high_value {
+                    self.refuse::<()>(
+                        low.at.to(high.at),
+                        format!("the interval from `{low}` to `{high}` has one point"),
+                        &format!("write `let .. = {low};` instead of a parameter"),
+                    );
                 }
                 Assumption::Within {
                     low: low_value,

@@ -1,0 +1,85 @@
+//! Where a quantity may jump although its rate is 0 wherever it has one: `abs(x)/x` at `x = 0`, `atan2(sin(x), cos(x))`
+//! at `x = pi`.
+//!
+//! Along a motion, which is analytic, a quantity made of sums, products, quotients, sines, cosines and exponentials is
+//! meromorphic, so that a rate of 0 makes it constant. Roots, absolute values, logarithms and inverse functions choose a
+//! branch; without poles they are continuous, so that a rate of 0 still makes them constant. Together with a pole, or in
+//! the cut of `atan2`, a branch may change. Nothing happens where the motion itself has no equations, or where what
+//! would vanish is itself constant or of one sign.
+
+use dalembert_expr::{ExprId, Function, Node, Pool};
+
+use crate::model::Model;
+
+/// Where `value` may jump, in words; `is_constant` tells whether an expression is constant along every motion, which
+/// itself has no equations where one of `singular` is 0.
+pub(super) fn possible_jump(
+    model: &mut Model,
+    value: ExprId,
+    singular: &[ExprId],
+    is_constant: &mut dyn FnMut(&mut Model, ExprId) -> bool,
+) -> Option<String> {
+    let parts = model.pool.reachable(&[value]);
+    if !parts.iter().any(|id| chooses_branch(&model.pool, *id)) {
+        return None;
+    }
+    for id in &parts {
+        if let Node::Atan2(y, x) = model.pool.node(*id) {
+            let (y, x) = (*y, *x);
+            let sign = model.pool.sign(x);
+            // The cut is the half-line `y = 0`, `x <= 0`.
+            let is_clear = sign.is_nonnegative() && sign.is_nonzero();
+            if !(is_clear || is_constant(model, y) && is_constant(model, x)) {
+                return Some(format!("in the cut of `{}`", model.pool.text(*id)));
+            }
+        }
+    }
+    for id in poles(&model.pool, &parts) {
+        let is_harmless = singular.contains(&id) || model.pool.sign(id).is_nonzero();
+        if !is_harmless && !is_constant(model, id) {
+            let text = model.pool.text(id);
+            return Some(match model.pool.node(id) {
+                Node::Call(Function::Tan, _) => format!("at the poles of `{text}`"),
+                _ => format!("where `{text}` is 0"),
+            });
+        }
+    }
+    None
+}
+
+fn chooses_branch(pool: &Pool, id: ExprId) -> bool {
+    match pool.node(id) {
+        Node::Product(factors) => factors.iter().any(|(_, exponent)| !exponent.is_integer()),
+        Node::Call(function, _) => match function {
+            Function::Asin | Function::Acos | Function::Atan | Function::Ln | Function::Abs => true,
+            Function::Sin
+            | Function::Cos
+            | Function::Tan
+            | Function::Exp
+            | Function::Sinh
+            | Function::Cosh
+            | Function::Tanh => false,
+        },
+        Node::Atan2(..) => true,
+        Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => false,
+    }
+}
+
+/// What stands in denominators and logarithms, and the tangents.
+pub(super) fn poles(pool: &Pool, parts: &[ExprId]) -> Vec<ExprId> {
+    let mut poles = Vec::new();
+    for id in parts {
+        match pool.node(*id) {
+            Node::Product(factors) => {
+                let below = factors
+                    .iter()
+                    .filter(|(_, exponent)| exponent.is_negative());
+                poles.extend(below.map(|(base, _)| *base));
+            }
+            Node::Call(Function::Ln, argument) => poles.push(*argument),
+            Node::Call(Function::Tan, _) => poles.push(*id),
+            _ => {}
+        }
+    }
+    poles
+}
