@@ -1,161 +1,24 @@
-//! The derivation as a person reads it: the expressions that are emitted, as text and LaTeX.
-//!
-//! What is printed is what is emitted: every expression here is lowered as it stands (after collection of
-//! `cos^2 + sin^2` and common factors for the eye).
-
-use std::fmt;
+//! The sections of a report that print expressions.
 
 use dalembert_expr::ExprId;
-use proc_macro2::{LexError, TokenStream};
 
-use crate::claims::Finding;
-use crate::diagnostics::Diagnostics;
+use super::{Item, Section};
 use crate::mechanics::Derivation;
 use crate::model::{self, Model, Topology};
-use crate::program::{Cost, Program};
-use crate::{Compiled, compile};
 
-/// A derivation in words and formulas.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Report {
-    /// The model's name in snake case.
-    pub name: String,
-    /// Its doc comment.
-    pub documentation: String,
-    /// The parts, in the order of the derivation.
-    pub sections: Vec<Section>,
-    /// The verdicts on its claims, in order.
-    pub findings: Vec<Finding>,
-}
-
-/// A part of a report.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Section {
-    /// Its title.
-    pub title: &'static str,
-    /// The equation it is about, as text and as LaTeX; empty if there is none.
-    pub equation: [&'static str; 2],
-    /// Its lines.
-    pub items: Vec<Item>,
-}
-
-impl Section {
-    /// The title of the section with the model's remarks.
-    pub const NOTES: &'static str = "Notes";
-
-    /// A section without an equation of its own.
-    fn plain(title: &'static str, items: Vec<Item>) -> Self {
-        let equation = ["", ""];
-        Self {
-            title,
-            equation,
-            items,
-        }
-    }
-}
-
-/// A line of a report.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Item {
-    /// Words.
-    Words(String),
-    /// `left = right`
-    Formula {
-        /// The left side as text and as LaTeX.
-        left: [String; 2],
-        /// The right side as text and as LaTeX.
-        right: [String; 2],
-    },
-    /// `left = (rows)`; every entry as text and as LaTeX.
-    Matrix {
-        /// The left side as text and as LaTeX.
-        left: [String; 2],
-        /// The entries.
-        rows: Vec<Vec<[String; 2]>>,
-    },
-}
-
-/// Why a text gives no report.
-#[derive(Debug)]
-pub enum ReportError {
-    /// It is not a sequence of Rust tokens.
-    Tokens(String),
-    /// The macro would refuse the declaration.
-    Declaration(Diagnostics),
-}
-
-impl fmt::Display for ReportError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Tokens(error) => write!(f, "not a sequence of tokens: {error}"),
-            Self::Declaration(diagnostics) => {
-                let messages: Vec<&str> = diagnostics
-                    .iter()
-                    .map(|diagnostic| diagnostic.message())
-                    .collect();
-                f.write_str(&messages.join("\n"))
-            }
-        }
-    }
-}
-
-impl std::error::Error for ReportError {}
-
-/// Derives a model from its declaration as text: the body of a `model!`.
-///
-/// # Errors
-/// [`ReportError`].
-pub fn report(source: &str) -> Result<Report, ReportError> {
-    let tokens: TokenStream = source
-        .parse()
-        .map_err(|error: LexError| ReportError::Tokens(error.to_string()))?;
-    let Compiled {
-        mut model,
-        derivation,
-        findings,
-        program,
-    } = compile(tokens).map_err(ReportError::Declaration)?;
-    let mut writer = Writer {
-        model: &mut model,
-        derivation: &derivation,
-    };
-    let mut sections = vec![
-        writer.declared(),
-        writer.lagrangian(),
-        writer.motion(),
-        writer.constraints(),
-        writer.surfaces(),
-        writer.declared_outputs(),
-    ];
-    sections.push(claims(&findings));
-    sections.push(work(&model, &program));
-    sections.push(notes(&model));
-    sections.retain(|section| !section.items.is_empty());
-    Ok(Report {
-        name: model.snake_name.clone(),
-        documentation: model
-            .documentation
-            .iter()
-            .map(|line| line.trim())
-            .collect::<Vec<_>>()
-            .join("\n"),
-        sections,
-        findings,
-    })
-}
-
-struct Writer<'a> {
-    model: &'a mut Model,
-    derivation: &'a Derivation,
+/// Prints parts of a model.
+pub(super) struct Writer<'a> {
+    pub(super) model: &'a mut Model,
+    pub(super) derivation: &'a Derivation,
 }
 
 impl Writer<'_> {
-    fn print(&mut self, expression: ExprId) -> [String; 2] {
+    pub(super) fn print(&mut self, expression: ExprId) -> [String; 2] {
         let tidy = self.model.pool.simplify(expression);
         [self.model.pool.text(tidy), self.model.pool.latex(tidy)]
     }
 
-    fn formula(
+    pub(super) fn formula(
         &mut self,
         text: impl Into<String>,
         latex: impl Into<String>,
@@ -167,18 +30,18 @@ impl Writer<'_> {
         }
     }
 
-    fn is_zero(&self, expression: ExprId) -> bool {
+    pub(super) fn is_zero(&self, expression: ExprId) -> bool {
         self.model.pool.is_syntactic_zero(expression)
     }
 
     /// The coordinate's symbol as text and LaTeX.
-    fn coordinate(&mut self, i: usize) -> [String; 2] {
+    pub(super) fn coordinate(&mut self, i: usize) -> [String; 2] {
         let symbol = self.model.coordinates[i].q;
         let expression = self.model.pool.variable(symbol);
         self.print(expression)
     }
 
-    fn declared(&mut self) -> Section {
+    pub(super) fn declared(&mut self) -> Section {
         let mut items = Vec::new();
         for coordinate in &self.model.coordinates {
             let name = &coordinate.name.display;
@@ -215,7 +78,7 @@ impl Writer<'_> {
         Section::plain("Declared", items)
     }
 
-    fn lagrangian(&mut self) -> Section {
+    pub(super) fn lagrangian(&mut self) -> Section {
         let whole = self.model.lagrangian.whole;
         let mut items = vec![self.formula("L", "L", whole)];
         let metric = self.model.lagrangian.metric.clone();
@@ -246,7 +109,7 @@ impl Writer<'_> {
         }
     }
 
-    fn motion(&mut self) -> Section {
+    pub(super) fn motion(&mut self) -> Section {
         let mut items = Vec::new();
         for i in 0..self.model.coordinates.len() {
             let [name, latex] = self.coordinate(i);
@@ -282,7 +145,7 @@ impl Writer<'_> {
         }
     }
 
-    fn constraints(&mut self) -> Section {
+    pub(super) fn constraints(&mut self) -> Section {
         let mut items = Vec::new();
         for a in 0..self.derivation.constraints.len() {
             let name = self.model.constraints[a].name.display.clone();
@@ -332,7 +195,7 @@ impl Writer<'_> {
         }
     }
 
-    fn surfaces(&mut self) -> Section {
+    pub(super) fn surfaces(&mut self) -> Section {
         let mut items = Vec::new();
         for s in 0..self.derivation.surfaces.len() {
             let name = self.model.surfaces[s].name.display.clone();
@@ -373,7 +236,7 @@ impl Writer<'_> {
         }
     }
 
-    fn declared_outputs(&mut self) -> Section {
+    pub(super) fn declared_outputs(&mut self) -> Section {
         let outputs: Vec<_> = self
             .model
             .outputs
@@ -394,41 +257,4 @@ impl Writer<'_> {
 /// Underscores as LaTeX text wants them.
 fn escape(name: &str) -> String {
     name.replace('_', "\\_")
-}
-
-/// Operation counts of the emitted functions.
-fn work(model: &Model, program: &Program) -> Section {
-    let line = |name: &str, cost: &Cost| Item::Words(format!("{name}: {cost}"));
-    let mut items = vec![
-        line("rate", &program.rate.cost),
-        line("energy", &program.energy.cost),
-    ];
-    if let Some(constrained) = &program.constrained {
-        items.push(line("multipliers", &constrained.multipliers.cost));
-        items.push(line("projection after a step", &constrained.restore.cost));
-    }
-    if let Some(impacting) = &program.impacting {
-        items.push(line("all gaps", &impacting.gaps.cost));
-        for (surface, contact) in model.surfaces.iter().zip(&impacting.contacts) {
-            items.push(line(
-                &format!("impact on {}", surface.name.display),
-                &contact.cost,
-            ));
-        }
-    }
-    if let Some(volume) = &program.volume {
-        items.push(line("density of the volume", &volume.log_density.cost));
-    }
-    Section::plain("Work of the emitted functions", items)
-}
-
-/// The verdicts on what is claimed.
-fn claims(findings: &[Finding]) -> Section {
-    let items = findings.iter().map(|own| Item::Words(own.note())).collect();
-    Section::plain("Claims", items)
-}
-
-fn notes(model: &Model) -> Section {
-    let items = model.notes.iter().cloned().map(Item::Words).collect();
-    Section::plain(Section::NOTES, items)
 }

@@ -1,0 +1,249 @@
+//! All claims of a model, one after the other.
+
+use dalembert_expr::{ExprId, Rational, SymbolId};
+
+use super::dynamics::Dynamics;
+use super::exactness::{Exactness, decide};
+use super::existence::{self, Decision};
+use super::finding::{self, Finding, Verdict};
+use super::problem::Problem;
+use super::undecided::Undecided;
+use super::volume::Volume;
+use super::{alternatives, conserved, density, hybrid, impact, symmetry};
+use crate::mechanics::Derivation;
+use crate::model::{Claim, Existence, Model, Statement};
+
+/// What became of the claims of a model.
+#[derive(Debug, Default)]
+pub struct Examined {
+    /// The verdicts, in order.
+    pub findings: Vec<Finding>,
+    /// The invariant volume whose density is proved and known in closed form, a stated one before one that was found;
+    /// `None` if no claim is about one.
+    pub volume: Option<Volume>,
+}
+
+/// The verdicts on all claims of a model; without claims nothing is done.
+pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
+    if model.claims.is_empty() {
+        return Examined::default();
+    }
+    let mut examiner = Examiner::of(model, derivation);
+    let claims = examiner.model.claims.clone();
+    let has_states = conserved::has_states(examiner.model, &examiner.dynamics);
+    let findings: Vec<Finding> = claims
+        .iter()
+        .map(|claim| match has_states {
+            true => examiner.finding(claim),
+            false => open(claim, Undecided::Stateless),
+        })
+        .collect();
+    let proved: Vec<&Statement> = claims
+        .iter()
+        .zip(&findings)
+        .filter(|(_, finding)| matches!(finding.verdict, Verdict::Proved(_)))
+        .map(|(claim, _)| &claim.statement)
+        .collect();
+    let volume = examiner.volume(&proved);
+    Examined { findings, volume }
+}
+
+/// What would be said of `density: exact`, claimed or not, and the volume if there is one in closed form.
+pub fn examine_volume(
+    model: &mut Model,
+    derivation: &Derivation,
+) -> (Verdict, Vec<String>, Option<Volume>) {
+    let mut examiner = Examiner::of(model, derivation);
+    let (verdict, remarks) = examiner.existence(Existence::Global);
+    let volume = match &examiner.decision {
+        Some(Ok(exactness)) => Volume::found(examiner.model, derivation, exactness),
+        _ => None,
+    };
+    (verdict, remarks, volume)
+}
+
+/// A claim that nothing was found out about.
+fn open(claim: &Claim, reason: Undecided) -> Finding {
+    Finding {
+        claim: claim.text.clone(),
+        is_assumed: claim.is_assumed,
+        item: claim.item,
+        verdict: Verdict::Undecided(reason.to_string()),
+        remarks: Vec::new(),
+    }
+}
+
+/// What the verdicts on several claims share.
+struct Examiner<'e> {
+    model: &'e mut Model,
+    derivation: &'e Derivation,
+    problem: Problem,
+    dynamics: Dynamics,
+    decision: Option<Decision>,
+    seed: u64,
+}
+
+impl<'e> Examiner<'e> {
+    fn of(model: &'e mut Model, derivation: &'e Derivation) -> Self {
+        Self {
+            seed: finding::seed_of(&model.snake_name),
+            problem: Problem::of(model, derivation),
+            dynamics: Dynamics::of(model, derivation),
+            decision: None,
+            model,
+            derivation,
+        }
+    }
+
+    fn finding(&mut self, claim: &Claim) -> Finding {
+        let (verdict, remarks) = match &claim.statement {
+            Statement::Existence(existence) => self.existence(*existence),
+            Statement::Density(value) => {
+                let written = claim.text.trim_start_matches("density = ");
+                self.density(*value, written)
+            }
+            Statement::Conserved {
+                value,
+                under,
+                holds,
+            } => {
+                let written = claim.text.split_once(": ").map_or("", |(_, value)| value);
+                (
+                    self.conserved((*value, written), *under, *holds),
+                    Vec::new(),
+                )
+            }
+            Statement::Symmetry(field) => {
+                symmetry::check_symmetry(self.model, &self.dynamics, field)
+            }
+        };
+        Finding {
+            claim: claim.text.clone(),
+            is_assumed: claim.is_assumed,
+            item: claim.item,
+            verdict,
+            remarks,
+        }
+    }
+
+    fn existence(&mut self, existence: Existence) -> (Verdict, Vec<String>) {
+        let decision = match self.decision.take() {
+            Some(decision) => decision,
+            None => decide(self.model, &self.problem, self.seed),
+        };
+        let (problem, seed) = (&self.problem, self.seed);
+        let verdict = existence::check_existence(self.model, problem, &decision, existence, seed);
+        let remarks = match &decision {
+            Ok(exactness) if !matches!(verdict, Verdict::Undecided(_)) => {
+                self.volume_remarks(exactness)
+            }
+            _ => Vec::new(),
+        };
+        self.decision = Some(decision);
+        (verdict, remarks)
+    }
+
+    fn density(&mut self, value: ExprId, written: &str) -> (Verdict, Vec<String>) {
+        let stated = (self.explicit(value), written);
+        let (problem, dynamics) = (&self.problem, &self.dynamics);
+        let verdict = density::check_density(self.model, problem, dynamics, stated, self.seed);
+        let remarks = match verdict {
+            Verdict::Proved(_) => self.impacts(Some(stated)),
+            _ => Vec::new(),
+        };
+        (verdict, remarks)
+    }
+
+    fn conserved(
+        &mut self,
+        (value, written): (ExprId, &str),
+        under: Option<usize>,
+        holds: bool,
+    ) -> Verdict {
+        let quantity = (self.explicit(value), written);
+        let (derivation, dynamics, seed) = (self.derivation, &self.dynamics, self.seed);
+        match under {
+            None => conserved::check_conserved(self.model, dynamics, quantity, holds, seed),
+            Some(surface) => impact::check_conserved_under(
+                self.model, derivation, dynamics, surface, quantity, holds, seed,
+            ),
+        }
+    }
+
+    /// What impacts do to the volume where there is one, and what there is instead where there is none.
+    fn volume_remarks(&mut self, exactness: &Exactness) -> Vec<String> {
+        let mut remarks = alternatives::alternatives(
+            self.model,
+            self.derivation,
+            &self.problem,
+            exactness,
+            self.seed,
+        );
+        if exactness.global.is_some() {
+            remarks.extend(self.impacts(None));
+        }
+        remarks
+    }
+
+    /// What impacts do to a volume.
+    fn impacts(&mut self, stated: Option<(ExprId, &str)>) -> Vec<String> {
+        let (derivation, dynamics) = (self.derivation, &self.dynamics);
+        hybrid::volume_remarks(self.model, derivation, dynamics, stated, self.seed)
+    }
+
+    /// The volume that these statements are about.
+    fn volume(&mut self, proved: &[&Statement]) -> Option<Volume> {
+        for statement in proved {
+            let Statement::Density(value) = statement else {
+                continue;
+            };
+            let density = self.explicit(*value);
+            let (derivation, problem) = (self.derivation, &self.problem);
+            let stated = Volume::stated(self.model, derivation, problem, density, self.seed);
+            if stated.is_some() {
+                return stated;
+            }
+        }
+        let exists = |own: &&&Statement| {
+            matches!(
+                own,
+                Statement::Existence(Existence::Global | Existence::Local)
+            )
+        };
+        proved.iter().find(exists)?;
+        let exactness = self.decision.as_ref()?.as_ref().ok()?;
+        Volume::found(self.model, self.derivation, exactness)
+    }
+
+    /// The expression with energy and momenta written out.
+    fn explicit(&mut self, value: ExprId) -> ExprId {
+        let model = &mut *self.model;
+        let whole = model.lagrangian.whole;
+        let mut replacements: Vec<(SymbolId, ExprId)> = Vec::new();
+        for i in 0..model.coordinates.len() {
+            let momentum = model.pool.diff(whole, model.coordinates[i].qdot);
+            replacements.push((model.derived.momenta[i], momentum));
+        }
+        let energy = energy(model);
+        replacements.push((model.derived.energy, energy));
+        model.pool.substitute(value, &replacements)
+    }
+}
+
+/// `1/2 g(qdot, qdot) + V`
+fn energy(model: &mut Model) -> ExprId {
+    let mut terms = vec![model.lagrangian.potential];
+    for i in 0..model.coordinates.len() {
+        for j in 0..=i {
+            let factor = if i == j {
+                Rational::new(1, 2)
+            } else {
+                Rational::from(1)
+            };
+            let [a, b] = [i, j].map(|k| model.pool.variable(model.coordinates[k].qdot));
+            let product = model.pool.product(&[model.lagrangian.metric[i][j], a, b]);
+            terms.push(model.pool.scale(&factor, product));
+        }
+    }
+    model.pool.sum(&terms)
+}
