@@ -6,7 +6,7 @@ use super::continuity::{poles, possible_jump};
 use super::dynamics::{Dynamics, Motion, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::finding::Verdict;
-use super::sample::{Sample, sample, uses};
+use super::sample::{ATTEMPTS, Sample, sample, uses};
 use crate::model::Model;
 
 /// The verdict on `conserved: value` or `not conserved: value`; `written` is the value as written.
@@ -217,8 +217,5 @@ pub(super) fn with_velocities(
     }
     Some((sample, point))
 }
-
-/// States that are tried before a model counts as one without.
-const ATTEMPTS: usize = 24;
 /// Independent velocities of real states.
 const VELOCITIES: [f64; 7] = [0.5, -0.75, 1.25, 0.25, -1.5, 1.75, -0.25];

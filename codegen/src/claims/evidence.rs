@@ -5,14 +5,14 @@ use dalembert_expr::{ExpansionPoint, ExprId, ModularPoint, RealPoint};
 use super::dynamics::Number;
 use super::exactness::sample_points;
 use super::finding::{Certificate, Verdict, Witness, digits};
-use super::sample::Sample;
+use super::sample::{self, Sample};
 use super::undecided::Undecided;
 use crate::model::Model;
 
 /// Random states at which a sum must vanish; more where roots may hide it by a choice of branches.
 const STATES: (usize, usize) = (12, 40);
 /// Real states that are tried.
-const ATTEMPTS: usize = 24;
+const WITNESSES: usize = 24;
 /// A sum counts as different from 0 beyond this part of its scale: a factor 1e9 above rounding.
 const CLEAR: f64 = 1e-6;
 /// As [`CLEAR`], where residues have shown that it is not 0 and only a point to show it at is looked for.
@@ -195,7 +195,10 @@ fn chance_of_accident(model: &Model, degree: f64) -> f64 {
 
 fn real_evidence(model: &Model, question: &impl Vanishing, threshold: f64) -> Real {
     let mut is_real = false;
-    for attempt in 0..ATTEMPTS {
+    for attempt in 0..sample::ATTEMPTS {
+        if is_real && (attempt >= WITNESSES || threshold == f64::INFINITY) {
+            break;
+        }
         let Some((sample, mut point)) = question.sample(model, attempt) else {
             continue;
         };

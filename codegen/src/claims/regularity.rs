@@ -14,8 +14,8 @@ use super::global::Global;
 use super::linear::{dot, solve, transpose};
 use super::potential::{Potential, Term};
 use super::problem::Problem;
-use super::sample::{sample, uses};
-use crate::model::{Coordinate, Model, Topology};
+use super::sample::{ATTEMPTS, sample, uses};
+use crate::model::{Model, Topology};
 
 /// Why a singular density leaves the question open.
 pub(super) const SINGULAR: &str =
@@ -37,26 +37,14 @@ const CLEAR: f64 = 0.1;
 const SMALL: f64 = 1e-9;
 const LOW: f64 = 0.1;
 
-/// Sizes of coordinates on lines at which real values are looked for.
-const SCALES: [f64; 4] = [1.0, 8.0, 64.0, 1.0 / 8.0];
-
 /// Values of coordinates, time and parameters.
 type Values = Vec<(SymbolId, f64)>;
 
 /// Whether the model is regular at any real point; roots and logarithms have residues where they have no real values.
 pub(super) fn is_real(model: &Model, problem: &Problem) -> bool {
     let roots = problem.roots();
-    (0..POINTS).any(|attempt| {
-        let mut values = sample(model, attempt, uses(&model.pool, &roots)).point_values();
-        // Roots and logarithms may have values far out only.
-        let scale = SCALES[attempt % SCALES.len()];
-        for (symbol, value) in &mut values {
-            let mut coordinates = model.coordinates.iter();
-            let is_line = |own: &Coordinate| own.q == *symbol && own.topology == Topology::Line;
-            if coordinates.any(is_line) {
-                *value *= scale;
-            }
-        }
+    (0..ATTEMPTS).any(|attempt| {
+        let values = sample(model, attempt, uses(&model.pool, &roots)).point_values();
         let geometry = geometry_at(&model.pool, problem, &values, None);
         geometry.is_some_and(|own| own.demands.iter().all(|own| own.is_finite()))
     })

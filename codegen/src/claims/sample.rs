@@ -68,8 +68,12 @@ const HUNDREDTHS: [i32; 16] = [
 
 /// Attempts with the declared defaults of parameters.
 const DECLARED: usize = 8;
-/// Attempts with coordinates between -1 and 1, which then are ten times as large.
+/// Attempts with coordinates between -1 and 1; after these, those on lines are multiplied by one of the scales, as roots
+/// and logarithms may have values far out only.
 const NEAR: usize = 16;
+const SCALES: [f64; 4] = [1.0, 8.0, 64.0, 1.0 / 8.0];
+/// Samples in which a real state is looked for before none is believed to exist.
+pub(super) const ATTEMPTS: usize = 64;
 
 /// The `attempt`-th sample for the symbols that `uses` accepts, time included: parameters at their defaults where
 /// they have one.
@@ -89,8 +93,8 @@ pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> b
             }
             _ => match model.pool.symbol_assumption(coordinate.q) {
                 Known::Positive | Known::NonNegative => unit.abs(),
-                _ if attempt < NEAR => unit,
-                _ => round(10.0 * unit),
+                _ if attempt < NEAR || coordinate.topology == Topology::Angle => unit,
+                _ => round(SCALES[attempt % SCALES.len()] * unit),
             },
         };
         if uses(coordinate.q) {
