@@ -2,7 +2,7 @@
 //! executes and to reference values; absent where nothing is claimed or known. To accept a difference, see `golden.rs`.
 
 use dalembert::describe::Report;
-use dalembert::{Described, Fault, InvariantVolume, Scene, StateVector};
+use dalembert::{Described, Fault, InvariantVolume, Scene, StateVector, System};
 use dalembert_models::{
     BallOnRotatingTable, HolonomicBeadOnEllipses, RollingBallEuler, RollingDisk, TwoWheelsRod,
 };
@@ -10,7 +10,9 @@ use dalembert_tests::flow::Flow;
 use dalembert_tests::golden;
 use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::sampling::{Random, Visitor, states, visit_all};
-use dalembert_tests::systems::{FallingDisk, HelicalCircle, MixedDisk, NonholonomicParticle};
+use dalembert_tests::systems::{
+    CurvedDual, FallingDisk, HelicalCircle, MixedDisk, NonholonomicParticle, OnePole, RouthSphere,
+};
 use dalembert_tests::volume::{WithVolume, divergence};
 
 /// Calls a generic function for every system that claims a density and has one, in the order of [`visit_all`].
@@ -26,6 +28,9 @@ macro_rules! of_each_claimed {
             $function::<MixedDisk>(),
             $function::<NonholonomicParticle>(),
             $function::<HelicalCircle>(),
+            $function::<CurvedDual>(),
+            $function::<RouthSphere>(),
+            $function::<OnePole>(),
         ]
     };
 }
@@ -258,28 +263,72 @@ fn what_is_open_or_about_other_things_emits_no_volume() {
     assert!(stated.contains("fn log_density"), "{stated}");
 }
 
-/// A ball with its centre of mass off its centre: the density is none of those that are looked for.
-const ROUTH_SPHERE: &str = "RouthSphere {
-    coordinates { x; y; phi; theta in (0, pi); psi; }
-    parameters { m > 0 = 1; I > 0 = 1/2; J > 0 = 1/3; R > 0 = 1; l > 0 = 1/4; }
-    let spin = dot(psi) + cos(theta)*dot(phi);
-    lagrangian = m/2*((dot(x) + l*dot(sin(theta)*sin(phi)))^2
-            + (dot(y) - l*dot(sin(theta)*cos(phi)))^2 + (l*sin(theta)*dot(theta))^2)
-        + I/2*(dot(theta)^2 + sin(theta)^2*dot(phi)^2) + J/2*spin^2;
-    constraints {
-        rolling_x: dot(x) = R*(dot(theta)*sin(phi) - dot(psi)*sin(theta)*cos(phi));
-        rolling_y: dot(y) = -R*(dot(theta)*cos(phi) + dot(psi)*sin(theta)*sin(phi));
+#[test]
+fn a_density_without_a_formula_is_an_integral() {
+    const { assert!(RouthSphere::IS_INTEGRAL && CurvedDual::IS_INTEGRAL && !FallingDisk::IS_INTEGRAL) };
+    let sphere = RouthSphere::default();
+    let (m, i, j, r, l) = (sphere.m, sphere.I, sphere.J, sphere.R, sphere.l);
+    // Chaplygin's density of a body of revolution, r from the centre of mass to the point of contact:
+    // ln det m - 1/2 ln(I J + m (r, I r)).
+    let expected = |q: &<RouthSphere as System>::Vector| {
+        let (sin, cos) = q[3].sin_cos();
+        let [across, along] = [r * sin, r * cos + l];
+        let mut mass = Mass::default();
+        let state = sphere
+            .state_unchecked(0.0, q, &[0.0; 5].into())
+            .expect("a state");
+        sphere
+            .inspect(0.0, &state, &mut mass)
+            .expect("a regular state");
+        let [a, b, c, d] = mass.0;
+        (a * d - b * c).ln() - 0.5 * (i * j + m * (i * across * across + j * along * along)).ln()
+    };
+    let own = |q: &<RouthSphere as System>::Vector| {
+        sphere.log_density(0.0, q).expect("a density") - expected(q)
+    };
+    let reference = own(&[0.4, -0.2, 0.3, 1.0, 0.7].into());
+    for (phi, theta) in [(-2.0, 0.2), (3.0, 2.0), (0.0, 3.0), (40.0, 1.3)] {
+        let difference = own(&[0.1, 3.0, phi, theta, -0.7].into()) - reference;
+        assert!(difference.abs() < 1e-12, "{phi} {theta}: {difference}");
     }
-    claims { density: exact; }
-}";
+}
 
 #[test]
-fn a_density_without_a_formula_is_said_to_emit_nothing() {
-    assert_eq!(emitted(ROUTH_SPHERE), "");
-    let tokens = dalembert_codegen::try_expand(ROUTH_SPHERE.parse().expect("tokens"));
+fn an_integral_across_a_pole_is_a_fault() {
+    let density = |x: f64| OnePole {}.log_density(0.0, &[x, 0.2, 0.1].into());
+    let there = density(2.0).expect("a density") - density(0.5).expect("a density");
+    assert!(there.is_finite());
+    assert!(matches!(
+        density(-1.0),
+        Err(Fault::SingularConstraint { .. })
+    ));
+}
+
+#[test]
+fn a_density_that_is_no_integral_either_is_said_to_emit_nothing() {
+    let source = "Damped { coordinates { x; } lagrangian = dot(x)^2/2;
+        forces { drag: -dot(x)/(1 + t^4)*d(x); } claims { density: exact; } }";
+    assert_eq!(emitted(source), "");
+    let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens"));
     let text = tokens.expect("a model").to_string();
-    let words = "G was found in no closed form, so `InvariantVolume` is not implemented";
-    assert!(text.contains(words));
+    assert!(
+        text.contains("`InvariantVolume` is not implemented: G is not determined"),
+        "{text}"
+    );
+}
+
+/// The constraint mass matrix of two constraints, as it is reported.
+#[derive(Default)]
+struct Mass([f64; 4]);
+
+impl Report for Mass {
+    fn scalar(&mut self, _: &str, _: f64) {}
+    fn vector(&mut self, _: &str, _: &[f64]) {}
+    fn matrix(&mut self, name: &str, _: usize, _: usize, values: &[f64]) {
+        if name == "constraint_mass" {
+            self.0.copy_from_slice(values);
+        }
+    }
 }
 
 #[test]

@@ -270,6 +270,7 @@ fn of_all_kinds(model: &mut Model, dependent: &[usize]) -> Volume {
     Volume {
         potential: Potential { terms },
         minor: vec![1, 2],
+        integral: None,
         dependent: dependent.to_vec(),
         is_single_valued: true,
     }

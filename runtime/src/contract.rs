@@ -327,8 +327,9 @@ pub trait Divergence: System {
 /// `det g dq dv = dq dp`. Impacts by the law `elastic` keep `exp(G) mu_C` as well where the constraints are linear.
 ///
 /// Implemented for models with a proved claim `density: exact`, `density: locally_exact`, or `density = EXPR` where
-/// `EXPR` does not depend on velocities; then `G = ln |EXPR|`. Without a closed form of `G` it is not implemented, and the
-/// notes in the model's documentation say so.
+/// `EXPR` does not depend on velocities; then `G = ln |EXPR|`. Where `G` has no closed form, it is an integral; where it is
+/// not determined up to a constant either, the trait is not implemented, and the notes in the model's documentation say
+/// so.
 ///
 /// At given parameters both logarithms are determined up to a constant: only their differences between configurations
 /// have a meaning. `G` depends on how the constraint forms were written, the volume does not.
@@ -338,7 +339,7 @@ pub trait Divergence: System {
 /// constraints that do not depend on time and without forces that depend on velocities, `exp(G) mu_C` is invariant iff
 /// `dG = theta` on all velocities that the constraints allow, `theta` being [`Divergence::density_form`].
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` has no invariant volume in closed form: declare `claims {{ density: exact; }}` in its `model!`, \
+    message = "`{Self}` has no invariant volume: declare `claims {{ density: exact; }}` in its `model!`, \
                or state the density where none is found"
 )]
 pub trait InvariantVolume: System {
@@ -349,6 +350,10 @@ pub trait InvariantVolume: System {
     /// Whether `G` is a function of the configuration; else it grows by a constant with each turn of some angle, which
     /// is stored unwrapped.
     const IS_SINGLE_VALUED: bool;
+
+    /// Whether `G` is numeric: without a closed form, it is the integral of `dG` along the line from a regular
+    /// configuration, to rounding, and a [`Fault::SingularConstraint`] where a singularity lies on that line.
+    const IS_INTEGRAL: bool;
 
     /// `G`, the logarithm of the density with respect to `mu_C`.
     ///

@@ -120,6 +120,7 @@ mod linalg;
 pub mod math;
 pub mod outcome;
 pub mod projection;
+mod quadrature;
 pub mod record;
 pub mod simulation;
 pub mod state;
@@ -147,5 +148,6 @@ pub mod __private {
     pub use crate::generated::*;
     pub use crate::initial::complete_velocities;
     pub use crate::math;
+    pub use crate::quadrature::line_integral;
     pub use nalgebra::SVector;
 }

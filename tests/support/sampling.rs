@@ -76,6 +76,7 @@ pub fn visit_all(visitor: &mut impl Visitor) {
         systems:
         AffineSleigh TableWall MagneticDisk DampedSleigh IntegrableBead MovingWallDisk Rheonomic
         WalkerWithMultiplier WalkerFootSlip FallingDisk MixedDisk NonholonomicParticle HelicalCircle
+        CurvedDual RouthSphere OnePole
     }
 }
 

@@ -122,6 +122,49 @@ dalembert::model! {
 }
 
 dalembert::model! {
+    /// A particle whose density has no elementary closed form: with the form and its dual field of length 1, `dG` along
+    /// `X = d_x + (y + z h) d_z` is the curvature of the dual field, `-h = -1/(1 + x^4) - cos(phi)/(2 + sin(phi)^3)` with
+    /// each part along its own coordinate.
+    pub CurvedDual {
+        coordinates { x; y; z; phi: angle; }
+        let h = 1/(1 + x^4);
+        let k = cos(phi)/(2 + sin(phi)^3);
+        let slip = dot(z) - (y + z*h)*dot(x) - z*k*dot(phi);
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(phi)^2 + slip^2)/2;
+        constraints { blade: slip = 0; }
+        claims { density: exact; }
+    }
+}
+
+dalembert::model! {
+    /// A ball that rolls, its centre of mass off its centre (Routh); its density is none of those that are looked for.
+    pub RouthSphere {
+        coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
+        parameters { m > 0 = 1; I > 0 = 1/2; J > 0 = 1/3; R > 0 = 1; l > 0 = 1/4; }
+        let spin = dot(psi) + cos(theta)*dot(phi);
+        lagrangian = m/2*((dot(x) + l*dot(sin(theta)*sin(phi)))^2
+                + (dot(y) - l*dot(sin(theta)*cos(phi)))^2 + (l*sin(theta)*dot(theta))^2)
+            + I/2*(dot(theta)^2 + sin(theta)^2*dot(phi)^2) + J/2*spin^2;
+        constraints {
+            rolling_x: dot(x) = R*(dot(theta)*sin(phi) - dot(psi)*sin(theta)*cos(phi));
+            rolling_y: dot(y) = -R*(dot(theta)*cos(phi) + dot(psi)*sin(theta)*sin(phi));
+        }
+        claims { density: exact; }
+    }
+}
+
+dalembert::model! {
+    /// As [`CurvedDual`], with a pole of `h`.
+    pub OnePole {
+        coordinates { x; y; z; }
+        let slip = dot(z) - (y + z*(1/x + 1/(1 + x^4)))*dot(x);
+        lagrangian = (dot(x)^2 + dot(y)^2 + slip^2)/2;
+        constraints { blade: slip = 0; }
+        claims { density: exact; }
+    }
+}
+
+dalembert::model! {
     /// Walker with its foot held by a multiplier (W. Clark, thesis, section 4.2, signs as they should be).
     pub WalkerWithMultiplier {
         coordinates { x_c; y_c; theta; }

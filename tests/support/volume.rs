@@ -40,7 +40,9 @@ impl WithVolume {
     /// # Panics
     /// If the declaration is refused.
     pub fn declared(source: &str) -> Option<Self> {
-        Self::with(source, |_, _, found| found)
+        Self::with(source, |_, _, found| {
+            found.filter(|own| own.integral.is_none())
+        })
     }
 
     /// The system of a declaration with `mu_C` itself, which need not be invariant.
@@ -69,7 +71,7 @@ impl WithVolume {
         let derivation = mechanics::derive(&mut model);
         let problem = Problem::of(&mut model, &derivation);
         let exactness = decide(&mut model, &problem, 1).ok()?;
-        let found = Volume::found(&model, &derivation, &exactness);
+        let found = Volume::found(&model, &derivation, &problem, &exactness, 1);
         let volume = choose(&mut model, &derivation, found)?;
         let program = program::lower(&model, &derivation, Some(&volume));
         Some(Self {

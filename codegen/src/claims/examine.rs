@@ -31,7 +31,7 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
     let mut examiner = Examiner::of(model, derivation);
     let claims = examiner.model.claims.clone();
     let has_states = conserved::has_states(examiner.model, &examiner.dynamics);
-    let findings: Vec<Finding> = claims
+    let mut findings: Vec<Finding> = claims
         .iter()
         .map(|claim| match has_states {
             true => examiner.finding(claim),
@@ -45,6 +45,12 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
         .map(|(claim, _)| &claim.statement)
         .collect();
     let volume = examiner.volume(&proved);
+    if let Some(remark) = examiner.numeric(volume.as_ref()) {
+        let existence = |own: &&mut Finding| own.claim.starts_with("density: ");
+        if let Some(finding) = findings.iter_mut().find(existence) {
+            finding.remarks.insert(0, remark);
+        }
+    }
     Examined { findings, volume }
 }
 
@@ -56,7 +62,13 @@ pub fn examine_volume(
     let mut examiner = Examiner::of(model, derivation);
     let (verdict, remarks) = examiner.existence(Existence::Global);
     let volume = match &examiner.decision {
-        Some(Ok(exactness)) => Volume::found(examiner.model, derivation, exactness),
+        Some(Ok(exactness)) => Volume::found(
+            examiner.model,
+            derivation,
+            &examiner.problem,
+            exactness,
+            examiner.seed,
+        ),
         _ => None,
     };
     (verdict, remarks, volume)
@@ -191,6 +203,21 @@ impl<'e> Examiner<'e> {
         hybrid::volume_remarks(self.model, derivation, dynamics, stated, self.seed)
     }
 
+    /// What becomes of a density that has no closed form.
+    fn numeric(&self, volume: Option<&Volume>) -> Option<String> {
+        let exactness = self.decision.as_ref()?.as_ref().ok()?;
+        if exactness.global.is_none() || exactness.density.is_some() {
+            return None;
+        }
+        Some(match volume.map(|own| own.integral.is_some()) {
+            Some(true) => "G is emitted as an integral, by quadrature".to_owned(),
+            Some(false) => return None,
+            None => "`InvariantVolume` is not implemented: G is not determined up to a constant, depends on time, or its \
+                     gradient is too large"
+                .to_owned(),
+        })
+    }
+
     /// The volume that these statements are about.
     fn volume(&mut self, proved: &[&Statement]) -> Option<Volume> {
         for statement in proved {
@@ -212,7 +239,13 @@ impl<'e> Examiner<'e> {
         };
         proved.iter().find(exists)?;
         let exactness = self.decision.as_ref()?.as_ref().ok()?;
-        Volume::found(self.model, self.derivation, exactness)
+        Volume::found(
+            self.model,
+            self.derivation,
+            &self.problem,
+            exactness,
+            self.seed,
+        )
     }
 
     /// The expression with energy and momenta written out.

@@ -78,8 +78,8 @@ impl Writer<'_> {
             }
             None => Certificate {
                 shown: format!(
-                    "an invariant exp(G)*mu_C exists{depends}{circle}; G was found in no closed form, so \
-                     `InvariantVolume` is not implemented; the periods on the circles are numeric"
+                    "an invariant exp(G)*mu_C exists{depends}{circle}; G was found in no closed form, its periods \
+                     on the circles are numeric"
                 ),
                 points: 3,
                 primes: self.exactness.local.primes.clone(),

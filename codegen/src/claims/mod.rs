@@ -6,7 +6,7 @@
 //! | `linear.rs`, `frame.rs`, `closure.rs` | the frame of D as series, and its hull under brackets |
 //! | `exactness.rs` | does a local density exist? |
 //! | `potential.rs`, `global.rs`, `regularity.rs` | the density in closed form; is it single-valued, and regular? |
-//! | `volume.rs` | the volume with that density, as it is lowered |
+//! | `volume.rs`, `gradient.rs`, `trace.rs` | the volume with that density, or with an integral for it, as it is lowered |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
 //! | `alternatives.rs` | both of these in words |
@@ -39,6 +39,7 @@ mod finding;
 mod frame;
 mod geometry;
 mod global;
+mod gradient;
 mod hybrid;
 mod impact;
 mod linear;
@@ -50,6 +51,7 @@ pub mod problem;
 mod regularity;
 mod sample;
 mod symmetry;
+mod trace;
 mod undecided;
 mod volume;
 mod wall;
@@ -62,10 +64,12 @@ pub use existence::{Decision, potential_text};
 pub use finding::{Certificate, Finding, Verdict, Witness};
 pub use geometry::{Geometry, geometry_at};
 pub use global::Global;
+pub use gradient::{Gradient, Integral};
 pub use momentum::{MomentumDensity, find_momentum_density};
 pub use obstruction::{Obstruction, find_obstruction};
 pub use potential::{Certified, Potential, Term};
 pub use problem::Problem;
 pub use sample::Sample;
+pub use trace::{Operation, Step, Trace};
 pub use undecided::Undecided;
 pub use volume::Volume;

@@ -5,20 +5,23 @@
 
 use dalembert_expr::{ExprId, Function, JetSpace, Jets, Node, Pool, Rational};
 
-use super::exactness::{Exactness, sample_points};
+use super::exactness::{Exactness, decide_local_in, sample_points};
 use super::frame::frame;
 use super::global::Global;
+use super::gradient::Integral;
 use super::potential::{Potential, Term};
 use super::problem::Problem;
 use crate::mechanics::Derivation;
 use crate::mechanics::constraint::regular_minor;
 use crate::model::Model;
 
-/// An invariant volume with a density in closed form.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// An invariant volume.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Volume {
-    /// `G`
+    /// `G`, but for an integral.
     pub potential: Potential,
+    /// What `G` has besides, where it has no closed form.
+    pub integral: Option<Integral>,
     /// The columns of the determinant in [`Term::DependentDeterminant`], one for each constraint.
     pub minor: Vec<usize>,
     /// The dependent velocities, one for each constraint, in increasing order. The other velocities are the
@@ -29,13 +32,31 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// The volume that a decision about the model found; `None` if there is none, or none in closed form.
-    pub fn found(model: &Model, derivation: &Derivation, exactness: &Exactness) -> Option<Self> {
-        let (potential, _) = exactness.density.as_ref()?;
+    /// The volume that a decision about the model found, in closed form or as an integral; `None` if there is none, or
+    /// no gradient determines it.
+    pub fn found(
+        model: &Model,
+        derivation: &Derivation,
+        problem: &Problem,
+        exactness: &Exactness,
+        seed: u64,
+    ) -> Option<Self> {
+        let regular = nowhere_singular(model, derivation);
         let minor = exactness.local.dependent.clone();
+        let dependent = regular.unwrap_or_else(|| minor.clone());
+        let (potential, integral) = match &exactness.density {
+            Some((potential, _)) => (potential.clone(), None),
+            None => {
+                // Brackets of a frame that is nowhere singular are not either.
+                let local = decide_local_in(&model.pool, problem, &dependent, seed).ok()?;
+                let integral = Integral::of(model, problem, &local, seed)?;
+                (Potential::default(), Some(integral))
+            }
+        };
         Some(Self {
-            potential: potential.clone(),
-            dependent: nowhere_singular(model, derivation).unwrap_or_else(|| minor.clone()),
+            potential,
+            integral,
+            dependent,
             minor,
             is_single_valued: exactness.global == Some(Global::Exists),
         })
@@ -61,6 +82,7 @@ impl Volume {
             potential: Potential {
                 terms: logarithm(&mut model.pool, density),
             },
+            integral: None,
             minor: dependent.clone(),
             dependent,
             is_single_valued: true,

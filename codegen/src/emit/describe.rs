@@ -306,7 +306,14 @@ fn emit_inspect(context: &Context<'_>) -> TokenStream {
             }
         }
     });
-    let reports: Vec<TokenStream> = reports.collect();
+    let mut reports: Vec<TokenStream> = reports.collect();
+    let volume = context.program.volume.as_ref();
+    if volume.is_some_and(|own| own.gradient.is_some()) {
+        reports.push(quote! {
+            let density = ::dalembert::InvariantVolume::log_density(self, t, &::dalembert::System::position(self, state))?;
+            report.scalar("log_density", density);
+        });
+    }
     let end = Literal::usize_unsuffixed(n);
     let p = Ident::new("p", Span::mixed_site());
     quote! {

@@ -37,9 +37,9 @@ impl<'a> Expressions<'a> {
         self.bindings.insert(symbol, value);
     }
 
-    /// Whether a symbol has a value.
-    pub fn is_bound(&self, symbol: SymbolId) -> bool {
-        self.bindings.contains_key(&symbol)
+    /// The value of a symbol, if it has one.
+    pub fn bound(&self, symbol: SymbolId) -> Option<Value> {
+        self.bindings.get(&symbol).copied()
     }
 
     /// The value of an expression all of whose symbols are bound. A symbol that is not bound counts as zero;
@@ -161,7 +161,7 @@ impl<'a> Expressions<'a> {
         ordered.sort_by_key(|(base, _)| (self.is_moving(builder, *base), *base));
         let (mut numerator, mut denominator) = (builder.integer(1), builder.integer(1));
         for (base, exponent) in ordered {
-            let power = self.lower_power(builder, self.values[base], &exponent.abs());
+            let power = positive_power(builder, self.values[base], &exponent.abs());
             match exponent.is_negative() {
                 true => denominator = builder.mul(denominator, power),
                 false => numerator = builder.mul(numerator, power),
@@ -182,19 +182,19 @@ impl<'a> Expressions<'a> {
             })
         })
     }
+}
 
-    /// `base^exponent` for a positive exponent: products, square roots, or a general power.
-    fn lower_power(&self, builder: &mut Builder, base: Value, exponent: &Rational) -> Value {
-        let doubled = exponent.clone() + exponent.clone();
-        match (exponent.to_i64(), doubled.to_i64()) {
-            (Some(integer), _) => integer_power(builder, base, integer),
-            (None, Some(odd)) => {
-                let root = builder.sqrt(base);
-                let rest = integer_power(builder, base, odd / 2);
-                builder.mul(root, rest)
-            }
-            _ => builder.power(base, exponent.clone()),
+/// `base^exponent` for a positive exponent: products, square roots, or a general power.
+pub fn positive_power(builder: &mut Builder, base: Value, exponent: &Rational) -> Value {
+    let doubled = exponent.clone() + exponent.clone();
+    match (exponent.to_i64(), doubled.to_i64()) {
+        (Some(integer), _) => integer_power(builder, base, integer),
+        (None, Some(odd)) => {
+            let root = builder.sqrt(base);
+            let rest = integer_power(builder, base, odd / 2);
+            builder.mul(root, rest)
         }
+        _ => builder.power(base, exponent.clone()),
     }
 }
 

@@ -78,6 +78,12 @@ impl<'a> Kernel<'a> {
         self.expressions.bind(symbol, value);
     }
 
+    /// The value of a symbol that is bound; 0 if it is not.
+    pub fn symbol(&mut self, symbol: SymbolId) -> Value {
+        let bound = self.expressions.bound(symbol);
+        bound.unwrap_or_else(|| self.builder.zero())
+    }
+
     fn bind_velocity(&mut self, qdot: Vec<Value>) {
         for (coordinate, &value) in self.model.coordinates.iter().zip(&qdot) {
             self.expressions.bind(coordinate.qdot, value);

@@ -302,10 +302,12 @@ impl Constrained {
 /// Functions of a system with an invariant volume `exp(G) mu_C`.
 #[derive(Debug)]
 pub struct InvariantVolume {
-    /// `(t, q) -> G`
+    /// `(t, q) -> G`, but for an integral.
     pub log_density: Function,
-    /// `(t, q) -> G + ln det g - ln |det A_dep|`
+    /// `(t, q) -> G + ln det g - ln |det A_dep|`, but for an integral.
     pub log_volume: Function,
+    /// What is integrated from a configuration on to give the rest of `G`, if it has no closed form.
+    pub gradient: Option<(Vec<f64>, Function)>,
     /// The velocities that are coordinates of the volume besides the positions, in order.
     pub independent: Vec<usize>,
     /// Whether `G` is a function on Q, not only of unwrapped angles.
@@ -313,14 +315,16 @@ pub struct InvariantVolume {
 }
 
 impl InvariantVolume {
-    fn functions(&self) -> [&Function; 2] {
+    fn functions(&self) -> impl Iterator<Item = &Function> {
         let Self {
             log_density,
             log_volume,
+            gradient,
             independent: _,
             is_single_valued: _,
         } = self;
-        [log_density, log_volume]
+        let gradient = gradient.as_ref().map(|(_, function)| function);
+        [log_density, log_volume].into_iter().chain(gradient)
     }
 }
 

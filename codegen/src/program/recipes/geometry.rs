@@ -87,7 +87,8 @@ pub fn geometry(model: &Model, derivation: &Derivation, found: Option<&Volume>) 
     };
     report_motion(&mut kernel, &mut results);
     report_constraints(&mut kernel, &mut results);
-    if let Some(found) = found {
+    // An integral is no straight-line code; it is reported by itself.
+    if let Some(found) = found.filter(|own| own.integral.is_none()) {
         let density = volume::log_density(&mut kernel, found);
         results.scalar("log_density", density);
     }

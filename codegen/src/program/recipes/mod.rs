@@ -3,6 +3,7 @@
 pub mod constrained;
 pub mod declared;
 pub mod geometry;
+pub mod gradient;
 pub mod impact;
 pub mod motion;
 pub mod volume;

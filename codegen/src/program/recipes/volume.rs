@@ -5,6 +5,7 @@
 
 use dalembert_expr::{ExprId, Function as Elementary, Rational};
 
+use super::gradient::gradient;
 use crate::claims::{Term, Volume};
 use crate::mechanics::Derivation;
 use crate::model::Model;
@@ -26,6 +27,10 @@ pub fn invariant_volume(
     InvariantVolume {
         log_density,
         log_volume: kernel.finish(vec![total]),
+        gradient: volume
+            .integral
+            .as_ref()
+            .map(|own| (own.reference.clone(), gradient(model, derivation, own))),
         independent: (0..model.coordinates.len())
             .filter(|i| !volume.dependent.contains(i))
             .collect(),
