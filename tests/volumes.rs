@@ -310,6 +310,22 @@ fn a_singular_minor_is_a_fault() {
         matches!(fault, Err(Guard::Constraint { constraint: 1, .. })),
         "{fault:?}"
     );
+    let single = "Sample {
+        coordinates { x; y; z; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { slope: x*d(y) + y*d(z) = 0; }
+    }";
+    let own = WithVolume::natural(single);
+    assert_eq!(own.volume.dependent, [2]);
+    let functions = own.program.volume.as_ref().expect("functions");
+    let fault = interpret(
+        &functions.log_volume,
+        &own.input(0.0, &[0.3, 0.0, 0.2], &[], &[]),
+    );
+    assert!(
+        matches!(fault, Err(Guard::Constraint { constraint: 0, .. })),
+        "{fault:?}"
+    );
 }
 
 #[test]
