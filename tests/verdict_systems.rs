@@ -1,7 +1,8 @@
 //! Systems beyond those of the reference file: bodies, balls, trains, particles.
 
 use dalembert_tests::bodies::{ball, top, train};
-use dalembert_tests::verdict::Existence;
+use dalembert_tests::divergence::{Flow, State};
+use dalembert_tests::verdict::{Decided, Existence};
 use dalembert_tests::verified::verified;
 
 #[test]
@@ -71,6 +72,27 @@ fn balls_on_a_plane() {
     assert_eq!(verified(&ball("0, 0, l", symmetric, "")), Existence::Global);
     assert_eq!(verified(&ball("l, 0, 0", symmetric, "")), Existence::None);
     assert_eq!(verified(&ball("l, 0, k", triaxial, "")), Existence::None);
+}
+
+/// Routh's sphere: `exp(G) = det m/sqrt(A C + m (r, I r))`, `r` from the centre of mass to the contact (Chaplygin).
+#[test]
+fn the_density_of_routh_s_sphere_is_the_known_one() {
+    let decided = Decided::of(&ball("0, 0, l", "A*(b1^2 + b2^2) + C*b3^2", ""));
+    let (m, a, c, l) = (2.0, 3.0, 5.0, 0.25);
+    let known = |flow: &Flow<'_>, state: &State| {
+        let (sine, cosine) = state.q[3].sin_cos();
+        let contact = a * sine.powi(2) + c * (cosine + l).powi(2);
+        flow.geometry(state).mass_determinant / f64::sqrt(a * c + m * contact)
+    };
+    let state = State {
+        t: 0.0,
+        q: vec![0.3, -0.2, 0.7, 1.1, 0.4],
+        v: vec![0.5, -0.4, 0.8],
+    };
+    let flow = Flow::at(&decided, &state);
+    assert!(flow.divergence(&state, &|_, _| 1.0).abs() > 1e-3);
+    let divergence = flow.divergence(&state, &known);
+    assert!(divergence.abs() < 1e-9, "{divergence}");
 }
 
 #[test]
