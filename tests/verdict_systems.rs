@@ -205,6 +205,22 @@ fn integrable_constraints_have_a_density() {
     assert_eq!(verified(sphere), Existence::Global);
 }
 
+/// Two holonomic constraints, mixed by a matrix whose determinant is no part of the declaration: `G = ln det m - ln det F`.
+#[test]
+fn mixed_forms_need_the_determinant_of_their_dependent_columns() {
+    let pair = "Pair { coordinates { x; y; z; w; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2)/2;
+        constraints {
+            first: (2 + x^2*y^2)*(d(z) - x*d(x)) + (1 + y^2)*(d(w) - y*d(y)) = 0;
+            second: -x^2*(d(z) - x*d(x)) + (3 + x^4)*(d(w) - y*d(y)) = 0;
+        }
+    }";
+    assert_eq!(verified(pair), Existence::Global);
+    let decided = Decided::of(pair);
+    let potential = decided.potential().expect("a closed form");
+    assert!(potential.contains("ln|det A_dep|"), "{potential}");
+}
+
 /// Without constraints the volume of phase space is kept, whatever the metric.
 #[test]
 fn free_systems_keep_the_volume_of_phase_space() {
