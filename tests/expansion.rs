@@ -1,4 +1,4 @@
-//! What expansion costs: time per model, and how the N-link chain grows.
+//! What expansion costs: time per model, verdicts on densities, and how the N-link chain grows.
 //!
 //! The bounds are those of a user's build. Built without optimisation, as cargo builds procedural macros in every
 //! profile, each model must expand in under a second; optimised, in under 50 ms. Times are the least of five.
@@ -7,9 +7,12 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use dalembert::{Described, Scene};
+use dalembert_codegen::claims::{Exactness, Problem, Undecided, decide};
 use dalembert_codegen::{mechanics, model, program, spec, try_expand};
 use dalembert_models::{Chain2, Chain4, Chain8, Chain16};
+use dalembert_tests::bodies::{ball, train};
 use dalembert_tests::sampling::{Visitor, visit_all};
+use dalembert_tests::visible::{declaration, visible_systems};
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 /// Measurements are made one at a time: tests of one file run side by side.
@@ -52,6 +55,15 @@ fn without_claims(source: &str) -> String {
     all.into_iter().collect::<TokenStream>().to_string()
 }
 
+/// A bound in milliseconds, with and without optimisation.
+fn milliseconds(optimised: u64, unoptimised: u64) -> Duration {
+    Duration::from_millis(if cfg!(debug_assertions) {
+        unoptimised
+    } else {
+        optimised
+    })
+}
+
 struct Timed;
 
 impl Visitor for Timed {
@@ -65,13 +77,6 @@ impl Visitor for Timed {
             time.as_secs_f64() * 1e3,
             claims.as_secs_f64() * 1e3,
         );
-        let milliseconds = |optimised, unoptimised| {
-            Duration::from_millis(if cfg!(debug_assertions) {
-                unoptimised
-            } else {
-                optimised
-            })
-        };
         assert!(time < milliseconds(50, 1000), "{name}: {time:?}");
         if S::DESCRIPTION.coordinates.len() <= 6 {
             assert!(
@@ -85,6 +90,52 @@ impl Visitor for Timed {
 #[test]
 fn every_model_expands_in_time() {
     visit_all(&mut Timed);
+}
+
+/// The least of three times for a verdict.
+fn verdict(source: &str) -> (Duration, Result<Exactness, Undecided>) {
+    let _alone = ALONE.lock();
+    let spec = spec::parse(source.parse().expect("tokens")).expect("a declaration");
+    let mut model = model::check(&spec).expect("a model");
+    let derivation = mechanics::derive(&mut model);
+    let problem = Problem::of(&mut model, &derivation);
+    let (times, verdicts): (Vec<_>, Vec<_>) = (0..3)
+        .map(|_| {
+            let start = Instant::now();
+            let verdict = decide(&mut model, &problem, 1);
+            (start.elapsed(), verdict)
+        })
+        .unzip();
+    let verdict = verdicts.into_iter().next().expect("a verdict");
+    (times.into_iter().min().expect("a time"), verdict)
+}
+
+#[test]
+fn verdicts_on_up_to_six_coordinates_are_reached_in_time() {
+    let mut sources: Vec<_> = visible_systems().iter().map(declaration).collect();
+    let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";
+    sources.push(ball("l, 0, k", triaxial, ""));
+    sources.push(ball("l, 0, k", triaxial, "rubber: s3 = 0;"));
+    sources.push(ball("0, 0, l", "A*(b1^2 + b2^2) + C*b3^2", ""));
+    sources.extend((1..=3).map(train));
+    for source in sources {
+        let (time, verdict) = verdict(&source);
+        println!("{:8.1} ms  {source}", time.as_secs_f64() * 1e3);
+        assert!(verdict.is_ok(), "{source}: {verdict:?}");
+        assert!(time < milliseconds(100, 1500), "{source}: {time:?}");
+    }
+}
+
+/// Six constraints on eight coordinates: brackets of depth seven.
+#[test]
+fn a_train_of_five_is_decided_or_says_how_far_it_was_followed() {
+    let (time, verdict) = verdict(&train(5));
+    println!("{:8.1} ms", time.as_secs_f64() * 1e3);
+    match verdict {
+        Ok(verdict) => assert!(!verdict.local.exists),
+        Err(undecided) => assert!(matches!(undecided, Undecided::Depth(5..)), "{undecided}"),
+    }
+    assert!(time < milliseconds(2000, 30_000), "{time:?}");
 }
 
 /// Operations of the rate.

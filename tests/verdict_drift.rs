@@ -1,7 +1,8 @@
 //! Densities where forces depend on velocities, constraints are affine, or time enters.
 
+use dalembert_tests::bodies::{BODY, EULER};
 use dalembert_tests::verdict::{Decided, Existence};
-use dalembert_tests::verified::{BODY, EULER, verified};
+use dalembert_tests::verified::verified;
 
 fn sleigh(offset: &str, rest: &str) -> String {
     format!(

@@ -1,14 +1,9 @@
 //! Systems beyond those of the reference file: bodies, balls, trains, particles.
 
-use dalembert_tests::verdict::Existence;
-use dalembert_tests::verified::{BODY, EULER, verified};
-
-fn top(parameters: &str, kinetic: &str, constraint: &str) -> String {
-    format!(
-        "Body {{ coordinates {{ {EULER} }} parameters {{ {parameters} }} {BODY}
-            lagrangian = ({kinetic})/2; constraints {{ axis: {constraint} = 0; }} }}"
-    )
-}
+use dalembert_tests::bodies::{ball, top, train};
+use dalembert_tests::divergence::{Flow, State};
+use dalembert_tests::verdict::{Decided, Existence};
+use dalembert_tests::verified::verified;
 
 #[test]
 fn suslov_has_a_density_iff_the_axis_is_principal() {
@@ -59,25 +54,6 @@ fn constraints_of_fixed_axis_in_space_keep_a_volume() {
     }
 }
 
-/// A ball of radius 1 on a plane, its centre of mass at `(l1, l2, l3)` in the body, measured from the centre.
-fn ball(offset: &str, inertia: &str, more: &str) -> String {
-    format!(
-        "Ball {{
-            coordinates {{ x; y; {EULER} }}
-            parameters {{ m > 0 = 2; A > 0 = 3; B > 0 = 4; C > 0 = 5; l = 1/4; k = 1/5; }}
-            {BODY}
-            let sp = sin(psi); let cp = cos(psi); let st = sin(theta); let ct = cos(theta);
-            let sf = sin(phi); let cf = cos(phi);
-            let rx(a, b, c) = (cf*cp - sf*ct*sp)*a + (-cf*sp - sf*ct*cp)*b + sf*st*c;
-            let ry(a, b, c) = (sf*cp + cf*ct*sp)*a + (-sf*sp + cf*ct*cp)*b - cf*st*c;
-            let rz(a, b, c) = st*sp*a + st*cp*b + ct*c;
-            lagrangian = m/2*(dot(x + rx({offset}))^2 + dot(y + ry({offset}))^2 + dot(rz({offset}))^2)
-                + ({inertia})/2;
-            constraints {{ rolling_x: dot(x) - s2 = 0; rolling_y: dot(y) + s1 = 0; {more} }}
-        }}"
-    )
-}
-
 #[test]
 fn balls_on_a_plane() {
     let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";
@@ -98,6 +74,27 @@ fn balls_on_a_plane() {
     assert_eq!(verified(&ball("l, 0, k", triaxial, "")), Existence::None);
 }
 
+/// Routh's sphere: `exp(G) = det m/sqrt(A C + m (r, I r))`, `r` from the centre of mass to the contact (Chaplygin).
+#[test]
+fn the_density_of_routh_s_sphere_is_the_known_one() {
+    let decided = Decided::of(&ball("0, 0, l", "A*(b1^2 + b2^2) + C*b3^2", ""));
+    let (m, a, c, l) = (2.0, 3.0, 5.0, 0.25);
+    let known = |flow: &Flow<'_>, state: &State| {
+        let (sine, cosine) = state.q[3].sin_cos();
+        let contact = a * sine.powi(2) + c * (cosine + l).powi(2);
+        flow.geometry(state).mass_determinant / f64::sqrt(a * c + m * contact)
+    };
+    let state = State {
+        t: 0.0,
+        q: vec![0.3, -0.2, 0.7, 1.1, 0.4],
+        v: vec![0.5, -0.4, 0.8],
+    };
+    let flow = Flow::at(&decided, &state);
+    assert!(flow.divergence(&state, &|_, _| 1.0).abs() > 1e-3);
+    let divergence = flow.divergence(&state, &known);
+    assert!(divergence.abs() < 1e-9, "{divergence}");
+}
+
 #[test]
 fn rubber_balls_off_centre() {
     let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";
@@ -111,30 +108,6 @@ fn rubber_balls_off_centre() {
         verified(&ball("0, 0, l", symmetric, rubber)),
         Existence::Global
     );
-}
-
-/// A sleigh that pulls `count` trailers with masses at their axles.
-fn train(count: usize) -> String {
-    let mut angles = String::from("x; y; theta0: angle; ");
-    let mut constraints = String::from("blade: -sin(theta0)*d(x) + cos(theta0)*d(y) = 0; ");
-    let mut definitions = String::from("let x0 = x; let y0 = y; ");
-    let mut kinetic = String::from("m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta0)^2");
-    for i in 1..=count {
-        let (angle, before) = (format!("theta{i}"), i - 1);
-        angles += &format!("{angle}: angle; ");
-        definitions += &format!(
-            "let x{i} = x{before} - l{i}*cos({angle}); let y{i} = y{before} - l{i}*sin({angle}); "
-        );
-        constraints += &format!("c{i}: -sin({angle})*d(x{i}) + cos({angle})*d(y{i}) = 0; ");
-        kinetic += &format!(" + m{i}/2*(dot(x{i})^2 + dot(y{i})^2) + J{i}/2*dot({angle})^2");
-    }
-    let parameters: String = (1..=count)
-        .map(|i| format!("l{i} = {}/3; m{i} > 0 = {i}/2; J{i} > 0 = {i}; ", i + 1))
-        .collect();
-    format!(
-        "Train {{ coordinates {{ {angles} }} parameters {{ m > 0 = 2; I > 0 = 1; {parameters} }} {definitions}
-            lagrangian = {kinetic}; constraints {{ {constraints} }} }}"
-    )
 }
 
 #[test]
@@ -230,6 +203,22 @@ fn integrable_constraints_have_a_density() {
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - z;
         constraints { c: x*d(x) + y*d(y) + z*d(z) = 0; } }";
     assert_eq!(verified(sphere), Existence::Global);
+}
+
+/// Two holonomic constraints, mixed by a matrix whose determinant is no part of the declaration: `G = ln det m - ln det F`.
+#[test]
+fn mixed_forms_need_the_determinant_of_their_dependent_columns() {
+    let pair = "Pair { coordinates { x; y; z; w; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2)/2;
+        constraints {
+            first: (2 + x^2*y^2)*(d(z) - x*d(x)) + (1 + y^2)*(d(w) - y*d(y)) = 0;
+            second: -x^2*(d(z) - x*d(x)) + (3 + x^4)*(d(w) - y*d(y)) = 0;
+        }
+    }";
+    assert_eq!(verified(pair), Existence::Global);
+    let decided = Decided::of(pair);
+    let potential = decided.potential().expect("a closed form");
+    assert!(potential.contains("ln|det A_dep|"), "{potential}");
 }
 
 /// Without constraints the volume of phase space is kept, whatever the metric.

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use dalembert_codegen::claims::Global;
+use dalembert_tests::divergence::{Flow, State};
 use dalembert_tests::verdict::{Answer, Decided, Existence, answer};
 use dalembert_tests::verified::verified;
 use dalembert_tests::visible::{declaration, visible_system};
@@ -16,6 +17,24 @@ fn unwrapped(name: &str, angles: &[&str]) -> String {
         source = source.replace(&wrapped, &format!("{angle};"));
     }
     source
+}
+
+/// Checks a density relative to `mu_C` by differences.
+fn assert_invariant(source: &str, density: &dyn Fn(&[f64]) -> f64) {
+    let decided = Decided::of(source);
+    let (n, m) = (
+        decided.model.coordinates.len(),
+        decided.model.constraints.len(),
+    );
+    let state = State {
+        t: 0.0,
+        q: (0..n).map(|i| 0.3 + 0.2 * i as f64).collect(),
+        v: (0..n - m).map(|i| 0.7 - 0.4 * i as f64).collect(),
+    };
+    let flow = Flow::at(&decided, &state);
+    assert!(flow.divergence(&state, &|_, _| 1.0).abs() > 1e-3);
+    let divergence = flow.divergence(&state, &|_, state| density(&state.q));
+    assert!(divergence.abs() < 1e-9, "{source}\n{divergence}");
 }
 
 #[test]
@@ -37,6 +56,7 @@ fn the_helical_circle_has_a_density_on_the_line() {
     assert!(message.contains("phi makes a turn"), "{message}");
     let line = unwrapped("helical_circle", &["phi"]);
     assert_eq!(verified(&line), Existence::Global);
+    assert_invariant(&line, &|q| f64::exp(-q[0] / 3.0));
     assert_eq!(answer(&line, "density: exact"), Answer::Proved);
 }
 
@@ -80,6 +100,7 @@ fn the_wheels_of_a_robot_decide_whether_there_is_a_density() {
     assert_eq!(turns, &[(3, 1), (4, 1)]);
     assert!((period - 4.0 * PI * kappa).abs() < 1e-10, "{period}");
     assert_eq!(verified(&robot("")), Existence::Global);
+    assert_invariant(&robot(""), &|q| f64::exp(kappa * (q[3] + q[4])));
 }
 
 /// With `dx = x dy` every density is `f(C) m/|x|`, `C` the leaf: on both sides of `x = 0` alike, and on that leaf

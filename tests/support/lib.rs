@@ -7,6 +7,7 @@
 struct LanguageReference;
 
 pub mod allocation;
+pub mod bodies;
 pub mod command;
 pub mod curvature;
 pub mod divergence;

@@ -96,15 +96,3 @@ fn check_curvature(decided: &Decided, source: &str) {
         "{source}\n{pair:?}"
     );
 }
-
-/// Bodies with Euler angles: angular velocity in the body and in space.
-pub const BODY: &str = "
-    let b1 = dot(phi)*sin(theta)*sin(psi) + dot(theta)*cos(psi);
-    let b2 = dot(phi)*sin(theta)*cos(psi) - dot(theta)*sin(psi);
-    let b3 = dot(phi)*cos(theta) + dot(psi);
-    let s1 = dot(theta)*cos(phi) + dot(psi)*sin(theta)*sin(phi);
-    let s2 = dot(theta)*sin(phi) - dot(psi)*sin(theta)*cos(phi);
-    let s3 = dot(phi) + dot(psi)*cos(theta);";
-
-/// The coordinates of such a body.
-pub const EULER: &str = "phi: angle; theta in (0, pi); psi: angle;";
