@@ -7,11 +7,15 @@
 struct LanguageReference;
 
 pub mod allocation;
+pub mod claim;
 pub mod command;
 pub mod curvature;
 pub mod divergence;
 pub mod flow;
 pub mod golden;
+pub mod formula;
+pub mod numeric;
+pub mod obstruction;
 pub mod reference;
 pub mod sampling;
 pub mod symbolic;
@@ -20,6 +24,7 @@ pub mod verdict;
 pub mod verified;
 pub mod visible;
 pub mod volume;
+pub mod witness;
 
 /// The examples of the README, compiled and run.
 #[cfg(doctest)]
