@@ -219,7 +219,7 @@ fn momenta_with_a_wrong_parameter_change() {
     all_refuted::<PointBilliard>(&[
         "conserved: x*dot(y)",
         "conserved under wall: x*dot(y) - y*dot(x)",
-        "conserved under wall: x*dot(y)/ta^2 - y*dot(x)/tb^2",
+        "conserved under wall: x*dot(y)/tb^2 - y*dot(x)/ta^2",
         "conserved under wall: dot(x)^2 - dot(y)^2",
     ]);
     all_refuted::<TwoWheelsRod>(&[
