@@ -66,6 +66,9 @@ pub trait Numeric {
     /// The state with these positions and velocities, on the constraints or not.
     fn state(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64>;
 
+    /// As [`Numeric::state`], with the velocities projected on D.
+    fn projected(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64>;
+
     /// The rate of a state.
     fn rate(&self, t: f64, state: &[f64]) -> Vec<f64>;
 
@@ -101,6 +104,11 @@ impl<S: Described> Numeric for S {
 
     fn state(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64> {
         let state = self.state_unchecked(t, &vector(q), &vector(qdot));
+        state.expect("a state").as_slice().to_vec()
+    }
+
+    fn projected(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64> {
+        let state = self.state_projected(t, &vector(q), &vector(qdot));
         state.expect("a state").as_slice().to_vec()
     }
 
