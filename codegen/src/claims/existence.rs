@@ -81,7 +81,7 @@ impl Writer<'_> {
                     "an invariant exp(G)*mu_C exists{depends}{circle}; G was found in no closed form, so \
                      `InvariantVolume` is not implemented; the periods on the circles are numeric"
                 ),
-                points: 3,
+                points: self.exactness.local.points,
                 primes: self.exactness.local.primes.clone(),
                 error: self.exactness.local.error,
                 seed: self.seed,
@@ -110,7 +110,7 @@ impl Writer<'_> {
                 "no density depends on q alone: the hull of D has rank {}, with the demands {}",
                 local.rank, local.extended_rank
             ),
-            points: 3,
+            points: local.points,
             primes: local.primes.clone(),
             error: local.error,
             seed: self.seed,
