@@ -76,7 +76,7 @@ fn holds_numerically<S: Described>(system: &S, claim: &str, message: &str) {
         let size = 1.0 + here.energy.abs();
         if head.trim() == "density" {
             // dG/dt + div = 0
-            let (_, potential) = message.split_once("with G = ").expect("a density");
+            let (_, potential) = message.split_once("with G = ").expect(message);
             let potential = potential.lines().next().expect("a density");
             let divergence = system.report(0.3, state).number("divergence_mu_C");
             let rate = match potential {

@@ -80,7 +80,7 @@ pub fn verdict(source: &str) -> Finding {
     let spec = spec::parse(source.parse().expect("tokens")).expect(source);
     let mut model = model::check(&spec).expect(source);
     let derivation = mechanics::derive(&mut model);
-    let mut findings = examine(&mut model, &derivation);
+    let mut findings = examine(&mut model, &derivation).findings;
     assert_eq!(findings.len(), 1, "{source}");
     findings.remove(0)
 }
@@ -109,31 +109,28 @@ pub struct Witness {
 }
 
 impl Witness {
-    /// Reads a message; `None` if it shows no point.
+    /// Reads a message; `None` if it shows no numbers.
     ///
     /// # Panics
     /// If a number cannot be read.
     pub fn of(message: &str) -> Option<Self> {
-        let lines: Vec<&str> = message.lines().collect();
-        let place = lines.iter().position(|line| line.starts_with("at "))?;
         let pair = |text: &str| {
             let (name, value) = text.rsplit_once(" = ").expect("a name and a value");
             (name.to_owned(), value.parse().expect("a number"))
         };
-        let is_value = |line: &&&str| {
-            let number = line
-                .rsplit_once(" = ")
-                .map(|(_, value)| value.parse::<f64>());
-            matches!(number, Some(Ok(_)))
+        let is_value = |line: &&str| {
+            let number = line.rsplit_once(" = ");
+            matches!(number.map(|(_, value)| value.parse::<f64>()), Some(Ok(_)))
         };
-        Some(Self {
-            values: lines[1..place]
-                .iter()
-                .filter(is_value)
-                .map(|own| pair(own))
-                .collect(),
-            at: lines[place][3..].split(", ").map(pair).collect(),
-        })
+        let lines = message.lines().skip(1);
+        let place = message.lines().find_map(|line| line.strip_prefix("at "));
+        let values: Vec<_> = lines
+            .take_while(|line| !line.starts_with("at "))
+            .filter(is_value)
+            .map(pair)
+            .collect();
+        let at = place.map_or(Vec::new(), |place| place.split(", ").map(pair).collect());
+        (!values.is_empty()).then_some(Self { values, at })
     }
 
     /// A value by its name.

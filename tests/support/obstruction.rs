@@ -41,6 +41,33 @@ impl<'c> Criterion<'c> {
             })
     }
 
+    /// With the first choice of dependent velocities that is regular at `q`; `None` if there is none.
+    pub fn regular(system: &'c dyn Numeric, q: &[f64]) -> Option<Self> {
+        let (n, m) = (q.len(), system.description().constraints.len());
+        let choices = (0..1_usize << n).filter(|bits| bits.count_ones() as usize == m);
+        choices
+            .map(|bits| Self {
+                system,
+                dependent: (0..n).filter(|i| bits >> i & 1 == 1).collect(),
+            })
+            .find(|own| own.frame(q).is_some())
+    }
+
+    /// The derivative of G by each coordinate, where the frame and its brackets of two span all directions.
+    pub fn differential(&self, q: &[f64]) -> Option<Vec<f64>> {
+        let free = q.len() - self.dependent.len();
+        let fields = (1..=free).map(|i| format!("X{i}"));
+        let brackets = (1..free).flat_map(|i| (i + 1..=free).map(move |j| format!("[X{i},X{j}]")));
+        let elements: Vec<Element> = fields
+            .chain(brackets)
+            .take(q.len())
+            .map(|name| self.element(&name, q))
+            .collect();
+        let demands: Vec<f64> = elements.iter().map(|own| own[q.len()]).collect();
+        (elements.len() == q.len()).then_some(())?;
+        solve(&elements, &demands)
+    }
+
     /// `eta^a = g W^a`
     fn geometry(&self, q: &[f64]) -> Geometry {
         let n = q.len();
@@ -140,7 +167,7 @@ fn solve(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
     let mut rows: Vec<Vec<f64>> = matrix
         .iter()
         .zip(right)
-        .map(|(row, value)| row.iter().copied().chain([*value]).collect())
+        .map(|(row, value)| row[..size].iter().copied().chain([*value]).collect())
         .collect();
     for step in 0..size {
         let pivot =

@@ -81,10 +81,10 @@ pub fn check(system: &mut dyn Numeric, claim: &str, message: &str) {
     let state = system.state(t, &q, &qdot);
     assert!(!witness.values.is_empty(), "{message}");
     for (name, printed) in &witness.values {
-        let (own, tolerance) = if name == "delta" {
-            (delta(system, message, &q), NESTED)
-        } else {
-            (computed(system, claim, name, t, &state), ONCE)
+        let (own, tolerance) = match name.as_str() {
+            "delta" => (delta(system, message, &q), NESTED),
+            "period" => (period(system, message, &q), NESTED),
+            _ => (computed(system, claim, name, t, &state), ONCE),
         };
         let error = (own - printed).abs();
         assert!(
@@ -220,6 +220,23 @@ fn delta(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
     let largest = rest.iter().fold(0.0, |size: f64, own| size.max(own.abs()));
     assert!(largest < NESTED[1], "no relation: {rest:?}, {message}");
     delta
+}
+
+/// How much G grows on the turn of a message, by the trapezoidal rule.
+fn period(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
+    const POINTS: u32 = 32;
+    let (_, turn) = message.split_once("by `period` when ").expect("a turn");
+    let (angle, _) = turn.split_once(" makes a turn").expect("one turn");
+    let mut names = system.description().coordinates.iter().map(|own| own.name);
+    let i = names.position(|own| own == angle).expect("a coordinate");
+    let step = std::f64::consts::TAU / f64::from(POINTS);
+    let slopes = (0..POINTS).map(|k| {
+        let mut q = q.to_vec();
+        q[i] = step * f64::from(k);
+        let criterion = Criterion::regular(system, &q).expect("a regular position");
+        criterion.differential(&q).expect("a closed form")[i]
+    });
+    step * slopes.sum::<f64>()
 }
 
 /// `d_x + 0.41*d_y` in components.

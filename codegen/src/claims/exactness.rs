@@ -105,13 +105,7 @@ fn decide_local_from(
     conditions: &Conditions,
     dependent: Option<&[usize]>,
 ) -> Result<Local, Undecided> {
-    if problem
-        .friction
-        .as_ref()
-        .is_some_and(|own| !own.is_quadratic)
-    {
-        return Err(Undecided::Forces);
-    }
+    problem.check_forces()?;
     let roots = problem.roots();
     let profile = pool.profile_of(&roots);
     let mut points = sample_points(pool, &roots, &profile, seed)?;
@@ -267,6 +261,7 @@ pub struct Exactness {
 /// # Errors
 /// [`Undecided`].
 pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactness, Undecided> {
+    problem.check_forces()?;
     if !regularity::is_real(model, problem) {
         return Err(Undecided::Degenerate);
     }

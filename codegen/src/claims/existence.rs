@@ -160,7 +160,7 @@ impl Writer<'_> {
         let bracket = &found.bracket;
         let reason = format!(
             "no density depends on q alone\n{bracket} = {relation} as a vector field, \
-             but the same combination of the demands on dG is off by delta\n\
+             but for an invariant exp(G)*mu_C, dG of the two sides would differ by delta\n\
              frame of D there: {}",
             frame.join(", ")
         );

@@ -7,7 +7,7 @@ dalembert::model! {
         constraints { blade: slip = 0; }
         impacts { wall: 1 - x >= 0; }
         claims {
-            conserved under wall: dot(theta);
+            conserved under wall: dot(x);
         }
     }
 }

@@ -8,7 +8,8 @@ dalembert::model! {
         impacts { wall: 1 - x >= 0; }
         claims {
             symmetry: theta;
-            symmetry: partial(r);
+            symmetry: partial(m);
+            symmetry: x*d(x);
             symmetry: dot(x)*partial(y);
         }
     }

@@ -8,7 +8,6 @@ dalembert::model! {
         impacts { wall: 1 - x >= 0; }
         claims {
             conserved: energy(x);
-            conserved: momentum;
             conserved: momentum(r);
             conserved: d(x);
             conserved: multiplier(blade);
