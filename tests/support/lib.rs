@@ -8,11 +8,15 @@ struct LanguageReference;
 
 pub mod allocation;
 pub mod bodies;
+pub mod claim;
 pub mod command;
 pub mod curvature;
 pub mod divergence;
 pub mod flow;
+pub mod formula;
 pub mod golden;
+pub mod numeric;
+pub mod obstruction;
 pub mod reference;
 pub mod sampling;
 pub mod symbolic;
@@ -21,6 +25,7 @@ pub mod verdict;
 pub mod verified;
 pub mod visible;
 pub mod volume;
+pub mod witness;
 
 /// The examples of the README, compiled and run.
 #[cfg(doctest)]

@@ -25,7 +25,7 @@ pub(super) fn alternatives(
         return remarks;
     }
     if let Ok(scan) = find_conditions(model, problem, exactness, seed) {
-        remarks.extend(conditions(model, &scan));
+        remarks.extend(conditions(model, &scan, exactness.local.exists));
     }
     if !exactness.local.exists {
         remarks.push(near_rest(model, problem));
@@ -37,8 +37,12 @@ pub(super) fn alternatives(
     remarks
 }
 
-/// What the scan found; nothing if there was nothing to scan.
-fn conditions(model: &Model, scan: &Scan) -> Option<String> {
+/// What the scan found; nothing if there was nothing to scan. Where there is a local density, it was for one on all of Q.
+fn conditions(model: &Model, scan: &Scan, is_local: bool) -> Option<String> {
+    let what = match is_local {
+        true => "a density on all of Q",
+        false => "a density",
+    };
     let cut = match scan.is_complete {
         true => String::new(),
         false => format!("; the scan was cut off after {} trials", scan.trials),
@@ -46,9 +50,9 @@ fn conditions(model: &Model, scan: &Scan) -> Option<String> {
     match scan.found.is_empty() {
         true if scan.trials == 0 => None,
         true => Some(format!(
-            "none of the conditions on parameters that were scanned gives a density{cut}"
+            "none of the conditions on parameters that were scanned gives {what}{cut}"
         )),
-        false => Some(format!("a density exists where {}{cut}", scan.text(model))),
+        false => Some(format!("{what} exists where {}{cut}", scan.text(model))),
     }
 }
 

@@ -182,9 +182,17 @@ impl Vanishing for Rate<'_> {
     }
 }
 
-/// Whether there is a real state on D at which the motion is defined.
+/// Whether there is a real state on D at which Lagrangian and motion have values.
 pub(super) fn has_states(model: &Model, dynamics: &Dynamics) -> bool {
-    (0..ATTEMPTS).any(|attempt| state_on_d(model, dynamics, &dynamics.roots(), attempt).is_some())
+    let whole = model.lagrangian.whole;
+    let mut roots = dynamics.roots();
+    roots.push(whole);
+    (0..ATTEMPTS).any(|attempt| {
+        let found = state_on_d(model, dynamics, &roots, attempt);
+        found.is_some_and(|(_, point)| {
+            model.pool.eval(&[whole], &|symbol| point.value(symbol))[0].is_finite()
+        })
+    })
 }
 
 /// A real state on D with short independent velocities; what is shown of it includes all velocities.

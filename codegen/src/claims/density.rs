@@ -24,12 +24,8 @@ pub(super) fn check_density(
     (value, written): (ExprId, &str),
     seed: u64,
 ) -> Verdict {
-    if problem
-        .friction
-        .as_ref()
-        .is_some_and(|own| !own.is_quadratic)
-    {
-        return Verdict::Undecided(super::Undecided::Forces.to_string());
+    if let Err(undecided) = problem.check_forces() {
+        return Verdict::Undecided(undecided.to_string());
     }
     let balance = Balance {
         quantity: Quantity::of(model, value),
@@ -39,7 +35,9 @@ pub(super) fn check_density(
     };
     let wording = Wording {
         vanishes: format!("{written} times mu_C is invariant on D* where it is not 0"),
-        differs: format!("{written} times mu_C is not invariant"),
+        differs: format!(
+            "{written} times mu_C is not invariant: the rate of its logarithm and the divergence do not add up to 0"
+        ),
         help: [
             "the density is relative to mu_C = det g/|det A_dep| dq dv; `density: exact;` looks for one".to_owned(),
             String::new(),

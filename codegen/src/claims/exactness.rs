@@ -16,7 +16,8 @@ use super::regularity;
 use super::undecided::Undecided;
 use crate::model::Model;
 
-/// Points that are sampled, each modulo the next prime; more where roots may hide an obstruction by a choice of branches.
+/// Points that are sampled, each modulo the next prime; more where a zero may be an accident of branches: an absolute
+/// value is its argument at half of the points.
 const SAMPLES: (usize, usize) = (3, 40);
 /// Monomials of a series beyond which no higher order is tried.
 const MONOMIALS: usize = 20_000;
@@ -50,6 +51,8 @@ pub struct Local {
     pub is_proof: bool,
     /// A bound of the chance that the answer is wrong.
     pub error: f64,
+    /// The points that were sampled.
+    pub points: usize,
     /// The primes that were used.
     pub primes: Vec<u64>,
     pub(super) hull: Hull,
@@ -102,22 +105,15 @@ fn decide_local_from(
     conditions: &Conditions,
     dependent: Option<&[usize]>,
 ) -> Result<Local, Undecided> {
-    if problem
-        .friction
-        .as_ref()
-        .is_some_and(|own| !own.is_quadratic)
-    {
-        return Err(Undecided::Forces);
-    }
+    problem.check_forces()?;
     let roots = problem.roots();
     let profile = pool.profile_of(&roots);
     let mut points = sample_points(pool, &roots, &profile, seed)?;
     let mut best: Option<(Hull, Vec<usize>)> = None;
     let mut primes = Vec::new();
-    let samples = if profile.branches {
-        SAMPLES.1
-    } else {
-        SAMPLES.0
+    let (samples, accident) = match profile.branches {
+        false => (SAMPLES.0, 0.0),
+        true => (SAMPLES.1, 0.5),
     };
     for _ in 0..samples {
         let (sample, prime) = points
@@ -151,8 +147,9 @@ fn decide_local_from(
         error: if is_proof {
             0.0
         } else {
-            chance.powi(SAMPLES.0 as i32)
+            (chance + accident).powi(samples as i32)
         },
+        points: samples,
         primes,
         hull,
         dependent,
@@ -264,6 +261,7 @@ pub struct Exactness {
 /// # Errors
 /// [`Undecided`].
 pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactness, Undecided> {
+    problem.check_forces()?;
     if !regularity::is_real(model, problem) {
         return Err(Undecided::Degenerate);
     }

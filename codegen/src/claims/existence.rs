@@ -81,7 +81,7 @@ impl Writer<'_> {
                     "an invariant exp(G)*mu_C exists{depends}{circle}; G was found in no closed form, its periods \
                      on the circles are numeric"
                 ),
-                points: 3,
+                points: self.exactness.local.points,
                 primes: self.exactness.local.primes.clone(),
                 error: self.exactness.local.error,
                 seed: self.seed,
@@ -110,7 +110,7 @@ impl Writer<'_> {
                 "no density depends on q alone: the hull of D has rank {}, with the demands {}",
                 local.rank, local.extended_rank
             ),
-            points: 3,
+            points: local.points,
             primes: local.primes.clone(),
             error: local.error,
             seed: self.seed,
@@ -160,7 +160,7 @@ impl Writer<'_> {
         let bracket = &found.bracket;
         let reason = format!(
             "no density depends on q alone\n{bracket} = {relation} as a vector field, \
-             but the same combination of the demands on dG is off by delta\n\
+             but for an invariant exp(G)*mu_C, dG of the two sides would differ by delta\n\
              frame of D there: {}",
             frame.join(", ")
         );

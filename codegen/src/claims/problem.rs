@@ -1,7 +1,8 @@
 //! What the density of a model depends on: metric, constraints, and how its forces depend on velocities.
 
-use dalembert_expr::{ExprId, Pool, SymbolId, Verdict};
+use dalembert_expr::{ExprId, Node, Pool, SymbolId, Verdict};
 
+use super::undecided::Undecided;
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
@@ -91,6 +92,17 @@ impl Problem {
         problem
     }
 
+    /// Whether the criterion covers the forces: a configuration density knows those that are quadratic in the velocities.
+    ///
+    /// # Errors
+    /// [`Undecided::Forces`].
+    pub(super) fn check_forces(&self) -> Result<(), Undecided> {
+        match &self.friction {
+            Some(own) if !own.is_quadratic => Err(Undecided::Forces),
+            _ => Ok(()),
+        }
+    }
+
     /// Whether time occurs.
     pub(super) fn is_time_dependent(&self) -> bool {
         self.symbols.len() > self.coordinates
@@ -126,6 +138,18 @@ impl Problem {
     }
 }
 
+/// Whether velocities stand in sums, products and integer powers alone: `abs(v)*v` is smooth in pieces and none of this.
+fn is_rational(pool: &Pool, value: ExprId, velocities: &[SymbolId]) -> bool {
+    let parts = pool.reachable(&[value]);
+    parts.iter().all(|id| match pool.node(*id) {
+        Node::Call(..) | Node::Atan2(..) => !pool.depends_on_any(*id, velocities),
+        Node::Product(factors) => factors.iter().all(|(base, exponent)| {
+            exponent.is_integer() || !pool.depends_on_any(*base, velocities)
+        }),
+        Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => true,
+    })
+}
+
 fn friction(
     model: &mut Model,
     derivation: &Derivation,
@@ -141,6 +165,7 @@ fn friction(
     let rest: Vec<_> = velocities.iter().map(|qdot| (*qdot, zero)).collect();
     for entry in &derivation.density.force_velocity {
         let [i, j] = entry.index;
+        is_quadratic &= is_rational(&model.pool, entry.value, velocities);
         at_rest[i][j] = model.pool.substitute(entry.value, &rest);
         for (k, qdot) in velocities.iter().enumerate() {
             let second = model.pool.diff(entry.value, *qdot);

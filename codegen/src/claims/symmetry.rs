@@ -128,7 +128,8 @@ fn refuted_distribution(
             rate,
         ));
     }
-    let roots: Vec<ExprId> = rates.iter().map(|(_, rate)| *rate).collect();
+    let mut roots = dynamics.roots();
+    roots.extend(rates.iter().map(|(_, rate)| *rate));
     let found = (0..12).find_map(|attempt| {
         let (sample, point) = state_on_d(model, dynamics, &roots, attempt)?;
         rates.iter().find_map(|(name, rate)| {

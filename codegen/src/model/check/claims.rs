@@ -139,9 +139,6 @@ impl Resolver<'_> {
             .collect();
         self.partials.clone_from(&partials);
         let resolved = self.quantity(written);
-        if let Some(field) = resolved {
-            self.check_periodic(&[written], &Scope::default(), field);
-        }
         self.partials.clear();
         let field = resolved?;
         let mut rest = field;
@@ -166,6 +163,9 @@ impl Resolver<'_> {
             let help = "write a sum such as `partial(theta) - y*partial(x) + x*partial(y)`";
             return self.refuse(written.at, text, help);
         }
+        self.partials = partials;
+        self.check_periodic(&[written], &Scope::default(), field);
+        self.partials.clear();
         Some(components)
     }
 }

@@ -1,0 +1,173 @@
+//! Declarations with other claims, and what becomes of them: verdicts, and the numbers of a message.
+
+use dalembert_codegen::claims::{Finding, examine};
+use dalembert_codegen::{mechanics, model, spec, try_expand};
+use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
+
+use crate::numeric::Numeric;
+
+/// A declaration, taken apart.
+#[derive(Debug, Clone)]
+pub struct Declaration {
+    before: TokenStream,
+    body: Vec<TokenTree>,
+    /// The claims as written, without semicolons.
+    pub claims: Vec<String>,
+}
+
+impl Declaration {
+    /// Takes a declaration apart.
+    ///
+    /// # Panics
+    /// If it is none.
+    pub fn of(source: &str) -> Self {
+        let tokens: TokenStream = source.parse().expect("tokens");
+        let mut before: Vec<TokenTree> = tokens.into_iter().collect();
+        let Some(TokenTree::Group(body)) = before.pop() else {
+            panic!("a declaration ends with its body");
+        };
+        let mut own = Self {
+            before: before.into_iter().collect(),
+            body: Vec::new(),
+            claims: Vec::new(),
+        };
+        let mut entries = body.stream().into_iter();
+        while let Some(token) = entries.next() {
+            if !matches!(&token, TokenTree::Ident(word) if word == "claims") {
+                own.body.push(token);
+            } else if let Some(TokenTree::Group(claims)) = entries.next() {
+                own.claims.extend(entries_of(claims.stream()));
+            }
+        }
+        own
+    }
+
+    /// The declaration with one claim, on a line of its own, and that line.
+    pub fn claiming(&self, claim: &str) -> (String, usize) {
+        let body = Group::new(Delimiter::Brace, self.body.iter().cloned().collect());
+        let body = body.to_string();
+        let open = body.trim_end().strip_suffix('}').expect("a body");
+        let head = format!("{} {open}\nclaims {{\n", self.before);
+        let line = head.lines().count() + 1;
+        (format!("{head}{claim};\n}}\n}}"), line)
+    }
+
+    /// What becomes of a claim.
+    pub fn verdict(&self, claim: &str) -> Finding {
+        verdict(&self.claiming(claim).0)
+    }
+}
+
+/// The entries of a section, as text.
+fn entries_of(tokens: TokenStream) -> Vec<String> {
+    let mut entries = vec![TokenStream::new()];
+    for token in tokens {
+        if matches!(&token, TokenTree::Punct(sign) if sign.as_char() == ';') {
+            entries.push(TokenStream::new());
+        } else {
+            entries.last_mut().expect("an entry").extend([token]);
+        }
+    }
+    entries.pop();
+    entries.iter().map(TokenStream::to_string).collect()
+}
+
+/// The finding on the only claim of a declaration.
+///
+/// # Panics
+/// If the declaration is refused before its claim is looked at.
+pub fn verdict(source: &str) -> Finding {
+    let spec = spec::parse(source.parse().expect("tokens")).expect(source);
+    let mut model = model::check(&spec).expect(source);
+    let derivation = mechanics::derive(&mut model);
+    let mut findings = examine(&mut model, &derivation).findings;
+    assert_eq!(findings.len(), 1, "{source}");
+    findings.remove(0)
+}
+
+/// The only message of a declaration that is refused, and the lines it points at.
+///
+/// # Panics
+/// If the declaration is accepted, or has another number of messages.
+pub fn refusal(source: &str) -> (String, [usize; 2]) {
+    let Err(refused) = try_expand(source.parse().expect("tokens")) else {
+        panic!("accepted: {source}");
+    };
+    assert_eq!(refused.len(), 1, "{refused:?}");
+    let diagnostic = refused.iter().next().expect("a message");
+    let (at, text) = &diagnostic.places()[0];
+    (text.clone(), [at.first.start().line, at.last.end().line])
+}
+
+/// The numbers of a message.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Witness {
+    /// What was computed, as `delta = -0.39`: names and values in order.
+    pub values: Vec<(String, f64)>,
+    /// Where, as `at x = 0.36, m = 2`: names and values in order.
+    pub at: Vec<(String, f64)>,
+}
+
+impl Witness {
+    /// Reads a message; `None` if it shows no numbers.
+    ///
+    /// # Panics
+    /// If a number cannot be read.
+    pub fn of(message: &str) -> Option<Self> {
+        let pair = |text: &str| {
+            let (name, value) = text.rsplit_once(" = ").expect("a name and a value");
+            (name.to_owned(), value.parse().expect("a number"))
+        };
+        let is_value = |line: &&str| {
+            let number = line.rsplit_once(" = ");
+            matches!(number.map(|(_, value)| value.parse::<f64>()), Some(Ok(_)))
+        };
+        let lines = message.lines().skip(1);
+        let place = message.lines().find_map(|line| line.strip_prefix("at "));
+        let values: Vec<_> = lines
+            .take_while(|line| !line.starts_with("at "))
+            .filter(is_value)
+            .map(pair)
+            .collect();
+        let at = place.map_or(Vec::new(), |place| place.split(", ").map(pair).collect());
+        (!values.is_empty()).then_some(Self { values, at })
+    }
+
+    /// A value by its name.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn value(&self, name: &str) -> f64 {
+        let found = self.values.iter().find(|(own, _)| own == name);
+        found.unwrap_or_else(|| panic!("no `{name}` in {self:?}")).1
+    }
+
+    /// Sets the parameters of a system to those of the message, and gives time, positions and velocities; what the
+    /// message does not show is 0.
+    pub fn place(&self, system: &mut dyn Numeric) -> (f64, Vec<f64>, Vec<f64>) {
+        let names: Vec<&str> = system
+            .description()
+            .coordinates
+            .iter()
+            .map(|own| own.name)
+            .collect();
+        let (mut t, mut q) = (0.0, vec![0.0; names.len()]);
+        let mut qdot = q.clone();
+        for (name, value) in &self.at {
+            let velocity = name
+                .strip_prefix("dot(")
+                .and_then(|own| own.strip_suffix(')'));
+            let position = |name: &str| names.iter().position(|own| *own == name);
+            if let Some(i) = velocity.and_then(position) {
+                qdot[i] = *value;
+            } else if let Some(i) = position(name) {
+                q[i] = *value;
+            } else if name == "t" {
+                t = *value;
+            } else {
+                assert!(system.set(name, *value), "unknown `{name}`");
+            }
+        }
+        (t, q, qdot)
+    }
+}

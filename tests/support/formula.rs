@@ -1,0 +1,169 @@
+//! Values of expressions as written in claims, by a reader of its own: nothing of the generator is used.
+
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+
+use crate::numeric::Snapshot;
+
+/// What names stand for.
+pub struct Scope<'s> {
+    /// Names of coordinates.
+    pub coordinates: &'s [&'s str],
+    /// Names and values of parameters.
+    pub parameters: &'s [(&'s str, f64)],
+    /// The state.
+    pub state: &'s Snapshot,
+    /// The coordinate `x` for which `partial(x)` is 1, the others being 0.
+    pub partial: Option<usize>,
+}
+
+/// The value of an expression.
+///
+/// # Panics
+/// On everything that does not occur in the claims that are tested.
+pub fn value(text: &str, scope: &Scope<'_>) -> f64 {
+    let tokens: TokenStream = text.parse().expect("tokens");
+    let mut reader = Reader {
+        tokens: tokens.into_iter().collect(),
+        next: 0,
+        scope,
+    };
+    let value = reader.sum();
+    assert_eq!(reader.next, reader.tokens.len(), "{text}");
+    value
+}
+
+struct Reader<'r> {
+    tokens: Vec<TokenTree>,
+    next: usize,
+    scope: &'r Scope<'r>,
+}
+
+impl Reader<'_> {
+    fn eat(&mut self, sign: char) -> bool {
+        let found = matches!(self.tokens.get(self.next), Some(TokenTree::Punct(own)) if own.as_char() == sign);
+        self.next += usize::from(found);
+        found
+    }
+
+    fn sum(&mut self) -> f64 {
+        let mut sum = self.product();
+        loop {
+            if self.eat('+') {
+                sum += self.product();
+            } else if self.eat('-') {
+                sum -= self.product();
+            } else {
+                return sum;
+            }
+        }
+    }
+
+    fn product(&mut self) -> f64 {
+        let mut product = self.unary();
+        loop {
+            if self.eat('*') {
+                product *= self.unary();
+            } else if self.eat('/') {
+                product /= self.unary();
+            } else {
+                return product;
+            }
+        }
+    }
+
+    fn unary(&mut self) -> f64 {
+        if self.eat('-') {
+            return -self.unary();
+        }
+        let base = self.atom();
+        match self.eat('^') {
+            true => power(base, self.unary()),
+            false => base,
+        }
+    }
+
+    fn atom(&mut self) -> f64 {
+        let token = self.tokens[self.next].clone();
+        self.next += 1;
+        match token {
+            TokenTree::Literal(number) => number.to_string().parse().expect("a number"),
+            TokenTree::Group(group) => self.inner(group.stream()).sum(),
+            TokenTree::Ident(name) => match self.tokens.get(self.next).cloned() {
+                Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => {
+                    self.next += 1;
+                    self.call(&name.to_string(), group.stream())
+                }
+                Some(TokenTree::Group(index)) => {
+                    self.next += 1;
+                    self.name(&format!("{name}.{}", index.stream()))
+                }
+                _ => self.name(&name.to_string()),
+            },
+            other => panic!("unexpected `{other}`"),
+        }
+    }
+
+    fn inner(&self, tokens: TokenStream) -> Reader<'_> {
+        Reader {
+            tokens: tokens.into_iter().collect(),
+            next: 0,
+            scope: self.scope,
+        }
+    }
+
+    fn name(&self, name: &str) -> f64 {
+        let state = self.scope.state;
+        let parameters = self.scope.parameters;
+        if let Some(i) = self.coordinate(name) {
+            return state.q[i];
+        }
+        if let Some((_, value)) = parameters.iter().find(|(own, _)| *own == name) {
+            return *value;
+        }
+        match name {
+            "energy" => state.energy,
+            "t" => state.t,
+            "pi" => std::f64::consts::PI,
+            unknown => panic!("unknown name `{unknown}`"),
+        }
+    }
+
+    fn coordinate(&self, name: &str) -> Option<usize> {
+        self.scope.coordinates.iter().position(|own| *own == name)
+    }
+
+    fn call(&self, function: &str, argument: TokenStream) -> f64 {
+        let state = self.scope.state;
+        let own = || {
+            let name = argument.to_string();
+            let name = match name.split_once('[') {
+                Some((family, index)) => {
+                    format!("{}.{}", family.trim(), index.trim_matches([' ', ']']))
+                }
+                None => name,
+            };
+            self.coordinate(&name).expect("a coordinate")
+        };
+        let value = || self.inner(argument.clone()).sum();
+        match function {
+            "dot" => state.qdot[own()],
+            "momentum" => state.p[own()],
+            "partial" => f64::from(u8::from(self.scope.partial == Some(own()))),
+            "sin" => value().sin(),
+            "cos" => value().cos(),
+            "exp" => value().exp(),
+            "ln" => value().ln(),
+            "sqrt" => value().sqrt(),
+            "abs" => value().abs(),
+            unknown => panic!("unknown function `{unknown}`"),
+        }
+    }
+}
+
+fn power(base: f64, exponent: f64) -> f64 {
+    if exponent.fract() == 0.0 {
+        base.powi(exponent as i32)
+    } else {
+        base.powf(exponent)
+    }
+}

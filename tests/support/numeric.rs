@@ -1,0 +1,182 @@
+//! Emitted models as functions of slices, so that one test can ask any of them; nothing of the generator is used.
+
+use std::collections::BTreeMap;
+
+use dalembert::describe::{Description, Report};
+use dalembert::impacts::law::{Contact, Law};
+use dalembert::{Described, StateVector};
+
+/// What is known of a state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Snapshot {
+    /// Time.
+    pub t: f64,
+    /// Positions.
+    pub q: Vec<f64>,
+    /// Velocities.
+    pub qdot: Vec<f64>,
+    /// Momenta.
+    pub p: Vec<f64>,
+    /// Kinetic plus potential energy.
+    pub energy: f64,
+}
+
+/// Everything that is derived at a state, by the names of `dalembert eval`.
+#[derive(Debug, Clone, Default)]
+pub struct Reported(pub BTreeMap<String, Vec<f64>>);
+
+impl Report for Reported {
+    fn scalar(&mut self, name: &str, value: f64) {
+        self.0.insert(name.to_owned(), vec![value]);
+    }
+
+    fn vector(&mut self, name: &str, values: &[f64]) {
+        self.0.insert(name.to_owned(), values.to_vec());
+    }
+
+    fn matrix(&mut self, name: &str, _: usize, _: usize, values: &[f64]) {
+        self.0.insert(name.to_owned(), values.to_vec());
+    }
+}
+
+impl Reported {
+    /// A reported number.
+    ///
+    /// # Panics
+    /// When there is none of this name.
+    pub fn number(&self, name: &str) -> f64 {
+        self.0[name][0]
+    }
+}
+
+/// An emitted model with its types forgotten. States are those of [`dalembert::VectorField`].
+///
+/// # Panics
+/// All functions, where the model has no value.
+pub trait Numeric {
+    /// The description.
+    fn description(&self) -> &'static Description;
+
+    /// Sets a parameter by name; whether there is one.
+    fn set(&mut self, name: &str, value: f64) -> bool;
+
+    /// The value of a parameter by index.
+    fn get(&self, index: usize) -> f64;
+
+    /// The state with these positions and velocities, on the constraints or not.
+    fn state(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64>;
+
+    /// As [`Numeric::state`], with the velocities projected on D.
+    fn projected(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64>;
+
+    /// The rate of a state.
+    fn rate(&self, t: f64, state: &[f64]) -> Vec<f64>;
+
+    /// What is known of a state.
+    fn snapshot(&self, t: f64, state: &[f64]) -> Snapshot;
+
+    /// Everything derived at a state.
+    fn report(&self, t: f64, state: &[f64]) -> Reported;
+
+    /// The state after an impact by a law on a surface, given by name.
+    fn impact(&self, surface: &str, law: Law, t: f64, state: &[f64]) -> Vec<f64>;
+}
+
+impl<S: Described> Numeric for S {
+    fn description(&self) -> &'static Description {
+        &S::DESCRIPTION
+    }
+
+    fn set(&mut self, name: &str, value: f64) -> bool {
+        let parameters = S::DESCRIPTION.parameters.iter();
+        match parameters.map(|own| own.name).position(|own| own == name) {
+            Some(index) => {
+                self.set_parameter(index, value);
+                true
+            }
+            None => false,
+        }
+    }
+
+    fn get(&self, index: usize) -> f64 {
+        self.parameter(index)
+    }
+
+    fn state(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64> {
+        let state = self.state_unchecked(t, &vector(q), &vector(qdot));
+        state.expect("a state").as_slice().to_vec()
+    }
+
+    fn projected(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64> {
+        let state = self.state_projected(t, &vector(q), &vector(qdot));
+        state.expect("a state").as_slice().to_vec()
+    }
+
+    fn rate(&self, t: f64, state: &[f64]) -> Vec<f64> {
+        let mut rate = S::State::zeros();
+        dalembert::VectorField::rate(self, t, &vector(state), &mut rate).expect("a rate");
+        rate.as_slice().to_vec()
+    }
+
+    fn snapshot(&self, t: f64, state: &[f64]) -> Snapshot {
+        let state = vector(state);
+        let list = |vector: S::Vector| vector.as_slice().to_vec();
+        Snapshot {
+            t,
+            q: list(self.position(&state)),
+            qdot: list(self.velocity(t, &state).expect("a velocity")),
+            p: list(self.momentum(t, &state).expect("a momentum")),
+            energy: self.energy(t, &state).expect("an energy"),
+        }
+    }
+
+    fn report(&self, t: f64, state: &[f64]) -> Reported {
+        let mut reported = Reported::default();
+        self.inspect(t, &vector(state), &mut reported)
+            .expect("a report");
+        reported
+    }
+
+    fn impact(&self, surface: &str, law: Law, t: f64, state: &[f64]) -> Vec<f64> {
+        let report = Numeric::report(self, t, state);
+        let of = |name: &str| report.number(&format!("impacts.{surface}.{name}"));
+        let contact = Contact::<S::Vector> {
+            gap_rate: of("gap_rate"),
+            constrained_rate: of("constrained_rate"),
+            surface_rate: of("surface_rate"),
+            constrained_compliance: of("constrained_compliance"),
+            free_compliance: of("free_compliance"),
+            direction: vector(&report.0[&format!("impacts.{surface}.direction")]),
+        };
+        let mut after: S::State = vector(state);
+        self.kick(t, &mut after, contact.impulse(law), &contact.direction)
+            .expect("an impulse");
+        after.as_slice().to_vec()
+    }
+}
+
+fn vector<V: StateVector>(values: &[f64]) -> V {
+    assert_eq!(values.len(), V::LEN);
+    let mut vector = V::zeros();
+    vector.as_mut_slice().copy_from_slice(values);
+    vector
+}
+
+/// Steps of the stencil [`slope`]: its error is `STEP^6` times a seventh derivative over 140, and `1e-15/STEP` of the
+/// size of the values by rounding.
+const STEP: f64 = 3e-3;
+
+/// The derivative of `f` at 0, by central differences of sixth order.
+pub fn slope(f: &mut dyn FnMut(f64) -> f64) -> f64 {
+    let mut pair = |k: f64| f(k * STEP) - f(-k * STEP);
+    (45.0 * pair(1.0) - 9.0 * pair(2.0) + pair(3.0)) / (60.0 * STEP)
+}
+
+/// `state + s * direction`
+pub fn moved(state: &[f64], s: f64, direction: &[f64]) -> Vec<f64> {
+    state
+        .iter()
+        .zip(direction)
+        .map(|(own, slope)| own + s * slope)
+        .collect()
+}

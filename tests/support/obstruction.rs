@@ -1,0 +1,186 @@
+//! Brackets of the frame of D with what they demand of the derivative of a density, in plain double precision: metric
+//! and forms are those that a model reports, every derivative is a central difference.
+//!
+//! ```text
+//! X_i = e_i - A_dep^{-1} A e_i          theta_k = m_ab (W^{a,j} d_j eta_bk + eta_bj d_k W^{a,j})
+//! [(X, c), (Y, d)] = ([X, Y], X(d) - Y(c)),  c_i = theta(X_i)
+//! ```
+
+use crate::numeric::{Numeric, moved, slope};
+
+/// A field with its demand at the end.
+type Element = Vec<f64>;
+
+/// The criterion of a model with linear constraints that do not depend on time.
+pub struct Criterion<'c> {
+    system: &'c dyn Numeric,
+    dependent: Vec<usize>,
+}
+
+/// Metric and forms at a position.
+struct Geometry {
+    forms: Vec<Vec<f64>>,
+    duals: Vec<Vec<f64>>,
+}
+
+impl<'c> Criterion<'c> {
+    /// With the choice of dependent velocities for which the frame at `q` is the one given; `None` if there is none.
+    pub fn new(system: &'c dyn Numeric, q: &[f64], frame: &[Vec<f64>]) -> Option<Self> {
+        let (n, m) = (q.len(), q.len() - frame.len());
+        let choices = (0..1_usize << n).filter(|bits| bits.count_ones() as usize == m);
+        choices
+            .map(|bits| Self {
+                system,
+                dependent: (0..n).filter(|i| bits >> i & 1 == 1).collect(),
+            })
+            .find(|own| {
+                let differs = |(x, y): (&f64, &f64)| (x - y).abs() > 1e-9 * (1.0 + y.abs());
+                let fields = own.frame(q);
+                let close = |(x, y): (&Vec<f64>, &Vec<f64>)| !x.iter().zip(y).any(differs);
+                fields.is_some_and(|fields| fields.iter().zip(frame).all(close))
+            })
+    }
+
+    /// With the first choice of dependent velocities that is regular at `q`; `None` if there is none.
+    pub fn regular(system: &'c dyn Numeric, q: &[f64]) -> Option<Self> {
+        let (n, m) = (q.len(), system.description().constraints.len());
+        let choices = (0..1_usize << n).filter(|bits| bits.count_ones() as usize == m);
+        choices
+            .map(|bits| Self {
+                system,
+                dependent: (0..n).filter(|i| bits >> i & 1 == 1).collect(),
+            })
+            .find(|own| own.frame(q).is_some())
+    }
+
+    /// The derivative of G by each coordinate, where the frame and its brackets of two span all directions.
+    pub fn differential(&self, q: &[f64]) -> Option<Vec<f64>> {
+        let free = q.len() - self.dependent.len();
+        let fields = (1..=free).map(|i| format!("X{i}"));
+        let brackets = (1..free).flat_map(|i| (i + 1..=free).map(move |j| format!("[X{i},X{j}]")));
+        let elements: Vec<Element> = fields
+            .chain(brackets)
+            .take(q.len())
+            .map(|name| self.element(&name, q))
+            .collect();
+        let demands: Vec<f64> = elements.iter().map(|own| own[q.len()]).collect();
+        (elements.len() == q.len()).then_some(())?;
+        solve(&elements, &demands)
+    }
+
+    /// `eta^a = g W^a`
+    fn geometry(&self, q: &[f64]) -> Geometry {
+        let n = q.len();
+        let state = self.system.state(0.0, q, &vec![0.0; n]);
+        let report = self.system.report(0.0, &state);
+        let (metric, duals) = (&report.0["metric"], &report.0["W"]);
+        let duals: Vec<Vec<f64>> = duals.chunks(n).map(<[f64]>::to_vec).collect();
+        let lower = |dual: &Vec<f64>| metric.chunks(n).map(|row| dot(row, dual)).collect();
+        Geometry {
+            forms: duals.iter().map(lower).collect(),
+            duals,
+        }
+    }
+
+    fn frame(&self, q: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let forms = self.geometry(q).forms;
+        let column = |j: usize| -> Vec<f64> { forms.iter().map(|form| form[j]).collect() };
+        let minor: Vec<Vec<f64>> = forms
+            .iter()
+            .map(|form| self.dependent.iter().map(|j| form[*j]).collect())
+            .collect();
+        let free = (0..q.len()).filter(|i| !self.dependent.contains(i));
+        free.map(|i| {
+            let mut field = vec![0.0; q.len()];
+            field[i] = 1.0;
+            for (j, value) in self.dependent.iter().zip(solve(&minor, &column(i))?) {
+                field[*j] = -value;
+            }
+            Some(field)
+        })
+        .collect()
+    }
+
+    /// `theta` at a position.
+    pub fn theta(&self, q: &[f64]) -> Vec<f64> {
+        let n = q.len();
+        let own = self.geometry(q);
+        let along = |direction: &[f64], entry: &dyn Fn(&Geometry) -> f64| {
+            slope(&mut |s| entry(&self.geometry(&moved(q, s, direction))))
+        };
+        let axis = |k: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
+        let mass: Vec<Vec<f64>> = own
+            .forms
+            .iter()
+            .map(|form| own.duals.iter().map(|dual| dot(form, dual)).collect())
+            .collect();
+        let lie = |a: usize, b: usize, k: usize| {
+            let transported = along(&own.duals[a], &|at| at.forms[b][k]);
+            transported + along(&axis(k), &|at| dot(&own.forms[b], &at.duals[a]))
+        };
+        (0..n)
+            .map(|k| {
+                let columns = (0..mass.len()).map(|b| {
+                    let column: Vec<f64> = (0..mass.len()).map(|a| lie(a, b, k)).collect();
+                    // m_ab as the b-th row of the inverse.
+                    solve(&mass, &column).expect("independent forms")[b]
+                });
+                columns.sum()
+            })
+            .collect()
+    }
+
+    /// The element of a name: `X1`, `[X2,[X1,X2]]`.
+    pub fn element(&self, name: &str, q: &[f64]) -> Element {
+        if let Some(inner) = name.strip_prefix('[') {
+            let (first, second) = inner
+                .strip_suffix(']')
+                .and_then(|inner| inner.split_once(','))
+                .expect("a bracket of a field of the frame");
+            return self.bracket(first, second, q);
+        }
+        let index: usize = name[1..].parse().expect("a field of the frame");
+        let mut field = self.frame(q).expect("a regular position")[index - 1].clone();
+        field.push(dot(&self.theta(q), &field));
+        field
+    }
+
+    fn bracket(&self, first: &str, second: &str, q: &[f64]) -> Element {
+        let n = q.len();
+        let (x, y) = (self.element(first, q), self.element(second, q));
+        let along = |direction: &[f64], name: &str, i: usize| {
+            slope(&mut |s| self.element(name, &moved(q, s, &direction[..n]))[i])
+        };
+        (0..=n)
+            .map(|i| along(&x, second, i) - along(&y, first, i))
+            .collect()
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Solves a small system by elimination with pivots; `None` if it is singular.
+fn solve(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
+    let size = right.len();
+    let mut rows: Vec<Vec<f64>> = matrix
+        .iter()
+        .zip(right)
+        .map(|(row, value)| row[..size].iter().copied().chain([*value]).collect())
+        .collect();
+    for step in 0..size {
+        let pivot =
+            (step..size).max_by(|a, b| rows[*a][step].abs().total_cmp(&rows[*b][step].abs()))?;
+        rows.swap(step, pivot);
+        let pivot = rows[step].clone();
+        if pivot[step].abs() < 1e-12 {
+            return None;
+        }
+        for row in (0..size).filter(|row| *row != step) {
+            let factor = rows[row][step] / pivot[step];
+            rows[row] = moved(&rows[row], -factor, &pivot);
+        }
+    }
+    Some((0..size).map(|i| rows[i][size] / rows[i][i]).collect())
+}

@@ -1,0 +1,262 @@
+//! The numbers of messages about claims, computed once more by other means: differences along what a model emits.
+
+use dalembert::impacts::law::Law;
+
+use crate::claim::Witness;
+use crate::formula::{Scope, value};
+use crate::numeric::{Numeric, Snapshot, moved, slope};
+use crate::obstruction::Criterion;
+
+/// Relative and absolute errors. Differences of sixth order with steps of 3/1000 over states of order 1 are right to
+/// about 1e-12; nested three times, as in brackets, to about 1e-7, the absolute error of the vector field included.
+const ONCE: [f64; 2] = [1e-7, 1e-10];
+const NESTED: [f64; 2] = [1e-5, 1e-6];
+
+/// The value of an expression of a claim at a state of a system.
+pub fn at(system: &dyn Numeric, text: &str, state: &Snapshot, partial: Option<usize>) -> f64 {
+    let coordinates: Vec<&str> = system
+        .description()
+        .coordinates
+        .iter()
+        .map(|own| own.name)
+        .collect();
+    let names = system.description().parameters.iter().map(|own| own.name);
+    let parameters: Vec<(&str, f64)> = names
+        .enumerate()
+        .map(|(index, name)| (name, system.get(index)))
+        .collect();
+    let scope = Scope {
+        coordinates: &coordinates,
+        parameters: &parameters,
+        state,
+        partial,
+    };
+    value(text, &scope)
+}
+
+/// The rate of an expression along the emitted motion.
+pub fn rate(system: &dyn Numeric, text: &str, t: f64, state: &[f64]) -> f64 {
+    let direction = system.rate(t, state);
+    slope(&mut |s| {
+        let state = system.snapshot(t + s, &moved(state, s, &direction));
+        at(system, text, &state, None)
+    })
+}
+
+/// The rate along the emitted motion of a potential as messages write it, with `det m` for the determinant of
+/// `m^{ab}` and bars for absolute values.
+///
+/// # Panics
+/// On forms of potentials that no message has.
+pub fn rate_of_potential(system: &dyn Numeric, text: &str, t: f64, state: &[f64]) -> f64 {
+    let text = text.replace("ln(det m)", "mass");
+    let direction = system.rate(t, state);
+    let text = text.replace("ln|", "ln(abs(").replace('|', "))");
+    slope(&mut |s| {
+        let moved = moved(state, s, &direction);
+        let own = system.report(t + s, &moved);
+        let determinant = determinant(&own.0["constraint_mass"]).ln();
+        let text = text.replace("mass", &format!("({determinant:.17})"));
+        at(system, &text, &system.snapshot(t + s, &moved), None)
+    })
+}
+
+/// Of one or two rows.
+fn determinant(rows: &[f64]) -> f64 {
+    match rows {
+        [only] => *only,
+        [a, b, c, d] => a * d - b * c,
+        _ => panic!("{} entries", rows.len()),
+    }
+}
+
+/// Compares every number of a message with one of this file's; `claim` is the claim it is about.
+///
+/// # Panics
+/// If one differs, or is not known.
+pub fn check(system: &mut dyn Numeric, claim: &str, message: &str) {
+    let witness = Witness::of(message).unwrap_or_else(|| panic!("no witness: {message}"));
+    let (t, q, qdot) = witness.place(system);
+    let system = &*system;
+    let state = system.state(t, &q, &qdot);
+    assert!(!witness.values.is_empty(), "{message}");
+    for (name, printed) in &witness.values {
+        let (own, tolerance) = match name.as_str() {
+            "delta" => (delta(system, message, &q), NESTED),
+            "period" => (period(system, message, &q), NESTED),
+            _ => (computed(system, claim, name, t, &state), ONCE),
+        };
+        let error = (own - printed).abs();
+        assert!(
+            error <= tolerance[0] * printed.abs() + tolerance[1],
+            "{name}: {own} here, in the message {message}"
+        );
+    }
+    let [expected, found] = opposites(&witness);
+    let size = expected.abs() + found.abs();
+    assert!(
+        (expected - found).abs() > 1e-6 * size,
+        "nothing is wrong: {message}"
+    );
+}
+
+/// The two numbers that would agree if the claim were true.
+fn opposites(witness: &Witness) -> [f64; 2] {
+    match witness.values.as_slice() {
+        [(_, only)] => [*only, 0.0],
+        [(_, rate), (name, divergence)] if name == "divergence" => [*rate, -divergence],
+        [(_, after), (_, before)] => [*after, *before],
+        other => panic!("{other:?}"),
+    }
+}
+
+fn computed(system: &dyn Numeric, claim: &str, name: &str, t: f64, state: &[f64]) -> f64 {
+    let inner = |start: &str, end: &str| name.strip_prefix(start)?.strip_suffix(end);
+    if let Some(density) = inner("d/dt(ln(", "))") {
+        return rate(system, &format!("ln(abs({density}))"), t, state);
+    }
+    if let Some(quantity) = inner("d/dt(", ")") {
+        return rate(system, quantity, t, state);
+    }
+    if name == "divergence" {
+        return system.report(t, state).number("divergence_mu_C");
+    }
+    if let Some(quantity) = name.strip_suffix(" before") {
+        return at(system, quantity, &system.snapshot(t, state), None);
+    }
+    if let Some(quantity) = name.strip_suffix(" after") {
+        let (_, rest) = claim.split_once("under ").expect("a surface");
+        let (surface, _) = rest.split_once(':').expect("a claim");
+        let after = system.impact(surface.trim(), Law::Elastic, t, state);
+        return at(system, quantity, &system.snapshot(t, &after), None);
+    }
+    let field = claim.strip_prefix("symmetry:").expect("a symmetry");
+    if name == "rate of L along its flow" {
+        // L = 2 T + A.qdot - (T + V)
+        return flow(system, field, t, state, &|own| {
+            let report = system.report(t, &system.state(t, &own.q, &own.qdot));
+            let n = own.q.len();
+            let lowered = report.0["metric"]
+                .chunks(n)
+                .map(|row| product(row, &own.qdot));
+            let lowered: Vec<f64> = lowered.collect();
+            let linear = product(&own.p, &own.qdot) - product(&lowered, &own.qdot);
+            product(&lowered, &own.qdot) + linear - own.energy
+        });
+    }
+    let constraint = inner("rate of the left side of ", " along its flow").expect("a known number");
+    let names = system.description().constraints.iter();
+    let a = names.map(|own| own.name).position(|own| own == constraint);
+    let a = a.expect("a constraint");
+    flow(system, field, t, state, &|own| {
+        // eta^a(qdot) = g(W^a, qdot); for linear constraints that is the left side.
+        let report = system.report(t, &system.state(t, &own.q, &own.qdot));
+        let n = own.q.len();
+        let lowered = report.0["metric"]
+            .chunks(n)
+            .map(|row| product(row, &own.qdot));
+        let lowered: Vec<f64> = lowered.collect();
+        product(&report.0["W"][a * n..(a + 1) * n], &lowered)
+    })
+}
+
+/// The rate of a function of position and velocity along a field that is lifted to velocities.
+fn flow(
+    system: &dyn Numeric,
+    field: &str,
+    t: f64,
+    state: &[f64],
+    function: &dyn Fn(&Snapshot) -> f64,
+) -> f64 {
+    let start = system.snapshot(t, state);
+    let n = start.q.len();
+    let components = |q: &[f64]| -> Vec<f64> {
+        let here = system.snapshot(t, &system.state(t, q, &start.qdot));
+        (0..n).map(|i| at(system, field, &here, Some(i))).collect()
+    };
+    let shift = components(&start.q);
+    let turn: Vec<f64> = (0..n)
+        .map(|i| slope(&mut |s| components(&moved(&start.q, s, &start.qdot))[i]))
+        .collect();
+    slope(&mut |s| {
+        let (q, qdot) = (moved(&start.q, s, &shift), moved(&start.qdot, s, &turn));
+        function(&system.snapshot(t, &system.state(t, &q, &qdot)))
+    })
+}
+
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// What the bracket of a message demands less what the combination does; the vector fields must agree.
+fn delta(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
+    let names: Vec<&str> = system
+        .description()
+        .coordinates
+        .iter()
+        .map(|own| own.name)
+        .collect();
+    let line = |part: &str| {
+        let found = message.lines().find(|line| line.contains(part));
+        found.unwrap_or_else(|| panic!("no `{part}` in {message}"))
+    };
+    let fields = line("frame of D there: ").trim_start_matches("frame of D there: ");
+    let frame: Vec<Vec<f64>> = fields
+        .split(", ")
+        .map(|field| vector(field.split_once(" = ").expect("a field").1, &names))
+        .collect();
+    let criterion = Criterion::new(system, q, &frame).expect("the frame of the message");
+    let (left, _) = line(" as a vector field")
+        .split_once(" as a vector field")
+        .expect("a relation");
+    let (bracket, combination) = left.split_once(" = ").expect("a relation");
+    let mut rest = criterion.element(bracket, q);
+    for term in combination.split(" + ").filter(|term| *term != "0") {
+        let (coefficient, name) = term.split_once('*').expect("a term");
+        let coefficient: f64 = coefficient.parse().expect("a number");
+        rest = moved(&rest, -coefficient, &criterion.element(name, q));
+    }
+    let delta = rest.pop().expect("a demand");
+    let largest = rest.iter().fold(0.0, |size: f64, own| size.max(own.abs()));
+    assert!(largest < NESTED[1], "no relation: {rest:?}, {message}");
+    delta
+}
+
+/// How much G grows on the turn of a message, by the trapezoidal rule.
+fn period(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
+    const POINTS: u32 = 32;
+    let (_, turn) = message.split_once("by `period` when ").expect("a turn");
+    let (angle, _) = turn.split_once(" makes a turn").expect("one turn");
+    let mut names = system.description().coordinates.iter().map(|own| own.name);
+    let i = names.position(|own| own == angle).expect("a coordinate");
+    let step = std::f64::consts::TAU / f64::from(POINTS);
+    let slopes = (0..POINTS).map(|k| {
+        let mut q = q.to_vec();
+        q[i] = step * f64::from(k);
+        let criterion = Criterion::regular(system, &q).expect("a regular position");
+        criterion.differential(&q).expect("a closed form")[i]
+    });
+    step * slopes.sum::<f64>()
+}
+
+/// `d_x + 0.41*d_y` in components.
+fn vector(text: &str, names: &[&str]) -> Vec<f64> {
+    let mut components = vec![0.0; names.len()];
+    let text = text.replace(" - ", " + -");
+    for term in text.split(" + ") {
+        let (coefficient, direction) = match term.rsplit_once('*') {
+            Some((number, direction)) => (number.parse().expect("a number"), direction),
+            None => match term.strip_prefix('-') {
+                Some(direction) => (-1.0, direction),
+                None => (1.0, term),
+            },
+        };
+        let name = direction.strip_prefix("d_").expect("a direction");
+        let i = names
+            .iter()
+            .position(|own| *own == name)
+            .expect("a coordinate");
+        components[i] = coefficient;
+    }
+    components
+}
