@@ -75,6 +75,10 @@ fn holds_numerically<S: Described>(system: &S, claim: &str, message: &str) {
         let here = system.snapshot(0.3, state);
         let size = 1.0 + here.energy.abs();
         if head.trim() == "density" {
+            // An integral is checked where it is emitted.
+            if message.contains("G was found in no closed form") {
+                return;
+            }
             // dG/dt + div = 0
             let (_, potential) = message.split_once("with G = ").expect(message);
             let potential = potential.lines().next().expect("a density");

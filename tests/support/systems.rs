@@ -261,5 +261,8 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         MixedDisk,
         NonholonomicParticle,
         HelicalCircle,
+        CurvedDual,
+        RouthSphere,
+        OnePole,
     ]
 }

@@ -46,7 +46,9 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
         .collect();
     let volume = examiner.volume(&proved);
     if let Some(remark) = examiner.numeric(volume.as_ref()) {
-        let existence = |own: &&mut Finding| own.claim.starts_with("density: ");
+        let existence = |own: &&mut Finding| {
+            own.claim.starts_with("density: ") && matches!(own.verdict, Verdict::Proved(_))
+        };
         if let Some(finding) = findings.iter_mut().find(existence) {
             finding.remarks.insert(0, remark);
         }
