@@ -1,6 +1,6 @@
 //! Declarations with other claims, and what becomes of them: verdicts, and the numbers of a message.
 
-use dalembert_codegen::claims::{Finding, examine};
+use dalembert_codegen::claims::{Finding, Verdict, examine};
 use dalembert_codegen::{mechanics, model, spec, try_expand};
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
@@ -97,6 +97,45 @@ pub fn refusal(source: &str) -> (String, [usize; 2]) {
     let diagnostic = refused.iter().next().expect("a message");
     let (at, text) = &diagnostic.places()[0];
     (text.clone(), [at.first.start().line, at.last.end().line])
+}
+
+/// What becomes of a claim.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Outcome {
+    /// It is true, and proved.
+    Proved,
+    /// It is false, and refuted with this in the message.
+    Refuted(&'static str),
+    /// Left open with this as the reason.
+    Undecided(&'static str),
+    /// Refused before it is looked at, with this message.
+    Refused(&'static str),
+}
+
+/// Checks what becomes of a claim of a model with these declarations.
+///
+/// # Panics
+/// If it is something else.
+#[track_caller]
+pub fn check(declarations: &str, claim: &str, expected: Outcome) {
+    let source = format!("Sample {{ {declarations} claims {{ {claim}; }} }}");
+    if let Outcome::Refused(text) = expected {
+        let (message, _) = refusal(&source);
+        assert!(message.contains(text), "{claim}: {message}");
+        return;
+    }
+    let finding = verdict(&source);
+    let matches = match (&finding.verdict, expected) {
+        (Verdict::Proved(_), Outcome::Proved) => true,
+        (Verdict::Refuted(witness), Outcome::Refuted(text)) => witness.to_string().contains(text),
+        (Verdict::Undecided(reason), Outcome::Undecided(text)) => reason.contains(text),
+        _ => false,
+    };
+    assert!(
+        matches,
+        "{claim}: expected {expected:?}, found {}",
+        finding.note()
+    );
 }
 
 /// The numbers of a message.

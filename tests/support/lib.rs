@@ -24,6 +24,7 @@ pub mod systems;
 pub mod verdict;
 pub mod verified;
 pub mod visible;
+pub mod visible_models;
 pub mod volume;
 pub mod witness;
 
