@@ -6,11 +6,10 @@
 use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, SamplePoints, SymbolId};
 
 use super::closure::{Hull, close};
+use super::fit::{Certified, Frozen, certify, fit, fit_with_parameters, solve_for_coefficients};
 use super::frame::frame;
 use super::global::{self, Global};
-use super::potential::{
-    Allowed, Candidates, Certified, Potential, certify, fit, solve_for_coefficients,
-};
+use super::potential::{Allowed, Candidates, Potential};
 use super::problem::Problem;
 use super::regularity;
 use super::undecided::Undecided;
@@ -274,9 +273,13 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         });
     }
     let candidates = Candidates::of(&mut model.pool, problem, &model.coordinates);
+    let parameters = occurring(model, problem);
     let mut singular = None;
     for allowed in [Allowed::Regular, Allowed::SingleValued, Allowed::All] {
-        let found = fit(&mut model.pool, problem, &candidates, allowed, seed);
+        let pool = &mut model.pool;
+        let found = fit(pool, problem, &candidates, allowed, seed).or_else(|| {
+            fit_with_parameters(pool, problem, &candidates, allowed, &parameters, seed)
+        });
         let Some(found) = found else {
             continue;
         };
@@ -305,7 +308,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         Some(_) => Global::Undecided(regularity::SINGULAR),
         None => match global::from_periods(model, problem, &local) {
             Global::Undecided(_)
-                if exists_for_each_parameter(model, problem, &candidates, seed) =>
+                if exists_for_each_parameter(model, problem, &candidates, &parameters, seed) =>
             {
                 Global::Exists
             }
@@ -325,12 +328,21 @@ fn exists_for_each_parameter(
     model: &Model,
     problem: &Problem,
     candidates: &Candidates,
+    parameters: &[SymbolId],
     seed: u64,
 ) -> bool {
-    let parameters: Vec<SymbolId> = model.parameters.iter().map(|own| own.symbol).collect();
     let terms = candidates.allowed(Allowed::Regular);
     (0..SAMPLES.0 as u64).all(|k| {
         let seed = seed.wrapping_add(k);
-        solve_for_coefficients(&model.pool, problem, &terms, &parameters, seed).is_some()
+        let mut frozen: Vec<Frozen> = parameters.iter().map(|own| (*own, None)).collect();
+        solve_for_coefficients(&model.pool, problem, &terms, &mut frozen, seed).is_some()
     })
+}
+
+/// The parameters on which a density may depend.
+fn occurring(model: &Model, problem: &Problem) -> Vec<SymbolId> {
+    let roots = problem.roots();
+    let parameters = model.parameters.iter().map(|own| own.symbol);
+    let occurs = |own: &SymbolId| roots.iter().any(|id| model.pool.depends_on(*id, *own));
+    parameters.filter(occurs).collect()
 }

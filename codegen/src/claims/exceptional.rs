@@ -8,9 +8,9 @@ use dalembert_expr::{ExprId, ModularPoint, Node, Pool, Rational, SymbolId};
 
 use super::elimination::first_relation;
 use super::exactness::{Local, sample_points};
+use super::fit::reconstruct;
 use super::obstruction::elements_at;
 use super::polynomial::{Polynomial, rational_function, roots};
-use super::potential::reconstruct;
 use super::problem::Problem;
 
 /// Values of delta after which its degrees are looked for, one after the other.

@@ -4,9 +4,10 @@ use dalembert_expr::{Pool, Verdict as Zero};
 
 use super::exactness::Exactness;
 use super::finding::{Certificate, Verdict, Witness, digits};
+use super::fit::Certified;
 use super::global::Global;
 use super::obstruction::{Obstruction, find_obstruction};
-use super::potential::{Certified, Potential, Term};
+use super::potential::potential_text;
 use super::problem::Problem;
 use super::undecided::Undecided;
 use crate::model::{Existence, Model};
@@ -62,9 +63,9 @@ impl Writer<'_> {
         } else {
             ""
         };
-        let circle = match &self.exactness.global {
+        let cover = match &self.exactness.global {
             Some(Global::Many { turns, period, .. }) => format!(
-                " on the universal cover; it is multiplied by exp({}) {}",
+                "on the universal cover, where it is multiplied by exp({}) {}, ",
                 digits(*period),
                 self.turns(turns)
             ),
@@ -73,12 +74,12 @@ impl Writer<'_> {
         match &self.exactness.density {
             Some((potential, certified)) => {
                 let text = potential_text(&self.model.pool, potential);
-                let shown = format!("exp(G)*mu_C is invariant{depends}{circle} with G = {text}");
+                let shown = format!("{cover}exp(G)*mu_C is invariant{depends} with G = {text}");
                 self.certificate(shown, certified)
             }
             None => Certificate {
                 shown: format!(
-                    "an invariant exp(G)*mu_C exists{depends}{circle}; G was found in no closed form, its periods \
+                    "{cover}an invariant exp(G)*mu_C exists{depends}; G was found in no closed form, its periods \
                      on the circles are numeric"
                 ),
                 points: self.exactness.local.points,
@@ -275,46 +276,4 @@ fn unrelated_atoms(pool: &Pool, problem: &Problem) -> Vec<String> {
         .take(4)
         .map(|id| pool.text(id))
         .collect()
-}
-
-/// `1/2*ln(det m) - z`; `0` for the density 1.
-pub fn potential_text(pool: &Pool, potential: &Potential) -> String {
-    let term = |term: &Term| match term {
-        Term::MassDeterminant => "ln(det m)".to_owned(),
-        Term::MetricDeterminant => "ln(det g)".to_owned(),
-        Term::DependentDeterminant => "ln|det A_dep|".to_owned(),
-        Term::Logarithm(f) => format!("ln|{}|", pool.text(*f)),
-        Term::Plain(f) => match pool.node(*f) {
-            dalembert_expr::Node::Sum { .. } => format!("({})", pool.text(*f)),
-            _ => pool.text(*f),
-        },
-    };
-    let mut text = String::new();
-    for (coefficient, own) in &potential.terms {
-        let (number, rest) = pool.as_multiple(*coefficient);
-        let sign = match (text.is_empty(), number.is_negative()) {
-            (true, false) => "",
-            (true, true) => "-",
-            (false, false) => " + ",
-            (false, true) => " - ",
-        };
-        let mut factors = Vec::new();
-        if !number.abs().is_one() {
-            factors.push(number.abs().to_string());
-        }
-        if rest != pool.one() {
-            factors.push(match pool.node(rest) {
-                dalembert_expr::Node::Sum { .. } => format!("({})", pool.text(rest)),
-                _ => pool.text(rest),
-            });
-        }
-        factors.push(term(own));
-        text += sign;
-        text += &factors.join("*");
-    }
-    if text.is_empty() {
-        "0".to_owned()
-    } else {
-        text
-    }
 }

@@ -5,7 +5,7 @@
 //! | `problem.rs` | what an invariant density depends on |
 //! | `linear.rs`, `frame.rs`, `closure.rs` | the frame of D as series, and its hull under brackets |
 //! | `exactness.rs` | does a local density exist? |
-//! | `potential.rs`, `global.rs`, `regularity.rs` | the density in closed form; is it single-valued, and regular? |
+//! | `potential.rs`, `fit.rs`, `global.rs`, `regularity.rs` | the density in closed form; is it single-valued, and regular? |
 //! | `volume.rs`, `gradient.rs`, `trace.rs` | the volume with that density, or with an integral for it, as it is lowered |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
@@ -36,6 +36,7 @@ mod examine;
 mod exceptional;
 mod existence;
 mod finding;
+mod fit;
 mod frame;
 mod geometry;
 mod global;
@@ -60,14 +61,15 @@ pub use conditions::{Condition, Equation, Scan, find_conditions};
 pub use dynamics::{Dynamics, Motion};
 pub use exactness::{Exactness, Local, decide, decide_local};
 pub use examine::{Examined, examine, examine_volume};
-pub use existence::{Decision, potential_text};
+pub use existence::Decision;
 pub use finding::{Certificate, Finding, Verdict, Witness};
+pub use fit::Certified;
 pub use geometry::{Geometry, geometry_at};
 pub use global::Global;
 pub use gradient::{Gradient, Integral};
 pub use momentum::{MomentumDensity, find_momentum_density};
 pub use obstruction::{Obstruction, find_obstruction};
-pub use potential::{Certified, Potential, Term};
+pub use potential::{Potential, Term, potential_text};
 pub use problem::Problem;
 pub use sample::Sample;
 pub use trace::{Operation, Step, Trace};

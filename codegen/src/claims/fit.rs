@@ -1,0 +1,349 @@
+//! The density itself: combinations of candidates for `G` with `X_i(G) = c_i`, by linear algebra modulo a prime.
+//!
+//! The unknown constants `k_b` of `sum k_b X_i(b) = c_i` at random points are solved for modulo a prime and
+//! reconstructed as rational numbers. What was found is then certified from itself alone, at fresh points modulo other
+//! primes: the certificate does not depend on how it was found.
+
+use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Modulus, Pool, Rational, SymbolId};
+
+use super::exactness::sample_points;
+use super::frame::{Demand, frame};
+use super::potential::{Allowed, Candidates, Potential, Term};
+use super::problem::Problem;
+use super::undecided::Undecided;
+
+/// Numerators and denominators of coefficients up to this size are believed.
+const LARGEST: i64 = 50;
+/// Fresh points at which a density is certified.
+const CERTIFIED: usize = 12;
+/// Equations beyond the number of unknowns.
+const SURPLUS: usize = 8;
+
+/// Where and how a density was certified.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certified {
+    /// Fresh points at which every demand was satisfied.
+    pub points: usize,
+    /// The primes.
+    pub primes: Vec<u64>,
+    /// A bound of the chance that it is no density after all.
+    pub error: f64,
+}
+
+/// The combination of candidates with constant rational coefficients that is a density, if there is one.
+pub(super) fn fit(
+    pool: &mut Pool,
+    problem: &Problem,
+    candidates: &Candidates,
+    allowed: Allowed,
+    seed: u64,
+) -> Option<Potential> {
+    let terms = candidates.allowed(allowed);
+    let coefficients = solve_for_coefficients(pool, problem, &terms, &mut [], seed)?;
+    let mut found = Vec::new();
+    for (term, (coefficient, field)) in terms.iter().zip(coefficients) {
+        if coefficient != 0 {
+            let rational = reconstruct(field, coefficient)?;
+            found.push((pool.number(rational), *term));
+        }
+    }
+    Some(Potential { terms: found })
+}
+
+/// As [`fit`], with coefficients that are products of powers of parameters.
+///
+/// Where a parameter is doubled, such a coefficient is multiplied by a power of 2.
+pub(super) fn fit_with_parameters(
+    pool: &mut Pool,
+    problem: &Problem,
+    candidates: &Candidates,
+    allowed: Allowed,
+    parameters: &[SymbolId],
+    seed: u64,
+) -> Option<Potential> {
+    if parameters.is_empty() {
+        return None;
+    }
+    let terms = candidates.allowed(allowed);
+    let mut frozen: Vec<_> = parameters.iter().map(|own| (*own, None)).collect();
+    let solution = solve_for_coefficients(pool, problem, &terms, &mut frozen, seed)?;
+    let field = solution.first()?.1;
+    let mut exponents = vec![Vec::new(); terms.len()];
+    for i in 0..frozen.len() {
+        let mut doubled = frozen.clone();
+        doubled[i].1 = doubled[i].1.map(|value| field.add(value, value));
+        let changed = solve_for_coefficients(pool, problem, &terms, &mut doubled, seed)?;
+        for (own, ((before, _), (after, _))) in
+            exponents.iter_mut().zip(solution.iter().zip(&changed))
+        {
+            own.push(power_of_two(field, *before, *after)?);
+        }
+    }
+    let mut found = Vec::new();
+    for ((term, (coefficient, _)), exponents) in terms.iter().zip(&solution).zip(&exponents) {
+        if *coefficient == 0 {
+            continue;
+        }
+        let mut rest = *coefficient;
+        let mut factors = Vec::new();
+        for ((symbol, value), exponent) in frozen.iter().zip(exponents) {
+            let size = field.pow((*value)?, exponent.unsigned_abs());
+            let divisor = if *exponent > 0 {
+                field.inv(size)?
+            } else {
+                size
+            };
+            rest = field.mul(rest, divisor);
+            let base = pool.variable(*symbol);
+            factors.push(pool.pow(base, Rational::from(*exponent)));
+        }
+        factors.push(pool.number(reconstruct(field, rest)?));
+        found.push((pool.product(&factors), *term));
+    }
+    Some(Potential { terms: found })
+}
+
+/// Exponents of parameters that are tried.
+const EXPONENTS: std::ops::RangeInclusive<i64> = -4..=4;
+
+/// The e with `after = 2^e before`.
+fn power_of_two(field: Modulus, before: u64, after: u64) -> Option<i64> {
+    if before == 0 && after == 0 {
+        return Some(0);
+    }
+    EXPONENTS.into_iter().find(|e| {
+        let power = field.integer(1 << e.unsigned_abs());
+        let (larger, smaller) = if *e < 0 {
+            (before, after)
+        } else {
+            (after, before)
+        };
+        before != 0 && field.mul(power, smaller) == larger
+    })
+}
+
+/// A symbol that has the same value at all points: the one given, or that of the first point.
+pub(super) type Frozen = (SymbolId, Option<u64>);
+
+/// The coefficients modulo a prime, later candidates only where earlier ones do not suffice; `None` if there are none.
+pub(super) fn solve_for_coefficients(
+    pool: &Pool,
+    problem: &Problem,
+    terms: &[Term],
+    frozen: &mut [Frozen],
+    seed: u64,
+) -> Option<Vec<(u64, Modulus)>> {
+    let roots = roots(problem, terms);
+    let profile = pool.profile_of(&roots);
+    let mut points = sample_points(pool, &roots, &profile, seed).ok()?.modulo(1);
+    let mut rows: Vec<Vec<u64>> = Vec::new();
+    let mut modulus = None;
+    while rows.len() < terms.len() + SURPLUS {
+        let more = points.find(|point| {
+            for (symbol, value) in frozen.iter_mut() {
+                let own = point.value(*symbol, pool.symbol_assumption(*symbol));
+                point.set(*symbol, *value.get_or_insert(own));
+            }
+            modulus = Some(point.modulus());
+            equations(pool, problem, terms, point)
+        })?;
+        rows.extend(more);
+    }
+    let field = modulus?;
+    let solution = solve_rows(field, rows, terms.len())?;
+    Some(solution.into_iter().map(|k| (k, field)).collect())
+}
+
+fn roots(problem: &Problem, terms: &[Term]) -> Vec<ExprId> {
+    let mut roots = problem.roots();
+    roots.extend(terms.iter().filter_map(|term| term.expression()));
+    roots
+}
+
+/// For each demand `[X_i(b) for each term .., c_i]` at a point.
+fn equations(
+    pool: &Pool,
+    problem: &Problem,
+    terms: &[Term],
+    point: &mut ModularPoint,
+) -> Option<Vec<Vec<u64>>> {
+    let field = point.modulus();
+    let space = JetSpace::new(problem.variables.len(), 1, usize::MAX)?;
+    let frame = frame(pool, problem, &Jets::new(field, &space), point, None)?;
+    // A density may depend on coordinates that nothing else depends on.
+    let all = JetSpace::new(problem.components(), 1, usize::MAX)?;
+    let expressions: Vec<ExprId> = terms.iter().filter_map(|t| t.expression()).collect();
+    let series = pool.taylor(
+        &expressions,
+        &problem.symbols,
+        &Jets::new(field, &all),
+        point,
+    )?;
+    let mut series = series.into_iter();
+    let mut gradients = Vec::with_capacity(terms.len());
+    for term in terms {
+        gradients.push(match term {
+            Term::MassDeterminant => of_logarithm(field, &frame.mass_determinant)?,
+            Term::MetricDeterminant => of_logarithm(field, &frame.metric_determinant)?,
+            Term::DependentDeterminant => of_logarithm(field, &frame.dependent_determinant)?,
+            Term::Logarithm(_) => of_logarithm(field, &series.next()?)?,
+            Term::Plain(_) => series.next()?.into_iter().skip(1).collect(),
+        });
+    }
+    let row = |demand: &Demand<Modulus>| {
+        let value = |series: &Vec<u64>| series.first().copied().unwrap_or(0);
+        let along = |(term, gradient): (&Term, &Vec<u64>)| {
+            let components = match term.expression() {
+                Some(_) => (0..problem.components()).collect(),
+                None => problem.variables.clone(),
+            };
+            let mut sum = 0;
+            for (slope, k) in gradient.iter().zip(components) {
+                sum = field.add(sum, field.mul(*slope, value(&demand[k])));
+            }
+            sum
+        };
+        let mut row: Vec<u64> = terms.iter().zip(&gradients).map(along).collect();
+        row.push(demand.last().map_or(0, value));
+        row
+    };
+    Some(frame.demands.iter().map(row).collect())
+}
+
+/// The derivatives of `ln |f|` by the variables of a series of first order.
+pub(super) fn of_logarithm(field: Modulus, series: &[u64]) -> Option<Vec<u64>> {
+    let (value, slopes) = series.split_first()?;
+    let factor = field.inv(*value)?;
+    Some(
+        slopes
+            .iter()
+            .map(|slope| field.mul(factor, *slope))
+            .collect(),
+    )
+}
+
+/// The solution of `rows (unknowns.. | right)` with the last dependent unknowns 0; `None` if there is none.
+fn solve_rows(field: Modulus, mut rows: Vec<Vec<u64>>, unknowns: usize) -> Option<Vec<u64>> {
+    let mut pivots = Vec::new();
+    for column in 0..=unknowns {
+        let Some(found) = (pivots.len()..rows.len()).find(|row| rows[*row][column] != 0) else {
+            continue;
+        };
+        if column == unknowns {
+            return None;
+        }
+        let step = pivots.len();
+        rows.swap(step, found);
+        let inverse = field.inv(rows[step][column])?;
+        for entry in &mut rows[step] {
+            *entry = field.mul(inverse, *entry);
+        }
+        let pivot = rows[step].clone();
+        for (position, row) in rows.iter_mut().enumerate() {
+            let factor = row[column];
+            if position != step && factor != 0 {
+                for (entry, pivot) in row.iter_mut().zip(&pivot) {
+                    *entry = field.sub(*entry, field.mul(factor, *pivot));
+                }
+            }
+        }
+        pivots.push(column);
+    }
+    let mut solution = vec![0; unknowns];
+    for (row, column) in rows.iter().zip(pivots) {
+        solution[column] = row[unknowns];
+    }
+    Some(solution)
+}
+
+/// The rational number of small numerator and denominator with this residue.
+pub(super) fn reconstruct(field: Modulus, residue: u64) -> Option<Rational> {
+    let size = |value: u64| value.min(field.prime() - value) as i64;
+    (1..=LARGEST).find_map(|denominator| {
+        let numerator = field.mul(residue, field.integer(denominator));
+        let sign = if numerator > field.prime() / 2 { -1 } else { 1 };
+        (size(numerator) <= LARGEST).then(|| Rational::new(sign * size(numerator), denominator))
+    })
+}
+
+/// Whether a potential satisfies every demand, at fresh points modulo two primes and more.
+///
+/// # Errors
+/// [`Undecided`].
+pub(super) fn certify(
+    pool: &Pool,
+    problem: &Problem,
+    potential: &Potential,
+    seed: u64,
+) -> Result<Option<Certified>, Undecided> {
+    let terms: Vec<Term> = potential.terms.iter().map(|(_, term)| *term).collect();
+    let coefficients: Vec<ExprId> = potential.terms.iter().map(|(k, _)| *k).collect();
+    let mut roots = roots(problem, &terms);
+    roots.extend(&coefficients);
+    let profile = pool.profile_of(&roots);
+    // Points other than those of the search, for any seed of it.
+    let mut points = sample_points(pool, &roots, &profile, seed ^ FRESH)?;
+    let mut primes = Vec::new();
+    for _ in 0..CERTIFIED {
+        let residuals = points
+            .find(|point| {
+                let rows = equations(pool, problem, &terms, point)?;
+                let values = pool.modular_eval(&coefficients, point).ok()?;
+                primes.push(point.modulus().prime());
+                Some(residuals(point.modulus(), &rows, &values))
+            })
+            .ok_or(Undecided::Degenerate)?;
+        if residuals.iter().any(|residual| *residual != 0) {
+            return Ok(None);
+        }
+    }
+    primes.sort_unstable();
+    primes.dedup();
+    let sizes = (problem.coordinates + problem.forms.len()) as f64;
+    let degree = 64.0 * sizes.powi(3) * profile.degree.max(1.0);
+    Ok(Some(Certified {
+        points: CERTIFIED,
+        primes,
+        error: (degree / 2f64.powi(60)).powi(CERTIFIED as i32),
+    }))
+}
+
+/// Turns the seed of a search into that of a certificate: the fractional digits of the square root of 2.
+const FRESH: u64 = 0x6a09_e667_f3bc_c908;
+
+fn residuals(field: Modulus, rows: &[Vec<u64>], coefficients: &[u64]) -> Vec<u64> {
+    let residual = |row: &Vec<u64>| {
+        let mut sum = 0;
+        for (k, entry) in coefficients.iter().zip(row) {
+            sum = field.add(sum, field.mul(*k, *entry));
+        }
+        field.sub(sum, row[coefficients.len()])
+    };
+    rows.iter().map(residual).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_fractions_are_reconstructed_and_others_are_not() {
+        let field = Modulus::MERSENNE;
+        for (n, d) in [(0, 1), (1, 2), (-3, 7), (50, 49), (-1, 1)] {
+            let value = Rational::new(n, d);
+            let residue = field.rational(&value).expect("a residue");
+            assert_eq!(reconstruct(field, residue), Some(value));
+        }
+        assert_eq!(reconstruct(field, 123_456_789_123), None);
+    }
+
+    #[test]
+    fn later_unknowns_are_used_only_where_earlier_ones_do_not_suffice() {
+        let field = Modulus::MERSENNE;
+        // The third column is the sum of the first two.
+        let rows = vec![vec![1, 0, 1, 5], vec![0, 1, 1, 7], vec![1, 1, 2, 12]];
+        assert_eq!(solve_rows(field, rows.clone(), 3), Some(vec![5, 7, 0]));
+        let contradiction = vec![vec![1, 0, 1, 5], vec![2, 0, 2, 11]];
+        assert_eq!(solve_rows(field, contradiction, 3), None);
+    }
+}
