@@ -1,5 +1,5 @@
 //! What claims of surfaces, densities and whole models are not proved by: parts of surfaces that are out of sight, relations
-//! between logarithms, absolute values, no states. See also `claims_soundness.rs`.
+//! between logarithms, absolute values, no states. See also `soundness.rs`.
 
 use dalembert::Described;
 use dalembert_tests::claim::Outcome::{Proved, Refuted, Undecided};

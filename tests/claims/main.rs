@@ -1,0 +1,28 @@
+//! Claims: what is proved, refuted and left open, against values and routes that do not share the decision's code.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `golden_verdicts.rs`, `reference.rs` | verdicts, frames, obstructions, densities of the reference files |
+//! | `systems.rs`, `drift.rs`, `topology.rs`, `conditions.rs`, `momentum.rs` | existence on many systems |
+//! | `invariance.rs`, `atoms.rs` | what a verdict must not depend on; functions and their relations |
+//! | `visible.rs`, `contradicted.rs`, `impacts.rs` | claims of models, true ones and false ones; impacts |
+//! | `soundness.rs`, `soundness_models.rs` | nothing is proved by accident |
+//! | `volumes.rs`, `emitted_volumes.rs`, `singular_volumes.rs` | densities that are found, emitted, kept by the motion |
+
+mod atoms;
+mod conditions;
+mod contradicted;
+mod drift;
+mod emitted_volumes;
+mod golden_verdicts;
+mod impacts;
+mod invariance;
+mod momentum;
+mod reference;
+mod singular_volumes;
+mod soundness;
+mod soundness_models;
+mod systems;
+mod topology;
+mod visible;
+mod volumes;
