@@ -172,6 +172,14 @@ pub fn slope(f: &mut dyn FnMut(f64) -> f64) -> f64 {
     (45.0 * pair(1.0) - 9.0 * pair(2.0) + pair(3.0)) / (60.0 * STEP)
 }
 
+/// As [`slope`], for all components of a vector.
+pub fn slopes(f: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
+    let pair = |k: f64| moved(&f(k * STEP), -1.0, &f(-k * STEP));
+    let [first, second, third] = [1.0, 2.0, 3.0].map(pair);
+    let sum = (0..first.len()).map(|i| 45.0 * first[i] - 9.0 * second[i] + third[i]);
+    sum.map(|sum| sum / (60.0 * STEP)).collect()
+}
+
 /// `state + s * direction`
 pub fn moved(state: &[f64], s: f64, direction: &[f64]) -> Vec<f64> {
     state

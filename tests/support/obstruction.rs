@@ -6,7 +6,7 @@
 //! [(X, c), (Y, d)] = ([X, Y], X(d) - Y(c)),  c_i = theta(X_i)
 //! ```
 
-use crate::numeric::{Numeric, moved, slope};
+use crate::numeric::{Numeric, moved, slopes};
 
 /// A field with its demand at the end.
 type Element = Vec<f64>;
@@ -105,23 +105,35 @@ impl<'c> Criterion<'c> {
     pub fn theta(&self, q: &[f64]) -> Vec<f64> {
         let n = q.len();
         let own = self.geometry(q);
-        let along = |direction: &[f64], entry: &dyn Fn(&Geometry) -> f64| {
-            slope(&mut |s| entry(&self.geometry(&moved(q, s, direction))))
+        // Forms and duals, one after the other, along a direction.
+        let along = |direction: &[f64]| {
+            slopes(&|s| {
+                let there = self.geometry(&moved(q, s, direction));
+                there
+                    .forms
+                    .into_iter()
+                    .chain(there.duals)
+                    .flatten()
+                    .collect()
+            })
         };
         let axis = |k: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
+        let by_axis: Vec<Vec<f64>> = (0..n).map(|k| along(&axis(k))).collect();
+        let by_dual: Vec<Vec<f64>> = own.duals.iter().map(|dual| along(dual)).collect();
         let mass: Vec<Vec<f64>> = own
             .forms
             .iter()
             .map(|form| own.duals.iter().map(|dual| dot(form, dual)).collect())
             .collect();
+        let m = mass.len();
         let lie = |a: usize, b: usize, k: usize| {
-            let transported = along(&own.duals[a], &|at| at.forms[b][k]);
-            transported + along(&axis(k), &|at| dot(&own.forms[b], &at.duals[a]))
+            let dual = &by_axis[k][(m + a) * n..(m + a + 1) * n];
+            by_dual[a][b * n + k] + dot(&own.forms[b], dual)
         };
         (0..n)
             .map(|k| {
-                let columns = (0..mass.len()).map(|b| {
-                    let column: Vec<f64> = (0..mass.len()).map(|a| lie(a, b, k)).collect();
+                let columns = (0..m).map(|b| {
+                    let column: Vec<f64> = (0..m).map(|a| lie(a, b, k)).collect();
                     // m_ab as the b-th row of the inverse.
                     solve(&mass, &column).expect("independent forms")[b]
                 });
@@ -148,12 +160,10 @@ impl<'c> Criterion<'c> {
     fn bracket(&self, first: &str, second: &str, q: &[f64]) -> Element {
         let n = q.len();
         let (x, y) = (self.element(first, q), self.element(second, q));
-        let along = |direction: &[f64], name: &str, i: usize| {
-            slope(&mut |s| self.element(name, &moved(q, s, &direction[..n]))[i])
+        let along = |direction: &[f64], name: &str| {
+            slopes(&|s| self.element(name, &moved(q, s, &direction[..n])))
         };
-        (0..=n)
-            .map(|i| along(&x, second, i) - along(&y, first, i))
-            .collect()
+        moved(&along(&x, second), -1.0, &along(&y, first))
     }
 }
 

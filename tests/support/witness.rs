@@ -4,7 +4,7 @@ use dalembert::impacts::law::Law;
 
 use crate::claim::Witness;
 use crate::formula::{Scope, value};
-use crate::numeric::{Numeric, Snapshot, moved, slope};
+use crate::numeric::{Numeric, Snapshot, moved, slope, slopes};
 use crate::obstruction::Criterion;
 
 /// Relative and absolute errors. Differences of sixth order with steps of 3/1000 over states of order 1 are right to
@@ -237,6 +237,27 @@ fn period(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
         criterion.differential(&q).expect("a closed form")[i]
     });
     step * slopes.sum::<f64>()
+}
+
+/// The largest `d_i b_j - d_j b_i` of the form b that is the differential of G if there is one.
+///
+/// # Panics
+/// Where the frame of D and its brackets of two do not span all directions.
+pub fn curl(system: &dyn Numeric, q: &[f64]) -> f64 {
+    let criterion = Criterion::regular(system, q).expect("a regular position");
+    let rows: Vec<Vec<f64>> = (0..q.len())
+        .map(|i| {
+            slopes(&|s| {
+                let mut q = q.to_vec();
+                q[i] += s;
+                criterion.differential(&q).expect("a frame that spans")
+            })
+        })
+        .collect();
+    let pairs = (0..q.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    pairs.fold(0.0, |largest: f64, (i, j)| {
+        largest.max((rows[i][j] - rows[j][i]).abs())
+    })
 }
 
 /// `d_x + 0.41*d_y` in components.
