@@ -312,7 +312,7 @@ fn a_density_that_is_no_integral_either_is_said_to_emit_nothing() {
     let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens"));
     let text = tokens.expect("a model").to_string();
     assert!(
-        text.contains("`InvariantVolume` is not implemented: G is not determined"),
+        text.contains("`InvariantVolume` is not implemented: G depends on time"),
         "{text}"
     );
 }

@@ -62,6 +62,10 @@ pub fn examine_volume(
     derivation: &Derivation,
 ) -> (Verdict, Vec<String>, Option<Volume>) {
     let mut examiner = Examiner::of(model, derivation);
+    if !conserved::has_states(examiner.model, &examiner.dynamics) {
+        let reason = Undecided::Stateless.to_string();
+        return (Verdict::Undecided(reason), Vec::new(), None);
+    }
     let (verdict, remarks) = examiner.existence(Existence::Global);
     let volume = match &examiner.decision {
         Some(Ok(exactness)) => Volume::found(
@@ -211,13 +215,17 @@ impl<'e> Examiner<'e> {
         if exactness.global.is_none() || exactness.density.is_some() {
             return None;
         }
-        Some(match volume.map(|own| own.integral.is_some()) {
-            Some(true) => "G is emitted as an integral, by quadrature".to_owned(),
+        let spans = exactness.local.rank == self.problem.coordinates;
+        let reason = match volume.map(|own| own.integral.is_some()) {
+            Some(true) => return Some("G is emitted as an integral, by quadrature".to_owned()),
             Some(false) => return None,
-            None => "`InvariantVolume` is not implemented: G is not determined up to a constant, depends on time, or its \
-                     gradient is too large"
-                .to_owned(),
-        })
+            None if self.problem.is_time_dependent() => "G depends on time",
+            None if !spans => {
+                "brackets of D do not span, so that G is not determined up to a constant"
+            }
+            None => "its gradient takes too many operations",
+        };
+        Some(format!("`InvariantVolume` is not implemented: {reason}"))
     }
 
     /// The volume that these statements are about.
