@@ -59,6 +59,7 @@ pub(super) struct Evidence {
 }
 
 /// The two answers to a claim that something vanishes, or does not.
+#[derive(Debug, Default)]
 pub(super) struct Wording {
     /// Said if it vanishes.
     pub(super) vanishes: String,

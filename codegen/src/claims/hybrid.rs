@@ -1,12 +1,12 @@
 //! What impacts do to an invariant volume `f mu_C`: it is kept if `f+ J = f-`, J the Jacobian of [`super::wall`].
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, ModularPoint, RealPoint};
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint};
 
+use super::collision::{AtImpact, after_and_before, evidence_at_impact};
 use super::dynamics::{Dynamics, Number};
-use super::evidence::{Vanishing, Wording};
+use super::evidence::Wording;
 use super::finding::{Verdict, Witness};
-use super::sample::Sample;
-use super::wall::{AtImpact, Place, Wall, evidence_at_impact};
+use super::wall::Wall;
 use crate::mechanics::Derivation;
 use crate::model::{Law, Model};
 
@@ -21,13 +21,13 @@ pub(super) fn volume_remarks(
 ) -> Vec<String> {
     let mut remarks = Vec::new();
     for surface in 0..model.surfaces.len() {
+        let wall = Wall::of(model, derivation, surface);
         let volume = Volume {
-            wall: Wall::of(model, derivation, surface),
-            dynamics,
+            wall: &wall,
             stated,
-            place: Place::Anywhere,
         };
-        let effect = match (volume.verdict(model, seed), stated) {
+        let found = evidence_at_impact(model, &wall, dynamics, &volume, seed);
+        let effect = match (found.verdict(true, Wording::default(), seed), stated) {
             (Verdict::Proved(_), _) => "keeps it".to_owned(),
             (Verdict::Refuted(_), None) => factor(model, surface),
             (Verdict::Refuted(witness), Some(_)) => changed(&witness),
@@ -92,82 +92,28 @@ fn changed(witness: &Witness) -> String {
 
 /// The change of a volume in an impact.
 struct Volume<'v> {
-    wall: Wall,
-    dynamics: &'v Dynamics,
+    wall: &'v Wall,
     stated: Option<(ExprId, &'v str)>,
-    place: Place,
-}
-
-impl Volume<'_> {
-    fn verdict(mut self, model: &Model, seed: u64) -> Verdict {
-        let wording = Wording {
-            vanishes: String::new(),
-            differs: String::new(),
-            help: [String::new(), String::new()],
-        };
-        evidence_at_impact(model, &mut self, seed).verdict(true, wording, seed)
-    }
-
-    /// `f+`, `f-` and `J`
-    fn parts<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<[Number<P>; 3]> {
-        let after = self.wall.after(model, point)?;
-        let jacobian = self.wall.jacobian(model, point, &after)?;
-        let one = point.field().integer(1);
-        let Some((value, _)) = self.stated else {
-            return Some([one, one, jacobian]);
-        };
-        let old = value_at(model, point, value)?;
-        let before: Vec<_> = model
-            .coordinates
-            .iter()
-            .map(|own| point.symbol(&model.pool, own.qdot))
-            .collect();
-        let set = |velocities: &[Number<P>], point: &mut P| {
-            for (coordinate, velocity) in model.coordinates.iter().zip(velocities) {
-                point.set_symbol(coordinate.qdot, *velocity);
-            }
-        };
-        set(&after, point);
-        let new = value_at(model, point, value)?;
-        set(&before, point);
-        Some([new, old, jacobian])
-    }
-}
-
-fn value_at<P: ExpansionPoint>(model: &Model, point: &mut P, value: ExprId) -> Option<Number<P>> {
-    let values = point.values(&model.pool, &model.pool.reachable(&[value]))?;
-    Some(values[value.index()])
 }
 
 impl AtImpact for Volume<'_> {
-    fn place(&mut self) -> &mut Place {
-        &mut self.place
-    }
-}
-
-impl Vanishing for Volume<'_> {
     fn roots(&self) -> Vec<ExprId> {
-        let mut roots = self.dynamics.roots();
-        roots.extend(&self.wall.roots);
-        roots.extend([self.wall.gap, self.wall.gap_rate]);
-        roots.extend(self.stated.map(|(value, _)| value));
-        roots
-    }
-
-    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        self.wall.settle(model, point, self.place)?;
-        self.dynamics.motion(&model.pool, point, None).map(|_| ())
-    }
-
-    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-        self.wall
-            .incoming(model, self.dynamics, attempt, self.roots())
+        self.stated.iter().map(|(value, _)| *value).collect()
     }
 
     /// `(f+ J)^2 - (f-)^2`: both are positive, and squares do not depend on the branch of an absolute value.
-    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
-        let [new, old, jacobian] = self.parts(model, point)?;
+    fn terms<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        after: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
         let field = point.field();
+        let jacobian = self.wall.jacobian(model, point, after)?;
+        let [new, old] = match self.stated {
+            Some((value, _)) => after_and_before(model, point, after, value)?,
+            None => [field.integer(1); 2],
+        };
         let after = field.mul(new, jacobian);
         Some(vec![
             field.mul(after, after),
@@ -175,12 +121,12 @@ impl Vanishing for Volume<'_> {
         ])
     }
 
-    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
-        let terms = self.terms(model, point)?;
+    fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {
+        let terms = self.terms(model, point, after)?;
         Some(terms.iter().map(|term| term.abs()).sum())
     }
 
-    fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+    fn shown(&self, terms: &[f64]) -> Vec<(String, f64)> {
         let names = match self.stated {
             Some((_, written)) => [
                 format!("{written} after times the Jacobian"),

@@ -1,13 +1,13 @@
 //! `conserved under SURFACE: e`: is a quantity the same before and after an impact?
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, ModularPoint, RealPoint};
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint};
 
+use super::collision::{AtImpact, after_and_before, evidence_at_impact, value_with};
 use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
-use super::evidence::{Vanishing, Wording};
+use super::evidence::Wording;
 use super::finding::Verdict;
-use super::sample::Sample;
-use super::wall::{AtImpact, Place, Wall, evidence_at_impact};
+use super::wall::Wall;
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
@@ -22,9 +22,8 @@ pub(super) fn check_conserved_under(
     seed: u64,
 ) -> Verdict {
     let name = model.surfaces[surface].name.display.clone();
-    let mut jump = Jump {
-        wall: Wall::of(model, derivation, surface),
-        dynamics,
+    let wall = Wall::of(model, derivation, surface);
+    let jump = Jump {
         slopes: model
             .coordinates
             .iter()
@@ -32,7 +31,6 @@ pub(super) fn check_conserved_under(
             .collect(),
         value,
         written,
-        place: Place::Anywhere,
     };
     let wording = Wording {
         vanishes: format!("`{written}` is the same before and after an impact at `{name}`"),
@@ -42,8 +40,8 @@ pub(super) fn check_conserved_under(
             format!("write `conserved under {name}: {written};`"),
         ],
     };
-    let found = evidence_at_impact(model, &mut jump, seed);
-    let is_seen = jump.wall.is_solved() || !found.is_real;
+    let found = evidence_at_impact(model, &wall, dynamics, &jump, seed);
+    let is_seen = wall.is_solved() || !found.is_real;
     match found.verdict(holds, wording, seed) {
         Verdict::Undecided(_) if !is_seen => Verdict::Undecided(format!(
             "parts of `{name}` may be out of sight: its gap is in no coordinate a polynomial of degree 1 or 2 whose \
@@ -55,86 +53,38 @@ pub(super) fn check_conserved_under(
 
 /// The change of a quantity in an impact.
 struct Jump<'j> {
-    wall: Wall,
-    dynamics: &'j Dynamics,
     value: ExprId,
     /// Its derivatives by the velocities.
     slopes: Vec<ExprId>,
     written: &'j str,
-    place: Place,
-}
-
-impl Jump<'_> {
-    fn slope_by_velocity(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
-        let values = point.values(&model.pool, &model.pool.reachable(&self.slopes))?;
-        Some(
-            self.slopes
-                .iter()
-                .map(|slope| values[slope.index()].abs())
-                .sum(),
-        )
-    }
-
-    fn values<P: ExpansionPoint>(
-        &self,
-        model: &Model,
-        point: &mut P,
-        velocities: &[Number<P>],
-    ) -> Option<Number<P>> {
-        for (coordinate, velocity) in model.coordinates.iter().zip(velocities) {
-            point.set_symbol(coordinate.qdot, *velocity);
-        }
-        let values = point.values(&model.pool, &model.pool.reachable(&[self.value]))?;
-        Some(values[self.value.index()])
-    }
 }
 
 impl AtImpact for Jump<'_> {
-    fn place(&mut self) -> &mut Place {
-        &mut self.place
-    }
-}
-
-impl Vanishing for Jump<'_> {
     fn roots(&self) -> Vec<ExprId> {
-        let mut roots = self.dynamics.roots();
-        roots.extend(&self.wall.roots);
-        roots.extend([self.wall.gap, self.wall.gap_rate, self.value]);
-        roots
+        vec![self.value]
     }
 
-    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        self.wall.settle(model, point, self.place)?;
-        self.dynamics.motion(&model.pool, point, None).map(|_| ())
-    }
-
-    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-        self.wall
-            .incoming(model, self.dynamics, attempt, self.roots())
-    }
-
-    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
-        let before: Vec<_> = model
-            .coordinates
-            .iter()
-            .map(|own| point.symbol(&model.pool, own.qdot))
-            .collect();
-        let after = self.wall.after(model, point)?;
-        let new = self.values(model, point, &after)?;
-        let old = self.values(model, point, &before)?;
+    fn terms<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        after: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
+        let [new, old] = after_and_before(model, point, after, self.value)?;
         Some(vec![new, point.field().neg(old)])
     }
 
-    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
-        let after = self.wall.after(model, point)?;
+    fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {
         let largest = after.iter().fold(0.0, |size: f64, own| size.max(own.abs()));
-        let by_velocity = self.slope_by_velocity(model, point)? * largest;
+        let values = point.values(&model.pool, &model.pool.reachable(&self.slopes))?;
+        let slopes = self.slopes.iter().map(|own| values[own.index()].abs());
+        let by_velocity = slopes.sum::<f64>() * largest;
         let before = magnitude(model, point, self.value);
-        self.values(model, point, &after)?;
+        value_with(model, point, after, self.value)?;
         Some(before + magnitude(model, point, self.value) + by_velocity)
     }
 
-    fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+    fn shown(&self, terms: &[f64]) -> Vec<(String, f64)> {
         let names = [
             format!("{} after", self.written),
             format!("{} before", self.written),

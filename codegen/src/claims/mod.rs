@@ -13,7 +13,7 @@
 //! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
 //! | `evidence.rs`, `continuity.rs` | does something vanish at all states? may it jump all the same? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
-//! | `wall.rs`, `hybrid.rs` | the map of an impact; what it does to a volume |
+//! | `wall.rs`, `collision.rs`, `hybrid.rs` | the map of an impact; what vanishes at impacts; what they do to a volume |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
 //! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts in words |
 //!
@@ -23,6 +23,7 @@
 mod alternatives;
 mod ansatz;
 mod closure;
+mod collision;
 mod conditions;
 mod conserved;
 mod continuity;

@@ -20,7 +20,6 @@ use dalembert_expr::{
 
 use super::conserved::with_velocities;
 use super::dynamics::{Dynamics, Number};
-use super::evidence::{Evidence, Vanishing, evidence};
 use super::linear::{dot, solve};
 use super::sample::{Sample, sample, uses};
 use crate::mechanics::Derivation;
@@ -55,33 +54,6 @@ pub(super) enum Place {
     First,
     /// By its second root, which may be on another component.
     Second,
-}
-
-/// A question about states before an impact.
-pub(super) trait AtImpact: Vanishing {
-    /// Where the positions are.
-    fn place(&mut self) -> &mut Place;
-}
-
-/// The evidence on a sum at the states before an impact. What vanishes everywhere does so on the surface; else every
-/// component of the surface is looked at.
-pub(super) fn evidence_at_impact(
-    model: &Model,
-    question: &mut impl AtImpact,
-    seed: u64,
-) -> Evidence {
-    *question.place() = Place::Anywhere;
-    let everywhere = evidence(model, question, seed);
-    if everywhere.vanishes == Some(true) {
-        return everywhere;
-    }
-    *question.place() = Place::First;
-    let first = evidence(model, question, seed);
-    if first.vanishes != Some(true) {
-        return first;
-    }
-    *question.place() = Place::Second;
-    evidence(model, question, seed)
 }
 
 impl Wall {

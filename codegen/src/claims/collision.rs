@@ -1,0 +1,128 @@
+//! Questions about states before an impact, answered on every component of the surface.
+
+use dalembert_expr::{ExpansionPoint, ExprId, ModularPoint, RealPoint};
+
+use super::dynamics::{Dynamics, Number};
+use super::evidence::{Evidence, Vanishing, evidence};
+use super::sample::Sample;
+use super::wall::{Place, Wall};
+use crate::model::Model;
+
+/// A sum of terms that may vanish at all states before an impact; see [`Vanishing`].
+pub(super) trait AtImpact {
+    /// What is evaluated besides the impact's map.
+    fn roots(&self) -> Vec<ExprId>;
+
+    /// The terms at a state, given the velocities after the impact.
+    fn terms<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        after: &[Number<P>],
+    ) -> Option<Vec<Number<P>>>;
+
+    /// The size of what the terms were computed from.
+    fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64>;
+
+    /// What a person is shown.
+    fn shown(&self, terms: &[f64]) -> Vec<(String, f64)>;
+}
+
+/// The evidence on a sum at the states before an impact at a wall. What vanishes everywhere does so on the surface;
+/// else every component of the surface is looked at.
+pub(super) fn evidence_at_impact(
+    model: &Model,
+    wall: &Wall,
+    dynamics: &Dynamics,
+    question: &impl AtImpact,
+    seed: u64,
+) -> Evidence {
+    let at = |place| {
+        let collision = Collision {
+            wall,
+            dynamics,
+            question,
+            place,
+        };
+        evidence(model, &collision, seed)
+    };
+    let everywhere = at(Place::Anywhere);
+    if everywhere.vanishes == Some(true) {
+        return everywhere;
+    }
+    let first = at(Place::First);
+    if first.vanishes != Some(true) {
+        return first;
+    }
+    at(Place::Second)
+}
+
+/// The value of an expression at a point with other velocities, which are the point's afterwards.
+pub(super) fn value_with<P: ExpansionPoint>(
+    model: &Model,
+    point: &mut P,
+    velocities: &[Number<P>],
+    value: ExprId,
+) -> Option<Number<P>> {
+    for (coordinate, velocity) in model.coordinates.iter().zip(velocities) {
+        point.set_symbol(coordinate.qdot, *velocity);
+    }
+    let values = point.values(&model.pool, &model.pool.reachable(&[value]))?;
+    Some(values[value.index()])
+}
+
+/// The values of an expression after and before an impact; the point's velocities are those before, as they were.
+pub(super) fn after_and_before<P: ExpansionPoint>(
+    model: &Model,
+    point: &mut P,
+    after: &[Number<P>],
+    value: ExprId,
+) -> Option<[Number<P>; 2]> {
+    let symbols = model.coordinates.iter().map(|own| own.qdot);
+    let before: Vec<_> = symbols.map(|own| point.symbol(&model.pool, own)).collect();
+    let new = value_with(model, point, after, value)?;
+    let old = value_with(model, point, &before, value)?;
+    Some([new, old])
+}
+
+/// A question at one place.
+struct Collision<'c, Q> {
+    wall: &'c Wall,
+    dynamics: &'c Dynamics,
+    question: &'c Q,
+    place: Place,
+}
+
+impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
+    fn roots(&self) -> Vec<ExprId> {
+        let mut roots = self.dynamics.roots();
+        roots.extend(&self.wall.roots);
+        roots.extend([self.wall.gap, self.wall.gap_rate]);
+        roots.extend(self.question.roots());
+        roots
+    }
+
+    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
+        self.wall.settle(model, point, self.place)?;
+        self.dynamics.motion(&model.pool, point, None).map(|_| ())
+    }
+
+    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
+        self.wall
+            .incoming(model, self.dynamics, attempt, self.roots())
+    }
+
+    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+        let after = self.wall.after(model, point)?;
+        self.question.terms(model, point, &after)
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
+        let after = self.wall.after(model, point)?;
+        self.question.scale(model, point, &after)
+    }
+
+    fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+        self.question.shown(terms)
+    }
+}
