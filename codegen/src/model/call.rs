@@ -5,7 +5,7 @@ use dalembert_expr::{ExprId, Function, Node, Rational, SymbolId};
 use super::definitions::Definition;
 use super::resolve::{DerivedNames, Resolver, Scope, Value};
 use super::symbols::Meaning;
-use crate::diagnostics::Location;
+use crate::diagnostics::{Location, listed, nearest};
 use crate::spec::{EXPONENT, EXPONENT_DENOMINATOR_BITS, NUMBER_BITS, Scalar, ScalarKind, Word};
 
 impl<'s> Resolver<'s> {
@@ -264,9 +264,27 @@ impl<'s> Resolver<'s> {
 
     /// The coordinate that an expression is.
     pub(super) fn coordinate(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<usize> {
+        if let ScalarKind::Name(name) = &scalar.kind
+            && scope.get(name).is_none()
+            && !self.symbols.names.contains_key(name.as_str())
+        {
+            return self.no_coordinate(scalar);
+        }
         let expr = self.expression(scalar, scope)?;
         let index = self.coordinate_index(expr);
-        index.or_else(|| self.refuse(scalar.at, format!("`{scalar}` is not a coordinate"), ""))
+        index.or_else(|| self.no_coordinate(scalar))
+    }
+
+    fn no_coordinate(&mut self, scalar: &Scalar) -> Option<usize> {
+        let text = format!("`{scalar}` is not a coordinate");
+        let coordinates = self.symbols.coordinates.iter();
+        let mut names: Vec<&str> = coordinates.map(|own| own.name.field.as_str()).collect();
+        names.dedup();
+        let help = match nearest(&scalar.to_string(), names.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("the coordinates are {}", listed(names)),
+        };
+        self.refuse(scalar.at, text, &help)
     }
 
     /// The index of the coordinate that a resolved expression is.
@@ -374,6 +392,6 @@ fn known_constraints<'a>(names: impl Iterator<Item = &'a String>) -> String {
     if names.is_empty() {
         "the model declares no constraints".to_owned()
     } else {
-        format!("the constraints are {}", crate::diagnostics::listed(names))
+        format!("the constraints are {}", listed(names))
     }
 }
