@@ -132,7 +132,7 @@ impl<'e> Examiner<'e> {
                 )
             }
             Statement::Symmetry(field) => {
-                symmetry::check_symmetry(self.model, &self.dynamics, field)
+                symmetry::check_symmetry(self.model, &self.dynamics, field, self.seed)
             }
         };
         Finding {

@@ -2,18 +2,21 @@
 //!
 //! ```text
 //! lift      xi^i d_i L + (d_j xi^i qdot^j + d_t xi^i) dL/dqdot^i = 0
-//! D         L_xi eta^a in the span of the eta^b
+//! D         the lift keeps eta^a(qdot) + eta^a_0 = 0 at all qdot that satisfy it
 //! momentum  J = xi^i dL/dqdot^i,   dJ/dt = lambda_a eta^a(xi) + F(xi)
 //! ```
 //!
 //! The momentum of a horizontal symmetry, `eta^a(xi) = 0`, is conserved (W. Clark, thesis, 3.3.4 and 5.2).
 
-use dalembert_expr::{ExprId, Pool, SymbolId, Verdict as Zero};
+use dalembert_expr::{
+    ExpansionPoint, ExprId, ModularPoint, Pool, RealPoint, SymbolId, Verdict as Zero,
+};
 
-use super::conserved::state_on_d;
+use super::conserved::{magnitude, state_on_d};
 use super::continuity::possible_jump;
-use super::dynamics::Dynamics;
-use super::finding::{Certificate, Verdict, Witness, seed_of};
+use super::dynamics::{Dynamics, Number};
+use super::evidence::{Vanishing, Wording, evidence};
+use super::finding::{Certificate, Verdict};
 use super::sample::{Sample, sample, uses};
 use crate::model::Model;
 
@@ -22,42 +25,146 @@ pub(super) fn check_symmetry(
     model: &mut Model,
     dynamics: &Dynamics,
     field: &[ExprId],
+    seed: u64,
 ) -> (Verdict, Vec<String>) {
-    let directions = lifted(model, field);
-    let whole = model.lagrangian.whole;
-    let lift = model.pool.derivative_along(whole, &directions);
-    let verdict = match model.pool.zero_test(lift) {
-        Zero::Refuted => return (refuted_lift(model, lift), Vec::new()),
-        Zero::Undecided => Some("whether it keeps the Lagrangian is not decided"),
-        Zero::Proved => None,
-    };
-    let distribution = keeps_distribution(model, field);
-    let verdict = match (verdict, distribution) {
-        (_, Some(false)) => {
-            let verdict = refuted_distribution(model, dynamics, &directions);
-            return (verdict, Vec::new());
+    let changes = changes(model, dynamics, field);
+    let mut whole: Option<Certificate> = None;
+    for change in &changes {
+        match evidence(model, change, seed).verdict(true, change.wording(), seed) {
+            Verdict::Proved(certificate) => whole = Some(joined(whole, certificate)),
+            Verdict::Undecided(reason) => {
+                let verdict = Verdict::Undecided(format!("{}: {reason}", change.question()));
+                return (verdict, Vec::new());
+            }
+            refuted => return (refuted, Vec::new()),
         }
-        (Some(reason), _) => Verdict::Undecided(reason.to_owned()),
-        (None, None) => {
-            Verdict::Undecided("whether it keeps the constraints is not decided".to_owned())
-        }
-        (None, Some(true)) => Verdict::Proved(Certificate {
-            shown: "its flow keeps the Lagrangian and the constraints, by zero tests with a chance of error below 1e-18".to_owned(),
-            points: 0,
-            primes: Vec::new(),
-            error: 1e-18,
-            seed: seed_of(&model.snake_name),
-        }),
+    }
+    let Some(certificate) = whole else {
+        return (Verdict::Undecided(String::new()), Vec::new());
     };
     let jump = field
         .iter()
         .find_map(|own| possible_jump(model, *own, &[], &mut |_, _| false));
-    if let (Verdict::Proved(_), Some(place)) = (&verdict, jump) {
+    if let Some(place) = jump {
         let text = format!("where it is smooth it is one, but it may jump {place}");
         return (Verdict::Undecided(text), Vec::new());
     }
     let remarks = vec![momentum_equation(model, field)];
-    (verdict, remarks)
+    (Verdict::Proved(certificate), remarks)
+}
+
+/// One certificate for both.
+fn joined(first: Option<Certificate>, second: Certificate) -> Certificate {
+    let Some(mut whole) = first else {
+        return second;
+    };
+    whole.points = whole.points.min(second.points);
+    whole.primes.extend(second.primes);
+    whole.primes.sort_unstable();
+    whole.primes.dedup();
+    whole.error += second.error;
+    whole
+}
+
+/// What the flow changes, if anything: the Lagrangian, then the left side of each constraint at velocities in D.
+fn changes<'d>(model: &mut Model, dynamics: &'d Dynamics, field: &[ExprId]) -> Vec<Change<'d>> {
+    let directions = lifted(model, field);
+    let whole = model.lagrangian.whole;
+    let mut changes = vec![Change {
+        rate: model.pool.derivative_along(whole, &directions),
+        name: "rate of L along its flow".to_owned(),
+        on_d: None,
+    }];
+    for a in 0..model.constraints.len() {
+        let mut terms = vec![model.constraints[a].affine];
+        for i in 0..model.coordinates.len() {
+            let velocity = model.pool.variable(model.coordinates[i].qdot);
+            let form = model.constraints[a].form[i];
+            terms.push(model.pool.mul(form, velocity));
+        }
+        let left = model.pool.sum(&terms);
+        let name = &model.constraints[a].name.display;
+        changes.push(Change {
+            name: format!("rate of the left side of {name} along its flow"),
+            rate: model.pool.derivative_along(left, &directions),
+            on_d: Some(dynamics),
+        });
+    }
+    changes
+}
+
+/// The rate of something along a flow.
+struct Change<'d> {
+    rate: ExprId,
+    name: String,
+    /// The motion, if velocities are those in D.
+    on_d: Option<&'d Dynamics>,
+}
+
+impl Change<'_> {
+    fn question(&self) -> &'static str {
+        match self.on_d {
+            None => "whether its flow keeps the Lagrangian",
+            Some(_) => "whether its flow keeps the constraints",
+        }
+    }
+
+    fn wording(&self) -> Wording {
+        let (differs, help) = match self.on_d {
+            None => (
+                "its flow changes the Lagrangian",
+                "leave it out, or correct the field",
+            ),
+            Some(_) => (
+                "its flow takes allowed velocities to others",
+                "leave it out, or add the motion of the coordinates that the constraints lack",
+            ),
+        };
+        Wording {
+            vanishes: "its flow keeps the Lagrangian and the constraints".to_owned(),
+            differs: differs.to_owned(),
+            help: [help.to_owned(), String::new()],
+        }
+    }
+}
+
+impl Vanishing for Change<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        let mut roots = self.on_d.map_or(Vec::new(), Dynamics::roots);
+        roots.push(self.rate);
+        roots
+    }
+
+    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
+        match self.on_d {
+            None => Some(()),
+            Some(dynamics) => dynamics.motion(&model.pool, point, None).map(|_| ()),
+        }
+    }
+
+    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
+        match self.on_d {
+            None => {
+                let sample = with_velocities(model, attempt, &[self.rate]);
+                let point = sample.point();
+                Some((sample, point))
+            }
+            Some(dynamics) => state_on_d(model, dynamics, &self.roots(), attempt),
+        }
+    }
+
+    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+        let values = point.values(&model.pool, &model.pool.reachable(&[self.rate]))?;
+        Some(vec![values[self.rate.index()]])
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
+        Some(magnitude(model, point, self.rate))
+    }
+
+    fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+        vec![(self.name.clone(), terms[0])]
+    }
 }
 
 /// The field, lifted to velocities.
@@ -83,71 +190,6 @@ fn motion(model: &mut Model) -> Vec<(SymbolId, ExprId)> {
     motion
 }
 
-fn refuted_lift(model: &Model, lift: ExprId) -> Verdict {
-    let found = (0..12).find_map(|attempt| {
-        let sample = with_velocities(model, attempt, &[lift]);
-        let (value, magnitude) = model
-            .pool
-            .eval_magnitude(lift, &|symbol| sample.value(symbol).unwrap_or(0.0));
-        (value.is_finite() && value.abs() > 1e-6 * magnitude).then_some((sample, value))
-    });
-    let (sample, values) = match found {
-        Some((sample, value)) => (
-            Some(sample),
-            vec![("rate of L along its flow".to_owned(), value)],
-        ),
-        None => (None, Vec::new()),
-    };
-    Verdict::Refuted(Witness {
-        reason: "its flow changes the Lagrangian".to_owned(),
-        sample,
-        values,
-        help: "leave it out, or correct the field".to_owned(),
-    })
-}
-
-/// A velocity in D that the flow takes out of D.
-fn refuted_distribution(
-    model: &mut Model,
-    dynamics: &Dynamics,
-    directions: &[(SymbolId, ExprId)],
-) -> Verdict {
-    let mut rates = Vec::new();
-    for a in 0..model.constraints.len() {
-        let mut terms = vec![model.constraints[a].affine];
-        for i in 0..model.coordinates.len() {
-            let velocity = model.pool.variable(model.coordinates[i].qdot);
-            let form = model.constraints[a].form[i];
-            terms.push(model.pool.mul(form, velocity));
-        }
-        let left = model.pool.sum(&terms);
-        let rate = model.pool.derivative_along(left, directions);
-        let name = model.constraints[a].name.display.clone();
-        rates.push((
-            format!("rate of the left side of {name} along its flow"),
-            rate,
-        ));
-    }
-    let mut roots = dynamics.roots();
-    roots.extend(rates.iter().map(|(_, rate)| *rate));
-    let found = (0..12).find_map(|attempt| {
-        let (sample, point) = state_on_d(model, dynamics, &roots, attempt)?;
-        rates.iter().find_map(|(name, rate)| {
-            let (value, magnitude) = model.pool.eval_magnitude(*rate, &|s| point.value(s));
-            let is_clear = value.is_finite() && value.abs() > 1e-6 * magnitude;
-            is_clear.then(|| (sample.clone(), vec![(name.clone(), value)]))
-        })
-    });
-    let (sample, values) = found.unzip();
-    Verdict::Refuted(Witness {
-        reason: "its flow takes allowed velocities to others".to_owned(),
-        sample,
-        values: values.unwrap_or_default(),
-        help: "leave it out, or add the motion of the coordinates that the constraints lack"
-            .to_owned(),
-    })
-}
-
 /// A sample with free velocities.
 fn with_velocities(model: &Model, attempt: usize, roots: &[ExprId]) -> Sample {
     let mut sample = sample(model, attempt, uses(&model.pool, roots));
@@ -162,42 +204,6 @@ fn with_velocities(model: &Model, attempt: usize, roots: &[ExprId]) -> Sample {
         }
     }
     sample
-}
-
-/// Whether the Lie derivatives of the forms, affine parts included, are combinations of them; `None` if undecided.
-fn keeps_distribution(model: &mut Model, field: &[ExprId]) -> Option<bool> {
-    let count = model.constraints.len();
-    if count == 0 {
-        return Some(true);
-    }
-    let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
-    let along: Vec<_> = symbols.iter().copied().zip(field.iter().copied()).collect();
-    let mut rows: Vec<Vec<ExprId>> = Vec::new();
-    for constraint in &model.constraints {
-        let mut row = constraint.form.clone();
-        row.push(constraint.affine);
-        rows.push(row);
-    }
-    let mut by = symbols;
-    by.push(model.time);
-    for a in 0..count {
-        let lie = by.iter().enumerate().map(|(k, symbol)| {
-            let mut entry = model.pool.derivative_along(rows[a][k], &along);
-            for (j, component) in field.iter().enumerate() {
-                let slope = model.pool.diff(*component, *symbol);
-                let term = model.pool.mul(rows[a][j], slope);
-                entry = model.pool.add(entry, term);
-            }
-            entry
-        });
-        let lie: Vec<ExprId> = lie.collect();
-        rows.push(lie);
-    }
-    let report = model.pool.rank(&rows);
-    match report.rank == count {
-        true => Some(true),
-        false => report.decided.then_some(false),
-    }
 }
 
 /// What the momentum of the field does, as a sentence.
