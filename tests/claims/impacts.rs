@@ -89,7 +89,7 @@ fn what_each_law_does_to_the_volume_is_said() {
         remarks::<WalledDisk>(),
         [
             "an impact at kept (elastic) keeps it".to_owned(),
-            "an impact at restored (restitution(e)) multiplies it by (e)^2".to_owned(),
+            "an impact at restored (restitution(e)) multiplies it by e^2".to_owned(),
             "an impact at complete (restitution(1)) keeps it".to_owned(),
             "an impact at dead (restitution(0)) maps it to 0".to_owned(),
             "an impact at slowed (newton(1/3)) multiplies it by (1/3)^2".to_owned(),

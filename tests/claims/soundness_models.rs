@@ -216,8 +216,7 @@ fn what_is_assumed_is_said_to_be() {
     let declaration = Declaration::of(Assumed::DESCRIPTION.source);
     let open = declaration.verdict("assume density: exact");
     assert_eq!((open.word(), open.is_accepted()), ("assumed", true));
-    let reason =
-        "`density: exact` is assumed: a force is no polynomial of degree 2 in the velocities";
+    let reason = "`density: exact` is assumed: a force is no polynomial of degree 2 or less in the velocities";
     assert!(open.note().starts_with(reason), "{}", open.note());
     let open = declaration.verdict("density: exact");
     assert_eq!((open.word(), open.is_accepted()), ("undecided", false));

@@ -77,11 +77,21 @@ impl Echelon {
     }
 }
 
+/// How far a hull is closed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Until {
+    /// Until no bracket leads out of it.
+    Closed,
+    /// Until there is an obstruction: the ranks are then too small, but they differ.
+    Obstructed,
+}
+
 /// Closes generators whose series have the order of `jets`.
 pub(super) fn close(
     mut jets: Jets<'_, Modulus>,
     variables: &[usize],
     generators: &[Demand<Modulus>],
+    until: Until,
 ) -> Hull {
     let width = generators.first().map_or(1, Vec::len);
     let mut vectors = Echelon::new(jets.field, width - 1);
@@ -115,7 +125,8 @@ pub(super) fn close(
         }
     }
     hull.growth.push(hull.basis.len());
-    while !new.is_empty() && hull.elements.len() < width {
+    let is_done = |hull: &Hull| until == Until::Obstructed && hull.obstruction.is_some();
+    while !new.is_empty() && hull.elements.len() < width && !is_done(&hull) {
         if jets.order() == 0 {
             hull.rank = hull.basis.len();
             hull.extended_rank = hull.elements.len();

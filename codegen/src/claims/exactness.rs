@@ -5,7 +5,7 @@
 
 use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, SamplePoints, SymbolId};
 
-use super::closure::{Hull, close};
+use super::closure::{Hull, Until, close};
 use super::fit::{Certified, Frozen, certify, fit, fit_with_parameters, solve_for_coefficients};
 use super::frame::frame;
 use super::global::{self, Global};
@@ -118,7 +118,7 @@ fn decide_local_from(
         let (sample, prime) = points
             .find(|point| {
                 fix(pool, point, conditions)?;
-                let sample = sample(pool, problem, point, dependent)?;
+                let sample = sample(pool, problem, point, dependent, Until::Closed)?;
                 Some((sample, point.modulus().prime()))
             })
             .ok_or(Undecided::Degenerate)?;
@@ -192,8 +192,8 @@ pub(super) fn screen(
     points
         .find(|point| {
             left -= 1;
-            let found =
-                fix(pool, point, conditions).and_then(|()| sample(pool, problem, point, None));
+            let found = fix(pool, point, conditions)
+                .and_then(|()| sample(pool, problem, point, None, Until::Obstructed));
             match found {
                 None if left > 0 => None,
                 other => Some(other),
@@ -211,6 +211,7 @@ fn sample(
     problem: &Problem,
     point: &mut ModularPoint,
     dependent: Option<&[usize]>,
+    until: Until,
 ) -> Option<Result<(Hull, Vec<usize>), usize>> {
     let field = point.modulus();
     let variables = problem.variables.len();
@@ -223,7 +224,7 @@ fn sample(
         };
         let jets = Jets::new(field, &space);
         let frame = frame(pool, problem, &jets, point, dependent)?;
-        let hull = close(jets.lower(), &problem.variables, &frame.demands);
+        let hull = close(jets.lower(), &problem.variables, &frame.demands, until);
         if hull.is_closed {
             return Some(Ok((hull, frame.dependent)));
         }
@@ -270,6 +271,13 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
             local,
             density: None,
             global: None,
+        });
+    }
+    if let Some(certified) = certify(&model.pool, problem, &Potential::default(), seed)? {
+        return Ok(Exactness {
+            global: Some(regularity::restrict(model, problem, Global::Exists)),
+            density: Some((Potential::default(), certified)),
+            local,
         });
     }
     let candidates = Candidates::of(&mut model.pool, problem, &model.coordinates);

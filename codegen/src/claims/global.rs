@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use dalembert_expr::{JetSpace, Jets, Modulus, Pool};
 
-use super::closure::close;
+use super::closure::{Until, close};
 use super::exactness::{Local, sample_points};
 use super::frame::frame;
 use super::obstruction::{combine, elements_at};
@@ -32,12 +32,18 @@ pub enum Global {
     Undecided(&'static str),
 }
 
-/// Points on a circle for the trapezoidal rule, which converges geometrically for periodic functions.
-const POINTS: usize = 48;
-/// A period counts from here on: well above the rounding of a sum of [`POINTS`] values of order 1.
-const PERIOD: f64 = 1e-8;
-/// Points at which parameters are tried.
-const ATTEMPTS: usize = 6;
+/// Points on a circle for the trapezoidal rule, which converges geometrically for periodic functions: they are doubled
+/// until the period changes by no more than this part of the integral of the absolute value.
+const POINTS: (usize, usize) = (32, 1024);
+const CONVERGED: f64 = 1e-10;
+/// What is rounding where everything else vanishes.
+const ROUNDING: f64 = 1e-12;
+/// Where between two multiples of the step the points lie.
+const SHIFT: f64 = 0.382;
+/// A period counts from this part of the integral of the absolute value on.
+const PERIOD: f64 = 1e-9;
+/// Samples at which periods are computed: the declared defaults, which may hide what depends on a parameter, and others.
+const ATTEMPTS: [usize; 3] = [0, 9, 18];
 
 /// What a density that was found in closed form with multiples of angles says.
 pub(super) fn from_angles(
@@ -69,7 +75,7 @@ pub(super) fn from_angles(
             continue;
         }
         let coefficients: Vec<_> = slopes.iter().map(|(_, k)| *k).collect();
-        for attempt in 0..ATTEMPTS {
+        for attempt in ATTEMPTS {
             let sample = sample(model, attempt, uses(&model.pool, &coefficients));
             let values = model
                 .pool
@@ -78,8 +84,10 @@ pub(super) fn from_angles(
                 let position = angles.iter().position(|own| own == i);
                 position.map_or(0.0, |position| values[position] * *count as f64)
             };
-            let period = TAU * turns.iter().map(weigh).sum::<f64>();
-            if period.is_finite() && period.abs() > PERIOD {
+            let weights: Vec<f64> = turns.iter().map(weigh).collect();
+            let period = TAU * weights.iter().sum::<f64>();
+            let size = TAU * weights.iter().map(|own| own.abs()).sum::<f64>();
+            if period.is_finite() && period.abs() > PERIOD * size {
                 return Global::Many {
                     turns,
                     period,
@@ -135,7 +143,7 @@ fn is_in_hull(pool: &Pool, problem: &Problem, turns: &[(usize, i64)]) -> bool {
                     last.clear();
                 }
             });
-            let closed = close(jets.lower(), &problem.variables, &demands);
+            let closed = close(jets.lower(), &problem.variables, &demands, Until::Closed);
             if !closed.is_closed {
                 return None;
             }
@@ -147,7 +155,7 @@ fn is_in_hull(pool: &Pool, problem: &Problem, turns: &[(usize, i64)]) -> bool {
                 turn[*i] = jets.constant(jets.field.integer(*count));
             }
             demands.push(turn);
-            let closed = close(jets.lower(), &problem.variables, &demands);
+            let closed = close(jets.lower(), &problem.variables, &demands, Until::Closed);
             closed.is_closed.then_some(closed.rank)
         };
         Some(rank(false, point)? == rank(true, point)?)
@@ -172,21 +180,22 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
         if !is_whole && !is_in_hull(&model.pool, problem, &turns) {
             continue;
         }
-        let found = (0..ATTEMPTS).find_map(|attempt| {
+        let mut is_known = false;
+        for attempt in ATTEMPTS {
             let sample = sample(model, attempt, uses(&model.pool, &roots));
-            Some((period(model, problem, local, &sample, &turns)?, sample))
-        });
-        match found {
-            Some((period, sample)) if period.abs() > PERIOD => {
+            let Some((period, size)) = converged(model, problem, local, &sample, &turns) else {
+                continue;
+            };
+            is_known = true;
+            if period.abs() > PERIOD * size + ROUNDING {
                 return Global::Many {
                     turns,
                     period,
                     sample,
                 };
             }
-            Some(_) => {}
-            None => is_open = true,
         }
+        is_open |= !is_known;
     }
     match (is_whole, is_open) {
         (true, false) => Global::Exists,
@@ -197,7 +206,29 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
     }
 }
 
-/// How much `G` grows along a loop of the hull of D, which is written by the hull's elements; `None` where they are
+/// How much `G` grows along a loop of the hull of D, and the integral of the absolute values of what its rate is made of; `None` if they do
+/// not converge.
+fn converged(
+    model: &Model,
+    problem: &Problem,
+    local: &Local,
+    sample: &Sample,
+    turns: &[(usize, i64)],
+) -> Option<(f64, f64)> {
+    let mut points = POINTS.0;
+    let mut coarse = period(model, problem, local, sample, turns, points)?;
+    while points < POINTS.1 {
+        points *= 2;
+        let fine = period(model, problem, local, sample, turns, points)?;
+        if (fine.0 - coarse.0).abs() <= CONVERGED * fine.1 + ROUNDING {
+            return Some(fine);
+        }
+        coarse = fine;
+    }
+    None
+}
+
+/// The same with a number of points; the loop is written by the hull's elements; `None` where they are
 /// dependent.
 fn period(
     model: &Model,
@@ -205,16 +236,17 @@ fn period(
     local: &Local,
     sample: &Sample,
     turns: &[(usize, i64)],
-) -> Option<f64> {
+    points: usize,
+) -> Option<(f64, f64)> {
     let width = problem.components();
     let mut tangent = vec![0.0; width];
     for (i, count) in turns {
         tangent[*i] = *count as f64;
     }
-    let mut sum = 0.0;
-    for k in 0..POINTS {
-        // NOTE: between the multiples of pi/24, where frames of D often have poles that the density does not have.
-        let turn = (k as f64 + 0.5) / POINTS as f64;
+    let (mut sum, mut size) = (0.0, 0.0);
+    for k in 0..points {
+        // NOTE: off the fractions of pi, where frames of D often have poles that the density does not have.
+        let turn = (k as f64 + SHIFT) / points as f64;
         let mut point = sample.point();
         for (i, count) in turns {
             point.set(model.coordinates[*i].q, TAU * turn * *count as f64);
@@ -230,7 +262,11 @@ fn period(
         let vectors: Vec<&[f64]> = basis().map(|own| &own[..width]).collect();
         let coefficients = combine(&vectors, &tangent)?;
         let demands = basis().map(|own| own[width]);
-        sum += demands.zip(&coefficients).map(|(c, k)| c * k).sum::<f64>();
+        for (demand, coefficient) in demands.zip(&coefficients) {
+            sum += demand * coefficient;
+            size += (demand * coefficient).abs();
+        }
     }
-    Some(sum * TAU / POINTS as f64).filter(|period| period.is_finite())
+    let step = TAU / points as f64;
+    sum.is_finite().then_some((sum * step, size * step))
 }

@@ -6,6 +6,7 @@ use super::collision::{AtImpact, after_and_before, evidence_at_impact};
 use super::dynamics::{Dynamics, Number};
 use super::evidence::Wording;
 use super::finding::{Verdict, Witness};
+use super::potential::factor_text;
 use super::wall::Wall;
 use crate::mechanics::Derivation;
 use crate::model::{Law, Model};
@@ -60,12 +61,15 @@ fn factor(model: &Model, surface: usize) -> String {
         .any(|own| !model.pool.is_syntactic_zero(own.affine));
     let squared = |e: ExprId| match model.pool.as_number(e) {
         Some(number) if number.is_zero() => "maps it to 0".to_owned(),
-        _ => format!("multiplies it by ({})^2", model.pool.text(e)),
+        _ => format!("multiplies it by {}^2", factor_text(&model.pool, e)),
     };
     match model.surfaces[surface].law {
         Law::Elastic => format!("multiplies it by -G+/G-, {RATES}"),
         Law::Restitution(e) if is_affine => {
-            format!("multiplies it by -({})*G+/G-, {RATES}", model.pool.text(e))
+            format!(
+                "multiplies it by -{}*G+/G-, {RATES}",
+                factor_text(&model.pool, e)
+            )
         }
         Law::Restitution(e) | Law::Newton(e) => squared(e),
         Law::NonholonomicPlastic => format!("multiplies it by (1 - 2*rho)^2, {RHO}"),

@@ -160,9 +160,11 @@ fn number_and_rest(pool: &Pool, id: ExprId) -> (Rational, Option<ExprId>) {
     }
 }
 
-fn factor_text(pool: &Pool, id: ExprId) -> String {
+/// An expression as a factor: sums in brackets.
+pub(super) fn factor_text(pool: &Pool, id: ExprId) -> String {
     match pool.node(id) {
         Node::Sum { .. } => format!("({})", pool.text(id)),
+        Node::Number(number) if !number.is_integer() => format!("({number})"),
         _ => pool.text(id),
     }
 }

@@ -37,6 +37,14 @@ const CLEAR: f64 = 0.1;
 const SMALL: f64 = 1e-9;
 const LOW: f64 = 0.1;
 
+/// Points from which Newton's method looks for a zero, its steps, the part of the first value that counts as 0, the
+/// relative step of differences, and how far out a zero may be.
+const STARTS: usize = 24;
+const NEWTON: usize = 80;
+const ZERO: f64 = 1e-10;
+const STEP: f64 = 1e-5;
+const FAR: f64 = 1e6;
+
 /// Values of coordinates, time and parameters.
 type Values = Vec<(SymbolId, f64)>;
 
@@ -73,12 +81,20 @@ pub(super) fn is_regular(
             _ => false,
         })
         .collect();
-    (0..SEGMENTS).all(|attempt| {
+    let is_regular_between = (0..SEGMENTS).all(|attempt| {
         let ends = [attempt, attempt + 1].map(|own| spread(model, problem, found, own));
         suspects
             .iter()
             .all(|term| !field.is_singular_between(*term, &ends))
-    })
+    });
+    is_regular_between
+        && (0..STARTS).all(|attempt| {
+            let start = spread(model, problem, found, attempt);
+            suspects.iter().all(|term| {
+                let zero = field.zero_from(*term, &start);
+                zero.is_none_or(|zero| !field.is_singular_near(&zero))
+            })
+        })
 }
 
 /// `global`, unless a circle leaves the domain where the constraints are regular.
@@ -179,6 +195,87 @@ impl Field<'_> {
             let is_change = (low > 0.0) != (high > 0.0);
             is_change && self.is_singular_at(bisect(&argument, k, low > 0.0), ends)
         })
+    }
+
+    /// A zero of a term's argument by Newton's method, `q -= f df/|df|^2`, which finds zeros without change of sign and of
+    /// higher codimension too; `None` if it leads to none, or out of the chart.
+    fn zero_from(&self, term: Term, start: &Values) -> Option<Values> {
+        let mut values = start.clone();
+        let first = self.argument(term, &values)?;
+        let mut argument = first;
+        for _ in 0..NEWTON {
+            if !argument.is_finite() || !self.is_in_chart(&values) {
+                return None;
+            }
+            if argument.abs() <= ZERO * first.abs() {
+                return Some(values);
+            }
+            let slopes = self.slopes(term, &values)?;
+            let steepness: f64 = slopes.iter().map(|(_, slope)| slope * slope).sum();
+            for (i, slope) in slopes {
+                values[i].1 -= argument * slope / steepness;
+            }
+            argument = self.argument(term, &values)?;
+        }
+        None
+    }
+
+    /// The positions of coordinates among the values, with the slope of a term's argument by each.
+    fn slopes(&self, term: Term, values: &Values) -> Option<Vec<(usize, f64)>> {
+        let mut slopes = Vec::new();
+        for coordinate in &self.model.coordinates {
+            let Some(i) = values.iter().position(|(own, _)| *own == coordinate.q) else {
+                continue;
+            };
+            let step = STEP * (1.0 + values[i].1.abs());
+            let shifted = |shift: f64| {
+                let mut values = values.clone();
+                values[i].1 += shift;
+                self.argument(term, &values)
+            };
+            slopes.push((i, (shifted(step)? - shifted(-step)?) / (2.0 * step)));
+        }
+        Some(slopes)
+    }
+
+    fn is_in_chart(&self, values: &Values) -> bool {
+        values.iter().all(|(symbol, value)| {
+            let mut coordinates = self.model.coordinates.iter();
+            let own = coordinates.find(|own| own.q == *symbol);
+            match own.map(|own| own.topology) {
+                Some(Topology::Interval { low, high }) => {
+                    let ends = self.model.pool.eval(&[low, high], &|_| 0.0);
+                    ends[0] < *value && *value < ends[1]
+                }
+                Some(Topology::Line) => value.abs() < FAR,
+                _ => true,
+            }
+        })
+    }
+
+    /// Whether `G` grows without bound towards a point near which the model is regular.
+    fn is_singular_near(&self, zero: &Values) -> bool {
+        let near = |distance: f64| {
+            let is_coordinate =
+                |symbol: SymbolId| self.model.coordinates.iter().any(|own| own.q == symbol);
+            let shifted = zero.iter().enumerate().map(|(i, (symbol, value))| {
+                let direction = 1.0 + 0.3 * i as f64;
+                let shift = if is_coordinate(*symbol) {
+                    distance * direction
+                } else {
+                    0.0
+                };
+                (*symbol, value + shift)
+            });
+            let values: Values = shifted.collect();
+            let mass = self.geometry(&values)?.mass_determinant;
+            Some((self.potential(&values)?, mass))
+        };
+        let (Some(close), Some(far)) = (near(1e-4), near(1e-2)) else {
+            return false;
+        };
+        let growth = (close.0 - far.0).abs();
+        close.1.abs() > LOW * far.1.abs() && (growth >= CLEAR || growth.is_nan())
     }
 
     fn is_singular_at(&self, s: f64, ends: &[Values; 2]) -> bool {

@@ -34,7 +34,10 @@ impl fmt::Display for Undecided {
                 f,
                 "brackets up to depth {depth} did not close the hull of D, deeper ones are out of reach"
             ),
-            Self::Forces => write!(f, "a force is no polynomial of degree 2 in the velocities"),
+            Self::Forces => write!(
+                f,
+                "a force is no polynomial of degree 2 or less in the velocities"
+            ),
             Self::Denominators => write!(
                 f,
                 "the coefficients inside of sin, cos and exp have no common denominator in reach"

@@ -198,6 +198,9 @@ fn write_text(
     for note in &examined.notes {
         writeln!(output, "  {note}")?;
     }
+    if examined.notes.is_empty() {
+        writeln!(output, "  none")?;
+    }
     Ok(())
 }
 
