@@ -147,3 +147,78 @@ fn circles_that_leave_the_regular_domain_leave_the_question_open() {
     );
     assert_eq!(verified(&snakeboard(": angle")), Existence::LocalAtLeast);
 }
+
+/// A particle in the plane on the curves of `d(x) = f d(y)`, whose density is `1/f`.
+fn curves(coordinates: &str, f: &str) -> String {
+    format!(
+        "Curves {{ coordinates {{ {coordinates} }} parameters {{ c > 0 = 3; }}
+            lagrangian = (dot(x)^2 + dot(y)^2)/2; constraints {{ curve: d(x) = ({f})*d(y); }} }}"
+    )
+}
+
+/// Where `f` vanishes there is a closed orbit that attracts or repels: no density is finite there.
+#[test]
+fn densities_that_are_singular_somewhere_are_not_proved() {
+    for f in [
+        "x - 5",
+        "x - 50",
+        "x^2 - 900",
+        "x^2 - 10*c",
+        "exp(x) - 30",
+        "(x^2 + 1)*(x - 3)",
+        "x^2 - x/2 + 1/16",
+        "cosh(x) - 1",
+        "(x - 3)^2",
+    ] {
+        let answer = answer(&curves("x; y: angle;", f), "density: exact");
+        assert!(matches!(answer, Answer::Undecided(_)), "{f}: {answer:?}");
+    }
+    for f in ["1 + sin(x)", "1 - cos(x)", "sin(x)"] {
+        let answer = answer(&curves("x: angle; y: angle;", f), "density: exact");
+        assert!(matches!(answer, Answer::Undecided(_)), "{f}: {answer:?}");
+    }
+    for f in ["x^2 + 1", "2 + sin(x)", "exp(x)"] {
+        let found = answer(
+            &curves("x; y: angle;", &f.replace("sin(x)", "cos(y)")),
+            "density: exact",
+        );
+        assert_eq!(found, Answer::Proved, "{f}");
+    }
+}
+
+/// `G = m o R/(J + m o^2) theta`: the centre of mass is a distance `o` ahead.
+#[test]
+fn a_default_does_not_hide_a_period() {
+    for o in ["0", "1e-12", "0.00001", "0.1"] {
+        let source = format!(
+            "Disk {{ coordinates {{ x; y; th: angle; ph: angle; }}
+                parameters {{ m > 0 = 1; R > 0 = 0.4; I > 0 = 0.2; J > 0 = 0.1; o = {o}; }}
+                lagrangian = m/2*(dot(x + o*cos(ph))^2 + dot(y + o*sin(ph))^2)
+                    + I/2*dot(th)^2 + J/2*dot(ph)^2;
+                constraints {{ a: dot(x) = R*cos(ph)*dot(th); b: dot(y) = R*sin(ph)*dot(th); }} }}"
+        );
+        assert_eq!(
+            answer(&source, "density: locally_exact"),
+            Answer::Proved,
+            "{o}"
+        );
+    }
+}
+
+/// Friction that is quadratic in the velocity: the density is `exp` of an integral over the circle, which vanishes.
+#[test]
+fn periods_are_computed_until_they_converge() {
+    for f in [
+        "cos(x + 0.3)/(1 + 9*(sin(x + 0.3) - 1/2)^2)",
+        "cos(x + 0.3)/(1 + 25*(sin(x + 0.3) - 1/2)^2)",
+        "cos(x + 0.3)/sqrt(1.02 + sin(x + 0.3))",
+        "cos(48*x)",
+        "k*cos(x + 0.3)",
+    ] {
+        let source = format!(
+            "Ring {{ coordinates {{ x: angle; y; }} parameters {{ k > 0 = 1e8; }}
+                lagrangian = (dot(x)^2 + dot(y)^2)/2; forces {{ drag: -({f})*dot(x)^2*d(x); }} }}"
+        );
+        assert_eq!(answer(&source, "density: exact"), Answer::Proved, "{f}");
+    }
+}
