@@ -226,3 +226,40 @@ fn what_is_assumed_is_said_to_be() {
     let refuted = declaration.verdict("assume conserved: energy");
     assert_eq!((refuted.word(), refuted.is_accepted()), ("refuted", false));
 }
+
+/// On the surface these are 0, up to the rounding of its position.
+#[test]
+fn the_rounding_of_a_position_on_a_surface_is_no_witness() {
+    let declaration = |claim: &str| {
+        format!(
+            "Sector {{ coordinates {{ th: angle; y; }} lagrangian = (dot(th)^2 + dot(y)^2)/2;
+                impacts {{ s: sin(th) >= 0; c: cos(th) >= 0; }} claims {{ {claim}; }} }}"
+        )
+    };
+    for (surface, value) in [
+        ("s", "sin(th)*dot(th)"),
+        ("s", "sin(2*th)*dot(th)"),
+        ("c", "cos(th)*dot(th)"),
+        ("c", "cos(th)*dot(y)*dot(th)"),
+    ] {
+        let message = |claim: String| {
+            let tokens = declaration(&claim).parse().expect("tokens");
+            let refused = dalembert_codegen::try_expand(tokens).err();
+            refused.map(|own| {
+                own.iter()
+                    .map(|own| own.message().to_owned())
+                    .collect::<String>()
+            })
+        };
+        let told = message(format!("conserved under {surface}: {value}"));
+        assert!(
+            told.is_none_or(|told| told.contains("is undecided")),
+            "{value}"
+        );
+        let told = message(format!("not conserved under {surface}: {value}")).expect("a refusal");
+        assert!(
+            told.contains("is undecided") || told.contains("is refuted"),
+            "{told}"
+        );
+    }
+}

@@ -222,3 +222,20 @@ fn periods_are_computed_until_they_converge() {
         assert_eq!(answer(&source, "density: exact"), Answer::Proved, "{f}");
     }
 }
+
+/// Leaves that wind around two circles several times.
+#[test]
+fn loops_of_several_turns_are_found() {
+    for form in ["d(z) = d(phi)", "d(z) = 2*d(phi)", "3*d(z) = 2*d(phi)"] {
+        let source = format!(
+            "Winding {{ coordinates {{ z: angle; phi: angle; x; w; }}
+                lagrangian = (dot(z)^2 + dot(phi)^2 + dot(x)^2 + (dot(w) - (w + x)*dot(phi))^2)/2;
+                constraints {{ winding: {form}; slope: d(w) = (w + x)*d(phi); }} }}"
+        );
+        assert_eq!(
+            answer(&source, "density: locally_exact"),
+            Answer::Proved,
+            "{form}"
+        );
+    }
+}

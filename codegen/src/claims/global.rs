@@ -69,31 +69,33 @@ pub(super) fn from_angles(
     if slopes.is_empty() {
         return Global::Exists;
     }
-    let angles: Vec<usize> = slopes.iter().map(|(i, _)| *i).collect();
-    for turns in loops(&angles) {
-        if local.rank < problem.components() && !is_in_hull(&model.pool, problem, &turns) {
-            continue;
-        }
-        let coefficients: Vec<_> = slopes.iter().map(|(_, k)| *k).collect();
-        for attempt in ATTEMPTS {
-            let sample = sample(model, attempt, uses(&model.pool, &coefficients));
-            let values = model
-                .pool
-                .eval(&coefficients, &|s| sample.value(s).unwrap_or(0.0));
-            let weigh = |(i, count): &(usize, i64)| {
-                let position = angles.iter().position(|own| own == i);
-                position.map_or(0.0, |position| values[position] * *count as f64)
+    let coefficients: Vec<_> = slopes.iter().map(|(_, k)| *k).collect();
+    let samples = ATTEMPTS.map(|attempt| {
+        let sample = sample(model, attempt, uses(&model.pool, &coefficients));
+        let value = |symbol| sample.value(symbol).unwrap_or(0.0);
+        let values = model.pool.eval(&coefficients, &value);
+        (sample, values)
+    });
+    let is_whole = local.rank == problem.components();
+    for turns in loops(&angles(model, problem)) {
+        let grown = samples.iter().find_map(|(sample, values)| {
+            let weight = |((i, _), value): (&(usize, _), &f64)| {
+                let turn = turns.iter().find(|(own, _)| own == i);
+                turn.map_or(0.0, |(_, count)| TAU * value * *count as f64)
             };
-            let weights: Vec<f64> = turns.iter().map(weigh).collect();
-            let period = TAU * weights.iter().sum::<f64>();
-            let size = TAU * weights.iter().map(|own| own.abs()).sum::<f64>();
-            if period.is_finite() && period.abs() > PERIOD * size {
-                return Global::Many {
-                    turns,
-                    period,
-                    sample,
-                };
-            }
+            let weights: Vec<f64> = slopes.iter().zip(values).map(weight).collect();
+            let period = weights.iter().sum::<f64>();
+            let size = weights.iter().map(|own| own.abs()).sum::<f64>();
+            (period.is_finite() && period.abs() > PERIOD * size).then_some((period, sample))
+        });
+        if let Some((period, sample)) = grown
+            && (is_whole || is_in_hull(&model.pool, problem, &turns))
+        {
+            return Global::Many {
+                turns,
+                period,
+                sample: sample.clone(),
+            };
         }
     }
     Global::Undecided(
@@ -101,13 +103,25 @@ pub(super) fn from_angles(
     )
 }
 
-/// One turn of one circle, then combinations of turns `-1, 0, 1`, the first one positive.
+/// The coordinates on circles.
+fn angles(model: &Model, problem: &Problem) -> Vec<usize> {
+    (0..problem.coordinates)
+        .filter(|i| model.coordinates[*i].topology == Topology::Angle)
+        .collect()
+}
+
+/// Turns of up to six circles, few turns first, the first one positive: up to four turns of two circles, one of many.
 fn loops(angles: &[usize]) -> Vec<Vec<(usize, i64)>> {
+    let most = match angles.len() {
+        0..=2 => 4,
+        3 => 2,
+        _ => 1,
+    };
     let mut all: Vec<Vec<(usize, i64)>> = vec![Vec::new()];
     for angle in angles.iter().take(6) {
         let mut longer = Vec::new();
         for turns in &all {
-            for count in [0, 1, -1] {
+            for count in -most..=most {
                 let mut turns = turns.clone();
                 if count != 0 {
                     turns.push((*angle, count));
@@ -120,7 +134,7 @@ fn loops(angles: &[usize]) -> Vec<Vec<(usize, i64)>> {
         all = longer;
     }
     all.retain(|turns| !turns.is_empty());
-    all.sort_by_key(Vec::len);
+    all.sort_by_key(|turns| turns.iter().map(|(_, count)| count.abs()).sum::<i64>());
     all
 }
 
@@ -167,9 +181,7 @@ fn is_in_hull(pool: &Pool, problem: &Problem, turns: &[(usize, i64)]) -> bool {
 /// else along the combinations of circles that lie in leaves.
 pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> Global {
     let is_whole = local.rank == problem.components();
-    let angles: Vec<usize> = (0..problem.coordinates)
-        .filter(|i| model.coordinates[*i].topology == Topology::Angle)
-        .collect();
+    let angles = angles(model, problem);
     let loops = match is_whole {
         true => angles.iter().map(|i| vec![(*i, 1)]).collect(),
         false => loops(&angles),

@@ -1,6 +1,6 @@
 //! `conserved under SURFACE: e`: is a quantity the same before and after an impact?
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint};
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint, SymbolId};
 
 use super::collision::{AtImpact, after_and_before, evidence_at_impact, value_with};
 use super::conserved::magnitude;
@@ -29,6 +29,11 @@ pub(super) fn check_conserved_under(
             .iter()
             .map(|own| model.pool.diff(value, own.qdot))
             .collect(),
+        by_position: model
+            .coordinates
+            .iter()
+            .map(|own| (own.q, model.pool.diff(value, own.q)))
+            .collect(),
         value,
         written,
     };
@@ -56,7 +61,21 @@ struct Jump<'j> {
     value: ExprId,
     /// Its derivatives by the velocities.
     slopes: Vec<ExprId>,
+    /// The same by the coordinates.
+    by_position: Vec<(SymbolId, ExprId)>,
     written: &'j str,
+}
+
+impl Jump<'_> {
+    /// How much the value changes per part of the position, which solves an equation up to rounding.
+    fn slope_by_position(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
+        let slopes: Vec<ExprId> = self.by_position.iter().map(|(_, slope)| *slope).collect();
+        let values = point.values(&model.pool, &model.pool.reachable(&slopes))?;
+        let terms = self.by_position.iter().map(|(symbol, slope)| {
+            values[slope.index()].abs() * (1.0 + point.value(*symbol).abs())
+        });
+        Some(terms.sum())
+    }
 }
 
 impl AtImpact for Jump<'_> {
@@ -79,9 +98,10 @@ impl AtImpact for Jump<'_> {
         let values = point.values(&model.pool, &model.pool.reachable(&self.slopes))?;
         let slopes = self.slopes.iter().map(|own| values[own.index()].abs());
         let by_velocity = slopes.sum::<f64>() * largest;
-        let before = magnitude(model, point, self.value);
+        let before = magnitude(model, point, self.value) + self.slope_by_position(model, point)?;
         value_with(model, point, after, self.value)?;
-        Some(before + magnitude(model, point, self.value) + by_velocity)
+        let new = magnitude(model, point, self.value) + self.slope_by_position(model, point)?;
+        Some(before + new + by_velocity)
     }
 
     fn shown(&self, terms: &[f64]) -> Vec<(String, f64)> {
