@@ -64,26 +64,26 @@ pub(super) fn fit_with_parameters(
     if parameters.is_empty() {
         return None;
     }
-    let terms = candidates.allowed(allowed);
+    let candidates = candidates.allowed(allowed);
     let mut frozen: Vec<_> = parameters.iter().map(|own| (*own, None)).collect();
-    let solution = solve_for_coefficients(pool, problem, &terms, &mut frozen, seed)?;
+    let solution = solve_for_coefficients(pool, problem, &candidates, &mut frozen, seed)?;
     let field = solution.first()?.1;
+    let (terms, before): (Vec<Term>, Vec<u64>) = candidates
+        .into_iter()
+        .zip(solution.iter().map(|(coefficient, _)| *coefficient))
+        .filter(|(_, coefficient)| *coefficient != 0)
+        .unzip();
     let mut exponents = vec![Vec::new(); terms.len()];
     for i in 0..frozen.len() {
         let mut doubled = frozen.clone();
         doubled[i].1 = doubled[i].1.map(|value| field.add(value, value));
-        let changed = solve_for_coefficients(pool, problem, &terms, &mut doubled, seed)?;
-        for (own, ((before, _), (after, _))) in
-            exponents.iter_mut().zip(solution.iter().zip(&changed))
-        {
+        let after = solve_for_coefficients(pool, problem, &terms, &mut doubled, seed)?;
+        for (own, (before, (after, _))) in exponents.iter_mut().zip(before.iter().zip(&after)) {
             own.push(power_of_two(field, *before, *after)?);
         }
     }
     let mut found = Vec::new();
-    for ((term, (coefficient, _)), exponents) in terms.iter().zip(&solution).zip(&exponents) {
-        if *coefficient == 0 {
-            continue;
-        }
+    for ((term, coefficient), exponents) in terms.iter().zip(&before).zip(&exponents) {
         let mut rest = *coefficient;
         let mut factors = Vec::new();
         for ((symbol, value), exponent) in frozen.iter().zip(exponents) {
@@ -108,9 +108,6 @@ const EXPONENTS: std::ops::RangeInclusive<i64> = -4..=4;
 
 /// The e with `after = 2^e before`.
 fn power_of_two(field: Modulus, before: u64, after: u64) -> Option<i64> {
-    if before == 0 && after == 0 {
-        return Some(0);
-    }
     EXPONENTS.into_iter().find(|e| {
         let power = field.integer(1 << e.unsigned_abs());
         let (larger, smaller) = if *e < 0 {
@@ -118,7 +115,7 @@ fn power_of_two(field: Modulus, before: u64, after: u64) -> Option<i64> {
         } else {
             (after, before)
         };
-        before != 0 && field.mul(power, smaller) == larger
+        field.mul(power, smaller) == larger
     })
 }
 

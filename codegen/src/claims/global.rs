@@ -43,7 +43,7 @@ const SHIFT: f64 = 0.382;
 /// A period counts from this part of the integral of the absolute value on.
 const PERIOD: f64 = 1e-9;
 /// Samples at which periods are computed: the declared defaults, which may hide what depends on a parameter, and others.
-const ATTEMPTS: [usize; 3] = [0, 9, 18];
+const ATTEMPTS: [usize; 2] = [0, 9];
 
 /// What a density that was found in closed form with multiples of angles says.
 pub(super) fn from_angles(
