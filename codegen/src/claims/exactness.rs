@@ -6,7 +6,9 @@
 use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, SamplePoints, SymbolId};
 
 use super::closure::{Hull, Until, close};
-use super::fit::{Certified, Frozen, certify, fit, fit_with_parameters, solve_for_coefficients};
+use super::fit::{
+    Certified, Frozen, certify, fit, fit_with_parameters, has_points, solve_for_coefficients,
+};
 use super::frame::frame;
 use super::global::{self, Global};
 use super::potential::{Allowed, Candidates, Potential};
@@ -285,6 +287,10 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
     let mut singular = None;
     for allowed in [Allowed::Regular, Allowed::SingleValued, Allowed::All] {
         let pool = &mut model.pool;
+        // Each list contains the one before.
+        if !has_points(pool, problem, &candidates, allowed, seed) {
+            break;
+        }
         let found = fit(pool, problem, &candidates, allowed, seed).or_else(|| {
             fit_with_parameters(pool, problem, &candidates, allowed, &parameters, seed)
         });

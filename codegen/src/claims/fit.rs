@@ -50,6 +50,26 @@ pub(super) fn fit(
     Some(Potential { terms: found })
 }
 
+/// Whether points are found at which all candidates have residues: many independent roots refuse almost all points.
+pub(super) fn has_points(
+    pool: &Pool,
+    problem: &Problem,
+    candidates: &Candidates,
+    allowed: Allowed,
+    seed: u64,
+) -> bool {
+    let terms = candidates.allowed(allowed);
+    let roots = roots(problem, &terms);
+    let profile = pool.profile_of(&roots);
+    let points = sample_points(pool, &roots, &profile, seed);
+    points.is_ok_and(|points| {
+        let mut points = points.modulo(1);
+        points
+            .find(|point| equations(pool, problem, &terms, point))
+            .is_some()
+    })
+}
+
 /// As [`fit`], with coefficients that are products of powers of parameters.
 ///
 /// Where a parameter is doubled, such a coefficient is multiplied by a power of 2.
