@@ -86,7 +86,7 @@ pub fn find_conditions(
         } else {
             ATTEMPTS.0
         },
-        parameters: occurring(model, problem),
+        parameters: problem.parameters(model),
         wants_global: is_local,
         seed,
         left: limit,
@@ -136,16 +136,6 @@ fn trials(problem: &Problem, depth: usize) -> usize {
         .map(|k| (variables + k) as f64 / k as f64)
         .product();
     ((WORK / (products * pairs)) as usize).clamp(TRIALS.0, TRIALS.1)
-}
-
-/// The positions of the parameters on which existence may depend.
-fn occurring(model: &Model, problem: &Problem) -> Vec<usize> {
-    let roots = problem.roots();
-    let occurs = |position: &usize| {
-        let symbol = model.parameters[*position].symbol;
-        roots.iter().any(|id| model.pool.depends_on(*id, symbol))
-    };
-    (0..model.parameters.len()).filter(occurs).collect()
 }
 
 struct Scanner<'s> {

@@ -283,7 +283,8 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         });
     }
     let candidates = Candidates::of(&mut model.pool, problem, &model.coordinates);
-    let parameters = occurring(model, problem);
+    let positions = problem.parameters(model).into_iter();
+    let parameters: Vec<SymbolId> = positions.map(|i| model.parameters[i].symbol).collect();
     let mut singular = None;
     for allowed in [Allowed::Regular, Allowed::SingleValued, Allowed::All] {
         let pool = &mut model.pool;
@@ -351,12 +352,4 @@ fn exists_for_each_parameter(
         let mut frozen: Vec<Frozen> = parameters.iter().map(|own| (*own, None)).collect();
         solve_for_coefficients(&model.pool, problem, &terms, &mut frozen, seed).is_some()
     })
-}
-
-/// The parameters on which a density may depend.
-fn occurring(model: &Model, problem: &Problem) -> Vec<SymbolId> {
-    let roots = problem.roots();
-    let parameters = model.parameters.iter().map(|own| own.symbol);
-    let occurs = |own: &SymbolId| roots.iter().any(|id| model.pool.depends_on(*id, *own));
-    parameters.filter(occurs).collect()
 }

@@ -18,7 +18,7 @@ use crate::model::{Claim, Existence, Model, Statement};
 pub struct Examined {
     /// The verdicts, in order.
     pub findings: Vec<Finding>,
-    /// The invariant volume whose density is proved and known in closed form, a stated one before one that was found;
+    /// The invariant volume whose density is proved and can be emitted, a stated one before one that was found;
     /// `None` if no claim is about one.
     pub volume: Option<Volume>,
 }
@@ -56,7 +56,7 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
     Examined { findings, volume }
 }
 
-/// What would be said of `density: exact`, claimed or not, and the volume if there is one in closed form.
+/// What would be said of `density: exact`, claimed or not, and the volume if there is one that can be emitted.
 pub fn examine_volume(
     model: &mut Model,
     derivation: &Derivation,

@@ -103,6 +103,16 @@ impl Problem {
         }
     }
 
+    /// The positions of the parameters that occur.
+    pub(super) fn parameters(&self, model: &Model) -> Vec<usize> {
+        let roots = self.roots();
+        let occurs = |position: &usize| {
+            let symbol = model.parameters[*position].symbol;
+            roots.iter().any(|id| model.pool.depends_on(*id, symbol))
+        };
+        (0..model.parameters.len()).filter(occurs).collect()
+    }
+
     /// Whether time occurs.
     pub(super) fn is_time_dependent(&self) -> bool {
         self.symbols.len() > self.coordinates

@@ -44,6 +44,8 @@ const NEWTON: usize = 80;
 const ZERO: f64 = 1e-10;
 const STEP: f64 = 1e-5;
 const FAR: f64 = 1e6;
+/// Distances from such a zero between which `G` is compared: differences place it to [`STEP`] only.
+const AROUND: [f64; 2] = [1e-4, 1e-2];
 
 /// Values of coordinates, time and parameters.
 type Values = Vec<(SymbolId, f64)>;
@@ -271,7 +273,7 @@ impl Field<'_> {
             let mass = self.geometry(&values)?.mass_determinant;
             Some((self.potential(&values)?, mass))
         };
-        let (Some(close), Some(far)) = (near(1e-4), near(1e-2)) else {
+        let (Some(close), Some(far)) = (near(AROUND[0]), near(AROUND[1])) else {
             return false;
         };
         let growth = (close.0 - far.0).abs();
