@@ -10,7 +10,6 @@ use super::frame::frame;
 use super::obstruction::{combine, elements_at};
 use super::potential::{Potential, Term};
 use super::problem::Problem;
-use super::regularity::LEAVES;
 use super::sample::{Sample, sample, uses};
 use crate::model::{Model, Topology};
 
@@ -38,6 +37,8 @@ const POINTS: (usize, usize) = (32, 1024);
 const CONVERGED: f64 = 1e-10;
 /// What is rounding where everything else vanishes.
 const ROUNDING: f64 = 1e-12;
+/// Why a period was not found.
+const OPEN: &str = "a circle leaves the domain where the constraints are regular, or G varies too fast on it for its period to converge";
 /// Where between two multiples of the step the points lie.
 const SHIFT: f64 = 0.382;
 /// A period counts from this part of the integral of the absolute value on.
@@ -211,7 +212,7 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
     }
     match (is_whole, is_open) {
         (true, false) => Global::Exists,
-        (true, true) => Global::Undecided(LEAVES),
+        (true, true) => Global::Undecided(OPEN),
         (false, _) => {
             Global::Undecided("no density was found, and D does not connect all configurations")
         }
