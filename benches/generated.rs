@@ -30,8 +30,6 @@ pub fn impact<S: Impacting>(system: &S, surface: usize, state: &State<S>) -> Sta
         .expect("no fault at this state");
     let mut after = *state;
     let size = contact.impulse(Law::Elastic);
-    system
-        .kick(0.0, &mut after, size, &contact.direction)
-        .expect("no fault at this state");
+    system.kick(&mut after, size, &contact.direction);
     after
 }

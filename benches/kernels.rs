@@ -15,6 +15,8 @@ use dalembert_benches::hand::{
     chain, chaplygin_sleigh, double_pendulum, point_billiard, rolling_disk,
 };
 use dalembert_benches::{State, generated};
+use dalembert_models::chaplygin_sleigh::ChaplyginSleighGlobal as GlobalSleigh;
+use dalembert_models::rolling_disk::RollingDiskGlobal as GlobalDisk;
 use dalembert_models::{
     Chain4, Chain16, ChaplyginSleigh, DoublePendulum, PointBilliard, RollingDisk,
 };
@@ -60,14 +62,20 @@ fn rates(criterion: &mut Criterion) {
     Kernels::<PointBilliard>::new(criterion, KIND)
         .time("generated", generated::rate)
         .time("by hand", point_billiard::rate);
-    Kernels::<RollingDisk>::new(criterion, KIND)
+    Kernels::<GlobalDisk>::new(criterion, KIND)
         .time("generated", generated::rate)
         .time("by hand", rolling_disk::rate)
         .time("in closed form", rolling_disk::rate_in_closed_form);
-    Kernels::<ChaplyginSleigh>::new(criterion, KIND)
+    Kernels::<RollingDisk>::new(criterion, "reduced rate")
+        .time("generated", generated::rate)
+        .time("by hand", rolling_disk::reduced_rate);
+    Kernels::<GlobalSleigh>::new(criterion, KIND)
         .time("generated", generated::rate)
         .time("by hand", chaplygin_sleigh::rate)
         .time("in the frame", chaplygin_sleigh::rate_in_frame);
+    Kernels::<ChaplyginSleigh>::new(criterion, "reduced rate")
+        .time("generated", generated::rate)
+        .time("by hand", chaplygin_sleigh::reduced_rate);
     Kernels::<DoublePendulum>::new(criterion, KIND)
         .time("generated", generated::rate)
         .time("by hand", double_pendulum::rate);
@@ -86,10 +94,10 @@ fn energies(criterion: &mut Criterion) {
     Kernels::<PointBilliard>::new(criterion, KIND)
         .time("generated", generated::energy)
         .time("by hand", point_billiard::energy);
-    Kernels::<RollingDisk>::new(criterion, KIND)
+    Kernels::<GlobalDisk>::new(criterion, KIND)
         .time("generated", generated::energy)
         .time("by hand", rolling_disk::energy);
-    Kernels::<ChaplyginSleigh>::new(criterion, KIND)
+    Kernels::<GlobalSleigh>::new(criterion, KIND)
         .time("generated", generated::energy)
         .time("by hand", chaplygin_sleigh::energy);
     Kernels::<DoublePendulum>::new(criterion, KIND)
@@ -114,14 +122,14 @@ fn impacts(criterion: &mut Criterion) {
             generated::impact(point, surface(), state)
         })
         .time("by hand", point_billiard::impact);
-    Kernels::<RollingDisk>::new(criterion, KIND)
+    Kernels::<GlobalDisk>::new(criterion, KIND)
         .time("generated", |disk, state| {
             generated::impact(disk, surface(), state)
         })
         .time("by hand", |disk, state| {
             rolling_disk::impact(disk, surface(), state)
         });
-    Kernels::<ChaplyginSleigh>::new(criterion, KIND)
+    Kernels::<GlobalSleigh>::new(criterion, KIND)
         .time("generated", |sleigh, state| {
             generated::impact(sleigh, surface(), state)
         })

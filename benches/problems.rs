@@ -133,7 +133,7 @@ fn sleigh(manner: Manner) -> Solved {
     let state = state.expect("an admissible state");
     let run = solve(&sleigh, state, Projection::new(), 1000.0, manner);
     solved(run, Outcome::Done, |run| {
-        let [x, y, theta, ..]: [f64; 6] = run.state.into();
+        let [x, y, theta, ..]: [f64; 5] = run.state.into();
         let differences = [
             x + 711.407_841_646_589_8,
             y + 713.335_210_810_974_3,

@@ -26,7 +26,8 @@ impl Observer<RollingDisk> for Residual<'_> {
         segment: &mut Segment<'_, <RollingDisk as dalembert::VectorField>::State>,
     ) -> ControlFlow<()> {
         let state = segment.end();
-        let (residuals, scales) = self.disk.residuals(0.0, state).expect("residuals");
+        let (q, qdot) = (self.disk.position(state), self.disk.velocity(0.0, state));
+        let (residuals, scales) = self.disk.residuals(0.0, &q, &qdot.expect("a velocity"));
         for (residual, scale) in residuals.as_slice().iter().zip(scales.as_slice()) {
             self.worst = self.worst.max(residual.abs() / scale);
         }

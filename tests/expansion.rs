@@ -160,7 +160,11 @@ fn operations(source: &str) -> usize {
     let spec = spec::parse(source.parse().expect("tokens")).expect("a declaration");
     let mut model = model::check(&spec).expect("a model");
     let derivation = mechanics::derive(&mut model);
-    program::lower(&model, &derivation, None).rate.cost.total()
+    program::lower(&model, &derivation, None)
+        .main
+        .rate
+        .cost
+        .total()
 }
 
 #[test]

@@ -1,17 +1,17 @@
 //! Three routes to the same numbers: emitted code, the program's interpreter, and derivatives of the Lagrangian by
 //! differences.
 
-use dalembert::{Described, Scene, StateVector, System};
+use dalembert::{Described, Scene, StateVector, System, VectorField};
 use dalembert_codegen::model::Model;
-use dalembert_codegen::program::{Input, Program, interpret::interpret, verify::verify};
+use dalembert_codegen::program::{Input, Lowered, Program, interpret::interpret, verify::verify};
 use dalembert_codegen::{compile, mechanics, spec};
 use dalembert_expr::SymbolId;
 use dalembert_tests::sampling::{Visitor, states, visit_all};
 
 /// A model derived again from its own source text.
-fn derive(source: &str) -> (Model, mechanics::Derivation, Program) {
+fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
     let compiled = compile(source.parse().expect("tokens")).expect("a model");
-    (compiled.model, compiled.derivation, compiled.program)
+    (compiled.model, compiled.derivation, compiled.programs)
 }
 
 /// The arguments of a function at a state of a system.
@@ -25,7 +25,7 @@ fn input<'a, S: Described>(
     move |input| match input {
         Input::Time => t,
         Input::Coordinate(i) => state.as_slice()[i],
-        Input::Momentum(i) => state.as_slice()[n + i],
+        Input::Momentum(i) | Input::Quasi(i) => state.as_slice()[n + i],
         Input::Velocity(i) => qdot.as_slice()[i],
         Input::Parameter(k) => system.parameter(k),
         Input::Excess(_) => f64::NAN,
@@ -37,10 +37,17 @@ struct EmittedIsInterpreted(usize);
 
 impl Visitor for EmittedIsInterpreted {
     fn visit<S: Described + Scene>(&mut self, system: S) {
+        let (_, _, programs) = derive(S::DESCRIPTION.source);
+        self.compare(&system, &programs.main);
+        self.compare(&system.global(), programs.global());
+    }
+}
+
+impl EmittedIsInterpreted {
+    fn compare<S: Described>(&mut self, system: &S, program: &Program) {
         let name = S::DESCRIPTION.name;
-        let (_, _, program) = derive(S::DESCRIPTION.source);
-        for state in states(&system, 5, 1) {
-            let at = input(&system, 0.25, &state);
+        for state in states(system, 5, 1) {
+            let at = input(system, 0.25, &state);
             let mut rate = S::State::zeros();
             system.rate(0.25, &state, &mut rate).expect("a rate");
             let interpreted = interpret(&program.rate, &at).expect("a rate");
@@ -94,8 +101,8 @@ fn every_function_is_emitted_as_it_is_interpreted() {
     system
         .outputs(0.0, &state, &mut emitted)
         .expect("the outputs");
-    let (_, _, program) = derive(source);
-    let outputs = program.outputs.expect("outputs");
+    let (_, _, programs) = derive(source);
+    let outputs = programs.main.outputs.expect("outputs");
     let interpreted = interpret(&outputs, &input(&system, 0.0, &state)).expect("the outputs");
     assert_eq!(emitted.as_slice(), interpreted);
 }
@@ -173,8 +180,9 @@ struct WellFormed;
 
 impl Visitor for WellFormed {
     fn visit<S: Described + Scene>(&mut self, _: S) {
-        let (_, _, program) = derive(S::DESCRIPTION.source);
-        for function in program.functions() {
+        let (_, _, programs) = derive(S::DESCRIPTION.source);
+        let functions = programs.main.functions().into_iter();
+        for function in functions.chain(programs.global().functions()) {
             assert_eq!(verify(function), Ok(()), "{}", S::DESCRIPTION.name);
         }
     }
@@ -193,6 +201,7 @@ fn the_field_keeps_the_constraints_everywhere() {
     impl Visitor for Kept {
         fn visit<S: Described + Scene>(&mut self, system: S) {
             let (model, derivation, _) = derive(S::DESCRIPTION.source);
+            let system = system.global();
             let mut random = dalembert_tests::sampling::Random::new(3);
             for constraint in &derivation.constraints {
                 let (q, qdot) = (
@@ -201,7 +210,7 @@ fn the_field_keeps_the_constraints_everywhere() {
                 );
                 let t = 0.3;
                 let state = system.state_unchecked(t, &q, &qdot).expect("a state");
-                let mut rate = S::State::zeros();
+                let mut rate = <S::Global as VectorField>::State::zeros();
                 system.rate(t, &state, &mut rate).expect("a rate");
                 let residual = |h: f64| {
                     let mut moved = state;

@@ -19,9 +19,7 @@ const LAWS: [Law; 4] = [
 fn apply<S: Impacting>(system: &S, surface: usize, law: Law, state: &S::State) -> S::State {
     let contact = system.contact(surface, 0.0, state).expect("a contact");
     let mut after = *state;
-    system
-        .kick(0.0, &mut after, contact.impulse(law), &contact.direction)
-        .expect("an impulse");
+    system.kick(&mut after, contact.impulse(law), &contact.direction);
     after
 }
 
@@ -80,7 +78,8 @@ fn check_constraints<S: Described + Impacting + Constrained>(system: &S) {
                 .chain([Law::Restitution(0.3), Law::Newton(0.7)])
             {
                 let after = apply(system, surface, law, &state);
-                let (residuals, scales) = system.residuals(0.0, &after).expect("residuals");
+                let (q, qdot) = (system.position(&after), system.velocity(0.0, &after));
+                let (residuals, scales) = system.residuals(0.0, &q, &qdot.expect("a velocity"));
                 for (residual, scale) in residuals.as_slice().iter().zip(scales.as_slice()) {
                     assert!(
                         residual.abs() < 1e-12 * scale.max(1e-3),
@@ -109,7 +108,8 @@ fn impact_plastic_is_idempotent_and_totally_plastic_is_not() {
     for state in states(&disk, 10, 13) {
         let once = apply(&disk, 0, Law::ImpactPlastic, &state);
         let twice = apply(&disk, 0, Law::ImpactPlastic, &once);
-        assert!((once - twice).amax() < 1e-15, "{:e}", (once - twice).amax());
+        let bound = 4.0 * f64::EPSILON * state.amax();
+        assert!((once - twice).amax() < bound, "{:e}", (once - twice).amax());
         let once = apply(&disk, 0, Law::TotallyPlastic, &state);
         let twice = apply(&disk, 0, Law::TotallyPlastic, &once);
         let moved = (once - state).amax();

@@ -1,10 +1,13 @@
 //! The Chaplygin sleigh: a metric with off-diagonal entries and one constraint.
 
 use dalembert_models::ChaplyginSleigh;
+use dalembert_models::chaplygin_sleigh::ChaplyginSleighGlobal as Global;
 
 use crate::State;
 
-type SleighState = State<ChaplyginSleigh>;
+type SleighState = State<Global>;
+/// On D.
+type ReducedSleighState = State<ChaplyginSleigh>;
 
 /// `g^{-1} r`, from `theta = (r_theta + a (r_x sin - r_y cos))/I`.
 #[inline(always)]
@@ -24,7 +27,8 @@ fn raise(
 
 /// The one multiplier from `m^{11} lambda = -(W.(f - gdot qdot) + gamma)`.
 #[inline]
-pub fn rate(sleigh: &ChaplyginSleigh, state: &SleighState) -> SleighState {
+pub fn rate(sleigh: &Global, state: &SleighState) -> SleighState {
+    let sleigh = &sleigh.0;
     let [_, _, theta, p_x, p_y, p_theta]: [f64; 6] = (*state).into();
     let (sin, cos) = theta.sin_cos();
     let [x_dot, y_dot, spin] = raise(sleigh, (sin, cos), [p_x, p_y, p_theta]);
@@ -47,7 +51,8 @@ pub fn rate(sleigh: &ChaplyginSleigh, state: &SleighState) -> SleighState {
 
 /// In the frame of the blade: momenta along and across it, and the multiplier in closed form.
 #[inline]
-pub fn rate_in_frame(sleigh: &ChaplyginSleigh, state: &SleighState) -> SleighState {
+pub fn rate_in_frame(sleigh: &Global, state: &SleighState) -> SleighState {
+    let sleigh = &sleigh.0;
     let [_, _, theta, p_x, p_y, p_theta]: [f64; 6] = (*state).into();
     let (sin, cos) = theta.sin_cos();
     let (along, across) = (p_x * cos + p_y * sin, p_y * cos - p_x * sin);
@@ -70,7 +75,8 @@ pub fn rate_in_frame(sleigh: &ChaplyginSleigh, state: &SleighState) -> SleighSta
 
 /// Kinetic energy.
 #[inline]
-pub fn energy(sleigh: &ChaplyginSleigh, state: &SleighState) -> f64 {
+pub fn energy(sleigh: &Global, state: &SleighState) -> f64 {
+    let sleigh = &sleigh.0;
     let [_, _, theta, p_x, p_y, p_theta]: [f64; 6] = (*state).into();
     let (sin, cos) = theta.sin_cos();
     let moment = p_theta + sleigh.a * (p_x * sin - p_y * cos);
@@ -80,7 +86,8 @@ pub fn energy(sleigh: &ChaplyginSleigh, state: &SleighState) -> f64 {
 /// Elastic impact of a tip, 0 front, 1 back. The projected gradient in the frame of D: along the blade and turning,
 /// which are orthogonal.
 #[inline]
-pub fn impact(sleigh: &ChaplyginSleigh, tip: usize, state: &SleighState) -> SleighState {
+pub fn impact(sleigh: &Global, tip: usize, state: &SleighState) -> SleighState {
+    let sleigh = &sleigh.0;
     let [x, y, theta, p_x, p_y, p_theta]: [f64; 6] = (*state).into();
     let (sin, cos) = theta.sin_cos();
     let reach = if tip == 0 { sleigh.len } else { -sleigh.len };
@@ -104,13 +111,36 @@ pub fn impact(sleigh: &ChaplyginSleigh, tip: usize, state: &SleighState) -> Slei
     .into()
 }
 
+/// On D, in the frame along the blade and turning.
+#[inline]
+pub fn reduced_rate(sleigh: &ChaplyginSleigh, state: &ReducedSleighState) -> ReducedSleighState {
+    let [_, _, theta, v, omega]: [f64; 5] = (*state).into();
+    let (sin, cos) = theta.sin_cos();
+    let (m, a) = (sleigh.m, sleigh.a);
+    [
+        v * cos,
+        v * sin,
+        omega,
+        a * omega * omega,
+        -m * a * v * omega / (sleigh.I + m * a * a),
+    ]
+    .into()
+}
+
+/// Kinetic energy on D.
+#[inline]
+pub fn reduced_energy(sleigh: &ChaplyginSleigh, state: &ReducedSleighState) -> f64 {
+    let [_, _, _, v, omega]: [f64; 5] = (*state).into();
+    0.5 * (sleigh.m * v * v + (sleigh.I + sleigh.m * sleigh.a * sleigh.a) * omega * omega)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::generated;
     use crate::hand::agreement::{assert_numbers_agree, assert_states_agree};
 
-    const SLEIGH: ChaplyginSleigh = ChaplyginSleigh {
+    const MODEL: ChaplyginSleigh = ChaplyginSleigh {
         m: 1.3,
         I: 0.7,
         a: 0.4,
@@ -118,12 +148,15 @@ mod tests {
         ta: 2.0,
         tb: 1.5,
     };
+    const SLEIGH: Global = Global(MODEL);
 
     #[test]
     fn the_sleigh_by_hand_is_the_generated_one() {
         assert_states_agree(&SLEIGH, generated::rate, rate);
         assert_states_agree(&SLEIGH, generated::rate, rate_in_frame);
         assert_numbers_agree(&SLEIGH, generated::energy, energy);
+        assert_states_agree(&MODEL, generated::rate, reduced_rate);
+        assert_numbers_agree(&MODEL, generated::energy, reduced_energy);
         for tip in 0..2 {
             assert_states_agree(
                 &SLEIGH,

@@ -1,15 +1,19 @@
 //! The rolling disk: two constraints, so a system of two equations for the multipliers.
 
 use dalembert_models::RollingDisk;
+use dalembert_models::rolling_disk::RollingDiskGlobal as Global;
 
 use crate::State;
 
-type DiskState = State<RollingDisk>;
+type DiskState = State<Global>;
+/// On D.
+type ReducedDiskState = State<RollingDisk>;
 
 /// `m lambda = -gamma` by Cramer's rule, with `m^{ab} = eta^a(W^b)` and `gamma^a` the rate of `eta^a(qdot)` at constant
 /// velocity.
 #[inline]
-pub fn rate(disk: &RollingDisk, state: &DiskState) -> DiskState {
+pub fn rate(disk: &Global, state: &DiskState) -> DiskState {
+    let disk = &disk.0;
     let [_, _, _, phi, p_x, p_y, p_theta, p_phi]: [f64; 8] = (*state).into();
     let (sin, cos) = phi.sin_cos();
     let (roll, turn) = (p_theta / disk.I, p_phi / disk.J);
@@ -28,7 +32,8 @@ pub fn rate(disk: &RollingDisk, state: &DiskState) -> DiskState {
 
 /// The multipliers in closed form: the forces of rolling turn the velocity and do not touch the spin.
 #[inline]
-pub fn rate_in_closed_form(disk: &RollingDisk, state: &DiskState) -> DiskState {
+pub fn rate_in_closed_form(disk: &Global, state: &DiskState) -> DiskState {
+    let disk = &disk.0;
     let [_, _, _, phi, p_x, p_y, p_theta, p_phi]: [f64; 8] = (*state).into();
     let (sin, cos) = phi.sin_cos();
     let (roll, turn) = (p_theta / disk.I, p_phi / disk.J);
@@ -41,7 +46,8 @@ pub fn rate_in_closed_form(disk: &RollingDisk, state: &DiskState) -> DiskState {
 
 /// Kinetic energy.
 #[inline]
-pub fn energy(disk: &RollingDisk, state: &DiskState) -> f64 {
+pub fn energy(disk: &Global, state: &DiskState) -> f64 {
+    let disk = &disk.0;
     let [_, _, _, _, p_x, p_y, p_theta, p_phi]: [f64; 8] = (*state).into();
     let slide = (p_x * p_x + p_y * p_y) / disk.m;
     0.5 * (slide + p_theta * p_theta / disk.I + p_phi * p_phi / disk.J)
@@ -50,7 +56,8 @@ pub fn energy(disk: &RollingDisk, state: &DiskState) -> f64 {
 /// Elastic impact of an edge, 0 leading, 1 trailing. The projected gradient in the frame of D: `n_roll` along rolling
 /// and `n_turn` along turning, which are orthogonal.
 #[inline]
-pub fn impact(disk: &RollingDisk, edge: usize, state: &DiskState) -> DiskState {
+pub fn impact(disk: &Global, edge: usize, state: &DiskState) -> DiskState {
+    let disk = &disk.0;
     let [x, y, theta, phi, p_x, p_y, p_theta, p_phi]: [f64; 8] = (*state).into();
     let (sin, cos) = phi.sin_cos();
     let reach = if edge == 0 { disk.R } else { -disk.R };
@@ -77,13 +84,29 @@ pub fn impact(disk: &RollingDisk, edge: usize, state: &DiskState) -> DiskState {
     .into()
 }
 
+/// On D: roll and turn keep their rates.
+#[inline]
+pub fn reduced_rate(disk: &RollingDisk, state: &ReducedDiskState) -> ReducedDiskState {
+    let [_, _, _, phi, roll, turn]: [f64; 6] = (*state).into();
+    let (sin, cos) = phi.sin_cos();
+    let speed = disk.R * roll;
+    [speed * cos, speed * sin, roll, turn, 0.0, 0.0].into()
+}
+
+/// Kinetic energy on D.
+#[inline]
+pub fn reduced_energy(disk: &RollingDisk, state: &ReducedDiskState) -> f64 {
+    let [_, _, _, _, roll, turn]: [f64; 6] = (*state).into();
+    0.5 * ((disk.I + disk.m * disk.R * disk.R) * roll * roll + disk.J * turn * turn)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::generated;
     use crate::hand::agreement::{assert_numbers_agree, assert_states_agree};
 
-    const DISK: RollingDisk = RollingDisk {
+    const MODEL: RollingDisk = RollingDisk {
         m: 0.3,
         R: 0.4,
         I: 0.05,
@@ -91,12 +114,15 @@ mod tests {
         ta: 1.5,
         tb: 2.0,
     };
+    const DISK: Global = Global(MODEL);
 
     #[test]
     fn the_disk_by_hand_is_the_generated_one() {
         assert_states_agree(&DISK, generated::rate, rate);
         assert_states_agree(&DISK, generated::rate, rate_in_closed_form);
         assert_numbers_agree(&DISK, generated::energy, energy);
+        assert_states_agree(&MODEL, generated::rate, reduced_rate);
+        assert_numbers_agree(&MODEL, generated::energy, reduced_energy);
         for edge in 0..2 {
             assert_states_agree(
                 &DISK,

@@ -38,7 +38,11 @@ pub fn try_expand(input: TokenStream) -> Result<TokenStream, diagnostics::Diagno
     let mut compiled = compile(input)?;
     let findings = compiled.findings.iter().map(claims::Finding::note);
     compiled.model.notes.extend(findings);
-    Ok(emit::tokens(&compiled.model, &compiled.program))
+    Ok(emit::tokens(
+        &compiled.model,
+        &compiled.derivation,
+        &compiled.programs,
+    ))
 }
 
 /// A model after all stages but the last.
@@ -51,7 +55,7 @@ pub struct Compiled {
     /// The verdicts on its claims, in order; all of them accepted.
     pub findings: Vec<claims::Finding>,
     /// What is emitted.
-    pub program: program::Program,
+    pub programs: program::Lowered,
 }
 
 /// All stages but the last.
@@ -64,13 +68,13 @@ pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics>
     let derivation = mechanics::derive(&mut model);
     let claims::Examined { findings, volume } = claims::examine(&mut model, &derivation);
     refuse_claims(&spec, &findings)?;
-    let program = program::lower(&model, &derivation, volume.as_ref());
-    refuse_oversize(&spec, &program)?;
+    let programs = program::lower(&model, &derivation, volume.as_ref());
+    refuse_oversize(&spec, &programs)?;
     Ok(Compiled {
         model,
         derivation,
         findings,
-        program,
+        programs,
     })
 }
 
@@ -94,9 +98,9 @@ fn refuse_claims(
 /// Refuses a model whose code no compiler would finish in reasonable time, rather than handing it over.
 fn refuse_oversize(
     spec: &spec::Spec,
-    program: &program::Program,
+    programs: &program::Lowered,
 ) -> Result<(), diagnostics::Diagnostics> {
-    let (longest, limit) = (program.longest(), program::Program::OPERATIONS);
+    let (longest, limit) = (programs.longest(), program::Program::OPERATIONS);
     let mut diagnostics = diagnostics::Diagnostics::new();
     if longest > limit {
         let text = format!(

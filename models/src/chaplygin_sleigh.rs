@@ -26,6 +26,7 @@ dalembert::model! {
         let slip = -dot(x)*sin(theta) + dot(y)*cos(theta);
         lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (I + m*a^2)/2*dot(theta)^2 + a*m*dot(theta)*slip;
         constraints { blade: -sin(theta)*d(x) + cos(theta)*d(y) = 0; }
+        frame { v: cos(theta)*d(x) + sin(theta)*d(y); omega: d(theta); }
         impacts {
             front_tip: table(x + len*cos(theta), y + len*sin(theta)) >= 0;
             back_tip: table(x - len*cos(theta), y - len*sin(theta)) >= 0;

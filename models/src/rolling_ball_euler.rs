@@ -25,6 +25,11 @@ dalembert::model! {
             rolling_x: dot(x) - r*omega_y = 0;
             rolling_y: dot(y) + r*omega_x = 0;
         }
+        frame {
+            wx: sin(psi)*sin(theta)*d(phi) + cos(psi)*d(theta);
+            wy: -cos(psi)*sin(theta)*d(phi) + sin(psi)*d(theta);
+            wz: cos(theta)*d(phi) + d(psi);
+        }
         impacts { table_edge: 1 - x^2/ta^2 - y^2/tb^2 >= 0; }
         initial { theta = 1; dot(phi) = 1; dot(theta) = 0.5; until = 20; }
         view { path: (x, y); region: 1 - x^2/ta^2 - y^2/tb^2 >= 0; }

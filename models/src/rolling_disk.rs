@@ -39,6 +39,7 @@ dalembert::model! {
             /// The point of contact does not slip along y.
             rolling_y: dot(y) = R*sin(phi)*dot(theta);
         }
+        frame { roll: d(theta); turn: d(phi); }
         impacts {
             /// The end of the disk towards `(cos phi, sin phi)` stays above the table.
             leading_edge: table(x + R*cos(phi), y + R*sin(phi)) >= 0;

@@ -38,6 +38,10 @@ pub trait System: VectorField {
     /// N numbers, one per coordinate, in the order of declaration: q, qdot or p.
     type Vector: StateVector;
 
+    /// A change of what the state holds of the motion: of the N momenta in the global form, of the N - M
+    /// quasi-velocities in the form reduced to D.
+    type Impulse: StateVector;
+
     /// Positions q.
     fn position(&self, state: &Self::State) -> Self::Vector;
 
@@ -53,7 +57,8 @@ pub trait System: VectorField {
     /// [`Fault`], for states that do not hold momenta themselves.
     fn momentum(&self, t: f64, state: &Self::State) -> Result<Self::Vector, Fault>;
 
-    /// The state with these positions and velocities, taken as they are.
+    /// The state with these positions and velocities, taken as they are. A state reduced to D holds only velocities
+    /// that satisfy the constraints: there the quasi-velocities of `qdot` are taken, whatever it is off.
     ///
     /// # Errors
     /// [`Fault`] where the state cannot be formed.
@@ -64,7 +69,8 @@ pub trait System: VectorField {
         qdot: &Self::Vector,
     ) -> Result<Self::State, Fault>;
 
-    /// The state with these positions and momenta, taken as they are.
+    /// The state with these positions and momenta: taken as they are where the state holds momenta, else those
+    /// nearest to them in the metric that the constraints allow.
     ///
     /// # Errors
     /// [`Fault`] where the state cannot be formed.
@@ -81,17 +87,8 @@ pub trait System: VectorField {
     /// [`Fault::MetricNotPositive`].
     fn energy(&self, t: f64, state: &Self::State) -> Result<f64, Fault>;
 
-    /// Adds `size * direction` to the momenta: an impulse.
-    ///
-    /// # Errors
-    /// [`Fault`], for states that do not hold momenta themselves.
-    fn kick(
-        &self,
-        t: f64,
-        state: &mut Self::State,
-        size: f64,
-        direction: &Self::Vector,
-    ) -> Result<(), Fault>;
+    /// Adds `size * direction` to what the state holds of the motion: an impulse.
+    fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse);
 
     /// Checks every parameter against its declaration.
     ///
@@ -105,24 +102,28 @@ pub trait System: VectorField {
         None
     }
 
-    /// Refuses a state off the constraints by more than 1e-9 of the sum of absolute terms. Systems without
-    /// constraints accept every state.
+    /// Refuses velocities off the constraints by more than 1e-9 of the sum of absolute terms. Systems without
+    /// constraints accept all.
     ///
     /// # Errors
-    /// [`StateError::OffConstraint`], or a [`Fault`] met on the way.
-    fn admit(&self, t: f64, state: &Self::State) -> Result<(), StateError> {
-        let _ = (t, state);
+    /// [`StateError::OffConstraint`].
+    fn admit(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<(), StateError> {
+        let _ = (t, q, qdot);
         Ok(())
     }
 
-    /// Moves the state to the nearest one in the metric whose velocity satisfies the constraints. Does
-    /// nothing without constraints.
+    /// The state with these positions, and with the velocities nearest to these in the metric that satisfy the
+    /// constraints.
     ///
     /// # Errors
-    /// A [`Fault`] met on the way; the state is unchanged then.
-    fn project(&self, t: f64, state: &mut Self::State) -> Result<(), Fault> {
-        let _ = (t, state);
-        Ok(())
+    /// A [`Fault`] met on the way.
+    fn state_nearest(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, Fault> {
+        self.state_unchecked(t, q, qdot)
     }
 
     /// The velocities with those whose `named` is not 1 replaced by what the constraints make of the named
@@ -154,7 +155,7 @@ pub trait System: VectorField {
         qdot: &Self::Vector,
     ) -> Result<Self::State, StateError> {
         let state = self.checked(t, q, qdot)?;
-        self.admit(t, &state)?;
+        self.admit(t, q, qdot)?;
         Ok(state)
     }
 
@@ -168,9 +169,8 @@ pub trait System: VectorField {
         q: &Self::Vector,
         qdot: &Self::Vector,
     ) -> Result<Self::State, StateError> {
-        let mut state = self.checked(t, q, qdot)?;
-        self.project(t, &mut state)?;
-        Ok(state)
+        self.checked(t, q, qdot)?;
+        Ok(self.state_nearest(t, q, qdot)?)
     }
 
     /// The state after every check but that of the constraints.
@@ -216,14 +216,12 @@ pub trait Constrained: System {
 
     /// `eta^a(qdot) + eta^a_0`, and the sum of the absolute values of its terms, sines and cosines counted as 1: its
     /// natural scale.
-    ///
-    /// # Errors
-    /// [`Fault`].
     fn residuals(
         &self,
         t: f64,
-        state: &Self::State,
-    ) -> Result<(Self::Multipliers, Self::Multipliers), Fault>;
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> (Self::Multipliers, Self::Multipliers);
 
     /// The forms `eta^a` (M rows of N, row after row) and their affine parts `eta^a_0` (M) at a position.
     fn constraint_forms(
@@ -234,15 +232,16 @@ pub trait Constrained: System {
         affine: &mut Self::Multipliers,
     );
 
-    /// Brings the velocity back to the constraints after a step. Unlike [`System::project`] it need not move it as
-    /// little as possible: where some velocities follow from the others at every state, those are recomputed
-    /// and the others kept to the last digit.
+    /// Whether every state satisfies the constraints by its construction: the form reduced to D.
+    const IS_REDUCED: bool;
+
+    /// Brings the velocity back to the constraints after a step. Unlike [`System::state_nearest`] it need not move it
+    /// as little as possible: where some velocities follow from the others at every state, those are recomputed
+    /// and the others kept to the last digit. Does nothing where [`Constrained::IS_REDUCED`].
     ///
     /// # Errors
     /// [`Fault`]; the state is unchanged then.
-    fn restore(&self, t: f64, state: &mut Self::State) -> Result<(), Fault> {
-        self.project(t, state)
-    }
+    fn restore(&self, t: f64, state: &mut Self::State) -> Result<(), Fault>;
 
     /// The position-level values `f^k(t, q)` of the integrable constraints; the motion keeps them.
     fn levels(&self, t: f64, q: &Self::Vector) -> Self::Levels;
@@ -295,7 +294,7 @@ pub trait Impacting: System {
         surface: usize,
         t: f64,
         state: &Self::State,
-    ) -> Result<Contact<Self::Vector>, Fault>;
+    ) -> Result<Contact<Self::Impulse>, Fault>;
 }
 
 /// A system whose divergence with respect to the invariant-volume candidate `mu_C` was derived.

@@ -4,6 +4,7 @@
 
 pub use crate::assumption::Assumption;
 use crate::contract::System;
+use crate::effects::Scene;
 use crate::error::Fault;
 
 /// The set a coordinate runs through.
@@ -92,6 +93,9 @@ pub struct Description {
     pub constraints: &'static [ConstraintInfo],
     /// The named forces.
     pub forces: &'static [&'static str],
+    /// The quasi-velocities of the form reduced to D; a coordinate's velocity goes by the coordinate's name with
+    /// `_dot`. None where the equations are solved in the global form.
+    pub quasi_velocities: &'static [&'static str],
     /// The impact surfaces.
     pub surfaces: &'static [SurfaceInfo],
     /// The declared outputs.
@@ -109,6 +113,13 @@ pub struct Description {
 pub trait Described: System + Clone {
     /// Names, docs, topology, parameters, surfaces, scenes, source text.
     const DESCRIPTION: Description;
+
+    /// The same system in its global form, with the state (q, p) on T*Q, off the constraints too. The model itself
+    /// where it has no form reduced to D.
+    type Global: Described<Vector = Self::Vector> + Scene + 'static;
+
+    /// The system in its global form.
+    fn global(&self) -> Self::Global;
 
     /// The system with declared defaults; a parameter without default is NaN until it is set.
     fn with_defaults() -> Self;
@@ -139,6 +150,21 @@ pub trait Described: System + Clone {
     /// # Errors
     /// A [`Fault`] where the equations of motion do not exist.
     fn inspect(&self, t: f64, state: &Self::State, report: &mut dyn Report) -> Result<(), Fault>;
+
+    /// Reports what is derived in the frame of D alone: quasi-velocities and their rates, `X_0`, the rows `X_i`, `G_D`, the
+    /// density of `mu_C` in positions and quasi-velocities. Nothing in global form.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the equations of motion do not exist.
+    fn inspect_frame(
+        &self,
+        t: f64,
+        state: &Self::State,
+        report: &mut dyn Report,
+    ) -> Result<(), Fault> {
+        let _ = (t, state, report);
+        Ok(())
+    }
 }
 
 /// The declared initial condition.

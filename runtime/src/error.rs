@@ -23,6 +23,12 @@ pub enum Fault {
         /// Estimated condition number of the forms in the metric; infinite when dependent.
         condition: f64,
     },
+    /// The form of a declared quasi-velocity follows from the constraints and the other forms: velocities do not
+    /// follow from the quasi-velocities here.
+    SingularFrame {
+        /// Index of the quasi-velocity.
+        quasi: usize,
+    },
     /// `dh(pi_D grad h)` is not positive: no impulse that keeps the constraints can change the gap rate.
     SingularSurface {
         /// Index of the surface.
@@ -50,6 +56,10 @@ impl fmt::Display for Fault {
             } => write!(
                 f,
                 "constraint {constraint} depends on the earlier ones at this state (condition {condition:e})"
+            ),
+            Self::SingularFrame { quasi } => write!(
+                f,
+                "the declared frame is singular: quasi-velocity {quasi} follows from the others and the constraints"
             ),
             Self::SingularSurface { surface } => write!(
                 f,

@@ -3,8 +3,8 @@
 use nalgebra::SVector;
 
 use crate::assumption::Assumption;
-use crate::contract::Constrained;
-use crate::describe::Described;
+use crate::contract::{Constrained, System};
+use crate::describe::{Described, Report};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::state::StateVector;
 
@@ -36,11 +36,11 @@ pub fn part<const OFFSET: usize, const D: usize, const N: usize>(
     vector(values)
 }
 
-/// Positions and momenta as one state.
+/// Positions and what a state holds of the motion as one state.
 #[inline(always)]
-pub fn join<const N: usize, const D: usize>(
+pub fn join<const N: usize, const K: usize, const D: usize>(
     q: &SVector<f64, N>,
-    p: &SVector<f64, N>,
+    p: &SVector<f64, K>,
 ) -> SVector<f64, D> {
     let mut values = [0.0; D];
     for (entry, value) in values.iter_mut().zip(q.iter().chain(p.iter())) {
@@ -72,6 +72,15 @@ pub fn independent_constraint(
     match squared > LEAST_SQUARED_RATIO * reference {
         true => Ok(()),
         false => Err(singular_constraint(constraint, squared, reference)),
+    }
+}
+
+/// As [`independent_constraint`], or the fault of a frame that is singular.
+#[inline(always)]
+pub fn independent_form(quasi: usize, squared: f64, reference: f64) -> Result<(), Fault> {
+    match squared > LEAST_SQUARED_RATIO * reference {
+        true => Ok(()),
+        false => Err(Fault::SingularFrame { quasi }),
     }
 }
 
@@ -136,12 +145,33 @@ pub fn check_coefficient(name: &'static str, value: f64) -> Result<(), Parameter
     }
 }
 
-/// Refuses a state off the constraints.
+/// Reports what is derived at a state through the global form.
 ///
 /// # Errors
-/// [`StateError::OffConstraint`], or a fault met on the way.
-pub fn admit<S: Constrained>(system: &S, t: f64, state: &S::State) -> Result<(), StateError> {
-    let (residuals, scales) = system.residuals(t, state)?;
+/// A fault met on the way.
+pub fn inspect_globally<S: Described>(
+    system: &S,
+    t: f64,
+    state: &S::State,
+    report: &mut dyn Report,
+) -> Result<(), Fault> {
+    let (q, qdot) = (system.position(state), system.velocity(t, state)?);
+    let global = system.global();
+    let state = global.state_unchecked(t, &q, &qdot)?;
+    global.inspect(t, &state, report)
+}
+
+/// Refuses velocities off the constraints.
+///
+/// # Errors
+/// [`StateError::OffConstraint`].
+pub fn admit<S: Constrained>(
+    system: &S,
+    t: f64,
+    q: &S::Vector,
+    qdot: &S::Vector,
+) -> Result<(), StateError> {
+    let (residuals, scales) = system.residuals(t, q, qdot);
     let pairs = residuals.as_slice().iter().zip(scales.as_slice());
     for (constraint, (&residual, &scale)) in pairs.enumerate() {
         let holds = residual.abs() <= ADMITTED_RESIDUAL * scale;

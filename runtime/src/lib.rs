@@ -35,6 +35,7 @@
 //!
 //! impl System for Ball {
 //!     type Vector = Height;
+//!     type Impulse = Height;
 //!     fn position(&self, state: &State) -> Height {
 //!         Height::new(state[0])
 //!     }
@@ -53,9 +54,8 @@
 //!     fn energy(&self, _t: f64, state: &State) -> Result<f64, Fault> {
 //!         Ok(0.5 * state[1] * state[1] + state[0])
 //!     }
-//!     fn kick(&self, _t: f64, state: &mut State, size: f64, direction: &Height) -> Result<(), Fault> {
+//!     fn kick(&self, state: &mut State, size: f64, direction: &Height) {
 //!         state[1] += size * direction[0];
-//!         Ok(())
 //!     }
 //!     fn check_parameters(&self) -> Result<(), ParameterError> {
 //!         Ok(())

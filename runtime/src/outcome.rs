@@ -61,6 +61,11 @@ pub enum Outcome {
         /// Estimated condition number.
         condition: f64,
     },
+    /// See [`Fault::SingularFrame`].
+    SingularFrame {
+        /// Index of the quasi-velocity.
+        quasi: usize,
+    },
     /// See [`Fault::SingularSurface`].
     SingularSurface {
         /// Index of the surface.
@@ -102,6 +107,7 @@ impl Outcome {
             Self::LeftChart { .. } => "left_chart",
             Self::MetricNotPositive { .. } => "metric_not_positive",
             Self::SingularConstraint { .. } => "singular_constraint",
+            Self::SingularFrame { .. } => "singular_frame",
             Self::SingularSurface { .. } => "singular_surface",
             Self::NonFinite { .. } => "non_finite",
             Self::StepUnderflow { .. } => "step_underflow",
@@ -155,6 +161,7 @@ impl fmt::Display for Outcome {
                 condition,
             }
             .fmt(f),
+            Self::SingularFrame { quasi } => Fault::SingularFrame { quasi }.fmt(f),
             Self::SingularSurface { surface } => Fault::SingularSurface { surface }.fmt(f),
             Self::NonFinite { component } => Fault::NonFinite { component }.fmt(f),
             Self::StepUnderflow { t } => StepFailure::StepUnderflow { t }.fmt(f),
@@ -179,6 +186,7 @@ impl From<Fault> for Outcome {
                 constraint,
                 condition,
             },
+            Fault::SingularFrame { quasi } => Self::SingularFrame { quasi },
             Fault::SingularSurface { surface } => Self::SingularSurface { surface },
             Fault::NonFinite { component } => Self::NonFinite { component },
         }

@@ -2,7 +2,7 @@
 //!
 //! After a step, if a constraint is violated by more than rounding: positions first, by Newton's iteration
 //! `q -= correction(f(q) - f(q_0))` towards the levels at the start of the run (integrable constraints), then
-//! velocities, orthogonally in the metric.
+//! velocities, orthogonally in the metric. A state reduced to D has nothing but positions to bring back.
 
 use crate::contract::Constrained;
 use crate::effects::{Change, Effect, Moment, SceneEffects};
@@ -85,7 +85,7 @@ impl<Sys: Constrained> Projection<Sys> {
     fn settle_velocities(&self, now: &mut Moment<'_, Sys>, cut: bool) -> Result<Change, Outcome> {
         // NOTE: where the step was cut for an impact even rounding is mended: it costs nothing there, as the rate is
         // evaluated anew anyway, and what an impact law makes of a residual adds up over many impacts.
-        if !cut && violated(now)?.is_none() {
+        if Sys::IS_REDUCED || (!cut && violated(now)?.is_none()) {
             return Ok(Change::Kept);
         }
         now.system.restore(now.t, now.state)?;
@@ -132,7 +132,11 @@ fn exceeding<Sys: Constrained>(
     now: &Moment<'_, Sys>,
     threshold: f64,
 ) -> Result<Option<usize>, Fault> {
-    let (residuals, scales) = now.system.residuals(now.t, now.state)?;
+    let (q, qdot) = (
+        now.system.position(now.state),
+        now.system.velocity(now.t, now.state)?,
+    );
+    let (residuals, scales) = now.system.residuals(now.t, &q, &qdot);
     let mut pairs = residuals.as_slice().iter().zip(scales.as_slice());
     let holds = |(residual, scale): (&f64, &f64)| residual.abs() <= threshold * scale;
     Ok(pairs.position(|pair| !holds(pair)))

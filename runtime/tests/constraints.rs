@@ -26,6 +26,7 @@ impl VectorField for Circle {
 
 impl System for Circle {
     type Vector = Vector;
+    type Impulse = Vector;
 
     fn position(&self, s: &State) -> Vector {
         Vector::new(s[0], s[1])
@@ -51,38 +52,41 @@ impl System for Circle {
         Ok(0.5 * (s[2] * s[2] + s[3] * s[3]))
     }
 
-    fn kick(&self, _: f64, s: &mut State, size: f64, direction: &Vector) -> Result<(), Fault> {
+    fn kick(&self, s: &mut State, size: f64, direction: &Vector) {
         s[2] += size * direction[0];
         s[3] += size * direction[1];
-        Ok(())
     }
 
     fn check_parameters(&self) -> Result<(), ParameterError> {
         Ok(())
     }
 
-    fn project(&self, _: f64, s: &mut State) -> Result<(), Fault> {
-        let part = (s[0] * s[2] + s[1] * s[3]) / (s[0] * s[0] + s[1] * s[1]);
-        s[2] -= part * s[0];
-        s[3] -= part * s[1];
-        Ok(())
+    fn state_nearest(&self, _: f64, q: &Vector, qdot: &Vector) -> Result<State, Fault> {
+        let velocity = qdot - q.dot(qdot) / q.dot(q) * q;
+        Ok(State::new(q[0], q[1], velocity[0], velocity[1]))
     }
 }
 
 impl Constrained for Circle {
     type Multipliers = One;
     type Levels = One;
+    const IS_REDUCED: bool = false;
 
     fn multipliers(&self, _: f64, _: &State) -> Result<One, Fault> {
         Ok(One::new(0.0))
     }
 
-    fn residuals(&self, _: f64, s: &State) -> Result<(One, One), Fault> {
-        let terms = [s[0] * s[2], s[1] * s[3]];
-        Ok((
+    fn residuals(&self, _: f64, q: &Vector, qdot: &Vector) -> (One, One) {
+        let terms = [q[0] * qdot[0], q[1] * qdot[1]];
+        (
             One::new(terms[0] + terms[1]),
             One::new(terms[0].abs() + terms[1].abs()),
-        ))
+        )
+    }
+
+    fn restore(&self, t: f64, s: &mut State) -> Result<(), Fault> {
+        *s = self.state_nearest(t, &self.position(s), &self.velocity(t, s)?)?;
+        Ok(())
     }
 
     fn constraint_forms(&self, _: f64, q: &Vector, forms: &mut [f64], affine: &mut One) {

@@ -42,6 +42,7 @@ impl VectorField for Line {
 
 impl System for Line {
     type Vector = Scalar;
+    type Impulse = Scalar;
 
     fn position(&self, state: &Plane) -> Scalar {
         Scalar::new(state[0])
@@ -67,9 +68,8 @@ impl System for Line {
         Ok(0.5 * state[1] * state[1])
     }
 
-    fn kick(&self, _: f64, state: &mut Plane, size: f64, direction: &Scalar) -> Result<(), Fault> {
+    fn kick(&self, state: &mut Plane, size: f64, direction: &Scalar) {
         state[1] += size * direction[0];
-        Ok(())
     }
 
     fn check_parameters(&self) -> Result<(), ParameterError> {

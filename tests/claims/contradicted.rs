@@ -70,7 +70,7 @@ impl Visitor for Contradicted {
 /// A claim that is contradicted without a point is true: at random states it is.
 fn holds_numerically<S: Described>(system: &S, claim: &str, message: &str) {
     let (head, value) = claim.split_once(':').expect("a claim");
-    for state in states(system, 5, 31) {
+    for state in states(&system.global(), 5, 31) {
         let state = state.as_slice();
         let here = system.snapshot(0.3, state);
         let size = 1.0 + here.energy.abs();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use dalembert::describe::{Description, Report};
 use dalembert::impacts::law::{Contact, Law};
-use dalembert::{Described, StateVector};
+use dalembert::{Described, StateVector, System, VectorField};
 
 /// What is known of a state.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,7 +49,7 @@ impl Reported {
     }
 }
 
-/// An emitted model with its types forgotten. States are those of [`dalembert::VectorField`].
+/// An emitted model with its types forgotten. States are those of its global form, positions and momenta.
 ///
 /// # Panics
 /// All functions, where the model has no value.
@@ -103,36 +103,40 @@ impl<S: Described> Numeric for S {
     }
 
     fn state(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64> {
-        let state = self.state_unchecked(t, &vector(q), &vector(qdot));
+        let global = self.global();
+        let state = global.state_unchecked(t, &vector(q), &vector(qdot));
         state.expect("a state").as_slice().to_vec()
     }
 
     fn projected(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64> {
-        let state = self.state_projected(t, &vector(q), &vector(qdot));
+        let global = self.global();
+        let state = global.state_projected(t, &vector(q), &vector(qdot));
         state.expect("a state").as_slice().to_vec()
     }
 
     fn rate(&self, t: f64, state: &[f64]) -> Vec<f64> {
-        let mut rate = S::State::zeros();
-        dalembert::VectorField::rate(self, t, &vector(state), &mut rate).expect("a rate");
+        let mut rate = <S::Global as VectorField>::State::zeros();
+        let global = self.global();
+        VectorField::rate(&global, t, &vector(state), &mut rate).expect("a rate");
         rate.as_slice().to_vec()
     }
 
     fn snapshot(&self, t: f64, state: &[f64]) -> Snapshot {
-        let state = vector(state);
+        let (global, state) = (self.global(), vector(state));
         let list = |vector: S::Vector| vector.as_slice().to_vec();
         Snapshot {
             t,
-            q: list(self.position(&state)),
-            qdot: list(self.velocity(t, &state).expect("a velocity")),
-            p: list(self.momentum(t, &state).expect("a momentum")),
-            energy: self.energy(t, &state).expect("an energy"),
+            q: list(global.position(&state)),
+            qdot: list(global.velocity(t, &state).expect("a velocity")),
+            p: list(global.momentum(t, &state).expect("a momentum")),
+            energy: global.energy(t, &state).expect("an energy"),
         }
     }
 
     fn report(&self, t: f64, state: &[f64]) -> Reported {
         let mut reported = Reported::default();
-        self.inspect(t, &vector(state), &mut reported)
+        self.global()
+            .inspect(t, &vector(state), &mut reported)
             .expect("a report");
         reported
     }
@@ -140,7 +144,8 @@ impl<S: Described> Numeric for S {
     fn impact(&self, surface: &str, law: Law, t: f64, state: &[f64]) -> Vec<f64> {
         let report = Numeric::report(self, t, state);
         let of = |name: &str| report.number(&format!("impacts.{surface}.{name}"));
-        let contact = Contact::<S::Vector> {
+        let global = self.global();
+        let contact = Contact::<<S::Global as System>::Impulse> {
             gap_rate: of("gap_rate"),
             constrained_rate: of("constrained_rate"),
             surface_rate: of("surface_rate"),
@@ -148,9 +153,8 @@ impl<S: Described> Numeric for S {
             free_compliance: of("free_compliance"),
             direction: vector(&report.0[&format!("impacts.{surface}.direction")]),
         };
-        let mut after: S::State = vector(state);
-        self.kick(t, &mut after, contact.impulse(law), &contact.direction)
-            .expect("an impulse");
+        let mut after: <S::Global as VectorField>::State = vector(state);
+        global.kick(&mut after, contact.impulse(law), &contact.direction);
         after.as_slice().to_vec()
     }
 }

@@ -11,6 +11,7 @@ dalembert::model! {
         lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (I + m*a^2)/2*dot(theta)^2
             + a*m*dot(theta)*(-dot(x)*sin(theta) + dot(y)*cos(theta));
         constraints { blade: -sin(theta)*d(x) + cos(theta)*d(y) + (x^2*y + sin(theta))*d(t) = 0; }
+        frame { v: cos(theta)*d(x) + sin(theta)*d(y); omega: d(theta); }
         impacts {
             wall: table(x + len*cos(theta), y + len*sin(theta)) >= 0;
             wall_behind: table(x - len*cos(theta), y - len*sin(theta)) >= 0;
@@ -48,6 +49,7 @@ dalembert::model! {
             rolling_x: d(x) - R*cos(phi)*d(theta) = 0;
             rolling_y: d(y) - R*sin(phi)*d(theta) = 0;
         }
+        frame { forward: cos(phi)*d(x) + sin(phi)*d(y); turn: d(phi); }
         impacts {
             leading_edge: table(x + R*cos(phi), y + R*sin(phi)) >= 0;
             trailing_edge: table(x - R*cos(phi), y - R*sin(phi)) >= 0;
@@ -66,6 +68,7 @@ dalembert::model! {
         lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (I + m*a^2)/2*dot(theta)^2
             + a*m*dot(theta)*(-dot(x)*sin(theta) + dot(y)*cos(theta));
         constraints { blade: -sin(theta)*d(x) + cos(theta)*d(y) = 0; }
+        frame { v: cos(theta)*d(x) + sin(theta)*d(y); omega: d(theta); }
         forces {
             drag: -c*(dot(x)*d(x) + dot(y)*d(y));
             spin: -k*dot(theta)*(1 + dot(theta)^2)*d(theta);
@@ -113,6 +116,7 @@ dalembert::model! {
         lagrangian = b*t*dot(x)*z/2 + b*x*dot(y)*cos(t) - k*(x^2 + z^2)/2
             + m*(dot(x)^2 + dot(y)^2 + dot(z)^2*(x^2 + 1))/2 - s*x*sin(2*t);
         constraints { sweep: x*(-t/3 - 1)*d(x) + d(y) + sin(t)*d(t) = 0; }
+        frame { xdot: d(x); slide: z*d(x) + d(z); }
         forces {
             friction: -c*dot(x)*(dot(z)^2 + 1)*d(x) + (-c*dot(y) + d_*dot(z)*sin(t))*d(y)
                 + (-c*dot(z)^3 - d_*dot(x))*d(z);

@@ -73,7 +73,8 @@ impl WithVolume {
         let exactness = decide(&mut model, &problem, 1).ok()?;
         let found = Volume::found(&model, &derivation, &problem, &exactness, 1);
         let volume = choose(&mut model, &derivation, found)?;
-        let program = program::lower(&model, &derivation, Some(&volume));
+        let lowered = program::lower(&model, &derivation, Some(&volume));
+        let program = lowered.global.unwrap_or(lowered.main);
         Some(Self {
             model,
             derivation,
@@ -108,6 +109,7 @@ impl WithVolume {
             Input::Coordinate(i) => q[i],
             Input::Velocity(i) => qdot[i],
             Input::Momentum(i) => p[i],
+            Input::Quasi(_) => f64::NAN,
             Input::Parameter(k) => self.parameter(k),
             Input::Excess(_) => f64::NAN,
         }

@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::function::Body;
 use super::{Context, doc};
-use crate::program::Constrained;
+use crate::program::{Constrained, Form};
 
 /// `impl Constrained`, if there are constraints.
 pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
@@ -15,6 +15,7 @@ pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let m = context.model.constraints.len();
     let levels = functions.levels.outputs.len();
+    let is_reduced = context.program.form == Form::Reduced;
     let solve = emit_multipliers(context, functions);
     let forms = emit_forms(context, functions);
     let restore = emit_restore(context, functions);
@@ -25,6 +26,7 @@ pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
         impl ::dalembert::Constrained for #type_name {
             type Multipliers = ::dalembert::__private::SVector<f64, #m>;
             type Levels = ::dalembert::__private::SVector<f64, #levels>;
+            const IS_REDUCED: bool = #is_reduced;
             #solve
             #forms
             #restore
@@ -39,7 +41,7 @@ fn emit_multipliers(context: &Context<'_>, functions: &Constrained) -> TokenStre
     let formula = "m^ab lambda_b = -[ W^a.(f - gdot qdot - Adot) + curvature_a ]";
     let documentation = doc::formula(formula, &functions.multipliers.cost);
     let (statements, values) = (multipliers.statements, multipliers.outputs);
-    let residuals = context.state_body(&functions.residuals);
+    let residuals = context.velocity_body(&functions.residuals);
     let residuals_doc = doc::formula("eta^a(qdot) + eta^a_0", &functions.residuals.cost);
     let (residual_statements, both) = (residuals.statements, residuals.outputs);
     let (left, right) = both.split_at(m);
@@ -60,13 +62,14 @@ fn emit_multipliers(context: &Context<'_>, functions: &Constrained) -> TokenStre
         fn residuals(
             &self,
             t: f64,
-            state: &Self::State,
-        ) -> ::core::result::Result<(Self::Multipliers, Self::Multipliers), ::dalembert::Fault> {
+            q: &Self::Vector,
+            qdot: &Self::Vector,
+        ) -> (Self::Multipliers, Self::Multipliers) {
             #residual_statements
-            ::core::result::Result::Ok((
+            (
                 ::dalembert::__private::vector([#(#left),*]),
                 ::dalembert::__private::vector([#(#right),*]),
-            ))
+            )
         }
     }
 }
@@ -91,14 +94,22 @@ fn emit_forms(context: &Context<'_>, functions: &Constrained) -> TokenStream {
 }
 
 fn emit_restore(context: &Context<'_>, functions: &Constrained) -> TokenStream {
+    let Some(back) = &functions.return_to_constraints else {
+        return quote! {
+            #[inline]
+            fn restore(&self, t: f64, state: &mut Self::State) -> ::core::result::Result<(), ::dalembert::Fault> {
+                ::core::result::Result::Ok(())
+            }
+        };
+    };
     let documentation = doc::formula(
         "p + g (change of the dependent velocities)",
-        &functions.restore.cost,
+        &back.restore.cost,
     );
     let Body {
         statements,
         outputs,
-    } = context.state_body(&functions.restore);
+    } = context.state_body(&back.restore);
     quote! {
         #documentation
         #[inline]
@@ -141,31 +152,49 @@ fn emit_levels(context: &Context<'_>, functions: &Constrained) -> TokenStream {
     }
 }
 
-/// What a system with constraints answers where others accept every state.
-pub(super) fn emit_system_hooks(context: &Context<'_>) -> TokenStream {
-    let Some(functions) = &context.program.constrained else {
+/// `state_nearest` in global form, if there are constraints.
+pub(super) fn emit_nearest(context: &Context<'_>) -> TokenStream {
+    let constrained = context.program.constrained.as_ref();
+    let Some(back) = constrained.and_then(|own| own.return_to_constraints.as_ref()) else {
         return TokenStream::new();
     };
     let documentation = doc::formula(
         "p + mu_a eta^a, m mu = -(eta(qdot) + eta_0)",
-        &functions.project.cost,
+        &back.nearest.cost,
     );
     let Body {
         statements,
         outputs,
-    } = context.state_body(&functions.project);
+    } = context.velocity_body(&back.nearest);
     quote! {
-        fn admit(&self, t: f64, state: &Self::State) -> ::core::result::Result<(), ::dalembert::StateError> {
-            ::dalembert::__private::admit(self, t, state)
-        }
-
         #documentation
         #[inline]
-        fn project(&self, t: f64, state: &mut Self::State) -> ::core::result::Result<(), ::dalembert::Fault> {
+        fn state_nearest(
+            &self,
+            t: f64,
+            q: &Self::Vector,
+            qdot: &Self::Vector,
+        ) -> ::core::result::Result<Self::State, ::dalembert::Fault> {
             #statements
             let p = ::dalembert::__private::vector([#(#outputs),*]);
-            *state = ::dalembert::__private::join(&<Self as ::dalembert::System>::position(self, state), &p);
-            ::core::result::Result::Ok(())
+            ::core::result::Result::Ok(::dalembert::__private::join(q, &p))
+        }
+    }
+}
+
+/// What a system with constraints answers where others accept every state.
+pub(super) fn emit_system_hooks(context: &Context<'_>) -> TokenStream {
+    if context.program.constrained.is_none() {
+        return TokenStream::new();
+    }
+    quote! {
+        fn admit(
+            &self,
+            t: f64,
+            q: &Self::Vector,
+            qdot: &Self::Vector,
+        ) -> ::core::result::Result<(), ::dalembert::StateError> {
+            ::dalembert::__private::admit(self, t, q, qdot)
         }
 
         fn complete_velocity(

@@ -6,13 +6,25 @@ use quote::quote;
 use super::function::{Body, emit_body, number};
 use super::{Context, parameters};
 use crate::model::{Assumption, Topology};
+use crate::program::Form;
 use crate::program::recipes::geometry::Shape;
 
 /// `impl Described`
 pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
-    let description = emit_description(context);
-    let defaults = parameters::with_defaults(context.model);
+    let (model, global_name) = (&context.names.model, &context.names.global);
+    let description = match context.is_wrapped() {
+        true => quote!(<#model as ::dalembert::Described>::DESCRIPTION),
+        false => emit_description(context),
+    };
+    let defaults = match context.is_wrapped() {
+        true => quote!(Self(<#model as ::dalembert::Described>::with_defaults())),
+        false => parameters::with_defaults(context.model),
+    };
+    let (global_type, global) = match context.program.form {
+        Form::Global => (quote!(Self), quote!(*self)),
+        Form::Reduced => (quote!(#global_name), quote!(#global_name(*self))),
+    };
     let access = emit_parameter_access(context);
     let initial = emit_initial(context);
     let declared = emit_declared(context);
@@ -22,6 +34,11 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
         #attributes
         impl ::dalembert::Described for #type_name {
             const DESCRIPTION: ::dalembert::describe::Description = #description;
+
+            type Global = #global_type;
+
+            #[inline]
+            fn global(&self) -> Self::Global { #global }
 
             fn with_defaults() -> Self { #defaults }
 
@@ -48,6 +65,10 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
     let constraints = emit_constraint_infos(context);
     let forces = model.forces.iter().map(|force| &force.name.display);
     let surfaces = emit_surface_infos(context);
+    let quasi = match context.program.form {
+        Form::Global => Vec::new(),
+        Form::Reduced => context.quasi_names(),
+    };
     let outputs = model.outputs.iter().map(|output| &output.name.display);
     let view = emit_view_info(context);
     quote! {
@@ -60,6 +81,7 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
             parameters: &[#parameters],
             constraints: &[#constraints],
             forces: &[#(#forces),*],
+            quasi_velocities: &[#(#quasi),*],
             surfaces: &[#surfaces],
             outputs: &[#(#outputs),*],
             scenes: &["all"],
@@ -306,14 +328,17 @@ fn emit_inspect(context: &Context<'_>) -> TokenStream {
             }
         }
     });
-    let mut reports: Vec<TokenStream> = reports.collect();
+    let reports: Vec<TokenStream> = reports.collect();
+    if context.program.form == Form::Reduced {
+        return emit_reduced_inspect(&statements, &reports);
+    }
     let volume = context.program.volume.as_ref();
-    if volume.is_some_and(|own| own.gradient.is_some()) {
-        reports.push(quote! {
+    let integral = volume.is_some_and(|own| own.gradient.is_some()).then(|| {
+        quote! {
             let density = ::dalembert::InvariantVolume::log_density(self, t, &::dalembert::System::position(self, state))?;
             report.scalar("log_density", density);
-        });
-    }
+        }
+    });
     let end = Literal::usize_unsuffixed(n);
     let p = Ident::new("p", Span::mixed_site());
     quote! {
@@ -328,6 +353,33 @@ fn emit_inspect(context: &Context<'_>) -> TokenStream {
             report.vector("p", #p);
             #statements
             #(#reports)*
+            #integral
+            ::core::result::Result::Ok(())
+        }
+    }
+}
+
+/// What is derived on D after what the global form derives.
+fn emit_reduced_inspect(statements: &TokenStream, reports: &[TokenStream]) -> TokenStream {
+    quote! {
+        fn inspect(
+            &self,
+            t: f64,
+            state: &Self::State,
+            report: &mut dyn ::dalembert::describe::Report,
+        ) -> ::core::result::Result<(), ::dalembert::Fault> {
+            ::dalembert::__private::inspect_globally(self, t, state, report)?;
+            ::dalembert::Described::inspect_frame(self, t, state, report)
+        }
+
+        fn inspect_frame(
+            &self,
+            t: f64,
+            state: &Self::State,
+            report: &mut dyn ::dalembert::describe::Report,
+        ) -> ::core::result::Result<(), ::dalembert::Fault> {
+            #statements
+            #(#reports)*
             ::core::result::Result::Ok(())
         }
     }
@@ -337,7 +389,12 @@ fn emit_inspect(context: &Context<'_>) -> TokenStream {
 pub(super) fn emit_scene(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let (mut types, mut values) = (Vec::new(), Vec::new());
-    if context.program.constrained.is_some() {
+    // A state reduced to D has nothing to be brought back to but the positions of integrable constraints.
+    let is_projected =
+        context.program.constrained.as_ref().is_some_and(|own| {
+            context.program.form == Form::Global || !own.levels.outputs.is_empty()
+        });
+    if is_projected {
         types.push(quote!(::dalembert::Projection<Self>));
         values.push(quote!(::dalembert::Projection::new()));
     }

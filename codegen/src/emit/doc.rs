@@ -3,8 +3,8 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::model::Model;
-use crate::program::Cost;
+use super::Context;
+use crate::program::{Cost, Form};
 
 /// A doc comment from lines.
 pub(super) fn lines<S: AsRef<str>>(lines: &[S]) -> TokenStream {
@@ -25,14 +25,17 @@ pub(super) fn formula(text: &str, cost: &Cost) -> TokenStream {
     lines(&[format!("`{text}`"), String::new(), format!("{cost}.")])
 }
 
-/// The order of the components of the state: `x, y, p_x, p_y`.
-pub(super) fn state_order(model: &Model) -> String {
+/// The order of the components of the state: `x, y, p_x, p_y`, or `x, y, theta, v, omega`.
+pub(super) fn state_order(context: &Context<'_>) -> String {
     let names = |prefix: &str| -> Vec<String> {
-        model
-            .coordinates
-            .iter()
+        let coordinates = context.model.coordinates.iter();
+        coordinates
             .map(|coordinate| format!("{prefix}{}", coordinate.name.display))
             .collect()
     };
-    [names(""), names("p_")].concat().join(", ")
+    let motion = match context.program.form {
+        Form::Global => names("p_"),
+        Form::Reduced => context.quasi_names(),
+    };
+    [names(""), motion].concat().join(", ")
 }

@@ -6,12 +6,26 @@ use quote::quote;
 use super::function::{Body, emit_body, uses};
 use super::{Context, doc};
 use crate::model::Topology;
-use crate::program::{Function, Input};
+use crate::program::{Form, Function, Input};
 
 impl Context<'_> {
     /// Number of coordinates.
     pub(super) fn dimension(&self) -> usize {
         self.model.coordinates.len()
+    }
+
+    /// Number of components of the state beside the positions.
+    pub(super) fn motion_dimension(&self) -> usize {
+        match self.program.form {
+            Form::Global => self.dimension(),
+            Form::Reduced => self.names.quasi.len(),
+        }
+    }
+
+    /// The names of the quasi-velocities.
+    pub(super) fn quasi_names(&self) -> Vec<String> {
+        let quasi = self.frame.iter().flat_map(|frame| &frame.quasi);
+        quasi.map(|own| own.name.clone()).collect()
     }
 
     /// `let [x, y, _] = components(q);` with the coordinates that the function uses.
@@ -27,13 +41,27 @@ impl Context<'_> {
         let coordinates = pattern(&self.names.coordinates, |i| {
             uses(function, |input| input == Input::Coordinate(i))
         });
-        let momenta = pattern(&self.names.momenta, |i| {
-            uses(function, |input| input == Input::Momentum(i))
-        });
-        bind(&[coordinates, momenta], &quote!(state))
+        let motion = match self.program.form {
+            Form::Global => self.momentum_pattern(function),
+            Form::Reduced => pattern(&self.names.quasi, |i| {
+                uses(function, |input| input == Input::Quasi(i))
+            }),
+        };
+        bind(&[coordinates, motion], &quote!(state))
     }
 
-    fn bind_velocities(&self, function: &Function) -> TokenStream {
+    fn momentum_pattern(&self, function: &Function) -> (TokenStream, bool) {
+        pattern(&self.names.momenta, |i| {
+            uses(function, |input| input == Input::Momentum(i))
+        })
+    }
+
+    /// `let [p_x, _] = components(p);` with what the function uses.
+    pub(super) fn bind_momenta(&self, function: &Function) -> TokenStream {
+        bind(&[self.momentum_pattern(function)], &quote!(p))
+    }
+
+    pub(super) fn bind_velocities(&self, function: &Function) -> TokenStream {
         let velocities = pattern(&self.names.velocities, |i| {
             uses(function, |input| input == Input::Velocity(i))
         });
@@ -52,13 +80,22 @@ impl Context<'_> {
         self.body(quote!(#compute #velocities #state), function)
     }
 
+    /// The statements of a function of `(t, q, qdot)` and its results.
+    pub(super) fn velocity_body(&self, function: &Function) -> Body {
+        let bindings = [
+            self.bind_coordinates(function),
+            self.bind_velocities(function),
+        ];
+        self.body(quote!(#(#bindings)*), function)
+    }
+
     /// The statements of a function of `(t, q)` and its results.
     pub(super) fn position_body(&self, function: &Function) -> Body {
         self.body(self.bind_coordinates(function), function)
     }
 
     /// The statements of a function after what binds its arguments.
-    fn body(&self, bindings: TokenStream, function: &Function) -> Body {
+    pub(super) fn body(&self, bindings: TokenStream, function: &Function) -> Body {
         let Body {
             statements,
             outputs,
@@ -96,23 +133,35 @@ fn bind(patterns: &[(TokenStream, bool)], source: &TokenStream) -> TokenStream {
 pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
     let (type_name, n) = (&context.names.type_name, context.dimension());
     let program = context.program;
-    let size = 2 * n;
-    let formula = match program.constrained {
-        Some(_) => "qdot = g^-1 (p - A), pdot = dL/dq + F + lambda_a eta^a",
-        None => "qdot = g^-1 (p - A), pdot = dL/dq + F",
+    let size = n + context.motion_dimension();
+    let formula = match (program.form, &program.constrained) {
+        (Form::Reduced, _) => {
+            "qdot = X_0 + X u, G_D udot = X^T (f - gdot qdot - Adot - g (Xdot u + Xdot_0))"
+        }
+        (_, Some(_)) => "qdot = g^-1 (p - A), pdot = dL/dq + F + lambda_a eta^a",
+        (_, None) => "qdot = g^-1 (p - A), pdot = dL/dq + F",
     };
     let documentation = doc::formula(formula, &program.rate.cost);
     let order = doc::lines(&[
         String::new(),
-        format!("State: `{}`.", doc::state_order(context.model)),
+        format!("State: `{}`.", doc::state_order(context)),
     ]);
     let Body {
         statements,
         outputs,
     } = context.state_body(&program.rate);
     let scale = context.position_body(&program.scale);
-    let (units, momenta) = ((0..n).map(|_| quote!(1.0)), scale.outputs);
-    let scale_statements = scale.statements;
+    let scale_doc = match program.form {
+        Form::Global => {
+            "1 for a coordinate, `g_ii` for its momentum: what a unit of velocity makes of it."
+        }
+        Form::Reduced => {
+            "The norm of its form for a quasi-velocity; for a coordinate what unit quasi-velocities make of its velocity, 1 \
+             where that depends on the configuration."
+        }
+    };
+    let scale_doc = doc::lines(&[scale_doc]);
+    let (scale_statements, units) = (scale.statements, scale.outputs);
     let attributes = super::attributes();
     quote! {
         #attributes
@@ -133,12 +182,12 @@ pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
                 ::core::result::Result::Ok(())
             }
 
-            /// 1 for a coordinate, `g_ii` for its momentum: what a unit of velocity makes of it.
+            #scale_doc
             #[inline]
             fn scale(&self, t: f64, state: &Self::State) -> Self::State {
                 let q = &<Self as ::dalembert::System>::position(self, state);
                 #scale_statements
-                ::dalembert::__private::vector([#(#units,)* #(#momenta),*])
+                ::dalembert::__private::vector([#(#units),*])
             }
         }
     }
@@ -147,7 +196,11 @@ pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
 /// `impl System`
 pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
     let (type_name, n) = (&context.names.type_name, context.dimension());
-    let momenta = emit_momentum_functions(context);
+    let k = context.motion_dimension();
+    let states = match &context.program.reduced {
+        Some(functions) => super::reduced::emit_state_functions(context, functions),
+        None => emit_momentum_functions(context),
+    };
     let derived = emit_derived_functions(context);
     let chart = emit_chart(context);
     let coefficients = super::impact::emit_coefficient_checks(context);
@@ -160,22 +213,22 @@ pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
         #attributes
         impl ::dalembert::System for #type_name {
             type Vector = ::dalembert::__private::SVector<f64, #n>;
+            type Impulse = ::dalembert::__private::SVector<f64, #k>;
 
             #[inline]
             fn position(&self, state: &Self::State) -> Self::Vector {
                 ::dalembert::__private::part::<0, _, _>(state)
             }
 
+            #states
+
             #[inline]
-            fn momentum(
-                &self,
-                t: f64,
-                state: &Self::State,
-            ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
-                ::core::result::Result::Ok(::dalembert::__private::part::<#n, _, _>(state))
+            fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse) {
+                for i in 0..#k {
+                    state[#n + i] += size * direction[i];
+                }
             }
 
-            #momenta
             #derived
 
             fn check_parameters(&self) -> ::core::result::Result<(), ::dalembert::ParameterError> {
@@ -195,15 +248,21 @@ fn emit_momentum_functions(context: &Context<'_>) -> TokenStream {
     let n = context.dimension();
     let function = &context.program.momentum;
     let documentation = doc::formula("p = g qdot + A", &function.cost);
-    let bindings = [
-        context.bind_coordinates(function),
-        context.bind_velocities(function),
-    ];
     let Body {
         statements,
         outputs,
-    } = context.body(quote!(#(#bindings)*), function);
+    } = context.velocity_body(function);
+    let nearest = super::constraint::emit_nearest(context);
     quote! {
+        #[inline]
+        fn momentum(
+            &self,
+            t: f64,
+            state: &Self::State,
+        ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
+            ::core::result::Result::Ok(::dalembert::__private::part::<#n, _, _>(state))
+        }
+
         #documentation
         #[inline]
         fn state_unchecked(
@@ -227,19 +286,7 @@ fn emit_momentum_functions(context: &Context<'_>) -> TokenStream {
             ::core::result::Result::Ok(::dalembert::__private::join(q, p))
         }
 
-        #[inline]
-        fn kick(
-            &self,
-            t: f64,
-            state: &mut Self::State,
-            size: f64,
-            direction: &Self::Vector,
-        ) -> ::core::result::Result<(), ::dalembert::Fault> {
-            for i in 0..#n {
-                state[#n + i] += size * direction[i];
-            }
-            ::core::result::Result::Ok(())
-        }
+        #nearest
     }
 }
 
@@ -247,7 +294,11 @@ fn emit_momentum_functions(context: &Context<'_>) -> TokenStream {
 fn emit_derived_functions(context: &Context<'_>) -> TokenStream {
     let program = context.program;
     let velocity = context.state_body(&program.velocity);
-    let velocity_doc = doc::formula("qdot = g^-1 (p - A)", &program.velocity.cost);
+    let formula = match program.form {
+        Form::Global => "qdot = g^-1 (p - A)",
+        Form::Reduced => "qdot = X_0 + X u",
+    };
+    let velocity_doc = doc::formula(formula, &program.velocity.cost);
     let (velocity_statements, qdot) = (velocity.statements, velocity.outputs);
     let energy = context.state_body(&program.energy);
     let energy_doc = doc::formula("H = g(qdot, qdot)/2 + V", &program.energy.cost);

@@ -195,6 +195,18 @@ impl<'a> Writer<'a> {
                 };
                 quote!(::dalembert::__private::independent_constraint(#constraint, #squared, #reference)?;)
             }
+            Guard::Frame {
+                quasi,
+                squared,
+                reference,
+            } => {
+                let squared = at(squared);
+                let reference = match reference {
+                    Some(reference) => at(reference),
+                    None => quote!(0.0),
+                };
+                quote!(::dalembert::__private::independent_form(#quasi, #squared, #reference)?;)
+            }
             Guard::Surface { surface, squared } => {
                 let squared = at(squared);
                 quote!(::dalembert::__private::regular_surface(#surface, #squared)?;)
@@ -274,6 +286,7 @@ impl<'a> Writer<'a> {
             Input::Coordinate(i) => local(&self.names.coordinates[i]),
             Input::Velocity(i) => local(&self.names.velocities[i]),
             Input::Momentum(i) => local(&self.names.momenta[i]),
+            Input::Quasi(i) => local(&self.names.quasi[i]),
             Input::Parameter(k) => self.names.parameters[k].clone(),
             Input::Excess(k) => {
                 let index = Literal::usize_unsuffixed(k);

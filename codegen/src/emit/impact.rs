@@ -185,7 +185,7 @@ fn emit_contacts(context: &Context<'_>, functions: &Impacting) -> TokenStream {
             surface: usize,
             t: f64,
             state: &Self::State,
-        ) -> ::core::result::Result<::dalembert::impacts::law::Contact<Self::Vector>, ::dalembert::Fault> {
+        ) -> ::core::result::Result<::dalembert::impacts::law::Contact<Self::Impulse>, ::dalembert::Fault> {
             match surface {
                 #(#arms)*
                 _ => ::core::result::Result::Err(::dalembert::Fault::SingularSurface { surface }),

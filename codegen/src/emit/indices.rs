@@ -21,6 +21,10 @@ pub(super) fn emit_indices(context: &Context<'_>) -> TokenStream {
     let coordinates = model.coordinates.iter();
     let constraints = model.constraints.iter();
     let surfaces = model.surfaces.iter();
+    let quasi = model
+        .frame
+        .iter()
+        .map(|item| (&item.name, item.documentation.as_slice()));
     let outputs = model.outputs.iter();
     let parts = [
         emit_module(
@@ -32,6 +36,11 @@ pub(super) fn emit_indices(context: &Context<'_>) -> TokenStream {
             "constraint",
             "constraints",
             constraints.map(|item| (&item.name, item.documentation.as_slice())),
+        ),
+        emit_module(
+            "quasi_velocity",
+            "quasi-velocities, counted after the coordinates of a state",
+            quasi,
         ),
         emit_module(
             "surface",

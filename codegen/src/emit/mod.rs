@@ -11,42 +11,70 @@ mod impact;
 mod indices;
 mod names;
 mod parameters;
+mod reduced;
 mod volume;
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use crate::mechanics::{Derivation, Frame};
 use crate::model::Model;
-use crate::program::Program;
+use crate::program::{Form, Lowered, Program};
 use names::Names;
 
 /// What every emitter reads.
 struct Context<'a> {
     model: &'a Model,
+    frame: Option<&'a Frame>,
     program: &'a Program,
     names: Names,
 }
 
-/// The generated items of a model.
-pub fn tokens(model: &Model, program: &Program) -> TokenStream {
+impl Context<'_> {
+    /// Whether the type holds the model, whose parameters it has.
+    fn is_wrapped(&self) -> bool {
+        self.frame.is_some() && self.program.form == Form::Global
+    }
+}
+
+/// The generated items of a model: those of its type, and where that one is reduced to D, those of the type of its
+/// global form.
+pub fn tokens(model: &Model, derivation: &Derivation, programs: &Lowered) -> TokenStream {
+    let frame = derivation.frame.as_ref().ok();
+    let names = Names::of(model, frame);
+    let global = programs.global.as_ref().map(|program| Context {
+        model,
+        frame,
+        program,
+        names: names.of_global(model),
+    });
     let context = Context {
         model,
-        program,
-        names: Names::of(model),
+        frame,
+        program: &programs.main,
+        names,
     };
-    let items = [
+    let own = [
         parameters::emit_parameters(&context),
         indices::emit_indices(&context),
-        field::emit_field(&context),
-        field::emit_system(&context),
-        constraint::emit_constrained(&context),
-        impact::emit_impacting(&context),
-        volume::emit_divergence(&context),
-        volume::emit_invariant_volume(&context),
-        describe::emit_described(&context),
-        describe::emit_scene(&context),
     ];
-    quote!(#(#items)*)
+    let items = [Some(context), global].into_iter().flatten();
+    let items = items.flat_map(|context| implementations(&context));
+    quote!(#(#own)* #(#items)*)
+}
+
+/// What is implemented for a type of the model.
+fn implementations(context: &Context<'_>) -> [TokenStream; 8] {
+    [
+        field::emit_field(context),
+        field::emit_system(context),
+        constraint::emit_constrained(context),
+        impact::emit_impacting(context),
+        volume::emit_divergence(context),
+        volume::emit_invariant_volume(context),
+        describe::emit_described(context),
+        describe::emit_scene(context),
+    ]
 }
 
 /// What every generated item says of itself: it was not written by hand, so lints on style have nothing to say,

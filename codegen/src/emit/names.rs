@@ -5,21 +5,29 @@ use std::collections::BTreeSet;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
+use crate::mechanics::Frame;
 use crate::model::{Model, Name};
 use crate::program::{Function, Input, Op};
 
 /// Identifiers of a model's quantities inside generated functions.
+#[derive(Clone)]
 pub(super) struct Names {
-    /// The type.
-    pub type_name: Ident,
+    /// The type that holds the parameters.
+    pub model: Ident,
+    /// The type of the global form, where that is another.
+    pub global: Ident,
     /// The module of indices.
     pub module: Ident,
+    /// The type that functions are made for: the model's, or that of its global form.
+    pub type_name: TokenStream,
     /// Locals that hold coordinates.
     pub coordinates: Vec<Ident>,
     /// Locals that hold momenta.
     pub momenta: Vec<Ident>,
     /// Locals that hold velocities.
     pub velocities: Vec<Ident>,
+    /// Locals that hold quasi-velocities.
+    pub quasi: Vec<Ident>,
     /// Places of parameters: `self.m`, `self.m[2]`.
     pub parameters: Vec<TokenStream>,
 }
@@ -43,7 +51,7 @@ const ARGUMENTS: [&str; 14] = [
 ];
 
 impl Names {
-    pub fn of(model: &Model) -> Self {
+    pub fn of(model: &Model, frame: Option<&Frame>) -> Self {
         let mut taken = arguments();
         let mut locals = |prefix: &str, suffix: &str| -> Vec<Ident> {
             let wished = |name: &Name| format!("{prefix}{}{suffix}", name.display);
@@ -57,17 +65,34 @@ impl Names {
         };
         let (coordinates, momenta, velocities) =
             (locals("", ""), locals("p_", ""), locals("", "_dot"));
+        let quasi = frame.iter().flat_map(|frame| &frame.quasi);
+        let quasi = quasi
+            .map(|own| match own.coordinate {
+                Some(i) => velocities[i].clone(),
+                None => Ident::new(&claim(&mut taken, &own.name), Span::call_site()),
+            })
+            .collect();
+        let type_name = Ident::new(&model.name, Span::call_site());
         Self {
-            type_name: Ident::new(&model.name, Span::call_site()),
             module: Ident::new(&model.snake_name, Span::call_site()),
+            type_name: quote!(#type_name),
+            global: Ident::new(&format!("{}Global", model.name), Span::call_site()),
+            model: type_name,
             coordinates,
             momenta,
             velocities,
-            parameters: model
-                .parameters
-                .iter()
-                .map(|parameter| place(&parameter.name))
-                .collect(),
+            quasi,
+            parameters: places(model, &quote!(self)),
+        }
+    }
+
+    /// Those of the type of the global form, which holds the model.
+    pub fn of_global(&self, model: &Model) -> Self {
+        let global = &self.global;
+        Self {
+            type_name: quote!(#global),
+            parameters: places(model, &quote!(self.0)),
+            ..self.clone()
         }
     }
 
@@ -78,6 +103,7 @@ impl Names {
             Op::Input(Input::Coordinate(i)) => Some(self.coordinates[*i].to_string()),
             Op::Input(Input::Momentum(i)) => Some(self.momenta[*i].to_string()),
             Op::Input(Input::Velocity(i)) => Some(self.velocities[*i].to_string()),
+            Op::Input(Input::Quasi(i)) => Some(self.quasi[*i].to_string()),
             _ => None,
         }));
         taken
@@ -88,15 +114,22 @@ fn arguments() -> BTreeSet<String> {
     ARGUMENTS.iter().map(|name| (*name).to_string()).collect()
 }
 
-/// The place of a parameter in the struct.
-fn place(name: &Name) -> TokenStream {
+/// The places of all parameters in the struct.
+fn places(model: &Model, holder: &TokenStream) -> Vec<TokenStream> {
+    let parameters = model.parameters.iter();
+    parameters
+        .map(|parameter| place(holder, &parameter.name))
+        .collect()
+}
+
+fn place(holder: &TokenStream, name: &Name) -> TokenStream {
     let field = Ident::new(&name.field, Span::call_site());
     match name.member {
         Some(member) => {
             let index = proc_macro2::Literal::usize_unsuffixed(member - 1);
-            quote!(self.#field[#index])
+            quote!(#holder.#field[#index])
         }
-        None => quote!(self.#field),
+        None => quote!(#holder.#field),
     }
 }
 

@@ -5,30 +5,54 @@ use quote::quote;
 
 use super::{Context, doc, function::number};
 use crate::model::{Assumption, Model, Parameter};
+use crate::program::Form;
 
 /// The struct, and `Default` when every parameter has one.
 pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
     let model = context.model;
-    let type_name = &context.names.type_name;
+    let type_name = &context.names.model;
     let visibility: TokenStream = model.visibility.parse().unwrap_or_default();
-    let documentation = doc::lines(&documentation(model));
+    let documentation = doc::lines(&documentation(context));
     let fields = families(&model.parameters)
         .into_iter()
         .map(|family| emit_field_of(model, family));
     let default = emit_default(context);
+    let global = emit_global(context);
     quote! {
         #documentation
         #[allow(non_snake_case, clippy::all, clippy::pedantic, clippy::nursery)]
         #[derive(Debug, Clone, Copy, PartialEq)]
         #visibility struct #type_name { #(#fields)* }
         #default
+        #global
     }
 }
 
-fn documentation(model: &Model) -> Vec<String> {
+/// The type of the global form, where the model's own is reduced.
+fn emit_global(context: &Context<'_>) -> TokenStream {
+    if context.program.form == Form::Global {
+        return TokenStream::new();
+    }
+    let (model, global) = (&context.names.model, &context.names.global);
+    let visibility: TokenStream = context.model.visibility.parse().unwrap_or_default();
+    let title = format!(
+        " [`{model}`] in its global form, off the constraints too, with the state `(q, p)`."
+    );
+    quote! {
+        #[doc = #title]
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        #visibility struct #global(
+            /// The model with its parameters.
+            pub #model,
+        );
+    }
+}
+
+fn documentation(context: &Context<'_>) -> Vec<String> {
+    let model = context.model;
     let mut lines = model.documentation.clone();
     lines.push(String::new());
-    lines.push(format!(" State: `{}`.", doc::state_order(model)));
+    lines.push(format!(" State: `{}`.", doc::state_order(context)));
     for note in &model.notes {
         lines.push(String::new());
         lines.push(format!(" Note: {note}"));
@@ -101,7 +125,7 @@ fn emit_default(context: &Context<'_>) -> TokenStream {
     {
         return TokenStream::new();
     }
-    let type_name = &context.names.type_name;
+    let type_name = &context.names.model;
     let value = with_defaults(model);
     let attributes = super::attributes();
     quote! {

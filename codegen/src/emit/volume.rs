@@ -50,6 +50,9 @@ pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
         return TokenStream::new();
     };
     let type_name = &context.names.type_name;
+    if context.is_wrapped() {
+        return emit_delegated_volume(context);
+    }
     let (independent, is_single_valued) = (&volume.independent, volume.is_single_valued);
     let density = context.position_body(&volume.log_density);
     let density_doc = match &volume.gradient {
@@ -92,6 +95,31 @@ pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
             fn log_volume(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
                 #total_statements
                 ::core::result::Result::Ok(#log_volume #added)
+            }
+        }
+    }
+}
+
+/// That of the model, for the type that holds it: the volume depends on the configuration alone.
+fn emit_delegated_volume(context: &Context<'_>) -> TokenStream {
+    let (type_name, model) = (&context.names.type_name, &context.names.model);
+    let attributes = super::attributes();
+    let own = quote!(<#model as ::dalembert::InvariantVolume>);
+    quote! {
+        #attributes
+        impl ::dalembert::InvariantVolume for #type_name {
+            const INDEPENDENT: &'static [usize] = #own::INDEPENDENT;
+            const IS_SINGLE_VALUED: bool = #own::IS_SINGLE_VALUED;
+            const IS_INTEGRAL: bool = #own::IS_INTEGRAL;
+
+            #[inline]
+            fn log_density(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
+                #own::log_density(&self.0, t, q)
+            }
+
+            #[inline]
+            fn log_volume(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
+                #own::log_volume(&self.0, t, q)
             }
         }
     }

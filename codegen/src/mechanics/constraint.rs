@@ -103,7 +103,7 @@ fn derive_form_rate(
 
 /// The expression without its signs, sines and cosines counted as 1: a bound of `|expression|` for which terms
 /// cannot cancel.
-fn amplitude(pool: &mut Pool, expression: ExprId) -> ExprId {
+pub(super) fn amplitude(pool: &mut Pool, expression: ExprId) -> ExprId {
     match pool.node(expression).clone() {
         Node::Number(number) => pool.number(number.abs()),
         Node::Call(Function::Sin | Function::Cos, _) => pool.one(),

@@ -15,6 +15,7 @@
 pub mod constraint;
 pub mod density;
 pub mod field;
+pub mod frame;
 pub mod impact;
 pub mod metric;
 
@@ -25,6 +26,7 @@ use crate::model::Model;
 pub use constraint::ConstraintForm;
 pub use density::DensityTerms;
 pub use field::FieldTerms;
+pub use frame::{Frame, Unreduced};
 pub use impact::SurfaceForm;
 pub use metric::MetricDerivatives;
 
@@ -39,6 +41,8 @@ pub struct Derivation {
     pub surfaces: Vec<SurfaceForm>,
     /// What the density form and the divergence need.
     pub density: DensityTerms,
+    /// The motion reduced to D, or why it is left in its global form.
+    pub frame: Result<Frame, Unreduced>,
 }
 
 impl Derivation {
@@ -67,11 +71,13 @@ pub fn derive(model: &mut Model) -> Derivation {
     let metric = metric::derive_metric(model, &coordinates);
     let constraints = constraint::derive_constraints(model, &coordinates);
     let density = density::derive_density(model, &coordinates, metric);
+    let frame = frame::derive_frame(model, &coordinates, &constraints);
     Derivation {
         field: field::derive_field(model, &coordinates),
         constraints,
         surfaces: impact::derive_surfaces(model, &coordinates),
         density,
+        frame,
     }
 }
 

@@ -61,6 +61,8 @@ pub struct Model {
     pub constraints: Vec<Constraint>,
     /// Named forces.
     pub forces: Vec<Force>,
+    /// The declared quasi-velocities, N - M or none.
+    pub frame: Vec<QuasiForm>,
     /// Impact surfaces, families expanded.
     pub surfaces: Vec<Surface>,
     /// The declared initial condition.
@@ -195,6 +197,19 @@ pub struct Constraint {
 pub struct Force {
     /// Its name.
     pub name: Name,
+    /// N entries.
+    pub form: Vec<ExprId>,
+    /// Where it was declared.
+    pub item: ItemId,
+}
+
+/// A one-form whose value on the velocity is a quasi-velocity.
+#[derive(Debug)]
+pub struct QuasiForm {
+    /// Its name.
+    pub name: Name,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// N entries.
     pub form: Vec<ExprId>,
     /// Where it was declared.

@@ -49,8 +49,18 @@ fn holds(guard: &Guard, values: &[f64]) -> bool {
             reference: None,
             ..
         }
+        | Guard::Frame {
+            squared,
+            reference: None,
+            ..
+        }
         | Guard::Surface { squared, .. } => values[squared.index()] > 0.0,
         Guard::Constraint {
+            squared,
+            reference: Some(reference),
+            ..
+        }
+        | Guard::Frame {
             squared,
             reference: Some(reference),
             ..

@@ -6,7 +6,7 @@ use dalembert_expr::{ExprId, Sign, SymbolId};
 use super::builder::Builder;
 use super::expression::Expressions;
 use super::linear::{Ldlt, Orthogonal};
-use super::{Function, Input, Value};
+use super::{Form, Function, Guard, Input, Value};
 use crate::mechanics::Derivation;
 use crate::mechanics::constraint::regular_minor;
 use crate::model::Model;
@@ -23,6 +23,26 @@ pub enum Arguments {
     /// `(t, q, p)` with `qdot` computed beforehand: for functions that would repeat the solve of a function that
     /// exists anyway.
     Both,
+    /// `(t, q, u)`
+    Quasi,
+}
+
+impl Form {
+    /// The arguments of a function of the state.
+    pub fn state(self) -> Arguments {
+        match self {
+            Self::Global => Arguments::Momenta,
+            Self::Reduced => Arguments::Quasi,
+        }
+    }
+
+    /// The same for a function that would repeat the solve for the velocities.
+    pub fn state_with_velocity(self) -> Arguments {
+        match self {
+            Self::Global => Arguments::Both,
+            Self::Reduced => Arguments::Quasi,
+        }
+    }
 }
 
 /// A function under construction together with the model it belongs to.
@@ -36,6 +56,10 @@ pub struct Kernel<'a> {
     orthogonal: Option<Orthogonal>,
     qdot: Option<Vec<Value>>,
     multipliers: Option<Vec<Value>>,
+    /// `X_i`
+    pub(super) frame_fields: Option<Vec<Vec<Value>>>,
+    /// The factors of `G_D`.
+    pub(super) reduced_ldlt: Option<Ldlt>,
 }
 
 impl<'a> Kernel<'a> {
@@ -51,6 +75,8 @@ impl<'a> Kernel<'a> {
             orthogonal: None,
             qdot: None,
             multipliers: None,
+            frame_fields: None,
+            reduced_ldlt: None,
         };
         kernel.bind(model.time, Input::Time);
         for (k, parameter) in model.parameters.iter().enumerate() {
@@ -99,6 +125,12 @@ impl<'a> Kernel<'a> {
     /// Number of constraints.
     pub fn constraints(&self) -> usize {
         self.derivation.constraints.len()
+    }
+
+    /// Whether some constraint has an affine part.
+    pub fn has_affine_constraints(&self) -> bool {
+        let mut constraints = self.derivation.constraints.iter();
+        constraints.any(|own| !self.model.pool.is_syntactic_zero(own.affine))
     }
 
     /// The value of an expression of time, positions, velocities and parameters.
@@ -182,13 +214,18 @@ impl<'a> Kernel<'a> {
             .collect()
     }
 
-    /// `qdot = g^{-1}(p - A)`, or the arguments themselves.
+    /// `qdot = g^{-1}(p - A)`, `X_0 + X u`, or the arguments themselves.
     pub fn velocity(&mut self) -> Vec<Value> {
         if let Some(qdot) = &self.qdot {
             return qdot.clone();
         }
-        let momenta = self.kinetic_momenta();
-        let qdot = self.raise(&momenta);
+        let qdot = match self.arguments {
+            Arguments::Quasi => self.velocity_from_quasi(),
+            _ => {
+                let momenta = self.kinetic_momenta();
+                self.raise(&momenta)
+            }
+        };
         self.name_by_coordinate(&qdot, "", "_dot");
         self.bind_velocity(qdot.clone());
         qdot
@@ -200,14 +237,27 @@ impl<'a> Kernel<'a> {
             return self.kinetic_momenta();
         }
         let qdot = self.velocity();
-        let n = self.dimension();
-        (0..n)
-            .map(|i| {
-                let row = self.model.lagrangian.metric[i].clone();
-                let row = self.values(&row);
-                self.dot(&row, &qdot)
-            })
-            .collect()
+        self.lower_vector(&qdot)
+    }
+
+    /// `p = g qdot + A`
+    pub fn momenta(&mut self) -> Vec<Value> {
+        if matches!(self.arguments, Arguments::Momenta | Arguments::Both) {
+            let inputs = 0..self.dimension();
+            return inputs
+                .map(|i| self.builder.input(Input::Momentum(i)))
+                .collect();
+        }
+        let kinetic = self.lowered_velocity();
+        let linear = self.model.lagrangian.linear.clone();
+        let linear = self.values(&linear);
+        let momenta: Vec<Value> = kinetic
+            .iter()
+            .zip(linear)
+            .map(|(&p, a)| self.builder.add(p, a))
+            .collect();
+        self.name_by_coordinate(&momenta, "p_", "");
+        momenta
     }
 
     /// `u . v`
@@ -239,10 +289,18 @@ impl<'a> Kernel<'a> {
         for &a in which {
             let form = self.derivation.constraints[a].form.clone();
             let form = self.values(&form);
-            columns.push((a, self.forward(&form)));
+            columns.push(self.forward(&form));
         }
         let independent = self.regular_minor().is_some();
-        self.with_ldlt(|builder, ldlt| Orthogonal::factor(builder, ldlt, columns, independent))
+        self.with_ldlt(|builder, ldlt| {
+            Orthogonal::factor(builder, ldlt, columns, |index, squared, reference| {
+                Guard::Constraint {
+                    constraint: which[index],
+                    squared,
+                    reference: reference.filter(|_| !independent),
+                }
+            })
+        })
     }
 
     /// Runs `work` with the factors of all constraint forms.

@@ -147,13 +147,13 @@ pub struct Orthogonal {
 }
 
 impl Orthogonal {
-    /// Orthogonalises the columns `L^{-1} eta^a`, each with the number of its constraint. With `independent`, a proof
-    /// of independence, guards only ask for positive norms.
+    /// Orthogonalises columns. `guard` makes the guard of a column from its number and its squared norms, after and
+    /// before the earlier columns were projected out; there is nothing before the first.
     pub fn factor(
         builder: &mut Builder,
         ldlt: &Ldlt,
-        columns: Vec<(usize, Vec<Value>)>,
-        independent: bool,
+        columns: Vec<Vec<Value>>,
+        guard: impl Fn(usize, Value, Option<Value>) -> Guard,
     ) -> Self {
         let mut factors = Self {
             columns: Vec::new(),
@@ -161,17 +161,11 @@ impl Orthogonal {
             squares: Vec::new(),
             inverse_squares: Vec::new(),
         };
-        for (constraint, column) in columns {
-            let is_first = factors.columns.is_empty();
-            let reference =
-                (!is_first && !independent).then(|| ldlt.inner(builder, &column, &column));
+        for (index, column) in columns.into_iter().enumerate() {
+            let reference = (index > 0).then(|| ldlt.inner(builder, &column, &column));
             let (coefficients, rest) = factors.reduce(builder, ldlt, column);
             let squared = ldlt.inner(builder, &rest, &rest);
-            builder.guard(Guard::Constraint {
-                constraint,
-                squared,
-                reference,
-            });
+            builder.guard(guard(index, squared, reference));
             factors.inverse_squares.push(builder.reciprocal(squared));
             factors.squares.push(squared);
             factors.above.push(coefficients);
@@ -237,6 +231,25 @@ impl Orthogonal {
         for a in (0..x.len()).rev() {
             for b in a + 1..x.len() {
                 x[a] = builder.sub_product(x[a], self.above[b][a], x[b]);
+            }
+        }
+        x
+    }
+
+    /// The `x` of least norm with `<C_a, x> = r_a`.
+    pub fn least_norm(&self, builder: &mut Builder, r: &[Value]) -> Vec<Value> {
+        let coefficients = self.transposed_solve(builder, r);
+        let size = self.columns.first().map_or(0, Vec::len);
+        let mut x = vec![builder.zero(); size];
+        for ((column, &inverse), coefficient) in self
+            .columns
+            .iter()
+            .zip(&self.inverse_squares)
+            .zip(coefficients)
+        {
+            let weight = builder.mul(coefficient, inverse);
+            for (entry, &component) in x.iter_mut().zip(column) {
+                *entry = builder.add_product(*entry, weight, component);
             }
         }
         x

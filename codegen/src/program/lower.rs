@@ -1,26 +1,74 @@
 //! From a derivation to the program: one function per item of the contract.
 
-use super::Program;
-use super::recipes::{constrained, declared, geometry, impact, motion, volume};
+use super::recipes::{constrained, declared, geometry, impact, motion, reduced, volume};
+use super::{Form, Program};
 use crate::claims::Volume;
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
+/// The programs of a model.
+#[derive(Debug)]
+pub struct Lowered {
+    /// In the form in which it is run: reduced to D where a frame was found or declared, else global.
+    pub main: Program,
+    /// In global form, where `main` is reduced.
+    pub global: Option<Program>,
+}
+
+impl Lowered {
+    /// The program in global form.
+    pub fn global(&self) -> &Program {
+        self.global.as_ref().unwrap_or(&self.main)
+    }
+
+    /// The length of the longest function.
+    pub fn longest(&self) -> usize {
+        self.main.longest().max(self.global().longest())
+    }
+}
+
 /// Lowers everything that a model declares, and the invariant volume that was found for it.
-pub fn lower(model: &Model, derivation: &Derivation, found: Option<&Volume>) -> Program {
+pub fn lower(model: &Model, derivation: &Derivation, found: Option<&Volume>) -> Lowered {
+    let global = lower_form(model, derivation, found, Form::Global);
+    match derivation.frame {
+        Ok(_) => Lowered {
+            main: lower_form(model, derivation, found, Form::Reduced),
+            global: Some(global),
+        },
+        Err(_) => Lowered {
+            main: global,
+            global: None,
+        },
+    }
+}
+
+fn lower_form(
+    model: &Model,
+    derivation: &Derivation,
+    found: Option<&Volume>,
+    form: Form,
+) -> Program {
     Program {
-        rate: motion::rate(model, derivation),
-        scale: motion::scale(model, derivation),
-        velocity: motion::velocity(model, derivation),
+        form,
+        rate: motion::rate(model, derivation, form),
+        scale: motion::scale(model, derivation, form),
+        velocity: motion::velocity(model, derivation, form),
         momentum: motion::momentum(model, derivation),
-        energy: motion::energy(model, derivation),
-        geometry: geometry::geometry(model, derivation, found),
-        constrained: constrained::constrained(model, derivation),
-        impacting: impact::impacting(model, derivation),
-        divergence: geometry::divergence(model, derivation),
+        energy: motion::energy(model, derivation, form),
+        reduced: match form {
+            Form::Global => None,
+            Form::Reduced => reduced::reduced(model, derivation),
+        },
+        geometry: match form {
+            Form::Global => geometry::geometry(model, derivation, found),
+            Form::Reduced => geometry::reduced_geometry(model, derivation),
+        },
+        constrained: constrained::constrained(model, derivation, form),
+        impacting: impact::impacting(model, derivation, form),
+        divergence: geometry::divergence(model, derivation, form),
         density_form: geometry::density_form(model, derivation),
         volume: found.map(|found| volume::invariant_volume(model, derivation, found)),
-        outputs: declared::outputs(model, derivation),
+        outputs: declared::outputs(model, derivation, form),
         view_path: model
             .view
             .as_ref()

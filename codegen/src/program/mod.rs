@@ -13,13 +13,14 @@ pub mod kernel;
 pub mod linear;
 pub mod lower;
 pub mod recipes;
+pub mod reduced;
 pub mod schedule;
 pub mod verify;
 
 use dalembert_expr::{Function as Elementary, Rational};
 
 pub use cost::Cost;
-pub use lower::lower;
+pub use lower::{Lowered, lower};
 
 /// A value: the result of the operation with this number in its function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -47,6 +48,8 @@ pub enum Input {
     Velocity(usize),
     /// A momentum.
     Momentum(usize),
+    /// A quasi-velocity.
+    Quasi(usize),
     /// A parameter.
     Parameter(usize),
     /// An excess of a position-level value.
@@ -104,6 +107,15 @@ pub enum Guard {
         /// Squared norm before; `None` where independence was proved.
         reference: Option<Value>,
     },
+    /// As [`Guard::Constraint`] for the form of a quasi-velocity, else `SingularFrame`.
+    Frame {
+        /// Number of the quasi-velocity.
+        quasi: usize,
+        /// Squared norm after projection.
+        squared: Value,
+        /// Squared norm before.
+        reference: Option<Value>,
+    },
     /// `squared > 0`, else `SingularSurface`.
     Surface {
         /// Number of the surface.
@@ -123,6 +135,9 @@ impl Guard {
         let (first, second) = match *self {
             Self::Pivot { value, .. } => (value, None),
             Self::Constraint {
+                squared, reference, ..
+            }
+            | Self::Frame {
                 squared, reference, ..
             } => (squared, reference),
             Self::Surface { squared, .. } => (squared, None),
@@ -174,32 +189,47 @@ impl Function {
     }
 }
 
-/// Every function of a model. What is absent was not declared.
+/// What the state of a motion consists of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// Positions and momenta, `(q, p)` on T*Q: N + N numbers.
+    Global,
+    /// Positions and quasi-velocities, `(q, u)` on D: N + (N - M) numbers.
+    Reduced,
+}
+
+/// Every function of a model in one form. What is absent was not declared. `s` stands for the state: `(q, p)` or
+/// `(q, u)`.
 #[derive(Debug)]
 pub struct Program {
-    /// `(t, q, p) -> (qdot, pdot)`
+    /// The form.
+    pub form: Form,
+    /// `(t, s) -> (qdot, pdot)` or `(qdot, udot)`
     pub rate: Function,
-    /// `(t, q) -> g_ii`, the unit of each momentum.
+    /// `(t, q) ->` the unit of each component of the state.
     pub scale: Function,
-    /// `(t, q, p) -> qdot`
+    /// `(t, s) -> qdot`
     pub velocity: Function,
     /// `(t, q, qdot) -> p`
     pub momentum: Function,
-    /// `(t, q, p, qdot) -> energy`
+    /// `(t, s) -> energy`
     pub energy: Function,
-    /// `(t, q, p, qdot)` to everything that is derived, by name.
+    /// In reduced form.
+    pub reduced: Option<Reduced>,
+    /// What is derived at a state, by name: in global form, which holds off the constraints too, everything; in reduced
+    /// form what concerns the frame.
     pub geometry: recipes::Geometry,
     /// With constraints.
     pub constrained: Option<Constrained>,
     /// With surfaces.
     pub impacting: Option<Impacting>,
-    /// The divergence with respect to `mu_C`: `(t, q, p) -> div`.
+    /// The divergence with respect to `mu_C`: `(t, s) -> div`.
     pub divergence: Function,
     /// The density form: `(t, q) -> theta`.
     pub density_form: Function,
     /// With an invariant volume.
     pub volume: Option<InvariantVolume>,
-    /// The declared outputs: `(t, q, p) -> values`.
+    /// The declared outputs: `(t, s) -> values`.
     pub outputs: Option<Function>,
     /// The view's path: `(t, q) -> (x, y)`.
     pub view_path: Option<Function>,
@@ -220,11 +250,13 @@ impl Program {
     pub fn functions(&self) -> Vec<&Function> {
         // NOTE: every field is named, so that a function that is added is not forgotten here.
         let Self {
+            form: _,
             rate,
             scale,
             velocity,
             momentum,
             energy,
+            reduced,
             geometry,
             constrained,
             impacting,
@@ -237,7 +269,9 @@ impl Program {
             initial,
             until,
         } = self;
-        let mut functions = vec![rate, scale, velocity, momentum, energy, &geometry.function];
+        let mut functions = vec![rate, scale, velocity, momentum, energy];
+        functions.push(&geometry.function);
+        functions.extend(reduced.iter().flat_map(Reduced::functions));
         functions.extend([divergence, density_form, initial]);
         let declared = [outputs, view_path, view_region, until];
         functions.extend(declared.into_iter().flatten());
@@ -257,19 +291,42 @@ impl Program {
     }
 }
 
+/// Functions of a system in reduced form.
+#[derive(Debug)]
+pub struct Reduced {
+    /// `(t, q, u) -> p`
+    pub momentum: Function,
+    /// `(t, q, qdot) -> u`
+    pub quasi: Function,
+    /// `(t, q, p) -> u` of the nearest allowed velocity.
+    pub nearest_momenta: Function,
+    /// `(t, q, qdot) -> u` of the nearest allowed velocity.
+    pub nearest_velocities: Function,
+}
+
+impl Reduced {
+    fn functions(&self) -> [&Function; 4] {
+        let Self {
+            momentum,
+            quasi,
+            nearest_momenta,
+            nearest_velocities,
+        } = self;
+        [momentum, quasi, nearest_momenta, nearest_velocities]
+    }
+}
+
 /// Functions of a system with constraints.
 #[derive(Debug)]
 pub struct Constrained {
-    /// `(t, q, p) -> lambda`
+    /// `(t, s) -> lambda`
     pub multipliers: Function,
-    /// `(t, q, p) -> residuals, scales`
+    /// `(t, q, qdot) -> residuals, scales`
     pub residuals: Function,
     /// `(t, q) -> eta` row after row, then `eta_0`.
     pub forms: Function,
-    /// `(t, q, p) -> p` on D*.
-    pub project: Function,
-    /// `(t, q, p) -> p` on D*, after a step.
-    pub restore: Function,
+    /// In global form, what brings a state to D.
+    pub return_to_constraints: Option<Return>,
     /// `(t, q) -> f`, one per integrable constraint.
     pub levels: Function,
     /// `(t, q, excess) -> change of q`
@@ -277,25 +334,33 @@ pub struct Constrained {
 }
 
 impl Constrained {
-    fn functions(&self) -> [&Function; 7] {
+    fn functions(&self) -> Vec<&Function> {
         let Self {
             multipliers,
             residuals,
             forms,
-            project,
-            restore,
+            return_to_constraints,
             levels,
             level_correction,
         } = self;
-        [
-            multipliers,
-            residuals,
-            forms,
-            project,
-            restore,
-            levels,
-            level_correction,
-        ]
+        let mut functions = vec![multipliers, residuals, forms, levels, level_correction];
+        functions.extend(return_to_constraints.iter().flat_map(Return::functions));
+        functions
+    }
+}
+
+/// How a state in global form that is off the constraints is brought back to them.
+#[derive(Debug)]
+pub struct Return {
+    /// `(t, q, qdot) -> p` of the nearest allowed velocity.
+    pub nearest: Function,
+    /// `(t, q, p) -> p` on D*, after a step.
+    pub restore: Function,
+}
+
+impl Return {
+    fn functions(&self) -> [&Function; 2] {
+        [&self.nearest, &self.restore]
     }
 }
 
@@ -333,11 +398,11 @@ impl InvariantVolume {
 pub struct Impacting {
     /// `(t, q) -> h_s`
     pub gaps: Function,
-    /// `(t, q, p) -> dh_s(qdot) + d_t h_s`
+    /// `(t, s) -> dh_s(qdot) + d_t h_s`
     pub gap_rates: Function,
     /// Per surface `(t, q) -> conditions`; `None` where there are none.
     pub conditions: Vec<Option<Function>>,
-    /// Per surface `(t, q, p) -> gap_rate, constrained_rate, surface_rate, constrained_compliance,
+    /// Per surface `(t, s) -> gap_rate, constrained_rate, surface_rate, constrained_compliance,
     /// free_compliance, direction`.
     pub contacts: Vec<Function>,
     /// Per surface: the coefficient of its law, a function of the parameters.

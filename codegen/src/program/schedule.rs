@@ -69,6 +69,15 @@ fn map_guard(guard: Guard, map: impl Fn(Value) -> Value) -> Guard {
             squared: map(squared),
             reference: reference.map(map),
         },
+        Guard::Frame {
+            quasi,
+            squared,
+            reference,
+        } => Guard::Frame {
+            quasi,
+            squared: map(squared),
+            reference: reference.map(map),
+        },
         Guard::Surface { surface, squared } => Guard::Surface {
             surface,
             squared: map(squared),

@@ -255,6 +255,6 @@ impl Writer<'_> {
 }
 
 /// Underscores as LaTeX text wants them.
-fn escape(name: &str) -> String {
+pub(super) fn escape(name: &str) -> String {
     name.replace('_', "\\_")
 }

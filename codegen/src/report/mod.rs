@@ -8,10 +8,12 @@
 //! |---|---|
 //! | `mod.rs` | what a report is, and its order |
 //! | `equations.rs` | declaration, Lagrangian, motion, constraints, surfaces, outputs |
+//! | `frame.rs` | the motion reduced to D |
 //! | `volume.rs`, `density_form.rs` | the invariant volume; the density form written out |
 
 mod density_form;
 mod equations;
+mod frame;
 mod volume;
 
 use std::fmt;
@@ -126,7 +128,7 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
         mut model,
         derivation,
         findings,
-        program,
+        programs,
     } = compile(tokens).map_err(ReportError::Declaration)?;
     let mut writer = Writer {
         model: &mut model,
@@ -137,12 +139,13 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
         writer.lagrangian(),
         writer.motion(),
         writer.constraints(),
+        writer.frame(),
         writer.surfaces(),
         writer.declared_outputs(),
         writer.volume(),
     ];
     sections.push(claims(&findings));
-    sections.push(work(&model, &program));
+    sections.push(work(&model, &programs.main));
     sections.push(notes(&model));
     sections.retain(|section| !section.items.is_empty());
     Ok(Report {
@@ -167,7 +170,12 @@ fn work(model: &Model, program: &Program) -> Section {
     ];
     if let Some(constrained) = &program.constrained {
         items.push(line("multipliers", &constrained.multipliers.cost));
-        items.push(line("projection after a step", &constrained.restore.cost));
+        if let Some(back) = &constrained.return_to_constraints {
+            items.push(line(
+                "return to the constraints after a step",
+                &back.restore.cost,
+            ));
+        }
     }
     if let Some(impacting) = &program.impacting {
         items.push(line("all gaps", &impacting.gaps.cost));

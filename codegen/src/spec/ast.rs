@@ -36,6 +36,8 @@ pub struct Spec {
     pub constraints: Vec<Equation>,
     /// `forces { .. }`
     pub forces: Vec<Quantity>,
+    /// `frame { .. }`
+    pub frame: Vec<Quantity>,
     /// `impacts { .. }`
     pub surfaces: Vec<Surface>,
     /// `initial { .. }`
@@ -65,6 +67,7 @@ impl Spec {
             lagrangian: None,
             constraints: Vec::new(),
             forces: Vec::new(),
+            frame: Vec::new(),
             surfaces: Vec::new(),
             initial: Vec::new(),
             view: View::default(),

@@ -3,7 +3,7 @@
 use dalembert_expr::Function;
 
 /// The section keywords of this version, as they may begin a declaration of a model.
-pub const SECTIONS: [&str; 12] = [
+pub const SECTIONS: [&str; 13] = [
     "const",
     "coordinates",
     "parameters",
@@ -11,6 +11,7 @@ pub const SECTIONS: [&str; 12] = [
     "lagrangian",
     "constraints",
     "forces",
+    "frame",
     "impacts",
     "initial",
     "view",
@@ -19,14 +20,10 @@ pub const SECTIONS: [&str; 12] = [
 ];
 
 /// Words of the language that this version does not implement, each with what can be written instead.
-pub const NOT_IMPLEMENTED: [(&str, &str); 8] = [
+pub const NOT_IMPLEMENTED: [(&str, &str); 7] = [
     (
         "scenes",
         "leave it out; the model itself uses every declared force and surface",
-    ),
-    (
-        "frame",
-        "leave it out; velocities and momenta of the coordinates are derived",
     ),
     ("modes", "declare one model for each mode"),
     ("transitions", "declare one model for each mode"),

@@ -190,6 +190,25 @@ impl Integrator {
     }
 }
 
+/// What the state of a run consists of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Form {
+    /// Positions and the quasi-velocities that the constraints leave: (q, u) on D.
+    Reduced,
+    /// Positions and momenta, off the constraints too: (q, p) on T*Q.
+    Global,
+}
+
+impl Form {
+    /// The name on the command line and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Reduced => "reduced",
+            Self::Global => "global",
+        }
+    }
+}
+
 /// `on` or `off`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Switch {
@@ -248,7 +267,11 @@ pub struct SimulateArgs {
     /// Draw the run: the declared view, or all coordinates against time.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Whether to project on the constraints after each step; without it as the scene declares.
+    /// The form of the equations. Without it reduced where the model has such a form; global for states that are kept
+    /// off the constraints and with --projection.
+    #[arg(long, value_enum)]
+    pub form: Option<Form>,
+    /// Whether to project on the constraints after each step, in global form; without it as the scene declares.
     #[arg(long, value_enum)]
     pub projection: Option<Switch>,
 }

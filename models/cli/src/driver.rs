@@ -9,13 +9,14 @@ use dalembert::integrate::{Counters, Dop853, DormandPrince5, Stepper, Tolerance}
 use dalembert::{Event, Observer, Outcome, SceneEffects, Segment, Simulation};
 use serde_json::Value;
 
-use crate::args::Integrator;
+use crate::args::{Form, Integrator};
 use crate::entry::{Model, Point, point};
 use crate::{json, names};
 
 /// How a run is to be made.
 #[derive(Debug, Clone)]
 pub(crate) struct Settings {
+    pub form: Form,
     pub integrator: Integrator,
     pub tol: f64,
     pub until: f64,
@@ -193,6 +194,7 @@ fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, V
             name(description.constraints.iter().map(|it| it.name), index),
         )
     };
+    let quasi_velocity = |index: usize| name(description.quasi_velocities.iter().copied(), index);
     let coordinate = |index: usize| name(names::coordinates(description), index);
     match *outcome {
         Outcome::Zeno { t, surface: index } => {
@@ -222,6 +224,7 @@ fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, V
         } => {
             vec![constraint(index), ("condition", json::number(condition))]
         }
+        Outcome::SingularFrame { quasi } => vec![("quasi_velocity", quasi_velocity(quasi))],
         Outcome::ProjectionFailed { constraint: index } => vec![constraint(index)],
         Outcome::NonFinite { component } => vec![("component", component.into())],
         _ => Vec::new(),

@@ -6,10 +6,11 @@
 use dalembert::describe::{Described, Description, Report};
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::state::StateVector;
-use dalembert::{Fault, ParameterError, Scene, StateError};
+use dalembert::{Fault, ParameterError, Scene, StateError, System};
 
-use crate::args::OffConstraint;
+use crate::args::{Form, OffConstraint};
 use crate::driver::{self, Ending, Settings, Watch};
+use crate::error::state_text;
 
 /// One model of the list handed to [`run`](crate::run), with its scenes.
 #[derive(Clone)]
@@ -65,10 +66,19 @@ macro_rules! models {
 }
 
 /// Velocities or momenta, one per coordinate.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Rates<'a> {
-    Velocities(&'a [f64]),
-    Momenta(&'a [f64]),
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Rates {
+    Velocities(Vec<f64>),
+    Momenta(Vec<f64>),
+}
+
+/// A state as it is given.
+#[derive(Debug, Clone)]
+pub(crate) struct Origin {
+    pub q: Vec<f64>,
+    pub rates: Rates,
+    /// What to do where it is off the constraints.
+    pub policy: OffConstraint,
 }
 
 /// The declared initial condition.
@@ -107,7 +117,7 @@ impl Point {
     }
 }
 
-/// A model with values for its parameters. States are the components of the model's own state type.
+/// A model with values for its parameters. States are those of its global form, positions and momenta.
 pub(crate) trait AnyModel {
     fn description(&self) -> Description;
     fn parameter(&self, index: usize) -> f64;
@@ -121,26 +131,14 @@ pub(crate) trait AnyModel {
         qdot: &[f64],
         named: &[bool],
     ) -> Result<Vec<f64>, StateError>;
-    fn state(
-        &self,
-        t: f64,
-        q: &[f64],
-        rates: Rates<'_>,
-        policy: OffConstraint,
-    ) -> Result<Vec<f64>, StateError>;
+    fn state(&self, t: f64, origin: &Origin) -> Result<Vec<f64>, StateError>;
     fn region(&self, t: f64, q: &[f64]) -> Option<f64>;
     fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault>;
     /// The state after the impact of a law.
-    fn impact(
-        &self,
-        t: f64,
-        state: &[f64],
-        contact: &Contacted,
-        law: Law,
-    ) -> Result<Vec<f64>, Fault>;
+    fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64>;
     fn simulate(
         &self,
-        state: &[f64],
+        origin: &Origin,
         settings: &Settings,
         watch: &mut dyn Watch,
     ) -> Result<Ending, String>;
@@ -165,23 +163,53 @@ impl<M: Model> Typed<M> {
         Box::new(Self(M::with_defaults()))
     }
 
-    /// The state with these momenta after every check but that of the constraints.
-    fn checked_momenta(
+    /// The velocity that is meant, after every check but that of the constraints. Momenta are those of the global
+    /// form: they may lie off the constraints.
+    fn checked_velocity(
         &self,
         t: f64,
         q: &M::Vector,
-        p: &M::Vector,
-    ) -> Result<M::State, StateError> {
-        self.0.check_parameters()?;
+        rates: &Rates,
+    ) -> Result<M::Vector, StateError> {
+        let global = self.0.global();
+        let p = match rates {
+            Rates::Velocities(qdot) => {
+                let qdot = vector(qdot);
+                global.checked(t, q, &qdot)?;
+                return Ok(qdot);
+            }
+            Rates::Momenta(p) => vector::<M::Vector>(p),
+        };
+        global.check_parameters()?;
         let mut components = q.as_slice().iter().chain(p.as_slice());
         if let Some(component) = components.position(|value| !value.is_finite()) {
             return Err(StateError::NotFinite { component });
         }
-        let state = self.0.state_from_momenta(t, q, p)?;
-        match self.0.outside_chart(&state) {
+        let state = global.state_from_momenta(t, q, &p)?;
+        match global.outside_chart(&state) {
             Some(coordinate) => Err(StateError::OutsideChart { coordinate }),
-            None => Ok(state),
+            None => Ok(global.velocity(t, &state)?),
         }
+    }
+
+    /// The state of a system in either form.
+    fn prepare<S: System<Vector = M::Vector>>(
+        &self,
+        system: &S,
+        t: f64,
+        origin: &Origin,
+    ) -> Result<S::State, StateError> {
+        let q = vector(&origin.q);
+        let qdot = self.checked_velocity(t, &q, &origin.rates)?;
+        if origin.policy == OffConstraint::Error {
+            system.admit(t, &q, &qdot)?;
+        }
+        Ok(match (origin.policy, &origin.rates) {
+            (OffConstraint::Project, _) => system.state_nearest(t, &q, &qdot)?,
+            // Momenta that may be kept are kept to the last digit.
+            (_, Rates::Momenta(p)) => system.state_from_momenta(t, &q, &vector(p))?,
+            _ => system.state_unchecked(t, &q, &qdot)?,
+        })
     }
 }
 
@@ -233,23 +261,8 @@ impl<M: Model> AnyModel for Typed<M> {
         Ok(completed.as_slice().to_vec())
     }
 
-    fn state(
-        &self,
-        t: f64,
-        q: &[f64],
-        rates: Rates<'_>,
-        policy: OffConstraint,
-    ) -> Result<Vec<f64>, StateError> {
-        let q = vector(q);
-        let mut state = match rates {
-            Rates::Velocities(qdot) => self.0.checked(t, &q, &vector(qdot))?,
-            Rates::Momenta(p) => self.checked_momenta(t, &q, &vector(p))?,
-        };
-        match policy {
-            OffConstraint::Error => self.0.admit(t, &state)?,
-            OffConstraint::Project => self.0.project(t, &mut state)?,
-            OffConstraint::Keep => {}
-        }
+    fn state(&self, t: f64, origin: &Origin) -> Result<Vec<f64>, StateError> {
+        let state = self.prepare(&self.0.global(), t, origin)?;
         Ok(state.as_slice().to_vec())
     }
 
@@ -258,17 +271,19 @@ impl<M: Model> AnyModel for Typed<M> {
     }
 
     fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault> {
-        self.0.inspect(t, &vector(state), report)
+        let (global, state) = (self.0.global(), vector(state));
+        global.inspect(t, &state, report)?;
+        if M::DESCRIPTION.quasi_velocities.is_empty() {
+            return Ok(());
+        }
+        let (q, qdot) = (global.position(&state), global.velocity(t, &state)?);
+        let state = self.0.state_unchecked(t, &q, &qdot)?;
+        self.0.inspect_frame(t, &state, report)
     }
 
-    fn impact(
-        &self,
-        t: f64,
-        state: &[f64],
-        contact: &Contacted,
-        law: Law,
-    ) -> Result<Vec<f64>, Fault> {
-        let contact = Contact::<M::Vector> {
+    fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64> {
+        let global = self.0.global();
+        let contact = Contact::<<M::Global as System>::Impulse> {
             gap_rate: contact.gap_rate,
             constrained_rate: contact.constrained_rate,
             surface_rate: contact.surface_rate,
@@ -277,18 +292,28 @@ impl<M: Model> AnyModel for Typed<M> {
             direction: vector(&contact.direction),
         };
         let mut state = vector(state);
-        let eps = contact.impulse(law);
-        self.0.kick(t, &mut state, eps, &contact.direction)?;
-        Ok(state.as_slice().to_vec())
+        global.kick(&mut state, contact.impulse(law), &contact.direction);
+        StateVector::as_slice(&state).to_vec()
     }
 
     fn simulate(
         &self,
-        state: &[f64],
+        origin: &Origin,
         settings: &Settings,
         watch: &mut dyn Watch,
     ) -> Result<Ending, String> {
-        driver::simulate(&self.0, vector(state), settings, watch)
+        let text = |error| state_text(&M::DESCRIPTION, &error);
+        match settings.form {
+            Form::Reduced => {
+                let state = self.prepare(&self.0, 0.0, origin).map_err(text)?;
+                driver::simulate(&self.0, state, settings, watch)
+            }
+            Form::Global => {
+                let global = self.0.global();
+                let state = self.prepare(&global, 0.0, origin).map_err(text)?;
+                driver::simulate(&global, state, settings, watch)
+            }
+        }
     }
 }
 

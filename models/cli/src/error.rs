@@ -43,6 +43,12 @@ pub enum CliError {
         /// How many were given.
         got: usize,
     },
+    /// The reduced form of a model that has none.
+    #[error("--form reduced: `{model}` has no form reduced to D; `derive {model}` says why")]
+    Unreduced {
+        /// The model.
+        model: &'static str,
+    },
     /// Flags that do not go together, or one that needs another.
     #[error("{0}")]
     Usage(&'static str),
@@ -209,6 +215,10 @@ pub fn fault_text(description: &Description, fault: &Fault) -> String {
                 constraint
             )
         ),
+        Fault::SingularFrame { quasi } => format!(
+            "the declared frame is singular at this state: quasi-velocity `{}` follows from the others and the constraints",
+            name(description.quasi_velocities.iter().copied(), quasi)
+        ),
         Fault::SingularSurface { surface } => format!(
             "no impulse within the constraints changes the gap rate of surface `{}` here",
             name(
@@ -225,6 +235,7 @@ pub const fn fault_kind(fault: &Fault) -> &'static str {
     match fault {
         Fault::MetricNotPositive { .. } => "metric_not_positive",
         Fault::SingularConstraint { .. } => "singular_constraint",
+        Fault::SingularFrame { .. } => "singular_frame",
         Fault::SingularSurface { .. } => "singular_surface",
         Fault::NonFinite { .. } => "non_finite",
         _ => "fault",

@@ -1,7 +1,7 @@
 //! From flags to a model with its parameters, and to the state a run starts from.
 
 use crate::args::{ModelArgs, OffConstraint, StateArgs};
-use crate::entry::{AnyModel, Entry, Rates, Start};
+use crate::entry::{AnyModel, Entry, Origin, Rates, Start};
 use crate::error::CliError;
 use crate::names;
 use crate::scalar;
@@ -59,26 +59,27 @@ fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
 ///
 /// # Errors
 /// Anything about the flags, or why the system refuses the state.
-pub fn initial_state(model: &dyn AnyModel, args: &StateArgs) -> Result<Vec<f64>, CliError> {
+pub fn initial_state(model: &dyn AnyModel, args: &StateArgs) -> Result<Origin, CliError> {
     let policy = args.off_constraint;
-    let refuse = |place: &str, error| CliError::state(place, &model.description(), error);
     let vector = |flag: &str, text: &str| numbers(model, flag, text);
-    match (&args.q, &args.qdot, &args.p) {
+    let (place, origin) = match (&args.q, &args.qdot, &args.p) {
         (Some(q), Some(qdot), None) => {
             let (q, qdot) = (vector("--q", q)?, vector("--qdot", qdot)?);
-            model
-                .state(0.0, &q, Rates::Velocities(&qdot), policy)
-                .map_err(|error| refuse("--q, --qdot", error))
+            let rates = Rates::Velocities(qdot);
+            ("--q, --qdot", Origin { q, rates, policy })
         }
         (Some(q), None, Some(p)) => {
             let (q, p) = (vector("--q", q)?, vector("--p", p)?);
-            model
-                .state(0.0, &q, Rates::Momenta(&p), policy)
-                .map_err(|error| refuse("--q, --p", error))
+            let rates = Rates::Momenta(p);
+            ("--q, --p", Origin { q, rates, policy })
         }
-        (None, None, None) => named_state(model, &args.initial, policy),
-        (Some(_), ..) => Err(CliError::Usage("--q needs --qdot or --p")),
-        (None, ..) => Err(CliError::Usage("--qdot and --p need --q")),
+        (None, None, None) => return named_state(model, &args.initial, policy),
+        (Some(_), ..) => return Err(CliError::Usage("--q needs --qdot or --p")),
+        (None, ..) => return Err(CliError::Usage("--qdot and --p need --q")),
+    };
+    match model.state(0.0, &origin) {
+        Ok(_) => Ok(origin),
+        Err(error) => Err(CliError::state(place, &model.description(), error)),
     }
 }
 
@@ -90,7 +91,7 @@ pub fn named_state(
     model: &dyn AnyModel,
     changes: &[String],
     policy: OffConstraint,
-) -> Result<Vec<f64>, CliError> {
+) -> Result<Origin, CliError> {
     let mut start = model.initial();
     for change in changes
         .iter()
@@ -113,9 +114,15 @@ pub fn named_state(
         // The named velocities contradict the constraints, and that is for the policy to settle.
         Err(_) => (start.qdot, policy),
     };
-    model
-        .state(0.0, &start.q, Rates::Velocities(&qdot), policy)
-        .map_err(refuse)
+    let origin = Origin {
+        q: start.q,
+        rates: Rates::Velocities(qdot),
+        policy,
+    };
+    match model.state(0.0, &origin) {
+        Ok(_) => Ok(origin),
+        Err(error) => Err(refuse(error)),
+    }
 }
 
 /// Carries out one `name=value` of `--initial`.

@@ -102,7 +102,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         let law = self.law_of(system, surface);
         let contact = system.contact(surface, t, &before)?;
         let mut after = before;
-        system.kick(t, &mut after, contact.impulse(law), &contact.direction)?;
+        system.kick(&mut after, contact.impulse(law), &contact.direction);
         let rates = system.gap_rates(t, &after)?;
         if let Some(component) = after.as_slice().iter().position(|value| !value.is_finite()) {
             return Err(Outcome::NonFinite { component });

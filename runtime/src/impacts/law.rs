@@ -49,7 +49,8 @@ pub struct Contact<V> {
     pub constrained_compliance: f64,
     /// `dh(grad h)`.
     pub free_compliance: f64,
-    /// `pi_D^* dh`, the impulse's direction: N components, in the order of the coordinates.
+    /// The impulse's direction, as [`System::kick`](crate::System::kick) takes it: `pi_D^* dh` for momenta,
+    /// `G_D^{-1} X^T dh` for quasi-velocities.
     pub direction: V,
 }
 

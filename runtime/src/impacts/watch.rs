@@ -265,6 +265,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
                 Search::Pole(after) => {
+                    self.check_behind_pole(surface, after, step)?;
                     start = Start {
                         from: after,
                         above: false,
@@ -302,6 +303,24 @@ impl<Sys: Impacting> Watch<Sys> {
             }
         }
         Ok(Found::Unfinished(start.from))
+    }
+
+    /// Behind a pole the surface must not count: the motion is on the side that is not allowed, and met no wall.
+    fn check_behind_pole<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        part: f64,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<(), Outcome> {
+        let gaps = step.system.gaps(step.time(part), &step.state(part));
+        let gap = gaps.as_slice()[surface];
+        let mut evaluations = 1;
+        let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
+        step.counters.event_evaluations += evaluations;
+        if gap < -2.0 * rounding && is_active(surface, step, part) {
+            return Err(Outcome::StartsInside { surface, gap });
+        }
+        Ok(())
     }
 
     /// Marks a hit so slow that the gap's lowest value would be within its rounding.

@@ -1,5 +1,6 @@
 //! Step size control (Hairer, Norsett, Wanner I, II.4; Gustafsson's PI controller).
 
+use super::tableau::larger;
 use super::tolerance::Tolerance;
 use crate::math;
 use crate::state::StateVector;
@@ -111,14 +112,10 @@ impl<S: StateVector> Weights<S> {
             + self.relative * y0.as_slice()[i].abs().max(y1.as_slice()[i].abs())
     }
 
-    /// Root mean square of `value(i)` over the error allowed at a state.
+    /// The largest of `value(i)` over the error allowed at a state.
     fn norm(&self, at: &S, value: impl Fn(usize) -> f64) -> f64 {
-        let mut sum = 0.0;
-        for i in 0..S::LEN {
-            let ratio = value(i) / self.allowed(i, at, at);
-            sum += ratio * ratio;
-        }
-        math::sqrt(sum / S::LEN.max(1) as f64)
+        let ratios = (0..S::LEN).map(|i| (value(i) / self.allowed(i, at, at)).abs());
+        ratios.fold(0.0, larger)
     }
 }
 

@@ -7,7 +7,7 @@ use super::controller::Control;
 use super::dense::Polynomial;
 use super::dop853_tableau::*;
 use super::embedded::{Counted, Embedded, Scheme, Span};
-use super::tableau::{combine, sum};
+use super::tableau::{combine, larger, sum};
 use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::math;
@@ -75,13 +75,13 @@ impl Scheme for Dop853Scheme {
             let weight = 1.0 / allowed(i);
             let e5 = sum(stages, &E5, i) * weight;
             let e3 = sum(stages, &E3, i) * weight;
-            fifth += e5 * e5;
-            third += e3 * e3;
+            fifth = larger(fifth, e5 * e5);
+            third = larger(third, e3 * e3);
         }
         if fifth == 0.0 && third == 0.0 {
             return 0.0;
         }
-        h.abs() * fifth / math::sqrt((fifth + 0.01 * third) * S::LEN as f64)
+        h.abs() * fifth / math::sqrt(fifth + 0.01 * third)
     }
 
     #[inline(always)]

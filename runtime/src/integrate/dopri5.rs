@@ -6,10 +6,9 @@
 use super::controller::Control;
 use super::dense::Polynomial;
 use super::embedded::{Counted, Embedded, Scheme, Span};
-use super::tableau::{Term, combine, sum};
+use super::tableau::{Term, combine, larger, sum};
 use crate::contract::VectorField;
 use crate::error::Fault;
-use crate::math;
 use crate::state::StateVector;
 
 /// The integrator of choice at loose tolerances.
@@ -116,12 +115,12 @@ impl Scheme for DormandPrince5Scheme {
 
     #[inline(always)]
     fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64 {
-        let mut square = 0.0;
+        let mut largest = 0.0;
         for i in 0..S::LEN {
             let ratio = h * sum(stages, &E, i) / allowed(i);
-            square += ratio * ratio;
+            largest = larger(largest, ratio.abs());
         }
-        math::sqrt(square / S::LEN.max(1) as f64)
+        largest
     }
 
     #[inline(always)]

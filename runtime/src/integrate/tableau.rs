@@ -23,6 +23,19 @@ pub(super) fn combine<S: StateVector>(base: &S, h: f64, stages: &[S], terms: &[T
     }
 }
 
+/// The larger of two sizes; not a number once one is.
+///
+/// Errors are measured by their largest component, not by their mean: components that are integrated without error, as
+/// angles that turn uniformly, must not excuse the others.
+#[inline(always)]
+pub(super) fn larger(largest: f64, value: f64) -> f64 {
+    if value > largest || value.is_nan() {
+        value
+    } else {
+        largest
+    }
+}
+
 /// Checks of tables, for the tests of the schemes.
 #[cfg(test)]
 pub(super) mod check {

@@ -2,8 +2,7 @@
 
 use core::fmt;
 
-/// Error allowed in a step: component `i` may err by `absolute * scale_i + relative * |y_i|`, in the norm of the
-/// integrator, where `scale` is [`VectorField::scale`](crate::VectorField::scale).
+/// Error allowed in a step: each component `i` may err by `absolute * scale_i + relative * |y_i|`, where `scale` is [`VectorField::scale`](crate::VectorField::scale).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     relative: f64,

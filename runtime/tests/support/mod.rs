@@ -54,6 +54,7 @@ impl<const S: usize> VectorField for Particle<S> {
 
 impl<const S: usize> System for Particle<S> {
     type Vector = Vector;
+    type Impulse = Vector;
 
     fn position(&self, state: &State) -> Vector {
         Vector::new(state[0], state[1])
@@ -79,10 +80,9 @@ impl<const S: usize> System for Particle<S> {
         Ok(0.5 * (s[2] * s[2] + s[3] * s[3]) - self.force[0] * s[0] - self.force[1] * s[1])
     }
 
-    fn kick(&self, _: f64, state: &mut State, size: f64, direction: &Vector) -> Result<(), Fault> {
+    fn kick(&self, state: &mut State, size: f64, direction: &Vector) {
         state[2] += size * direction[0];
         state[3] += size * direction[1];
-        Ok(())
     }
 
     fn check_parameters(&self) -> Result<(), ParameterError> {

@@ -6,6 +6,7 @@
 mod claims;
 mod constraints;
 mod coordinates;
+mod frame;
 mod initial;
 mod integrable;
 mod laws;
@@ -21,7 +22,9 @@ use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 
 use super::natural;
 use super::resolve::{Resolver, Scope};
-use super::{Claim, Constraint, Force, Initial, Lagrangian, Model, Output, Surface, View};
+use super::{
+    Claim, Constraint, Force, Initial, Lagrangian, Model, Output, QuasiForm, Surface, View,
+};
 use crate::diagnostics::Diagnostics;
 use crate::spec::{PIECEWISE, Scalar, Spec};
 use names::Names;
@@ -31,6 +34,7 @@ struct Parts {
     lagrangian: Option<Lagrangian>,
     constraints: Vec<Constraint>,
     forces: Vec<Force>,
+    frame: Vec<QuasiForm>,
     surfaces: Vec<Surface>,
     initial: Initial,
     view: Option<View>,
@@ -53,6 +57,7 @@ pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
         lagrangian: lagrangian(&mut resolver),
         constraints: constraints::resolve(&mut resolver),
         forces: forces(&mut resolver),
+        frame: frame::resolve(&mut resolver),
         surfaces: surfaces::resolve(&mut resolver),
         initial: initial::resolve(&mut resolver),
         view: outputs::view(&mut resolver),
@@ -78,6 +83,7 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     }
     // Rules broken by some of the constraints are broken by all of them: those that were refused may be missing.
     constraints::check_independent(resolver, &parts.constraints);
+    frame::check_coframe(resolver, &parts.frame, &parts.constraints);
     surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
     surfaces::check_distinct(resolver, &parts.surfaces);
 }
@@ -103,6 +109,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
         lagrangian,
         constraints: parts.constraints,
         forces: parts.forces,
+        frame: parts.frame,
         surfaces: parts.surfaces,
         initial: parts.initial,
         view: parts.view,
@@ -132,6 +139,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
         lagrangian: _,
         constraints,
         forces,
+        frame,
         surfaces,
         initial,
         view,
@@ -143,6 +151,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
         used.extend(constraint.form.iter().chain([&constraint.affine]));
     }
     used.extend(forces.iter().flat_map(|force| &force.form));
+    used.extend(frame.iter().flat_map(|entry| &entry.form));
     for surface in surfaces {
         used.extend(
             surface

@@ -3,33 +3,35 @@
 use crate::mechanics::Derivation;
 use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
-use crate::program::{Constrained, Function, Input, Value};
+use crate::program::{Constrained, Form, Function, Input, Return, Value};
 
 /// All of them; `None` without constraints.
-pub fn constrained(model: &Model, derivation: &Derivation) -> Option<Constrained> {
+pub fn constrained(model: &Model, derivation: &Derivation, form: Form) -> Option<Constrained> {
     if derivation.constraints.is_empty() {
         return None;
     }
     Some(Constrained {
-        multipliers: multipliers(model, derivation),
+        multipliers: multipliers(model, derivation, form),
         residuals: residuals(model, derivation),
         forms: forms(model, derivation),
-        project: project(model, derivation),
-        restore: restore(model, derivation),
+        return_to_constraints: (form == Form::Global).then(|| Return {
+            nearest: project(model, derivation, Arguments::Velocities),
+            restore: restore(model, derivation),
+        }),
         levels: levels(model, derivation),
         level_correction: level_correction(model, derivation),
     })
 }
 
-fn multipliers(model: &Model, derivation: &Derivation) -> Function {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+fn multipliers(model: &Model, derivation: &Derivation, form: Form) -> Function {
+    let mut kernel = Kernel::new(model, derivation, form.state());
     let outputs = kernel.multipliers();
     kernel.finish(outputs)
 }
 
 /// `eta^a(qdot) + eta^a_0`, then their natural sizes.
 fn residuals(model: &Model, derivation: &Derivation) -> Function {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+    let mut kernel = Kernel::new(model, derivation, Arguments::Velocities);
     let residuals = derivation
         .constraints
         .iter()
@@ -56,9 +58,10 @@ fn forms(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// `p + mu_a eta^a` with `m mu = -(eta(qdot) + eta_0)`: the nearest momenta in the metric on D*.
-fn project(model: &Model, derivation: &Derivation) -> Function {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+/// `p + mu_a eta^a` with `m mu = -(eta(qdot) + eta_0)`: the nearest momenta in the metric on D*, from momenta or
+/// velocities.
+fn project(model: &Model, derivation: &Derivation, arguments: Arguments) -> Function {
+    let mut kernel = Kernel::new(model, derivation, arguments);
     let kinetic = kernel.lowered_velocity();
     let affine: Vec<_> = derivation
         .constraints
@@ -67,9 +70,7 @@ fn project(model: &Model, derivation: &Derivation) -> Function {
         .collect();
     let affine = kernel.values(&affine);
     let shift = kernel.constraint_solve(&kinetic, &affine);
-    let momenta: Vec<Value> = (0..kernel.dimension())
-        .map(|i| kernel.builder.input(Input::Momentum(i)))
-        .collect();
+    let momenta = kernel.momenta();
     let outputs = kernel.add_constraint_force(&momenta, &shift);
     kernel.finish(outputs)
 }
@@ -82,7 +83,7 @@ fn project(model: &Model, derivation: &Derivation) -> Function {
 fn restore(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
     let Some(pairs) = kernel.regular_minor() else {
-        return project(model, derivation);
+        return project(model, derivation, Arguments::Momenta);
     };
     let before = kernel.velocity();
     let mut qdot = before.clone();

@@ -6,14 +6,14 @@ use crate::mechanics::Derivation;
 use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::recipes::motion::energy_value;
-use crate::program::{Function, Input, Value};
+use crate::program::{Form, Function, Value};
 
 /// The declared outputs; `None` without any.
-pub fn outputs(model: &Model, derivation: &Derivation) -> Option<Function> {
+pub fn outputs(model: &Model, derivation: &Derivation, form: Form) -> Option<Function> {
     if model.outputs.is_empty() {
         return None;
     }
-    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+    let mut kernel = Kernel::new(model, derivation, form.state());
     let expressions: Vec<ExprId> = model.outputs.iter().map(|output| output.value).collect();
     bind_derived(&mut kernel, &expressions);
     let values = kernel.values(&expressions);
@@ -32,10 +32,10 @@ fn bind_derived(kernel: &mut Kernel<'_>, expressions: &[ExprId]) {
         let energy = energy_value(kernel);
         kernel.bind_value(model.derived.energy, energy);
     }
-    for (i, &symbol) in model.derived.momenta.iter().enumerate() {
-        if named(symbol) {
-            let momentum = kernel.builder.input(Input::Momentum(i));
-            kernel.bind_value(symbol, momentum);
+    if model.derived.momenta.iter().any(|&symbol| named(symbol)) {
+        let momenta = kernel.momenta();
+        for (&symbol, value) in model.derived.momenta.iter().zip(momenta) {
+            kernel.bind_value(symbol, value);
         }
     }
     if model

@@ -7,7 +7,7 @@ use crate::mechanics::{Derivation, Entry};
 use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::recipes::{impact, motion, volume};
-use crate::program::{Function, Value};
+use crate::program::{Form, Function, Value};
 
 /// A named group of results.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -99,6 +99,37 @@ pub fn geometry(model: &Model, derivation: &Derivation, found: Option<&Volume>) 
     }
 }
 
+/// `(t, q, u)` to what is derived on D.
+pub fn reduced_geometry(model: &Model, derivation: &Derivation) -> Geometry {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Quasi);
+    let mut results = Results {
+        groups: Vec::new(),
+        values: Vec::new(),
+    };
+    let n = kernel.dimension();
+    let quasi = kernel.quasi_inputs();
+    let size = quasi.len();
+    results.vector("u", quasi);
+    let rate = kernel.quasi_rate();
+    results.vector("udot", rate);
+    let affine = kernel.affine_field();
+    results.vector("X_0", affine);
+    let fields = kernel.frame_fields();
+    results.matrix("X", fields, n);
+    let lower = kernel.reduced_metric();
+    let entry = |i: usize, j: usize| lower[i.max(j)][i.min(j)];
+    let rows = (0..size)
+        .map(|i| (0..size).map(|j| entry(i, j)).collect())
+        .collect();
+    results.matrix("G_D", rows, size);
+    let density = kernel.density_in_frame();
+    results.scalar("mu_C_density_frame", density);
+    Geometry {
+        function: kernel.finish(results.values),
+        groups: results.groups,
+    }
+}
+
 fn report_motion(kernel: &mut Kernel<'_>, results: &mut Results) {
     let qdot = kernel.velocity();
     results.vector("qdot", qdot);
@@ -160,9 +191,9 @@ fn report_surfaces(kernel: &mut Kernel<'_>, results: &mut Results) {
     }
 }
 
-/// `(t, q, p) -> div`
-pub fn divergence(model: &Model, derivation: &Derivation) -> Function {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+/// `(t, q, p) -> div`, or `(t, q, u) -> div`
+pub fn divergence(model: &Model, derivation: &Derivation, form: Form) -> Function {
+    let mut kernel = Kernel::new(model, derivation, form.state());
     let frame = DualFrame::of(&mut kernel);
     let theta = frame.density_form(&mut kernel);
     let divergence = frame.divergence(&mut kernel, &theta);

@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::program::expression::positive_power;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::linear::{Ldlt, Orthogonal};
-use crate::program::{Function, Value};
+use crate::program::{Function, Guard, Value};
 
 /// `(t, q) -> beta`, N components: `beta(Z_b) = c_b` for vectors that span, which are orthogonalised, as no choice of
 /// pivots is good everywhere.
@@ -28,8 +28,12 @@ pub fn gradient(model: &Model, derivation: &Derivation, integral: &Integral) -> 
     let n = vectors.len();
     let flat = Ldlt::identity(builder, n);
     // A guard that fails names the first constraint: where the vectors are dependent, the forms are or their frame fails.
-    let columns = vectors.iter().map(|own| (0, own.clone())).collect();
-    let factors = Orthogonal::factor(builder, &flat, columns, false);
+    let guard = |_, squared, reference| Guard::Constraint {
+        constraint: 0,
+        squared,
+        reference,
+    };
+    let factors = Orthogonal::factor(builder, &flat, vectors.clone(), guard);
     let nothing = vec![builder.zero(); n];
     let weights = factors.solve(builder, &flat, nothing, &shifts);
     let mut beta = vec![builder.zero(); n];

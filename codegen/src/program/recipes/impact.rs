@@ -2,7 +2,8 @@
 //!
 //! With `y = L^{-1} dh` and `y'` what is left of it after the constraint columns are projected out,
 //! `dh(grad h) = <y, y>`, `dh(pi_D grad h) = <y', y'>` and `pi_D^* dh = L y'`: sums of squares, so nothing
-//! cancels when the surface is almost tangent to the constraints.
+//! cancels when the surface is almost tangent to the constraints. On D, with `z = L_D^{-1} X^T dh` in the factors of
+//! `G_D`, `dh(pi_D grad h) = <z, z>`, and the impulse changes the quasi-velocities along `G_D^{-1} X^T dh`.
 
 use dalembert_expr::ExprId;
 
@@ -10,10 +11,10 @@ use crate::mechanics::Derivation;
 use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::recipes::declared::position_function;
-use crate::program::{Function, Guard, Impacting, Value};
+use crate::program::{Form, Function, Guard, Impacting, Value};
 
 /// All of them; `None` without surfaces.
-pub fn impacting(model: &Model, derivation: &Derivation) -> Option<Impacting> {
+pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<Impacting> {
     if derivation.surfaces.is_empty() {
         return None;
     }
@@ -22,14 +23,16 @@ pub fn impacting(model: &Model, derivation: &Derivation) -> Option<Impacting> {
         gaps: evaluate(model, derivation, Arguments::Position, |surface| {
             vec![surface.gap]
         }),
-        gap_rates: evaluate(model, derivation, Arguments::Momenta, |surface| {
+        gap_rates: evaluate(model, derivation, form.state(), |surface| {
             vec![surface.gap_rate]
         }),
         conditions: surfaces
             .clone()
             .map(|s| conditions(model, derivation, s))
             .collect(),
-        contacts: surfaces.map(|s| contact(model, derivation, s)).collect(),
+        contacts: surfaces
+            .map(|s| contact(model, derivation, form, s))
+            .collect(),
         coefficients: model
             .surfaces
             .iter()
@@ -59,9 +62,12 @@ fn conditions(model: &Model, derivation: &Derivation, s: usize) -> Option<Functi
     (!conditions.is_empty()).then(|| position_function(model, derivation, conditions))
 }
 
-fn contact(model: &Model, derivation: &Derivation, s: usize) -> Function {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
-    let contact = contact_values(&mut kernel, s);
+fn contact(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Function {
+    let mut kernel = Kernel::new(model, derivation, form.state());
+    let contact = match form {
+        Form::Global => contact_values(&mut kernel, s),
+        Form::Reduced => reduced_contact_values(&mut kernel, s),
+    };
     let [_, _, _, squared, _] = contact.scalars;
     kernel.builder.guard(Guard::Surface {
         surface: s,
@@ -74,7 +80,7 @@ fn contact(model: &Model, derivation: &Derivation, s: usize) -> Function {
 pub(super) struct ContactValues {
     /// In the order of [`SCALARS`].
     pub scalars: [Value; 5],
-    /// `pi_D^* dh`
+    /// `pi_D^* dh`, or `G_D^{-1} X^T dh`
     pub direction: Vec<Value>,
 }
 
@@ -107,10 +113,40 @@ pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues
     });
     let constrained_rate = kernel.dot(&direction, &qdot);
     let [constrained, free] = compliances;
+    kernel.name_by_coordinate(&direction, "direction_", "");
     let scalars = [gap_rate, constrained_rate, surface_rate, constrained, free];
+    named(kernel, scalars, direction)
+}
+
+/// The contact of a surface on D.
+fn reduced_contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues {
+    let surface = &kernel.derivation.surfaces[s];
+    let qdot = kernel.velocity();
+    let gap_rate = kernel.value(surface.gap_rate);
+    let surface_rate = kernel.value(surface.rate);
+    let form = kernel.values(&surface.form);
+    let restricted = kernel.restrict(&form);
+    let (constrained, direction) = kernel.with_reduced_ldlt(|builder, ldlt| {
+        let rest = ldlt.forward(builder, &restricted);
+        let compliance = ldlt.inner(builder, &rest, &rest);
+        (compliance, ldlt.backward(builder, &rest))
+    });
+    let free = kernel.forward(&form);
+    let free = kernel.with_ldlt(|builder, ldlt| ldlt.inner(builder, &free, &free));
+    let constrained_rate = if kernel.has_affine_constraints() {
+        let momenta = kernel.lower_vector(&qdot);
+        let momenta = kernel.restrict(&momenta);
+        kernel.dot(&direction, &momenta)
+    } else {
+        kernel.builder.sub(gap_rate, surface_rate)
+    };
+    let scalars = [gap_rate, constrained_rate, surface_rate, constrained, free];
+    named(kernel, scalars, direction)
+}
+
+fn named(kernel: &mut Kernel<'_>, scalars: [Value; 5], direction: Vec<Value>) -> ContactValues {
     for (&value, name) in scalars.iter().zip(SCALARS) {
         kernel.builder.name(value, name);
     }
-    kernel.name_by_coordinate(&direction, "direction_", "");
     ContactValues { scalars, direction }
 }

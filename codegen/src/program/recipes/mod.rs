@@ -6,6 +6,7 @@ pub mod geometry;
 pub mod gradient;
 pub mod impact;
 pub mod motion;
+pub mod reduced;
 pub mod volume;
 
 pub use geometry::{Geometry, Group};

@@ -1,15 +1,20 @@
 //! The motion: rate, velocity, momentum, energy.
 
+use dalembert_expr::ExprId;
+
 use crate::mechanics::Derivation;
 use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
-use crate::program::{Function, Value};
+use crate::program::{Form, Function, Value};
 
-/// `(t, q, p) -> (qdot, pdot)`: `qdot = g^{-1}(p - A)`, `pdot = f + lambda_a eta^a`.
-pub fn rate(model: &Model, derivation: &Derivation) -> Function {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+/// `(t, q, p) -> (qdot, pdot)`: `qdot = g^{-1}(p - A)`, `pdot = f + lambda_a eta^a`; or `(t, q, u) -> (qdot, udot)`.
+pub fn rate(model: &Model, derivation: &Derivation, form: Form) -> Function {
+    let mut kernel = Kernel::new(model, derivation, form.state());
     let mut outputs = kernel.velocity();
-    outputs.extend(momentum_rate(&mut kernel));
+    outputs.extend(match form {
+        Form::Global => momentum_rate(&mut kernel),
+        Form::Reduced => kernel.quasi_rate(),
+    });
     kernel.finish(outputs)
 }
 
@@ -26,19 +31,28 @@ pub(super) fn momentum_rate(kernel: &mut Kernel<'_>) -> Vec<Value> {
     rate
 }
 
-/// `(t, q) -> g_ii`
-pub fn scale(model: &Model, derivation: &Derivation) -> Function {
+/// `(t, q) -> 1, .., g_ii`, or the units of positions and quasi-velocities in reduced form.
+pub fn scale(model: &Model, derivation: &Derivation, form: Form) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
-    let diagonal: Vec<_> = (0..kernel.dimension())
-        .map(|i| model.lagrangian.metric[i][i])
-        .collect();
-    let outputs = kernel.values(&diagonal);
+    let n = kernel.dimension();
+    let units: Vec<ExprId> = match (form, &derivation.frame) {
+        (Form::Reduced, Ok(frame)) => {
+            let norms = frame.quasi.iter().map(|quasi| quasi.norm);
+            frame.position_units.iter().copied().chain(norms).collect()
+        }
+        _ => {
+            let one = model.pool.one();
+            let diagonal = (0..n).map(|i| model.lagrangian.metric[i][i]);
+            std::iter::repeat_n(one, n).chain(diagonal).collect()
+        }
+    };
+    let outputs = kernel.values(&units);
     kernel.finish(outputs)
 }
 
-/// `(t, q, p) -> qdot`
-pub fn velocity(model: &Model, derivation: &Derivation) -> Function {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+/// `(t, q, p) -> qdot`, or `(t, q, u) -> qdot`
+pub fn velocity(model: &Model, derivation: &Derivation, form: Form) -> Function {
+    let mut kernel = Kernel::new(model, derivation, form.state());
     let outputs = kernel.velocity();
     kernel.finish(outputs)
 }
@@ -46,20 +60,13 @@ pub fn velocity(model: &Model, derivation: &Derivation) -> Function {
 /// `(t, q, qdot) -> p = g qdot + A`
 pub fn momentum(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Velocities);
-    let kinetic = kernel.lowered_velocity();
-    let linear = kernel.values(&model.lagrangian.linear);
-    let outputs: Vec<Value> = kinetic
-        .iter()
-        .zip(linear)
-        .map(|(&p, a)| kernel.builder.add(p, a))
-        .collect();
-    kernel.name_by_coordinate(&outputs, "p_", "");
+    let outputs = kernel.momenta();
     kernel.finish(outputs)
 }
 
-/// `(t, q, p) -> 1/2 (p - A).qdot + V`
-pub fn energy(model: &Model, derivation: &Derivation) -> Function {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Both);
+/// `(t, q, p) -> 1/2 (p - A).qdot + V`, or `(t, q, u) -> 1/2 g(qdot, qdot) + V`
+pub fn energy(model: &Model, derivation: &Derivation, form: Form) -> Function {
+    let mut kernel = Kernel::new(model, derivation, form.state_with_velocity());
     let energy = energy_value(&mut kernel);
     kernel.finish(vec![energy])
 }

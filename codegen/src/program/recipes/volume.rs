@@ -166,9 +166,14 @@ fn squared_norms(kernel: &mut Kernel<'_>, rows: &[usize], columns: &[usize]) -> 
         .map(|&a| {
             let form = &kernel.derivation.constraints[a].form;
             let row: Vec<ExprId> = columns.iter().map(|&j| form[j]).collect();
-            (a, kernel.values(&row))
+            kernel.values(&row)
         })
         .collect();
     let flat = Ldlt::identity(&mut kernel.builder, columns.len());
-    Orthogonal::factor(&mut kernel.builder, &flat, entries, false).squares
+    let guard = |index: usize, squared, reference| Guard::Constraint {
+        constraint: rows[index],
+        squared,
+        reference,
+    };
+    Orthogonal::factor(&mut kernel.builder, &flat, entries, guard).squares
 }

@@ -1,4 +1,5 @@
-//! Named equations and quantities: `constraints { a: left = right; }`, `forces { f: form; }`, `outputs { o: e; }`.
+//! Named equations and quantities: `constraints { a: left = right; }`, `forces { f: form; }`, `frame { v: form; }`,
+//! `outputs { o: e; }`.
 
 use super::super::ast::{Equation, Quantity, Spec};
 use super::super::cursor::{Cursor, Read};
@@ -34,6 +35,14 @@ pub(super) fn constraint(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
 pub(super) fn force(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let force = quantity(cursor, spec, "a force", "name: -c*dot(x)*d(x);")?;
     spec.forces.push(force);
+    Ok(())
+}
+
+/// Reads one quasi-velocity.
+pub(super) fn quasi_velocity(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
+    let form = "name: cos(theta)*d(x) + sin(theta)*d(y);";
+    let entry = quantity(cursor, spec, "a quasi-velocity", form)?;
+    spec.frame.push(entry);
     Ok(())
 }
 

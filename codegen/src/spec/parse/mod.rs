@@ -147,6 +147,7 @@ fn declare(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         "parameters" => section(&word, cursor, spec, parameters::parameter),
         "constraints" => section(&word, cursor, spec, constraints::constraint),
         "forces" => section(&word, cursor, spec, constraints::force),
+        "frame" => section(&word, cursor, spec, constraints::quasi_velocity),
         "outputs" => section(&word, cursor, spec, constraints::output),
         "impacts" => section(&word, cursor, spec, impacts::surface),
         "initial" => section(&word, cursor, spec, initial::value),

@@ -77,7 +77,10 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
         subject: "the initial state is admissible",
         failure,
     });
-    if let Ok(state) = initial {
+    if let Ok(state) = initial.and_then(|origin| {
+        let state = model.state(0.0, &origin);
+        state.map_err(|error| CliError::state("the model's `initial`", &description, error))
+    }) {
         let inspected = model.inspect(0.0, &state, &mut Silent);
         let failure = inspected
             .err()

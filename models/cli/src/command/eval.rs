@@ -12,13 +12,13 @@ use serde_json::{Map, Value, json};
 
 use crate::Streams;
 use crate::args::{EvalArgs, OffConstraint};
-use crate::entry::{AnyModel, Entry, Rates};
+use crate::entry::{AnyModel, Entry, Origin};
 use crate::error::{self, CliError};
 use crate::exit::Exit;
 use crate::json;
 use crate::names;
 use crate::state_input::build_model;
-use input::{Given, GivenRates};
+use input::Given;
 use report::Collected;
 
 /// What is printed first of a state, in this order; `null` where a model has no such quantity. Whatever else a model
@@ -84,11 +84,12 @@ fn laws(args: &EvalArgs) -> Vec<Law> {
 }
 
 fn evaluate(model: &dyn AnyModel, given: &Given, laws: &[Law]) -> Result<Value, StateError> {
-    let rates = match &given.rates {
-        GivenRates::Velocities(qdot) => Rates::Velocities(qdot),
-        GivenRates::Momenta(p) => Rates::Momenta(p),
+    let origin = Origin {
+        q: given.q.clone(),
+        rates: given.rates.clone(),
+        policy: OffConstraint::Keep,
     };
-    let state = model.state(given.t, &given.q, rates, OffConstraint::Keep)?;
+    let state = model.state(given.t, &origin)?;
     let mut collected = Collected::at(model, given.t, &state)?;
     let mut row: Map<String, Value> = KEYS
         .iter()
@@ -129,9 +130,7 @@ fn evaluate_laws(
     };
     let mut results = Map::new();
     for &law in laws {
-        let after = model
-            .impact(t, state, &contact, law)
-            .and_then(|after| Collected::at(model, t, &after));
+        let after = Collected::at(model, t, &model.impact(state, &contact, law));
         let result = match after {
             Ok(mut after) => json!({
                 "qdot_plus": after.take("qdot"),

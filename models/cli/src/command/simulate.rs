@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use crate::args::SimulateArgs;
 use crate::driver::{Ending, Settings};
-use crate::entry::{AnyModel, Entry};
+use crate::entry::{AnyModel, Entry, Origin};
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::plot::{self, Picture, trace::Trace};
@@ -41,7 +41,7 @@ pub fn run(
     request::check_outputs(args)?;
     let model = build_model(models, &args.model)?;
     let settings = request::settings(model.as_ref(), args)?;
-    let state = initial_state(model.as_ref(), &args.state)?;
+    let origin = initial_state(model.as_ref(), &args.state)?;
     // Opened before the run: a path that cannot be written is better known at once.
     let [csv, json, plot] = [
         ("--csv", &args.csv),
@@ -55,7 +55,7 @@ pub fn run(
     });
     let (csv, json, plot) = (csv?, json?, plot?);
 
-    let (record, ending) = carry_out(model.as_ref(), &state, &settings, args, streams.terminal)?;
+    let (record, ending) = carry_out(model.as_ref(), &origin, &settings, args, streams.terminal)?;
     let finished = Finished {
         model: model.as_ref(),
         scene: &args.model.scene,
@@ -95,7 +95,7 @@ pub fn run(
 /// and then to sample it: runs are deterministic, and nothing has to be kept that is not asked for.
 fn carry_out(
     model: &dyn AnyModel,
-    state: &[f64],
+    origin: &Origin,
     settings: &Settings,
     args: &SimulateArgs,
     terminal: bool,
@@ -114,7 +114,7 @@ fn carry_out(
         };
         let mut recorder = Recorder::new(nothing, progress());
         grid.end = model
-            .simulate(state, settings, &mut recorder)
+            .simulate(origin, settings, &mut recorder)
             .map_err(CliError::Start)?
             .t;
     }
@@ -132,7 +132,7 @@ fn carry_out(
     };
     let mut recorder = Recorder::new(wanted, progress());
     let ending = model
-        .simulate(state, settings, &mut recorder)
+        .simulate(origin, settings, &mut recorder)
         .map_err(CliError::Start)?;
     recorder.finish(ending.t, &ending.last);
     Ok((recorder, ending))

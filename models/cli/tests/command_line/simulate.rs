@@ -24,6 +24,7 @@ fn a_document_has_the_keys_of_the_interface() {
         "model",
         "scene",
         "parameters",
+        "form",
         "integrator",
         "tol",
         "outcome",

@@ -37,6 +37,7 @@ macro_rules! particle {
 
         impl System for $type {
             type Vector = SVector<f64, $n>;
+            type Impulse = SVector<f64, $n>;
 
             fn position(&self, state: &Self::State) -> Self::Vector {
                 SVector::from_fn(|i, _| state[i])
@@ -63,9 +64,8 @@ macro_rules! particle {
                 Ok(kinetic + self.potential(&std::array::from_fn(|i| state[i])))
             }
 
-            fn kick(&self, _t: f64, state: &mut Self::State, size: f64, direction: &Self::Vector) -> Result<(), Fault> {
+            fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse) {
                 (0..$n).for_each(|i| state[$n + i] += size * direction[i]);
-                Ok(())
             }
 
             fn check_parameters(&self) -> Result<(), ParameterError> {
@@ -108,6 +108,7 @@ const NOTHING: Description = Description {
     coordinates: &[],
     parameters: &[],
     constraints: &[],
+    quasi_velocities: &[],
     forces: &[],
     surfaces: &[],
     outputs: &[],
@@ -215,6 +216,12 @@ impl Described for BouncingBall {
         ..NOTHING
     };
 
+    type Global = Self;
+
+    fn global(&self) -> Self {
+        self.clone()
+    }
+
     fn with_defaults() -> Self {
         Self { m: 1.0, g: 1.0 }
     }
@@ -320,6 +327,12 @@ impl Described for Oscillator {
         ..NOTHING
     };
 
+    type Global = Self;
+
+    fn global(&self) -> Self {
+        self.clone()
+    }
+
     fn with_defaults() -> Self {
         Self { k: f64::NAN }
     }
@@ -395,8 +408,8 @@ particle!(Bead, 2, 4, {
         (!inside).then_some(1)
     }
 
-    fn admit(&self, _t: f64, state: &Self::State) -> Result<(), StateError> {
-        let (residual, scale) = (state[3] - state[2], state[3].abs() + state[2].abs());
+    fn admit(&self, _t: f64, _q: &Self::Vector, qdot: &Self::Vector) -> Result<(), StateError> {
+        let (residual, scale) = (qdot[1] - qdot[0], qdot[1].abs() + qdot[0].abs());
         match residual.abs() <= 1e-9 * scale {
             true => Ok(()),
             false => Err(StateError::OffConstraint {
@@ -407,10 +420,14 @@ particle!(Bead, 2, 4, {
         }
     }
 
-    fn project(&self, _t: f64, state: &mut Self::State) -> Result<(), Fault> {
-        let mean = 0.5 * (state[2] + state[3]);
-        (state[2], state[3]) = (mean, mean);
-        Ok(())
+    fn state_nearest(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, Fault> {
+        let mean = 0.5 * (qdot[0] + qdot[1]);
+        self.state_unchecked(t, q, &SVector::from([mean, mean]))
     }
 
     fn complete_velocity(
@@ -460,6 +477,12 @@ impl Described for Bead {
         }],
         ..NOTHING
     };
+
+    type Global = Self;
+
+    fn global(&self) -> Self {
+        self.clone()
+    }
 
     fn with_defaults() -> Self {
         Self

@@ -8,6 +8,7 @@ use std::path::Path;
 use dalembert::describe::Description;
 use serde_json::{Map, Value};
 
+use crate::entry::Rates;
 use crate::error::CliError;
 use crate::{names, scalar};
 
@@ -19,16 +20,7 @@ pub struct Given {
     /// Positions.
     pub q: Vec<f64>,
     /// Velocities or momenta.
-    pub rates: GivenRates,
-}
-
-/// What was given besides the positions.
-#[derive(Debug, PartialEq)]
-pub enum GivenRates {
-    /// `qdot`
-    Velocities(Vec<f64>),
-    /// `p`
-    Momenta(Vec<f64>),
+    pub rates: Rates,
 }
 
 /// Reads all states from the file, or from `stdin` without one.
@@ -93,8 +85,8 @@ fn parse(description: &Description, place: &str, state: &Value) -> Result<Given,
         return Err(invalid(place, "\"q\" is missing"));
     };
     let rates = match (vector("qdot"), vector("p")) {
-        (Some(qdot), None) => GivenRates::Velocities(qdot?),
-        (None, Some(p)) => GivenRates::Momenta(p?),
+        (Some(qdot), None) => Rates::Velocities(qdot?),
+        (None, Some(p)) => Rates::Momenta(p?),
         _ => return Err(invalid(place, "expected one of \"qdot\" and \"p\"")),
     };
     Ok(Given {

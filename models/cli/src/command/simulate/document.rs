@@ -32,6 +32,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     document.field("model", description.name)?;
     document.field("scene", *scene)?;
     document.field("parameters", named(names, &values))?;
+    document.field("form", settings.form.name())?;
     document.field("integrator", settings.integrator.name())?;
     document.field("tol", number(settings.tol))?;
     document.field("outcome", outcome(finished))?;

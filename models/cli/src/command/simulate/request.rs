@@ -5,7 +5,7 @@ use std::path::Path;
 use dalembert::describe::Description;
 use dalembert::impacts::law::Law;
 
-use crate::args::{SimulateArgs, Switch};
+use crate::args::{Form, OffConstraint, SimulateArgs, Switch};
 use crate::driver::Settings;
 use crate::entry::AnyModel;
 use crate::error::CliError;
@@ -54,6 +54,7 @@ pub fn is_stdout(path: &Path) -> bool {
 /// How the run is to be made.
 pub fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, CliError> {
     Ok(Settings {
+        form: form(&model.description(), args)?,
         integrator: args.integrator,
         tol: args.tol,
         until: horizon(model, args)?,
@@ -61,6 +62,24 @@ pub fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, C
         laws: laws(&model.description(), &args.law)?,
         projection: args.projection.map(|switch| switch == Switch::On),
     })
+}
+
+/// The form of the equations: as asked for, else reduced where that can hold the state and what is asked of it.
+fn form(description: &Description, args: &SimulateArgs) -> Result<Form, CliError> {
+    let has_reduced = !description.quasi_velocities.is_empty();
+    let needs_global =
+        args.state.off_constraint == OffConstraint::Keep || args.projection.is_some();
+    match args.form {
+        Some(Form::Reduced) if !has_reduced => Err(CliError::Unreduced {
+            model: description.name,
+        }),
+        Some(Form::Reduced) if needs_global => Err(CliError::Usage(
+            "--form reduced holds no states off the constraints: leave out --off-constraint keep and --projection",
+        )),
+        Some(form) => Ok(form),
+        None if has_reduced && !needs_global => Ok(Form::Reduced),
+        None => Ok(Form::Global),
+    }
 }
 
 fn horizon(model: &dyn AnyModel, args: &SimulateArgs) -> Result<f64, CliError> {

@@ -24,8 +24,9 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     writeln!(output, "  energy      {}", energy(ending))?;
     writeln!(
         output,
-        "  integrator  {}, tol {:e}",
+        "  integrator  {}, {} form, tol {:e}",
         settings.integrator.name(),
+        settings.form.name(),
         settings.tol
     )?;
     let counters: Vec<String> = ending

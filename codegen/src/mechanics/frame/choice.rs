@@ -1,0 +1,130 @@
+//! A frame that is regular at every configuration, found from the constraint forms alone.
+//!
+//! A velocity can be made dependent where it occurs in one constraint only, of those still to be solved, with a
+//! coefficient that is never zero. Where no coefficient is, two velocities that occur in one constraint only serve
+//! if the squares of their coefficients have a sum that is never zero: a knife edge `-sin(theta) dx + cos(theta) dy`
+//! leaves the velocity along it, `cos(theta) dx + sin(theta) dy`.
+
+use dalembert_expr::{ExprId, Pool};
+
+use super::{Chosen, Unreduced};
+use crate::mechanics::ConstraintForm;
+use crate::model::Model;
+
+/// What a constraint takes away from the free velocities.
+enum Dependent {
+    /// This velocity follows from the others.
+    One(usize),
+    /// Of these two, the one along the constraint is left.
+    Pair(usize, usize),
+}
+
+/// Quasi-velocities: those of the coordinates that no constraint takes away, and those along pairs.
+pub(super) fn choose(
+    model: &mut Model,
+    constraints: &[ConstraintForm],
+) -> Result<Vec<Chosen>, Unreduced> {
+    let mut rows: Vec<usize> = (0..constraints.len()).collect();
+    let mut taken: Vec<(usize, Dependent)> = Vec::with_capacity(rows.len());
+    while !rows.is_empty() {
+        let Some((a, dependent)) = removable(&mut model.pool, constraints, &rows) else {
+            return Err(Unreduced::NoRegularFrame(rows));
+        };
+        rows.retain(|&row| row != a);
+        taken.push((a, dependent));
+    }
+    Ok(quasi_velocities(model, constraints, &taken))
+}
+
+/// A constraint that can be solved for velocities that no other of `rows` holds.
+fn removable(
+    pool: &mut Pool,
+    constraints: &[ConstraintForm],
+    rows: &[usize],
+) -> Option<(usize, Dependent)> {
+    let alone = |pool: &Pool, a: usize| -> Vec<usize> {
+        let holds = |b: usize, j: usize| !pool.is_syntactic_zero(constraints[b].form[j]);
+        let columns = 0..constraints[a].form.len();
+        let own = columns.filter(|&j| holds(a, j) && rows.iter().all(|&b| b == a || !holds(b, j)));
+        own.collect()
+    };
+    for &a in rows {
+        let columns = alone(pool, a);
+        let is_regular = |&&j: &&usize| pool.sign(constraints[a].form[j]).is_nonzero();
+        // A number is better than a parameter, and a parameter than a function: what it is divided by is exact.
+        let regular = columns.iter().filter(is_regular);
+        if let Some(&j) = regular.min_by_key(|&&j| complexity(pool, constraints[a].form[j])) {
+            return Some((a, Dependent::One(j)));
+        }
+    }
+    for &a in rows {
+        let columns = alone(pool, a);
+        for (index, &i) in columns.iter().enumerate() {
+            for &j in &columns[index + 1..] {
+                let form = &constraints[a].form;
+                let squared = squared_norm(pool, &[form[i], form[j]]);
+                if pool.sign(squared).is_nonzero() {
+                    return Some((a, Dependent::Pair(i, j)));
+                }
+            }
+        }
+    }
+    None
+}
+
+fn complexity(pool: &Pool, entry: ExprId) -> usize {
+    match pool.as_number(entry) {
+        Some(number) if number.abs().is_one() => 0,
+        Some(_) => 1,
+        None => 1 + pool.reachable(&[entry]).len(),
+    }
+}
+
+/// The sum of squares, simplified.
+pub(super) fn squared_norm(pool: &mut Pool, entries: &[ExprId]) -> ExprId {
+    let squares: Vec<ExprId> = entries
+        .iter()
+        .map(|&entry| pool.mul(entry, entry))
+        .collect();
+    let sum = pool.sum(&squares);
+    pool.simplify(sum)
+}
+
+fn quasi_velocities(
+    model: &mut Model,
+    constraints: &[ConstraintForm],
+    taken: &[(usize, Dependent)],
+) -> Vec<Chosen> {
+    let n = model.coordinates.len();
+    let zero = model.pool.zero();
+    let mut chosen = Vec::with_capacity(n - taken.len());
+    for i in 0..n {
+        let along = taken.iter().find_map(|(a, dependent)| match dependent {
+            Dependent::One(j) => (*j == i).then_some(None),
+            Dependent::Pair(first, second) if *first == i => Some(Some((*a, *first, *second))),
+            Dependent::Pair(_, second) => (*second == i).then_some(None),
+        });
+        let mut form = vec![zero; n];
+        match along {
+            Some(None) => continue,
+            Some(Some((a, first, second))) => {
+                form[first] = constraints[a].form[second];
+                form[second] = model.pool.neg(constraints[a].form[first]);
+                chosen.push(Chosen {
+                    name: format!("along_{}", model.constraints[a].name.display),
+                    coordinate: None,
+                    form,
+                });
+            }
+            None => {
+                form[i] = model.pool.one();
+                chosen.push(Chosen {
+                    name: format!("{}_dot", model.coordinates[i].name.display),
+                    coordinate: Some(i),
+                    form,
+                });
+            }
+        }
+    }
+    chosen
+}

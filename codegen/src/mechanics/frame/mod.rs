@@ -1,0 +1,129 @@
+//! The motion reduced to D: quasi-velocities, and how velocities follow from them.
+//!
+//! One-forms `alpha^i` that complete the constraint forms to a coframe give quasi-velocities `u^i = alpha^i(qdot)`,
+//! N - M of them, and with `X_i` dual to both
+//!
+//! ```text
+//! qdot = X_0 + X_i u^i        alpha^j(X_i) = delta, eta(X_i) = 0;  alpha(X_0) = 0, eta(X_0) = -eta_0
+//! G_D udot = X^T (f - gdot qdot - Adot - g a),        G_D = X^T g X
+//! a = Xdot u + Xdot_0:  alpha(a) = -alphadot(qdot),  eta(a) = -curvature
+//! ```
+//!
+//! `f`, `gdot qdot + Adot` and `curvature` are those of the global form, so that the reduced form holds whatever that
+//! one does: affine constraints, time, forces, velocity-linear terms. The system of `alpha` and `eta` is never inverted
+//! symbolically: [`plan`] says in which order it can be solved.
+
+mod choice;
+pub mod plan;
+mod scale;
+
+use dalembert_expr::ExprId;
+
+use super::{ConstraintForm, Coordinates};
+use crate::model::Model;
+
+pub use plan::{Block, Row, Solve};
+
+/// Quasi-velocities and the order in which velocities follow from them.
+#[derive(Debug)]
+pub struct Frame {
+    /// The quasi-velocities, N - M.
+    pub quasi: Vec<QuasiVelocity>,
+    /// The blocks of the coframe, in the order in which they are solved.
+    pub blocks: Vec<Block>,
+    /// What unit quasi-velocities make of each velocity at most, a function of the parameters; 1 where that is not one.
+    pub position_units: Vec<ExprId>,
+}
+
+/// `u = alpha(qdot)`
+#[derive(Debug)]
+pub struct QuasiVelocity {
+    /// Its name: as declared, `x_dot` for the velocity of `x`.
+    pub name: String,
+    /// The coordinate whose velocity it is, if it is one.
+    pub coordinate: Option<usize>,
+    /// `alpha_j`, N entries.
+    pub form: Vec<ExprId>,
+    /// The Euclidean norm of `alpha`: what a unit of velocity makes of the quasi-velocity.
+    pub norm: ExprId,
+    /// `alphadot(qdot) = (d_i alpha_j) qdot^i qdot^j + (d_t alpha_j) qdot^j`
+    pub curvature: ExprId,
+}
+
+/// Why the motion is left in its global form.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Unreduced {
+    /// There are no constraints and no frame was declared.
+    Free,
+    /// No choice of dependent velocities is regular at every configuration; the constraints that stand in the way.
+    NoRegularFrame(Vec<usize>),
+}
+
+/// The declared frame, or one that is regular at every configuration.
+pub(super) fn derive_frame(
+    model: &mut Model,
+    coordinates: &Coordinates,
+    constraints: &[ConstraintForm],
+) -> Result<Frame, Unreduced> {
+    let forms = if model.frame.is_empty() {
+        if constraints.is_empty() {
+            return Err(Unreduced::Free);
+        }
+        choice::choose(model, constraints)?
+    } else {
+        declared(model)
+    };
+    let motion = coordinates.motion(model);
+    let quasi: Vec<QuasiVelocity> = forms
+        .into_iter()
+        .map(|chosen| {
+            let velocity = contract(model, coordinates, &chosen.form);
+            let squared = choice::squared_norm(&mut model.pool, &chosen.form);
+            QuasiVelocity {
+                norm: model.pool.sqrt(squared),
+                curvature: model.pool.derivative_along(velocity, &motion),
+                name: chosen.name,
+                coordinate: chosen.coordinate,
+                form: chosen.form,
+            }
+        })
+        .collect();
+    let blocks = plan::plan(&mut model.pool, &quasi, constraints);
+    let position_units = scale::position_units(model, &quasi, constraints, &blocks);
+    Ok(Frame {
+        quasi,
+        blocks,
+        position_units,
+    })
+}
+
+/// A one-form that was chosen or declared.
+struct Chosen {
+    name: String,
+    coordinate: Option<usize>,
+    form: Vec<ExprId>,
+}
+
+fn declared(model: &Model) -> Vec<Chosen> {
+    let entries = model.frame.iter();
+    entries
+        .map(|entry| Chosen {
+            name: entry.name.display.clone(),
+            coordinate: None,
+            form: entry.form.clone(),
+        })
+        .collect()
+}
+
+/// `alpha(qdot)`
+fn contract(model: &mut Model, coordinates: &Coordinates, form: &[ExprId]) -> ExprId {
+    let terms: Vec<ExprId> = form
+        .iter()
+        .zip(&coordinates.qdot)
+        .map(|(&component, &qdot)| {
+            let velocity = model.pool.variable(qdot);
+            model.pool.mul(component, velocity)
+        })
+        .collect();
+    model.pool.sum(&terms)
+}

@@ -1,0 +1,208 @@
+//! The order in which the coframe `(alpha, eta)` is solved for velocities, block after block.
+//!
+//! A row with one column left gives that velocity first; a column with one row left is found last. What remains falls
+//! into connected blocks: one whose rows, or columns, are orthogonal is solved by products, any other by
+//! orthogonalisation in the emitted code.
+
+use dalembert_expr::{ExprId, Pool, Verdict};
+
+use super::QuasiVelocity;
+use super::choice::squared_norm;
+use crate::mechanics::ConstraintForm;
+
+/// A row of the coframe.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Row {
+    /// `alpha^i`
+    Quasi(usize),
+    /// `eta^a`
+    Constraint(usize),
+}
+
+/// As many rows as columns, solved together once the columns of earlier blocks are known.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Block {
+    /// The rows.
+    pub rows: Vec<Row>,
+    /// The coordinates whose velocities they give.
+    pub columns: Vec<usize>,
+    /// How.
+    pub solve: Solve,
+}
+
+/// How a block is solved.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Solve {
+    /// By a division: one row, one column, an entry that is never zero.
+    Entry,
+    /// The rows are orthogonal, with these squared norms, never zero.
+    Rows(Vec<ExprId>),
+    /// The columns are orthogonal, with these squared norms, never zero.
+    Columns(Vec<ExprId>),
+    /// By orthogonalisation, guarded.
+    General,
+}
+
+/// The blocks in the order in which they are solved.
+pub(super) fn plan(
+    pool: &mut Pool,
+    quasi: &[QuasiVelocity],
+    constraints: &[ConstraintForm],
+) -> Vec<Block> {
+    let mut matrix = Matrix::new(quasi, constraints);
+    let (mut first, mut last) = (Vec::new(), Vec::new());
+    loop {
+        if let Some(block) = matrix.lone_column_in_row(pool) {
+            first.push(block);
+        } else if let Some(block) = matrix.lone_row_in_column(pool) {
+            last.push(block);
+        } else {
+            break;
+        }
+    }
+    while let Some((rows, columns)) = matrix.component(pool) {
+        let solve = matrix.solve(pool, &rows, &columns);
+        let rows = rows.into_iter().map(|row| matrix.rows[row].0).collect();
+        first.push(Block {
+            rows,
+            columns,
+            solve,
+        });
+    }
+    last.reverse();
+    first.extend(last);
+    first
+}
+
+/// The rows and columns that no block holds yet.
+struct Matrix<'a> {
+    rows: Vec<(Row, &'a [ExprId])>,
+    free_rows: Vec<usize>,
+    free_columns: Vec<usize>,
+}
+
+impl<'a> Matrix<'a> {
+    fn new(quasi: &'a [QuasiVelocity], constraints: &'a [ConstraintForm]) -> Self {
+        let quasi = quasi.iter().enumerate();
+        let constraints = constraints.iter().enumerate();
+        let rows: Vec<(Row, &[ExprId])> = quasi
+            .map(|(i, own)| (Row::Quasi(i), own.form.as_slice()))
+            .chain(constraints.map(|(a, own)| (Row::Constraint(a), own.form.as_slice())))
+            .collect();
+        Self {
+            free_rows: (0..rows.len()).collect(),
+            free_columns: (0..rows.len()).collect(),
+            rows,
+        }
+    }
+
+    fn holds(&self, pool: &Pool, row: usize, column: usize) -> bool {
+        !pool.is_syntactic_zero(self.rows[row].1[column])
+    }
+
+    /// A row with one column left, in an entry that is never zero: the first to be solved.
+    fn lone_column_in_row(&mut self, pool: &Pool) -> Option<Block> {
+        let entry = self.free_rows.iter().find_map(|&row| {
+            let mut columns = self.free_columns.iter();
+            let column = *columns.find(|&&column| self.holds(pool, row, column))?;
+            let is_lone = !columns.any(|&other| self.holds(pool, row, other));
+            (is_lone && self.is_regular(pool, row, column)).then_some((row, column))
+        });
+        self.take_entry(entry?)
+    }
+
+    /// A column with one row left, in an entry that is never zero: the last to be solved.
+    fn lone_row_in_column(&mut self, pool: &Pool) -> Option<Block> {
+        let entry = self.free_columns.iter().find_map(|&column| {
+            let mut rows = self.free_rows.iter();
+            let row = *rows.find(|&&row| self.holds(pool, row, column))?;
+            let is_lone = !rows.any(|&other| self.holds(pool, other, column));
+            (is_lone && self.is_regular(pool, row, column)).then_some((row, column))
+        });
+        self.take_entry(entry?)
+    }
+
+    fn is_regular(&self, pool: &Pool, row: usize, column: usize) -> bool {
+        pool.sign(self.rows[row].1[column]).is_nonzero()
+    }
+
+    fn take_entry(&mut self, (row, column): (usize, usize)) -> Option<Block> {
+        self.free_rows.retain(|&own| own != row);
+        self.free_columns.retain(|&own| own != column);
+        Some(Block {
+            rows: vec![self.rows[row].0],
+            columns: vec![column],
+            solve: Solve::Entry,
+        })
+    }
+
+    /// Takes away the rows and columns that hang together with the first row left.
+    fn component(&mut self, pool: &Pool) -> Option<(Vec<usize>, Vec<usize>)> {
+        let mut rows = vec![*self.free_rows.first()?];
+        let mut columns: Vec<usize> = Vec::new();
+        loop {
+            let is_met = |column: &usize| rows.iter().any(|&row| self.holds(pool, row, *column));
+            let met: Vec<usize> = self.free_columns.iter().copied().filter(is_met).collect();
+            let hangs = |row: &usize| met.iter().any(|&column| self.holds(pool, *row, column));
+            let next: Vec<usize> = self.free_rows.iter().copied().filter(hangs).collect();
+            let is_done = met == columns && next == rows;
+            (rows, columns) = (next, met);
+            if is_done || rows.is_empty() {
+                break;
+            }
+        }
+        // A component that is not square belongs to a coframe that is singular everywhere, which was refused; to be
+        // solved at all it takes whatever is left.
+        if rows.is_empty() || rows.len() != columns.len() {
+            (rows, columns) = (self.free_rows.clone(), self.free_columns.clone());
+        }
+        self.free_rows.retain(|row| !rows.contains(row));
+        self.free_columns.retain(|column| !columns.contains(column));
+        Some((rows, columns))
+    }
+
+    fn solve(&self, pool: &mut Pool, rows: &[usize], columns: &[usize]) -> Solve {
+        let entries: Vec<Vec<ExprId>> = rows
+            .iter()
+            .map(|&row| {
+                columns
+                    .iter()
+                    .map(|&column| self.rows[row].1[column])
+                    .collect()
+            })
+            .collect();
+        if let Some(squares) = orthogonal(pool, &entries) {
+            return Solve::Rows(squares);
+        }
+        let transposed: Vec<Vec<ExprId>> = (0..columns.len())
+            .map(|column| entries.iter().map(|row| row[column]).collect())
+            .collect();
+        match orthogonal(pool, &transposed) {
+            Some(squares) => Solve::Columns(squares),
+            None => Solve::General,
+        }
+    }
+}
+
+/// The squared norms of vectors that are orthogonal and never zero.
+fn orthogonal(pool: &mut Pool, vectors: &[Vec<ExprId>]) -> Option<Vec<ExprId>> {
+    for (index, vector) in vectors.iter().enumerate() {
+        for other in &vectors[index + 1..] {
+            let products: Vec<ExprId> = vector
+                .iter()
+                .zip(other)
+                .map(|(&a, &b)| pool.mul(a, b))
+                .collect();
+            let product = pool.sum(&products);
+            if pool.zero_test(product) != Verdict::Proved {
+                return None;
+            }
+        }
+    }
+    let squares: Vec<ExprId> = vectors
+        .iter()
+        .map(|vector| squared_norm(pool, vector))
+        .collect();
+    let regular = squares.iter().all(|&square| pool.sign(square).is_nonzero());
+    regular.then_some(squares)
+}

@@ -1,0 +1,251 @@
+//! The form reduced to D against values computed independently with 50 digits, and against the global form.
+
+use dalembert::{
+    Constrained, Described, Dop853, Event, Impacting, Observer, Scene, SceneEffects, Simulation,
+    StateVector, System, Tolerance,
+};
+use dalembert_cli::Exit;
+use dalembert_tests::command::dalembert;
+use dalembert_tests::numeric::Reported;
+use dalembert_tests::reference::{compare, read};
+use dalembert_tests::sampling::{Random, Visitor, states, visit_all};
+use serde_json::{Map, Value};
+
+/// Quantities of the files by the names `eval` gives them.
+const QUANTITIES: [&str; 7] = [
+    "u",
+    "udot",
+    "X_0",
+    "X",
+    "G_D",
+    "multipliers",
+    "mu_C_density_frame",
+];
+
+#[test]
+fn the_reduced_form_has_the_reference_values() {
+    let files = [
+        ("reduced_chaplygin_sleigh", "chaplygin_sleigh"),
+        ("reduced_affine_sleigh", "affine_sleigh"),
+        ("reduced_damped_sleigh", "damped_sleigh"),
+        ("reduced_magnetic_disk", "magnetic_disk"),
+        ("reduced_rheonomic", "rheonomic"),
+        ("reduced_rolling_disk", "rolling_disk"),
+        ("reduced_rotating_table", "ball_on_rotating_table"),
+    ];
+    let mut compared = 0;
+    for (file, model) in files {
+        let reference = read(file);
+        let states = reference["states"].as_array().expect("states");
+        let given: Vec<Value> = states.iter().map(input).collect();
+        let mut arguments = vec!["eval".to_owned(), model.to_owned()];
+        let parameters = reference["system"]["parameters"].as_object();
+        for (name, value) in parameters.expect("parameters") {
+            let value = value.as_str().expect("a number");
+            // `d` is a word of the language.
+            let name = if name == "d" { "d_" } else { name };
+            arguments.extend(["--set".to_owned(), format!("{name}={value}")]);
+        }
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let finished = dalembert(&arguments, &Value::from(given).to_string());
+        assert_eq!(finished.exit, Exit::Reached, "{file}: {}", finished.errors);
+        let printed: Value = serde_json::from_str(&finished.output).expect("JSON");
+        for (k, state) in states.iter().enumerate() {
+            for quantity in QUANTITIES {
+                let actual = &printed[k][quantity];
+                let path = format!("{file} {k} {quantity}");
+                if let Err(error) = compare(&path, actual, &state[quantity], 1e-12) {
+                    panic!("{error}");
+                }
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 7 * 7 * 5, "{compared}");
+}
+
+/// The state as `eval` takes it.
+fn input(state: &Value) -> Value {
+    let names = ["q", "qdot", "t"].into_iter();
+    let given = names.filter_map(|name| Some((name.to_owned(), state.get(name)?.clone())));
+    given.collect::<Map<String, Value>>().into()
+}
+
+/// Where a model has a reduced form, its motion is that of the global form: the same accelerations at the same
+/// velocities, time and forces included.
+#[derive(Default)]
+struct SameMotion {
+    models: usize,
+}
+
+impl Visitor for SameMotion {
+    fn visit<S: Described + Scene>(&mut self, system: S) {
+        let quasi = S::DESCRIPTION.quasi_velocities.len();
+        if quasi == 0 {
+            return;
+        }
+        self.models += 1;
+        let name = S::DESCRIPTION.name;
+        let global = system.global();
+        let t = 0.3;
+        for state in states(&system, 10, 5) {
+            let (q, qdot) = (system.position(&state), system.velocity(t, &state));
+            let qdot = qdot.expect("a velocity");
+            let other = global.state_unchecked(t, &q, &qdot).expect("a state");
+            let mut reported = Reported::default();
+            global.inspect(t, &other, &mut reported).expect("a report");
+            let expected = &reported.0["acceleration"];
+            let mut rate = S::State::zeros();
+            system.rate(t, &state, &mut rate).expect("a rate");
+            let actual = acceleration(&system, t, &state, &rate);
+            let size = expected
+                .iter()
+                .fold(1.0_f64, |size, own| size.max(own.abs()));
+            for (actual, expected) in actual.iter().zip(expected) {
+                let error = (actual - expected).abs();
+                assert!(error < 1e-7 * size, "{name}: {actual} for {expected}");
+            }
+            let energies = [system.energy(t, &state), global.energy(t, &other)];
+            let [own, of_global] = energies.map(|energy| energy.expect("an energy"));
+            assert!(
+                (own - of_global).abs() <= 1e-13 * own.abs().max(1e-3),
+                "{name}"
+            );
+            let momenta = system.momentum(t, &state).expect("momenta");
+            let back = system.state_from_momenta(t, &q, &momenta).expect("a state");
+            for (back, own) in back.as_slice().iter().zip(state.as_slice()) {
+                assert!((back - own).abs() < 1e-11 * own.abs().max(1.0), "{name}");
+            }
+        }
+    }
+}
+
+/// `d/dt qdot` along the rate of the state, by differences of the emitted velocity.
+fn acceleration<S: System>(system: &S, t: f64, state: &S::State, rate: &S::State) -> Vec<f64> {
+    let h = 1e-4;
+    let at = |k: f64| {
+        let mut moved = *state;
+        for (x, v) in moved.as_mut_slice().iter_mut().zip(rate.as_slice()) {
+            *x += k * h * v;
+        }
+        let qdot = system.velocity(t + k * h, &moved).expect("a velocity");
+        qdot.as_slice().to_vec()
+    };
+    let pair = |k: f64| -> Vec<f64> {
+        let sides = at(k).into_iter().zip(at(-k));
+        sides.map(|(right, left)| right - left).collect()
+    };
+    let pairs = pair(1.0).into_iter().zip(pair(2.0));
+    pairs
+        .map(|(first, second)| (8.0 * first - second) / (12.0 * h))
+        .collect()
+}
+
+#[test]
+fn both_forms_are_the_same_motion() {
+    let mut visitor = SameMotion::default();
+    visit_all(&mut visitor);
+    assert!(visitor.models >= 12, "{}", visitor.models);
+}
+
+/// A velocity off the constraints is taken to the same nearest one in both forms.
+#[test]
+fn both_forms_project_to_the_same_velocity() {
+    struct SameProjection;
+    impl Visitor for SameProjection {
+        fn visit<S: Described + Scene>(&mut self, system: S) {
+            let global = system.global();
+            let mut random = Random::new(9);
+            let (q, qdot): (S::Vector, S::Vector) =
+                (random.vector(0.2, 1.3), random.vector(-1.0, 1.0));
+            let own = system.state_nearest(0.1, &q, &qdot).expect("a state");
+            let other = global.state_nearest(0.1, &q, &qdot).expect("a state");
+            let [own, other] = [system.velocity(0.1, &own), global.velocity(0.1, &other)];
+            let [own, other] = [own.expect("a velocity"), other.expect("a velocity")];
+            for (own, other) in own.as_slice().iter().zip(other.as_slice()) {
+                let name = S::DESCRIPTION.name;
+                assert!((own - other).abs() < 1e-12, "{name}: {own} and {other}");
+            }
+        }
+    }
+    visit_all(&mut SameProjection);
+}
+
+/// Times of impacts, and the last velocity after one.
+#[derive(Default)]
+struct Impacts(Vec<(f64, Vec<f64>)>);
+
+impl<S: System> Observer<S> for Impacts {
+    fn event(&mut self, event: &Event<S::State>) -> core::ops::ControlFlow<()> {
+        self.0.push((event.t, Vec::new()));
+        core::ops::ControlFlow::Continue(())
+    }
+}
+
+fn run<S: Impacting + Scene>(
+    system: &S,
+    q: &S::Vector,
+    qdot: &S::Vector,
+    count: u64,
+) -> (Vec<f64>, Vec<f64>) {
+    let state = system.state_unchecked(0.0, q, qdot).expect("a state");
+    let mut effects = system.effects();
+    effects.set_impact_budget(Some(count));
+    let stepper = Dop853::new(Tolerance::new(1e-14).expect("a tolerance"));
+    let mut impacts = Impacts::default();
+    let run = Simulation::new(system, stepper, effects)
+        .run(0.0, state, 1e4, &mut impacts)
+        .expect("a start");
+    let qdot = system.velocity(run.t, &run.state).expect("a velocity");
+    (
+        impacts.0.iter().map(|own| own.0).collect(),
+        qdot.as_slice().to_vec(),
+    )
+}
+
+/// Impacts included, both forms run alike: on the circular table, which amplifies errors slowly.
+#[test]
+fn both_forms_meet_the_same_impacts() {
+    let disk = dalembert_models::RollingDisk {
+        ta: 0.2,
+        tb: 0.2,
+        ..dalembert_models::RollingDisk::default()
+    };
+    let phi = core::f64::consts::FRAC_PI_2;
+    let qdot = [
+        10.0 * disk.R * phi.cos(),
+        10.0 * disk.R * phi.sin(),
+        10.0,
+        0.2,
+    ];
+    let (q, qdot) = ([0.0, 0.0, 0.0, phi].into(), qdot.into());
+    let (own, last) = run(&disk, &q, &qdot, 20);
+    let (other, global_last) = run(&disk.global(), &q, &qdot, 20);
+    assert_eq!((own.len(), other.len()), (20, 20));
+    for (own, other) in own.iter().zip(&other) {
+        assert!((own - other).abs() < 1e-9, "{own} and {other}");
+    }
+    for (own, other) in last.iter().zip(&global_last) {
+        assert!((own - other).abs() < 1e-8, "{own} and {other}");
+    }
+}
+
+/// On D by construction: no residual but that of rounding, however long the run and however loose the tolerance.
+#[test]
+fn a_reduced_state_never_leaves_the_constraints() {
+    let disk = dalembert_models::RollingDisk::default();
+    let start = disk.initial();
+    let qdot = disk.complete_velocity(0.0, &start.q, &start.qdot, &start.named);
+    let state = disk
+        .state(0.0, &start.q, &qdot.expect("velocities"))
+        .expect("a state");
+    let stepper = Dop853::new(Tolerance::new(1e-3).expect("a tolerance"));
+    let run = Simulation::new(&disk, stepper, ())
+        .run(0.0, state, 1e4, &mut ())
+        .expect("a start");
+    let (q, qdot) = (disk.position(&run.state), disk.velocity(run.t, &run.state));
+    let (residuals, scales) = disk.residuals(run.t, &q, &qdot.expect("a velocity"));
+    for (residual, scale) in residuals.as_slice().iter().zip(scales.as_slice()) {
+        assert!(residual.abs() <= 4.0 * f64::EPSILON * scale, "{residual:e}");
+    }
+}
