@@ -9,6 +9,7 @@ mod field;
 mod function;
 mod impact;
 mod indices;
+mod jet;
 mod names;
 mod parameters;
 mod volume;
@@ -39,6 +40,7 @@ pub fn tokens(model: &Model, program: &Program) -> TokenStream {
         indices::emit_indices(&context),
         field::emit_field(&context),
         field::emit_system(&context),
+        jet::emit_taylor(&context),
         constraint::emit_constrained(&context),
         impact::emit_impacting(&context),
         volume::emit_divergence(&context),

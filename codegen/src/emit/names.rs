@@ -25,7 +25,7 @@ pub(super) struct Names {
 }
 
 /// Names that generated functions use for their own arguments.
-const ARGUMENTS: [&str; 14] = [
+const ARGUMENTS: [&str; 22] = [
     "t",
     "state",
     "rate",
@@ -40,6 +40,14 @@ const ARGUMENTS: [&str; 14] = [
     "report",
     "size",
     "direction",
+    "unit",
+    "order",
+    "coefficients",
+    "jets",
+    "k",
+    "weight",
+    "inverse",
+    "step",
 ];
 
 impl Names {

@@ -1,6 +1,7 @@
 //! From a derivation to the program: one function per item of the contract.
 
 use super::Program;
+use super::jet::Jet;
 use super::recipes::{constrained, declared, geometry, impact, motion, volume};
 use crate::claims::Volume;
 use crate::mechanics::Derivation;
@@ -8,8 +9,11 @@ use crate::model::Model;
 
 /// Lowers everything that a model declares, and the invariant volume that was found for it.
 pub fn lower(model: &Model, derivation: &Derivation, found: Option<&Volume>) -> Program {
+    let rate = motion::rate(model, derivation);
+    let n = model.coordinates.len();
     Program {
-        rate: motion::rate(model, derivation),
+        jet: Jet::of_rate(&rate, |input| input.component(n)),
+        rate,
         scale: motion::scale(model, derivation),
         velocity: motion::velocity(model, derivation),
         momentum: motion::momentum(model, derivation),

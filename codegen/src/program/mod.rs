@@ -9,6 +9,7 @@ pub mod builder;
 pub mod cost;
 pub mod expression;
 pub mod interpret;
+pub mod jet;
 pub mod kernel;
 pub mod linear;
 pub mod lower;
@@ -131,6 +132,17 @@ impl Guard {
     }
 }
 
+impl Input {
+    /// Which component of the state `(q, p)` of `n` coordinates the input is.
+    pub fn component(self, n: usize) -> Option<usize> {
+        match self {
+            Self::Coordinate(i) => Some(i),
+            Self::Momentum(i) => Some(n + i),
+            Self::Time | Self::Velocity(_) | Self::Parameter(_) | Self::Excess(_) => None,
+        }
+    }
+}
+
 impl Op {
     /// The values the operation reads.
     pub fn operands(&self) -> Vec<Value> {
@@ -179,6 +191,8 @@ impl Function {
 pub struct Program {
     /// `(t, q, p) -> (qdot, pdot)`
     pub rate: Function,
+    /// Its Taylor coefficients along the motion.
+    pub jet: jet::Jet,
     /// `(t, q) -> g_ii`, the unit of each momentum.
     pub scale: Function,
     /// `(t, q, p) -> qdot`
@@ -221,6 +235,7 @@ impl Program {
         // NOTE: every field is named, so that a function that is added is not forgotten here.
         let Self {
             rate,
+            jet,
             scale,
             velocity,
             momentum,
@@ -238,7 +253,7 @@ impl Program {
             until,
         } = self;
         let mut functions = vec![rate, scale, velocity, momentum, energy, &geometry.function];
-        functions.extend([divergence, density_form, initial]);
+        functions.extend([&jet.function, divergence, density_form, initial]);
         let declared = [outputs, view_path, view_region, until];
         functions.extend(declared.into_iter().flatten());
         functions.extend(constrained.iter().flat_map(Constrained::functions));

@@ -15,12 +15,6 @@ pub trait Stepper<F: VectorField> {
     /// Name, as the command line writes it.
     const NAME: &'static str;
 
-    /// Order of the solution at the ends of steps.
-    const ORDER: usize;
-
-    /// Order of the dense output between them.
-    const DENSE_ORDER: usize;
-
     /// Begins at `(t, state)`, heading for `t_end`: finds a first step size.
     ///
     /// # Errors
