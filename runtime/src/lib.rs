@@ -148,7 +148,6 @@ pub use dalembert_macros::model;
 pub mod __private {
     pub use crate::generated::*;
     pub use crate::initial::complete_velocities;
-    pub use crate::jet;
     pub use crate::math;
     pub use crate::quadrature::line_integral;
     pub use nalgebra::SVector;

@@ -23,5 +23,5 @@ pub use dopri5::{DormandPrince5, DormandPrince5Scheme};
 pub use embedded::{Embedded, Scheme};
 pub use stats::Counters;
 pub use stepper::{StepFailure, Stepper};
-pub use taylor::Taylor;
+pub use taylor::{TAYLOR, Taylor};
 pub use tolerance::{Tolerance, ToleranceError};

@@ -32,6 +32,9 @@ use crate::jet::{Jets, LENGTH};
 use crate::math;
 use crate::state::StateVector;
 
+/// The name of [`Taylor`], known without a system.
+pub const TAYLOR: &str = "taylor";
+
 /// Lowest order: two coefficients are looked at for the step size, none of them that of the rate.
 const LEAST_ORDER: usize = 3;
 
@@ -287,7 +290,7 @@ fn power_of_two(x: f64) -> f64 {
 }
 
 impl<F: TaylorField> Stepper<F> for Taylor<F> {
-    const NAME: &'static str = "taylor";
+    const NAME: &'static str = TAYLOR;
 
     fn start(
         &mut self,

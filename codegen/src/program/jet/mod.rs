@@ -93,6 +93,24 @@ pub struct History {
     pub weighted: bool,
 }
 
+impl History {
+    /// Of coefficients as they are.
+    pub fn plain(value: Value) -> Self {
+        Self {
+            value,
+            weighted: false,
+        }
+    }
+
+    /// Of coefficients times their order.
+    pub fn weighted(value: Value) -> Self {
+        Self {
+            value,
+            weighted: true,
+        }
+    }
+}
+
 /// A function with the Taylor coefficients of its values.
 #[derive(Debug)]
 pub struct Jet {
@@ -149,10 +167,21 @@ impl Jet {
         Self::of(rate, &components, component)
     }
 
-    /// The number of a history.
-    pub fn slot(&self, value: Value, weighted: bool) -> Option<usize> {
-        let wanted = History { value, weighted };
-        self.histories.binary_search(&wanted).ok()
+    /// Whether any coefficients of a value are kept.
+    pub fn is_kept(&self, value: Value) -> bool {
+        let histories = [History::plain(value), History::weighted(value)];
+        let known = |history| self.histories.binary_search(history).is_ok();
+        histories.iter().any(known)
+    }
+
+    /// How often coefficient `k` of each value is read for those of others and for results.
+    pub fn uses(&self) -> Vec<usize> {
+        let mut uses = vec![0; self.recurrences.len()];
+        let operands = self.varying().flat_map(|value| self.recurrences[value.index()].operands());
+        for value in operands.chain(self.function.outputs.iter().copied()) {
+            uses[value.index()] += 1;
+        }
+        uses
     }
 
     /// Values that have coefficients of order `k`, in an order in which they can be computed.
@@ -266,14 +295,7 @@ impl Recurrence {
 
     /// What must be kept over the orders for coefficients of `value`.
     fn histories(&self, value: Value) -> Vec<History> {
-        let plain = |value| History {
-            value,
-            weighted: false,
-        };
-        let weighted = |value| History {
-            value,
-            weighted: true,
-        };
+        let (plain, weighted) = (History::plain, History::weighted);
         match *self {
             Self::Product(a, b) => vec![plain(a), plain(b)],
             Self::Square(a) => vec![plain(a)],
