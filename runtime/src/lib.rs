@@ -126,7 +126,9 @@ pub mod record;
 pub mod simulation;
 pub mod state;
 
-pub use contract::{Constrained, Divergence, Impacting, InvariantVolume, System, TaylorField, VectorField};
+pub use contract::{
+    Constrained, Divergence, Impacting, InvariantVolume, System, TaylorField, VectorField,
+};
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
 pub use error::{Fault, ParameterError, StateError};

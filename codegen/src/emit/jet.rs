@@ -169,9 +169,9 @@ impl<'a> Writer<'a> {
                 (locals[i], any) = (quote!(#next), true);
             }
         }
-        any.then(|| {
-            quote!(let [#(#locals),*] = ::dalembert::__private::components(&coefficients[k]);)
-        })
+        any.then(
+            || quote!(let [#(#locals),*] = ::dalembert::__private::components(&coefficients[k]);),
+        )
         .unwrap_or_default()
     }
 
@@ -334,7 +334,7 @@ impl<'a> Writer<'a> {
     }
 
     fn expression(&mut self, value: Value, recurrence: &Recurrence) -> TokenStream {
-                match recurrence {
+        match recurrence {
             Recurrence::Constant | Recurrence::Component(_) => quote!(0.0),
             Recurrence::Time => quote!(if k == 1 { unit } else { 0.0 }),
             Recurrence::Same(a) => {

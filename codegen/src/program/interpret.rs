@@ -18,10 +18,7 @@ pub fn interpret(function: &Function, input: &dyn Fn(Input) -> f64) -> Result<Ve
 }
 
 /// Every value of `function`; NaN for guards that hold.
-pub(super) fn values(
-    function: &Function,
-    input: &dyn Fn(Input) -> f64,
-) -> Result<Vec<f64>, Guard> {
+pub(super) fn values(function: &Function, input: &dyn Fn(Input) -> f64) -> Result<Vec<f64>, Guard> {
     let mut values: Vec<f64> = Vec::with_capacity(function.ops.len());
     for op in &function.ops {
         let value = execute(op, &values, input)?;

@@ -3,9 +3,7 @@
 //! First-same-as-last: the rate at the end of an accepted step is the first stage of the next one. Where the error
 //! estimate does without it, it is evaluated only once the error has passed.
 
-use super::controller::{
-    Control, Memory, Weights, first_step, landing, least_step, not_finite,
-};
+use super::controller::{Control, Memory, Weights, first_step, landing, least_step, not_finite};
 use super::stats::Counters;
 use super::stepper::{StepFailure, Stepper};
 use super::tolerance::Tolerance;

@@ -187,7 +187,8 @@ impl<F: TaylorField> Taylor<F> {
                 &mut self.jets,
             )?;
             let last = &self.coefficients[self.order];
-            let Some(component) = not_finite(last).or(not_finite(&self.coefficients[self.order - 1]))
+            let Some(component) =
+                not_finite(last).or(not_finite(&self.coefficients[self.order - 1]))
             else {
                 return Ok(self.reach());
             };

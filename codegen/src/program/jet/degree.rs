@@ -64,7 +64,9 @@ pub(super) fn of_components(
     loop {
         let mut degrees: Vec<Degree> = Vec::with_capacity(rate.ops.len());
         for op in &rate.ops {
-            let degree = of(op, &degrees, |input| component(input).map(|i| components[i]));
+            let degree = of(op, &degrees, |input| {
+                component(input).map(|i| components[i])
+            });
             degrees.push(degree);
         }
         let integrated = rate.outputs.iter().map(|output| {

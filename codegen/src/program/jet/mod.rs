@@ -177,7 +177,9 @@ impl Jet {
     /// How often coefficient `k` of each value is read for those of others and for results.
     pub fn uses(&self) -> Vec<usize> {
         let mut uses = vec![0; self.recurrences.len()];
-        let operands = self.varying().flat_map(|value| self.recurrences[value.index()].operands());
+        let operands = self
+            .varying()
+            .flat_map(|value| self.recurrences[value.index()].operands());
         for value in operands.chain(self.function.outputs.iter().copied()) {
             uses[value.index()] += 1;
         }
