@@ -3,7 +3,6 @@
 use dalembert::jet::{Jets, LENGTH};
 use dalembert::{
     Described, Dop853, Scene, Simulation, StateVector, System, Taylor, TaylorField, Tolerance,
-    VectorField,
 };
 use dalembert_codegen::program::jet::degree::Degree;
 use dalembert_codegen::program::jet::{Jet, Recurrence, interpret};
@@ -75,7 +74,7 @@ fn assert_emitted_is_interpreted<S: Described + TaylorField>(
             &mut (0..S::State::LEN).map(|i| (emitted[k].as_slice()[i] - interpreted[i][k]).abs()),
         );
         assert!(
-            error <= 1e-10 * size,
+            error <= 1e-7 * size,
             "{name}: order {k}: {error:e} of {size:e}"
         );
         assert!(size.is_finite(), "{name}: order {k}");
@@ -289,6 +288,7 @@ fn orders_and_work_are_as_stored() {
         let counters = run.counters;
         let error = (run.state[0] - soliton_at(5.0)[0]).abs();
         println!("tol {tol:e}: {counters:?}, error {error:.1e}");
+        assert!(error < 200.0 * tol.max(1e-16), "{tol:e}: {error:e}");
         assert_eq!(
             (
                 counters.expansions,
@@ -383,14 +383,14 @@ fn steps_do_not_depend_on_units_of_time() {
             k: frequency * frequency,
         };
         let state = oscillator
-            .state(0.0, &[1.0].into(), &[0.0].into())
+            .state(0.0, &[1.0].into(), &[frequency].into())
             .expect("a state");
         // The scale of a velocity is 1 in any units.
         let tolerance = Tolerance::of(1e-12, 1e-300).expect("a tolerance");
         let run = Simulation::new(&oscillator, Taylor::new(tolerance), ())
             .run(0.0, state, 10.0 / frequency, &mut ())
             .expect("a start");
-        assert!((run.state[0] - 10_f64.cos()).abs() < 1e-10);
+        assert!((run.state[0] - 10_f64.cos() - 10_f64.sin()).abs() < 1e-10);
         run.counters.accepted
     };
     assert_eq!(steps(0), steps(400));

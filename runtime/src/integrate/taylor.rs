@@ -61,8 +61,9 @@ pub struct Taylor<F: TaylorField> {
     max_step: f64,
     first_step: Option<f64>,
     weights: Weights<F::State>,
-    /// Unit of time of the coefficients, a power of two.
+    /// Unit of time of the coefficients, a power of two; and that of the next ones.
     unit: f64,
+    next_unit: f64,
     /// No step longer than this for now: after a jump, and at the start.
     limit: f64,
     t: [f64; 2],
@@ -105,6 +106,7 @@ impl<F: TaylorField> Taylor<F> {
             first_step: None,
             weights: Weights::new(tolerance, &zeros),
             unit: 1.0,
+            next_unit: 1.0,
             limit: f64::INFINITY,
             t: [0.0; 2],
             start: zeros,
@@ -176,6 +178,7 @@ impl<F: TaylorField> Taylor<F> {
     fn expand(&mut self, field: &F, counters: &mut Counters) -> Result<f64, StepFailure> {
         let t = self.t[0];
         self.coefficients[0] = self.start;
+        self.unit = self.next_unit;
         loop {
             counters.expansions += 1;
             counters.coefficients += self.order as u64;
@@ -305,9 +308,10 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         self.limit = self.first_step.unwrap_or(f64::INFINITY);
         let size = self.weights.norm(state, |i| state.as_slice()[i]);
         let speed = self.weights.norm(state, |i| self.rates[1].as_slice()[i]);
-        let known = size > 0.0 && speed > 0.0;
-        let time = if known { size / speed } else { t_end - t };
-        self.unit = power_of_two(time.min(t_end - t));
+        let time = size / speed;
+        let known = time > 0.0 && time.is_finite();
+        let time = if known { time } else { t_end - t };
+        self.next_unit = power_of_two(time.min(t_end - t));
         Ok(())
     }
 
@@ -333,6 +337,7 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         let t = self.t[0];
         let least = least_step(t);
         let reach = self.expand(field, counters)?.min(LONGEST) * self.unit;
+        self.next_unit = power_of_two(reach);
         let mut h = reach.min(self.max_step).min(self.limit).max(least);
         loop {
             let arrival = landing(t, h, t_end);
