@@ -306,6 +306,21 @@ pub trait Impacting: System {
     /// [`Fault`].
     fn gap_rates(&self, t: f64, state: &Self::State) -> Result<Self::Gaps, Fault>;
 
+    /// Writes the power series of the gaps along a motion that has these coefficients, as
+    /// [`TaylorField::expand`] writes them, and says whether it did. It must not where a gap is not analytic, as `|x|`
+    /// is not. By default it does not, and gaps are sampled.
+    fn gap_series(
+        &self,
+        t: f64,
+        unit: f64,
+        order: usize,
+        coefficients: &[Self::State; LENGTH],
+        gaps: &mut [Self::Gaps; LENGTH],
+    ) -> bool {
+        let _ = (t, unit, order, coefficients, gaps);
+        false
+    }
+
     /// Whether the surface counts here: all its `when` conditions are positive.
     fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         let _ = (surface, t, state);

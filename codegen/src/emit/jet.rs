@@ -25,7 +25,7 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
         start,
         results,
         advance,
-        rates,
+        next,
         kept,
     } = Expansion::of(&context.program.jet, context);
     let documentation = doc::lines(&[
@@ -56,10 +56,47 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
                     let weight = k as f64;
                     let (inverse, step) = (1.0 / weight, unit / (weight + 1.0));
                     #advance
-                    coefficients[k + 1] = ::dalembert::__private::vector([#(#rates),*]);
+                    coefficients[k + 1] = ::dalembert::__private::vector([#(step * #next),*]);
                 }
                 ::core::result::Result::Ok(())
             }
+        }
+    }
+}
+
+/// `gap_series` of `Impacting`, if it tells where gaps vanish.
+pub(super) fn emit_gap_series(context: &Context<'_>, jet: &Jet) -> TokenStream {
+    if !jet.is_analytic() {
+        return TokenStream::new();
+    }
+    let Expansion {
+        start,
+        results,
+        advance,
+        next,
+        kept,
+    } = Expansion::of(jet, context);
+    quote! {
+        #[inline]
+        fn gap_series(
+            &self,
+            t: f64,
+            unit: f64,
+            order: usize,
+            coefficients: &[Self::State; ::dalembert::jet::LENGTH],
+            gaps: &mut [Self::Gaps; ::dalembert::jet::LENGTH],
+        ) -> bool {
+            let state = &coefficients[0];
+            let jets = &mut [[0.0; ::dalembert::jet::LENGTH]; #kept];
+            #start
+            gaps[0] = ::dalembert::__private::vector([#(#results),*]);
+            for k in 1..=::core::cmp::Ord::min(order, ::dalembert::jet::LENGTH - 1) {
+                let weight = k as f64;
+                let inverse = 1.0 / weight;
+                #advance
+                gaps[k] = ::dalembert::__private::vector([#(#next),*]);
+            }
+            true
         }
     }
 }
@@ -72,8 +109,8 @@ struct Expansion {
     results: Vec<TokenStream>,
     /// Order `k` of every value that varies.
     advance: TokenStream,
-    /// The state's coefficients `k + 1`.
-    rates: Vec<TokenStream>,
+    /// The results at order `k`.
+    next: Vec<TokenStream>,
     /// Number of histories.
     kept: usize,
 }
@@ -85,14 +122,14 @@ impl Expansion {
         draft.orders();
         let (body, firsts) = draft.begin(context);
         let mut writer = Writer::of(jet, context, firsts);
-        let (advance, rates) = writer.orders();
+        let (advance, next) = writer.orders();
         let (histories, inverses) = (writer.begin_histories(), writer.begin_inverses());
         let statements = body.statements;
         Self {
             start: quote!(#statements #inverses #histories),
             results: body.outputs,
             advance,
-            rates,
+            next,
             kept: writer.slots.len(),
         }
     }
@@ -108,6 +145,7 @@ type Firsts = BTreeMap<Value, TokenStream>;
 struct Writer<'a> {
     jet: &'a Jet,
     parameters: &'a [TokenStream],
+    dimension: usize,
     is_large: bool,
     /// How often coefficient `k` of each value is read.
     uses: Vec<usize>,
@@ -132,6 +170,7 @@ impl<'a> Writer<'a> {
         Self {
             jet,
             parameters: &context.names.parameters,
+            dimension: context.dimension(),
             is_large,
             uses,
             slots: slots.map(|(slot, history)| (history, slot)).collect(),
@@ -141,27 +180,24 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Order `k` of every value that varies, and of the results in units of time.
+    /// Order `k` of every value that varies, and of the results.
     fn orders(&mut self) -> (TokenStream, Vec<TokenStream>) {
         let varying: Vec<Value> = self.jet.varying().collect();
         let components = self.bind_components(&varying);
         let values = varying.iter().map(|&value| self.advance(value));
         let values: TokenStream = values.collect();
         let outputs = self.jet.function.outputs.iter();
-        let rates = outputs.map(|&output| match self.jet.recurrences[output.index()] {
+        let next = outputs.map(|&output| match self.jet.recurrences[output.index()] {
             Recurrence::Constant => quote!(0.0),
-            _ => {
-                let next = self.next(output);
-                quote!(step * #next)
-            }
+            _ => self.next(output),
         });
-        let rates = rates.collect();
-        (quote!(#components #values), rates)
+        let next = next.collect();
+        (quote!(#components #values), next)
     }
 
     /// `let [next_0, _] = components(&coefficients[k]);`
     fn bind_components(&self, varying: &[Value]) -> TokenStream {
-        let mut locals = vec![quote!(_); self.jet.function.outputs.len()];
+        let mut locals = vec![quote!(_); 2 * self.dimension];
         let mut any = false;
         for &value in varying {
             if let Recurrence::Component(i) = self.jet.recurrences[value.index()] {

@@ -25,7 +25,7 @@ pub(super) struct Names {
 }
 
 /// Names that generated functions use for their own arguments.
-const ARGUMENTS: [&str; 22] = [
+const ARGUMENTS: [&str; 23] = [
     "t",
     "state",
     "rate",
@@ -44,6 +44,7 @@ const ARGUMENTS: [&str; 22] = [
     "order",
     "coefficients",
     "jets",
+    "gaps",
     "k",
     "weight",
     "inverse",

@@ -1,8 +1,8 @@
 //! From a derivation to the program: one function per item of the contract.
 
-use super::Program;
-use super::jet::Jet;
+use super::jet::{Jet, degree};
 use super::recipes::{constrained, declared, geometry, impact, motion, volume};
+use super::{Input, Program};
 use crate::claims::Volume;
 use crate::mechanics::Derivation;
 use crate::model::Model;
@@ -10,9 +10,10 @@ use crate::model::Model;
 /// Lowers everything that a model declares, and the invariant volume that was found for it.
 pub fn lower(model: &Model, derivation: &Derivation, found: Option<&Volume>) -> Program {
     let rate = motion::rate(model, derivation);
-    let n = model.coordinates.len();
+    let component = |input: Input| input.component(model.coordinates.len());
+    let components = degree::of_components(&rate, component);
     Program {
-        jet: Jet::of_rate(&rate, |input| input.component(n)),
+        jet: Jet::of(&rate, &components, component),
         rate,
         scale: motion::scale(model, derivation),
         velocity: motion::velocity(model, derivation),
@@ -20,7 +21,9 @@ pub fn lower(model: &Model, derivation: &Derivation, found: Option<&Volume>) -> 
         energy: motion::energy(model, derivation),
         geometry: geometry::geometry(model, derivation, found),
         constrained: constrained::constrained(model, derivation),
-        impacting: impact::impacting(model, derivation),
+        impacting: impact::impacting(model, derivation, |gaps| {
+            Jet::of(gaps, &components, component)
+        }),
         divergence: geometry::divergence(model, derivation),
         density_form: geometry::density_form(model, derivation),
         volume: found.map(|found| volume::invariant_volume(model, derivation, found)),

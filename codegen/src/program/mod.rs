@@ -348,6 +348,8 @@ impl InvariantVolume {
 pub struct Impacting {
     /// `(t, q) -> h_s`
     pub gaps: Function,
+    /// Their Taylor coefficients along the motion.
+    pub gap_jet: jet::Jet,
     /// `(t, q, p) -> dh_s(qdot) + d_t h_s`
     pub gap_rates: Function,
     /// Per surface `(t, q) -> conditions`; `None` where there are none.
@@ -363,13 +365,14 @@ impl Impacting {
     fn functions(&self) -> Vec<&Function> {
         let Self {
             gaps,
+            gap_jet,
             gap_rates,
             conditions,
             contacts,
             coefficients,
         } = self;
         let declared = conditions.iter().chain(coefficients).flatten();
-        [gaps, gap_rates]
+        [gaps, &gap_jet.function, gap_rates]
             .into_iter()
             .chain(contacts)
             .chain(declared)

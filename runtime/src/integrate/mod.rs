@@ -22,6 +22,6 @@ pub use dop853::{Dop853, Dop853Scheme};
 pub use dopri5::{DormandPrince5, DormandPrince5Scheme};
 pub use embedded::{Embedded, Scheme};
 pub use stats::Counters;
-pub use stepper::{StepFailure, Stepper};
+pub use stepper::{Series, StepFailure, Stepper};
 pub use taylor::{TAYLOR, Taylor};
 pub use tolerance::{Tolerance, ToleranceError};

@@ -24,7 +24,7 @@ use core::fmt;
 
 use super::controller::{RETREAT, Weights, landing, least_step, not_finite};
 use super::stats::Counters;
-use super::stepper::{StepFailure, Stepper};
+use super::stepper::{Series, StepFailure, Stepper};
 use super::tolerance::Tolerance;
 use crate::contract::TaylorField;
 use crate::error::Fault;
@@ -404,6 +404,15 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
     fn end_rates(&self) -> [&F::State; 2] {
         let [start, end] = &self.rates;
         [start, end]
+    }
+
+    #[inline(always)]
+    fn series(&self) -> Option<Series<'_, F::State>> {
+        Some(Series {
+            unit: self.unit,
+            order: self.order,
+            coefficients: &self.coefficients,
+        })
     }
 
     #[inline(always)]

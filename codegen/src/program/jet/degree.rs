@@ -56,10 +56,7 @@ pub(super) fn of(
 
 /// The degrees of the components of a state, from the function that gives their derivatives: the least ones that
 /// agree with it. Coefficients above them vanish order after order, since each follows from lower ones.
-pub(super) fn of_components(
-    rate: &Function,
-    component: impl Fn(Input) -> Option<usize>,
-) -> Vec<Degree> {
+pub fn of_components(rate: &Function, component: impl Fn(Input) -> Option<usize>) -> Vec<Degree> {
     let mut components = vec![Degree::AtMost(0); rate.outputs.len()];
     loop {
         let mut degrees: Vec<Degree> = Vec::with_capacity(rate.ops.len());

@@ -161,10 +161,11 @@ impl Jet {
         }
     }
 
-    /// The jet of the rate of a system whose state is what the rate's results are the derivatives of.
-    pub fn of_rate(rate: &Function, component: impl Fn(Input) -> Option<usize>) -> Self {
-        let components = degree::of_components(rate, &component);
-        Self::of(rate, &components, component)
+    /// Whether the results are analytic wherever they exist: a series then says what they do up to its radius.
+    pub fn is_analytic(&self) -> bool {
+        let absolute =
+            |value: Value| matches!(self.recurrences[value.index()], Recurrence::Absolute(_));
+        !self.varying().any(absolute)
     }
 
     /// Whether any coefficients of a value are kept.
