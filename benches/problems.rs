@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use dalembert::{
     Counters, Dop853, DormandPrince5, Effect, Impacts, Law, Outcome, Projection, Run, Scene,
-    SceneEffects, Simulation, Stepper, System, Tolerance,
+    SceneEffects, Simulation, Stepper, System, Taylor, TaylorField, Tolerance,
 };
 use dalembert_models::{BouncingBall, ChaplyginSleigh, DoublePendulum, RollingDisk};
 
@@ -20,17 +20,20 @@ pub enum Method {
     Dop853,
     /// [`DormandPrince5`].
     DormandPrince5,
+    /// [`Taylor`].
+    Taylor,
 }
 
 impl Method {
-    /// Both of them.
-    pub const ALL: [Self; 2] = [Self::Dop853, Self::DormandPrince5];
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Dop853, Self::DormandPrince5, Self::Taylor];
 
     /// The name the command line gives it.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Dop853 => "dop853",
             Self::DormandPrince5 => "dopri5",
+            Self::Taylor => "taylor",
         }
     }
 }
@@ -217,7 +220,7 @@ fn largest(differences: &[f64]) -> f64 {
 }
 
 /// Runs from `t = 0`.
-fn solve<S: System, E: Effect<S> + Clone>(
+fn solve<S: System + TaylorField, E: Effect<S> + Clone>(
     system: &S,
     state: State<S>,
     effects: E,
@@ -231,6 +234,10 @@ fn solve<S: System, E: Effect<S> + Clone>(
         }
         Method::DormandPrince5 => {
             let stepper = DormandPrince5::new(manner.tolerance);
+            repeat(system, state, (stepper, effects), until, manner.times)
+        }
+        Method::Taylor => {
+            let stepper = Taylor::new(manner.tolerance);
             repeat(system, state, (stepper, effects), until, manner.times)
         }
     }
@@ -278,7 +285,7 @@ fn solved<S: Copy>(
 mod tests {
     use super::*;
 
-    /// Both integrators come ten thousand times closer to every stored solution at 1e-13 than at 1e-6: were a stored
+    /// All integrators come ten thousand times closer to every stored solution at 1e-13 than at 1e-6: were a stored
     /// digit wrong that matters there, they would not.
     #[test]
     fn errors_fall_with_the_tolerance() {

@@ -4,6 +4,7 @@
 
 use crate::error::{Fault, ParameterError, StateError};
 use crate::impacts::law::{Contact, Law};
+use crate::jet::{Jets, LENGTH};
 use crate::state::StateVector;
 
 /// A first-order system of ordinary differential equations on a state of fixed size.
@@ -28,6 +29,34 @@ pub trait VectorField {
         ones.as_mut_slice().fill(1.0);
         ones
     }
+}
+
+/// A vector field with the power series of its motions: what [`Taylor`](crate::Taylor) integrates.
+#[diagnostic::on_unimplemented(
+    message = "the Taylor coefficients of `{Self}` are not known: declare it with `dalembert::model!`"
+)]
+pub trait TaylorField: VectorField {
+    /// Room for the coefficients of intermediate values.
+    type Jets: Jets;
+
+    /// Writes the power series of the motion that is at `coefficients[0]` at time `t`:
+    ///
+    /// ```text
+    /// state(t + unit s) = coefficients[0] + coefficients[1] s + .. + coefficients[order] s^order + ..
+    /// ```
+    ///
+    /// `order` is 1 or more; orders above 32 are not computed. What `jets` holds before does not matter.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the derivative does not exist; the coefficients above 0 are unspecified then.
+    fn expand(
+        &self,
+        t: f64,
+        unit: f64,
+        order: usize,
+        coefficients: &mut [Self::State; LENGTH],
+        jets: &mut Self::Jets,
+    ) -> Result<(), Fault>;
 }
 
 /// A mechanical system: a state with positions, velocities, momenta and an energy.
@@ -275,6 +304,21 @@ pub trait Impacting: System {
     /// # Errors
     /// [`Fault`].
     fn gap_rates(&self, t: f64, state: &Self::State) -> Result<Self::Gaps, Fault>;
+
+    /// Writes the power series of the gaps along a motion that has these coefficients, as
+    /// [`TaylorField::expand`] writes them, and says whether it did. It must not where a gap is not analytic, as `|x|`
+    /// is not. By default it does not, and gaps are sampled.
+    fn gap_series(
+        &self,
+        t: f64,
+        unit: f64,
+        order: usize,
+        coefficients: &[Self::State; LENGTH],
+        gaps: &mut [Self::Gaps; LENGTH],
+    ) -> bool {
+        let _ = (t, unit, order, coefficients, gaps);
+        false
+    }
 
     /// Whether the surface counts here: all its `when` conditions are positive.
     fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {

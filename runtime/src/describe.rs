@@ -116,7 +116,7 @@ pub trait Described: System + Clone {
 
     /// The same system in its global form, with the state (q, p) on T*Q, off the constraints too. The model itself
     /// where it has no form reduced to D.
-    type Global: Described<Vector = Self::Vector> + Scene + 'static;
+    type Global: Described<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
 
     /// The system in its global form.
     fn global(&self) -> Self::Global;

@@ -115,6 +115,7 @@ mod generated;
 pub mod impacts;
 pub mod initial;
 pub mod integrate;
+pub mod jet;
 mod linalg;
 #[doc(hidden)]
 pub mod math;
@@ -125,14 +126,16 @@ pub mod record;
 pub mod simulation;
 pub mod state;
 
-pub use contract::{Constrained, Divergence, Impacting, InvariantVolume, System, VectorField};
+pub use contract::{
+    Constrained, Divergence, Impacting, InvariantVolume, System, TaylorField, VectorField,
+};
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
 pub use error::{Fault, ParameterError, StateError};
 pub use impacts::Impacts;
 pub use impacts::law::{Contact, Law};
 pub use initial::complete_velocities;
-pub use integrate::{Counters, Dop853, DormandPrince5, Stepper, Tolerance, ToleranceError};
+pub use integrate::{Counters, Dop853, DormandPrince5, Stepper, Taylor, Tolerance, ToleranceError};
 pub use outcome::{Outcome, Run, StartError};
 pub use projection::Projection;
 pub use record::{Event, EventLog, Observer, Segment};

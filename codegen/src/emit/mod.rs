@@ -9,6 +9,7 @@ mod field;
 mod function;
 mod impact;
 mod indices;
+mod jet;
 mod names;
 mod parameters;
 mod reduced;
@@ -64,10 +65,11 @@ pub fn tokens(model: &Model, derivation: &Derivation, programs: &Lowered) -> Tok
 }
 
 /// What is implemented for a type of the model.
-fn implementations(context: &Context<'_>) -> [TokenStream; 8] {
+fn implementations(context: &Context<'_>) -> [TokenStream; 9] {
     [
         field::emit_field(context),
         field::emit_system(context),
+        jet::emit_taylor(context),
         constraint::emit_constrained(context),
         impact::emit_impacting(context),
         volume::emit_divergence(context),

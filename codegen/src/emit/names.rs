@@ -33,7 +33,7 @@ pub(super) struct Names {
 }
 
 /// Names that generated functions use for their own arguments.
-const ARGUMENTS: [&str; 14] = [
+const ARGUMENTS: [&str; 23] = [
     "t",
     "state",
     "rate",
@@ -48,6 +48,15 @@ const ARGUMENTS: [&str; 14] = [
     "report",
     "size",
     "direction",
+    "unit",
+    "order",
+    "coefficients",
+    "jets",
+    "gaps",
+    "k",
+    "weight",
+    "inverse",
+    "step",
 ];
 
 impl Names {

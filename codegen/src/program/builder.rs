@@ -28,6 +28,16 @@ impl Builder {
         &self.ops[value.index()]
     }
 
+    /// Number of operations so far.
+    pub fn len(&self) -> usize {
+        self.ops.len()
+    }
+
+    /// Whether there is no operation yet.
+    pub fn is_empty(&self) -> bool {
+        self.ops.is_empty()
+    }
+
     fn push(&mut self, op: Op) -> Value {
         if let Some(&value) = self.numbered.get(&op) {
             return value;
@@ -226,6 +236,26 @@ impl Builder {
         let nameless = self.names[value.index()].is_none();
         if nameless && !self.ops[value.index()].is_leaf() && !matches!(self.op(value), Op::Neg(_)) {
             self.names[value.index()] = Some(name.into());
+        }
+    }
+
+    /// Puts the operations of a finished function into an empty one, as they are; its results.
+    pub fn replay(&mut self, function: &Function) -> Vec<Value> {
+        for (op, name) in function.ops.iter().zip(&function.names) {
+            let value = self.push(op.clone());
+            self.names[value.index()].clone_from(name);
+        }
+        function.outputs.clone()
+    }
+
+    /// The finished function with every operation, needed or not.
+    pub fn finish_whole(self, outputs: Vec<Value>) -> Function {
+        let cost = Cost::of(&self.ops);
+        Function {
+            ops: self.ops,
+            names: self.names,
+            outputs,
+            cost,
         }
     }
 

@@ -9,16 +9,22 @@ use super::{Function, Guard, Input, Op, Value};
 /// # Errors
 /// The guard that did not hold.
 pub fn interpret(function: &Function, input: &dyn Fn(Input) -> f64) -> Result<Vec<f64>, Guard> {
-    let mut values: Vec<f64> = Vec::with_capacity(function.ops.len());
-    for op in &function.ops {
-        let value = execute(op, &values, input)?;
-        values.push(value);
-    }
+    let values = values(function, input)?;
     Ok(function
         .outputs
         .iter()
         .map(|output| values[output.index()])
         .collect())
+}
+
+/// Every value of `function`; NaN for guards that hold.
+pub(super) fn values(function: &Function, input: &dyn Fn(Input) -> f64) -> Result<Vec<f64>, Guard> {
+    let mut values: Vec<f64> = Vec::with_capacity(function.ops.len());
+    for op in &function.ops {
+        let value = execute(op, &values, input)?;
+        values.push(value);
+    }
+    Ok(values)
 }
 
 fn execute(op: &Op, values: &[f64], input: &dyn Fn(Input) -> f64) -> Result<f64, Guard> {

@@ -1,7 +1,8 @@
 //! From a derivation to the program: one function per item of the contract.
 
+use super::jet::{Jet, degree};
 use super::recipes::{constrained, declared, geometry, impact, motion, reduced, volume};
-use super::{Form, Program};
+use super::{Form, Input, Program};
 use crate::claims::Volume;
 use crate::mechanics::Derivation;
 use crate::model::Model;
@@ -48,9 +49,13 @@ fn lower_form(
     found: Option<&Volume>,
     form: Form,
 ) -> Program {
+    let rate = motion::rate(model, derivation, form);
+    let component = |input: Input| input.component(model.coordinates.len());
+    let components = degree::of_components(&rate, component);
     Program {
         form,
-        rate: motion::rate(model, derivation, form),
+        jet: Jet::of(&rate, &components, component),
+        rate,
         scale: motion::scale(model, derivation, form),
         velocity: motion::velocity(model, derivation, form),
         momentum: motion::momentum(model, derivation),
@@ -64,7 +69,9 @@ fn lower_form(
             Form::Reduced => geometry::reduced_geometry(model, derivation),
         },
         constrained: constrained::constrained(model, derivation, form),
-        impacting: impact::impacting(model, derivation, form),
+        impacting: impact::impacting(model, derivation, form, |gaps| {
+            Jet::of(gaps, &components, component)
+        }),
         divergence: geometry::divergence(model, derivation, form),
         density_form: geometry::density_form(model, derivation),
         volume: found.map(|found| volume::invariant_volume(model, derivation, found)),

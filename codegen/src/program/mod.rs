@@ -9,6 +9,7 @@ pub mod builder;
 pub mod cost;
 pub mod expression;
 pub mod interpret;
+pub mod jet;
 pub mod kernel;
 pub mod linear;
 pub mod lower;
@@ -146,6 +147,17 @@ impl Guard {
     }
 }
 
+impl Input {
+    /// Which component of the state `(q, p)` or `(q, u)` of `n` coordinates the input is.
+    pub fn component(self, n: usize) -> Option<usize> {
+        match self {
+            Self::Coordinate(i) => Some(i),
+            Self::Momentum(i) | Self::Quasi(i) => Some(n + i),
+            Self::Time | Self::Velocity(_) | Self::Parameter(_) | Self::Excess(_) => None,
+        }
+    }
+}
+
 impl Op {
     /// The values the operation reads.
     pub fn operands(&self) -> Vec<Value> {
@@ -206,6 +218,8 @@ pub struct Program {
     pub form: Form,
     /// `(t, s) -> (qdot, pdot)` or `(qdot, udot)`
     pub rate: Function,
+    /// Its Taylor coefficients along the motion.
+    pub jet: jet::Jet,
     /// `(t, q) ->` the unit of each component of the state.
     pub scale: Function,
     /// `(t, s) -> qdot`
@@ -252,6 +266,7 @@ impl Program {
         let Self {
             form: _,
             rate,
+            jet,
             scale,
             velocity,
             momentum,
@@ -270,7 +285,7 @@ impl Program {
             until,
         } = self;
         let mut functions = vec![rate, scale, velocity, momentum, energy];
-        functions.push(&geometry.function);
+        functions.extend([&jet.function, &geometry.function]);
         functions.extend(reduced.iter().flat_map(Reduced::functions));
         functions.extend([divergence, density_form, initial]);
         let declared = [outputs, view_path, view_region, until];
@@ -398,6 +413,8 @@ impl InvariantVolume {
 pub struct Impacting {
     /// `(t, q) -> h_s`
     pub gaps: Function,
+    /// Their Taylor coefficients along the motion.
+    pub gap_jet: jet::Jet,
     /// `(t, s) -> dh_s(qdot) + d_t h_s`
     pub gap_rates: Function,
     /// Per surface `(t, q) -> conditions`; `None` where there are none.
@@ -413,13 +430,14 @@ impl Impacting {
     fn functions(&self) -> Vec<&Function> {
         let Self {
             gaps,
+            gap_jet,
             gap_rates,
             conditions,
             contacts,
             coefficients,
         } = self;
         let declared = conditions.iter().chain(coefficients).flatten();
-        [gaps, gap_rates]
+        [gaps, &gap_jet.function, gap_rates]
             .into_iter()
             .chain(contacts)
             .chain(declared)

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::builder::ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use dalembert::impacts::law::Law;
-use dalembert::integrate::{Dop853Scheme, DormandPrince5Scheme, Scheme};
+use dalembert::integrate::{Dop853Scheme, DormandPrince5Scheme, Scheme, TAYLOR};
 
 use crate::scalar;
 
@@ -178,6 +178,8 @@ pub enum Integrator {
     Dop853,
     /// Dormand and Prince of order 5(4), dense output of order 4.
     Dopri5,
+    /// Taylor series, of the order that belongs to the tolerance (12 at 1e-9, 19 at 1e-15).
+    Taylor,
 }
 
 impl Integrator {
@@ -186,6 +188,7 @@ impl Integrator {
         match self {
             Self::Dop853 => Dop853Scheme::NAME,
             Self::Dopri5 => DormandPrince5Scheme::NAME,
+            Self::Taylor => TAYLOR,
         }
     }
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use dalembert::describe::Description;
 use dalembert::impacts::law::Law;
-use dalembert::integrate::{Counters, Dop853, DormandPrince5, Stepper, Tolerance};
+use dalembert::integrate::{Counters, Dop853, DormandPrince5, Stepper, Taylor, Tolerance};
 use dalembert::{Event, Observer, Outcome, SceneEffects, Segment, Simulation};
 use serde_json::Value;
 
@@ -95,6 +95,7 @@ pub(crate) fn simulate<M: Model>(
             settings,
             watch,
         ),
+        Integrator::Taylor => run(model, Taylor::new(tolerance), state, settings, watch),
     }
 }
 
@@ -241,6 +242,8 @@ fn name(mut names: impl Iterator<Item = &'static str>, index: usize) -> Value {
 fn counters(counters: &Counters) -> Vec<(&'static str, u64)> {
     vec![
         ("rate_evaluations", counters.rate_evaluations),
+        ("expansions", counters.expansions),
+        ("coefficients", counters.coefficients),
         ("accepted", counters.accepted),
         ("rejected", counters.rejected),
         ("dense_constructions", counters.dense_constructions),

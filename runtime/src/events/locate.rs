@@ -214,6 +214,43 @@ impl Drop {
     }
 }
 
+/// Tries to enclose a fall that is found on a nearby function, each further away than the last.
+const TRIES: u32 = 8;
+
+/// Factor between the distances of these tries.
+const WIDER: f64 = 8.0;
+
+/// The fall of a gap next to that of a function which differs from it by little more than rounding errors; `None` if the
+/// gap does not fall there. `slope` as in [`Start`].
+pub(crate) fn confirm(
+    near: Bracket,
+    slope: Option<f64>,
+    mut gap: impl FnMut(f64) -> f64,
+) -> Option<Bracket> {
+    let mut value = |theta: f64| deflated(gap(theta), theta, slope);
+    let here = near.before;
+    let at_here = value(here);
+    let forward = at_here >= 0.0;
+    let mut distance = 4.0 * f64::EPSILON * here;
+    for _ in 0..TRIES {
+        let there = match forward {
+            true => (here + distance).min(1.0),
+            false => (here - distance).max(0.0),
+        };
+        let at_there = value(there);
+        if (at_there >= 0.0) != forward {
+            // A third point that coincides with the second: the first trial halves.
+            let drop = Drop {
+                x: [here, there, there],
+                f: [at_here, at_there, at_there],
+            };
+            return Some(narrow(drop, value).bracket());
+        }
+        distance *= WIDER;
+    }
+    None
+}
+
 /// The first value that is negative after one that is not.
 fn first_drop(values: &[f64; SAMPLES], [left, right]: [f64; 2]) -> Option<Drop> {
     let j = (1..SAMPLES).find(|&j| values[j - 1] >= 0.0 && values[j] < 0.0)?;

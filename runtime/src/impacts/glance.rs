@@ -1,5 +1,7 @@
-//! The first look at a step: gaps and rates at its end and one probe inside, without dense output.
+//! The first look at a step: gaps and rates at its end, and one probe inside without dense output or the polynomials
+//! that the gaps are.
 
+use super::series::GapSeries;
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::events::crossing::PROBE;
@@ -15,6 +17,8 @@ pub(super) struct Glance<G> {
     pub(super) gaps: G,
     pub(super) rates: G,
     pub(super) probe: G,
+    /// The gaps as polynomials, where the step is one; the probe is not taken then.
+    pub(super) series: Option<GapSeries<G>>,
     /// Length of the step, and the larger of the absolute values of its times.
     pub(super) length: f64,
     pub(super) latest: f64,
@@ -51,15 +55,30 @@ pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
     let (t, length) = (step.t_end(), step.length());
     let gaps = finite::<Sys>(step.system.gaps(t, step.end()))?;
     let rates = step.system.gap_rates(t, step.end())?;
-    let probe = step.system.gaps(step.time(PROBE), &hermite(step));
-    step.counters.event_evaluations += 2;
+    step.counters.event_evaluations += 1;
+    let series = GapSeries::of(step, &gaps);
+    let probe = match series {
+        Some(_) => gaps,
+        None => probe(step),
+    };
     Ok(Glance {
         gaps,
         rates,
         probe,
+        series,
         length,
         latest: t.abs().max(step.t_start().abs()),
     })
+}
+
+#[inline(always)]
+fn probe<Sys: Impacting, Step: Stepper<Sys>>(step: &mut StepView<'_, Sys, Step>) -> Sys::Gaps {
+    step.counters.event_evaluations += 1;
+    let state = match step.stepper.dense_ready() {
+        true => step.state(PROBE),
+        false => hermite(step),
+    };
+    step.system.gaps(step.time(PROBE), &state)
 }
 
 /// The state at the probe by the cubic through the ends: good enough to measure how far the gap is from a cubic.

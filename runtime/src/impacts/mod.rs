@@ -6,6 +6,7 @@ mod hits;
 mod impulse;
 pub mod law;
 mod override_table;
+mod series;
 mod watch;
 
 pub use impulse::{IMPACT_BUDGET, Impacts};

@@ -6,10 +6,11 @@
 
 use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::hits::Hits;
+use super::series::GapSeries;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::events::crossing::{NODES, SAMPLES, clear};
-use crate::events::locate::{Line, Search, Start};
+use crate::events::locate::{Line, Search, Start, confirm};
 use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
@@ -196,11 +197,14 @@ impl<Sys: Impacting> Watch<Sys> {
             at(&glance.rates) * glance.length,
         ];
         !glance.is_due(surface)
-            && clear(
-                [at(&self.gaps), at(&glance.gaps)],
-                slopes,
-                at(&glance.probe),
-            )
+            && match &glance.series {
+                Some(series) => series.is_clear(surface, at(&self.gaps) == 0.0),
+                None => clear(
+                    [at(&self.gaps), at(&glance.gaps)],
+                    slopes,
+                    at(&glance.probe),
+                ),
+            }
     }
 
     /// Looks for the earliest hit along the dense output.
@@ -211,13 +215,18 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Result<(), Outcome> {
         step.prepare()?;
         self.length = glance.length;
-        let whole = samples(step, &self.gaps, &glance.gaps);
+        let mut whole = None;
         for surface in 0..Sys::Gaps::LEN {
             self.parts.as_mut_slice()[surface] = f64::INFINITY;
             if self.is_clear(surface, glance) {
                 continue;
             }
-            let samples = whole.map(|gaps| gaps.as_slice()[surface]);
+            let samples = match &glance.series {
+                Some(series) => NODES.map(|part| series.at(surface, part)),
+                None => whole
+                    .get_or_insert_with(|| samples(step, &self.gaps, &glance.gaps))
+                    .map(|gaps| gaps.as_slice()[surface]),
+            };
             let (part, is_hit) = match self.first_hit(surface, step, &samples, glance)? {
                 Found::Hit(part) => (part, true),
                 Found::Unfinished(part) => (part, false),
@@ -254,7 +263,8 @@ impl<Sys: Impacting> Watch<Sys> {
         };
         let mut tangential = false;
         for _ in 0..FALLS {
-            let (part, after) = match first_fall(surface, step, &self.sizes, samples, start) {
+            let found = first_fall(surface, step, &self.sizes, samples, start, &glance.series);
+            let (part, after) = match found {
                 Search::Clear => {
                     let sunk = tangential && glance.gaps.as_slice()[surface] < 0.0;
                     return if sunk {
@@ -434,27 +444,46 @@ fn is_approached<Sys: Impacting, Step: Stepper<Sys>>(
     Ok(rates.as_slice()[surface] < 0.0)
 }
 
-/// The first fall of a gap, with its time to the last bits.
+/// The first fall of a gap, with its time to the last bits. On a series it is looked for on the polynomial; what is
+/// not a plain fall there is left to the gap itself.
 fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &mut StepView<'_, Sys, Step>,
     sizes: &Sys::State,
     whole: &[f64; SAMPLES],
     start: Start,
+    series: &Option<GapSeries<Sys::Gaps>>,
 ) -> Search {
     let (mut evaluations, mut more) = (0, 0);
-    let line = Line {
-        gap: |part: f64| {
-            evaluations += 1;
-            step.system
-                .gaps(step.time(part), &step.state(part))
-                .as_slice()[surface]
-        },
-        rounding: || rounding_along(surface, step, sizes, &mut more),
-        whole,
-        start,
+    let mut gap = |part: f64| {
+        evaluations += 1;
+        step.system
+            .gaps(step.time(part), &step.state(part))
+            .as_slice()[surface]
     };
-    let found = line.first_fall();
+    let mut rounding = || rounding_along(surface, step, sizes, &mut more);
+    let on_series = series.as_ref().and_then(|series| {
+        let line = Line {
+            gap: |part: f64| series.at(surface, part),
+            rounding: &mut rounding,
+            whole,
+            start,
+        };
+        match line.first_fall() {
+            Search::Clear => Some(Search::Clear),
+            Search::Falls(near) => confirm(near, start.slope, &mut gap).map(Search::Falls),
+            _ => None,
+        }
+    });
+    let found = on_series.unwrap_or_else(|| {
+        let line = Line {
+            gap,
+            rounding,
+            whole,
+            start,
+        };
+        line.first_fall()
+    });
     step.counters.event_evaluations += evaluations + more;
     found
 }

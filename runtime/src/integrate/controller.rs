@@ -113,10 +113,26 @@ impl<S: StateVector> Weights<S> {
     }
 
     /// The largest of `value(i)` over the error allowed at a state.
-    fn norm(&self, at: &S, value: impl Fn(usize) -> f64) -> f64 {
+    pub(super) fn norm(&self, at: &S, value: impl Fn(usize) -> f64) -> f64 {
         let ratios = (0..S::LEN).map(|i| (value(i) / self.allowed(i, at, at)).abs());
         ratios.fold(0.0, larger)
     }
+}
+
+/// Shortest step at a time: sixteen units in its last place, so that every step moves the time.
+pub(super) fn least_step(t: f64) -> f64 {
+    (16.0 * f64::EPSILON * t.abs()).max(f64::MIN_POSITIVE)
+}
+
+/// The end of a step of about `h` from `t`: `t_end` itself when a hundredth more would reach it.
+#[inline(always)]
+pub(super) fn landing(t: f64, h: f64, t_end: f64) -> f64 {
+    if t + 1.01 * h >= t_end { t_end } else { t + h }
+}
+
+/// The first component that is not finite.
+pub(super) fn not_finite<S: StateVector>(state: &S) -> Option<usize> {
+    state.as_slice().iter().position(|value| !value.is_finite())
 }
 
 /// Size of the first step, by comparing an explicit Euler step with the rate at its end (Hairer, Norsett, Wanner

@@ -3,7 +3,7 @@
 //! First-same-as-last: the rate at the end of an accepted step is the first stage of the next one. Where the error
 //! estimate does without it, it is evaluated only once the error has passed.
 
-use super::controller::{Control, Memory, Weights, first_step};
+use super::controller::{Control, Memory, Weights, first_step, landing, least_step, not_finite};
 use super::stats::Counters;
 use super::stepper::{StepFailure, Stepper};
 use super::tolerance::Tolerance;
@@ -44,9 +44,9 @@ pub struct Span<'a, S> {
 pub trait Scheme {
     /// See [`Stepper::NAME`].
     const NAME: &'static str;
-    /// See [`Stepper::ORDER`].
+    /// Order of the solution at the ends of steps.
     const ORDER: usize;
-    /// See [`Stepper::DENSE_ORDER`].
+    /// Order of the dense output between them.
     const DENSE_ORDER: usize;
     /// Index of the stage that is the rate at the end of the step.
     const LAST: usize;
@@ -226,25 +226,8 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
     }
 }
 
-/// Shortest step at a time: sixteen units in its last place, so that every step moves the time.
-fn least_step(t: f64) -> f64 {
-    (16.0 * f64::EPSILON * t.abs()).max(f64::MIN_POSITIVE)
-}
-
-/// The end of a step of about `h` from `t`: `t_end` itself when a hundredth more would reach it.
-#[inline(always)]
-fn landing(t: f64, h: f64, t_end: f64) -> f64 {
-    if t + 1.01 * h >= t_end { t_end } else { t + h }
-}
-
-fn not_finite<S: StateVector>(state: &S) -> Option<usize> {
-    state.as_slice().iter().position(|value| !value.is_finite())
-}
-
 impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
     const NAME: &'static str = M::NAME;
-    const ORDER: usize = M::ORDER;
-    const DENSE_ORDER: usize = M::DENSE_ORDER;
 
     fn start(
         &mut self,

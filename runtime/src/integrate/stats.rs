@@ -6,6 +6,10 @@
 pub struct Counters {
     /// Evaluations of the vector field, those of rejected steps included.
     pub rate_evaluations: u64,
+    /// Expansions of the motion in a power series.
+    pub expansions: u64,
+    /// Orders of these expansions together: what they cost grows with their squares.
+    pub coefficients: u64,
     /// Steps whose error estimate passed.
     pub accepted: u64,
     /// Trial steps thrown away: error too large, a fault, or a number that is not finite.

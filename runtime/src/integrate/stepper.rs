@@ -5,6 +5,7 @@ use core::fmt;
 use super::stats::Counters;
 use crate::contract::VectorField;
 use crate::error::Fault;
+use crate::jet::LENGTH;
 
 /// A one-step integrator with error control and dense output.
 ///
@@ -14,12 +15,6 @@ use crate::error::Fault;
 pub trait Stepper<F: VectorField> {
     /// Name, as the command line writes it.
     const NAME: &'static str;
-
-    /// Order of the solution at the ends of steps.
-    const ORDER: usize;
-
-    /// Order of the dense output between them.
-    const DENSE_ORDER: usize;
 
     /// Begins at `(t, state)`, heading for `t_end`: finds a first step size.
     ///
@@ -80,6 +75,11 @@ pub trait Stepper<F: VectorField> {
     /// Rates at the start and at the end of the last step.
     fn end_rates(&self) -> [&F::State; 2];
 
+    /// The power series that the last step is made of, where it is.
+    fn series(&self) -> Option<Series<'_, F::State>> {
+        None
+    }
+
     /// Whether the last step's dense output is ready.
     fn dense_ready(&self) -> bool;
 
@@ -93,6 +93,17 @@ pub trait Stepper<F: VectorField> {
     ///
     /// Meaningful only while [`Stepper::dense_ready`].
     fn interpolate(&self, theta: f64) -> F::State;
+}
+
+/// The motion of a step as a power series: `coefficients[0] + coefficients[1] s + ..` at time `t_start + unit s`.
+#[derive(Debug, Clone, Copy)]
+pub struct Series<'a, S> {
+    /// Unit of time.
+    pub unit: f64,
+    /// Number of the last coefficient.
+    pub order: usize,
+    /// The coefficients; those above the order mean nothing.
+    pub coefficients: &'a [S; LENGTH],
 }
 
 /// Why no step could be made.

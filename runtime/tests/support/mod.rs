@@ -3,7 +3,8 @@
 
 use dalembert::{
     Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Impacting, Impacts, Law, Outcome,
-    ParameterError, Run, Simulation, Stepper, System, Tolerance, VectorField,
+    ParameterError, Run, Simulation, Stepper, System, Taylor, TaylorField, Tolerance, VectorField,
+    jet::LENGTH,
 };
 use nalgebra::SVector;
 
@@ -48,6 +49,26 @@ impl<const S: usize> VectorField for Particle<S> {
     #[inline]
     fn rate(&self, _: f64, state: &State, rate: &mut State) -> Result<(), Fault> {
         *rate = State::new(state[2], state[3], self.force[0], self.force[1]);
+        Ok(())
+    }
+}
+
+impl<const S: usize> TaylorField for Particle<S> {
+    type Jets = [[f64; LENGTH]; 0];
+
+    fn expand(
+        &self,
+        _: f64,
+        unit: f64,
+        order: usize,
+        coefficients: &mut [State; LENGTH],
+        _: &mut Self::Jets,
+    ) -> Result<(), Fault> {
+        let [[_, _, vx, vy]] = coefficients[0].data.0;
+        let [fx, fy] = self.force.map(|force| unit * force);
+        coefficients[1..=order].fill(State::zeros());
+        coefficients[1] = State::new(unit * vx, unit * vy, fx, fy);
+        coefficients[2] = State::new(0.5 * unit * fx, 0.5 * unit * fy, 0.0, 0.0);
         Ok(())
     }
 }
@@ -166,6 +187,10 @@ pub fn with_every_integrator<const S: usize>(
         let mut log = Log::new();
         let run = run_with(particle, fifth, state, t_end, &mut log);
         check(&run, &log, &format!("dopri5 {max_step}"));
+        let taylor = Taylor::new(tolerance).with_max_step(max_step);
+        let mut log = Log::new();
+        let run = run_with(particle, taylor, state, t_end, &mut log);
+        check(&run, &log, &format!("taylor {max_step}"));
     }
 }
 

@@ -9,20 +9,28 @@ use dalembert_expr::ExprId;
 
 use crate::mechanics::Derivation;
 use crate::model::Model;
+use crate::program::jet::Jet;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::recipes::declared::position_function;
 use crate::program::{Form, Function, Guard, Impacting, Value};
 
-/// All of them; `None` without surfaces.
-pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<Impacting> {
+/// All of them; `None` without surfaces. `expand` makes the jet of a function along the motion.
+pub fn impacting(
+    model: &Model,
+    derivation: &Derivation,
+    form: Form,
+    expand: impl Fn(&Function) -> Jet,
+) -> Option<Impacting> {
     if derivation.surfaces.is_empty() {
         return None;
     }
     let surfaces = 0..derivation.surfaces.len();
+    let gaps = evaluate(model, derivation, Arguments::Position, |surface| {
+        vec![surface.gap]
+    });
     Some(Impacting {
-        gaps: evaluate(model, derivation, Arguments::Position, |surface| {
-            vec![surface.gap]
-        }),
+        gap_jet: expand(&gaps),
+        gaps,
         gap_rates: evaluate(model, derivation, form.state(), |surface| {
             vec![surface.gap_rate]
         }),

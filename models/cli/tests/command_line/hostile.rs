@@ -56,7 +56,7 @@ fn unknown_names_bring_the_nearest_and_all() {
         ("simulate bouncing_ball --scene windy", &["--scene", "all"]),
         (
             "simulate bouncing_ball --integrator euler",
-            &["--integrator", "dop853", "dopri5"],
+            &["--integrator", "dop853", "dopri5", "taylor"],
         ),
         ("list --format xml", &["--format", "text", "json"]),
         ("simulat bouncing_ball", &["simulate"]),

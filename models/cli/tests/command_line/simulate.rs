@@ -44,7 +44,7 @@ fn a_document_has_the_keys_of_the_interface() {
 
 #[test]
 fn samples_lie_on_the_closed_solution() {
-    for integrator in ["dop853", "dopri5"] {
+    for integrator in ["dop853", "dopri5", "taylor"] {
         let line = format!(
             "simulate oscillator --set k=4 --tol 1e-12 --integrator {integrator} --samples 101"
         );

@@ -9,7 +9,8 @@ use dalembert::describe::{
 };
 use dalembert::error::ParameterError;
 use dalembert::impacts::law::{Contact, Law};
-use dalembert::{Fault, Impacting, Impacts, Scene, StateError, System, VectorField};
+use dalembert::jet::LENGTH;
+use dalembert::{Fault, Impacting, Impacts, Scene, StateError, System, TaylorField, VectorField};
 use nalgebra::SVector;
 
 /// What differs between the systems: mass, force and potential.
@@ -30,6 +31,32 @@ macro_rules! particle {
                 for i in 0..$n {
                     rate[i] = state[$n + i] / self.mass();
                     rate[$n + i] = force[i];
+                }
+                Ok(())
+            }
+        }
+
+        // The forces are linear in q but for a constant: so are their series.
+        impl TaylorField for $type {
+            type Jets = [[f64; LENGTH]; 0];
+
+            fn expand(
+                &self,
+                _t: f64,
+                unit: f64,
+                order: usize,
+                coefficients: &mut [Self::State; LENGTH],
+                _jets: &mut Self::Jets,
+            ) -> Result<(), Fault> {
+                let constant = self.force(&[0.0; $n]);
+                for k in 0..order {
+                    let force = self.force(&std::array::from_fn(|i| coefficients[k][i]));
+                    let scale = unit / (k + 1) as f64;
+                    for i in 0..$n {
+                        let own = if k == 0 { force[i] } else { force[i] - constant[i] };
+                        coefficients[k + 1][i] = scale * coefficients[k][$n + i] / self.mass();
+                        coefficients[k + 1][$n + i] = scale * own;
+                    }
                 }
                 Ok(())
             }

@@ -1,0 +1,345 @@
+//! Taylor coefficients in time of every value of a function, order after order.
+//!
+//! Along a motion every value `v` is a power series `v_0 + v_1 s + v_2 s^2 + ..` in time `s`. A [`Jet`] is a function
+//! together with what gives coefficient `k` of each of its values from the coefficients that are known then
+//! ([`Recurrence`]). Sums go through term by term and products are Cauchy products; everything else follows from a
+//! differential equation with products or quotients only, as `c' = -a' s`, `s' = a' c` for cosine and sine. What such
+//! an equation needs besides the value itself, the other one of sine and cosine or `1 + a^2` for the arc tangent, is a
+//! companion: one more operation of the function.
+//!
+//! Values whose series end by structure are found ([`degree`]): a product with one of them has as many terms as that
+//! series, a constant has no recurrence at all.
+//!
+//! References: R. E. Moore, *Interval Analysis* (1966), chapter 11; A. Griewank and A. Walther, *Evaluating
+//! Derivatives* (2008), section 13.2, tables 13.1 and 13.2.
+
+pub mod degree;
+pub mod interpret;
+
+use dalembert_expr::{Function as Elementary, Rational};
+
+use super::builder::Builder;
+use super::{Function, Input, Op, Value};
+use degree::Degree;
+
+/// How coefficient `k >= 1` of a value follows from lower ones of all values, and those of order `k` of its operands.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Recurrence {
+    /// It vanishes.
+    Constant,
+    /// Time itself.
+    Time,
+    /// This component of the state.
+    Component(usize),
+    /// That of another value.
+    Same(Value),
+    /// `-a`
+    Neg(Value),
+    /// `a + b`
+    Add(Value, Value),
+    /// `a - b`
+    Sub(Value, Value),
+    /// `a b` with a constant `a`.
+    Scaled(Value, Value),
+    /// `a / b` with a constant `b`.
+    Divided(Value, Value),
+    /// `a b`
+    Product(Value, Value),
+    /// `a^2`
+    Square(Value),
+    /// `a / b`; without `a` where that is constant.
+    Quotient(Option<Value>, Value),
+    /// `sqrt(a)`
+    Root(Value),
+    /// `a^e`: `a c' = e a' c`.
+    Power(Value, Rational),
+    /// `c' = a' b`, negative where `negative`.
+    Integral {
+        /// `a`
+        of: Value,
+        /// `b`
+        by: Value,
+        /// Whether `c' = -a' b`.
+        negative: bool,
+    },
+    /// `c' = a' / b`, negative where `negative`.
+    IntegralQuotient {
+        /// `a`
+        of: Value,
+        /// `b`
+        by: Value,
+        /// Whether `c' = -a' / b`.
+        negative: bool,
+    },
+    /// The angle of `(x, y)`: `r c' = x y' - y x'`.
+    Angle {
+        /// `y`
+        y: Value,
+        /// `x`
+        x: Value,
+        /// `r = x^2 + y^2`
+        squared: Value,
+    },
+    /// `|a|`, with the sign it starts with.
+    Absolute(Value),
+}
+
+/// Coefficients of a value that are kept over all orders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct History {
+    /// Whose.
+    pub value: Value,
+    /// Whether coefficient `k` is kept `k` times: those of the derivative, shifted by one.
+    pub weighted: bool,
+}
+
+impl History {
+    /// Of coefficients as they are.
+    pub fn plain(value: Value) -> Self {
+        Self {
+            value,
+            weighted: false,
+        }
+    }
+
+    /// Of coefficients times their order.
+    pub fn weighted(value: Value) -> Self {
+        Self {
+            value,
+            weighted: true,
+        }
+    }
+}
+
+/// A function with the Taylor coefficients of its values.
+#[derive(Debug)]
+pub struct Jet {
+    /// Order 0: the operations of the function it was made from, then the companions. The same results.
+    pub function: Function,
+    /// By value.
+    pub recurrences: Vec<Recurrence>,
+    /// By value: after which order its series ends.
+    pub degrees: Vec<Degree>,
+    /// By value: whether a result takes its coefficients above order 0.
+    pub needed: Vec<bool>,
+    /// What is kept over the orders.
+    pub histories: Vec<History>,
+}
+
+impl Jet {
+    /// The jet of a function along motions whose components have these degrees. `component` says which component
+    /// of the state an input is.
+    pub fn of(
+        function: &Function,
+        components: &[Degree],
+        component: impl Fn(Input) -> Option<usize>,
+    ) -> Self {
+        let mut builder = Builder::new();
+        let outputs = builder.replay(function);
+        let (mut recurrences, mut degrees) = (Vec::new(), Vec::new());
+        // Companions are added behind, and come up in turn.
+        while recurrences.len() < builder.len() {
+            let value = Value::new(recurrences.len());
+            let op = builder.op(value).clone();
+            let at = |input| component(input).map(|i| components[i]);
+            let degree = degree::of(&op, &degrees, at);
+            recurrences.push(match degree {
+                Degree::AtMost(0) => Recurrence::Constant,
+                _ => recurrence(&mut builder, value, &op, &degrees, &component),
+            });
+            degrees.push(degree);
+        }
+        let function = builder.finish_whole(outputs);
+        let needed = needed(&function.outputs, &recurrences);
+        let histories = histories(&recurrences, &needed);
+        Self {
+            function,
+            recurrences,
+            degrees,
+            needed,
+            histories,
+        }
+    }
+
+    /// Whether the results are analytic wherever they exist: a series then says what they do up to its radius.
+    pub fn is_analytic(&self) -> bool {
+        let absolute =
+            |value: Value| matches!(self.recurrences[value.index()], Recurrence::Absolute(_));
+        !self.varying().any(absolute)
+    }
+
+    /// Whether any coefficients of a value are kept.
+    pub fn is_kept(&self, value: Value) -> bool {
+        let histories = [History::plain(value), History::weighted(value)];
+        let known = |history| self.histories.binary_search(history).is_ok();
+        histories.iter().any(known)
+    }
+
+    /// How often coefficient `k` of each value is read for those of others and for results.
+    pub fn uses(&self) -> Vec<usize> {
+        let mut uses = vec![0; self.recurrences.len()];
+        let operands = self
+            .varying()
+            .flat_map(|value| self.recurrences[value.index()].operands());
+        for value in operands.chain(self.function.outputs.iter().copied()) {
+            uses[value.index()] += 1;
+        }
+        uses
+    }
+
+    /// Values that have coefficients of order `k`, in an order in which they can be computed.
+    pub fn varying(&self) -> impl Iterator<Item = Value> + '_ {
+        let varies = |i: &usize| self.needed[*i] && self.recurrences[*i] != Recurrence::Constant;
+        (0..self.recurrences.len()).filter(varies).map(Value::new)
+    }
+}
+
+/// The recurrence of an operation that is not constant. Asks for companions where it takes them.
+fn recurrence(
+    builder: &mut Builder,
+    value: Value,
+    op: &Op,
+    degrees: &[Degree],
+    component: impl Fn(Input) -> Option<usize>,
+) -> Recurrence {
+    let constant = |value: Value| degrees[value.index()] == Degree::AtMost(0);
+    match *op {
+        Op::Input(Input::Time) => Recurrence::Time,
+        Op::Input(input) => component(input).map_or(Recurrence::Constant, Recurrence::Component),
+        Op::Number(_) | Op::Pi | Op::Guard(_) => Recurrence::Constant,
+        Op::Neg(a) => Recurrence::Neg(a),
+        Op::Add(a, b) if constant(a) => Recurrence::Same(b),
+        Op::Add(a, b) | Op::Sub(a, b) if constant(b) => Recurrence::Same(a),
+        Op::Add(a, b) => Recurrence::Add(a, b),
+        Op::Sub(a, b) if constant(a) => Recurrence::Neg(b),
+        Op::Sub(a, b) => Recurrence::Sub(a, b),
+        Op::Mul(a, b) if constant(a) => Recurrence::Scaled(a, b),
+        Op::Mul(a, b) if constant(b) => Recurrence::Scaled(b, a),
+        Op::Mul(a, b) if a == b => Recurrence::Square(a),
+        Op::Mul(a, b) => Recurrence::Product(a, b),
+        Op::Div(a, b) if constant(b) => Recurrence::Divided(a, b),
+        Op::Div(a, b) => Recurrence::Quotient((!constant(a)).then_some(a), b),
+        Op::Sqrt(a) => Recurrence::Root(a),
+        Op::Power(a, ref exponent) => Recurrence::Power(a, exponent.clone()),
+        Op::Call(function, a) => call(builder, value, function, a),
+        Op::Atan2(y, x) => {
+            let (y_squared, x_squared) = (builder.mul(y, y), builder.mul(x, x));
+            let squared = builder.add(y_squared, x_squared);
+            Recurrence::Angle { y, x, squared }
+        }
+    }
+}
+
+/// The differential equation of an elementary function.
+fn call(builder: &mut Builder, value: Value, function: Elementary, a: Value) -> Recurrence {
+    let integral = |by, negative| Recurrence::Integral {
+        of: a,
+        by,
+        negative,
+    };
+    let quotient = |by, negative| Recurrence::IntegralQuotient {
+        of: a,
+        by,
+        negative,
+    };
+    match function {
+        Elementary::Sin => integral(builder.call(Elementary::Cos, a), false),
+        Elementary::Cos => integral(builder.call(Elementary::Sin, a), true),
+        Elementary::Sinh => integral(builder.call(Elementary::Cosh, a), false),
+        Elementary::Cosh => integral(builder.call(Elementary::Sinh, a), false),
+        Elementary::Exp => integral(value, false),
+        Elementary::Tan => integral(one_plus_square(builder, value), false),
+        Elementary::Tanh => integral(one_minus_square(builder, value), false),
+        Elementary::Ln => quotient(a, false),
+        Elementary::Atan => quotient(one_plus_square(builder, a), false),
+        Elementary::Asin | Elementary::Acos => {
+            let squared = one_minus_square(builder, a);
+            quotient(builder.sqrt(squared), function == Elementary::Acos)
+        }
+        Elementary::Abs => Recurrence::Absolute(a),
+    }
+}
+
+fn one_plus_square(builder: &mut Builder, a: Value) -> Value {
+    let (one, square) = (builder.integer(1), builder.mul(a, a));
+    builder.add(one, square)
+}
+
+/// `1 - a^2` as a product, whose relative error stays small where `a` comes close to 1.
+fn one_minus_square(builder: &mut Builder, a: Value) -> Value {
+    let one = builder.integer(1);
+    let (below, above) = (builder.sub(one, a), builder.add(one, a));
+    builder.mul(below, above)
+}
+
+impl Recurrence {
+    /// The values whose coefficients above order 0 it takes.
+    fn operands(&self) -> Vec<Value> {
+        match *self {
+            Self::Constant | Self::Time | Self::Component(_) => Vec::new(),
+            Self::Same(a)
+            | Self::Neg(a)
+            | Self::Scaled(_, a)
+            | Self::Divided(a, _)
+            | Self::Square(a)
+            | Self::Quotient(None, a)
+            | Self::Root(a)
+            | Self::Power(a, _)
+            | Self::Absolute(a) => vec![a],
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Product(a, b)
+            | Self::Quotient(Some(a), b)
+            | Self::Integral { of: a, by: b, .. }
+            | Self::IntegralQuotient { of: a, by: b, .. } => vec![a, b],
+            Self::Angle { y, x, squared } => vec![y, x, squared],
+        }
+    }
+
+    /// What must be kept over the orders for coefficients of `value`.
+    fn histories(&self, value: Value) -> Vec<History> {
+        let (plain, weighted) = (History::plain, History::weighted);
+        match *self {
+            Self::Product(a, b) => vec![plain(a), plain(b)],
+            Self::Square(a) => vec![plain(a)],
+            Self::Quotient(_, b) => vec![plain(b), plain(value)],
+            Self::Root(_) => vec![plain(value)],
+            Self::Power(a, _) => vec![plain(a), weighted(a), plain(value), weighted(value)],
+            Self::Integral { of, by, .. } => vec![weighted(of), plain(by)],
+            Self::IntegralQuotient { by, .. } => vec![weighted(value), plain(by)],
+            Self::Angle { y, x, squared } => vec![
+                plain(x),
+                weighted(y),
+                plain(y),
+                weighted(x),
+                plain(squared),
+                weighted(value),
+            ],
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Values whose coefficients above order 0 the results take, companions included.
+fn needed(outputs: &[Value], recurrences: &[Recurrence]) -> Vec<bool> {
+    let mut needed = vec![false; recurrences.len()];
+    let mut open = outputs.to_vec();
+    while let Some(value) = open.pop() {
+        if !core::mem::replace(&mut needed[value.index()], true) {
+            open.extend(recurrences[value.index()].operands());
+        }
+    }
+    needed
+}
+
+fn histories(recurrences: &[Recurrence], needed: &[bool]) -> Vec<History> {
+    let kept = recurrences
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| needed[*i])
+        .flat_map(|(i, recurrence)| recurrence.histories(Value::new(i)));
+    let mut histories: Vec<History> = kept.collect();
+    histories.sort_unstable();
+    histories.dedup();
+    histories
+}

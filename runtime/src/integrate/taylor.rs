@@ -1,0 +1,444 @@
+//! Taylor series of the motion, with the order and the steps of Jorba and Zou.
+//!
+//! ```text
+//! p = ceil(1 - ln(tol) / 2),   h_j = (tol e^-2 |y| / |y_j|)^(1/j),   h = e^(-0.7 / (p - 1)) min(h_(p-1), h_p)
+//! ```
+//!
+//! with `|y_j|` the largest of the coefficients `j` of the state's components, each over the size that its tolerance
+//! is relative to. `tol^(1/p)` is `e^-2` up to the rounding of `p`: that much of the radius of convergence makes the
+//! least work per unit of time, whatever the tolerance. The step's polynomial is its dense output, so that states
+//! between its ends are as accurate as those at them and cost no evaluation.
+//!
+//! Coefficients are computed in a unit of time that is a power of two near the step: they neither overflow nor vanish
+//! whatever units the system has, and the change of unit is exact. What rounding takes from the sum of state and
+//! increment is carried to the next step.
+//!
+//! No step is rejected because of its error. A rate at the end that is not the derivative of the polynomial shows a
+//! step past a point where the motion is not analytic; it is halved, which takes no new coefficients.
+//!
+//! References: A. Jorba and M. Zou, *A software package for the numerical integration of ODEs by means of high-order
+//! Taylor methods*, Experimental Mathematics 14 (2005), sections 3.1 to 3.3; E. Hairer, C. Lubich, G. Wanner, *Geometric
+//! Numerical Integration* (2006), VIII.5, for the carried rest.
+
+use core::fmt;
+
+use super::controller::{RETREAT, Weights, landing, least_step, not_finite};
+use super::stats::Counters;
+use super::stepper::{Series, StepFailure, Stepper};
+use super::tolerance::Tolerance;
+use crate::contract::TaylorField;
+use crate::error::Fault;
+use crate::jet::{Jets, LENGTH};
+use crate::math;
+use crate::state::StateVector;
+
+/// The name of [`Taylor`], known without a system.
+pub const TAYLOR: &str = "taylor";
+
+/// Lowest order: two coefficients are looked at for the step size, none of them that of the rate.
+const LEAST_ORDER: usize = 3;
+
+/// Largest step in units of time of its expansion: powers up to the highest stay far from overflow.
+const LONGEST: f64 = (1 << 20) as f64;
+
+/// Factor by which the unit of time shrinks when coefficients overflow.
+const SHRINK: f64 = 1.0 / (1 << 16) as f64;
+
+/// Largest factor between a step that was limited from outside and the next.
+const GROW: f64 = 8.0;
+
+/// How far rate and polynomial may be apart at the end of a step, in units of the error allowed: the truncation error
+/// of a step in order is a small part of it.
+const DEFECT: f64 = 1024.0;
+
+/// Rounding errors that a rate may have besides, in units of the size of its component.
+const NOISE: f64 = 64.0 * f64::EPSILON;
+
+/// Generated Taylor series at work.
+pub struct Taylor<F: TaylorField> {
+    tolerance: Tolerance,
+    order: usize,
+    max_step: f64,
+    first_step: Option<f64>,
+    weights: Weights<F::State>,
+    /// Unit of time of the coefficients, a power of two; and that of the next ones.
+    unit: f64,
+    next_unit: f64,
+    /// No step longer than this for now: after a jump, and at the start.
+    limit: f64,
+    t: [f64; 2],
+    start: F::State,
+    end: F::State,
+    /// What the states at both ends lack, since they are rounded.
+    rests: [F::State; 2],
+    rates: [F::State; 2],
+    coefficients: [F::State; LENGTH],
+    jets: F::Jets,
+}
+
+impl<F: TaylorField> Clone for Taylor<F> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<F: TaylorField> Copy for Taylor<F> {}
+
+impl<F: TaylorField> fmt::Debug for Taylor<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Taylor")
+            .field("tolerance", &self.tolerance)
+            .field("order", &self.order)
+            .field("t", &self.t)
+            .field("end", &self.end)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<F: TaylorField> Taylor<F> {
+    /// An integrator with this tolerance, of the order that belongs to it.
+    pub fn new(tolerance: Tolerance) -> Self {
+        let zeros = F::State::zeros();
+        Self {
+            tolerance,
+            order: order(tolerance.relative()),
+            max_step: f64::INFINITY,
+            first_step: None,
+            weights: Weights::new(tolerance, &zeros),
+            unit: 1.0,
+            next_unit: 1.0,
+            limit: f64::INFINITY,
+            t: [0.0; 2],
+            start: zeros,
+            end: zeros,
+            rests: [zeros; 2],
+            rates: [zeros; 2],
+            coefficients: [zeros; LENGTH],
+            jets: F::Jets::ZERO,
+        }
+    }
+
+    /// With series of this order, between 3 and 32, instead of the one that belongs to the tolerance.
+    #[must_use]
+    pub fn with_order(mut self, order: usize) -> Self {
+        self.order = order.clamp(LEAST_ORDER, LENGTH - 1);
+        self
+    }
+
+    /// With no step longer than `max_step`. Anything but a positive number lifts the limit.
+    #[must_use]
+    pub fn with_max_step(mut self, max_step: f64) -> Self {
+        self.max_step = if max_step > 0.0 {
+            max_step
+        } else {
+            f64::INFINITY
+        };
+        self
+    }
+
+    /// With no first step longer than this. Anything but a positive number is ignored.
+    #[must_use]
+    pub fn with_first_step(mut self, first_step: f64) -> Self {
+        self.first_step = (first_step > 0.0 && first_step.is_finite()).then_some(first_step);
+        self
+    }
+
+    /// The tolerance.
+    pub fn tolerance(&self) -> Tolerance {
+        self.tolerance
+    }
+
+    /// The order of the series.
+    pub fn order(&self) -> usize {
+        self.order
+    }
+
+    /// Takes `(t, state)` for the end of a step, as a start does.
+    fn place(
+        &mut self,
+        field: &F,
+        t: f64,
+        state: &F::State,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        self.t = [t; 2];
+        self.start = *state;
+        self.end = *state;
+        self.rests = [F::State::zeros(); 2];
+        self.weights = Weights::new(self.tolerance, &field.scale(t, state));
+        counters.rate_evaluations += 1;
+        field.rate(t, state, &mut self.rates[1])?;
+        match not_finite(state).or(not_finite(&self.rates[1])) {
+            Some(component) => Err(StepFailure::NonFinite { component }),
+            None => Ok(()),
+        }
+    }
+
+    /// The coefficients at the start of the step; the step they allow, in units of time.
+    fn expand(&mut self, field: &F, counters: &mut Counters) -> Result<f64, StepFailure> {
+        let t = self.t[0];
+        self.coefficients[0] = self.start;
+        self.unit = self.next_unit;
+        loop {
+            counters.expansions += 1;
+            counters.coefficients += self.order as u64;
+            field.expand(
+                t,
+                self.unit,
+                self.order,
+                &mut self.coefficients,
+                &mut self.jets,
+            )?;
+            let last = &self.coefficients[self.order];
+            let Some(component) =
+                not_finite(last).or(not_finite(&self.coefficients[self.order - 1]))
+            else {
+                return Ok(self.reach());
+            };
+            counters.rejected += 1;
+            self.unit *= SHRINK;
+            if self.unit < least_step(t) {
+                return Err(StepFailure::NonFinite { component });
+            }
+        }
+    }
+
+    /// The step that the last two coefficients allow, in units of time.
+    #[inline(always)]
+    fn reach(&self) -> f64 {
+        let mut sizes = [0.0_f64; 2];
+        for i in 0..F::State::LEN {
+            let inverse = 1.0 / self.weights.allowed(i, &self.start, &self.start);
+            for (j, size) in sizes.iter_mut().enumerate() {
+                let coefficient = self.coefficients[self.order - j].as_slice()[i];
+                *size = size.max(coefficient.abs() * inverse);
+            }
+        }
+        // NOTE: e^2 in the size is e^-2 in the tolerance, which the weights hold already.
+        const SQUARE: f64 = core::f64::consts::E * core::f64::consts::E;
+        let order = self.order as f64;
+        let reach = |size: f64, power: f64| match size > 0.0 {
+            true => math::exp((-math::ln(size * SQUARE) - 0.7) / power),
+            false => f64::INFINITY,
+        };
+        reach(sizes[0], order).min(reach(sizes[1], order - 1.0))
+    }
+
+    /// Sets the end of the step at `theta` units of time, and gives the derivative of the polynomial there.
+    #[inline(always)]
+    fn arrive(&mut self, theta: f64) -> F::State {
+        let (mut change, mut slope) = (F::State::zeros(), F::State::zeros());
+        for coefficient in self.coefficients[1..=self.order].iter().rev() {
+            for i in 0..F::State::LEN {
+                let sum = change.as_slice()[i] + coefficient.as_slice()[i];
+                slope.as_mut_slice()[i] = slope.as_slice()[i] * theta + sum;
+                change.as_mut_slice()[i] = sum * theta;
+            }
+        }
+        for i in 0..F::State::LEN {
+            let start = self.start.as_slice()[i];
+            let change = change.as_slice()[i] + self.rests[0].as_slice()[i];
+            let end = start + change;
+            // The rounding error of the sum, exactly (Moller, Knuth).
+            let moved = end - start;
+            self.rests[1].as_mut_slice()[i] = (start - (end - moved)) + (change - moved);
+            self.end.as_mut_slice()[i] = end;
+        }
+        slope
+    }
+
+    /// Whether the motion at the end of a step of `theta` units is that of the vector field.
+    #[inline(always)]
+    fn attempt(
+        &mut self,
+        field: &F,
+        theta: f64,
+        arrival: f64,
+        counters: &mut Counters,
+    ) -> Result<bool, StepFailure> {
+        let slope = self.arrive(theta);
+        counters.rate_evaluations += 1;
+        field.rate(arrival, &self.end, &mut self.rates[1])?;
+        if let Some(component) = not_finite(&self.end).or(not_finite(&self.rates[1])) {
+            return Err(StepFailure::NonFinite { component });
+        }
+        let length = theta * self.unit;
+        Ok((0..F::State::LEN).all(|i| {
+            let rate = self.rates[1].as_slice()[i];
+            let defect = (rate - slope.as_slice()[i] / self.unit).abs() * length;
+            let size = self.end.as_slice()[i].abs() + rate.abs() * length;
+            defect <= DEFECT * (self.weights.allowed(i, &self.start, &self.end) + NOISE * size)
+        }))
+    }
+
+    /// Puts the last good state back in place after a failure.
+    fn retract(&mut self) {
+        self.t[1] = self.t[0];
+        self.end = self.start;
+        self.rests[1] = self.rests[0];
+        self.rates[1] = self.rates[0];
+    }
+}
+
+/// The order that belongs to a tolerance.
+fn order(tolerance: f64) -> usize {
+    let order = 1.0 - 0.5 * math::ln(tolerance);
+    // NOTE: the conversion saturates and drops the fraction, `+ 1` makes it round up.
+    (order as usize + 1).clamp(LEAST_ORDER, LENGTH - 1)
+}
+
+/// The largest power of two that is not above a positive number.
+fn power_of_two(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    f64::from_bits(x.clamp(f64::MIN_POSITIVE, f64::MAX).to_bits() & EXPONENT)
+}
+
+impl<F: TaylorField> Stepper<F> for Taylor<F> {
+    const NAME: &'static str = TAYLOR;
+
+    fn start(
+        &mut self,
+        field: &F,
+        t: f64,
+        state: &F::State,
+        t_end: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        self.place(field, t, state, counters)?;
+        self.limit = self.first_step.unwrap_or(f64::INFINITY);
+        let size = self.weights.norm(state, |i| state.as_slice()[i]);
+        let speed = self.weights.norm(state, |i| self.rates[1].as_slice()[i]);
+        let time = size / speed;
+        let known = time > 0.0 && time.is_finite();
+        let time = if known { time } else { t_end - t };
+        self.next_unit = power_of_two(time.min(t_end - t));
+        Ok(())
+    }
+
+    #[inline]
+    fn restart(
+        &mut self,
+        field: &F,
+        t: f64,
+        state: &F::State,
+        limit: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        self.limit = limit;
+        self.place(field, t, state, counters)
+    }
+
+    #[inline]
+    fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
+        self.t[0] = self.t[1];
+        self.start = self.end;
+        self.rests[0] = self.rests[1];
+        self.rates[0] = self.rates[1];
+        let t = self.t[0];
+        let least = least_step(t);
+        let reach = self.expand(field, counters)?.min(LONGEST) * self.unit;
+        self.next_unit = power_of_two(reach);
+        let mut h = reach.min(self.max_step).min(self.limit).max(least);
+        loop {
+            let arrival = landing(t, h, t_end);
+            // NOTE: the step that is made is the difference of the two times, not the one asked for.
+            let made = arrival - t;
+            let attempt = self.attempt(field, made / self.unit, arrival, counters);
+            if let Ok(true) = attempt {
+                counters.accepted += 1;
+                self.t[1] = arrival;
+                self.limit = if made < reach {
+                    GROW * made.max(self.limit.min(reach))
+                } else {
+                    f64::INFINITY
+                };
+                return Ok(());
+            }
+            counters.rejected += 1;
+            h = made * if attempt.is_ok() { 0.5 } else { RETREAT };
+            if h < least {
+                self.retract();
+                return Err(attempt.err().unwrap_or(StepFailure::StepUnderflow { t }));
+            }
+        }
+    }
+
+    fn replace_end(
+        &mut self,
+        field: &F,
+        state: &F::State,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        for i in 0..F::State::LEN {
+            if state.as_slice()[i] != self.end.as_slice()[i] {
+                self.rests[1].as_mut_slice()[i] = 0.0;
+            }
+        }
+        self.end = *state;
+        counters.rate_evaluations += 1;
+        field.rate(self.t[1], state, &mut self.rates[1])?;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn t_start(&self) -> f64 {
+        self.t[0]
+    }
+
+    #[inline(always)]
+    fn t_end(&self) -> f64 {
+        self.t[1]
+    }
+
+    #[inline(always)]
+    fn start_state(&self) -> &F::State {
+        &self.start
+    }
+
+    #[inline(always)]
+    fn end_state(&self) -> &F::State {
+        &self.end
+    }
+
+    #[inline(always)]
+    fn end_rates(&self) -> [&F::State; 2] {
+        let [start, end] = &self.rates;
+        [start, end]
+    }
+
+    #[inline(always)]
+    fn series(&self) -> Option<Series<'_, F::State>> {
+        Some(Series {
+            unit: self.unit,
+            order: self.order,
+            coefficients: &self.coefficients,
+        })
+    }
+
+    #[inline(always)]
+    fn dense_ready(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn prepare_dense(&mut self, _: &F, _: &mut Counters) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn interpolate(&self, theta: f64) -> F::State {
+        let s = theta * ((self.t[1] - self.t[0]) / self.unit);
+        let mut change = F::State::zeros();
+        for coefficient in self.coefficients[1..=self.order].iter().rev() {
+            for i in 0..F::State::LEN {
+                let sum = change.as_slice()[i] + coefficient.as_slice()[i];
+                change.as_mut_slice()[i] = sum * s;
+            }
+        }
+        for i in 0..F::State::LEN {
+            let moved = change.as_slice()[i] + self.rests[0].as_slice()[i];
+            change.as_mut_slice()[i] = self.start.as_slice()[i] + moved;
+        }
+        change
+    }
+}

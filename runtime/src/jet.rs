@@ -1,0 +1,94 @@
+//! Sums over Taylor coefficients, as generated code calls them.
+
+/// Coefficients that a series may have: orders 0 to 32.
+pub const LENGTH: usize = 33;
+
+/// Room for the coefficients of several series.
+pub trait Jets: Copy {
+    /// All of them zero.
+    const ZERO: Self;
+}
+
+impl<const H: usize> Jets for [[f64; LENGTH]; H] {
+    const ZERO: Self = [[0.0; LENGTH]; H];
+}
+
+/// `sum a_j b_(k-j)` for `j` in `1..k`.
+///
+/// Two sums side by side halve the time that one addition waits for the last.
+#[inline(always)]
+pub fn middle(a: &[f64; LENGTH], b: &[f64; LENGTH], k: usize) -> f64 {
+    let k = k.clamp(1, LENGTH - 1);
+    let (a, b) = (&a[1..k], &b[1..k]);
+    let mut sums = [0.0; 4];
+    let mut left = a.chunks_exact(4);
+    let mut right = b.rchunks_exact(4);
+    for (x, y) in (&mut left).zip(&mut right) {
+        for i in 0..4 {
+            sums[i] += x[i] * y[3 - i];
+        }
+    }
+    let mut rest = 0.0;
+    for (x, y) in left.remainder().iter().zip(right.remainder().iter().rev()) {
+        rest += x * y;
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}
+
+/// As [`middle`], for functions with so many sums that writing each out would not pay.
+#[inline(never)]
+pub fn shared_middle(a: &[f64; LENGTH], b: &[f64; LENGTH], k: usize) -> f64 {
+    middle(a, b, k)
+}
+
+/// Half of `sum a_j a_(k-j)` for `j` in `1..k`: each product once.
+#[inline(always)]
+pub fn half(a: &[f64; LENGTH], k: usize) -> f64 {
+    let k = k.clamp(1, LENGTH - 1);
+    let (mut even, mut odd) = (0.0, 0.0);
+    let pairs = (k - 1) / 2;
+    let (left, right) = (&a[1..=pairs], &a[k - pairs..k]);
+    for (x, y) in left.iter().zip(right.iter().rev()) {
+        (even, odd) = (odd, even + x * y);
+    }
+    let centre = if k % 2 == 0 {
+        0.5 * a[k / 2] * a[k / 2]
+    } else {
+        0.0
+    };
+    even + odd + centre
+}
+
+/// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond `degree`.
+#[inline(always)]
+pub fn short(a: &[f64; LENGTH], b: &[f64; LENGTH], k: usize, degree: usize) -> f64 {
+    let mut sum = 0.0;
+    for j in 1..=degree {
+        if j <= k {
+            sum += a[j] * b[k - j];
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_those_of_their_definitions() {
+        let (mut a, mut b) = ([0.0; LENGTH], [0.0; LENGTH]);
+        for j in 0..LENGTH {
+            (a[j], b[j]) = (1.0 + j as f64, 2.0 - (j * j) as f64);
+        }
+        for k in 1..LENGTH {
+            let sum = |x: &[f64], y: &[f64], from: usize, to: usize| -> f64 {
+                (from..to).map(|j| x[j] * y[k - j]).sum()
+            };
+            assert_eq!(middle(&a, &b, k), sum(&a, &b, 1, k));
+            assert_eq!(shared_middle(&a, &b, k), sum(&a, &b, 1, k));
+            assert_eq!(2.0 * half(&a, k), sum(&a, &a, 1, k));
+            assert_eq!(short(&a, &b, k, 3), sum(&a, &b, 1, (k + 1).min(4)));
+        }
+    }
+}

@@ -1,0 +1,435 @@
+//! Power series of motions: emitted, interpreted, and against functions and motions in closed form.
+
+use dalembert::jet::{Jets, LENGTH};
+use dalembert::{
+    Described, Dop853, Scene, Simulation, StateVector, System, Taylor, TaylorField, Tolerance,
+};
+use dalembert_codegen::program::jet::degree::Degree;
+use dalembert_codegen::program::jet::{Jet, Recurrence, interpret};
+use dalembert_codegen::program::{Input, Program};
+use dalembert_codegen::{compile, spec};
+use dalembert_tests::sampling::{Visitor, states, visit_all};
+
+fn program(source: &str) -> Program {
+    compile(source.parse().expect("tokens"))
+        .expect("a model")
+        .programs
+        .main
+}
+
+/// The arguments of a rate at a state of a system.
+fn input<'a, S: Described>(
+    system: &'a S,
+    t: f64,
+    state: &'a S::State,
+) -> impl Fn(Input) -> f64 + 'a {
+    let n = S::Vector::LEN;
+    move |input| match input {
+        Input::Time => t,
+        Input::Parameter(k) => system.parameter(k),
+        other => other.component(n).map_or(f64::NAN, |i| state.as_slice()[i]),
+    }
+}
+
+/// Emitted coefficients at a state.
+fn expand<S: TaylorField>(
+    system: &S,
+    t: f64,
+    (unit, order): (f64, usize),
+    state: S::State,
+) -> [S::State; LENGTH] {
+    let mut coefficients = [S::State::zeros(); LENGTH];
+    coefficients[0] = state;
+    let mut jets = S::Jets::ZERO;
+    system
+        .expand(t, unit, order, &mut coefficients, &mut jets)
+        .expect("an expansion");
+    coefficients
+}
+
+/// Emitted coefficients are those that the interpreter computes; the first is the rate to the bit.
+fn assert_emitted_is_interpreted<S: Described + TaylorField>(
+    system: &S,
+    jet: &Jet,
+    state: S::State,
+) {
+    let name = S::DESCRIPTION.name;
+    let (t, unit, order) = (0.25, 0.125, 12);
+    let emitted = expand(system, t, (unit, order), state);
+    let at = input(system, t, &state);
+    let interpreted =
+        interpret::motion(jet, &at, (unit, order), state.as_slice()).expect("an expansion");
+    let mut rate = state;
+    system.rate(t, &state, &mut rate).expect("a rate");
+    for i in 0..S::State::LEN {
+        assert_eq!(
+            emitted[1].as_slice()[i],
+            unit * rate.as_slice()[i],
+            "{name}"
+        );
+    }
+    for k in 0..=order {
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let size = largest(&mut interpreted.iter().map(|component| component[k].abs()));
+        // What cancels exactly on paper is rounding here, of the size of the first orders.
+        let rounding = f64::EPSILON * largest(&mut interpreted.iter().map(|own| own[1].abs()));
+        let error = largest(
+            &mut (0..S::State::LEN).map(|i| (emitted[k].as_slice()[i] - interpreted[i][k]).abs()),
+        );
+        assert!(
+            error <= 1e-5 * size + rounding,
+            "{name}: order {k}: {error:e} of {size:e}"
+        );
+        assert!(size.is_finite(), "{name}: order {k}");
+    }
+}
+
+#[test]
+fn emitted_coefficients_are_what_the_interpreter_computes() {
+    struct Compared(usize);
+    impl Visitor for Compared {
+        fn visit<S: Described + Scene + TaylorField>(&mut self, system: S) {
+            let program = program(S::DESCRIPTION.source);
+            for state in states(&system, 5, 1) {
+                assert_emitted_is_interpreted(&system, &program.jet, state);
+                self.0 += 1;
+            }
+        }
+    }
+    let mut compared = Compared(0);
+    visit_all(&mut compared);
+    assert!(compared.0 >= 100);
+}
+
+dalembert::model! {
+    /// Every function of the language in a force.
+    pub EveryForce {
+        coordinates { x; y; }
+        parameters { c = 0.3; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        forces {
+            odd: (sin(x) + tan(c*x) + asin(x)/2 + atan(x*y) + sinh(x) + tanh(y) + sqrt(x + 1) + abs(y))*d(x);
+            even: (cos(y) + acos(y)/2 + exp(-x) + ln(1 + x^2) + cosh(y) + atan2(y, x + 1) + (2 + x)^(2/3)
+                + (1 + t)/(1 + x*y) + c/(2 + x) + t^2*x)*d(y);
+        }
+    }
+}
+
+#[test]
+fn every_function_is_expanded_as_it_is_interpreted() {
+    let system = EveryForce::default();
+    let program = program(EveryForce::DESCRIPTION.source);
+    let state = system
+        .state(0.25, &[0.4, -0.3].into(), &[0.5, 0.7].into())
+        .expect("a state");
+    assert_emitted_is_interpreted(&system, &program.jet, state);
+    for name in spec::FUNCTIONS {
+        assert!(
+            EveryForce::DESCRIPTION
+                .source
+                .contains(&format!("{name} ("))
+                || EveryForce::DESCRIPTION.source.contains(&format!("{name}(")),
+            "{name}"
+        );
+    }
+}
+
+/// `value(s)` by its coefficients, in units of time.
+fn sum(coefficients: &[f64], s: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c)
+}
+
+/// Series of every function along `x(s)`, `y(s)`, summed, against the function of the sums: a closed form.
+#[test]
+fn series_of_functions_sum_up_to_their_values() {
+    const X: [f64; 4] = [0.4, 0.3, -0.2, 0.1];
+    const Y: [f64; 3] = [-0.3, 0.5, 0.25];
+    type Function = fn(f64, f64) -> f64;
+    let cases: [(&str, Function); 22] = [
+        ("sqrt(x)", |x, _| x.sqrt()),
+        ("sin(x)", |x, _| x.sin()),
+        ("cos(y)", |_, y| y.cos()),
+        ("sin(x)*cos(x)", |x, _| x.sin() * x.cos()),
+        ("tan(x)", |x, _| x.tan()),
+        ("asin(x)", |x, _| x.asin()),
+        ("acos(y)", |_, y| y.acos()),
+        ("atan(x)", |x, _| x.atan()),
+        ("exp(x)", |x, _| x.exp()),
+        ("ln(x)", |x, _| x.ln()),
+        ("sinh(x)", |x, _| x.sinh()),
+        ("cosh(y)", |_, y| y.cosh()),
+        ("tanh(x)", |x, _| x.tanh()),
+        ("abs(y)", |_, y| y.abs()),
+        ("atan2(y, x)", |x, y| y.atan2(x)),
+        ("x^(2/3)", |x, _| x.powf(2.0 / 3.0)),
+        ("x^(-5/3)", |x, _| x.powf(-5.0 / 3.0)),
+        ("x*y/(1 + y^2)", |x, y| x * y / (1.0 + y * y)),
+        ("pi/x - y/pi", |x, y| {
+            core::f64::consts::PI / x - y / core::f64::consts::PI
+        }),
+        ("x^2*y^3", |x, y| x * x * y * y * y),
+        ("atan2(1, x)", |x, _| 1_f64.atan2(x)),
+        ("exp(y)/(exp(y) + sqrt(x))", |x, y| {
+            y.exp() / (y.exp() + x.sqrt())
+        }),
+    ];
+    for (expression, function) in cases {
+        let source = format!(
+            "P {{ coordinates {{ x; y; }} lagrangian = dot(x)^2 + dot(y)^2; outputs {{ o: {expression}; }} }}"
+        );
+        let outputs = program(&source).outputs.expect("outputs");
+        let degrees = [Degree::AtMost(3), Degree::AtMost(2)];
+        for components in [degrees, [Degree::Endless; 2]] {
+            let jet = Jet::of(&outputs, &components, |input| {
+                input.component(2).filter(|i| *i < 2)
+            });
+            let at = |input: Input| match input {
+                Input::Coordinate(0) => X[0],
+                Input::Coordinate(1) => Y[0],
+                _ => f64::NAN,
+            };
+            let component = |i: usize, k: usize| {
+                let series: &[f64] = if i == 0 { &X } else { &Y };
+                series.get(k).copied().unwrap_or(0.0)
+            };
+            let series = interpret::along(&jet, &at, (1.0, 30), &component).expect("no guard");
+            for s in [-0.1, 0.05, 0.1] {
+                let (actual, expected) = (sum(&series[0], s), function(sum(&X, s), sum(&Y, s)));
+                let error = (actual - expected).abs() / expected.abs().max(1.0);
+                assert!(
+                    error < 1e-14,
+                    "{expression} at {s}: {actual} for {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// A straight line turned about an angle that grows steadily: what is constant or linear by structure is seen.
+#[test]
+fn structure_makes_series_end() {
+    let source = "
+        P {
+            coordinates { x; y; phi: angle; }
+            lagrangian = dot(x)^2/2 + dot(phi)^2/2 + dot(y)^2/2;
+            forces { turning: cos(phi)*d(x); pull: t*d(y); }
+        }";
+    let jet = program(source).jet;
+    let degree = |input: Input| {
+        let op = dalembert_codegen::program::Op::Input(input);
+        let index = jet.function.ops.iter().position(|other| *other == op);
+        index.map(|index| jet.degrees[index])
+    };
+    assert_eq!(degree(Input::Coordinate(2)), Some(Degree::AtMost(1)));
+    assert_eq!(degree(Input::Momentum(2)), Some(Degree::AtMost(0)));
+    assert_eq!(degree(Input::Momentum(1)), Some(Degree::AtMost(2)));
+    assert_eq!(degree(Input::Momentum(0)), Some(Degree::Endless));
+    let constant = |i: usize| jet.recurrences[i] == Recurrence::Constant;
+    assert!(
+        (0..jet.recurrences.len()).all(|i| constant(i) == (jet.degrees[i] == Degree::AtMost(0)))
+    );
+}
+
+dalembert::model! {
+    /// `x = 1/cosh(t)` solves `x'' = x - 2 x^3`.
+    pub Soliton {
+        coordinates { x; }
+        lagrangian = dot(x)^2/2 + x^2/2 - x^4/2;
+    }
+}
+
+fn soliton_at(t: f64) -> [f64; 2] {
+    let x = 1.0 / t.cosh();
+    [x, -x * t.tanh()]
+}
+
+/// The error after `count` equal steps of a series of this order.
+fn error(order: usize, count: u32) -> f64 {
+    let h = 2.0 / f64::from(count);
+    let stepper = Taylor::new(Tolerance::new(1e3).expect("a tolerance"))
+        .with_order(order)
+        .with_max_step(h);
+    let run = Simulation::new(&Soliton::default(), stepper, ())
+        .run(-1.0, soliton_at(-1.0).into(), 1.0, &mut ())
+        .expect("a start");
+    assert_eq!(run.counters.accepted, u64::from(count));
+    let expected = soliton_at(1.0);
+    (0..2)
+        .map(|i| (run.state[i] - expected[i]).abs())
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn series_converge_at_their_order() {
+    for (order, count) in [(4, 40), (7, 20), (10, 12)] {
+        let observed = (error(order, count) / error(order, 2 * count)).log2();
+        let nominal = order as f64;
+        assert!(
+            (observed - nominal).abs() <= 0.1 * nominal,
+            "{observed} for {nominal}"
+        );
+    }
+}
+
+/// Orders by the formula of Jorba and Zou, and what a run counts.
+#[test]
+fn orders_and_work_are_as_stored() {
+    let expected = [
+        (1e-3, 5, 16),
+        (1e-6, 8, 14),
+        (1e-9, 12, 14),
+        (1e-12, 15, 14),
+        (1e-15, 19, 14),
+        (1e-18, 22, 14),
+    ];
+    for (tol, order, steps) in expected {
+        let stepper = Taylor::<Soliton>::new(Tolerance::new(tol).expect("a tolerance"));
+        assert_eq!(stepper.order(), order, "{tol:e}");
+        let run = Simulation::new(&Soliton::default(), stepper, ())
+            .run(0.0, soliton_at(0.0).into(), 5.0, &mut ())
+            .expect("a start");
+        let counters = run.counters;
+        let error = (run.state[0] - soliton_at(5.0)[0]).abs();
+        println!("tol {tol:e}: {counters:?}, error {error:.1e}");
+        assert!(error < 200.0 * tol.max(1e-16), "{tol:e}: {error:e}");
+        assert_eq!(
+            (
+                counters.expansions,
+                counters.coefficients,
+                counters.accepted
+            ),
+            (steps, steps * order as u64, steps),
+            "{tol:e}"
+        );
+        // One rate where each step ends, and one at the start.
+        assert_eq!(
+            (counters.rate_evaluations, counters.rejected),
+            (steps + 1, 0)
+        );
+        assert!(error < 200.0 * tol.max(1e-16), "{tol:e}: {error:e}");
+    }
+}
+
+dalembert::model! {
+    /// Two bodies that fall into each other, and friction whose sign changes where the motion turns.
+    pub Rough {
+        coordinates { r; x; }
+        parameters { mu >= 0 = 0.1; }
+        lagrangian = dot(r)^2/2 + dot(x)^2/2 + 1/r - x^2/2;
+        forces { dry: -mu*dot(x)/abs(dot(x))*d(x); }
+    }
+}
+
+/// The series ends where the force jumps, though its coefficients do not show it.
+#[test]
+fn steps_do_not_pass_over_jumps_of_the_force() {
+    let rough = Rough::default();
+    let state = rough
+        .state(0.0, &[100.0, 1.0].into(), &[0.0, 0.3].into())
+        .expect("a state");
+    let end = |tol: f64| {
+        let stepper = Taylor::new(Tolerance::new(tol).expect("a tolerance"));
+        let run = Simulation::new(&rough, stepper, ())
+            .run(0.0, state, 2.0, &mut ())
+            .expect("a start");
+        assert!(run.counters.rejected > 0);
+        (run.state[1], run.counters)
+    };
+    // On each side an oscillation about -mu or mu.
+    let mu: f64 = 0.1;
+    let radius = (1.1_f64 * 1.1 + 0.09).sqrt();
+    let turn = (0.3_f64 / 1.1).atan();
+    let expected = mu + (radius - 2.0 * mu) * (2.0 - turn).cos();
+    let (x, counters) = end(1e-12);
+    assert!((x - expected).abs() < 1e-9, "{x} for {expected}");
+    assert!(counters.accepted < 60, "{counters:?}");
+}
+
+#[test]
+fn collapse_and_blow_up_are_named_where_they_happen() {
+    let rough = Rough {
+        mu: 0.0,
+        ..Rough::default()
+    };
+    let state = rough
+        .state(0.0, &[1.0, 0.5].into(), &[0.0, 0.3].into())
+        .expect("a state");
+    let stepper = Taylor::new(Tolerance::new(1e-12).expect("a tolerance"));
+    let run = Simulation::new(&rough, stepper, ())
+        .run(0.0, state, 2.0, &mut ())
+        .expect("a start");
+    assert!(
+        matches!(
+            run.outcome,
+            dalembert::Outcome::StepUnderflow { .. } | dalembert::Outcome::NonFinite { .. }
+        ),
+        "{}",
+        run.outcome
+    );
+    assert!((run.t - 1.110_720_734_539_592).abs() <= 1e-8, "{}", run.t);
+    assert!(run.state.is_finite());
+}
+
+/// Units of time near the range of exponents do not matter.
+#[test]
+fn steps_do_not_depend_on_units_of_time() {
+    dalembert::model! {
+        Oscillator {
+            coordinates { x; }
+            parameters { k > 0 = 1; }
+            lagrangian = dot(x)^2/2 - k*x^2/2;
+        }
+    }
+    let steps = |power: i32| {
+        let frequency = 2_f64.powi(power);
+        let oscillator = Oscillator {
+            k: frequency * frequency,
+        };
+        let state = oscillator
+            .state(0.0, &[1.0].into(), &[frequency].into())
+            .expect("a state");
+        // The scale of a velocity is 1 in any units.
+        let tolerance = Tolerance::of(1e-12, 1e-300).expect("a tolerance");
+        let run = Simulation::new(&oscillator, Taylor::new(tolerance), ())
+            .run(0.0, state, 10.0 / frequency, &mut ())
+            .expect("a start");
+        assert!((run.state[0] - 10_f64.cos() - 10_f64.sin()).abs() < 1e-10);
+        run.counters.accepted
+    };
+    assert_eq!(steps(0), steps(400));
+    assert_eq!(steps(0), steps(-400));
+}
+
+/// Two runs agree to the bit, and with DOP853 as well as its errors allow.
+#[test]
+fn runs_repeat_and_agree_with_another_method() {
+    struct Repeated;
+    impl Visitor for Repeated {
+        fn visit<S: Described + Scene + TaylorField>(&mut self, system: S) {
+            let name = S::DESCRIPTION.name;
+            for state in states(&system, 2, 7) {
+                let tolerance = Tolerance::new(1e-14).expect("a tolerance");
+                let taylor = || {
+                    Simulation::new(&system, Taylor::new(tolerance), ())
+                        .run(0.0, state, 0.5, &mut ())
+                        .expect("a start")
+                };
+                let (run, again) = (taylor(), taylor());
+                assert_eq!((run.t, run.state), (again.t, again.state), "{name}");
+                let other = Simulation::new(&system, Dop853::new(tolerance), ())
+                    .run(0.0, state, 0.5, &mut ())
+                    .expect("a start");
+                assert_eq!(run.outcome, other.outcome, "{name}");
+                let size = run
+                    .state
+                    .as_slice()
+                    .iter()
+                    .fold(1.0_f64, |a, b| a.max(b.abs()));
+                for (a, b) in run.state.as_slice().iter().zip(other.state.as_slice()) {
+                    assert!((a - b).abs() < 1e-11 * size, "{name}: {a} and {b}");
+                }
+            }
+        }
+    }
+    visit_all(&mut Repeated);
+}
