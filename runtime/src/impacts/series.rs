@@ -1,7 +1,7 @@
 //! Gaps along a step that is a power series: polynomials themselves, whose signs are read from their coefficients.
 //!
 //! The Bernstein coefficients of a polynomial on the step bound it from both sides (convex hull); no sample is taken of
-//! a gap that they bound away from zero. Roots are found on the polynomial and confirmed on the gap of the dense
+//! a gap that is bounded away from zero. Roots are found on the polynomial and confirmed on the gap of the dense
 //! output ([`confirm`](crate::events::locate::confirm)).
 //!
 //! Reference: G. Farin, *Curves and Surfaces for CAGD* (2002), chapter 5.
@@ -22,6 +22,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 pub(super) struct GapSeries<G> {
     coefficients: [G; LENGTH],
     order: usize,
+    /// Sums of the absolute values of the terms above the fourth.
+    tails: G,
     /// How wrong each polynomial may be: what it misses at the end of the step, and rounding.
     doubts: G,
 }
@@ -38,6 +40,7 @@ impl<G: StateVector> GapSeries<G> {
             order,
             coefficients,
         } = step.stepper.series()?;
+        // NOTE: terms above the order stay zero.
         let mut gaps = [G::zeros(); LENGTH];
         let t = step.t_start();
         if !step
@@ -48,8 +51,11 @@ impl<G: StateVector> GapSeries<G> {
         }
         let theta = step.length() / unit;
         let mut power = 1.0;
-        let (mut sums, mut sizes) = (G::zeros(), G::zeros());
-        for gap in &mut gaps[..=order] {
+        let (mut sums, mut sizes, mut tails) = (G::zeros(), G::zeros(), G::zeros());
+        for (k, gap) in gaps[..=order].iter_mut().enumerate() {
+            if k == 5 {
+                tails = sizes;
+            }
             for i in 0..G::LEN {
                 let term = gap.as_slice()[i] * power;
                 gap.as_mut_slice()[i] = term;
@@ -67,10 +73,16 @@ impl<G: StateVector> GapSeries<G> {
                 return None;
             }
             doubts.as_mut_slice()[i] = 4.0 * missed + ROUNDING * size;
+            tails.as_mut_slice()[i] = if order < 5 {
+                0.0
+            } else {
+                size - tails.as_slice()[i]
+            };
         }
         Some(Self {
             coefficients: gaps,
             order,
+            tails,
             doubts,
         })
     }
@@ -83,31 +95,25 @@ impl<G: StateVector> GapSeries<G> {
     }
 
     /// Whether the gap of a surface keeps one sign over the step; apart from its start, where the surface is at hand
-    /// there. `false` means only that the coefficients do not show it.
-    #[inline]
+    /// there: the root is divided out. `false` means only that the coefficients do not show it.
+    ///
+    /// A step is a small part of the radius of convergence, so that a cubic is almost the whole gap: its Bernstein
+    /// coefficients must exceed the sum of all other terms.
+    #[inline(always)]
     pub(super) fn is_clear(&self, surface: usize, at_hand: bool) -> bool {
-        let mut row = [0.0; LENGTH];
         let first = usize::from(at_hand);
-        let degree = self.order - first;
-        // b_j = sum_(k <= j) binomial(j, k) / binomial(n, k) a_k: divide, then add up along the rows of Pascal.
-        let mut inverse = 1.0;
-        let terms = &self.coefficients[first..=self.order];
-        for (k, (entry, term)) in row.iter_mut().zip(terms).enumerate() {
-            *entry = term.as_slice()[surface] * inverse;
-            inverse *= (k + 1) as f64 / (degree - k).max(1) as f64;
-        }
-        let row = &mut row[..=degree];
-        for from in 1..=degree {
-            for j in (from..=degree).rev() {
-                row[j] += row[j - 1];
-            }
-        }
-        let (mut least, mut largest) = (row[0], row[0]);
-        for &value in &*row {
+        let at = |k: usize| self.coefficients[first + k].as_slice()[surface];
+        let [a, b, c, d] = [at(0), at(1), at(2), at(3)];
+        let hull = [a, a + b / 3.0, a + (2.0 * b + c) / 3.0, a + b + c + d];
+        let (mut least, mut largest) = (a, a);
+        for value in hull {
             least = least.min(value);
             largest = largest.max(value);
         }
-        let doubt = self.doubts.as_slice()[surface];
-        least > doubt || largest < -doubt
+        let mut rest = self.doubts.as_slice()[surface] + self.tails.as_slice()[surface];
+        if !at_hand {
+            rest += at(4).abs();
+        }
+        least > rest || largest < -rest
     }
 }

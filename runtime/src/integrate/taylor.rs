@@ -337,8 +337,8 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         let t = self.t[0];
         let least = least_step(t);
         let reach = self.expand(field, counters)?.min(LONGEST) * self.unit;
-        self.next_unit = power_of_two(reach);
         let mut h = reach.min(self.max_step).min(self.limit).max(least);
+        self.next_unit = power_of_two(h);
         loop {
             let arrival = landing(t, h, t_end);
             // NOTE: the step that is made is the difference of the two times, not the one asked for.
