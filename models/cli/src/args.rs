@@ -199,6 +199,14 @@ impl Integrator {
             Self::Dopri5 => DormandPrince5Scheme::NAME,
         }
     }
+
+    /// The order of the solution at the ends of steps.
+    pub const fn order(self) -> usize {
+        match self {
+            Self::Dop853 => Dop853Scheme::ORDER,
+            Self::Dopri5 => DormandPrince5Scheme::ORDER,
+        }
+    }
 }
 
 /// `on` or `off`.

@@ -85,22 +85,23 @@ impl<const S: usize> Impacting for Point<S> {
         Ok(Self::Gaps::from_fn(rate))
     }
 
-    /// The law whose impulse is `-gap_rate / constrained_compliance`, which [`Point::contact`] makes 1.
+    /// The law whose impulse is `-2 constrained_rate / constrained_compliance`, which the contact makes 1.
     fn law(&self, _surface: usize) -> Law {
-        Law::ImpactPlastic
+        Law::Elastic
     }
 
     fn contact(&self, surface: usize, _t: f64, state: &State) -> Result<Contact<Pair>, Fault> {
         let (gap, reset) = self.surfaces[surface];
         let (_, [hx, hy]) = gap([state[0], state[1]]);
-        let compliance = hx * hx + hy * hy;
+        let [vx, vy] = reset([state[2], state[3]]);
+        let gap_rate = hx * state[2] + hy * state[3];
+        let compliance = hx * vx + hy * vy - gap_rate;
         if compliance == 0.0 {
             return Err(Fault::SingularSurface { surface });
         }
-        let [vx, vy] = reset([state[2], state[3]]);
         Ok(Contact {
-            gap_rate: -compliance,
-            constrained_rate: -compliance,
+            gap_rate,
+            constrained_rate: -0.5 * compliance,
             surface_rate: 0.0,
             constrained_compliance: compliance,
             free_compliance: compliance,

@@ -190,11 +190,6 @@ fn dihedral(setting: Setting, report: &mut Report) {
                 let name = format!("pi/{n} at {at}");
                 report.class(&end.outcome, "done");
                 report.equal(format!("impacts, {name}"), end.hits.len(), n as usize);
-                report.equal(
-                    format!("simultaneous, {name}"),
-                    end.hits.iter().all(|hit| hit.simultaneous),
-                    true,
-                );
                 report.near(format!("vx, {name}"), end.qdot[0], out.cos(), 16.0 * U);
                 report.near(format!("vy, {name}"), end.qdot[1], out.sin(), 16.0 * U);
             }

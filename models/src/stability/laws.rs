@@ -143,10 +143,10 @@ fn laws_of<M: Scene + Impacting>(
     system: &M,
     name: &str,
     report: &mut Report,
-    admits: impl Fn(&M, &M::State) -> bool,
+    residual_of: impl Fn(&M, &M::State) -> f64,
 ) {
     let mut random = Random::new(7);
-    let (mut rate_error, mut energy_error, mut on_constraints) = (0.0_f64, 0.0_f64, true);
+    let (mut rate_error, mut energy_error, mut residual) = (0.0_f64, 0.0_f64, 0.0_f64);
     for _ in 0..64 {
         let mut draw = |low: f64, high: f64| {
             let values: Vec<f64> = (0..M::Vector::LEN)
@@ -162,27 +162,31 @@ fn laws_of<M: Scene + Impacting>(
             let g = contact.gap_rate;
             for (law, c) in factors(&contact) {
                 let mut after = state;
-                let kicked = system.kick(0.0, &mut after, contact.impulse(law), &contact.direction);
+                system
+                    .kick(0.0, &mut after, contact.impulse(law), &contact.direction)
+                    .expect("an impulse");
                 let rate = system.gap_rates(0.0, &after).expect("rates").as_slice()[surface];
                 let lost = -(c - 0.5 * c * c) * g * g / contact.constrained_compliance;
                 let found = system.energy(0.0, &after).expect("an energy") - energy;
                 rate_error = rate_error.max((rate - (1.0 - c) * g).abs() / g.abs());
                 energy_error =
                     energy_error.max((found - lost).abs() / energy.abs().max(lost.abs()));
-                on_constraints &= kicked.is_ok() && admits(system, &after);
+                residual = residual.max(residual_of(system, &after));
             }
         }
     }
     report.error(format!("gap rate, {name}"), rate_error, 1e-12);
     report.error(format!("energy, {name}"), energy_error, 1e-12);
-    report.equal(format!("p+ in D*, {name}"), on_constraints, true);
+    report.error(format!("residual, {name}"), residual, 1e-12);
 }
 
-/// Whether a state satisfies the constraints to `1e-13` of the sum of their terms.
-fn on_constraints<M: Constrained>(system: &M, state: &M::State) -> bool {
+/// The largest constraint residual as a share of the sum of its terms.
+fn residual<M: Constrained>(system: &M, state: &M::State) -> f64 {
     let (residuals, scales) = system.residuals(0.0, state).expect("residuals");
-    let mut pairs = residuals.as_slice().iter().zip(scales.as_slice());
-    pairs.all(|(residual, scale)| residual.abs() <= 1e-13 * scale)
+    let pairs = residuals.as_slice().iter().zip(scales.as_slice());
+    pairs
+        .map(|(residual, scale)| residual.abs() / scale)
+        .fold(0.0, f64::max)
 }
 
 fn every_law(report: &mut Report) {
@@ -194,20 +198,15 @@ fn every_law(report: &mut Report) {
         ta: 3.0,
         tb: 2.0,
     };
-    laws_of(&disk, "rolling disk", report, on_constraints);
-    laws_of(
-        &ChaplyginSleigh::default(),
-        "sleigh",
-        report,
-        on_constraints,
-    );
+    laws_of(&disk, "rolling disk", report, residual);
+    laws_of(&ChaplyginSleigh::default(), "sleigh", report, residual);
     laws_of(
         &RollingBallEuler::default(),
         "rolling ball",
         report,
-        on_constraints,
+        residual,
     );
-    laws_of(&PointBilliard::default(), "point", report, |_, _| true);
+    laws_of(&PointBilliard::default(), "point", report, |_, _| 0.0);
 }
 
 /// The disk at the wall with heading `phi`, rolling into it at rate 1 and turning at 1/4.

@@ -12,6 +12,9 @@ const AT_ONE_TIME: u32 = 100;
 /// Flights that must have shrunk in a row before their height is asked about.
 const SHRUNK: f64 = 3.0;
 
+/// One flight suffices that begins with less than this part of the rate of the one before.
+const STEEP: f64 = 0.125;
+
 /// Weight of the newest factor in the average.
 const MEMORY: f64 = 0.125;
 
@@ -66,10 +69,10 @@ impl<V: StateVector> Accumulation<V> {
         let flight = t - self.times.as_slice()[surface];
         let before = self.rates.as_slice()[surface];
         let shrunk = &mut self.shrunk.as_mut_slice()[surface];
-        *shrunk = if flight < self.flights.as_slice()[surface] {
-            *shrunk + 1.0
-        } else {
-            0.0
+        *shrunk = match flight < self.flights.as_slice()[surface] {
+            true if rate < STEEP * before => SHRUNK + 1.0,
+            true => *shrunk + 1.0,
+            false => 0.0,
         };
         let shrinking = *shrunk > SHRUNK && rate < before;
         self.times.as_mut_slice()[surface] = t;

@@ -31,7 +31,7 @@ pub(super) struct Watch<Sys: Impacting> {
     proposed: Option<f64>,
     /// Per surface, the part of the last step at which it is hit; meaningful while something is proposed.
     parts: Sys::Gaps,
-    /// 1 where that hit is a graze.
+    /// 1 where that hit is a graze, 2 where the surface is crossed there although the gap rate vanishes.
     grazes: Sys::Gaps,
     /// Length of the last step.
     length: f64,
@@ -114,6 +114,11 @@ impl<Sys: Impacting> Watch<Sys> {
     /// Whether the hit on this surface is a graze.
     pub(super) fn is_graze(&self, surface: usize) -> bool {
         self.grazes.as_slice()[surface] == 1.0
+    }
+
+    /// Whether this surface is crossed at gap rate 0.
+    pub(super) fn is_tangential_crossing(&self, surface: usize) -> bool {
+        self.grazes.as_slice()[surface] == 2.0
     }
 
     /// Looks for the earliest hit in a step.
@@ -252,16 +257,14 @@ impl<Sys: Impacting> Watch<Sys> {
             slope,
             until,
         };
-        let mut tangential = false;
+        let mut tangential = None;
         for _ in 0..FALLS {
             let (part, after) = match first_fall(surface, step, &self.sizes, samples, start) {
                 Search::Clear => {
-                    let sunk = tangential && glance.gaps.as_slice()[surface] < 0.0;
-                    return if sunk {
-                        Err(Outcome::TangentialCrossing { surface })
-                    } else {
-                        Ok(Found::Nothing)
-                    };
+                    let sunk = glance.gaps.as_slice()[surface] < 0.0;
+                    return Ok(tangential
+                        .filter(|_| sunk)
+                        .map_or(Found::Nothing, Found::Hit));
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
                 Search::Pole(after) => {
@@ -280,16 +283,18 @@ impl<Sys: Impacting> Watch<Sys> {
             if is_active(surface, step, part) {
                 if part == 0.0 && start.slope.is_some() {
                     let pressed = self.is_pressed(surface, step, glance);
-                    return if pressed {
-                        Err(Outcome::Contact { surface })
-                    } else {
-                        Ok(Found::Nothing)
+                    return match pressed {
+                        true if crosses_at_rest(surface, step, 0.0)? => {
+                            Err(Outcome::TangentialCrossing { surface })
+                        }
+                        true => Err(Outcome::Contact { surface }),
+                        false => Ok(Found::Nothing),
                     };
                 }
                 if is_approached(surface, step, part)? || is_approached(surface, step, after)? {
                     return Ok(Found::Hit(if part > 0.0 { part } else { after }));
                 }
-                tangential = true;
+                tangential = tangential.or(Some(after));
             }
             start = Start {
                 from: after,
@@ -320,13 +325,12 @@ impl<Sys: Impacting> Watch<Sys> {
         let rate = step.system.gap_rates(step.time(part), &state)?.as_slice()[surface];
         let mut graze = 0.0;
         if rate.abs() <= SLOW * ends[0].abs().max(ends[1].abs()) {
-            let start = part > 0.5;
-            let (other, part) = if start {
+            let (other, apart) = if part > 0.5 {
                 (ends[0], part)
             } else {
                 (ends[1], 1.0 - part)
             };
-            let bend = (other - rate).abs() / (part * self.length);
+            let bend = (other - rate).abs() / (apart * self.length);
             let mut evaluations = 0;
             if rate * rate
                 < 4.0 * bend * rounding_along(surface, step, &self.sizes, &mut evaluations)
@@ -334,6 +338,9 @@ impl<Sys: Impacting> Watch<Sys> {
                 graze = 1.0;
             }
             step.counters.event_evaluations += evaluations;
+        }
+        if graze == 1.0 && crosses_at_rest(surface, step, part)? {
+            graze = 2.0;
         }
         self.grazes.as_mut_slice()[surface] = graze;
         Ok(())
@@ -413,6 +420,23 @@ fn is_approached<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<bool, Outcome> {
     let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
     Ok(rates.as_slice()[surface] < 0.0)
+}
+
+/// Whether a gap that is 0 at this part of a step, at rate 0, goes on like the cube of time: told from the square, which
+/// is a graze or a contact, by what the rate changes in an eighth and in a quarter of the rest.
+fn crosses_at_rest<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    part: f64,
+) -> Result<bool, Outcome> {
+    let rate = |share: f64| {
+        let part = part + share * (1.0 - part);
+        let rates = step.system.gap_rates(step.time(part), &step.state(part));
+        rates.map(|rates| rates.as_slice()[surface])
+    };
+    let (first, eighth, quarter) = (rate(0.0)?, rate(0.125)?, rate(0.25)?);
+    // A quarter of the change for the cube, half of it for the square.
+    Ok(quarter < first && eighth - first > 0.375 * (quarter - first))
 }
 
 /// The first fall of a gap, with its time to the last bits.

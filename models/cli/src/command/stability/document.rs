@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use crate::json::{Document, number};
+use crate::json::{Document, number, vector};
 use crate::suite::{Finding, Report, Setting, Verdict};
 
 /// Writes the document.
@@ -45,10 +45,15 @@ fn setting_json((setting, report): &(Setting, Report)) -> Value {
             "passed": check.passes(),
         })
     });
+    let curves = report.curves.iter().map(|curve| {
+        let points: Vec<Value> = curve.points.iter().map(|point| vector(point)).collect();
+        json!({ "name": curve.name, "axes": curve.axes, "points": points })
+    });
     json!({
         "integrator": setting.integrator.name(),
         "max_step": setting.max_step,
         "dense": setting.dense,
         "checks": checks.collect::<Vec<_>>(),
+        "curves": curves.collect::<Vec<_>>(),
     })
 }
