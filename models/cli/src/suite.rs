@@ -11,6 +11,7 @@ use clap::ValueEnum;
 use dalembert::Outcome;
 
 use crate::args::Integrator;
+pub use crate::plot::logarithmic::exponent;
 
 /// A hard case.
 #[derive(Debug, Clone, Copy)]

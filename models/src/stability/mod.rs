@@ -11,11 +11,14 @@
 
 mod accumulation;
 mod by_hand;
+mod constrained;
 mod corners;
 pub mod course;
 mod crossing;
 mod laws;
 mod location;
+mod long;
+pub mod tables;
 mod zeno;
 
 use dalembert_cli::suite::Case;
@@ -29,6 +32,8 @@ pub fn all() -> Vec<Case> {
         accumulation::CASES,
         laws::CASES,
         corners::CASES,
+        constrained::CASES,
+        long::CASES,
     ];
     let mut cases = sections.concat();
     cases.sort_by_key(|case| case.id);

@@ -9,7 +9,6 @@ use super::override_table::Overrides;
 use super::watch::Watch;
 use crate::contract::Impacting;
 use crate::effects::{Effect, Moment, SceneEffects, StepView};
-use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::record::{Event, Observer};
@@ -87,6 +86,8 @@ impl<Sys: Impacting> Impacts<Sys> {
             let before = rates.as_slice()[surface];
             hits.set_still(surface, STILL * before.abs());
             rates = self.impact(surface, several, before, now, observer)?;
+            // What still approaches here does so within rounding.
+            hits.set_still(surface, -rates.as_slice()[surface]);
             several = several || hits.approached(&rates) > 0;
         }
         self.watch.leave(&hits, now, rates)
@@ -135,7 +136,12 @@ impl<Sys: Impacting> Impacts<Sys> {
             return Err(Outcome::Stopped);
         }
         let rate_after = rates.as_slice()[surface];
-        if rate_after < -STILL * rate.abs() {
+        // The sign of the rate after a slow impact may be made of rounding errors, which the impact has multiplied.
+        let watch = &self.watch;
+        let is_approaching = rate_after < -STILL * rate.abs();
+        if is_approaching
+            && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
+        {
             return Err(Outcome::StillPenetrating {
                 surface,
                 rho: contact.rho(),
@@ -144,8 +150,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         if now.counters.impacts >= self.budget {
             return Err(Outcome::ImpactBudget);
         }
-        let evaluations = &mut now.counters.event_evaluations;
-        let rounding = || resolution(system, surface, t, &after, &after, evaluations);
+        let rounding = || watch.rounding(surface, now);
         let bounce = if rate_after > STILL * rate.abs() {
             rate_after
         } else {

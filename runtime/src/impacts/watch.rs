@@ -33,6 +33,8 @@ pub(super) struct Watch<Sys: Impacting> {
     parts: Sys::Gaps,
     /// 1 where that hit is a graze, 2 where the surface is crossed there although the gap rate vanishes.
     grazes: Sys::Gaps,
+    /// How fast the gap rate changes about that hit.
+    bends: Sys::Gaps,
     /// Length of the last step.
     length: f64,
     /// Largest absolute values of the state's components since the last impact: their rounding errors stay with it.
@@ -48,6 +50,7 @@ impl<Sys: Impacting> Watch<Sys> {
             proposed: None,
             parts: zeros,
             grazes: zeros,
+            bends: zeros,
             length: 0.0,
             sizes: Sys::State::zeros(),
         }
@@ -57,13 +60,16 @@ impl<Sys: Impacting> Watch<Sys> {
     pub(super) fn begin(&mut self, now: &mut Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
         self.proposed = None;
         self.grazes = Sys::Gaps::zeros();
+        self.bends = Sys::Gaps::zeros();
+        self.sizes = *now.state;
         let rates = now.system.gap_rates(now.t, now.state)?;
         let gaps = measured(now)?;
         let mut hits = Hits::<Sys::Gaps>::none();
         for (surface, &gap) in gaps.as_slice().iter().enumerate() {
             if now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (rates.as_slice()[surface] * now.t).abs();
-                if gap.abs() <= 2.0 * rounding(now, surface) + drift {
+                let state = *now.state;
+                if gap.abs() <= 2.0 * rounding(now, surface, &state) + drift {
                     hits.at_hand.as_mut_slice()[surface] = 1.0;
                 }
             }
@@ -114,6 +120,22 @@ impl<Sys: Impacting> Watch<Sys> {
     /// Whether the hit on this surface is a graze.
     pub(super) fn is_graze(&self, surface: usize) -> bool {
         self.grazes.as_slice()[surface] == 1.0
+    }
+
+    /// Whether a gap rate at the last hit is so slow that the gap's rounding errors may have decided its sign.
+    pub(super) fn is_slow(
+        &self,
+        surface: usize,
+        rate: f64,
+        rounding: impl FnOnce() -> f64,
+    ) -> bool {
+        let bend = self.bends.as_slice()[surface];
+        bend > 0.0 && rate * rate < 4.0 * bend * rounding()
+    }
+
+    /// The size of a gap's rounding errors after the flight that ends now.
+    pub(super) fn rounding(&self, surface: usize, now: &mut Moment<'_, Sys>) -> f64 {
+        rounding(now, surface, &self.sizes)
     }
 
     /// Whether this surface is crossed at gap rate 0.
@@ -323,18 +345,17 @@ impl<Sys: Impacting> Watch<Sys> {
         ];
         let state = step.state(part);
         let rate = step.system.gap_rates(step.time(part), &state)?.as_slice()[surface];
+        let (other, apart) = if part > 0.5 {
+            (ends[0], part)
+        } else {
+            (ends[1], 1.0 - part)
+        };
+        self.bends.as_mut_slice()[surface] = (other - rate).abs() / (apart * self.length);
         let mut graze = 0.0;
         if rate.abs() <= SLOW * ends[0].abs().max(ends[1].abs()) {
-            let (other, apart) = if part > 0.5 {
-                (ends[0], part)
-            } else {
-                (ends[1], 1.0 - part)
-            };
-            let bend = (other - rate).abs() / (apart * self.length);
             let mut evaluations = 0;
-            if rate * rate
-                < 4.0 * bend * rounding_along(surface, step, &self.sizes, &mut evaluations)
-            {
+            let rounding = || rounding_along(surface, step, &self.sizes, &mut evaluations);
+            if self.is_slow(surface, rate, rounding) {
                 graze = 1.0;
             }
             step.counters.event_evaluations += evaluations;
@@ -352,7 +373,7 @@ impl<Sys: Impacting> Watch<Sys> {
             let gap = self.gaps.as_slice()[surface];
             if gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (self.rates.as_slice()[surface] * now.t).abs();
-                if gap < -2.0 * rounding(now, surface) - drift {
+                if gap < -2.0 * rounding(now, surface, &self.sizes) - drift {
                     return Err(Outcome::StartsInside { surface, gap });
                 }
                 self.gaps.as_mut_slice()[surface] = 0.0;
@@ -375,14 +396,14 @@ fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outc
     finite::<Sys>(now.system.gaps(now.t, now.state))
 }
 
-/// The size of a gap's rounding errors at a moment.
-fn rounding<Sys: Impacting>(now: &mut Moment<'_, Sys>, surface: usize) -> f64 {
+/// The size of a gap's rounding errors at a moment, from components that have had these sizes.
+fn rounding<Sys: Impacting>(now: &mut Moment<'_, Sys>, surface: usize, sizes: &Sys::State) -> f64 {
     resolution(
         now.system,
         surface,
         now.t,
         now.state,
-        now.state,
+        sizes,
         &mut now.counters.event_evaluations,
     )
 }
