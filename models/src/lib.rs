@@ -1,7 +1,7 @@
 //! The systems of the source papers as dalembert models: one file each, with its source, what is known of it in
 //! closed form, and a test of such a fact.
 //!
-//! The binary of this package is the `dalembert` command over all of them.
+//! The binary of this package is the `dalembert` command over all of them, with the hard cases of [`stability`].
 
 pub mod ball_on_rotating_table;
 pub mod bouncing_ball;
@@ -13,6 +13,7 @@ pub mod holonomic_bead_on_ellipses;
 pub mod point_billiard;
 pub mod rolling_ball_euler;
 pub mod rolling_disk;
+pub mod stability;
 pub mod two_wheels_rod;
 
 pub use ball_on_rotating_table::BallOnRotatingTable;
@@ -46,4 +47,9 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         RollingDisk,
         TwoWheelsRod,
     ]
+}
+
+/// What the `dalembert` command works on: every shipped model, and the hard cases.
+pub fn catalogue() -> dalembert_cli::Catalogue {
+    dalembert_cli::Catalogue::of(all()).with_suite(stability::all())
 }

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    dalembert_cli::run(dalembert_models::all())
+    dalembert_models::catalogue().run()
 }

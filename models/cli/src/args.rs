@@ -41,6 +41,9 @@ pub enum Command {
     /// Evaluate everything that is derived at given states.
     #[command(after_help = EVAL_EXAMPLES)]
     Eval(EvalArgs),
+    /// Run the hard cases, and say which keep their bounds.
+    #[command(after_help = STABILITY_EXAMPLES)]
+    Stability(StabilityArgs),
 }
 
 const LIST_EXAMPLES: &str = "Examples:
@@ -72,6 +75,14 @@ state at which something does not exist gives {\"error\": ..} and exit status 1.
 Examples:
   echo '[{\"q\": [1], \"qdot\": [-2]}]' | dalembert eval bouncing_ball
   dalembert eval rolling_disk --set m=2 --newton 0.5 --input states.json";
+
+const STABILITY_EXAMPLES: &str = "Each case has a right answer that is a closed form, an exact count or a class of outcome. Exit status: 0 every
+case passes or is pending, 1 some case fails.
+
+Examples:
+  dalembert stability
+  dalembert stability --section A --integrator dopri5
+  dalembert stability --case C11 --case C13 --html report.html";
 
 /// Text for people or JSON for programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -191,6 +202,15 @@ impl Integrator {
             Self::Taylor => TAYLOR,
         }
     }
+
+    /// The order of the solution at the ends of steps; `None` where it follows the tolerance.
+    pub const fn order(self) -> Option<usize> {
+        match self {
+            Self::Dop853 => Some(Dop853Scheme::ORDER),
+            Self::Dopri5 => Some(DormandPrince5Scheme::ORDER),
+            Self::Taylor => None,
+        }
+    }
 }
 
 /// What the state of a run consists of.
@@ -294,6 +314,29 @@ pub struct EvalArgs {
     /// Read the states from a file instead of the standard input; `-` is the standard input.
     #[arg(long, value_name = "FILE")]
     pub input: Option<PathBuf>,
+}
+
+/// `stability`
+#[derive(Debug, Args)]
+pub struct StabilityArgs {
+    /// Only this case; may be repeated.
+    #[arg(long, value_name = "ID")]
+    pub case: Vec<String>,
+    /// Only the cases of this section; may be repeated.
+    #[arg(long, value_name = "LETTER")]
+    pub section: Vec<String>,
+    /// The long cases too.
+    #[arg(long)]
+    pub nightly: bool,
+    /// Only by this integrator; otherwise each case is run by all.
+    #[arg(long, value_enum)]
+    pub integrator: Option<Integrator>,
+    /// Write the findings as one JSON document; `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write the findings as a page with plots, in one file.
+    #[arg(long, value_name = "FILE.html")]
+    pub html: Option<PathBuf>,
 }
 
 #[cfg(test)]

@@ -110,8 +110,10 @@ pub enum CliError {
     #[error("derive: {0}")]
     Derive(String),
     /// A picture that could not be drawn.
-    #[error("--plot {}: {reason}", path.display())]
+    #[error("{flag} {}: {reason}", path.display())]
     Plot {
+        /// The flag that asked for it.
+        flag: &'static str,
         /// Where it should have gone.
         path: PathBuf,
         /// What went wrong.

@@ -25,6 +25,7 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod catalogue;
 mod command;
 mod driver;
 mod entry;
@@ -36,7 +37,9 @@ mod plot;
 mod progress;
 mod record;
 mod scalar;
+mod sink;
 mod state_input;
+pub mod suite;
 mod table;
 
 use std::ffi::OsString;
@@ -45,7 +48,9 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+pub use args::Integrator;
 use args::{Command, CommandLine};
+pub use catalogue::Catalogue;
 pub use entry::{Entry, Model};
 use error::CliError;
 pub use exit::Exit;
@@ -65,13 +70,7 @@ pub struct Streams<'a> {
 /// Runs the command line of this process over a list of models, as made by [`models!`].
 #[must_use]
 pub fn run(models: Vec<Entry>) -> ExitCode {
-    let mut streams = Streams {
-        input: &mut io::stdin().lock(),
-        output: &mut io::stdout(),
-        errors: &mut io::stderr(),
-        terminal: io::stderr().is_terminal(),
-    };
-    run_with(std::env::args_os(), &models, &mut streams).into()
+    Catalogue::of(models).run()
 }
 
 /// Runs one command line, program name included, over a list of models, with streams of the caller's.
@@ -83,34 +82,58 @@ pub fn run_with<A>(
 where
     A: Into<OsString> + Clone,
 {
-    let line = match CommandLine::try_parse_from(args) {
-        Ok(line) => line,
-        Err(error) => return explain(&error, streams),
-    };
-    let done = dispatch(&line, models, streams)
-        .and_then(|exit| Ok(streams.output.flush().map(|()| exit)?));
-    done.unwrap_or_else(|error| match error {
-        // A reader that has seen enough, such as `head`, needs no message.
-        CliError::Stream(source) if source.kind() == io::ErrorKind::BrokenPipe => Exit::Other,
-        error => {
-            // Nothing is left to report to if the standard error fails.
-            let _ = writeln!(streams.errors, "error: {error}");
-            Exit::Refused
-        }
-    })
+    Catalogue::of(models.to_vec()).run_with(args, streams)
+}
+
+impl Catalogue {
+    /// Runs the command line of this process.
+    #[must_use]
+    pub fn run(&self) -> ExitCode {
+        let mut streams = Streams {
+            input: &mut io::stdin().lock(),
+            output: &mut io::stdout(),
+            errors: &mut io::stderr(),
+            terminal: io::stderr().is_terminal(),
+        };
+        self.run_with(std::env::args_os(), &mut streams).into()
+    }
+
+    /// Runs one command line, program name included, with streams of the caller's.
+    pub fn run_with<A>(&self, args: impl IntoIterator<Item = A>, streams: &mut Streams<'_>) -> Exit
+    where
+        A: Into<OsString> + Clone,
+    {
+        let line = match CommandLine::try_parse_from(args) {
+            Ok(line) => line,
+            Err(error) => return explain(&error, streams),
+        };
+        let done = dispatch(&line, self, streams)
+            .and_then(|exit| Ok(streams.output.flush().map(|()| exit)?));
+        done.unwrap_or_else(|error| match error {
+            // A reader that has seen enough, such as `head`, needs no message.
+            CliError::Stream(source) if source.kind() == io::ErrorKind::BrokenPipe => Exit::Other,
+            error => {
+                // Nothing is left to report to if the standard error fails.
+                let _ = writeln!(streams.errors, "error: {error}");
+                Exit::Refused
+            }
+        })
+    }
 }
 
 fn dispatch(
     line: &CommandLine,
-    models: &[Entry],
+    catalogue: &Catalogue,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
+    let models = catalogue.models();
     match &line.command {
         Command::List(args) => command::list::run(models, args, streams.output),
         Command::Derive(args) => command::derive::run(models, args, streams.output),
         Command::Check(args) => command::check::run(models, args, streams.output),
         Command::Simulate(args) => command::simulate::run(models, args, streams),
         Command::Eval(args) => command::eval::run(models, args, streams),
+        Command::Stability(args) => command::stability::run(catalogue.suite(), args, streams),
     }
 }
 

@@ -36,7 +36,7 @@ impl Progress {
         if !self.steps.is_multiple_of(STRIDE) || started.elapsed() < Duration::from_secs(1) {
             return;
         }
-        let bar = self.bar.get_or_insert_with(new_bar);
+        let bar = self.bar.get_or_insert_with(|| new_bar(PARTS));
         bar.set_position((t / self.end * PARTS as f64) as u64);
         bar.set_message(format!("t = {t:.6} of {}", self.end));
     }
@@ -49,8 +49,49 @@ impl Progress {
     }
 }
 
-fn new_bar() -> ProgressBar {
-    let bar = ProgressBar::new(PARTS);
+/// How many of a number of things are done; shown from the start, because one may take long.
+pub struct Steps {
+    bar: Option<ProgressBar>,
+}
+
+impl Steps {
+    /// Progress through `count` things; shown only if `terminal`.
+    pub fn new(count: usize, terminal: bool) -> Self {
+        Self {
+            bar: terminal.then(|| new_bar(count as u64)),
+        }
+    }
+
+    /// The next one begins.
+    pub fn begin(&mut self, what: &str) {
+        if let Some(bar) = &self.bar {
+            bar.set_message(what.to_owned());
+            bar.tick();
+        }
+    }
+
+    /// One is done, and says so on the same terminal.
+    pub fn aside<T>(&mut self, write: impl FnOnce() -> T) -> T {
+        match &self.bar {
+            Some(bar) => {
+                let written = bar.suspend(write);
+                bar.inc(1);
+                written
+            }
+            None => write(),
+        }
+    }
+
+    /// Removes the bar.
+    pub fn finish(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn new_bar(parts: u64) -> ProgressBar {
+    let bar = ProgressBar::new(parts);
     // The template is a constant; should indicatif refuse it, its default style does as well.
     if let Ok(style) = ProgressStyle::with_template("[{elapsed}] {bar:40} {percent}% {msg}") {
         bar.set_style(style);

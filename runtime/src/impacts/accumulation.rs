@@ -1,8 +1,8 @@
 //! Accumulation of impacts: when flights between them shrink to nothing.
 //!
 //! Two signs are taken. Impacts follow each other at one and the same number `t`; or the flights between impacts
-//! on one surface have shrunk several times in a row and the height they reach, about `gap rate * time / 4`, is
-//! below the rounding of the gap: what came after would be made of rounding errors.
+//! on one surface have shrunk several times in a row and the height that the next one will reach, about
+//! `gap rate * time / 4`, is below the rounding of the gap: it would be made of rounding errors.
 
 use crate::state::StateVector;
 
@@ -12,8 +12,8 @@ const AT_ONE_TIME: u32 = 100;
 /// Flights that must have shrunk in a row before their height is asked about.
 const SHRUNK: f64 = 3.0;
 
-/// Weight of the newest factor in the average.
-const MEMORY: f64 = 0.125;
+/// One flight suffices that begins with less than this part of the rate of the one before.
+const STEEP: f64 = 0.125;
 
 /// What is remembered of the impacts so far.
 #[derive(Debug, Clone, Copy)]
@@ -28,9 +28,11 @@ pub(super) struct Accumulation<V> {
     flights: V,
     rates: V,
     shrunk: V,
-    /// Per surface: the factor between the rates of successive flights, averaged over the last few because their
-    /// rounding errors grow as the flights shrink.
-    factors: V,
+    /// Per surface: where the flights end if they go on shrinking by the last factor of their rates, as the last impact
+    /// says; the best guess so far; and how far that one is from the guess before it.
+    guesses: V,
+    best: V,
+    spreads: V,
 }
 
 impl<V: StateVector> Accumulation<V> {
@@ -38,17 +40,21 @@ impl<V: StateVector> Accumulation<V> {
     pub(super) fn none() -> Self {
         let mut times = V::zeros();
         times.as_mut_slice().fill(f64::NEG_INFINITY);
-        let mut flights = V::zeros();
-        flights.as_mut_slice().fill(f64::INFINITY);
+        let mut infinite = V::zeros();
+        infinite.as_mut_slice().fill(f64::INFINITY);
+        let mut unknown = V::zeros();
+        unknown.as_mut_slice().fill(f64::NAN);
         let zeros = V::zeros();
         Self {
             last: f64::NEG_INFINITY,
             repeated: 0,
             times,
-            flights,
+            flights: infinite,
             rates: zeros,
             shrunk: zeros,
-            factors: zeros,
+            guesses: unknown,
+            best: unknown,
+            spreads: infinite,
         }
     }
 
@@ -66,26 +72,21 @@ impl<V: StateVector> Accumulation<V> {
         let flight = t - self.times.as_slice()[surface];
         let before = self.rates.as_slice()[surface];
         let shrunk = &mut self.shrunk.as_mut_slice()[surface];
-        *shrunk = if flight < self.flights.as_slice()[surface] {
-            *shrunk + 1.0
-        } else {
-            0.0
+        *shrunk = match flight < self.flights.as_slice()[surface] {
+            true if rate < STEEP * before => SHRUNK + 1.0,
+            true => *shrunk + 1.0,
+            false => 0.0,
         };
         let shrinking = *shrunk > SHRUNK && rate < before;
         self.times.as_mut_slice()[surface] = t;
         self.flights.as_mut_slice()[surface] = flight;
         self.rates.as_mut_slice()[surface] = rate;
-        let factor = &mut self.factors.as_mut_slice()[surface];
-        let weight = if *factor > 0.0 { MEMORY } else { 1.0 };
-        *factor += if before > 0.0 {
-            weight * (rate / before - *factor)
-        } else {
-            0.0
-        };
+        self.guess(surface, t, rate / before);
         if self.repeated >= AT_ONE_TIME {
             return Some(t);
         }
-        (shrinking && 0.25 * rate * flight <= rounding()).then(|| self.limit(surface, t))
+        let next = flight * (rate / before);
+        (shrinking && 0.25 * rate * next <= rounding()).then(|| self.limit(surface, t))
     }
 
     /// The time of accumulation if the motion, just bounced off a surface at `t`, did not rise from it: the hop is
@@ -95,17 +96,31 @@ impl<V: StateVector> Accumulation<V> {
         bounced.then(|| self.limit(surface, t))
     }
 
-    /// Where flights end that go on shrinking by the factor their rates do: a geometric series.
-    fn limit(&self, surface: usize, t: f64) -> f64 {
-        let (flight, factor) = (
-            self.flights.as_slice()[surface],
-            self.factors.as_slice()[surface],
-        );
-        let rest = flight * factor / (1.0 - factor);
-        if rest.is_finite() && rest > 0.0 {
+    /// Takes in that flights shrink by `factor`: a geometric series. Its sum is a bad guess as long as the factor still
+    /// changes, and again when the flights are made of rounding errors; in between successive guesses are closest.
+    fn guess(&mut self, surface: usize, t: f64, factor: f64) {
+        let is_shrinking = self.shrunk.as_slice()[surface] > 0.0 && factor > 0.0 && factor < 1.0;
+        let rest = self.flights.as_slice()[surface] * factor / (1.0 - factor);
+        let guess = if is_shrinking && rest.is_finite() {
             t + rest
         } else {
-            t
+            f64::NAN
+        };
+        let spread = (guess - self.guesses.as_slice()[surface]).abs();
+        self.guesses.as_mut_slice()[surface] = guess;
+        if guess.is_nan() {
+            self.spreads.as_mut_slice()[surface] = f64::INFINITY;
+            self.best.as_mut_slice()[surface] = f64::NAN;
+        } else if spread < self.spreads.as_slice()[surface]
+            || self.best.as_slice()[surface].is_nan()
+        {
+            self.spreads.as_mut_slice()[surface] = spread;
+            self.best.as_mut_slice()[surface] = guess;
         }
+    }
+
+    /// Where the flights end, not before the last impact at `t`.
+    fn limit(&self, surface: usize, t: f64) -> f64 {
+        self.best.as_slice()[surface].max(t)
     }
 }

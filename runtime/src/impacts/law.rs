@@ -62,16 +62,20 @@ impl<V: StateVector> Contact<V> {
 
     /// The impulse's size `eps`: `p+ = p + eps pi_D^* dh`.
     pub fn impulse(&self, law: Law) -> f64 {
+        -self.rate_taken(law) / self.constrained_compliance
+    }
+
+    /// What a law takes from the gap rate.
+    pub fn rate_taken(&self, law: Law) -> f64 {
         let elastic = self.constrained_rate + self.surface_rate;
-        let rate = match law {
+        match law {
             Law::Elastic => 2.0 * elastic,
             Law::Restitution(e) => (1.0 + e) * elastic,
             Law::Newton(e) => (1.0 + e) * self.gap_rate,
             Law::NonholonomicPlastic => 2.0 * self.rho() * self.gap_rate,
             Law::ImpactPlastic => self.gap_rate,
             Law::TotallyPlastic => self.rho() * self.gap_rate,
-        };
-        -rate / self.constrained_compliance
+        }
     }
 
     /// The gap rate after an impulse of size `eps`.

@@ -32,8 +32,10 @@ pub(super) struct Watch<Sys: Impacting> {
     proposed: Option<f64>,
     /// Per surface, the part of the last step at which it is hit; meaningful while something is proposed.
     parts: Sys::Gaps,
-    /// 1 where that hit is a graze.
+    /// 1 where that hit is a graze, 2 where the surface is crossed there although the gap rate vanishes.
     grazes: Sys::Gaps,
+    /// How fast the gap rate changes about that hit.
+    bends: Sys::Gaps,
     /// Length of the last step.
     length: f64,
     /// Largest absolute values of the state's components since the last impact: their rounding errors stay with it.
@@ -49,6 +51,7 @@ impl<Sys: Impacting> Watch<Sys> {
             proposed: None,
             parts: zeros,
             grazes: zeros,
+            bends: zeros,
             length: 0.0,
             sizes: Sys::State::zeros(),
         }
@@ -58,13 +61,16 @@ impl<Sys: Impacting> Watch<Sys> {
     pub(super) fn begin(&mut self, now: &mut Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
         self.proposed = None;
         self.grazes = Sys::Gaps::zeros();
+        self.bends = Sys::Gaps::zeros();
+        self.sizes = *now.state;
         let rates = now.system.gap_rates(now.t, now.state)?;
         let gaps = measured(now)?;
         let mut hits = Hits::<Sys::Gaps>::none();
         for (surface, &gap) in gaps.as_slice().iter().enumerate() {
             if now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (rates.as_slice()[surface] * now.t).abs();
-                if gap.abs() <= 2.0 * rounding(now, surface) + drift {
+                let state = *now.state;
+                if gap.abs() <= 2.0 * rounding(now, surface, &state) + drift {
                     hits.at_hand.as_mut_slice()[surface] = 1.0;
                 }
             }
@@ -115,6 +121,27 @@ impl<Sys: Impacting> Watch<Sys> {
     /// Whether the hit on this surface is a graze.
     pub(super) fn is_graze(&self, surface: usize) -> bool {
         self.grazes.as_slice()[surface] == 1.0
+    }
+
+    /// Whether a gap rate at the last hit is so slow that the gap's rounding errors may have decided its sign.
+    pub(super) fn is_slow(
+        &self,
+        surface: usize,
+        rate: f64,
+        rounding: impl FnOnce() -> f64,
+    ) -> bool {
+        let bend = self.bends.as_slice()[surface];
+        bend > 0.0 && rate * rate < 4.0 * bend * rounding()
+    }
+
+    /// The size of a gap's rounding errors after the flight that ends now.
+    pub(super) fn rounding(&self, surface: usize, now: &mut Moment<'_, Sys>) -> f64 {
+        rounding(now, surface, &self.sizes)
+    }
+
+    /// Whether this surface is crossed at gap rate 0.
+    pub(super) fn is_tangential_crossing(&self, surface: usize) -> bool {
+        self.grazes.as_slice()[surface] == 2.0
     }
 
     /// Looks for the earliest hit in a step.
@@ -261,17 +288,15 @@ impl<Sys: Impacting> Watch<Sys> {
             slope,
             until,
         };
-        let mut tangential = false;
+        let mut tangential = None;
         for _ in 0..FALLS {
             let found = first_fall(surface, step, &self.sizes, samples, start, &glance.series);
             let (part, after) = match found {
                 Search::Clear => {
-                    let sunk = tangential && glance.gaps.as_slice()[surface] < 0.0;
-                    return if sunk {
-                        Err(Outcome::TangentialCrossing { surface })
-                    } else {
-                        Ok(Found::Nothing)
-                    };
+                    let sunk = glance.gaps.as_slice()[surface] < 0.0;
+                    return Ok(tangential
+                        .filter(|_| sunk)
+                        .map_or(Found::Nothing, Found::Hit));
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
                 Search::Pole(after) => {
@@ -291,16 +316,18 @@ impl<Sys: Impacting> Watch<Sys> {
             if is_active(surface, step, part) {
                 if part == 0.0 && start.slope.is_some() {
                     let pressed = self.is_pressed(surface, step, glance);
-                    return if pressed {
-                        Err(Outcome::Contact { surface })
-                    } else {
-                        Ok(Found::Nothing)
+                    return match pressed {
+                        true if crosses_at_rest(surface, step, 0.0)? => {
+                            Err(Outcome::TangentialCrossing { surface })
+                        }
+                        true => Err(Outcome::Contact { surface }),
+                        false => Ok(Found::Nothing),
                     };
                 }
                 if is_approached(surface, step, part)? || is_approached(surface, step, after)? {
                     return Ok(Found::Hit(if part > 0.0 { part } else { after }));
                 }
-                tangential = true;
+                tangential = tangential.or(Some(after));
             }
             start = Start {
                 from: after,
@@ -347,22 +374,23 @@ impl<Sys: Impacting> Watch<Sys> {
         ];
         let state = step.state(part);
         let rate = step.system.gap_rates(step.time(part), &state)?.as_slice()[surface];
+        let (other, apart) = if part > 0.5 {
+            (ends[0], part)
+        } else {
+            (ends[1], 1.0 - part)
+        };
+        self.bends.as_mut_slice()[surface] = (other - rate).abs() / (apart * self.length);
         let mut graze = 0.0;
         if rate.abs() <= SLOW * ends[0].abs().max(ends[1].abs()) {
-            let start = part > 0.5;
-            let (other, part) = if start {
-                (ends[0], part)
-            } else {
-                (ends[1], 1.0 - part)
-            };
-            let bend = (other - rate).abs() / (part * self.length);
             let mut evaluations = 0;
-            if rate * rate
-                < 4.0 * bend * rounding_along(surface, step, &self.sizes, &mut evaluations)
-            {
+            let rounding = || rounding_along(surface, step, &self.sizes, &mut evaluations);
+            if self.is_slow(surface, rate, rounding) {
                 graze = 1.0;
             }
             step.counters.event_evaluations += evaluations;
+        }
+        if graze == 1.0 && crosses_at_rest(surface, step, part)? {
+            graze = 2.0;
         }
         self.grazes.as_mut_slice()[surface] = graze;
         Ok(())
@@ -374,7 +402,7 @@ impl<Sys: Impacting> Watch<Sys> {
             let gap = self.gaps.as_slice()[surface];
             if gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (self.rates.as_slice()[surface] * now.t).abs();
-                if gap < -2.0 * rounding(now, surface) - drift {
+                if gap < -2.0 * rounding(now, surface, &self.sizes) - drift {
                     return Err(Outcome::StartsInside { surface, gap });
                 }
                 self.gaps.as_mut_slice()[surface] = 0.0;
@@ -397,14 +425,14 @@ fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outc
     finite::<Sys>(now.system.gaps(now.t, now.state))
 }
 
-/// The size of a gap's rounding errors at a moment.
-fn rounding<Sys: Impacting>(now: &mut Moment<'_, Sys>, surface: usize) -> f64 {
+/// The size of a gap's rounding errors at a moment, from components that have had these sizes.
+fn rounding<Sys: Impacting>(now: &mut Moment<'_, Sys>, surface: usize, sizes: &Sys::State) -> f64 {
     resolution(
         now.system,
         surface,
         now.t,
         now.state,
-        now.state,
+        sizes,
         &mut now.counters.event_evaluations,
     )
 }
@@ -442,6 +470,23 @@ fn is_approached<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<bool, Outcome> {
     let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
     Ok(rates.as_slice()[surface] < 0.0)
+}
+
+/// Whether a gap that is 0 at this part of a step, at rate 0, goes on like the cube of time: told from the square, which
+/// is a graze or a contact, by what the rate changes in an eighth and in a quarter of the rest.
+fn crosses_at_rest<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    part: f64,
+) -> Result<bool, Outcome> {
+    let rate = |share: f64| {
+        let part = part + share * (1.0 - part);
+        let rates = step.system.gap_rates(step.time(part), &step.state(part));
+        rates.map(|rates| rates.as_slice()[surface])
+    };
+    let (first, eighth, quarter) = (rate(0.0)?, rate(0.125)?, rate(0.25)?);
+    // A quarter of the change for the cube, half of it for the square.
+    Ok(quarter < first && eighth - first > 0.375 * (quarter - first))
 }
 
 /// The first fall of a gap, with its time to the last bits. On a series it is looked for on the polynomial; what is

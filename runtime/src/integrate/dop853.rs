@@ -7,7 +7,7 @@ use super::controller::Control;
 use super::dense::Polynomial;
 use super::dop853_tableau::*;
 use super::embedded::{Counted, Embedded, Scheme, Span};
-use super::tableau::{combine, larger, sum};
+use super::tableau::{combine, larger, sum, weigh};
 use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::math;
@@ -102,10 +102,13 @@ impl Scheme for Dop853Scheme {
         stage! { 13 A13 14 A14 15 A15 }
         dense.set_cubic(h, [start, end], [&stages[0], &stages[Self::LAST]]);
         for i in 0..F::State::LEN {
-            dense.coefficients[3].as_mut_slice()[i] = h * sum(stages, &D3, i);
-            dense.coefficients[4].as_mut_slice()[i] = h * sum(stages, &D4, i);
-            dense.coefficients[5].as_mut_slice()[i] = h * sum(stages, &D5, i);
-            dense.coefficients[6].as_mut_slice()[i] = h * sum(stages, &D6, i);
+            let mut beside = [0.0; STAGES];
+            for &(j, _) in &D3 {
+                beside[j] = dense.beside_cubic(h, NODES[j], &stages[j], i);
+            }
+            for (k, row) in [D3, D4, D5, D6].iter().enumerate() {
+                dense.coefficients[3 + k].as_mut_slice()[i] = weigh(&beside, row);
+            }
         }
         Ok(())
     }

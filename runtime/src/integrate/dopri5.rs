@@ -6,7 +6,7 @@
 use super::controller::Control;
 use super::dense::Polynomial;
 use super::embedded::{Counted, Embedded, Scheme, Span};
-use super::tableau::{Term, combine, larger, sum};
+use super::tableau::{Term, combine, larger, sum, weigh};
 use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::state::StateVector;
@@ -133,7 +133,11 @@ impl Scheme for DormandPrince5Scheme {
         let Span { h, start, end, .. } = span;
         dense.set_cubic(h, [start, end], [&stages[0], &stages[Self::LAST]]);
         for i in 0..F::State::LEN {
-            dense.coefficients[3].as_mut_slice()[i] = h * sum(stages, &D, i);
+            let mut beside = [0.0; STAGES];
+            for &(j, _) in &D {
+                beside[j] = dense.beside_cubic(h, NODES[j], &stages[j], i);
+            }
+            dense.coefficients[3].as_mut_slice()[i] = weigh(&beside, &D);
         }
         Ok(())
     }

@@ -15,6 +15,16 @@ pub(super) fn sum<S: StateVector>(stages: &[S], terms: &[Term], i: usize) -> f64
     sum
 }
 
+/// `sum over terms of coefficient * value`
+#[inline(always)]
+pub(super) fn weigh(values: &[f64], terms: &[Term]) -> f64 {
+    let mut sum = 0.0;
+    for &(stage, coefficient) in terms {
+        sum += coefficient * values[stage];
+    }
+    sum
+}
+
 /// `out = base + h * sum over terms of coefficient * stage`.
 #[inline(always)]
 pub(super) fn combine<S: StateVector>(base: &S, h: f64, stages: &[S], terms: &[Term], out: &mut S) {

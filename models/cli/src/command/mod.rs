@@ -5,3 +5,4 @@ pub mod derive;
 pub mod eval;
 pub mod list;
 pub mod simulate;
+pub mod stability;

@@ -4,10 +4,6 @@ mod document;
 mod request;
 mod summary;
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
-
 use crate::args::SimulateArgs;
 use crate::driver::{Ending, Settings};
 use crate::entry::{AnyModel, Entry, Origin};
@@ -16,6 +12,7 @@ use crate::exit::Exit;
 use crate::plot::{self, Picture, trace::Trace};
 use crate::progress::Progress;
 use crate::record::{Grid, Recorder, Wanted};
+use crate::sink::Sink;
 use crate::state_input::{build_model, initial_state};
 use crate::{Streams, table};
 
@@ -76,6 +73,7 @@ pub fn run(
     }
     if let Some(sink) = plot {
         let svg = picture(&finished).map_err(|reason| CliError::Plot {
+            flag: "--plot",
             path: sink.path(),
             reason,
         })?;
@@ -152,53 +150,4 @@ fn picture(finished: &Finished<'_>) -> Result<String, String> {
         first: &finished.ending.first,
         last: (finished.ending.t, &finished.ending.last),
     })
-}
-
-/// Where a file goes.
-enum Sink {
-    Stdout,
-    File {
-        flag: &'static str,
-        path: PathBuf,
-        file: File,
-    },
-}
-
-impl Sink {
-    fn open(flag: &'static str, path: &Path) -> Result<Self, CliError> {
-        if request::is_stdout(path) {
-            return Ok(Self::Stdout);
-        }
-        let path = path.to_owned();
-        match File::create(&path) {
-            Ok(file) => Ok(Self::File { flag, path, file }),
-            Err(source) => Err(CliError::File { flag, path, source }),
-        }
-    }
-
-    fn path(&self) -> PathBuf {
-        match self {
-            Self::Stdout => PathBuf::from("-"),
-            Self::File { path, .. } => path.clone(),
-        }
-    }
-
-    fn write(
-        self,
-        streams: &mut Streams<'_>,
-        content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
-    ) -> Result<(), CliError> {
-        match self {
-            Self::Stdout => {
-                let mut buffer = BufWriter::new(&mut *streams.output);
-                content(&mut buffer)?;
-                Ok(buffer.flush()?)
-            }
-            Self::File { flag, path, file } => {
-                let mut buffer = BufWriter::new(file);
-                let written = content(&mut buffer).and_then(|()| buffer.flush());
-                written.map_err(|source| CliError::File { flag, path, source })
-            }
-        }
-    }
 }

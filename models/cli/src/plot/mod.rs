@@ -4,6 +4,7 @@ mod canvas;
 pub mod contour;
 mod history;
 mod legend;
+pub mod logarithmic;
 mod portrait;
 mod region;
 mod style;

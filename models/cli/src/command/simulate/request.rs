@@ -1,7 +1,5 @@
 //! From flags to the settings of a run.
 
-use std::path::Path;
-
 use dalembert::describe::Description;
 use dalembert::impacts::law::Law;
 
@@ -9,6 +7,7 @@ use crate::args::{Form, OffConstraint, SimulateArgs, Switch};
 use crate::driver::Settings;
 use crate::entry::AnyModel;
 use crate::error::CliError;
+use crate::sink::is_stdout;
 use crate::{names, scalar};
 
 /// The time a run with `--impacts` alone may take, unless the model's own `until` is longer.
@@ -44,11 +43,6 @@ pub fn uses_stdout(args: &SimulateArgs) -> bool {
         .into_iter()
         .flatten()
         .any(|path| is_stdout(path))
-}
-
-/// Whether the path means the standard output.
-pub fn is_stdout(path: &Path) -> bool {
-    path.as_os_str() == "-"
 }
 
 /// How the run is to be made.

@@ -1,0 +1,173 @@
+//! `stability`: the hard cases of the catalogue, each with what is right, what was measured and a verdict.
+
+mod document;
+mod page;
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::Streams;
+use crate::args::{Integrator, StabilityArgs};
+use crate::error::{CliError, counted};
+use crate::exit::Exit;
+use crate::names;
+use crate::progress::Steps;
+use crate::sink::{Sink, is_stdout};
+use crate::suite::{self, Case, Finding, Verdict};
+
+/// Carries out `stability`.
+///
+/// # Errors
+/// Names that do not exist, a catalogue without cases, a file that cannot be written. Cases that fail are not an error
+/// but an [`Exit`].
+pub fn run(
+    suite: &[Case],
+    args: &StabilityArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    let cases = selected(suite, args)?;
+    let open = |flag, path: &Option<_>| {
+        path.as_deref()
+            .map(|path| Sink::open(flag, path))
+            .transpose()
+    };
+    check_outputs(args)?;
+    let (json, html) = (open("--json", &args.json)?, open("--html", &args.html)?);
+    let quiet = args.json.as_deref().is_some_and(is_stdout);
+
+    let one = args.integrator.map(|integrator| [integrator]);
+    let integrators: &[Integrator] = match &one {
+        Some(one) => one,
+        None => suite::every_integrator(),
+    };
+    let mut progress = Steps::new(cases.len(), streams.terminal);
+    let mut findings = Vec::with_capacity(cases.len());
+    for case in cases {
+        progress.begin(&format!("{} {}", case.id, case.title));
+        let finding = suite::examine(case, integrators);
+        if !quiet {
+            progress.aside(|| write_finding(streams.output, &finding))?;
+        }
+        findings.push(finding);
+    }
+    progress.finish();
+    if !quiet {
+        write_totals(streams.output, &findings)?;
+    }
+    if let Some(sink) = json {
+        sink.write(streams, |output| document::write(output, &findings))?;
+    }
+    if let Some(sink) = html {
+        let page = page::page(&findings).map_err(|reason| CliError::Plot {
+            flag: "--html",
+            path: sink.path(),
+            reason,
+        })?;
+        sink.write(streams, |output| output.write_all(page.as_bytes()))?;
+    }
+    let fails = findings
+        .iter()
+        .any(|finding| finding.verdict == Verdict::Fail);
+    Ok(if fails { Exit::Other } else { Exit::Reached })
+}
+
+/// The cases asked for, in the order of the suite.
+fn selected<'a>(suite: &'a [Case], args: &StabilityArgs) -> Result<Vec<&'a Case>, CliError> {
+    if suite.is_empty() {
+        return Err(CliError::Usage(
+            "stability: this command line has no cases; hand them to it with \
+             `Catalogue::of(models![..]).with_suite(cases).run()`",
+        ));
+    }
+    let mut sections: Vec<&str> = suite.iter().map(Case::section).collect();
+    sections.dedup();
+    for id in &args.case {
+        names::find("--case", "case", id, suite.iter().map(|case| case.id))?;
+    }
+    for letter in &args.section {
+        names::find("--section", "section", letter, sections.iter().copied())?;
+    }
+    let everything = args.case.is_empty() && args.section.is_empty();
+    let is_asked_for = |case: &&Case| {
+        let by_id = args.case.iter().any(|id| id == case.id);
+        let by_section = everything || args.section.iter().any(|letter| letter == case.section());
+        by_id || (by_section && (args.nightly || !case.nightly))
+    };
+    Ok(suite.iter().filter(is_asked_for).collect())
+}
+
+fn check_outputs(args: &StabilityArgs) -> Result<(), CliError> {
+    let is_page = |path: &Path| {
+        path.extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("html"))
+    };
+    match &args.html {
+        Some(path) if !is_page(path) => Err(CliError::value(
+            "--html",
+            path.display().to_string(),
+            "a file name that ends in .html",
+        )),
+        _ => Ok(()),
+    }
+}
+
+fn write_finding(output: &mut dyn Write, finding: &Finding) -> std::io::Result<()> {
+    let Case {
+        id,
+        title,
+        right,
+        bound,
+        ..
+    } = finding.case;
+    let verdict = finding.verdict.name();
+    writeln!(output, "{id:5} {verdict:8} {title}")?;
+    writeln!(output, "{:14} right    {right}", "")?;
+    writeln!(output, "{:14} bound    {bound}", "")?;
+    let seconds = finding.elapsed.as_secs_f64();
+    match finding.verdict {
+        Verdict::Pending => writeln!(output, "{:14} pending  {}", "", finding.measured),
+        _ => writeln!(
+            output,
+            "{:14} measured {}{}, {seconds:.2} s",
+            "",
+            finding.measured,
+            setting_words(finding)
+        ),
+    }
+}
+
+/// ` (dop853, steps of 0.25)`, where the setting matters.
+fn setting_words(finding: &Finding) -> String {
+    match (finding.case.run, finding.setting) {
+        (suite::Run::Once(_), _) | (_, None) => String::new(),
+        (_, Some(setting)) => format!(" ({})", setting.words()),
+    }
+}
+
+fn write_totals(output: &mut dyn Write, findings: &[Finding]) -> std::io::Result<()> {
+    let count = |verdict| {
+        findings
+            .iter()
+            .filter(|finding| finding.verdict == verdict)
+            .count()
+    };
+    let seconds: f64 = findings
+        .iter()
+        .map(|finding| finding.elapsed.as_secs_f64())
+        .sum();
+    writeln!(
+        output,
+        "{}: {} pass, {} fail, {} pending, {seconds:.1} s",
+        counted(findings.len(), "case"),
+        count(Verdict::Pass),
+        count(Verdict::Fail),
+        count(Verdict::Pending),
+    )?;
+    for finding in findings
+        .iter()
+        .filter(|finding| finding.verdict == Verdict::Fail)
+    {
+        writeln!(output, "failed: {} {}", finding.case.id, finding.measured)?;
+    }
+    Ok(())
+}

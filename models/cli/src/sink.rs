@@ -1,0 +1,76 @@
+//! Files that commands write, or the standard output in their place.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use crate::Streams;
+use crate::error::CliError;
+
+/// Whether the path means the standard output.
+pub fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Where a file goes.
+pub enum Sink {
+    /// To the standard output.
+    Stdout,
+    /// To a file.
+    File {
+        /// The flag that named it.
+        flag: &'static str,
+        /// Its path.
+        path: PathBuf,
+        /// The file, open.
+        file: File,
+    },
+}
+
+impl Sink {
+    /// Opens it, before anything is computed: a path that cannot be written is better known at once.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn open(flag: &'static str, path: &Path) -> Result<Self, CliError> {
+        if is_stdout(path) {
+            return Ok(Self::Stdout);
+        }
+        let path = path.to_owned();
+        match File::create(&path) {
+            Ok(file) => Ok(Self::File { flag, path, file }),
+            Err(source) => Err(CliError::File { flag, path, source }),
+        }
+    }
+
+    /// Its path.
+    pub fn path(&self) -> PathBuf {
+        match self {
+            Self::Stdout => PathBuf::from("-"),
+            Self::File { path, .. } => path.clone(),
+        }
+    }
+
+    /// Writes it.
+    ///
+    /// # Errors
+    /// Whatever the file or stream says.
+    pub fn write(
+        self,
+        streams: &mut Streams<'_>,
+        content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+    ) -> Result<(), CliError> {
+        match self {
+            Self::Stdout => {
+                let mut buffer = BufWriter::new(&mut *streams.output);
+                content(&mut buffer)?;
+                Ok(buffer.flush()?)
+            }
+            Self::File { flag, path, file } => {
+                let mut buffer = BufWriter::new(file);
+                let written = content(&mut buffer).and_then(|()| buffer.flush());
+                written.map_err(|source| CliError::File { flag, path, source })
+            }
+        }
+    }
+}

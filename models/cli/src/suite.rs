@@ -1,0 +1,413 @@
+//! Suites of hard cases, as `dalembert stability` runs them: each has a right answer that is a closed form, an exact
+//! count or a class of outcome, and a bound that its measured error must keep.
+//!
+//! A suite is a list of [`Case`]s, handed to [`Catalogue::with_suite`](crate::Catalogue::with_suite). A case measures
+//! by filling a [`Report`]; [`examine`] runs it under every [`Setting`] that its [`Run`] asks for.
+
+use std::fmt::Debug;
+use std::time::{Duration, Instant};
+
+use clap::ValueEnum;
+use dalembert::Outcome;
+
+use crate::args::Integrator;
+pub use crate::plot::logarithmic::exponent;
+
+/// A hard case.
+#[derive(Debug, Clone, Copy)]
+pub struct Case {
+    /// Its number: the letter of a section and two digits, with a suffix for a longer version.
+    pub id: &'static str,
+    /// What it is, in a line.
+    pub title: &'static str,
+    /// What is right.
+    pub right: &'static str,
+    /// What passes.
+    pub bound: &'static str,
+    /// Whether it takes so long that it only runs on request.
+    pub nightly: bool,
+    /// Why it cannot hold yet. Such a case that holds all the same is reported as a failure, so that the reason is
+    /// taken out.
+    pub pending: Option<&'static str>,
+    /// How it is measured.
+    pub run: Run,
+}
+
+impl Case {
+    /// A quick case without contents, to take the rest of one from.
+    pub const QUICK: Self = Self {
+        id: "",
+        title: "",
+        right: "",
+        bound: "",
+        nightly: false,
+        pending: None,
+        run: Run::Absent,
+    };
+
+    /// A long case without contents.
+    pub const NIGHTLY: Self = Self {
+        nightly: true,
+        ..Self::QUICK
+    };
+
+    /// The section it belongs to: the letter of its number.
+    pub fn section(&self) -> &'static str {
+        self.id.get(..1).unwrap_or_default()
+    }
+}
+
+/// How a case is measured.
+#[derive(Debug, Clone, Copy)]
+pub enum Run {
+    /// Not at all: [`Case::pending`] says why.
+    Absent,
+    /// Once; nothing is integrated, or the case chooses its integrators itself.
+    Once(fn(&mut Report)),
+    /// By every integrator, with steps as long as it likes.
+    Integrators(fn(Setting, &mut Report)),
+    /// By every integrator with steps of any length, of at most [`FORCED_STEPS`], and with its dense output read in
+    /// every step. The class of the outcome must not change.
+    Steps(fn(Setting, &mut Report)),
+}
+
+/// Longest steps that [`Run::Steps`] forces.
+pub const FORCED_STEPS: [f64; 2] = [0.25, 1e-3];
+
+/// How the runs of a case are to be made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    /// The integrator.
+    pub integrator: Integrator,
+    /// Longest step allowed.
+    pub max_step: Option<f64>,
+    /// Whether to read the dense output in every step.
+    pub dense: bool,
+}
+
+impl Setting {
+    /// This integrator with nothing forced.
+    pub const fn free(integrator: Integrator) -> Self {
+        Self {
+            integrator,
+            max_step: None,
+            dense: false,
+        }
+    }
+
+    /// The setting in a few words.
+    pub fn words(&self) -> String {
+        let step = self
+            .max_step
+            .map_or(String::new(), |step| format!(", steps of {step}"));
+        let dense = if self.dense { ", dense" } else { "" };
+        format!("{}{step}{dense}", self.integrator.name())
+    }
+}
+
+impl Run {
+    /// The settings it is measured under; one for [`Run::Once`], whose setting is not looked at.
+    fn settings(&self, integrators: &[Integrator]) -> Vec<Setting> {
+        let free = integrators.iter().copied().map(Setting::free);
+        match self {
+            Self::Absent => Vec::new(),
+            Self::Once(_) => free.take(1).collect(),
+            Self::Integrators(_) => free.collect(),
+            Self::Steps(_) => free.flat_map(forced).collect(),
+        }
+    }
+
+    fn measure(&self, setting: Setting) -> Report {
+        let mut report = Report::default();
+        match self {
+            Self::Absent => {}
+            Self::Once(run) => run(&mut report),
+            Self::Integrators(run) | Self::Steps(run) => run(setting, &mut report),
+        }
+        report
+    }
+}
+
+/// A setting, the same with its dense output read, and with steps forced.
+fn forced(free: Setting) -> Vec<Setting> {
+    let dense = Setting {
+        dense: true,
+        ..free
+    };
+    let short = FORCED_STEPS.map(|step| Setting {
+        max_step: Some(step),
+        ..free
+    });
+    [free, dense].into_iter().chain(short).collect()
+}
+
+/// One thing that was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    /// What.
+    pub what: String,
+    /// What was found, and what was expected.
+    pub words: String,
+    /// The error found over the error allowed, infinite where there is no number: passes up to 1.
+    pub share: f64,
+}
+
+impl Check {
+    /// Whether it passes.
+    pub fn passes(&self) -> bool {
+        self.share <= 1.0
+    }
+}
+
+/// A curve that shows what was measured, on logarithmic axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Its name.
+    pub name: String,
+    /// What runs along the axes.
+    pub axes: [&'static str; 2],
+    /// Its points; only positive numbers can be drawn.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// What a case found in one setting.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Report {
+    /// What was measured, in order.
+    pub checks: Vec<Check>,
+    /// Curves to draw.
+    pub curves: Vec<Curve>,
+    classes: Vec<&'static str>,
+}
+
+impl Report {
+    /// An error that must not exceed a bound.
+    pub fn error(&mut self, what: impl Into<String>, error: f64, bound: f64) {
+        let share = if error == 0.0 { 0.0 } else { error / bound };
+        let words = format!("{error:.2e} of {bound:.2e}");
+        self.push(what, words, share);
+    }
+
+    /// A number that must lie within `bound` of what is right.
+    pub fn near(&mut self, what: impl Into<String>, found: f64, right: f64, bound: f64) {
+        self.error(what, (found - right).abs(), bound);
+    }
+
+    /// Something that must be exactly what is right.
+    pub fn equal<T: PartialEq + Debug>(&mut self, what: impl Into<String>, found: T, right: T) {
+        let same = found == right;
+        let words = match same {
+            true => format!("{found:?}"),
+            false => format!("{found:?} for {right:?}"),
+        };
+        self.push(what, words, if same { 0.0 } else { f64::INFINITY });
+    }
+
+    /// An outcome that must be of this class.
+    pub fn class(&mut self, outcome: &Outcome, right: &'static str) {
+        self.one_of(outcome, &[right]);
+    }
+
+    /// An outcome that must be of one of these classes, the same in every setting.
+    pub fn one_of(&mut self, outcome: &Outcome, right: &[&'static str]) {
+        let kind = outcome.kind();
+        self.classes.push(kind);
+        let same = right.contains(&kind);
+        let words = match same {
+            true => kind.to_owned(),
+            false => format!("{kind} for {}", right.join(" or ")),
+        };
+        self.push("outcome", words, if same { 0.0 } else { f64::INFINITY });
+    }
+
+    /// A curve to draw.
+    pub fn curve(
+        &mut self,
+        name: impl Into<String>,
+        axes: [&'static str; 2],
+        points: Vec<[f64; 2]>,
+    ) {
+        let name = name.into();
+        self.curves.push(Curve { name, axes, points });
+    }
+
+    fn push(&mut self, what: impl Into<String>, words: String, share: f64) {
+        let what = what.into();
+        let share = if share.is_nan() { f64::INFINITY } else { share };
+        self.checks.push(Check { what, words, share });
+    }
+
+    /// The check that comes closest to failing, or fails worst.
+    fn worst(&self) -> Option<&Check> {
+        // Of equals the first, which is where a failure begins.
+        let checks = self.checks.iter().rev();
+        checks.max_by(|a, b| a.share.total_cmp(&b.share))
+    }
+}
+
+/// What became of a case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Everything measured keeps its bound.
+    Pass,
+    /// Something does not.
+    Fail,
+    /// It cannot hold yet, and does not.
+    Pending,
+}
+
+impl Verdict {
+    /// In a word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "fail",
+            Self::Pending => "pending",
+        }
+    }
+}
+
+/// What became of a case, and on what grounds.
+#[derive(Debug, Clone)]
+pub struct Finding {
+    /// The case.
+    pub case: Case,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The measurement closest to its bound, or why there is none.
+    pub measured: String,
+    /// Under which setting that was.
+    pub setting: Option<Setting>,
+    /// Everything measured, setting by setting.
+    pub reports: Vec<(Setting, Report)>,
+    /// How long it took.
+    pub elapsed: Duration,
+}
+
+/// Measures a case by these integrators.
+pub fn examine(case: &Case, integrators: &[Integrator]) -> Finding {
+    let begun = Instant::now();
+    let settings = case.run.settings(integrators);
+    let reports: Vec<(Setting, Report)> = settings
+        .into_iter()
+        .map(|setting| (setting, case.run.measure(setting)))
+        .collect();
+    let (holds, mut measured, setting) = judge(&reports);
+    let verdict = match (case.pending, holds) {
+        (None, true) => Verdict::Pass,
+        (None, false) => Verdict::Fail,
+        (Some(reason), false) => {
+            measured = reason.to_owned();
+            Verdict::Pending
+        }
+        (Some(reason), true) => {
+            measured = format!("holds, and is not pending any more: {reason}");
+            Verdict::Fail
+        }
+    };
+    Finding {
+        case: *case,
+        verdict,
+        measured,
+        setting: setting.filter(|_| verdict != Verdict::Pending),
+        reports,
+        elapsed: begun.elapsed(),
+    }
+}
+
+/// Whether all reports hold, and the worst measurement of all with its setting.
+fn judge(reports: &[(Setting, Report)]) -> (bool, String, Option<Setting>) {
+    let worst = reports
+        .iter()
+        .rev()
+        .filter_map(|(setting, report)| Some((*setting, report.worst()?)))
+        .max_by(|(_, a), (_, b)| a.share.total_cmp(&b.share));
+    let Some((setting, check)) = worst else {
+        return (false, "nothing was measured".to_owned(), None);
+    };
+    let holds = check.passes();
+    let first = &reports[0].1.classes;
+    let changed = reports
+        .iter()
+        .find(|(_, report)| holds && report.classes.iter().zip(first).any(|(a, b)| a != b));
+    match changed {
+        Some((setting, report)) => {
+            let words = format!("outcome {:?}, elsewhere {first:?}", report.classes);
+            (false, words, Some(*setting))
+        }
+        None => (
+            holds,
+            format!("{}: {}", check.what, check.words),
+            Some(setting),
+        ),
+    }
+}
+
+/// What the generator says of a declaration that it refuses.
+pub fn refusal(source: &str) -> Option<String> {
+    dalembert_codegen::report::report(source)
+        .err()
+        .map(|error| error.to_string())
+}
+
+/// Every integrator there is.
+pub fn every_integrator() -> &'static [Integrator] {
+    Integrator::value_variants()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ONCE: fn(fn(&mut Report)) -> Case = |run| Case {
+        id: "X01",
+        run: Run::Once(run),
+        ..Case::QUICK
+    };
+
+    #[test]
+    fn the_worst_measurement_decides() {
+        let case = ONCE(|report| {
+            report.error("small", 1e-3, 1.0);
+            report.error("large", 2.0, 1.0);
+            report.equal("count", 3, 3);
+        });
+        let finding = examine(&case, every_integrator());
+        assert_eq!(
+            (finding.verdict, finding.measured.as_str()),
+            (Verdict::Fail, "large: 2.00e0 of 1.00e0")
+        );
+    }
+
+    #[test]
+    fn what_is_not_a_number_fails() {
+        let case = ONCE(|report| report.error("lost", f64::NAN, 1.0));
+        assert_eq!(examine(&case, every_integrator()).verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn a_pending_case_that_holds_is_a_failure() {
+        let mut case = ONCE(|report| report.equal("count", 1, 1));
+        case.pending = Some("no reason");
+        assert_eq!(examine(&case, every_integrator()).verdict, Verdict::Fail);
+        case.run = Run::Once(|report| report.equal("count", 1, 2));
+        assert_eq!(examine(&case, every_integrator()).verdict, Verdict::Pending);
+        case.run = Run::Absent;
+        assert_eq!(examine(&case, every_integrator()).verdict, Verdict::Pending);
+    }
+
+    #[test]
+    fn a_class_that_changes_with_the_step_fails() {
+        let case = Case {
+            run: Run::Steps(|setting, report| {
+                let outcome = match setting.max_step {
+                    None => Outcome::Stopped,
+                    Some(_) => Outcome::Done,
+                };
+                report.one_of(&outcome, &["done", "stopped"]);
+            }),
+            ..Case::QUICK
+        };
+        assert_eq!(examine(&case, every_integrator()).verdict, Verdict::Fail);
+    }
+}

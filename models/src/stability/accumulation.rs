@@ -1,0 +1,266 @@
+//! Section B, second part: accumulations that are elastic, faster than geometric, or algebraic, and sliding.
+
+use core::ops::ControlFlow;
+
+use dalembert::{Event, Observer, System, VectorField};
+use dalembert_cli::suite::{Case, Report, Run, Setting};
+
+use super::by_hand::Point;
+use super::course::{Course, U, location};
+use super::zeno::accumulates;
+
+dalembert::model! {
+    /// A point between a wall at rest and a piston that closes in.
+    pub Piston {
+        coordinates { x; }
+        parameters { L > 0 = 1; u > 0 = 1/2; }
+        lagrangian = dot(x)^2/2;
+        impacts { end: x >= 0; piston: x <= L - u*t; }
+    }
+}
+
+/// Why accelerating accumulations have no class of their own.
+const NO_SPASMODIC: &str =
+    "no `spasmodic` outcome: accumulations in which the speed grows are not told apart";
+
+/// Why a field cannot be declared.
+const NO_FIELD: &str = "`field` is not implemented: a first-order system cannot be declared";
+
+/// The cases.
+pub const CASES: &[Case] = &[
+    Case {
+        id: "B06",
+        title: "elastic accumulation on rising treads, a = 0.5 .. 0.84",
+        right: "x_n = (v0/k)(1 - r^n), v_n = v0 r^n, k = sqrt(2) a^2, r = (1 - k)/(1 + k); accumulates at v0/k",
+        bound: "`zeno` within 1e-10, 1e-6 for a = 0.84, where hops rise 5e-16 after two impacts; energy to 8 u per impact",
+        run: Run::Steps(treads),
+        ..Case::QUICK
+    },
+    Case {
+        id: "B07",
+        title: "rising treads with a = 0.85, where k > 1 and the start lies below the table",
+        right: "nothing accumulates: the parabola comes up to the table from below at x = 2 v0/(1 + k) = 0.989232550505",
+        bound: "`still_penetrating` at the start, one record",
+        run: Run::Steps(below_the_treads),
+        ..Case::QUICK
+    },
+    Case {
+        id: "B08",
+        title: "super-elastic walls, factor 1.25",
+        right: "t_n = (1/v0) sum of 1.25^-k, accumulating at al/(v0 (al - 1)) = 5, speed unbounded",
+        bound: "`spasmodic` within 1e-8; no infinite number",
+        pending: Some(NO_SPASMODIC),
+        run: Run::Steps(|setting, report| super_elastic(setting, report, |vy| vy)),
+        ..Case::QUICK
+    },
+    Case {
+        id: "B09",
+        title: "super-elastic strip whose tangential factor keeps the volume",
+        right: "times as B08; al^2 be = 1",
+        bound: "as B08",
+        pending: Some(NO_SPASMODIC),
+        run: Run::Steps(|setting, report| super_elastic(setting, report, |vy| vy * AL.powi(-2))),
+        ..Case::QUICK
+    },
+    Case {
+        id: "B08b",
+        title: "super-elastic walls, the impacts before the accumulation",
+        right: "t_n and speeds 1.25^n as in B08",
+        bound: "1e-13 for the first 40 impacts",
+        run: Run::Steps(super_elastic_impacts),
+        ..Case::QUICK
+    },
+    Case {
+        id: "B10",
+        title: "a piston that closes on an elastic point",
+        right: "X_n (v_n - u) constant: X = 4.9999750001249995e-06 after 1e5 impacts on the piston",
+        bound: "1e-8 relative",
+        run: Run::Integrators(piston),
+        ..Case::QUICK
+    },
+    Case {
+        id: "B10b",
+        title: "a piston that closes to the end",
+        right: "accumulates algebraically at t = L/u = 2",
+        bound: "`spasmodic`, never `zeno`",
+        pending: Some(NO_SPASMODIC),
+        run: Run::Integrators(piston_to_the_end),
+        ..Case::NIGHTLY
+    },
+    Case {
+        id: "B11",
+        title: "H = p_x (1 + x^2) + p_y^2 x/2 with p_y -> -p_y at y = 0, 1",
+        right: "x = tan t; n-th impact at acos(exp(-(n - y0)/|p_y|)); blow-up at pi/2",
+        bound: "1e-12 until the spacing is below 4 ulp, then `spasmodic`",
+        pending: Some(NO_FIELD),
+        ..Case::QUICK
+    },
+    Case {
+        id: "B12",
+        title: "sliding between the fields (-2, 1) and (1, -1)",
+        right: "the sliding vector (0, -1/3) from the hit on",
+        bound: "a fixed number of switches, then sliding; P-STATE(1e3)",
+        pending: Some(NO_FIELD),
+        ..Case::QUICK
+    },
+    Case {
+        id: "B13",
+        title: "crossing between the fields (-2, 1) and (-1, -1)",
+        right: "crosses once",
+        bound: "one record, no slide",
+        pending: Some(NO_FIELD),
+        ..Case::QUICK
+    },
+];
+
+/// Elastic treads along `y = a^2 x (sqrt(2) - a^2 x)`, met at horizontal speed 1 and slope `v0 = 1`.
+fn treads(setting: Setting, report: &mut Report) {
+    const CURVES: [(f64, super::by_hand::Gap); 4] = [
+        (0.5, |at| rising(0.5, at)),
+        (0.7, |at| rising(0.7, at)),
+        (0.8, |at| rising(0.8, at)),
+        (0.84, |at| rising(0.84, at)),
+    ];
+    for (a, curve) in CURVES {
+        let k = 2.0_f64.sqrt() * a * a;
+        let r = (1.0 - k) / (1.0 + k);
+        let system = Point {
+            acceleration: [0.0, -1.0],
+            surfaces: [(curve, |[vx, vy]| [vx, -vy])],
+        };
+        let end = Course::new(&system, &[0.0, 0.0], &[1.0, 1.0], 5.0 / k).run(setting);
+        let bound = if a > 0.8 { 1e-6 } else { 1e-10 };
+        accumulates(report, &format!("a = {a}"), &end, 1.0 / k, bound);
+        let late = |(n, hit): (usize, &super::course::Hit)| {
+            let speed = r.powi(n as i32 + 1);
+            // Gravity 1 makes of an error of the time one of the speed; each flight takes over those before it.
+            let bound = location(hit.t, end.eta(2.0), (1.0 + k) * speed, 1.0) * (n + 1) as f64;
+            (hit.after[1] - speed).abs() / bound
+        };
+        let worst = end.hits.iter().enumerate().map(late).fold(0.0, f64::max);
+        report.error(format!("worst speed over P-LOC, a = {a}"), worst, 1.0);
+        let impacts = end.hits.len() as f64;
+        report.near(
+            format!("energy, a = {a}"),
+            end.energy,
+            1.0,
+            U * (8.0 * impacts + end.counters.accepted as f64),
+        );
+    }
+}
+
+fn below_the_treads(setting: Setting, report: &mut Report) {
+    let curve: super::by_hand::Gap = |at| rising(0.85, at);
+    let system = Point {
+        acceleration: [0.0, -1.0],
+        surfaces: [(curve, |[vx, vy]| [vx, -vy])],
+    };
+    let end = Course::new(&system, &[0.0, 0.0], &[1.0, 1.0], 5.0).run(setting);
+    report.class(&end.outcome, "still_penetrating");
+    report.equal("impacts", end.hits.len(), 1);
+    report.equal("time", end.t, 0.0);
+    let x = 2.0 / (1.0 + 2.0_f64.sqrt() * 0.85 * 0.85);
+    report.near(
+        "root of the parabola",
+        rising(0.85, [x, x - 0.5 * x * x]).0,
+        0.0,
+        4.0 * U,
+    );
+}
+
+/// The height over the curve of B06 for `v0 = 1`, and its gradient.
+fn rising(a: f64, [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
+    let b = a * a;
+    (
+        y - b * x * (2.0_f64.sqrt() - b * x),
+        [2.0 * b * b * x - b * 2.0_f64.sqrt(), 1.0],
+    )
+}
+
+/// The factor of B08.
+const AL: f64 = 1.25;
+
+/// Walls at 0 and 1 that multiply the normal speed by [`AL`], and make of the tangential one what `tangential` says.
+fn strip(tangential: fn(f64) -> f64) -> Point<2> {
+    let left: super::by_hand::Gap = |[x, _]| (x, [1.0, 0.0]);
+    let right: super::by_hand::Gap = |[x, _]| (1.0 - x, [-1.0, 0.0]);
+    let plain: super::by_hand::Reset = |[vx, vy]| [-AL * vx, vy];
+    let slowed: super::by_hand::Reset = |[vx, vy]| [-AL * vx, vy * AL.powi(-2)];
+    let reset = if tangential(1.0) == 1.0 {
+        plain
+    } else {
+        slowed
+    };
+    Point {
+        acceleration: [0.0; 2],
+        surfaces: [(left, reset), (right, reset)],
+    }
+}
+
+fn super_elastic(setting: Setting, report: &mut Report, tangential: fn(f64) -> f64) {
+    let end = Course::new(&strip(tangential), &[0.0, 0.0], &[1.0, 1.0], 10.0).run(setting);
+    report.equal("outcome", end.outcome.kind(), "spasmodic");
+    report.near("time", end.t, AL / (AL - 1.0), 1e-8 * 5.0);
+    report.equal(
+        "state finite",
+        end.q.iter().chain(&end.qdot).all(|value| value.is_finite()),
+        true,
+    );
+}
+
+fn super_elastic_impacts(setting: Setting, report: &mut Report) {
+    let end = Course::new(&strip(|vy| vy), &[0.0, 0.0], &[1.0, 1.0], 10.0)
+        .impacts(40)
+        .run(setting);
+    report.class(&end.outcome, "impact_budget");
+    let mut t = 0.0;
+    for (n, hit) in end.hits.iter().enumerate() {
+        t += AL.powi(-(n as i32));
+        let speed = AL.powi(n as i32 + 1);
+        report.near(format!("time of impact {}", n + 1), hit.t, t, 1e-13);
+        report.near(
+            format!("speed after impact {}", n + 1),
+            hit.after[0].abs(),
+            speed,
+            1e-13 * speed,
+        );
+    }
+}
+
+/// Counts impacts on the piston up to a number, and keeps where the last was.
+struct Strokes {
+    left: u64,
+    x: f64,
+}
+
+impl Observer<Piston> for Strokes {
+    fn event(&mut self, event: &Event<<Piston as VectorField>::State>) -> ControlFlow<()> {
+        if event.surface == piston::surface::piston {
+            self.left -= 1;
+            self.x = Piston::default().position(&event.after)[piston::coordinate::x];
+        }
+        if self.left == 0 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+}
+
+fn piston(setting: Setting, report: &mut Report) {
+    let system = Piston::default();
+    let mut strokes = Strokes {
+        left: 100_000,
+        x: f64::NAN,
+    };
+    let end = Course::new(&system, &[1.0], &[-1.0], 2.0).follow(setting, &mut strokes);
+    report.class(&end.outcome, "stopped");
+    let right = 4.999_975_000_124_999_5e-6;
+    report.near("X", strokes.x, right, 1e-8 * right);
+}
+
+fn piston_to_the_end(setting: Setting, report: &mut Report) {
+    let end = Course::new(&Piston::default(), &[1.0], &[-1.0], 3.0).follow(setting, &mut ());
+    report.equal("outcome", end.outcome.kind(), "spasmodic");
+    report.near("time", end.t, 2.0, 1e-6);
+}

@@ -1,0 +1,144 @@
+//! A point of mass 1 in the plane, written by hand: surfaces and resets that a declaration does not offer.
+
+use dalembert::impacts::law::{Contact, Law};
+use dalembert::jet::LENGTH;
+use dalembert::{
+    Fault, Impacting, Impacts, ParameterError, Scene, System, TaylorField, VectorField,
+};
+use nalgebra::SVector;
+
+type Pair = SVector<f64, 2>;
+type State = SVector<f64, 4>;
+
+/// A gap and its gradient at a point.
+pub type Gap = fn([f64; 2]) -> (f64, [f64; 2]);
+
+/// What an impact makes of a velocity.
+pub type Reset = fn([f64; 2]) -> [f64; 2];
+
+/// The point, under a constant acceleration, between surfaces that have a reset each.
+#[derive(Clone)]
+pub struct Point<const S: usize> {
+    pub acceleration: [f64; 2],
+    pub surfaces: [(Gap, Reset); S],
+}
+
+impl<const S: usize> VectorField for Point<S> {
+    type State = State;
+
+    fn rate(&self, _t: f64, state: &State, rate: &mut State) -> Result<(), Fault> {
+        let [ax, ay] = self.acceleration;
+        *rate = State::new(state[2], state[3], ax, ay);
+        Ok(())
+    }
+}
+
+impl<const S: usize> TaylorField for Point<S> {
+    type Jets = [[f64; LENGTH]; 0];
+
+    fn expand(
+        &self,
+        _t: f64,
+        unit: f64,
+        order: usize,
+        coefficients: &mut [State; LENGTH],
+        _jets: &mut Self::Jets,
+    ) -> Result<(), Fault> {
+        let [[_, _, vx, vy]] = coefficients[0].data.0;
+        let [ax, ay] = self.acceleration.map(|own| unit * own);
+        coefficients[1..=order].fill(State::zeros());
+        coefficients[1] = State::new(unit * vx, unit * vy, ax, ay);
+        if order > 1 {
+            coefficients[2] = State::new(0.5 * unit * ax, 0.5 * unit * ay, 0.0, 0.0);
+        }
+        Ok(())
+    }
+}
+
+impl<const S: usize> System for Point<S> {
+    type Vector = Pair;
+    type Impulse = Pair;
+
+    fn position(&self, state: &State) -> Pair {
+        Pair::new(state[0], state[1])
+    }
+
+    fn velocity(&self, _t: f64, state: &State) -> Result<Pair, Fault> {
+        Ok(Pair::new(state[2], state[3]))
+    }
+
+    fn momentum(&self, t: f64, state: &State) -> Result<Pair, Fault> {
+        self.velocity(t, state)
+    }
+
+    fn state_unchecked(&self, _t: f64, q: &Pair, qdot: &Pair) -> Result<State, Fault> {
+        Ok(State::new(q[0], q[1], qdot[0], qdot[1]))
+    }
+
+    fn state_from_momenta(&self, t: f64, q: &Pair, p: &Pair) -> Result<State, Fault> {
+        self.state_unchecked(t, q, p)
+    }
+
+    fn energy(&self, _t: f64, state: &State) -> Result<f64, Fault> {
+        let [ax, ay] = self.acceleration;
+        Ok(0.5 * (state[2] * state[2] + state[3] * state[3]) - ax * state[0] - ay * state[1])
+    }
+
+    fn kick(&self, state: &mut State, size: f64, direction: &Pair) {
+        state[2] += size * direction[0];
+        state[3] += size * direction[1];
+    }
+
+    fn check_parameters(&self) -> Result<(), ParameterError> {
+        Ok(())
+    }
+}
+
+impl<const S: usize> Impacting for Point<S> {
+    type Gaps = SVector<f64, S>;
+
+    fn gaps(&self, _t: f64, state: &State) -> Self::Gaps {
+        let gap = |surface: usize, _| self.surfaces[surface].0([state[0], state[1]]).0;
+        Self::Gaps::from_fn(gap)
+    }
+
+    fn gap_rates(&self, _t: f64, state: &State) -> Result<Self::Gaps, Fault> {
+        let rate = |surface: usize, _| {
+            let (_, [hx, hy]) = self.surfaces[surface].0([state[0], state[1]]);
+            hx * state[2] + hy * state[3]
+        };
+        Ok(Self::Gaps::from_fn(rate))
+    }
+
+    /// The law whose impulse is `-2 constrained_rate / constrained_compliance`, which the contact makes 1.
+    fn law(&self, _surface: usize) -> Law {
+        Law::Elastic
+    }
+
+    fn contact(&self, surface: usize, _t: f64, state: &State) -> Result<Contact<Pair>, Fault> {
+        let (gap, reset) = self.surfaces[surface];
+        let (_, [hx, hy]) = gap([state[0], state[1]]);
+        let [vx, vy] = reset([state[2], state[3]]);
+        let gap_rate = hx * state[2] + hy * state[3];
+        let compliance = hx * vx + hy * vy - gap_rate;
+        if compliance == 0.0 {
+            return Err(Fault::SingularSurface { surface });
+        }
+        Ok(Contact {
+            gap_rate,
+            constrained_rate: -0.5 * compliance,
+            surface_rate: 0.0,
+            constrained_compliance: compliance,
+            free_compliance: compliance,
+            direction: Pair::new(vx - state[2], vy - state[3]),
+        })
+    }
+}
+
+impl<const S: usize> Scene for Point<S> {
+    type Effects = Impacts<Self>;
+
+    fn effects(&self) -> Impacts<Self> {
+        Impacts::declared(self)
+    }
+}

@@ -1,0 +1,293 @@
+//! How a case makes its runs: a system, a start and an end, under the setting it is given.
+
+use core::ops::ControlFlow;
+
+use dalembert::impacts::law::Law;
+use dalembert::integrate::Counters;
+use dalembert::{
+    Dop853, DormandPrince5, Event, Observer, Outcome, Scene, SceneEffects, Segment, Simulation,
+    StateVector, Stepper, Taylor, TaylorField, Tolerance,
+};
+use dalembert_cli::Integrator;
+use dalembert_cli::suite::Setting;
+
+/// Half a unit in the last place of 1.
+pub const U: f64 = f64::EPSILON / 2.0;
+
+/// A run to be made.
+pub struct Course<'a, M: Scene + TaylorField> {
+    system: &'a M,
+    t0: f64,
+    state: M::State,
+    until: f64,
+    tolerance: [f64; 2],
+    effects: M::Effects,
+}
+
+/// An impact.
+#[derive(Debug, Clone)]
+pub struct Hit {
+    /// When.
+    pub t: f64,
+    /// On which surface.
+    pub surface: usize,
+    /// Where.
+    pub q: Vec<f64>,
+    /// Velocities before.
+    pub before: Vec<f64>,
+    /// Velocities after.
+    pub after: Vec<f64>,
+    /// Whether with another one.
+    pub simultaneous: bool,
+    /// Whether flagged as a graze.
+    pub graze: bool,
+}
+
+/// Where a run ended.
+#[derive(Debug, Clone)]
+pub struct End {
+    /// Why.
+    pub outcome: Outcome,
+    /// When.
+    pub t: f64,
+    /// Positions.
+    pub q: Vec<f64>,
+    /// Velocities; none where the metric is singular.
+    pub qdot: Vec<f64>,
+    /// Kinetic plus potential energy.
+    pub energy: f64,
+    /// The impacts.
+    pub hits: Vec<Hit>,
+    /// The work done.
+    pub counters: Counters,
+}
+
+impl<'a, M: Scene + TaylorField> Course<'a, M> {
+    /// From these positions and velocities at time 0 to `until`; velocities off the constraints are projected.
+    ///
+    /// # Panics
+    /// When the system refuses the start: no case is about that but those that say so.
+    pub fn new(system: &'a M, q: &[f64], qdot: &[f64], until: f64) -> Self {
+        let state = system
+            .state_projected(0.0, &vector(q), &vector(qdot))
+            .expect("an admissible start");
+        Self::from_state(system, state, until)
+    }
+
+    /// From a state at time 0.
+    pub fn from_state(system: &'a M, state: M::State, until: f64) -> Self {
+        Self {
+            system,
+            t0: 0.0,
+            state,
+            until,
+            tolerance: [1e-12; 2],
+            effects: system.effects(),
+        }
+    }
+
+    /// From another time on.
+    pub fn at(mut self, t0: f64) -> Self {
+        self.t0 = t0;
+        self
+    }
+
+    /// With this tolerance instead of `1e-12`.
+    pub fn tol(self, tol: f64) -> Self {
+        self.tols(tol, tol)
+    }
+
+    /// With a relative and an absolute tolerance.
+    pub fn tols(mut self, relative: f64, absolute: f64) -> Self {
+        self.tolerance = [relative, absolute];
+        self
+    }
+
+    /// With another law on a surface.
+    pub fn law(mut self, surface: usize, law: Law) -> Self {
+        self.effects.set_law(surface, law);
+        self
+    }
+
+    /// Up to this many impacts.
+    pub fn impacts(mut self, budget: u64) -> Self {
+        self.effects.set_impact_budget(Some(budget));
+        self
+    }
+
+    /// With or without projection on the constraints.
+    pub fn projection(mut self, on: bool) -> Self {
+        self.effects.set_projection(on);
+        self
+    }
+
+    /// Makes the run, and keeps every impact.
+    pub fn run(self, setting: Setting) -> End {
+        let mut log = Log {
+            system: self.system,
+            hits: Vec::new(),
+        };
+        let mut end = self.follow(setting, &mut log);
+        end.hits = log.hits;
+        end
+    }
+
+    /// Makes the run, and shows it to an observer; the end has no impacts.
+    pub fn follow(self, setting: Setting, observer: &mut impl Observer<M>) -> End {
+        let [relative, absolute] = self.tolerance;
+        let tolerance = Tolerance::of(relative, absolute).expect("a positive tolerance");
+        let longest = setting.max_step.unwrap_or(f64::INFINITY);
+        match setting.integrator {
+            Integrator::Dop853 => self.step(
+                Dop853::new(tolerance).with_max_step(longest),
+                setting,
+                observer,
+            ),
+            Integrator::Dopri5 => self.step(
+                DormandPrince5::new(tolerance).with_max_step(longest),
+                setting,
+                observer,
+            ),
+            Integrator::Taylor => self.step(
+                Taylor::new(tolerance).with_max_step(longest),
+                setting,
+                observer,
+            ),
+        }
+    }
+
+    fn step(
+        self,
+        stepper: impl Stepper<M>,
+        setting: Setting,
+        observer: &mut impl Observer<M>,
+    ) -> End {
+        let Self {
+            system,
+            t0,
+            state,
+            until,
+            effects,
+            ..
+        } = self;
+        let mut reader = Reader {
+            dense: setting.dense,
+            observer,
+        };
+        let run = Simulation::new(system, stepper, effects)
+            .run(t0, state, until, &mut reader)
+            .expect("a start");
+        let velocity = system.velocity(run.t, &run.state);
+        End {
+            outcome: run.outcome,
+            t: run.t,
+            q: system.position(&run.state).as_slice().to_vec(),
+            qdot: velocity
+                .map(|velocity| velocity.as_slice().to_vec())
+                .unwrap_or_default(),
+            energy: system.energy(run.t, &run.state).unwrap_or(f64::NAN),
+            hits: Vec::new(),
+            counters: run.counters,
+        }
+    }
+}
+
+/// A vector of the system's type.
+pub fn vector<V: StateVector>(values: &[f64]) -> V {
+    assert_eq!(values.len(), V::LEN);
+    let mut vector = V::zeros();
+    vector.as_mut_slice().copy_from_slice(values);
+    vector
+}
+
+/// Keeps every impact.
+struct Log<'a, M> {
+    system: &'a M,
+    hits: Vec<Hit>,
+}
+
+impl<M: Scene + TaylorField> Observer<M> for Log<'_, M> {
+    fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
+        let velocity = |state| match self.system.velocity(event.t, state) {
+            Ok(velocity) => velocity.as_slice().to_vec(),
+            Err(_) => Vec::new(),
+        };
+        self.hits.push(Hit {
+            t: event.t,
+            surface: event.surface,
+            q: self.system.position(&event.before).as_slice().to_vec(),
+            before: velocity(&event.before),
+            after: velocity(&event.after),
+            simultaneous: event.simultaneous,
+            graze: event.graze,
+        });
+        ControlFlow::Continue(())
+    }
+}
+
+/// Reads the dense output in every step, if asked to, before it passes the step on.
+struct Reader<'a, O> {
+    dense: bool,
+    observer: &'a mut O,
+}
+
+impl<M: Scene + TaylorField, O: Observer<M>> Observer<M> for Reader<'_, O> {
+    fn step(&mut self, segment: &mut Segment<'_, M::State>) -> ControlFlow<()> {
+        if self.dense {
+            let middle = 0.5 * (segment.t_start() + segment.t_end());
+            if segment.at(middle).is_err() {
+                return ControlFlow::Break(());
+            }
+        }
+        self.observer.step(segment)
+    }
+
+    fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
+        self.observer.event(event)
+    }
+}
+
+impl End {
+    /// The times of the impacts.
+    pub fn times(&self) -> Vec<f64> {
+        self.hits.iter().map(|hit| hit.t).collect()
+    }
+
+    /// The size of the rounding errors of a gap: `32 u` times the sum of the absolute values of the terms it is made
+    /// of, and one unit of it per step, which rounding of the state may have added up to.
+    pub fn eta(&self, terms: f64) -> f64 {
+        U * terms * (32.0 + self.counters.accepted as f64)
+    }
+}
+
+/// The error allowed in the time of an impact at which the gap has rounding errors `eta`, rate `rate` and second
+/// derivative `bend`; and the four units in the last place of the time itself.
+pub fn location(t: f64, eta: f64, rate: f64, bend: f64) -> f64 {
+    let clear = rate * rate >= 2.0 * bend.abs() * eta;
+    let own = if clear {
+        2.0 * eta / rate.abs()
+    } else {
+        2.0 * (2.0 * eta / bend.abs()).sqrt()
+    };
+    own + 4.0 * U * t.abs()
+}
+
+/// Numbers that look random and are the same in every run: splitmix64.
+pub struct Random(u64);
+
+impl Random {
+    /// Numbers that belong to a seed.
+    pub const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// The next number, uniform between two.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        bits ^= bits >> 31;
+        low + (high - low) * ((bits >> 11) as f64 / (1_u64 << 53) as f64)
+    }
+}

@@ -1,0 +1,41 @@
+//! Hard cases for the runtime and for what is generated: event location, accumulation, impact laws and corners,
+//! constraints that are nearly dependent, scaling, long runs, bad input. `dalembert stability` runs them.
+//!
+//! To add one, copy a [`Case`] and its function in the file of its section. Its number is never used again; what is
+//! right about it is a closed form, an exact count, a class of outcome, or a number that anyone can compute again with
+//! more digits. `u` is half a unit in the last place of 1. **P-LOC** is the bound of [`course::location`] on the time of
+//! an impact, from the rounding errors of the gap and its rate; **P-STATE(k)** is a relative error of `k u`.
+//!
+//! A case that cannot hold yet says why in [`Case::pending`]. Where its declaration can be written it has its function
+//! all the same, and when it begins to hold, the suite asks for the reason to be taken out.
+
+mod accumulation;
+mod by_hand;
+mod constrained;
+mod corners;
+pub mod course;
+mod crossing;
+mod laws;
+mod location;
+mod long;
+pub mod tables;
+mod zeno;
+
+use dalembert_cli::suite::Case;
+
+/// Every case, in order of sections.
+pub fn all() -> Vec<Case> {
+    let sections = [
+        location::CASES,
+        crossing::CASES,
+        zeno::CASES,
+        accumulation::CASES,
+        laws::CASES,
+        corners::CASES,
+        constrained::CASES,
+        long::CASES,
+    ];
+    let mut cases = sections.concat();
+    cases.sort_by_key(|case| case.id);
+    cases
+}
