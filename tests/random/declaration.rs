@@ -132,7 +132,9 @@ impl Declaration {
             self.coordinates(),
             format!("parameters {{ {PARAMETERS} }}"),
             format!("lagrangian = {};", self.lagrangian()),
-            section("constraints", &self.constraints, |a, own| self.constraint(a, own)),
+            section("constraints", &self.constraints, |a, own| {
+                self.constraint(a, own)
+            }),
             section("forces", &self.forces, |k, own| self.force(k, own)),
             section("impacts", &self.surfaces, |s, own| self.surface(s, own)),
         ];
@@ -160,7 +162,11 @@ impl Declaration {
             terms.push(format!("({})^2/2", self.form(form, 0, "dot")));
         }
         terms.extend(self.linear.as_ref().map(|form| self.form(form, 0, "dot")));
-        format!("{} - ({})", terms.join(" + "), self.potential.written(self.all()))
+        format!(
+            "{} - ({})",
+            terms.join(" + "),
+            self.potential.written(self.all())
+        )
     }
 
     /// `f*d(x_first) + ..`
@@ -173,17 +179,26 @@ impl Declaration {
 
     fn constraint(&self, a: usize, constraint: &Constraint) -> String {
         let later = self.form(&constraint.rest, a + 1, constraint.notation.rate());
-        let affine = constraint.affine.as_ref().map(|own| own.written(self.all()));
+        let affine = constraint
+            .affine
+            .as_ref()
+            .map(|own| own.written(self.all()));
         match constraint.notation {
             Notation::Velocities => {
                 format!("dot(x{a}) = {later} + {}", affine.unwrap_or("0".into()))
             }
             Notation::Differentials => {
-                format!("d(x{a}) + {later} + ({})*d(t) = 0", affine.unwrap_or("0".into()))
+                format!(
+                    "d(x{a}) + {later} + ({})*d(t) = 0",
+                    affine.unwrap_or("0".into())
+                )
             }
             Notation::Scaled => format!("(2 + cos(x{a}))*(d(x{a}) + {later}) = 0"),
             Notation::Exact => {
-                let names = Names { first: a + 1, ..self.all() };
+                let names = Names {
+                    first: a + 1,
+                    ..self.all()
+                };
                 format!("d(x{a} + {}) = 0", constraint.rest[0].written(names))
             }
         }
@@ -200,7 +215,10 @@ impl Declaration {
 
     fn surface(&self, s: usize, surface: &Surface) -> String {
         let last = self.dimension() - 1;
-        let names = Names { end: last, ..self.all() };
+        let names = Names {
+            end: last,
+            ..self.all()
+        };
         let rest = surface.rest.written(names);
         let gap = match surface.is_upper {
             true => format!("x{last} <= {s} + 2 + {rest}"),
@@ -212,7 +230,11 @@ impl Declaration {
     }
 
     fn all(&self) -> Names<'_> {
-        Names { angles: &self.angles, first: 0, end: self.dimension() }
+        Names {
+            angles: &self.angles,
+            first: 0,
+            end: self.dimension(),
+        }
     }
 }
 
@@ -264,8 +286,11 @@ impl Constraint {
         ];
         let rest = prop::collection::vec(Function::any(), n);
         let affine = prop::option::weighted(0.3, Function::any());
-        (notation, rest, affine)
-            .prop_map(|(notation, rest, affine)| Self { notation, rest, affine })
+        (notation, rest, affine).prop_map(|(notation, rest, affine)| Self {
+            notation,
+            rest,
+            affine,
+        })
     }
 }
 
@@ -281,7 +306,12 @@ impl Notation {
 impl Force {
     fn any(n: usize) -> impl Strategy<Value = Self> {
         (0..n, 0..n, any::<bool>(), Function::any()).prop_map(
-            |(along, driven_by, is_quadratic, drive)| Self { along, driven_by, is_quadratic, drive },
+            |(along, driven_by, is_quadratic, drive)| Self {
+                along,
+                driven_by,
+                is_quadratic,
+                drive,
+            },
         )
     }
 }
@@ -290,7 +320,12 @@ impl Surface {
     fn any() -> impl Strategy<Value = Self> {
         let condition = prop::option::weighted(0.3, Function::any());
         (any::<bool>(), Function::any(), condition, 0..LAWS.len()).prop_map(
-            |(is_upper, rest, condition, law)| Self { is_upper, rest, condition, law },
+            |(is_upper, rest, condition, law)| Self {
+                is_upper,
+                rest,
+                condition,
+                law,
+            },
         )
     }
 }

@@ -23,12 +23,19 @@ pub struct Point {
 impl Point {
     /// The point after a step `h` along a direction of positions, and `h dt` of time.
     pub fn shifted(&self, h: f64, direction: &[f64], dt: f64) -> Self {
-        Self { t: self.t + h * dt, q: moved(&self.q, h, direction), qdot: self.qdot.clone() }
+        Self {
+            t: self.t + h * dt,
+            q: moved(&self.q, h, direction),
+            qdot: self.qdot.clone(),
+        }
     }
 
     /// The point with velocity `k` changed by `h`.
     pub fn kicked(&self, h: f64, k: usize) -> Self {
-        Self { qdot: moved(&self.qdot, h, &unit(self.q.len(), k)), ..self.clone() }
+        Self {
+            qdot: moved(&self.qdot, h, &unit(self.q.len(), k)),
+            ..self.clone()
+        }
     }
 }
 
@@ -61,7 +68,10 @@ impl<'a> Dense<'a> {
             let default = own.default.expect("a default");
             pool.eval(&[default], &|_| f64::NAN)[0]
         });
-        Self { compiled, parameters: parameters.collect() }
+        Self {
+            compiled,
+            parameters: parameters.collect(),
+        }
     }
 
     /// The values of expressions at a point.
@@ -103,8 +113,16 @@ impl<'a> Dense<'a> {
             p: moved(&kinetic, 1.0, &linear),
             energy: dot(&kinetic, &at.qdot) / 2.0 + potential,
             inertial: force.iter().zip(&drift).map(|(f, d)| f - d).collect(),
-            forms: model.constraints.iter().map(|own| self.values(&own.form, at)).collect(),
-            affine: model.constraints.iter().map(|own| self.value(own.affine, at)).collect(),
+            forms: model
+                .constraints
+                .iter()
+                .map(|own| self.values(&own.form, at))
+                .collect(),
+            affine: model
+                .constraints
+                .iter()
+                .map(|own| self.value(own.affine, at))
+                .collect(),
             curvature: self.values(&curvature, at),
             metric,
             linear,
@@ -114,7 +132,11 @@ impl<'a> Dense<'a> {
 
     /// The rate of `(q, p)` at these positions and momenta.
     pub fn rate(&self, t: f64, q: &[f64], p: &[f64]) -> Vec<f64> {
-        let mut at = Point { t, q: q.to_vec(), qdot: vec![0.0; q.len()] };
+        let mut at = Point {
+            t,
+            q: q.to_vec(),
+            qdot: vec![0.0; q.len()],
+        };
         let resting = self.evaluate(&at);
         let kinetic: Vec<f64> = p.iter().zip(&resting.linear).map(|(p, a)| p - a).collect();
         at.qdot = solve(&resting.metric, &kinetic);
@@ -153,7 +175,10 @@ impl Evaluated {
             let forces = self.forms.iter().map(|form| -form[i]);
             self.metric[i].iter().copied().chain(forces).collect()
         });
-        let lower = self.forms.iter().map(|form| [form.clone(), vec![0.0; m]].concat());
+        let lower = self
+            .forms
+            .iter()
+            .map(|form| [form.clone(), vec![0.0; m]].concat());
         upper.chain(lower).collect()
     }
 
@@ -165,7 +190,8 @@ impl Evaluated {
 
     /// `pi_D` of a vector.
     pub fn project(&self, vector: &[f64]) -> Vec<f64> {
-        self.saddle(&times(&self.metric, vector), &vec![0.0; self.forms.len()]).0
+        self.saddle(&times(&self.metric, vector), &vec![0.0; self.forms.len()])
+            .0
     }
 
     /// `g^{-1}` of a covector.
@@ -203,6 +229,8 @@ pub fn dot(left: &[f64], right: &[f64]) -> f64 {
 }
 
 fn norm(matrix: &[Vec<f64>]) -> f64 {
-    let sizes = matrix.iter().map(|row| row.iter().map(|entry| entry.abs()).sum());
+    let sizes = matrix
+        .iter()
+        .map(|row| row.iter().map(|entry| entry.abs()).sum());
     sizes.fold(0.0, f64::max)
 }

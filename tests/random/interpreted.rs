@@ -19,12 +19,17 @@ fn numbers(n: usize) -> impl Strategy<Value = Vec<f64>> {
 fn sample(most: usize) -> impl Strategy<Value = (Declaration, Point, Vec<f64>)> {
     Declaration::any(most).prop_flat_map(|declaration| {
         let n = declaration.dimension();
-        (Just(declaration), numbers(1), numbers(n), numbers(n), numbers(n)).prop_map(
-            |(declaration, t, q, qdot, excess)| {
+        (
+            Just(declaration),
+            numbers(1),
+            numbers(n),
+            numbers(n),
+            numbers(n),
+        )
+            .prop_map(|(declaration, t, q, qdot, excess)| {
                 let point = Point { t: t[0], q, qdot };
                 (declaration, point, excess)
-            },
-        )
+            })
     })
 }
 
@@ -60,7 +65,14 @@ impl<'a> Comparison<'a> {
         let dense = Dense::new(compiled);
         let evaluated = dense.evaluate(&at);
         let tolerance = 64.0 * f64::EPSILON * evaluated.condition();
-        Self { compiled, dense, at, evaluated, excess, tolerance }
+        Self {
+            compiled,
+            dense,
+            at,
+            evaluated,
+            excess,
+            tolerance,
+        }
     }
 
     fn run(&self, function: &Function) -> Vec<f64> {
@@ -102,7 +114,9 @@ pub fn same_within(
     tolerance: f64,
 ) -> Result<(), TestCaseError> {
     prop_assert_eq!(actual.len(), expected.len(), "{}", what);
-    let size = expected.iter().fold(1.0_f64, |size, value| size.max(value.abs()));
+    let size = expected
+        .iter()
+        .fold(1.0_f64, |size, value| size.max(value.abs()));
     for (a, e) in actual.iter().zip(expected) {
         prop_assert!(
             (a - e).abs() <= tolerance * size,
@@ -139,15 +153,28 @@ fn check_constraints(own: &Comparison<'_>) -> Result<(), TestCaseError> {
     let values = own.run(&own.compiled.program.geometry.function);
     let group = |name| own.group(&values, name);
     let n = own.at.q.len();
-    let fields: Vec<_> = evaluated.forms.iter().map(|form| evaluated.raised(form)).collect();
-    let mass: Vec<_> = evaluated.forms.iter().map(|form| times(&fields, form)).collect();
+    let fields: Vec<_> = evaluated
+        .forms
+        .iter()
+        .map(|form| evaluated.raised(form))
+        .collect();
+    let mass: Vec<_> = evaluated
+        .forms
+        .iter()
+        .map(|form| times(&fields, form))
+        .collect();
     let columns: Vec<_> = (0..n).map(|j| evaluated.project(&unit(n, j))).collect();
-    let projector: Vec<f64> =
-        (0..n).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+    let projector: Vec<f64> = (0..n)
+        .flat_map(|i| columns.iter().map(move |column| column[i]))
+        .collect();
     own.same("W", &group("W"), &fields.concat())?;
     own.same("constraint_mass", &group("constraint_mass"), &mass.concat())?;
     own.same("pi_D", &group("pi_D"), &projector)?;
-    own.same("multipliers", &own.run(&program.multipliers), &evaluated.motion().1)?;
+    own.same(
+        "multipliers",
+        &own.run(&program.multipliers),
+        &evaluated.motion().1,
+    )?;
     let projected = times(&evaluated.metric, &evaluated.projected(&own.at.qdot));
     let projected = moved(&projected, 1.0, &evaluated.linear);
     own.same("project", &own.run(&program.project), &projected)?;
@@ -167,17 +194,27 @@ fn check_restored(own: &Comparison<'_>, p: &[f64]) -> Result<(), TestCaseError> 
 fn check_levels(own: &Comparison<'_>, correction: &[f64]) -> Result<(), TestCaseError> {
     let evaluated = &own.evaluated;
     let levelled: Vec<usize> = own.compiled.derivation.levelled().collect();
-    let forms: Vec<Vec<f64>> = levelled.iter().map(|&a| evaluated.forms[a].clone()).collect();
-    let excess: Vec<f64> = own.excess.iter().take(forms.len()).map(|own| -own).collect();
+    let forms: Vec<Vec<f64>> = levelled
+        .iter()
+        .map(|&a| evaluated.forms[a].clone())
+        .collect();
+    let excess: Vec<f64> = own
+        .excess
+        .iter()
+        .take(forms.len())
+        .map(|own| -own)
+        .collect();
     own.same("level correction", &times(&forms, correction), &excess)?;
     let covector = times(&evaluated.metric, correction);
     let fields: Vec<_> = forms.iter().map(|form| evaluated.raised(form)).collect();
     let mass: Vec<_> = forms.iter().map(|form| times(&fields, form)).collect();
     let weights = dalembert_tests::curvature::solve(&mass, &excess);
-    let combined = weights.iter().zip(&forms).fold(
-        vec![0.0; covector.len()],
-        |sum, (weight, form)| moved(&sum, *weight, form),
-    );
+    let combined = weights
+        .iter()
+        .zip(&forms)
+        .fold(vec![0.0; covector.len()], |sum, (weight, form)| {
+            moved(&sum, *weight, form)
+        });
     own.same("level correction", &covector, &combined)
 }
 
@@ -189,9 +226,8 @@ fn check_contacts(own: &Comparison<'_>) -> Result<(), TestCaseError> {
     let gap = |s: usize, at: &Point| own.dense.value(own.compiled.model.surfaces[s].gap, at);
     for (s, contact) in program.contacts.iter().enumerate() {
         let n = own.at.q.len();
-        let along = |direction: &[f64], dt: f64| {
-            slope(&mut |h| gap(s, &own.at.shifted(h, direction, dt)))
-        };
+        let along =
+            |direction: &[f64], dt: f64| slope(&mut |h| gap(s, &own.at.shifted(h, direction, dt)));
         let form: Vec<f64> = (0..n).map(|i| along(&unit(n, i), 0.0)).collect();
         let gradient = own.evaluated.raised(&form);
         let allowed = own.evaluated.project(&gradient);
@@ -216,18 +252,27 @@ fn check_contacts(own: &Comparison<'_>) -> Result<(), TestCaseError> {
 fn check_derivatives(own: &Comparison<'_>) -> Result<(), TestCaseError> {
     let (model, derivation) = (&own.compiled.model, &own.compiled.derivation);
     let n = own.at.q.len();
-    let close = |what: &str, actual: &[f64], expected: &[f64]| {
-        same_within(what, actual, expected, 1e-8)
-    };
+    let close =
+        |what: &str, actual: &[f64], expected: &[f64]| same_within(what, actual, expected, 1e-8);
     let lagrangian = |at: &Point| own.dense.value(model.lagrangian.whole, at);
     let applied: Vec<f64> = (0..n)
-        .map(|k| model.forces.iter().map(|force| own.dense.value(force.form[k], &own.at)).sum())
+        .map(|k| {
+            model
+                .forces
+                .iter()
+                .map(|force| own.dense.value(force.form[k], &own.at))
+                .sum()
+        })
         .collect();
     let force = (0..n).map(|k| slope(&mut |h| lagrangian(&own.at.shifted(h, &unit(n, k), 0.0))));
     let force: Vec<f64> = force.collect();
     close("force", &own.evaluated.force, &moved(&force, 1.0, &applied))?;
     let momentum = (0..n).map(|k| slope(&mut |h| lagrangian(&own.at.kicked(h, k))));
-    close("momentum", &own.evaluated.p, &momentum.collect::<Vec<f64>>())?;
+    close(
+        "momentum",
+        &own.evaluated.p,
+        &momentum.collect::<Vec<f64>>(),
+    )?;
     let carried = |h| own.dense.evaluate(&own.at.shifted(h, &own.at.qdot, 1.0));
     let drift = own.dense.values(&derivation.field.drift, &own.at);
     close("drift", &drift, &slopes(&|h| carried(h).p))?;
@@ -235,8 +280,16 @@ fn check_derivatives(own: &Comparison<'_>) -> Result<(), TestCaseError> {
         let carried = carried(h);
         moved(&times(&carried.forms, &own.at.qdot), 1.0, &carried.affine)
     };
-    let curvature: Vec<_> = derivation.constraints.iter().map(|own| own.curvature).collect();
-    close("curvature", &own.dense.values(&curvature, &own.at), &slopes(&residuals))
+    let curvature: Vec<_> = derivation
+        .constraints
+        .iter()
+        .map(|own| own.curvature)
+        .collect();
+    close(
+        "curvature",
+        &own.dense.values(&curvature, &own.at),
+        &slopes(&residuals),
+    )
 }
 
 /// The divergence of the field on T*Q, by differences.
@@ -254,7 +307,12 @@ fn check_divergence(own: &Comparison<'_>) -> Result<(), TestCaseError> {
     let rate = own.dense.rate(own.at.t, q, p);
     let size = rate.iter().fold(1.0_f64, |size, rate| size.max(rate.abs()));
     let actual = own.run(&own.compiled.program.divergence);
-    same_within("divergence", &actual, &[divergence], 1e-7 * size * (1.0 + own.tolerance * 1e10))
+    same_within(
+        "divergence",
+        &actual,
+        &[divergence],
+        1e-7 * size * (1.0 + own.tolerance * 1e10),
+    )
 }
 
 fn check(declaration: &Declaration, at: Point, excess: Vec<f64>) -> Result<(), TestCaseError> {

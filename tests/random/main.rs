@@ -5,8 +5,10 @@
 
 mod declaration;
 mod dense;
+mod emitted;
 mod function;
 mod interpreted;
+mod models;
 
 use proptest::test_runner::{Config, RngSeed};
 
@@ -17,8 +19,13 @@ fn config(cases: u32) -> Config {
     let seeded = matches!(environment.rng_seed, RngSeed::Fixed(_));
     Config {
         cases: if asked { environment.cases } else { cases },
-        rng_seed: if seeded { environment.rng_seed } else { RngSeed::Fixed(1743) },
+        rng_seed: if seeded {
+            environment.rng_seed
+        } else {
+            RngSeed::Fixed(1743)
+        },
         failure_persistence: None,
+        max_shrink_iters: 4000,
         ..environment
     }
 }
