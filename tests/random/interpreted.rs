@@ -329,7 +329,7 @@ fn check(declaration: &Declaration, at: Point, excess: Vec<f64>) -> Result<(), T
 }
 
 proptest! {
-    #![proptest_config(config(60))]
+    #![proptest_config(config(400))]
 
     #[test]
     fn programs_do_what_dense_algebra_does((declaration, at, excess) in sample(4)) {
