@@ -7,6 +7,8 @@ use std::fmt;
 
 use proc_macro2::{Group, Ident, Punct, Spacing, Span, TokenStream, TokenTree};
 
+use crate::spec::STEPS;
+
 /// A stretch of source: from the first to the last of its tokens.
 #[derive(Debug, Clone, Copy)]
 pub struct Location {
@@ -58,6 +60,9 @@ pub struct Diagnostic {
 }
 
 impl Diagnostics {
+    /// Errors that are told; nobody reads more.
+    const MOST: usize = 1000;
+
     /// No errors yet.
     pub fn new() -> Self {
         Self::default()
@@ -85,6 +90,9 @@ impl Diagnostics {
     /// Records an error unless one with the same text and help is there: a mistake in the body of a family or a
     /// definition is met once for each of its uses and told once.
     pub fn error_once(&mut self, at: Location, text: impl Into<String>, help: impl fmt::Display) {
+        if self.len() >= Self::MOST {
+            return;
+        }
         let full = with_help(text.into(), help);
         if !self.errors.iter().any(|error| error.message() == full) {
             self.error(at, full);
@@ -144,6 +152,15 @@ impl Diagnostic {
     pub fn places(&self) -> &[(Location, String)] {
         &self.places
     }
+}
+
+/// The error of a model whose algebra was given up at a place.
+pub(crate) fn too_many_steps(at: Location) -> Diagnostics {
+    let mut diagnostics = Diagnostics::new();
+    let text = format!("the algebra takes more than {STEPS} steps; it was given up here");
+    let help = "use fewer terms and factors, or fewer coordinates that depend on each other";
+    diagnostics.error(at, text).help(help);
+    diagnostics
 }
 
 /// The text followed by a help line; an empty help adds nothing.

@@ -63,19 +63,39 @@ pub struct Compiled {
 /// # Errors
 /// As [`try_expand`].
 pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics> {
+    compile_within(input, spec::STEPS)
+}
+
+/// As [`compile`], with this budget for the algebra.
+fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
     let spec = spec::parse(input)?;
-    let mut model = model::check(&spec)?;
+    let mut model = model::check_within(&spec, steps)?;
     let derivation = mechanics::derive(&mut model);
+    refuse_exhausted(&spec, &model)?;
     let claims::Examined { findings, volume } = claims::examine(&mut model, &derivation);
+    refuse_exhausted(&spec, &model)?;
     refuse_claims(&spec, &findings)?;
     let programs = program::lower(&model, &derivation, volume.as_ref());
     refuse_oversize(&spec, &programs)?;
+    // What is printed of an accepted model may take as long as it does.
+    model.pool.lift_budget();
     Ok(Compiled {
         model,
         derivation,
         findings,
         programs,
     })
+}
+
+/// Refuses a model whose algebra was given up: what was derived then is not what was declared.
+fn refuse_exhausted(
+    spec: &spec::Spec,
+    model: &model::Model,
+) -> Result<(), diagnostics::Diagnostics> {
+    match model.pool.is_exhausted() {
+        true => Err(diagnostics::too_many_steps(spec.name.at)),
+        false => Ok(()),
+    }
 }
 
 /// Refuses claims that are false, and those that stay open without being assumed.
@@ -111,4 +131,43 @@ fn refuse_oversize(
         diagnostics.error(spec.name.at, text).help(help);
     }
     diagnostics.finish(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DECLARATION: &str = "
+        P {
+            coordinates { x; y; z; theta: angle; }
+            parameters { m > 0 = 1; k >= 0 = 2; e in [0, 1] = 1/2; }
+            let r(u, v) = sqrt(1 + u^2 + sin(v)^2);
+            lagrangian = m/2*(dot(x*y)^2 + dot(x)^2 + dot(y)^2 + dot(z)^2) + dot(r(x, theta))^2 + dot(theta)^2
+                - k*r(x, y);
+            constraints { slip: d(z) = x*d(y); hold: d(x + sin(theta)) = 0; }
+            forces { drag: -k*dot(y)*d(y); }
+            impacts { wall: y + r(z, z) >= 0 => newton(e); }
+            outputs { o: multiplier(slip) + energy; }
+            claims { density: none; }
+        }";
+
+    /// Wherever the algebra is given up, every stage still ends, and says that it was.
+    #[test]
+    fn algebra_may_be_given_up_anywhere() {
+        let compile = |steps| {
+            let tokens = DECLARATION.parse().expect("tokens");
+            compile_within(tokens, steps)
+        };
+        let (mut given_up, mut steps) = (0, 1);
+        while let Err(errors) = compile(steps) {
+            let texts: Vec<&str> = errors.iter().map(|error| error.message()).collect();
+            assert!(
+                texts[0].contains("steps; it was given up here"),
+                "{texts:?}"
+            );
+            given_up += 1;
+            steps += 1 + steps / 16;
+        }
+        assert!(given_up > 50, "only {given_up} budgets were too small");
+    }
 }

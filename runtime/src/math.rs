@@ -1,25 +1,53 @@
-//! Elementary functions as generated code calls them: the platform's with `std`, pure Rust otherwise.
+//! Elementary functions as generated code calls them: correctly rounded with `strict`, the platform's with `std`, pure
+//! Rust otherwise.
+//!
+//! Everything else in this crate is addition, multiplication, division and square root, which are correctly rounded by
+//! definition, in the order in which they are written: Rust never contracts them. So with `strict` a run has the same
+//! bits on every machine.
 
 macro_rules! elementary {
-    ($($name:ident $libm:ident)*) => {$(
+    ($($name:ident($($argument:ident),+) = $platform:ident, $rust:ident, $rounded:ident;)*) => {$(
         #[doc = concat!("`", stringify!($name), "` of the configured source.")]
         #[inline(always)]
-        pub fn $name(x: f64) -> f64 {
+        pub fn $name($($argument: f64),+) -> f64 {
+            #[cfg(feature = "strict")]
+            { core_math::$rounded($($argument),+) }
             #[cfg(all(feature = "std", not(feature = "strict")))]
-            { x.$name() }
-            #[cfg(any(not(feature = "std"), feature = "strict"))]
-            { libm::$libm(x) }
+            { f64::$platform($($argument),+) }
+            #[cfg(not(any(feature = "std", feature = "strict")))]
+            { libm::$rust($($argument),+) }
         }
     )*};
 }
 
 elementary! {
-    sqrt sqrt
-    sin sin cos cos tan tan
-    asin asin acos acos atan atan
-    exp exp ln log
-    sinh sinh cosh cosh tanh tanh
-    cbrt cbrt
+    sin(x) = sin, sin, sin;
+    cos(x) = cos, cos, cos;
+    tan(x) = tan, tan, tan;
+    asin(x) = asin, asin, asin;
+    acos(x) = acos, acos, acos;
+    atan(x) = atan, atan, atan;
+    atan2(y, x) = atan2, atan2, atan2;
+    exp(x) = exp, exp, exp;
+    ln(x) = ln, log, log;
+    sinh(x) = sinh, sinh, sinh;
+    cosh(x) = cosh, cosh, cosh;
+    tanh(x) = tanh, tanh, tanh;
+    cbrt(x) = cbrt, cbrt, cbrt;
+    powf(x, e) = powf, pow, pow;
+}
+
+/// The square root, which is correctly rounded everywhere.
+#[inline(always)]
+pub fn sqrt(x: f64) -> f64 {
+    #[cfg(feature = "std")]
+    {
+        x.sqrt()
+    }
+    #[cfg(not(feature = "std"))]
+    {
+        libm::sqrt(x)
+    }
 }
 
 /// `|x|`.
@@ -32,30 +60,4 @@ pub fn abs(x: f64) -> f64 {
 #[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     (sin(x), cos(x))
-}
-
-/// The angle of the point `(x, y)`, in (-pi, pi].
-#[inline(always)]
-pub fn atan2(y: f64, x: f64) -> f64 {
-    #[cfg(all(feature = "std", not(feature = "strict")))]
-    {
-        y.atan2(x)
-    }
-    #[cfg(any(not(feature = "std"), feature = "strict"))]
-    {
-        libm::atan2(y, x)
-    }
-}
-
-/// `x^e` for an exponent that is neither an integer nor a half.
-#[inline(always)]
-pub fn powf(x: f64, e: f64) -> f64 {
-    #[cfg(all(feature = "std", not(feature = "strict")))]
-    {
-        x.powf(e)
-    }
-    #[cfg(any(not(feature = "std"), feature = "strict"))]
-    {
-        libm::pow(x, e)
-    }
 }

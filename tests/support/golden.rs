@@ -8,10 +8,18 @@ use std::path::Path;
 /// At the first line that differs.
 pub fn compare(name: &str, actual: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("golden/{name}.rs.txt"));
+    compare_file(&path, actual);
+}
+
+/// Compares with a file.
+///
+/// # Panics
+/// At the first line that differs.
+pub fn compare_file(path: &Path, actual: &str) {
     if std::env::var_os("ACCEPT").is_some() {
-        std::fs::write(&path, actual).expect("a writable folder");
+        std::fs::write(path, actual).expect("a writable folder");
     }
-    let stored = std::fs::read_to_string(&path).expect("a stored text");
+    let stored = std::fs::read_to_string(path).expect("a stored text");
     if let Some((line, (a, b))) = actual
         .lines()
         .zip(stored.lines())

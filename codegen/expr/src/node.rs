@@ -146,4 +146,32 @@ impl Node {
             }
         }
     }
+
+    /// Visits the numbers that stand in the node itself.
+    fn for_each_number(&self, mut visit: impl FnMut(&Rational)) {
+        match self {
+            Self::Number(value) => visit(value),
+            Self::Sum { constant, terms } => {
+                visit(constant);
+                terms.iter().for_each(|(coefficient, _)| visit(coefficient));
+            }
+            Self::Product(factors) => factors.iter().for_each(|(_, exponent)| visit(exponent)),
+            Self::Pi | Self::Symbol(_) | Self::Call(..) | Self::Atan2(..) => {}
+        }
+    }
+
+    /// The bits of the longest number that stands in the node itself.
+    pub(crate) fn number_bits(&self) -> u64 {
+        let mut bits = 0;
+        self.for_each_number(|number| bits = bits.max(number.bits()));
+        bits
+    }
+
+    /// What making the node costs of a pool's budget.
+    pub(crate) fn steps(&self) -> u64 {
+        let mut steps = 1;
+        self.for_each_operand(|_| steps += 1);
+        self.for_each_number(|number| steps += number.bits() / 64);
+        steps
+    }
 }

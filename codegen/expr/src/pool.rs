@@ -8,6 +8,9 @@ use crate::rational::Rational;
 use crate::sign::Sign;
 
 /// A set of expressions in which equal expressions have equal ids.
+///
+/// A pool may have a budget of steps (see [`Pool::with_budget`]). When it is spent, every constructor gives the
+/// expression 1, so that whatever is going on ends soon without an answer, and [`Pool::is_exhausted`] says so.
 #[derive(Clone, Debug)]
 pub struct Pool {
     symbols: Vec<Symbol>,
@@ -17,6 +20,8 @@ pub struct Pool {
     sets: SymbolSets,
     /// `derivatives[symbol][expression]`: id + 1 of the derivative, 0 where it is not known yet.
     pub(crate) derivatives: Vec<Vec<u32>>,
+    /// Steps that were not spent yet.
+    budget: u64,
 }
 
 #[derive(Clone, Debug)]
@@ -33,6 +38,8 @@ struct Facts {
     finite: bool,
     /// Position in [`SymbolSets::sets`].
     symbols: u32,
+    /// Expressions within expressions.
+    depth: u32,
 }
 
 impl Default for Pool {
@@ -44,6 +51,12 @@ impl Default for Pool {
 impl Pool {
     /// A pool that holds 0, 1 and pi.
     pub fn new() -> Self {
+        Self::with_budget(u64::MAX)
+    }
+
+    /// A pool that makes expressions for this many steps: one for each expression that is made, one for each of its
+    /// operands, and one for each word of its numbers.
+    pub fn with_budget(budget: u64) -> Self {
         let mut pool = Self {
             symbols: Vec::new(),
             nodes: Vec::new(),
@@ -51,11 +64,33 @@ impl Pool {
             table: Table::default(),
             sets: SymbolSets::new(),
             derivatives: Vec::new(),
+            budget: u64::MAX,
         };
         pool.intern(Node::Number(Rational::ZERO));
         pool.intern(Node::Number(Rational::ONE));
         pool.intern(Node::Pi);
+        pool.budget = budget;
         pool
+    }
+
+    /// Whether the budget is spent: expressions made since then are not what was asked for.
+    pub fn is_exhausted(&self) -> bool {
+        self.budget == 0
+    }
+
+    /// From here on there is no budget.
+    pub fn lift_budget(&mut self) {
+        self.budget = u64::MAX;
+    }
+
+    /// How deep expressions stand within an expression; 0 for one without parts.
+    pub fn depth(&self, id: ExprId) -> usize {
+        self.facts[id.index()].depth as usize
+    }
+
+    /// The bits of the longest number that stands in an expression itself, not in its parts.
+    pub fn number_bits(&self, id: ExprId) -> u64 {
+        self.node(id).number_bits()
     }
 
     /// A new symbol; `name` and `latex` are how it is printed and need not be unique.
@@ -203,6 +238,10 @@ impl Pool {
 
     /// The id of a node; a new one if the node is new. Constructors have brought it into normal form.
     pub(crate) fn intern(&mut self, node: Node) -> ExprId {
+        self.budget = self.budget.saturating_sub(node.steps());
+        if self.is_exhausted() {
+            return self.one();
+        }
         let hash = WordHasher::hash_of(&node);
         if let Some(position) = self
             .table
@@ -214,12 +253,19 @@ impl Pool {
             sign: self.derive_sign(&node),
             finite: self.derive_finiteness(&node),
             symbols: self.symbol_set(&node),
+            depth: self.derive_depth(&node),
         };
         let id = ExprId::from_index(self.nodes.len());
         self.table.push(hash);
         self.nodes.push(node);
         self.facts.push(facts);
         id
+    }
+
+    fn derive_depth(&self, node: &Node) -> u32 {
+        let mut depth = 0;
+        node.for_each_operand(|operand| depth = depth.max(self.facts[operand.index()].depth + 1));
+        depth
     }
 
     fn symbol_set(&mut self, node: &Node) -> u32 {

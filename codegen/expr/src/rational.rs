@@ -149,11 +149,11 @@ impl Rational {
         if (self.bits() - 1).saturating_mul(u64::from(exponent.unsigned_abs())) > MAX_BITS {
             return None;
         }
-        let mut power = Self::ONE;
-        for _ in 0..exponent {
-            power = &power * self;
-        }
-        Some(power).filter(|power| power.bits() <= MAX_BITS)
+        // Powers of numbers without common factor have none.
+        let (value, exponent) = (self.to_big(), exponent.unsigned_abs());
+        let (numer, denom) = (value.numer().pow(exponent), value.denom().pow(exponent));
+        Some(Self::from_big(BigRational::new_raw(numer, denom)))
+            .filter(|power| power.bits() <= MAX_BITS)
     }
 
     /// The non-negative `degree`-th root of a non-negative value, if it is rational.

@@ -32,6 +32,7 @@ use crate::spec::ItemId;
 
 pub use crate::spec::Existence;
 pub use check::check;
+pub(crate) use check::check_within;
 pub use law::Law;
 
 /// A checked model: all expressions live in `pool`.

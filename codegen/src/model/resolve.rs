@@ -6,14 +6,14 @@
 
 use std::collections::BTreeMap;
 
-use dalembert_expr::{ExprId, Pool, Rational, SymbolId};
+use dalembert_expr::{ExprId, Node, Pool, Rational, SymbolId};
 
 use super::definitions::Definition;
 use super::symbols::{Meaning, Symbols};
 use crate::diagnostics::{Diagnostics, Location};
 use crate::spec::{
-    Binder, EXPRESSIONS, NUMBER_BITS, Operator, RESOLVED_DEPTH, RESOLVED_PARTS, Scalar, ScalarKind,
-    Spec,
+    Binder, EXPONENT, EXPRESSIONS, NUMBER_BITS, Operator, RESOLVED_DEPTH, RESOLVED_PARTS, Scalar,
+    ScalarKind, Spec,
 };
 
 /// A resolved expression.
@@ -92,12 +92,28 @@ pub(super) struct Resolver<'s> {
     pub(super) partials: Vec<SymbolId>,
     parts: usize,
     depth: usize,
+    /// Where the budget of the pool ended.
+    pub(super) exhausted: Option<Location>,
+}
+
+/// Terms that are added before their numbers are looked at.
+const TERMS_AT_ONCE: usize = 64;
+
+const FEWER_DIGITS: &str = "write it as a decimal";
+const FEWER_LEVELS: &str = "write it with fewer levels";
+
+fn too_long() -> String {
+    format!("an exact number of more than {NUMBER_BITS} bits")
+}
+
+fn too_deep() -> String {
+    format!("nested more than {RESOLVED_DEPTH} deep with definitions written out")
 }
 
 impl<'s> Resolver<'s> {
-    /// A resolver that knows no names yet.
-    pub(super) fn new(spec: &'s Spec) -> Self {
-        let mut pool = Pool::new();
+    /// A resolver that knows no names yet, with a budget for its algebra.
+    pub(super) fn new(spec: &'s Spec, steps: u64) -> Self {
+        let mut pool = Pool::with_budget(steps);
         let symbols = Symbols::new(&mut pool);
         Self {
             spec,
@@ -111,6 +127,7 @@ impl<'s> Resolver<'s> {
             partials: Vec::new(),
             parts: 0,
             depth: 0,
+            exhausted: None,
         }
     }
 
@@ -123,9 +140,7 @@ impl<'s> Resolver<'s> {
             return self.refuse(scalar.at, text, "name what is repeated with `let`");
         }
         if self.depth >= RESOLVED_DEPTH {
-            let text =
-                format!("nested more than {RESOLVED_DEPTH} deep with definitions written out");
-            return self.refuse(scalar.at, text, "name the inner parts with `let`");
+            return self.refuse(scalar.at, too_deep(), FEWER_LEVELS);
         }
         self.depth += 1;
         let value = self.resolve_kind(scalar, scope);
@@ -148,13 +163,13 @@ impl<'s> Resolver<'s> {
                 let value = self.resolve(inner, scope)?;
                 Some(self.scaled(value, -1))
             }
-            ScalarKind::Sum(terms) => self.sum(terms, scope),
+            ScalarKind::Sum(terms) => self.sum(scalar.at, terms, scope),
             ScalarKind::Product(factors) => self.product(factors, scope),
             ScalarKind::Power(base, exponent) => self.power(scalar, base, exponent, scope),
             ScalarKind::Call(function, arguments) => {
                 self.call(scalar.at, function, arguments, scope)
             }
-            ScalarKind::SumOver(binder, body) => self.sum_over(binder, body, scope),
+            ScalarKind::SumOver(binder, body) => self.sum_over(scalar.at, binder, body, scope),
         }
     }
 
@@ -170,23 +185,42 @@ impl<'s> Resolver<'s> {
     }
 
     fn within_limits(&mut self, scalar: &Scalar, expr: ExprId) -> bool {
-        let too_long = self
-            .pool
-            .as_number(expr)
-            .is_some_and(|number| number.bits() > NUMBER_BITS);
-        if too_long {
-            let text = format!("an exact number of more than {NUMBER_BITS} bits");
-            return self
-                .refuse::<()>(scalar.at, text, "write it as a decimal")
-                .is_some();
+        let refused = self.beyond_limits(scalar, expr);
+        if let Some((text, help)) = refused {
+            self.diagnostics.error_once(scalar.at, text, help);
+            return false;
         }
-        if self.pool.len() > EXPRESSIONS {
+        self.within_budget(scalar.at)
+    }
+
+    /// What is too large about an expression, and what to do.
+    fn beyond_limits(&self, scalar: &Scalar, expr: ExprId) -> Option<(String, &'static str)> {
+        if self.pool.number_bits(expr) > NUMBER_BITS {
+            return Some((too_long(), FEWER_DIGITS));
+        }
+        if let Node::Product(factors) = self.pool.node(expr) {
+            let limit = Rational::from(EXPONENT);
+            let large = factors.iter().find(|(_, power)| power.abs() > limit);
+            if let Some((_, power)) = large {
+                let text = format!("`{scalar}` has the exponent {power}; the limit is {EXPONENT}");
+                return Some((text, "use smaller powers"));
+            }
+        }
+        if self.pool.depth(expr) > RESOLVED_DEPTH {
+            return Some((too_deep(), FEWER_LEVELS));
+        }
+        (self.pool.len() > EXPRESSIONS).then(|| {
             let text = format!("more than {EXPRESSIONS} expressions in one model");
-            return self
-                .refuse::<()>(scalar.at, text, "split the model")
-                .is_some();
+            (text, "split the model")
+        })
+    }
+
+    /// Whether algebra may go on; the place where it could not is remembered.
+    pub(super) fn within_budget(&mut self, at: Location) -> bool {
+        if self.pool.is_exhausted() && self.exhausted.is_none() {
+            self.exhausted = Some(at);
         }
-        true
+        self.exhausted.is_none()
     }
 
     fn scaled(&mut self, value: Value, factor: i64) -> Value {
@@ -203,7 +237,7 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    fn sum(&mut self, terms: &[(bool, Scalar)], scope: &mut Scope) -> Option<Value> {
+    fn sum(&mut self, at: Location, terms: &[(bool, Scalar)], scope: &mut Scope) -> Option<Value> {
         let mut values = Vec::with_capacity(terms.len());
         for (negative, term) in terms {
             let value = self.resolve(term, scope);
@@ -216,7 +250,32 @@ impl<'s> Resolver<'s> {
             }));
         }
         let values: Option<Vec<Value>> = values.into_iter().collect();
-        values.map(|values| self.add(&values))
+        self.add_bounded(at, &values?)
+    }
+
+    /// The sum of values, as [`Resolver::add`]. Where their numbers may grow, it is taken part by part, so that it
+    /// ends when a number is too long.
+    fn add_bounded(&mut self, at: Location, values: &[Value]) -> Option<Value> {
+        let bits = values.iter().map(|value| self.pool.number_bits(value.expr));
+        if bits.sum::<u64>() <= NUMBER_BITS {
+            return Some(self.add(values));
+        }
+        let mut total = Value::from(self.pool.zero());
+        for part in values.chunks(TERMS_AT_ONCE) {
+            let part = self.add(part);
+            total = self.add(&[total, part]);
+            self.short_numbers(at, total.expr)?;
+        }
+        // The level is that of all terms, where a 0 in front would count as a term without one.
+        let level = self.sum_level(values);
+        Some(Value { level, ..total })
+    }
+
+    fn short_numbers(&mut self, at: Location, expr: ExprId) -> Option<()> {
+        if self.pool.number_bits(expr) > NUMBER_BITS {
+            return self.refuse(at, too_long(), FEWER_DIGITS);
+        }
+        Some(())
     }
 
     /// The sum of values; its level is known if that of every term is, where a constant `c` counts as `dot(c*t)`.
@@ -267,6 +326,7 @@ impl<'s> Resolver<'s> {
                 Operator::Over => self.divided(product, value, factor)?,
                 Operator::Modulo => self.remainder(product, value, factor)?,
             };
+            self.short_numbers(factor.at, product.expr)?;
         }
         Some(product)
     }
@@ -290,7 +350,13 @@ impl<'s> Resolver<'s> {
         Some(self.pool.div(left.expr, right.expr).into())
     }
 
-    fn sum_over(&mut self, binder: &Binder, body: &Scalar, scope: &mut Scope) -> Option<Value> {
+    fn sum_over(
+        &mut self,
+        at: Location,
+        binder: &Binder,
+        body: &Scalar,
+        scope: &mut Scope,
+    ) -> Option<Value> {
         let mut terms = Vec::new();
         for index in self.range(binder, scope)? {
             let index = self.pool.int(index);
@@ -299,7 +365,7 @@ impl<'s> Resolver<'s> {
             scope.unbind();
             terms.push(term?);
         }
-        Some(self.add(&terms))
+        self.add_bounded(at, &terms)
     }
 
     fn name(&mut self, name: &str, at: Location, scope: &Scope) -> Option<Value> {

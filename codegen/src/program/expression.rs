@@ -14,6 +14,12 @@ use super::builder::Builder;
 /// A term of a sum: coefficient and factors with their exponents.
 type Term = (Rational, Vec<(ExprId, Rational)>);
 
+/// What is done to the value of the remaining terms of a sum.
+enum Pending {
+    Times(Value),
+    Plus(Value),
+}
+
 /// Lowers expressions of one pool into one function.
 #[derive(Debug)]
 pub struct Expressions<'a> {
@@ -109,21 +115,35 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    fn lower_sum(&self, builder: &mut Builder, terms: Vec<Term>) -> Value {
-        let Some(shared) = most_frequent_factor(&terms) else {
-            return self.lower_plain_sum(builder, terms);
-        };
-        let (mut inside, mut outside) = (Vec::new(), Vec::new());
-        for (coefficient, mut factors) in terms {
-            match take_factor(&mut factors, shared) {
-                true => inside.push((coefficient, factors)),
-                false => outside.push((coefficient, factors)),
+    /// Factors that several terms share are taken out, the most frequent first.
+    fn lower_sum(&self, builder: &mut Builder, mut terms: Vec<Term>) -> Value {
+        let mut pending = Vec::new();
+        while let Some(shared) = most_frequent_factor(&terms) {
+            let (mut inside, mut outside) = (Vec::new(), Vec::new());
+            for (coefficient, mut factors) in terms {
+                match take_factor(&mut factors, shared) {
+                    true => inside.push((coefficient, factors)),
+                    false => outside.push((coefficient, factors)),
+                }
+            }
+            // NOTE: only a proper part of the terms is worth a recursion; powers may be higher than a stack.
+            if outside.is_empty() {
+                pending.push(Pending::Times(self.values[&shared]));
+                terms = inside;
+            } else {
+                let cofactor = self.lower_sum(builder, inside);
+                pending.push(Pending::Plus(builder.mul(self.values[&shared], cofactor)));
+                terms = outside;
             }
         }
-        let cofactor = self.lower_sum(builder, inside);
-        let product = builder.mul(self.values[&shared], cofactor);
-        let rest = self.lower_sum(builder, outside);
-        builder.add(product, rest)
+        let rest = self.lower_plain_sum(builder, terms);
+        pending
+            .into_iter()
+            .rev()
+            .fold(rest, |rest, pending| match pending {
+                Pending::Times(factor) => builder.mul(factor, rest),
+                Pending::Plus(term) => builder.add(term, rest),
+            })
     }
 
     /// A sum whose terms share no factor; a coefficient that all terms share up to sign is applied once.
@@ -208,31 +228,28 @@ fn operands(node: &Node) -> Vec<ExprId> {
     }
 }
 
+/// Factors of a sum up to which shared ones are sought: the search takes the square of it, and what is longer fills a
+/// good part of a function anyway.
+const SEARCHED: usize = 1 << 13;
+
 /// The base that occurs with a positive integer exponent in the most terms, at least two.
 fn most_frequent_factor(terms: &[Term]) -> Option<ExprId> {
-    if terms.len() < 2 {
+    let length: usize = terms.iter().map(|(_, factors)| factors.len()).sum();
+    if terms.len() < 2 || length > SEARCHED {
         return None;
     }
-    let mut counts: Vec<(ExprId, usize)> = Vec::new();
-    for (_, factors) in terms {
-        for (base, exponent) in factors {
-            if exponent.is_integer() && exponent.is_positive() {
-                match counts.iter_mut().find(|(known, _)| known == base) {
-                    Some((_, count)) => *count += 1,
-                    None => counts.push((*base, 1)),
-                }
-            }
-        }
+    let shareable = || {
+        let factors = terms.iter().flat_map(|(_, factors)| factors);
+        let whole = factors.filter(|(_, exponent)| exponent.is_integer() && exponent.is_positive());
+        whole.map(|(base, _)| *base)
+    };
+    let mut counts: HashMap<ExprId, usize> = HashMap::new();
+    for base in shareable() {
+        *counts.entry(base).or_default() += 1;
     }
-    let best = counts
-        .iter()
-        .map(|&(_, count)| count)
-        .max()
-        .filter(|&count| count > 1)?;
-    counts
-        .into_iter()
-        .find(|&(_, count)| count == best)
-        .map(|(base, _)| base)
+    let best = shareable().map(|base| counts[&base]).max()?;
+    // The first of those that are met as often: the order of the terms decides, never that of the map.
+    shareable().find(|base| best > 1 && counts[base] == best)
 }
 
 /// Lowers the exponent of `base` by one, if it is a positive integer.

@@ -14,6 +14,8 @@ pub const LITERAL_DIGITS: usize = 40;
 pub const COORDINATES: usize = 64;
 /// Parameters of a model, families expanded.
 pub const PARAMETERS: usize = 256;
+/// Impact surfaces of a model, families expanded.
+pub const SURFACES: usize = 256;
 /// Magnitude of an exponent.
 pub const EXPONENT: i64 = 4096;
 /// Bits of the denominator of an exponent.
@@ -22,6 +24,8 @@ pub const EXPONENT_DENOMINATOR_BITS: u64 = 12;
 pub const NUMBER_BITS: u64 = 4096;
 /// Nodes of the shared expressions.
 pub const EXPRESSIONS: usize = 1 << 20;
+/// Steps of algebra for one model: expressions made, their parts and the words of their numbers.
+pub const STEPS: u64 = 1 << 21;
 /// Members of a family of definitions, terms of a `sum`.
 pub const FAMILY: i64 = 4096;
 /// Parts of expressions visited while definitions and sums are written out.

@@ -25,6 +25,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
                 break;
             };
             resolver.check_coefficients(equation, &parts, &scope);
+            resolver.within_budget(equation.left.at.to(equation.right.at));
             let OneForm {
                 form,
                 affine,

@@ -25,8 +25,8 @@ use super::resolve::{Resolver, Scope};
 use super::{
     Claim, Constraint, Force, Initial, Lagrangian, Model, Output, QuasiForm, Surface, View,
 };
-use crate::diagnostics::Diagnostics;
-use crate::spec::{PIECEWISE, Scalar, Spec};
+use crate::diagnostics::{self, Diagnostics};
+use crate::spec::{PIECEWISE, STEPS, Scalar, Spec};
 use names::Names;
 
 /// What was declared of the motion, resolved.
@@ -47,7 +47,12 @@ struct Parts {
 /// # Errors
 /// Every mistake, each at the smallest part of the declaration that is wrong.
 pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
-    let mut resolver = Resolver::new(spec);
+    check_within(spec, STEPS)
+}
+
+/// As [`check()`], with this budget for the algebra of this and the later stages.
+pub(crate) fn check_within(spec: &Spec, steps: u64) -> Result<Model, Diagnostics> {
+    let mut resolver = Resolver::new(spec, steps);
     resolver.constants();
     resolver.all_coordinates();
     resolver.all_parameters();
@@ -66,6 +71,9 @@ pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
     };
     parts.claims = claims::resolve(&mut resolver, &parts.surfaces);
     together(&mut resolver, &parts);
+    if let Some(at) = resolver.exhausted {
+        return Err(diagnostics::too_many_steps(at));
+    }
     let (Some(lagrangian), true) = (parts.lagrangian, resolver.diagnostics.is_empty()) else {
         return Err(resolver.diagnostics);
     };
@@ -80,12 +88,14 @@ pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
 fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     if let (Some(lagrangian), Some(written)) = (&parts.lagrangian, &resolver.spec.lagrangian) {
         natural::check_metric(resolver, &written.value, lagrangian);
+        resolver.within_budget(written.value.at);
     }
     // Rules broken by some of the constraints are broken by all of them: those that were refused may be missing.
     constraints::check_independent(resolver, &parts.constraints);
     frame::check_coframe(resolver, &parts.frame, &parts.constraints);
     surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
     surfaces::check_distinct(resolver, &parts.surfaces);
+    resolver.within_budget(resolver.spec.name.at);
 }
 
 fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model {
@@ -209,7 +219,10 @@ fn lagrangian(resolver: &mut Resolver<'_>) -> Option<Lagrangian> {
     )?;
     resolver.forbid_abs(&declared.value, &scope, whole, "`lagrangian`")?;
     resolver.check_periodic(&[&declared.value], &scope, whole);
-    natural::split(resolver, &declared.value, whole, declared.item)
+    let lagrangian = natural::split(resolver, &declared.value, whole, declared.item);
+    resolver
+        .within_budget(declared.value.at)
+        .then_some(lagrangian?)
 }
 
 fn forces(resolver: &mut Resolver<'_>) -> Vec<Force> {
@@ -222,6 +235,7 @@ fn forces(resolver: &mut Resolver<'_>) -> Vec<Force> {
             let Some(form) = resolver.force_form(force, &mut scope) else {
                 continue;
             };
+            resolver.within_budget(force.value.at);
             for coefficient in &form {
                 resolver.check_periodic(&[&force.value], &scope, *coefficient);
             }

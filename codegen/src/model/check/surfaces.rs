@@ -7,7 +7,7 @@ use super::super::resolve::{Resolver, Scope};
 use super::super::{Constraint, Surface};
 use super::names::Names;
 use crate::diagnostics::listed;
-use crate::spec::{self, Comparison};
+use crate::spec::{self, Comparison, SURFACES};
 
 /// All surfaces, families expanded.
 pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
@@ -15,7 +15,14 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
     let mut surfaces = Vec::new();
     let mut names = Names::new(resolver, "surface");
     for surface in &spec.surfaces {
-        for (name, mut scope) in resolver.members(&surface.declared) {
+        let members = resolver.members(&surface.declared);
+        if surfaces.len() + members.len() > SURFACES {
+            let text = format!("more than {SURFACES} surfaces");
+            let help = "split the model";
+            resolver.refuse::<()>(surface.declared.name.at, text, help);
+            break;
+        }
+        for (name, mut scope) in members {
             names.add(resolver, &name, &surface.declared.name);
             let gap = resolver.gap(surface, &mut scope);
             let conditions: Vec<Option<ExprId>> = surface
@@ -24,6 +31,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
                 .map(|condition| resolver.difference(condition, &mut scope, "conditions"))
                 .collect();
             let law = resolver.law(surface.law.as_ref(), &mut scope);
+            resolver.within_budget(surface.gap.at);
             let conditions: Option<Vec<ExprId>> = conditions.into_iter().collect();
             let (Some(gap), Some(conditions), Some(law)) = (gap, conditions, law) else {
                 break;

@@ -1,0 +1,406 @@
+//! The program of a random declaration, interpreted, against dense linear algebra and differences.
+
+use dalembert_codegen::Compiled;
+use dalembert_codegen::program::{Function, Input, Program, interpret::interpret, verify::verify};
+use dalembert_tests::numeric::{moved, slope, slopes};
+use proptest::prelude::*;
+
+use super::config;
+use super::declaration::Declaration;
+use super::dense::{Dense, Evaluated, Point, dot, times, unit};
+
+/// Numbers in (-1, 1) with few digits, farther from 0 than differences reach: `abs` has a kink there.
+fn numbers(n: usize) -> impl Strategy<Value = Vec<f64>> {
+    let number = prop_oneof![64_i32..1024, -1023_i32..=-64];
+    prop::collection::vec(number.prop_map(|k| f64::from(k) / 1024.0), n)
+}
+
+/// A declaration with a point.
+fn sample(most: usize) -> impl Strategy<Value = (Declaration, Point, Vec<f64>)> {
+    Declaration::any(most).prop_flat_map(|declaration| {
+        let n = declaration.dimension();
+        (
+            Just(declaration),
+            numbers(1),
+            numbers(n),
+            numbers(n),
+            numbers(n),
+        )
+            .prop_map(|(declaration, t, q, qdot, excess)| {
+                let point = Point { t: t[0], q, qdot };
+                (declaration, point, excess)
+            })
+    })
+}
+
+/// The stages of the generator on a random declaration. Chance may make a declaration that says nothing, which is
+/// refused with one of these messages; any other refusal is a mistake of the generator.
+pub fn compiled(declaration: &Declaration) -> Result<Compiled, TestCaseError> {
+    const SAYS_NOTHING: [&str; 2] = ["this force is zero", "same surface as"];
+    let source = declaration.named("Random");
+    let tokens = source.parse().expect("tokens");
+    dalembert_codegen::compile(tokens).map_err(|refused| {
+        let messages: Vec<&str> = refused.iter().map(|error| error.message()).collect();
+        let is_empty = |text: &&str| SAYS_NOTHING.iter().any(|own| text.contains(own));
+        match messages.iter().all(is_empty) {
+            true => TestCaseError::reject("a declaration that says nothing"),
+            false => TestCaseError::fail(format!("{messages:?}")),
+        }
+    })
+}
+
+/// What is compared, with the size of the errors that are allowed.
+struct Comparison<'a> {
+    compiled: &'a Compiled,
+    dense: Dense<'a>,
+    at: Point,
+    evaluated: Evaluated,
+    excess: Vec<f64>,
+    /// Quasi-velocities, where functions of a reduced form are run.
+    quasi: Vec<f64>,
+    /// What rounding may do, relative to the numbers that occur.
+    tolerance: f64,
+}
+
+impl<'a> Comparison<'a> {
+    fn new(compiled: &'a Compiled, at: Point, excess: Vec<f64>) -> Self {
+        let dense = Dense::new(compiled);
+        let evaluated = dense.evaluate(&at);
+        let tolerance = 64.0 * f64::EPSILON * evaluated.condition();
+        Self {
+            compiled,
+            dense,
+            at,
+            evaluated,
+            excess,
+            quasi: Vec::new(),
+            tolerance,
+        }
+    }
+
+    fn run(&self, function: &Function) -> Vec<f64> {
+        let input = |input| match input {
+            Input::Time => self.at.t,
+            Input::Coordinate(i) => self.at.q[i],
+            Input::Velocity(i) => self.at.qdot[i],
+            Input::Momentum(i) => self.evaluated.p[i],
+            Input::Parameter(k) => self.dense.parameters[k],
+            Input::Excess(k) => self.excess[k],
+            Input::Quasi(i) => self.quasi[i],
+        };
+        interpret(function, &input).expect("a value")
+    }
+
+    /// Compares vectors up to rounding.
+    fn same(&self, what: &str, actual: &[f64], expected: &[f64]) -> Result<(), TestCaseError> {
+        same_within(what, actual, expected, self.tolerance)
+    }
+
+    /// The group of this name in what `eval` prints.
+    fn group(&self, values: &[f64], name: &str) -> Vec<f64> {
+        let mut start = 0;
+        for group in &self.compiled.programs.global().geometry.groups {
+            let end = start + group.shape.count();
+            if group.name == name {
+                return values[start..end].to_vec();
+            }
+            start = end;
+        }
+        panic!("no `{name}`")
+    }
+}
+
+/// Compares vectors; `tolerance` is relative to their largest number, at least 1.
+pub fn same_within(
+    what: &str,
+    actual: &[f64],
+    expected: &[f64],
+    tolerance: f64,
+) -> Result<(), TestCaseError> {
+    prop_assert_eq!(actual.len(), expected.len(), "{}", what);
+    let size = expected
+        .iter()
+        .fold(1.0_f64, |size, value| size.max(value.abs()));
+    for (a, e) in actual.iter().zip(expected) {
+        prop_assert!(
+            (a - e).abs() <= tolerance * size,
+            "{what}: {actual:?}, expected {expected:?}, tolerance {tolerance:e}"
+        );
+    }
+    Ok(())
+}
+
+/// Velocities, rates, multipliers and energy.
+fn check_motion(own: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let values = own.run(&own.compiled.programs.global().geometry.function);
+    let group = |name| own.group(&values, name);
+    let (acceleration, multipliers) = own.evaluated.motion();
+    let rate = [own.at.qdot.clone(), own.evaluated.momentum_rate()].concat();
+    own.same("qdot", &group("qdot"), &own.at.qdot)?;
+    own.same("pdot", &group("pdot"), &own.evaluated.momentum_rate())?;
+    own.same("acceleration", &group("acceleration"), &acceleration)?;
+    own.same("multipliers", &group("multipliers"), &multipliers)?;
+    own.same("energy", &group("energy"), &[own.evaluated.energy])?;
+    own.same("metric", &group("metric"), &own.evaluated.metric.concat())?;
+    let program = own.compiled.programs.global();
+    own.same("rate", &own.run(&program.rate), &rate)?;
+    own.same("velocity", &own.run(&program.velocity), &own.at.qdot)?;
+    own.same("momentum", &own.run(&program.momentum), &own.evaluated.p)
+}
+
+/// The geometry of the constraints, and the projections on them.
+fn check_constraints(own: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let Some(program) = &own.compiled.programs.global().constrained else {
+        return Ok(());
+    };
+    let evaluated = &own.evaluated;
+    let values = own.run(&own.compiled.programs.global().geometry.function);
+    let group = |name| own.group(&values, name);
+    let n = own.at.q.len();
+    let fields: Vec<_> = evaluated
+        .forms
+        .iter()
+        .map(|form| evaluated.raised(form))
+        .collect();
+    let mass: Vec<_> = evaluated
+        .forms
+        .iter()
+        .map(|form| times(&fields, form))
+        .collect();
+    let columns: Vec<_> = (0..n).map(|j| evaluated.project(&unit(n, j))).collect();
+    let projector: Vec<f64> = (0..n)
+        .flat_map(|i| columns.iter().map(move |column| column[i]))
+        .collect();
+    own.same("W", &group("W"), &fields.concat())?;
+    own.same("constraint_mass", &group("constraint_mass"), &mass.concat())?;
+    own.same("pi_D", &group("pi_D"), &projector)?;
+    own.same(
+        "multipliers",
+        &own.run(&program.multipliers),
+        &evaluated.motion().1,
+    )?;
+    let projected = times(&evaluated.metric, &evaluated.projected(&own.at.qdot));
+    let projected = moved(&projected, 1.0, &evaluated.linear);
+    let back = program
+        .return_to_constraints
+        .as_ref()
+        .expect("a global form");
+    own.same("project", &own.run(&back.nearest), &projected)?;
+    check_restored(own, &own.run(&back.restore))?;
+    check_levels(own, &own.run(&program.level_correction))
+}
+
+/// Where there is a frame: velocities and rates of quasi-velocities at the nearest allowed velocity.
+fn check_reduced(own: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let Ok(frame) = &own.compiled.derivation.frame else {
+        return Ok(());
+    };
+    let mut at = own.at.clone();
+    at.qdot = own.evaluated.projected(&own.at.qdot);
+    let mut on = Comparison::new(own.compiled, at, own.excess.clone());
+    let forms = frame
+        .quasi
+        .iter()
+        .map(|quasi| on.dense.values(&quasi.form, &on.at));
+    let forms: Vec<Vec<f64>> = forms.collect();
+    on.quasi = times(&forms, &on.at.qdot);
+    let curvature: Vec<_> = frame.quasi.iter().map(|quasi| quasi.curvature).collect();
+    let curvature = on.dense.values(&curvature, &on.at);
+    let (acceleration, multipliers) = on.evaluated.motion();
+    let rate = moved(&times(&forms, &acceleration), 1.0, &curvature);
+    let program = &own.compiled.programs.main;
+    let reduced = program.reduced.as_ref().expect("a reduced form");
+    on.same("reduced velocity", &on.run(&program.velocity), &on.at.qdot)?;
+    on.same(
+        "reduced rate",
+        &on.run(&program.rate),
+        &[on.at.qdot.clone(), rate].concat(),
+    )?;
+    on.same(
+        "reduced energy",
+        &on.run(&program.energy),
+        &[on.evaluated.energy],
+    )?;
+    on.same(
+        "reduced momentum",
+        &on.run(&reduced.momentum),
+        &on.evaluated.p,
+    )?;
+    on.same("quasi-velocities", &on.run(&reduced.quasi), &on.quasi)?;
+    own.same("nearest", &own.run(&reduced.nearest_velocities), &on.quasi)?;
+    own.same("nearest", &own.run(&reduced.nearest_momenta), &on.quasi)?;
+    match &program.constrained {
+        Some(program) => on.same("multipliers", &on.run(&program.multipliers), &multipliers),
+        None => Ok(()),
+    }
+}
+
+/// Restored momenta belong to velocities on the constraints.
+fn check_restored(own: &Comparison<'_>, p: &[f64]) -> Result<(), TestCaseError> {
+    let evaluated = &own.evaluated;
+    let qdot = evaluated.raised(&moved(p, -1.0, &evaluated.linear));
+    let residuals = moved(&times(&evaluated.forms, &qdot), 1.0, &evaluated.affine);
+    own.same("restore", &residuals, &vec![0.0; residuals.len()])
+}
+
+/// The correction of positions is the least one, in the metric, that changes the levels by the excess.
+fn check_levels(own: &Comparison<'_>, correction: &[f64]) -> Result<(), TestCaseError> {
+    let evaluated = &own.evaluated;
+    let levelled: Vec<usize> = own.compiled.derivation.levelled().collect();
+    let forms: Vec<Vec<f64>> = levelled
+        .iter()
+        .map(|&a| evaluated.forms[a].clone())
+        .collect();
+    let excess: Vec<f64> = own
+        .excess
+        .iter()
+        .take(forms.len())
+        .map(|own| -own)
+        .collect();
+    own.same("level correction", &times(&forms, correction), &excess)?;
+    let covector = times(&evaluated.metric, correction);
+    let fields: Vec<_> = forms.iter().map(|form| evaluated.raised(form)).collect();
+    let mass: Vec<_> = forms.iter().map(|form| times(&fields, form)).collect();
+    let weights = dalembert_tests::curvature::solve(&mass, &excess);
+    let combined = weights
+        .iter()
+        .zip(&forms)
+        .fold(vec![0.0; covector.len()], |sum, (weight, form)| {
+            moved(&sum, *weight, form)
+        });
+    own.same("level correction", &covector, &combined)
+}
+
+/// Gaps and the data of the impact laws.
+fn check_contacts(own: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let Some(program) = &own.compiled.programs.global().impacting else {
+        return Ok(());
+    };
+    let gap = |s: usize, at: &Point| own.dense.value(own.compiled.model.surfaces[s].gap, at);
+    for (s, contact) in program.contacts.iter().enumerate() {
+        let n = own.at.q.len();
+        let along =
+            |direction: &[f64], dt: f64| slope(&mut |h| gap(s, &own.at.shifted(h, direction, dt)));
+        let form: Vec<f64> = (0..n).map(|i| along(&unit(n, i), 0.0)).collect();
+        let gradient = own.evaluated.raised(&form);
+        let allowed = own.evaluated.project(&gradient);
+        let direction = times(&own.evaluated.metric, &allowed);
+        let expected = [
+            along(&own.at.qdot, 1.0),
+            dot(&direction, &own.at.qdot),
+            along(&vec![0.0; n], 1.0),
+            dot(&form, &allowed),
+            dot(&form, &gradient),
+        ];
+        let expected = [expected.to_vec(), direction].concat();
+        let tolerance = own.tolerance.max(1e-8);
+        same_within("contact", &own.run(contact), &expected, tolerance)?;
+        let expected = gap(s, &own.at);
+        own.same("gap", &own.run(&program.gaps)[s..=s], &[expected])?;
+    }
+    Ok(())
+}
+
+/// What the derivation differentiated, by differences of what was declared.
+fn check_derivatives(own: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let (model, derivation) = (&own.compiled.model, &own.compiled.derivation);
+    let n = own.at.q.len();
+    let close =
+        |what: &str, actual: &[f64], expected: &[f64]| same_within(what, actual, expected, 1e-8);
+    let lagrangian = |at: &Point| own.dense.value(model.lagrangian.whole, at);
+    let applied: Vec<f64> = (0..n)
+        .map(|k| {
+            model
+                .forces
+                .iter()
+                .map(|force| own.dense.value(force.form[k], &own.at))
+                .sum()
+        })
+        .collect();
+    let force = (0..n).map(|k| slope(&mut |h| lagrangian(&own.at.shifted(h, &unit(n, k), 0.0))));
+    let force: Vec<f64> = force.collect();
+    close("force", &own.evaluated.force, &moved(&force, 1.0, &applied))?;
+    let momentum = (0..n).map(|k| slope(&mut |h| lagrangian(&own.at.kicked(h, k))));
+    close(
+        "momentum",
+        &own.evaluated.p,
+        &momentum.collect::<Vec<f64>>(),
+    )?;
+    let carried = |h| own.dense.evaluate(&own.at.shifted(h, &own.at.qdot, 1.0));
+    let drift = own.dense.values(&derivation.field.drift, &own.at);
+    close("drift", &drift, &slopes(&|h| carried(h).p))?;
+    let residuals = |h| {
+        let carried = carried(h);
+        moved(&times(&carried.forms, &own.at.qdot), 1.0, &carried.affine)
+    };
+    let curvature: Vec<_> = derivation
+        .constraints
+        .iter()
+        .map(|own| own.curvature)
+        .collect();
+    close(
+        "curvature",
+        &own.dense.values(&curvature, &own.at),
+        &slopes(&residuals),
+    )
+}
+
+/// The divergence of the field on T*Q, by differences.
+fn check_divergence(own: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let (q, p) = (&own.at.q, &own.evaluated.p);
+    let n = q.len();
+    let divergence: f64 = (0..n)
+        .map(|i| {
+            let unit = unit(n, i);
+            let by_q = slope(&mut |h| own.dense.rate(own.at.t, &moved(q, h, &unit), p)[i]);
+            let by_p = slope(&mut |h| own.dense.rate(own.at.t, q, &moved(p, h, &unit))[n + i]);
+            by_q + by_p
+        })
+        .sum();
+    let rate = own.dense.rate(own.at.t, q, p);
+    let size = rate.iter().fold(1.0_f64, |size, rate| size.max(rate.abs()));
+    let actual = own.run(&own.compiled.programs.global().divergence);
+    same_within(
+        "divergence",
+        &actual,
+        &[divergence],
+        1e-7 * size * (1.0 + own.tolerance * 1e10),
+    )
+}
+
+fn check(declaration: &Declaration, at: Point, excess: Vec<f64>) -> Result<(), TestCaseError> {
+    let compiled = compiled(declaration)?;
+    let programs = &compiled.programs;
+    for function in [&programs.main, programs.global()]
+        .map(Program::functions)
+        .concat()
+    {
+        prop_assert_eq!(verify(function), Ok(()));
+    }
+    let own = Comparison::new(&compiled, at, excess);
+    check_motion(&own)?;
+    check_constraints(&own)?;
+    check_reduced(&own)?;
+    check_contacts(&own)?;
+    check_derivatives(&own)?;
+    check_divergence(&own)
+}
+
+proptest! {
+    #![proptest_config(config(400))]
+
+    #[test]
+    fn programs_do_what_dense_algebra_does((declaration, at, excess) in sample(4)) {
+        check(&declaration, at, excess)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(config(2000))]
+
+    #[test]
+    #[ignore = "nightly: many larger declarations"]
+    fn larger_programs_do_what_dense_algebra_does((declaration, at, excess) in sample(7)) {
+        check(&declaration, at, excess)?;
+    }
+}

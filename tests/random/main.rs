@@ -1,0 +1,32 @@
+//! Random declarations: what is generated from them agrees with independent routes, and what is broken is refused.
+//!
+//! The quick tests draw from a fixed seed. `PROPTEST_CASES` and `PROPTEST_RNG_SEED` ask for more cases and for other
+//! ones; a failure shrinks and prints the declaration that shows it.
+
+mod broken;
+mod declaration;
+mod dense;
+mod emitted;
+mod function;
+mod interpreted;
+mod models;
+
+use proptest::test_runner::{Config, RngSeed};
+
+/// This many cases, or what the environment asks for.
+fn config(cases: u32) -> Config {
+    let environment = Config::default();
+    let asked = std::env::var_os("PROPTEST_CASES").is_some();
+    let seeded = matches!(environment.rng_seed, RngSeed::Fixed(_));
+    Config {
+        cases: if asked { environment.cases } else { cases },
+        rng_seed: if seeded {
+            environment.rng_seed
+        } else {
+            RngSeed::Fixed(1743)
+        },
+        failure_persistence: None,
+        max_shrink_iters: 4000,
+        ..environment
+    }
+}

@@ -1,0 +1,98 @@
+//! With the feature `strict` every build of a program computes the same bits: unoptimised, optimised, and for a machine
+//! with fused multiplication.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use dalembert_tests::golden;
+
+/// A way to build the program in `tests/strict`.
+struct Build {
+    name: &'static str,
+    profile: &'static str,
+    /// What the compiler of Rust and that of C may use of the machine.
+    flags: &'static str,
+    cpu: &'static str,
+}
+
+const UNOPTIMISED: Build = Build {
+    name: "unoptimised",
+    profile: "dev",
+    flags: "",
+    cpu: "x86-64",
+};
+const OPTIMISED: Build = Build {
+    name: "optimised",
+    profile: "release",
+    flags: "",
+    cpu: "x86-64",
+};
+const NATIVE: Build = Build {
+    name: "native",
+    profile: "release",
+    flags: "-C target-cpu=native",
+    cpu: "native",
+};
+
+impl Build {
+    /// What the program prints.
+    fn output(&self) -> String {
+        let binary = self.binary();
+        let output = Command::new(binary).output().expect("the program starts");
+        assert!(output.status.success(), "{}: the program fails", self.name);
+        String::from_utf8(output.stdout).expect("a text")
+    }
+
+    fn binary(&self) -> PathBuf {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("strict");
+        // NOTE: a folder each; the C part of the elementary functions is not built anew when only its machine changes.
+        let target = Path::new(env!("CARGO_TARGET_TMPDIR"))
+            .join("strict")
+            .join(self.name);
+        let status = Command::new(env!("CARGO"))
+            .args([
+                "build",
+                "--quiet",
+                "--locked",
+                "--profile",
+                self.profile,
+                "--manifest-path",
+            ])
+            .arg(folder.join("Cargo.toml"))
+            .arg("--target-dir")
+            .arg(&target)
+            .env_remove("CARGO_TARGET_DIR")
+            .env("RUSTFLAGS", self.flags)
+            .env("TARGET_CPU", self.cpu)
+            .status()
+            .expect("cargo");
+        assert!(
+            status.success(),
+            "{}: the program does not build",
+            self.name
+        );
+        let folder = if self.profile == "dev" {
+            "debug"
+        } else {
+            self.profile
+        };
+        target.join(folder).join("strict")
+    }
+}
+
+#[test]
+fn a_strict_run_has_the_stored_bits_unoptimised_and_optimised() {
+    let optimised = OPTIMISED.output();
+    assert_eq!(optimised, OPTIMISED.output(), "two runs differ");
+    assert_eq!(optimised, UNOPTIMISED.output(), "two builds differ");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/strict.txt");
+    golden::compare_file(&path, &optimised);
+}
+
+#[test]
+#[ignore = "nightly: one more build, for this very machine"]
+fn a_strict_run_has_the_stored_bits_where_multiplication_may_be_fused() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/strict.txt");
+    let stored = std::fs::read_to_string(path).expect("a stored text");
+    assert_eq!(NATIVE.output(), stored);
+}
