@@ -320,6 +320,35 @@ pub trait Impacting: System {
         false
     }
 
+    /// The second rates `d^2h_s/dt^2` where the motion's part of the state, momenta or quasi-velocities, changes at the
+    /// rates `motion`. `None` for a system that does not know them: it cannot go on along a surface.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn gap_accelerations(
+        &self,
+        t: f64,
+        state: &Self::State,
+        motion: &Self::Impulse,
+    ) -> Result<Option<Self::Gaps>, Fault> {
+        let _ = (t, state, motion);
+        Ok(None)
+    }
+
+    /// What the impulse `motion` changes the gap rates by. `None` as for [`Impacting::gap_accelerations`].
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn gap_responses(
+        &self,
+        t: f64,
+        state: &Self::State,
+        motion: &Self::Impulse,
+    ) -> Result<Option<Self::Gaps>, Fault> {
+        let _ = (t, state, motion);
+        Ok(None)
+    }
+
     /// Whether the surface counts here: all its `when` conditions are positive.
     fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         let _ = (surface, t, state);

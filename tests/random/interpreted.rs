@@ -58,6 +58,8 @@ struct Comparison<'a> {
     excess: Vec<f64>,
     /// Quasi-velocities, where functions of a reduced form are run.
     quasi: Vec<f64>,
+    /// Rates of the motion's part of the state, or an impulse on it.
+    motion: Vec<f64>,
     /// What rounding may do, relative to the numbers that occur.
     tolerance: f64,
 }
@@ -74,6 +76,7 @@ impl<'a> Comparison<'a> {
             evaluated,
             excess,
             quasi: Vec::new(),
+            motion: Vec::new(),
             tolerance,
         }
     }
@@ -87,6 +90,7 @@ impl<'a> Comparison<'a> {
             Input::Parameter(k) => self.dense.parameters[k],
             Input::Excess(k) => self.excess[k],
             Input::Quasi(i) => self.quasi[i],
+            Input::MotionRate(i) => self.motion[i],
         };
         interpret(function, &input).expect("a value")
     }
@@ -208,6 +212,7 @@ fn check_reduced(own: &Comparison<'_>) -> Result<(), TestCaseError> {
     let curvature = on.dense.values(&curvature, &on.at);
     let (acceleration, multipliers) = on.evaluated.motion();
     let rate = moved(&times(&forms, &acceleration), 1.0, &curvature);
+    check_surfaces(&mut on, &acceleration, rate.clone())?;
     let program = &own.compiled.programs.main;
     let reduced = program.reduced.as_ref().expect("a reduced form");
     on.same("reduced velocity", &on.run(&program.velocity), &on.at.qdot)?;
@@ -233,6 +238,39 @@ fn check_reduced(own: &Comparison<'_>) -> Result<(), TestCaseError> {
         Some(program) => on.same("multipliers", &on.run(&program.multipliers), &multipliers),
         None => Ok(()),
     }
+}
+
+/// Second rates of gaps along the motion, by differences, and the compliances as responses, in both forms.
+fn check_surfaces(
+    on: &mut Comparison<'_>,
+    acceleration: &[f64],
+    rate: Vec<f64>,
+) -> Result<(), TestCaseError> {
+    let programs = &on.compiled.programs;
+    let surfaces = on.compiled.derivation.surfaces.iter();
+    let gap_rates: Vec<_> = surfaces.map(|surface| surface.gap_rate).collect();
+    let expected = slopes(&|h| {
+        let mut carried = on.at.shifted(h, &on.at.qdot, 1.0);
+        carried.qdot = moved(&on.at.qdot, h, acceleration);
+        on.dense.values(&gap_rates, &carried)
+    });
+    let rates = [rate, on.evaluated.momentum_rate()];
+    for (program, rate) in [&programs.main, programs.global()].into_iter().zip(rates) {
+        let Some(functions) = &program.impacting else {
+            continue;
+        };
+        on.motion = rate;
+        let accelerations = on.run(&functions.gap_accelerations);
+        same_within("gap acceleration", &accelerations, &expected, 1e-7)?;
+        for (s, contact) in functions.contacts.iter().enumerate() {
+            let contact = on.run(contact);
+            let (scalars, direction) = contact.split_at(5);
+            on.motion = direction.to_vec();
+            let responses = on.run(&functions.gap_responses);
+            on.same("compliance", &responses[s..=s], &scalars[3..4])?;
+        }
+    }
+    Ok(())
 }
 
 /// Restored momenta belong to velocities on the constraints.

@@ -288,6 +288,10 @@ impl<'a> Writer<'a> {
             Input::Momentum(i) => local(&self.names.momenta[i]),
             Input::Quasi(i) => local(&self.names.quasi[i]),
             Input::Parameter(k) => self.names.parameters[k].clone(),
+            Input::MotionRate(i) => {
+                let index = Literal::usize_unsuffixed(i);
+                quote!(motion[#index])
+            }
             Input::Excess(k) => {
                 let index = Literal::usize_unsuffixed(k);
                 quote!(excess[#index])

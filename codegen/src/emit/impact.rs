@@ -16,6 +16,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let s = context.model.surfaces.len();
     let gaps = emit_gaps(context, functions);
+    let responses = emit_responses(context, functions);
     let conditions = emit_conditions(context, functions);
     let laws = emit_laws(context, functions);
     let contacts = emit_contacts(context, functions);
@@ -27,6 +28,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
             type Gaps = ::dalembert::__private::SVector<f64, #s>;
             #gaps
             #series
+            #responses
             #conditions
             #laws
             #contacts
@@ -58,6 +60,52 @@ fn emit_gaps(context: &Context<'_>, functions: &Impacting) -> TokenStream {
         ) -> ::core::result::Result<Self::Gaps, ::dalembert::Fault> {
             #rate_statements
             ::core::result::Result::Ok(::dalembert::__private::vector([#(#rate_values),*]))
+        }
+    }
+}
+
+/// What the surfaces feel of forces and of impulses: for motion along them.
+fn emit_responses(context: &Context<'_>, functions: &Impacting) -> TokenStream {
+    let accelerations = context.state_body(&functions.gap_accelerations);
+    let accelerations_doc = doc::formula(
+        "d^2 h_s/dt^2, where the motion's part of the state changes at the rates `motion`",
+        &functions.gap_accelerations.cost,
+    );
+    let (acceleration_statements, acceleration_values) =
+        (accelerations.statements, accelerations.outputs);
+    let responses = context.state_body(&functions.gap_responses);
+    let responses_doc = doc::formula(
+        "the change of dh_s(qdot) by an impulse",
+        &functions.gap_responses.cost,
+    );
+    let (response_statements, response_values) = (responses.statements, responses.outputs);
+    quote! {
+        #accelerations_doc
+        #[inline]
+        fn gap_accelerations(
+            &self,
+            t: f64,
+            state: &Self::State,
+            motion: &Self::Impulse,
+        ) -> ::core::result::Result<::core::option::Option<Self::Gaps>, ::dalembert::Fault> {
+            #acceleration_statements
+            ::core::result::Result::Ok(::core::option::Option::Some(
+                ::dalembert::__private::vector([#(#acceleration_values),*])
+            ))
+        }
+
+        #responses_doc
+        #[inline]
+        fn gap_responses(
+            &self,
+            t: f64,
+            state: &Self::State,
+            motion: &Self::Impulse,
+        ) -> ::core::result::Result<::core::option::Option<Self::Gaps>, ::dalembert::Fault> {
+            #response_statements
+            ::core::result::Result::Ok(::core::option::Option::Some(
+                ::dalembert::__private::vector([#(#response_values),*])
+            ))
         }
     }
 }

@@ -33,7 +33,7 @@ pub(super) struct Names {
 }
 
 /// Names that generated functions use for their own arguments.
-const ARGUMENTS: [&str; 23] = [
+const ARGUMENTS: [&str; 24] = [
     "t",
     "state",
     "rate",
@@ -48,6 +48,7 @@ const ARGUMENTS: [&str; 23] = [
     "report",
     "size",
     "direction",
+    "motion",
     "unit",
     "order",
     "coefficients",

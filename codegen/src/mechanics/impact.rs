@@ -19,6 +19,8 @@ pub struct SurfaceForm {
     pub rate: ExprId,
     /// `dh(qdot) + d_t h`.
     pub gap_rate: ExprId,
+    /// The rate of `gap_rate` at fixed velocity: what `d^2h/dt^2` is besides `dh(qddot)`.
+    pub curvature: ExprId,
     /// The functions that must be positive for the surface to count.
     pub conditions: Vec<ExprId>,
 }
@@ -29,6 +31,7 @@ pub(super) fn derive_surfaces(model: &mut Model, coordinates: &Coordinates) -> V
     (0..model.surfaces.len())
         .map(|s| {
             let gap = model.surfaces[s].gap;
+            let gap_rate = model.pool.derivative_along(gap, &motion);
             SurfaceForm {
                 gap,
                 form: coordinates
@@ -37,7 +40,8 @@ pub(super) fn derive_surfaces(model: &mut Model, coordinates: &Coordinates) -> V
                     .map(|&q| model.pool.diff(gap, q))
                     .collect(),
                 rate: model.pool.diff(gap, coordinates.time),
-                gap_rate: model.pool.derivative_along(gap, &motion),
+                curvature: model.pool.derivative_along(gap_rate, &motion),
+                gap_rate,
                 conditions: model.surfaces[s].conditions.clone(),
             }
         })

@@ -55,6 +55,8 @@ pub enum Input {
     Parameter(usize),
     /// An excess of a position-level value.
     Excess(usize),
+    /// The rate of a momentum or quasi-velocity, or an impulse on it.
+    MotionRate(usize),
 }
 
 /// One operation.
@@ -153,7 +155,11 @@ impl Input {
         match self {
             Self::Coordinate(i) => Some(i),
             Self::Momentum(i) | Self::Quasi(i) => Some(n + i),
-            Self::Time | Self::Velocity(_) | Self::Parameter(_) | Self::Excess(_) => None,
+            Self::Time
+            | Self::Velocity(_)
+            | Self::Parameter(_)
+            | Self::Excess(_)
+            | Self::MotionRate(_) => None,
         }
     }
 }
@@ -417,6 +423,10 @@ pub struct Impacting {
     pub gap_jet: jet::Jet,
     /// `(t, s) -> dh_s(qdot) + d_t h_s`
     pub gap_rates: Function,
+    /// `(t, s, w) -> d^2h_s/dt^2` where the motion's part of the state changes at the rates `w`
+    pub gap_accelerations: Function,
+    /// `(t, s, w) ->` what an impulse `w` changes the gap rates by
+    pub gap_responses: Function,
     /// Per surface `(t, q) -> conditions`; `None` where there are none.
     pub conditions: Vec<Option<Function>>,
     /// Per surface `(t, s) -> gap_rate, constrained_rate, surface_rate, constrained_compliance,
@@ -432,13 +442,17 @@ impl Impacting {
             gaps,
             gap_jet,
             gap_rates,
+            gap_accelerations,
+            gap_responses,
             conditions,
             contacts,
             coefficients,
         } = self;
         let declared = conditions.iter().chain(coefficients).flatten();
-        [gaps, &gap_jet.function, gap_rates]
+        let moving = [gap_rates, gap_accelerations, gap_responses];
+        [gaps, &gap_jet.function]
             .into_iter()
+            .chain(moving)
             .chain(contacts)
             .chain(declared)
             .collect()

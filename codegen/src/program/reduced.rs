@@ -258,7 +258,7 @@ impl<'a> Kernel<'a> {
     }
 
     /// `a = Xdot u + Xdot_0`, the acceleration at quasi-velocities that do not change.
-    fn frame_acceleration(&mut self) -> Vec<Value> {
+    pub fn frame_acceleration(&mut self) -> Vec<Value> {
         let Some(frame) = self.frame() else {
             return Vec::new();
         };
@@ -270,6 +270,18 @@ impl<'a> Kernel<'a> {
             Row::Quasi(i) => builder.neg(quasi[i]),
             Row::Constraint(a) => builder.neg(constraints[a]),
         })
+    }
+
+    /// `X w`
+    pub fn along_frame(&mut self, w: &[Value]) -> Vec<Value> {
+        let fields = self.frame_fields();
+        let mut total = vec![self.builder.zero(); self.dimension()];
+        for (field, &weight) in fields.iter().zip(w) {
+            for (entry, &component) in total.iter_mut().zip(field) {
+                *entry = self.builder.add_product(*entry, weight, component);
+            }
+        }
+        total
     }
 
     /// `udot`

@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::program::jet::Jet;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::recipes::declared::position_function;
-use crate::program::{Form, Function, Guard, Impacting, Value};
+use crate::program::{Form, Function, Guard, Impacting, Input, Value};
 
 /// All of them; `None` without surfaces. `expand` makes the jet of a function along the motion.
 pub fn impacting(
@@ -34,6 +34,8 @@ pub fn impacting(
         gap_rates: evaluate(model, derivation, form.state(), |surface| {
             vec![surface.gap_rate]
         }),
+        gap_accelerations: accelerations(model, derivation, form),
+        gap_responses: responses(model, derivation, form),
         conditions: surfaces
             .clone()
             .map(|s| conditions(model, derivation, s))
@@ -63,6 +65,69 @@ fn evaluate(
     let expressions: Vec<ExprId> = derivation.surfaces.iter().flat_map(of).collect();
     let outputs = kernel.values(&expressions);
     kernel.finish(outputs)
+}
+
+/// `d^2h/dt^2 = dh(qddot) + curvature`, with `qddot = X w + Xdot u + Xdot_0`, or `g^{-1}(w - drift)`.
+fn accelerations(model: &Model, derivation: &Derivation, form: Form) -> Function {
+    let mut kernel = Kernel::new(model, derivation, form.state());
+    let motion = motion_rates(&mut kernel, form);
+    let acceleration = match form {
+        Form::Global => {
+            let drift = kernel.values(&derivation.field.drift);
+            let inertial: Vec<Value> = motion
+                .iter()
+                .zip(drift)
+                .map(|(&w, d)| kernel.builder.sub(w, d))
+                .collect();
+            kernel.raise(&inertial)
+        }
+        Form::Reduced => {
+            let steady = kernel.frame_acceleration();
+            let changing = kernel.along_frame(&motion);
+            let pairs = steady.iter().zip(changing);
+            pairs.map(|(&a, b)| kernel.builder.add(a, b)).collect()
+        }
+    };
+    let outputs = derivation
+        .surfaces
+        .iter()
+        .map(|surface| {
+            let form = kernel.values(&surface.form);
+            let along = kernel.dot(&form, &acceleration);
+            let curvature = kernel.value(surface.curvature);
+            kernel.builder.add(along, curvature)
+        })
+        .collect();
+    kernel.finish(outputs)
+}
+
+/// `dh(X w)`, or `dh(g^{-1} w)`
+fn responses(model: &Model, derivation: &Derivation, form: Form) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let motion = motion_rates(&mut kernel, form);
+    let velocity = match form {
+        Form::Global => kernel.raise(&motion),
+        Form::Reduced => kernel.along_frame(&motion),
+    };
+    let outputs = derivation
+        .surfaces
+        .iter()
+        .map(|surface| {
+            let form = kernel.values(&surface.form);
+            kernel.dot(&form, &velocity)
+        })
+        .collect();
+    kernel.finish(outputs)
+}
+
+fn motion_rates(kernel: &mut Kernel<'_>, form: Form) -> Vec<Value> {
+    let count = match form {
+        Form::Global => kernel.dimension(),
+        Form::Reduced => kernel.quasi_velocities(),
+    };
+    (0..count)
+        .map(|i| kernel.builder.input(Input::MotionRate(i)))
+        .collect()
 }
 
 fn conditions(model: &Model, derivation: &Derivation, s: usize) -> Option<Function> {
