@@ -1,6 +1,6 @@
 //! A run allocates nothing, and the same run gives the same bits twice.
 
-use dalembert::{Dop853, DormandPrince5, Scene, Simulation, Stepper, Tolerance};
+use dalembert::{Dop853, DormandPrince5, Scene, Simulation, Stepper, Taylor, Tolerance};
 use dalembert_models::{ChaplyginSleigh, RollingDisk};
 use dalembert_tests::allocation::{Counting, allocations};
 
@@ -47,8 +47,10 @@ fn a_run_with_impacts_and_projection_allocates_nothing_and_repeats_to_the_bit() 
         [
             run(&disk, Dop853::new(tolerance), 50.0),
             run(&disk, DormandPrince5::new(tolerance), 50.0),
+            run(&disk, Taylor::new(tolerance), 50.0),
             run(&sleigh, Dop853::new(tolerance), 50.0),
             run(&sleigh, DormandPrince5::new(tolerance), 50.0),
+            run(&sleigh, Taylor::new(tolerance), 50.0),
         ]
     };
     let (first, second) = (runs(), runs());

@@ -1,6 +1,6 @@
 //! Impact times against trajectories computed in closed form or with more than 30 digits.
 //!
-//! Every case runs at tolerance 1e-13. Regular motions (straight lines, the disk on a circular table) keep their
+//! Every case runs with DOP853 at tolerance 1e-13 and with power series at 1e-15. Regular motions (straight lines, the disk on a circular table) keep their
 //! accuracy over all impacts; on elliptical tables neighbouring motions separate, so only the first five are held to
 //! the same bound.
 
@@ -9,7 +9,8 @@ use core::ops::ControlFlow;
 use dalembert::impacts::law::Law;
 use dalembert::{
     Constrained, Described, Dop853, DormandPrince5, Event, Impacting, Observer, Outcome,
-    Projection, Run, Scene, SceneEffects, Simulation, Stepper, System, Tolerance,
+    Projection, Run, Scene, SceneEffects, Simulation, Stepper, System, Taylor, TaylorField,
+    Tolerance,
 };
 use dalembert_models::{
     BouncingBall, ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk,
@@ -58,6 +59,25 @@ where
 
 fn dop853<S: dalembert::StateVector>(tol: f64) -> Dop853<S> {
     Dop853::new(Tolerance::new(tol).expect("a tolerance"))
+}
+
+fn taylor<S: TaylorField>(tol: f64) -> Taylor<S> {
+    Taylor::new(Tolerance::new(tol).expect("a tolerance"))
+}
+
+/// The run of [`run`] with each of the accurate integrators, by name.
+fn runs<S>(
+    system: &S,
+    state: S::State,
+    law: Law,
+    count: usize,
+) -> [(&'static str, Impacts, Run<S::State>); 2]
+where
+    S: Described + Impacting + Scene + TaylorField,
+{
+    let (first, first_run) = run(system, state, law, count, dop853(1e-13));
+    let (second, second_run) = run(system, state, law, count, taylor(1e-15));
+    [("dop853", first, first_run), ("taylor", second, second_run)]
 }
 
 fn law_of(case: &Value) -> Law {
@@ -133,26 +153,27 @@ fn the_rolling_disk_meets_its_impacts() {
         .as_array()
         .expect("cases")
     {
-        let label = format!("{} {}", case["label"], case["law"]);
         let (disk, state) = disk(case);
-        let (impacts, _) = run(&disk, state, law_of(case), 20, dop853(1e-13));
-        let regular = number(&case["parameters"]["ta"]) == number(&case["parameters"]["tb"]);
-        match (regular, law_of(case)) {
-            (true, Law::Elastic) => assert_times(&label, &impacts, case, 20, billionth),
-            (true, _) => assert_grazing_times(&label, &impacts, case),
-            (false, _) => assert_times(&label, &impacts, case, 5, billionth),
-        }
-        for (impact, surface) in case["impacts"]
-            .as_array()
-            .expect("impacts")
-            .iter()
-            .zip(&impacts.surfaces)
-            .take(5)
-        {
-            assert_eq!(
-                impact["edge"],
-                RollingDisk::DESCRIPTION.surfaces[*surface].name
-            );
+        for (method, impacts, _) in runs(&disk, state, law_of(case), 20) {
+            let label = format!("{} {} {method}", case["label"], case["law"]);
+            let regular = number(&case["parameters"]["ta"]) == number(&case["parameters"]["tb"]);
+            match (regular, law_of(case)) {
+                (true, Law::Elastic) => assert_times(&label, &impacts, case, 20, billionth),
+                (true, _) => assert_grazing_times(&label, &impacts, case),
+                (false, _) => assert_times(&label, &impacts, case, 5, billionth),
+            }
+            for (impact, surface) in case["impacts"]
+                .as_array()
+                .expect("impacts")
+                .iter()
+                .zip(&impacts.surfaces)
+                .take(5)
+            {
+                assert_eq!(
+                    impact["edge"],
+                    RollingDisk::DESCRIPTION.surfaces[*surface].name
+                );
+            }
         }
     }
 }
@@ -225,14 +246,15 @@ fn the_sleigh_billiard_meets_its_impacts() {
     {
         let (sleigh, state) = sleigh_state(case);
         let count = times(case).len();
-        let (impacts, run) = run(&sleigh, state, law_of(case), count, dop853(1e-13));
-        let label = format!("sleigh {} {}", case["law"], case["initial"]);
-        assert_times(&label, &impacts, case, 5, billionth);
-        let infeasible = case["stopped_because_law_infeasible"]
-            .as_bool()
-            .expect("a flag");
-        let penetrating = matches!(run.outcome, Outcome::StillPenetrating { .. });
-        assert_eq!(penetrating, infeasible, "{label}: {}", run.outcome);
+        for (method, impacts, run) in runs(&sleigh, state, law_of(case), count) {
+            let label = format!("sleigh {} {} {method}", case["law"], case["initial"]);
+            assert_times(&label, &impacts, case, 5, billionth);
+            let infeasible = case["stopped_because_law_infeasible"]
+                .as_bool()
+                .expect("a flag");
+            let penetrating = matches!(run.outcome, Outcome::StillPenetrating { .. });
+            assert_eq!(penetrating, infeasible, "{label}: {}", run.outcome);
+        }
     }
 }
 
@@ -278,19 +300,20 @@ fn the_rolling_ball_meets_its_impacts() {
             .complete_velocity(0.0, &q.into(), &given, &named)
             .expect("velocities");
         let state = ball.state(0.0, &q.into(), &qdot).expect("a state");
-        let (impacts, run) = run(&ball, state, law_of(case), 12, dop853(1e-13));
-        assert_eq!(
-            run.outcome,
-            Outcome::ImpactBudget,
-            "the chart is not left in these cases"
-        );
-        assert_times(
-            &format!("ball {}", case["law"]),
-            &impacts,
-            case,
-            12,
-            billionth,
-        );
+        for (method, impacts, run) in runs(&ball, state, law_of(case), 12) {
+            assert_eq!(
+                run.outcome,
+                Outcome::ImpactBudget,
+                "the chart is not left in these cases"
+            );
+            assert_times(
+                &format!("ball {} {method}", case["law"]),
+                &impacts,
+                case,
+                12,
+                billionth,
+            );
+        }
     }
 }
 
@@ -311,14 +334,15 @@ fn the_point_billiard_meets_its_impacts() {
         let state = table
             .state(0.0, &[x, y].into(), &[vx, vy].into())
             .expect("a state");
-        let (impacts, _) = run(&table, state, Law::Elastic, 25, dop853(1e-13));
-        assert_times(
-            &format!("point billiard {}", case["ta"]),
-            &impacts,
-            case,
-            25,
-            billionth,
-        );
+        for (method, impacts, _) in runs(&table, state, Law::Elastic, 25) {
+            assert_times(
+                &format!("point billiard {} {method}", case["ta"]),
+                &impacts,
+                case,
+                25,
+                billionth,
+            );
+        }
     }
 }
 
@@ -337,9 +361,16 @@ fn the_bouncing_ball_meets_its_impacts() {
             .state(0.0, &[x0].into(), &[v0].into())
             .expect("a state");
         let count = times(case).len();
-        let (impacts, run) = run(&ball, state, Law::Restitution(e), count, dop853(1e-13));
-        assert_times(&format!("ball e = {e}"), &impacts, case, count, billionth);
-        assert_eq!(run.outcome, Outcome::ImpactBudget);
+        for (method, impacts, run) in runs(&ball, state, Law::Restitution(e), count) {
+            assert_times(
+                &format!("ball e = {e} {method}"),
+                &impacts,
+                case,
+                count,
+                billionth,
+            );
+            assert_eq!(run.outcome, Outcome::ImpactBudget);
+        }
     }
 }
 
@@ -384,7 +415,7 @@ fn slope(tolerances: &[f64], errors: &[f64]) -> f64 {
 }
 
 /// With error control per step an error estimate of order q makes the global error fall like tol^(p/(q + 1)): 8/8
-/// for DOP853, 5/5 for Dormand-Prince 5(4).
+/// for DOP853, 5/5 for Dormand-Prince 5(4). Power series change their order with the tolerance: 1 up to its rounding.
 #[test]
 fn errors_fall_with_the_tolerance() {
     let tolerances = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
@@ -392,7 +423,8 @@ fn errors_fall_with_the_tolerance() {
     let low = ladder(&tolerances, |tol| {
         DormandPrince5::new(Tolerance::new(tol).expect("a tolerance"))
     });
-    for (name, errors) in [("dop853", high), ("dopri5", low)] {
+    let series = ladder(&tolerances, taylor);
+    for (name, errors) in [("dop853", high), ("dopri5", low), ("taylor", series)] {
         let slope = slope(&tolerances, &errors);
         println!("{name}: {errors:?}, slope {slope:.2}");
         assert!(
@@ -403,7 +435,7 @@ fn errors_fall_with_the_tolerance() {
 }
 
 /// Free motion (surfaces left out) of a system from a reference file, against every checkpoint.
-fn check_free_runs<S: Described + Constrained>(system: &S, bound: f64) {
+fn check_free_runs<S: Described + Constrained + TaylorField>(system: &S, bound: f64) {
     let file = read(S::DESCRIPTION.name);
     let runs = file["free_runs"].as_array().cloned();
     let runs = runs.unwrap_or_else(|| vec![file["free_run"].clone()]);
@@ -419,22 +451,30 @@ fn check_free_runs<S: Described + Constrained>(system: &S, bound: f64) {
             .expect("a state");
         for checkpoint in run["checkpoints"].as_array().expect("checkpoints") {
             let t = number(&checkpoint["t"]);
-            let mut simulation = Simulation::new(system, dop853(1e-13), (Projection::<S>::new(),));
-            let end = simulation.run(t0, state, t, &mut ()).expect("a start");
-            assert_eq!(end.outcome, Outcome::Done, "{}", S::DESCRIPTION.name);
-            let qdot = system.velocity(t, &end.state).expect("a velocity");
-            let q = system.position(&end.state);
-            for (key, actual) in [("q", q), ("qdot", qdot)] {
-                let pairs = dalembert::StateVector::as_slice(&actual)
-                    .iter()
-                    .zip(numbers(&checkpoint[key]));
-                for (a, e) in pairs {
-                    let error = (a - e).abs() / e.abs().max(1.0);
-                    assert!(
-                        error < bound,
-                        "{} at t = {t}: {key} {a} for {e}, {error:.1e}",
-                        S::DESCRIPTION.name
-                    );
+            let projection = || (Projection::<S>::new(),);
+            let mut high = Simulation::new(system, dop853(1e-13), projection());
+            let mut series = Simulation::new(system, taylor(1e-15), projection());
+            let ends = [
+                high.run(t0, state, t, &mut ()),
+                series.run(t0, state, t, &mut ()),
+            ];
+            for end in ends {
+                let end = end.expect("a start");
+                assert_eq!(end.outcome, Outcome::Done, "{}", S::DESCRIPTION.name);
+                let qdot = system.velocity(t, &end.state).expect("a velocity");
+                let q = system.position(&end.state);
+                for (key, actual) in [("q", q), ("qdot", qdot)] {
+                    let pairs = dalembert::StateVector::as_slice(&actual)
+                        .iter()
+                        .zip(numbers(&checkpoint[key]));
+                    for (a, e) in pairs {
+                        let error = (a - e).abs() / e.abs().max(1.0);
+                        assert!(
+                            error < bound,
+                            "{} at t = {t}: {key} {a} for {e}, {error:.1e}",
+                            S::DESCRIPTION.name
+                        );
+                    }
                 }
             }
         }

@@ -51,7 +51,7 @@ pub fn half(a: &[f64; LENGTH], k: usize) -> f64 {
     for (x, y) in left.iter().zip(right.iter().rev()) {
         (even, odd) = (odd, even + x * y);
     }
-    let centre = if k % 2 == 0 {
+    let centre = if k.is_multiple_of(2) {
         0.5 * a[k / 2] * a[k / 2]
     } else {
         0.0

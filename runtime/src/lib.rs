@@ -3,7 +3,7 @@
 //! A system says how its state changes ([`VectorField`]), what of it are positions, momenta and energy
 //! ([`System`]), what constrains it ([`Constrained`]) and what it hits ([`Impacting`]). The `model!` macro writes
 //! all of that from a declaration; it can also be written by hand. [`Simulation`] puts a system together with an
-//! integrator ([`Dop853`], [`DormandPrince5`]) and effects ([`Impacts`], [`Projection`], or what
+//! integrator ([`Dop853`], [`DormandPrince5`], [`Taylor`]) and effects ([`Impacts`], [`Projection`], or what
 //! [`Scene::effects`] says), and runs it. A run ends in exactly one [`Outcome`], with the last good state.
 //!
 //! Impacts are roots of the gaps along the dense output of each step: all of them, in order, to the last bits of

@@ -206,10 +206,10 @@ impl<'a> Writer<'a> {
                 (locals[i], any) = (quote!(#next), true);
             }
         }
-        any.then(
-            || quote!(let [#(#locals),*] = ::dalembert::__private::components(&coefficients[k]);),
-        )
-        .unwrap_or_default()
+        if !any {
+            return TokenStream::new();
+        }
+        quote!(let [#(#locals),*] = ::dalembert::__private::components(&coefficients[k]);)
     }
 
     /// The statements of order 0, the results, and how everything that is read of it is.

@@ -90,8 +90,21 @@ impl<G: StateVector> GapSeries<G> {
     /// The gap of a surface at a part of the step.
     #[inline(always)]
     pub(super) fn at(&self, surface: usize, part: f64) -> f64 {
-        let terms = self.coefficients[..=self.order].iter().rev();
-        terms.fold(0.0, |sum, term| sum * part + term.as_slice()[surface])
+        let [gap] = self.at_each(surface, [part]);
+        gap
+    }
+
+    /// The gap of a surface at several parts of the step, which do not wait for each other.
+    #[inline(always)]
+    pub(super) fn at_each<const N: usize>(&self, surface: usize, parts: [f64; N]) -> [f64; N] {
+        let mut gaps = [0.0; N];
+        for term in self.coefficients[..=self.order].iter().rev() {
+            let term = term.as_slice()[surface];
+            for (gap, part) in gaps.iter_mut().zip(parts) {
+                *gap = *gap * part + term;
+            }
+        }
+        gaps
     }
 
     /// Whether the gap of a surface keeps one sign over the step; apart from its start, where the surface is at hand

@@ -249,7 +249,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 continue;
             }
             let samples = match &glance.series {
-                Some(series) => NODES.map(|part| series.at(surface, part)),
+                Some(series) => series.at_each(surface, NODES),
                 None => whole
                     .get_or_insert_with(|| samples(step, &self.gaps, &glance.gaps))
                     .map(|gaps| gaps.as_slice()[surface]),

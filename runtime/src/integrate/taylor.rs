@@ -1,12 +1,12 @@
 //! Taylor series of the motion, with the order and the steps of Jorba and Zou.
 //!
 //! ```text
-//! p = ceil(1 - ln(tol) / 2),   h_j = (tol e^-2 |y| / |y_j|)^(1/j),   h = e^(-0.7 / (p - 1)) min(h_(p-1), h_p)
+//! p = ceil(1 - ln(tol) / 2),   h_j = (tol e^-2.7 / |y_j|)^(1/j),   h = min(h_(p-1), h_p)
 //! ```
 //!
 //! with `|y_j|` the largest of the coefficients `j` of the state's components, each over the size that its tolerance
-//! is relative to. `tol^(1/p)` is `e^-2` up to the rounding of `p`: that much of the radius of convergence makes the
-//! least work per unit of time, whatever the tolerance. The step's polynomial is its dense output, so that states
+//! is relative to. `tol^(1/p)` is about `e^-2`: that much of the radius of convergence makes the least work per unit of
+//! time, whatever the tolerance. The step's polynomial is its dense output, so that states
 //! between its ends are as accurate as those at them and cost no evaluation.
 //!
 //! Coefficients are computed in a unit of time that is a power of two near the step: they neither overflow nor vanish
@@ -37,6 +37,10 @@ pub const TAYLOR: &str = "taylor";
 
 /// Lowest order: two coefficients are looked at for the step size, none of them that of the rate.
 const LEAST_ORDER: usize = 3;
+
+/// Logarithm of the part of the tolerance that is used: 2 make a step `e^-2` of the radius of convergence, 0.7 are the
+/// factor `e^(-0.7 / (p - 1))` by which Jorba and Zou shorten it.
+const SAFETY: f64 = -2.7;
 
 /// Largest step in units of time of its expansion: powers up to the highest stay far from overflow.
 const LONGEST: f64 = (1 << 20) as f64;
@@ -214,11 +218,10 @@ impl<F: TaylorField> Taylor<F> {
                 *size = size.max(coefficient.abs() * inverse);
             }
         }
-        // NOTE: e^2 in the size is e^-2 in the tolerance, which the weights hold already.
-        const SQUARE: f64 = core::f64::consts::E * core::f64::consts::E;
+        // The weights hold the tolerance already.
         let order = self.order as f64;
         let reach = |size: f64, power: f64| match size > 0.0 {
-            true => math::exp((-math::ln(size * SQUARE) - 0.7) / power),
+            true => math::exp((SAFETY - math::ln(size)) / power),
             false => f64::INFINITY,
         };
         reach(sizes[0], order).min(reach(sizes[1], order - 1.0))
