@@ -68,7 +68,7 @@ fn emit_gaps(context: &Context<'_>, functions: &Impacting) -> TokenStream {
 fn emit_responses(context: &Context<'_>, functions: &Impacting) -> TokenStream {
     let accelerations = context.state_body(&functions.gap_accelerations);
     let accelerations_doc = doc::formula(
-        "d^2 h_s/dt^2, where the motion's part of the state changes at the rates `motion`",
+        "d^2 h_s/dt^2 at these rates of momenta or quasi-velocities",
         &functions.gap_accelerations.cost,
     );
     let (acceleration_statements, acceleration_values) =

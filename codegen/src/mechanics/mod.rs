@@ -71,9 +71,10 @@ pub fn derive(model: &mut Model) -> Derivation {
     let metric = metric::derive_metric(model, &coordinates);
     let constraints = constraint::derive_constraints(model, &coordinates);
     let density = density::derive_density(model, &coordinates, metric);
-    let frame = frame::derive_frame(model, &coordinates, &constraints);
+    let field = field::derive_field(model, &coordinates);
+    let frame = frame::derive_frame(model, &coordinates, &constraints, &field);
     Derivation {
-        field: field::derive_field(model, &coordinates),
+        field,
         constraints,
         surfaces: impact::derive_surfaces(model, &coordinates),
         density,

@@ -8,7 +8,7 @@ use super::kernel::Kernel;
 use super::linear::{Ldlt, Orthogonal};
 use super::{Guard, Input, Value};
 use crate::mechanics::Frame;
-use crate::mechanics::frame::{Block, Row, Solve};
+use crate::mechanics::frame::{Block, Invariant, Row, Solve};
 
 impl<'a> Kernel<'a> {
     /// The frame. A function in reduced form is made only where there is one.
@@ -33,10 +33,27 @@ impl<'a> Kernel<'a> {
     pub(super) fn velocity_from_quasi(&mut self) -> Vec<Value> {
         let u = self.quasi_inputs();
         let affine = self.minus_affine();
-        self.solve_frame(|_, row| match row {
+        let mut velocity = self.solve_frame(|_, row| match row {
             Row::Quasi(i) => u[i],
             Row::Constraint(a) => affine[a],
-        })
+        });
+        let Some(invariant) = self.invariant() else {
+            return velocity;
+        };
+        for (&symbol, &value) in invariant.u.iter().zip(&u) {
+            self.bind_value(symbol, value);
+        }
+        for (entry, &fixed) in velocity.iter_mut().zip(&invariant.velocity) {
+            if let Some(fixed) = fixed {
+                *entry = self.value(fixed);
+            }
+        }
+        velocity
+    }
+
+    /// What does not depend on the configuration.
+    fn invariant(&self) -> Option<&'a Invariant> {
+        self.frame()?.invariant.as_ref()
     }
 
     /// `-eta_0`
@@ -222,8 +239,15 @@ impl<'a> Kernel<'a> {
             .iter()
             .map(|field| self.lower_vector(field))
             .collect();
+        let fixed = self.invariant().map(|invariant| &invariant.metric);
         (0..fields.len())
-            .map(|i| (0..=i).map(|j| self.dot(&fields[i], &lowered[j])).collect())
+            .map(|i| {
+                let entry = |j: usize| match fixed.and_then(|metric| metric[i][j]) {
+                    Some(fixed) => self.value(fixed),
+                    None => self.dot(&fields[i], &lowered[j]),
+                };
+                (0..=i).map(entry).collect()
+            })
             .collect()
     }
 
@@ -233,7 +257,10 @@ impl<'a> Kernel<'a> {
             Some(ldlt) => ldlt,
             None => {
                 let metric = self.reduced_metric();
-                let positive = vec![self.metric_is_positive(); metric.len()];
+                let all_positive = self.metric_is_positive();
+                let positive: Vec<bool> = (0..metric.len())
+                    .map(|i| all_positive || self.is_positive_entry(i))
+                    .collect();
                 Ldlt::factor(&mut self.builder, &metric, &positive)
             }
         };
@@ -250,6 +277,12 @@ impl<'a> Kernel<'a> {
             pool.sign(row[i]) == Sign::Positive
                 && row[..i].iter().all(|&entry| pool.is_syntactic_zero(entry))
         })
+    }
+
+    /// Whether an entry on the diagonal of `G_D` does not depend on the configuration and is known to be positive.
+    fn is_positive_entry(&self, i: usize) -> bool {
+        let fixed = self.invariant().and_then(|own| own.metric[i][i]);
+        fixed.is_some_and(|fixed| self.model.pool.sign(fixed) == Sign::Positive)
     }
 
     /// `G_D^{-1} b`
@@ -286,6 +319,7 @@ impl<'a> Kernel<'a> {
 
     /// `udot`
     pub fn quasi_rate(&mut self) -> Vec<Value> {
+        self.velocity();
         let free = self.force_without_drift();
         let acceleration = self.frame_acceleration();
         let inertial = self.lower_vector(&acceleration);
@@ -294,7 +328,13 @@ impl<'a> Kernel<'a> {
             .zip(&inertial)
             .map(|(&f, &b)| self.builder.sub(f, b))
             .collect();
-        let right = self.restrict(&rest);
+        let mut right = self.restrict(&rest);
+        let fixed = self.invariant().map(|invariant| &invariant.right);
+        for (entry, fixed) in right.iter_mut().zip(fixed.into_iter().flatten()) {
+            if let &Some(fixed) = fixed {
+                *entry = self.value(fixed);
+            }
+        }
         let rate = self.raise_reduced(&right);
         if let Some(frame) = self.frame() {
             for (quasi, &value) in frame.quasi.iter().zip(&rate) {

@@ -14,14 +14,16 @@
 //! symbolically: [`plan`] says in which order it can be solved.
 
 mod choice;
+pub mod invariant;
 pub mod plan;
 mod scale;
 
 use dalembert_expr::ExprId;
 
-use super::{ConstraintForm, Coordinates};
+use super::{ConstraintForm, Coordinates, FieldTerms};
 use crate::model::Model;
 
+pub use invariant::Invariant;
 pub use plan::{Block, Row, Solve};
 
 /// Quasi-velocities and the order in which velocities follow from them.
@@ -33,6 +35,8 @@ pub struct Frame {
     pub blocks: Vec<Block>,
     /// What unit quasi-velocities make of each velocity at most, a function of the parameters; 1 where that is not one.
     pub position_units: Vec<ExprId>,
+    /// What does not depend on the configuration.
+    pub invariant: Option<Invariant>,
 }
 
 /// `u = alpha(qdot)`
@@ -64,6 +68,7 @@ pub(super) fn derive_frame(
     model: &mut Model,
     coordinates: &Coordinates,
     constraints: &[ConstraintForm],
+    field: &FieldTerms,
 ) -> Result<Frame, Unreduced> {
     let forms = if model.frame.is_empty() {
         if constraints.is_empty() {
@@ -90,10 +95,13 @@ pub(super) fn derive_frame(
         .collect();
     let blocks = plan::plan(&mut model.pool, &quasi, constraints);
     let position_units = scale::position_units(model, &quasi, constraints, &blocks);
+    let parts = (quasi.as_slice(), blocks.as_slice());
+    let invariant = invariant::invariant(model, coordinates, constraints, field, parts);
     Ok(Frame {
         quasi,
         blocks,
         position_units,
+        invariant,
     })
 }
 
