@@ -347,10 +347,7 @@ fn steps_do_not_pass_over_jumps_of_the_force() {
 
 #[test]
 fn collapse_and_blow_up_are_named_where_they_happen() {
-    let rough = Rough {
-        mu: 0.0,
-        ..Rough::default()
-    };
+    let rough = Rough { mu: 0.0 };
     let state = rough
         .state(0.0, &[1.0, 0.5].into(), &[0.0, 0.3].into())
         .expect("a state");
