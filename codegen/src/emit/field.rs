@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-use super::function::{Body, emit_body, uses};
+use super::function::{Body, emit_body, joined, uses};
 use super::{Context, doc};
 use crate::model::Topology;
 use crate::program::{Form, Function, Input};
@@ -101,7 +101,7 @@ impl Context<'_> {
             outputs,
         } = emit_body(function, &self.names);
         Body {
-            statements: quote!(#bindings #statements),
+            statements: joined([bindings, statements]),
             outputs,
         }
     }

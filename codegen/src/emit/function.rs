@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::quote;
 
 use super::names::{Names, claim};
@@ -172,7 +172,8 @@ impl<'a> Writer<'a> {
 
     fn bind(&mut self, index: usize, tokens: TokenStream) -> Piece {
         let local = self.local(index);
-        self.statements.extend(quote!(let #local = #tokens;));
+        let statement = joined([quote!(let #local =), tokens, quote!(;)]);
+        self.statements.extend(statement);
         atom(quote!(#local))
     }
 
@@ -215,18 +216,29 @@ impl<'a> Writer<'a> {
         self.statements.extend(statement);
     }
 
-    fn operand(&self, value: Value, least: Binding) -> (TokenStream, usize) {
-        let piece = &self.pieces[value.index()];
-        let tokens = &piece.tokens;
-        let tokens = if piece.binding < least {
-            quote!((#tokens))
-        } else {
-            tokens.clone()
-        };
-        (tokens, piece.size)
+    /// The tokens of a value. Those that nothing else reads are moved: copies of copies are what takes the time where a
+    /// function is long.
+    fn tokens_of(&mut self, value: Value) -> TokenStream {
+        let tokens = &mut self.pieces[value.index()].tokens;
+        match self.uses[value.index()] {
+            1 => std::mem::take(tokens),
+            _ => tokens.clone(),
+        }
     }
 
-    fn binary(&self, a: Value, b: Value, operator: TokenStream, binding: Binding) -> Piece {
+    fn operand(&mut self, value: Value, least: Binding) -> (TokenStream, usize) {
+        let piece = &self.pieces[value.index()];
+        let (binding, size) = (piece.binding, piece.size);
+        let tokens = self.tokens_of(value);
+        let tokens = if binding < least {
+            TokenTree::from(Group::new(Delimiter::Parenthesis, tokens)).into()
+        } else {
+            tokens
+        };
+        (tokens, size)
+    }
+
+    fn binary(&mut self, a: Value, b: Value, operator: TokenStream, binding: Binding) -> Piece {
         let tighter = if binding == Binding::Sum {
             Binding::Product
         } else {
@@ -234,21 +246,19 @@ impl<'a> Writer<'a> {
         };
         let ((left, m), (right, n)) = (self.operand(a, binding), self.operand(b, tighter));
         Piece {
-            tokens: quote!(#left #operator #right),
+            tokens: joined([left, operator, right]),
             binding,
             size: m + n + 1,
         }
     }
 
-    fn call(&self, name: &str, arguments: &[Value]) -> Piece {
+    fn call(&mut self, name: &str, arguments: &[Value]) -> Piece {
         let name = Ident::new(name, Span::call_site());
-        let arguments = arguments
-            .iter()
-            .map(|value| self.pieces[value.index()].tokens.clone());
+        let arguments = arguments.iter().map(|&value| self.tokens_of(value));
         atom(quote!(::dalembert::__private::math::#name(#(#arguments),*)))
     }
 
-    fn piece(&self, op: &Op) -> Piece {
+    fn piece(&mut self, op: &Op) -> Piece {
         match op {
             Op::Input(input) => atom(self.input(*input)),
             Op::Number(number) => literal(number.to_f64()),
@@ -256,7 +266,7 @@ impl<'a> Writer<'a> {
             Op::Neg(a) => {
                 let (tokens, size) = self.operand(*a, Binding::Product);
                 Piece {
-                    tokens: quote!(-#tokens),
+                    tokens: joined([quote!(-), tokens]),
                     binding: Binding::Unary,
                     size: size + 1,
                 }
@@ -273,8 +283,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn power(&self, base: Value, exponent: &Rational) -> Piece {
-        let base = self.pieces[base.index()].tokens.clone();
+    fn power(&mut self, base: Value, exponent: &Rational) -> Piece {
+        let base = self.tokens_of(base);
         let exponent = literal(exponent.to_f64()).tokens;
         atom(quote!(::dalembert::__private::math::powf(#base, #exponent)))
     }
@@ -298,6 +308,14 @@ impl<'a> Writer<'a> {
             }
         }
     }
+}
+
+/// The tokens one after the other, moved.
+pub(super) fn joined<const N: usize>(parts: [TokenStream; N]) -> TokenStream {
+    let mut parts = parts.into_iter();
+    let mut tokens = parts.next().unwrap_or_default();
+    parts.for_each(|part| tokens.extend(part));
+    tokens
 }
 
 fn atom(tokens: TokenStream) -> Piece {

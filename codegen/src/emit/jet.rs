@@ -5,10 +5,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::quote;
 
-use super::function::{Body, emit_body};
+use super::function::{Body, emit_body, joined};
 use super::{Context, doc};
 use crate::program::jet::degree::Degree;
 use crate::program::jet::{History, Jet, Recurrence};
@@ -117,22 +117,41 @@ struct Expansion {
 
 impl Expansion {
     fn of(jet: &Jet, context: &Context<'_>) -> Self {
-        // What is read of order 0 is known once the orders above it are written; how it is read, once order 0 is.
+        // What is read of order 0 is known once the orders above it are written; how it is read, once order 0 is. Where
+        // values go through memory it is known beforehand.
         let mut draft = Writer::of(jet, context, Firsts::default());
-        draft.orders();
+        let (advance, next) = draft.orders();
+        if draft.is_large {
+            let (histories, inverses) = (draft.begin_histories(), draft.begin_inverses());
+            let kept = draft.slots.len();
+            let (body, _) = draft.begin(context);
+            let statements = body.statements;
+            let sum = quote!(let sum = ::dalembert::jet::shared_middle;);
+            return Self {
+                start: joined([sum, statements, inverses, histories]),
+                results: body.outputs,
+                advance,
+                next,
+                kept,
+            };
+        }
         let (body, firsts) = draft.begin(context);
         let mut writer = Writer::of(jet, context, firsts);
         let (advance, next) = writer.orders();
         let (histories, inverses) = (writer.begin_histories(), writer.begin_inverses());
         let statements = body.statements;
         Self {
-            start: quote!(#statements #inverses #histories),
+            start: joined([statements, inverses, histories]),
             results: body.outputs,
             advance,
             next,
             kept: writer.slots.len(),
         }
     }
+}
+
+fn parenthesised(tokens: TokenStream) -> TokenStream {
+    TokenTree::from(Group::new(Delimiter::Parenthesis, tokens)).into()
 }
 
 fn local(prefix: &str, value: Value) -> Ident {
@@ -193,7 +212,7 @@ impl<'a> Writer<'a> {
             _ => self.next(output),
         });
         let next = next.collect();
-        (quote!(#components #values), next)
+        (joined([components, values]), next)
     }
 
     /// `let [next_0, _] = components(&coefficients[k]);`
@@ -230,7 +249,7 @@ impl<'a> Writer<'a> {
             statements,
             mut outputs,
         } = emit_body(&extended, &context.names);
-        let mut statements = quote!(#bindings #statements);
+        let mut statements = joined([bindings, statements]);
         let mut firsts = Firsts::new();
         for (value, piece) in read.into_iter().zip(outputs.split_off(results)) {
             let is_name = piece.clone().into_iter().count() == 1;
@@ -240,7 +259,7 @@ impl<'a> Writer<'a> {
                     statements.extend(quote!(jets[#slot][0] = #piece;));
                     quote!(jets[#slot][0])
                 }
-                _ if is_name => piece,
+                _ if is_name && !self.is_large => piece,
                 _ => {
                     let first = local("first", value);
                     statements.extend(quote!(let #first = #piece;));
@@ -288,7 +307,22 @@ impl<'a> Writer<'a> {
             Op::Input(Input::Parameter(k)) => self.parameters[*k].clone(),
             _ => {
                 self.read.insert(value);
-                self.firsts.get(&value).cloned().unwrap_or_default()
+                let known = self.firsts.get(&value).cloned();
+                known.unwrap_or_else(|| self.place_of_first(value))
+            }
+        }
+    }
+
+    /// Where order 0 of a value is kept.
+    fn place_of_first(&self, value: Value) -> TokenStream {
+        match self.slots.get(&History::plain(value)) {
+            Some(slot) if self.is_large => {
+                let slot = Literal::usize_unsuffixed(*slot);
+                quote!(jets[#slot][0])
+            }
+            _ => {
+                let first = local("first", value);
+                quote!(#first)
             }
         }
     }
@@ -315,8 +349,7 @@ impl<'a> Writer<'a> {
                 }
             };
         }
-        let expression = self.expression(value, &recurrence.clone());
-        quote!((#expression))
+        parenthesised(self.expression(value, &recurrence.clone()))
     }
 
     /// Whether coefficient `k` of a value is a statement of its own.
@@ -351,7 +384,7 @@ impl<'a> Writer<'a> {
         };
         let (place, next) = (self.history(value, false), self.next(value));
         let binding = match (self.is_large, is_component) {
-            (true, _) => quote!(#place[k] = #expression;),
+            (true, _) => joined([place, quote!([k] =), expression, quote!(;)]),
             (false, true) if plain => quote!(#place[k] = #next;),
             (false, true) => TokenStream::new(),
             (false, false) => {
@@ -367,7 +400,7 @@ impl<'a> Writer<'a> {
             let place = self.history(value, true);
             quote!(#place[k] = weight * #next;)
         });
-        quote!(#binding #weighted)
+        joined([binding, weighted.unwrap_or_default()])
     }
 
     fn expression(&mut self, value: Value, recurrence: &Recurrence) -> TokenStream {
@@ -384,15 +417,15 @@ impl<'a> Writer<'a> {
             }
             Recurrence::Add(a, b) => {
                 let (a, b) = (self.next(*a), self.next(*b));
-                quote!(#a + #b)
+                joined([a, quote!(+), b])
             }
             Recurrence::Sub(a, b) => {
                 let (a, b) = (self.next(*a), self.next(*b));
-                quote!(#a - #b)
+                joined([a, quote!(-), b])
             }
             Recurrence::Scaled(a, b) => {
                 let (a, b) = (self.first(*a), self.next(*b));
-                quote!(#a * #b)
+                joined([a, quote!(*), b])
             }
             Recurrence::Divided(a, b) => {
                 let (a, b) = (self.next(*a), self.inverse(*b));
@@ -465,7 +498,7 @@ impl<'a> Writer<'a> {
         };
         let (first, next) = (self.first(a), self.next(b));
         let rest = self.upper_sum(a, b);
-        quote!((#first * #next + #rest))
+        parenthesised(joined([first, quote!(*), next, quote!(+), rest]))
     }
 
     /// `sum a_j b_(k-j)` for `j` in `1..=k`.
@@ -491,11 +524,10 @@ impl<'a> Writer<'a> {
     /// `sum a_j b_(k-j)` for `j` in `1..k`.
     fn middle(&self, a: (Value, bool), b: (Value, bool)) -> TokenStream {
         let (a, b) = (self.history(a.0, a.1), self.history(b.0, b.1));
-        let middle = match self.is_large {
-            true => quote!(shared_middle),
-            false => quote!(middle),
-        };
-        quote!(::dalembert::jet::#middle(&#a, &#b, k))
+        match self.is_large {
+            true => quote!(sum(&#a, &#b, k)),
+            false => quote!(::dalembert::jet::middle(&#a, &#b, k)),
+        }
     }
 
     /// `sum a_j b_(k-j)` for `j` in `1..=k`, if the series of `a` ends.

@@ -59,9 +59,9 @@ pub fn tokens(model: &Model, derivation: &Derivation, programs: &Lowered) -> Tok
         parameters::emit_parameters(&context),
         indices::emit_indices(&context),
     ];
-    let items = [Some(context), global].into_iter().flatten();
-    let items = items.flat_map(|context| implementations(&context));
-    quote!(#(#own)* #(#items)*)
+    let contexts = [Some(context), global].into_iter().flatten();
+    let items = contexts.flat_map(|context| implementations(&context));
+    own.into_iter().chain(items).collect()
 }
 
 /// What is implemented for a type of the model.
