@@ -123,7 +123,8 @@ fn cases(plan: &Plan) -> Vec<Case> {
     let mut cases = Vec::new();
     for problem in chosen() {
         for method in Method::ALL {
-            for &decade in plan.decades {
+            let fine_enough = |decade: &&i32| **decade >= method.finest();
+            for &decade in plan.decades.iter().filter(fine_enough) {
                 cases.push(Case::new(problem, method, decade, plan.least));
             }
         }

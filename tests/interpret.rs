@@ -28,7 +28,7 @@ fn input<'a, S: Described>(
         Input::Momentum(i) | Input::Quasi(i) => state.as_slice()[n + i],
         Input::Velocity(i) => qdot.as_slice()[i],
         Input::Parameter(k) => system.parameter(k),
-        Input::Excess(_) | Input::MotionRate(_) => f64::NAN,
+        Input::Excess(_) | Input::MotionRate(_) | Input::Multiplier(_) => f64::NAN,
     }
 }
 

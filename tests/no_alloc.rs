@@ -1,6 +1,9 @@
 //! A run allocates nothing, and the same run gives the same bits twice.
 
-use dalembert::{Dop853, DormandPrince5, Scene, Simulation, Stepper, Taylor, Tolerance};
+use dalembert::{
+    Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Scene, Simulation, Stepper, Taylor,
+    Tolerance,
+};
 use dalembert_models::{ChaplyginSleigh, RollingDisk};
 use dalembert_tests::allocation::{Counting, allocations};
 
@@ -44,14 +47,12 @@ fn a_run_with_impacts_and_projection_allocates_nothing_and_repeats_to_the_bit() 
     let disk = RollingDisk::default();
     let sleigh = ChaplyginSleigh::default();
     let runs = || {
-        [
-            run(&disk, Dop853::new(tolerance), 50.0),
-            run(&disk, DormandPrince5::new(tolerance), 50.0),
-            run(&disk, Taylor::new(tolerance), 50.0),
-            run(&sleigh, Dop853::new(tolerance), 50.0),
-            run(&sleigh, DormandPrince5::new(tolerance), 50.0),
-            run(&sleigh, Taylor::new(tolerance), 50.0),
-        ]
+        macro_rules! runs {
+            ($($method:ident)*) => {
+                [$(run(&disk, $method::new(tolerance), 50.0), run(&sleigh, $method::new(tolerance), 50.0)),*]
+            };
+        }
+        runs!(Dop853 DormandPrince5 Taylor Rk4 Gauss4 Gauss6 Dla4)
     };
     let (first, second) = (runs(), runs());
     assert!(first.iter().all(|(_, count)| *count == 0), "{first:?}");

@@ -8,9 +8,9 @@ use core::ops::ControlFlow;
 
 use dalembert::impacts::law::Law;
 use dalembert::{
-    Constrained, Described, Dop853, DormandPrince5, Event, Impacting, Observer, Outcome,
-    Projection, Run, Scene, SceneEffects, Simulation, Stepper, System, Taylor, TaylorField,
-    Tolerance,
+    Constrained, Described, Dla2, Dla4, Dop853, DormandPrince5, Event, Gauss4, Gauss6, Impacting,
+    Observer, Outcome, Projection, Rk4, Run, Scene, SceneEffects, Simulation, Stepper, System,
+    Taylor, TaylorField, Tolerance,
 };
 use dalembert_models::{
     BouncingBall, ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk,
@@ -176,6 +176,48 @@ fn the_rolling_disk_meets_its_impacts() {
             }
         }
     }
+}
+
+/// The largest error of the first eight impacts of the elastic disk and sleigh on their elliptical tables, at a step.
+fn errors_at<Disk: Stepper<RollingDisk>, Sleigh: Stepper<ChaplyginSleigh>>(
+    disk_stepper: Disk,
+    sleigh_stepper: Sleigh,
+) -> f64 {
+    let largest = |impacts: &Impacts, case: &Value| {
+        let pairs = impacts.times.iter().zip(times(case)).take(8);
+        pairs.fold(0.0, |worst: f64, (a, e)| worst.max((a - e).abs()))
+    };
+    let case = &read("rolling_disk_trajectories")["cases"][2];
+    let (disk, state) = disk(case);
+    let (impacts, _) = run(&disk, state, Law::Elastic, 8, disk_stepper);
+    let of_disk = largest(&impacts, case);
+    let case = &read("chaplygin_sleigh_trajectories")["billiard"][0];
+    let (sleigh, state) = sleigh_state(case);
+    let (impacts, _) = run(&sleigh, state, Law::Elastic, 8, sleigh_stepper);
+    of_disk.max(largest(&impacts, case))
+}
+
+/// Steps of fixed size, cut at impacts and begun anew after them, keep the order of the method.
+#[test]
+fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
+    macro_rules! check {
+        ($($method:ident $steps:literal $bound:literal)*) => {$(
+            let at = |h: f64| {
+                let tolerance = Tolerance::new(1e-9).expect("a tolerance");
+                let (first, second) = ($method::new(tolerance), $method::new(tolerance));
+                errors_at(first.with_step(h), second.with_step(h))
+            };
+            let h = 1.0 / f64::from($steps);
+            let (coarse, fine) = (at(h), at(h / 16.0));
+            let slope = (coarse / fine).log2() / 4.0;
+            let order = $method::<<ChaplyginSleigh as dalembert::VectorField>::State>::ORDER as f64;
+            let name = <$method<_> as Stepper<ChaplyginSleigh>>::NAME;
+            println!("{name}: {coarse:.1e}, {fine:.1e}, slope {slope:.2}");
+            assert!(fine < $bound, "{name}: {fine:e}");
+            assert!(slope > order - 0.3, "{name}: {coarse:e}, {fine:e}");
+        )*};
+    }
+    check!(Rk4 80 1e-7 Gauss4 80 1e-7 Gauss6 20 1e-8 Dla2 100 1e-4 Dla4 80 1e-7);
 }
 
 /// On the circular table the nonholonomic plastic disk settles into running along the rim: the gap rate at impact

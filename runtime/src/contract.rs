@@ -225,6 +225,40 @@ pub trait System: VectorField {
     }
 }
 
+/// The parts of Lagrange and d'Alembert's principle
+///
+/// ```text
+/// d/dt dL/dqdot = f + lambda_a eta^a,   eta^a(qdot) + eta^a_0 = 0,   f = dL/dq + F
+/// ```
+///
+/// that a discrete principle puts together anew: what the rate of the state has already put together cannot be
+/// taken apart. Positions, velocities and momenta are N numbers each, whatever the state holds.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not give the parts of its equations: declare it with `dalembert::model!`"
+)]
+pub trait Lagrangian: System {
+    /// M numbers, one per constraint, in the order of declaration; none without constraints.
+    type Reactions: StateVector;
+
+    /// `f = dL/dq + F`: the force besides that of the constraints.
+    fn force(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Self::Vector;
+
+    /// `lambda_a eta^a`: the force of the constraints for given multipliers.
+    fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions)
+    -> Self::Vector;
+
+    /// The velocity at the momenta `p + mu_a eta^a`, with the `mu` that make it satisfy the constraints; and `mu`.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn constrained_velocity(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        p: &Self::Vector,
+    ) -> Result<(Self::Vector, Self::Reactions), Fault>;
+}
+
 /// A system with constraints `eta^a(qdot) + eta^a_0 = 0`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no constraints: declare `constraints {{ .. }}` in its `model!`"

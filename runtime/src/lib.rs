@@ -127,7 +127,8 @@ pub mod simulation;
 pub mod state;
 
 pub use contract::{
-    Constrained, Divergence, Impacting, InvariantVolume, System, TaylorField, VectorField,
+    Constrained, Divergence, Impacting, InvariantVolume, Lagrangian, System, TaylorField,
+    VectorField,
 };
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
@@ -135,7 +136,10 @@ pub use error::{Fault, ParameterError, StateError};
 pub use impacts::Impacts;
 pub use impacts::law::{Contact, Law};
 pub use initial::complete_velocities;
-pub use integrate::{Counters, Dop853, DormandPrince5, Stepper, Taylor, Tolerance, ToleranceError};
+pub use integrate::{
+    Counters, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Stepper, Taylor, Tolerance,
+    ToleranceError,
+};
 pub use outcome::{Outcome, Run, StartError};
 pub use projection::Projection;
 pub use record::{Event, EventLog, Observer, Segment};

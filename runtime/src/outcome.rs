@@ -81,6 +81,11 @@ pub enum Outcome {
         /// Where.
         t: f64,
     },
+    /// An implicit step could not be solved: it is too long for the fastest motion.
+    NotConverged {
+        /// Start of the step.
+        t: f64,
+    },
     /// The allowed number of steps was used up.
     StepBudget,
     /// The allowed number of impacts was used up.
@@ -111,6 +116,7 @@ impl Outcome {
             Self::SingularSurface { .. } => "singular_surface",
             Self::NonFinite { .. } => "non_finite",
             Self::StepUnderflow { .. } => "step_underflow",
+            Self::NotConverged { .. } => "not_converged",
             Self::StepBudget => "step_budget",
             Self::ImpactBudget => "impact_budget",
             Self::ProjectionFailed { .. } => "projection_failed",
@@ -165,6 +171,7 @@ impl fmt::Display for Outcome {
             Self::SingularSurface { surface } => Fault::SingularSurface { surface }.fmt(f),
             Self::NonFinite { component } => Fault::NonFinite { component }.fmt(f),
             Self::StepUnderflow { t } => StepFailure::StepUnderflow { t }.fmt(f),
+            Self::NotConverged { t } => StepFailure::NotConverged { t }.fmt(f),
             Self::StepBudget => write!(f, "the allowed number of steps was used up"),
             Self::ImpactBudget => write!(f, "the allowed number of impacts was used up"),
             Self::ProjectionFailed { constraint } => {
@@ -197,6 +204,7 @@ impl From<StepFailure> for Outcome {
     fn from(failure: StepFailure) -> Self {
         match failure {
             StepFailure::StepUnderflow { t } => Self::StepUnderflow { t },
+            StepFailure::NotConverged { t } => Self::NotConverged { t },
             StepFailure::Fault(fault) => fault.into(),
             StepFailure::NonFinite { component } => Self::NonFinite { component },
         }

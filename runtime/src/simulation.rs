@@ -43,6 +43,11 @@ impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, S
         self
     }
 
+    /// The step that the integrator kept in the last run; `None` if it chooses every step anew.
+    pub fn fixed_step(&self) -> Option<f64> {
+        self.stepper.fixed_step()
+    }
+
     /// The effects.
     pub fn effects(&mut self) -> &mut Effects {
         &mut self.effects

@@ -361,8 +361,9 @@ fn plastic_impact_on_a_pressed_floor_is_contact() {
     let ball = Particle::new([-1.0, 0.0], [floor]).with_law(Law::ImpactPlastic);
     with_every_integrator(&ball, at(0.5, 0.0, 0.0, 1.0), 10.0, |run, log, case| {
         assert_eq!(run.outcome, Outcome::Contact { surface: 0 }, "{case}");
-        // An impact taken at the end of a step may leave the last bit of the gap to fall through.
-        assert!(log.seen() == 1 || log.seen() == 2, "{case}");
+        // An impact taken at the end of a step may leave the last bits of the gap to fall through, in hops that shrink by
+        // nine digits each.
+        assert!((1..=4).contains(&log.seen()), "{case}");
         assert!((run.t - 1.0).abs() < 1e-7, "{case}: {}", run.t);
     });
 }

@@ -3,106 +3,19 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{
-    Dop853, DormandPrince5, Fault, Observer, Outcome, ParameterError, Segment, Simulation,
-    StartError, Stepper, System, Tolerance, VectorField, describe::Assumption, integrate::Embedded,
-    integrate::Scheme,
+mod support;
+
+use dalembert::integrate::{
+    ClassicalRungeKutta, Dop853Scheme, DormandPrince5Scheme, Embedded, FixedStep, Gauss,
 };
-use nalgebra::SVector;
-
-type Scalar = SVector<f64, 1>;
-type Plane = SVector<f64, 2>;
-
-/// `x'' = force(t, x, v)` on a line.
-#[derive(Clone, Copy)]
-struct Line {
-    force: fn(f64, f64, f64) -> Result<f64, Fault>,
-    chart: f64,
-    mass: f64,
-}
-
-impl Line {
-    fn new(force: fn(f64, f64, f64) -> Result<f64, Fault>) -> Self {
-        Self {
-            force,
-            chart: f64::INFINITY,
-            mass: 1.0,
-        }
-    }
-}
-
-impl VectorField for Line {
-    type State = Plane;
-
-    fn rate(&self, t: f64, state: &Plane, rate: &mut Plane) -> Result<(), Fault> {
-        *rate = Plane::new(state[1], (self.force)(t, state[0], state[1])?);
-        Ok(())
-    }
-}
-
-impl System for Line {
-    type Vector = Scalar;
-    type Impulse = Scalar;
-
-    fn position(&self, state: &Plane) -> Scalar {
-        Scalar::new(state[0])
-    }
-
-    fn velocity(&self, _: f64, state: &Plane) -> Result<Scalar, Fault> {
-        Ok(Scalar::new(state[1]))
-    }
-
-    fn momentum(&self, t: f64, state: &Plane) -> Result<Scalar, Fault> {
-        self.velocity(t, state)
-    }
-
-    fn state_unchecked(&self, _: f64, q: &Scalar, qdot: &Scalar) -> Result<Plane, Fault> {
-        Ok(Plane::new(q[0], qdot[0]))
-    }
-
-    fn state_from_momenta(&self, t: f64, q: &Scalar, p: &Scalar) -> Result<Plane, Fault> {
-        self.state_unchecked(t, q, p)
-    }
-
-    fn energy(&self, _: f64, state: &Plane) -> Result<f64, Fault> {
-        Ok(0.5 * state[1] * state[1])
-    }
-
-    fn kick(&self, state: &mut Plane, size: f64, direction: &Scalar) {
-        state[1] += size * direction[0];
-    }
-
-    fn check_parameters(&self) -> Result<(), ParameterError> {
-        if self.mass > 0.0 {
-            return Ok(());
-        }
-        Err(ParameterError {
-            name: "mass",
-            value: self.mass,
-            expected: Assumption::Positive,
-        })
-    }
-
-    fn outside_chart(&self, state: &Plane) -> Option<usize> {
-        (state[0] >= self.chart).then_some(0)
-    }
-}
-
-/// A nonlinear problem with a closed form: `x = sech(t)` solves `x'' = x - 2 x^3`.
-fn soliton() -> Line {
-    Line::new(|_, x, _| Ok(x - 2.0 * x * x * x))
-}
-
-fn sech(t: f64) -> f64 {
-    1.0 / t.cosh()
-}
-
-fn soliton_at(t: f64) -> Plane {
-    Plane::new(sech(t), -sech(t) * t.tanh())
-}
+use dalembert::{
+    Dop853, DormandPrince5, Fault, Gauss4, Observer, Outcome, Rk4, Segment, Simulation, StartError,
+    Stepper, Tolerance,
+};
+use support::line::{Line, Plane, soliton, soliton_at};
 
 /// Largest errors at the ends of `count` equal steps, and inside them.
-fn errors<M: Scheme>(count: u32) -> [f64; 2] {
+fn errors<Step: Stepper<Line>>(count: u32, stepper: impl Fn(f64) -> Step) -> [f64; 2] {
     struct Watch([f64; 2]);
     impl Observer<Line> for Watch {
         fn step(&mut self, segment: &mut Segment<'_, Plane>) -> ControlFlow<()> {
@@ -115,40 +28,57 @@ fn errors<M: Scheme>(count: u32) -> [f64; 2] {
             ControlFlow::Continue(())
         }
     }
-    let h = 2.0 / f64::from(count);
-    // A tolerance so loose that the step limit alone decides.
-    let stepper = Embedded::<Plane, M>::new(Tolerance::new(1e3).unwrap())
-        .with_max_step(h)
-        .with_first_step(h);
     let mut watch = Watch([0.0; 2]);
     let system = soliton();
-    let run = Simulation::new(&system, stepper, ())
+    let run = Simulation::new(&system, stepper(2.0 / f64::from(count)), ())
         .run(-1.0, soliton_at(-1.0), 1.0, &mut watch)
         .unwrap();
     assert_eq!(run.counters.accepted, u64::from(count));
     watch.0
 }
 
-fn assert_orders<M: Scheme>(count: u32) {
-    let (coarse, fine) = (errors::<M>(count), errors::<M>(2 * count));
+/// At the ends of steps errors fall with the order; inside them with the lower of it and one more than that of the
+/// dense output.
+fn assert_orders<Step: Stepper<Line>>(
+    count: u32,
+    [order, dense_order]: [usize; 2],
+    stepper: impl Fn(f64) -> Step,
+) {
+    let (coarse, fine) = (errors(count, &stepper), errors(2 * count, &stepper));
     let observed = [0, 1].map(|i| (coarse[i] / fine[i]).log2());
-    for (observed, nominal) in observed.into_iter().zip([M::ORDER, M::DENSE_ORDER + 1]) {
+    let inside = order.min(dense_order + 1);
+    for (observed, nominal) in observed.into_iter().zip([order, inside]) {
+        println!("{}: {observed:.3} for {nominal}", Step::NAME);
         assert!(
             (observed - nominal as f64).abs() <= 0.1 * nominal as f64,
             "{}: {observed} for {nominal}",
-            M::NAME
+            Step::NAME
         );
     }
 }
 
-#[test]
-fn dormand_prince_converges_at_its_orders() {
-    assert_orders::<dalembert::integrate::DormandPrince5Scheme>(20);
+/// A pair at a tolerance so loose that the step limit alone decides.
+fn limited<M: dalembert::integrate::Scheme>(h: f64) -> Embedded<Plane, M> {
+    Embedded::new(Tolerance::new(1e3).unwrap())
+        .with_max_step(h)
+        .with_first_step(h)
+}
+
+fn fixed<M: dalembert::integrate::Method>(h: f64) -> FixedStep<Plane, M> {
+    FixedStep::new(Tolerance::new(1e-9).unwrap()).with_step(h)
 }
 
 #[test]
-fn dop853_converges_at_its_orders() {
-    assert_orders::<dalembert::integrate::Dop853Scheme>(8);
+fn embedded_pairs_converge_at_their_orders() {
+    assert_orders(20, [5, 4], limited::<DormandPrince5Scheme>);
+    assert_orders(8, [8, 7], limited::<Dop853Scheme>);
+}
+
+#[test]
+fn methods_of_fixed_step_converge_at_their_orders() {
+    assert_orders(40, [4, 4], fixed::<ClassicalRungeKutta>);
+    assert_orders(20, [4, 4], fixed::<Gauss<2>>);
+    assert_orders(16, [6, 5], fixed::<Gauss<3>>);
 }
 
 #[test]
@@ -164,6 +94,8 @@ fn time_reaches_every_stage() {
     let tolerance = Tolerance::new(1e-9).unwrap();
     assert!((end(&system, Dop853::new(tolerance)) - 1.0).abs() < 1e-9);
     assert!((end(&system, DormandPrince5::new(tolerance)) - 1.0).abs() < 1e-9);
+    assert!((end(&system, Rk4::new(tolerance).with_step(1e-3)) - 1.0).abs() < 1e-9);
+    assert!((end(&system, Gauss4::new(tolerance).with_step(1e-3)) - 1.0).abs() < 1e-9);
 }
 
 fn run(system: &Line, state: [f64; 2], t_end: f64) -> dalembert::Run<Plane> {

@@ -82,7 +82,10 @@ fn check<S: Described>(system: &S) {
                 Input::Velocity(i) => at.qdot[i],
                 Input::Momentum(i) => at.p[i],
                 Input::Parameter(k) => system.parameter(k),
-                Input::Excess(_) | Input::Quasi(_) | Input::MotionRate(_) => f64::NAN,
+                Input::Excess(_)
+                | Input::Multiplier(_)
+                | Input::Quasi(_)
+                | Input::MotionRate(_) => f64::NAN,
             };
             interpret(function, &input).expect("a value")
         };

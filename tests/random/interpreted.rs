@@ -91,6 +91,7 @@ impl<'a> Comparison<'a> {
             Input::Excess(k) => self.excess[k],
             Input::Quasi(i) => self.quasi[i],
             Input::MotionRate(i) => self.motion[i],
+            Input::Multiplier(a) => self.evaluated.motion().1[a],
         };
         interpret(function, &input).expect("a value")
     }
@@ -147,6 +148,12 @@ fn check_motion(own: &Comparison<'_>) -> Result<(), TestCaseError> {
     own.same("energy", &group("energy"), &[own.evaluated.energy])?;
     own.same("metric", &group("metric"), &own.evaluated.metric.concat())?;
     let program = own.compiled.programs.global();
+    let mut parts = own.run(&program.force);
+    if let Some(constrained) = &program.constrained {
+        let reaction = own.run(&constrained.reaction_force);
+        parts.iter_mut().zip(reaction).for_each(|(f, r)| *f += r);
+    }
+    own.same("force", &parts, &own.evaluated.momentum_rate())?;
     own.same("rate", &own.run(&program.rate), &rate)?;
     own.same("velocity", &own.run(&program.velocity), &own.at.qdot)?;
     own.same("momentum", &own.run(&program.momentum), &own.evaluated.p)

@@ -1,6 +1,6 @@
 //! Random states with a fixed seed.
 
-use dalembert::{Described, Scene, StateVector, TaylorField};
+use dalembert::{Described, Lagrangian, Scene, StateVector, TaylorField};
 
 /// A small generator (SplitMix64): the same numbers everywhere.
 #[derive(Debug, Clone)]
@@ -56,7 +56,7 @@ pub fn states<S: Described>(system: &S, count: usize, seed: u64) -> Vec<S::State
 /// Calls a macro-like function for every system that is known to tests: `visit` must be generic.
 pub trait Visitor {
     /// Visits one system.
-    fn visit<S: Described + Scene + TaylorField>(&mut self, system: S);
+    fn visit<S: Described + Scene + TaylorField + Lagrangian>(&mut self, system: S);
 }
 
 /// Visits every shipped model and every system of [`crate::systems`], at their defaults.

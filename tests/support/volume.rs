@@ -111,7 +111,7 @@ impl WithVolume {
             Input::Momentum(i) => p[i],
             Input::Quasi(_) => f64::NAN,
             Input::Parameter(k) => self.parameter(k),
-            Input::Excess(_) | Input::MotionRate(_) => f64::NAN,
+            Input::Excess(_) | Input::MotionRate(_) | Input::Multiplier(_) => f64::NAN,
         }
     }
 

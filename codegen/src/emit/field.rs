@@ -61,6 +61,7 @@ impl Context<'_> {
         bind(&[self.momentum_pattern(function)], &quote!(p))
     }
 
+    /// `let [x_dot, _] = components(qdot);` with the velocities that the function uses.
     pub(super) fn bind_velocities(&self, function: &Function) -> TokenStream {
         let velocities = pattern(&self.names.velocities, |i| {
             uses(function, |input| input == Input::Velocity(i))

@@ -306,6 +306,10 @@ impl<'a> Writer<'a> {
                 let index = Literal::usize_unsuffixed(k);
                 quote!(excess[#index])
             }
+            Input::Multiplier(a) => {
+                let index = Literal::usize_unsuffixed(a);
+                quote!(reactions[#index])
+            }
         }
     }
 }

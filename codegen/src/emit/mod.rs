@@ -10,6 +10,7 @@ mod function;
 mod impact;
 mod indices;
 mod jet;
+mod lagrangian;
 mod names;
 mod parameters;
 mod reduced;
@@ -65,12 +66,13 @@ pub fn tokens(model: &Model, derivation: &Derivation, programs: &Lowered) -> Tok
 }
 
 /// What is implemented for a type of the model.
-fn implementations(context: &Context<'_>) -> [TokenStream; 9] {
+fn implementations(context: &Context<'_>) -> [TokenStream; 10] {
     [
         field::emit_field(context),
         field::emit_system(context),
         jet::emit_taylor(context),
         constraint::emit_constrained(context),
+        lagrangian::emit_lagrangian(context),
         impact::emit_impacting(context),
         volume::emit_divergence(context),
         volume::emit_invariant_volume(context),

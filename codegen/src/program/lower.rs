@@ -60,6 +60,7 @@ fn lower_form(
         velocity: motion::velocity(model, derivation, form),
         momentum: motion::momentum(model, derivation),
         energy: motion::energy(model, derivation, form),
+        force: motion::force(model, derivation),
         reduced: match form {
             Form::Global => None,
             Form::Reduced => reduced::reduced(model, derivation),

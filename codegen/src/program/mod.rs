@@ -57,6 +57,8 @@ pub enum Input {
     Excess(usize),
     /// The rate of a momentum or quasi-velocity, or an impulse on it.
     MotionRate(usize),
+    /// A multiplier of a constraint.
+    Multiplier(usize),
 }
 
 /// One operation.
@@ -159,7 +161,8 @@ impl Input {
             | Self::Velocity(_)
             | Self::Parameter(_)
             | Self::Excess(_)
-            | Self::MotionRate(_) => None,
+            | Self::MotionRate(_)
+            | Self::Multiplier(_) => None,
         }
     }
 }
@@ -234,6 +237,8 @@ pub struct Program {
     pub momentum: Function,
     /// `(t, s) -> energy`
     pub energy: Function,
+    /// `(t, q, qdot) -> f = dL/dq + F`
+    pub force: Function,
     /// In reduced form.
     pub reduced: Option<Reduced>,
     /// What is derived at a state, by name: in global form, which holds off the constraints too, everything; in reduced
@@ -277,6 +282,7 @@ impl Program {
             velocity,
             momentum,
             energy,
+            force,
             reduced,
             geometry,
             constrained,
@@ -290,7 +296,7 @@ impl Program {
             initial,
             until,
         } = self;
-        let mut functions = vec![rate, scale, velocity, momentum, energy];
+        let mut functions = vec![rate, scale, velocity, momentum, energy, force];
         functions.extend([&jet.function, &geometry.function]);
         functions.extend(reduced.iter().flat_map(Reduced::functions));
         functions.extend([divergence, density_form, initial]);
@@ -352,6 +358,10 @@ pub struct Constrained {
     pub levels: Function,
     /// `(t, q, excess) -> change of q`
     pub level_correction: Function,
+    /// `(t, q, lambda) -> lambda_a eta^a`
+    pub reaction_force: Function,
+    /// `(t, q, p) -> qdot` on D at `p + mu_a eta^a`, then `mu`.
+    pub constrained_velocity: Function,
 }
 
 impl Constrained {
@@ -363,8 +373,11 @@ impl Constrained {
             return_to_constraints,
             levels,
             level_correction,
+            reaction_force,
+            constrained_velocity,
         } = self;
         let mut functions = vec![multipliers, residuals, forms, levels, level_correction];
+        functions.extend([reaction_force, constrained_velocity]);
         functions.extend(return_to_constraints.iter().flat_map(Return::functions));
         functions
     }

@@ -6,7 +6,10 @@ use std::path::PathBuf;
 use clap::builder::ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use dalembert::impacts::law::Law;
-use dalembert::integrate::{Dop853Scheme, DormandPrince5Scheme, Scheme, TAYLOR};
+use dalembert::integrate::{
+    ClassicalRungeKutta, ComposedPrinciple, Dop853Scheme, DormandPrince5Scheme, Gauss, Method,
+    MidpointPrinciple, Scheme, TAYLOR,
+};
 
 use crate::scalar;
 
@@ -66,6 +69,8 @@ Examples:
   dalembert simulate rolling_disk --until 40 --plot disk.svg
   dalembert simulate rolling_disk --set ta=0.3 --initial phi=pi/3,theta_dot=12
   dalembert simulate rolling_disk --impacts 50 --law leading_edge=newton:0.5 --json -
+  dalembert simulate double_pendulum --integrator gauss6 --step 0.01 --until 1000
+  dalembert simulate chaplygin_sleigh --integrator dla4 --step pi/200
   dalembert simulate bouncing_ball --q 1 --qdot 0 --until 10 --csv ball.csv";
 
 const EVAL_EXAMPLES: &str = "Input: a JSON array of states, {\"q\": [..], \"qdot\": [..]} or {\"q\": [..], \"p\": [..]}, with \"t\"
@@ -191,6 +196,16 @@ pub enum Integrator {
     Dopri5,
     /// Taylor series, of the order that belongs to the tolerance (12 at 1e-9, 19 at 1e-15).
     Taylor,
+    /// Fixed step: the classical Runge-Kutta method of order 4.
+    Rk4,
+    /// Fixed step: Gauss collocation of order 4, symplectic without constraints.
+    Gauss4,
+    /// Fixed step: Gauss collocation of order 6, symplectic without constraints.
+    Gauss6,
+    /// Fixed step: discrete Lagrange-d'Alembert principle of order 2, constraints hold to rounding.
+    Dla2,
+    /// Fixed step: the same composed to order 4.
+    Dla4,
 }
 
 impl Integrator {
@@ -199,6 +214,11 @@ impl Integrator {
         match self {
             Self::Dop853 => Dop853Scheme::NAME,
             Self::Dopri5 => DormandPrince5Scheme::NAME,
+            Self::Rk4 => ClassicalRungeKutta::NAME,
+            Self::Gauss4 => Gauss::<2>::NAME,
+            Self::Gauss6 => Gauss::<3>::NAME,
+            Self::Dla2 => MidpointPrinciple::NAME,
+            Self::Dla4 => ComposedPrinciple::NAME,
             Self::Taylor => TAYLOR,
         }
     }
@@ -208,8 +228,18 @@ impl Integrator {
         match self {
             Self::Dop853 => Some(Dop853Scheme::ORDER),
             Self::Dopri5 => Some(DormandPrince5Scheme::ORDER),
+            Self::Rk4 => Some(ClassicalRungeKutta::ORDER),
+            Self::Gauss4 => Some(Gauss::<2>::ORDER),
+            Self::Gauss6 => Some(Gauss::<3>::ORDER),
+            Self::Dla2 => Some(MidpointPrinciple::ORDER),
+            Self::Dla4 => Some(ComposedPrinciple::ORDER),
             Self::Taylor => None,
         }
+    }
+
+    /// Whether it chooses its steps by an error estimate.
+    pub const fn is_adaptive(self) -> bool {
+        matches!(self, Self::Dop853 | Self::Dopri5 | Self::Taylor)
     }
 }
 
@@ -275,6 +305,9 @@ pub struct SimulateArgs {
     /// The integrator.
     #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
     pub integrator: Integrator,
+    /// The step of an integrator of fixed step. Without it, one that suits --tol where the run starts; the summary says which.
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
+    pub step: Option<f64>,
     /// Relative error allowed per step, between 1e-15 and 0.1.
     #[arg(long, value_name = "X", default_value = "1e-10", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
     pub tol: f64,

@@ -5,8 +5,11 @@ use std::ops::ControlFlow;
 
 use dalembert::describe::Description;
 use dalembert::impacts::law::Law;
-use dalembert::integrate::{Counters, Dop853, DormandPrince5, Stepper, Taylor, Tolerance};
-use dalembert::{Event, Observer, Outcome, SceneEffects, Segment, Simulation};
+use dalembert::integrate::{
+    Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4, Gauss6, Method, Rk4, Stepper,
+    Taylor, Tolerance,
+};
+use dalembert::{Event, Observer, Outcome, SceneEffects, Segment, Simulation, StateVector};
 use serde_json::Value;
 
 use crate::args::{Form, Integrator};
@@ -19,6 +22,8 @@ pub(crate) struct Settings {
     pub form: Form,
     pub integrator: Integrator,
     pub tol: f64,
+    /// The step of an integrator of fixed step, where the flags say.
+    pub step: Option<f64>,
     pub until: f64,
     /// Stop after this many impacts.
     pub impacts: Option<u64>,
@@ -38,6 +43,8 @@ pub(crate) struct Ending {
     pub first: Point,
     pub last: Point,
     pub counters: Vec<(&'static str, u64)>,
+    /// The step that the integrator kept, if it keeps one.
+    pub step: Option<f64>,
     /// The law in force on each surface.
     pub laws: Vec<Option<Law>>,
     /// Whether the requested time or number of impacts was reached.
@@ -86,16 +93,31 @@ pub(crate) fn simulate<M: Model>(
     watch: &mut dyn Watch,
 ) -> Result<Ending, String> {
     let tolerance = Tolerance::new(settings.tol).map_err(|error| error.to_string())?;
+    macro_rules! run {
+        ($stepper:expr) => {
+            run(model, $stepper, state, settings, watch)
+        };
+    }
     match settings.integrator {
-        Integrator::Dop853 => run(model, Dop853::new(tolerance), state, settings, watch),
-        Integrator::Dopri5 => run(
-            model,
-            DormandPrince5::new(tolerance),
-            state,
-            settings,
-            watch,
-        ),
-        Integrator::Taylor => run(model, Taylor::new(tolerance), state, settings, watch),
+        Integrator::Dop853 => run!(Dop853::new(tolerance)),
+        Integrator::Dopri5 => run!(DormandPrince5::new(tolerance)),
+        Integrator::Taylor => run!(Taylor::new(tolerance)),
+        Integrator::Rk4 => run!(stepping(Rk4::new(tolerance), settings)),
+        Integrator::Gauss4 => run!(stepping(Gauss4::new(tolerance), settings)),
+        Integrator::Gauss6 => run!(stepping(Gauss6::new(tolerance), settings)),
+        Integrator::Dla2 => run!(stepping(Dla2::new(tolerance), settings)),
+        Integrator::Dla4 => run!(stepping(Dla4::new(tolerance), settings)),
+    }
+}
+
+/// An integrator of fixed step with the step of the flags, if they say.
+fn stepping<S: StateVector, M: Method>(
+    integrator: FixedStep<S, M>,
+    settings: &Settings,
+) -> FixedStep<S, M> {
+    match settings.step {
+        Some(step) => integrator.with_step(step),
+        None => integrator,
     }
 }
 
@@ -121,7 +143,8 @@ fn run<M: Model, S: Stepper<M>>(
         .collect();
     let first = point(model, 0.0, &state);
     let mut bridge = Bridge { model, watch };
-    let run = Simulation::new(model, stepper, effects)
+    let mut simulation = Simulation::new(model, stepper, effects);
+    let run = simulation
         .run(0.0, state, settings.until, &mut bridge)
         .map_err(|error| error.to_string())?;
     Ok(Ending {
@@ -131,6 +154,7 @@ fn run<M: Model, S: Stepper<M>>(
         first,
         last: point(model, run.t, &run.state),
         counters: counters(&run.counters),
+        step: simulation.fixed_step(),
         laws,
         reached: run.outcome.is_done()
             || (settings.impacts.is_some() && run.outcome == Outcome::ImpactBudget),

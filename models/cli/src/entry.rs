@@ -6,7 +6,7 @@
 use dalembert::describe::{Described, Description, Report};
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::state::StateVector;
-use dalembert::{Fault, ParameterError, Scene, StateError, System, TaylorField};
+use dalembert::{Fault, Lagrangian, ParameterError, Scene, StateError, System, TaylorField};
 
 use crate::args::{Form, OffConstraint};
 use crate::driver::{self, Ending, Settings, Watch};
@@ -55,9 +55,15 @@ impl Entry {
 }
 
 /// What the command line needs of a model type: everything that `model!` implements.
-pub trait Model: Described<Global: TaylorField> + Scene + TaylorField + 'static {}
+pub trait Model:
+    Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static
+{
+}
 
-impl<M: Described<Global: TaylorField> + Scene + TaylorField + 'static> Model for M {}
+impl<M> Model for M where
+    M: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static
+{
+}
 
 /// A list of models for [`run`](crate::run), by their types: `models![Pendulum, RollingDisk]`.
 #[macro_export]

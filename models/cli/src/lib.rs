@@ -27,6 +27,7 @@
 mod args;
 mod catalogue;
 mod command;
+pub mod drift;
 mod driver;
 mod entry;
 mod error;

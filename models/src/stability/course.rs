@@ -153,6 +153,7 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
                 setting,
                 observer,
             ),
+            other => unreachable!("the suite runs no integrator of fixed step: {other:?}"),
         }
     }
 

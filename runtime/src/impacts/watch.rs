@@ -215,6 +215,24 @@ impl<Sys: Impacting> Watch<Sys> {
         glance.rates.as_slice()[surface] * glance.length < -rounding
     }
 
+    /// Whether the gap is negative at the end of the step, by more than rounding: a motion along a wall falls and rises
+    /// through it by that much.
+    fn is_sunk<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) -> bool {
+        let gap = glance.gaps.as_slice()[surface];
+        if gap >= 0.0 {
+            return false;
+        }
+        let mut evaluations = 0;
+        let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
+        step.counters.event_evaluations += evaluations;
+        gap < -2.0 * rounding
+    }
+
     /// Whether the step can pass this surface, told cheaply.
     #[inline(always)]
     fn is_clear(&self, surface: usize, glance: &Glance<Sys::Gaps>) -> bool {
@@ -293,7 +311,7 @@ impl<Sys: Impacting> Watch<Sys> {
             let found = first_fall(surface, step, &self.sizes, samples, start, &glance.series);
             let (part, after) = match found {
                 Search::Clear => {
-                    let sunk = glance.gaps.as_slice()[surface] < 0.0;
+                    let sunk = self.is_sunk(surface, step, glance);
                     return Ok(tangential
                         .filter(|_| sunk)
                         .map_or(Found::Nothing, Found::Hit));

@@ -65,3 +65,50 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         value
     }
 }
+
+/// Where the slopes inside are prescribed by [`Polynomial::set_inner`]: here and at one minus it, the outer nodes of
+/// Gauss's rule of three points. Lobatto's, where `a (1 - a) = 1/5`, would not determine the quintic.
+pub(super) const INNER: f64 = 0.112_701_665_379_258_31;
+
+impl<S: StateVector> Polynomial<S, 5> {
+    /// Raises the cubic through the ends to the quintic that has `h` times these rates for slopes at [`INNER`] and at
+    /// `1 - INNER`.
+    pub(super) fn set_inner(&mut self, h: f64, rates: [&S; 2]) {
+        const A: f64 = INNER;
+        const B: f64 = 1.0 - INNER;
+        // The slopes of theta^2 s^2 and theta^3 s^2 at A; at B that of the first has the opposite sign.
+        const FOURTH: f64 = 2.0 * A * B * (1.0 - 2.0 * A);
+        const FIFTH: [f64; 2] = [A * A * B * (3.0 - 5.0 * A), B * B * A * (3.0 - 5.0 * B)];
+        for i in 0..S::LEN {
+            let missing = [(0, A), (1, B)].map(|(k, node)| self.beside_cubic(h, node, rates[k], i));
+            let fifth = (missing[0] + missing[1]) / (FIFTH[0] + FIFTH[1]);
+            self.coefficients[3].as_mut_slice()[i] = (missing[0] - FIFTH[0] * fifth) / FOURTH;
+            self.coefficients[4].as_mut_slice()[i] = fifth;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::SVector;
+
+    #[test]
+    fn quintic_reproduces_polynomials_of_degree_five() {
+        type Scalar = SVector<f64, 1>;
+        let h = 0.5;
+        let value = |x: f64| {
+            Scalar::new(1.0 + x - 2.0 * x * x + x * x * x - 3.0 * x.powi(4) + 2.0 * x.powi(5))
+        };
+        let rate = |x: f64| {
+            Scalar::new((1.0 - 4.0 * x + 3.0 * x * x - 12.0 * x.powi(3) + 10.0 * x.powi(4)) / h)
+        };
+        let mut dense = Polynomial::<Scalar, 5>::zero();
+        dense.set_cubic(h, [&value(0.0), &value(1.0)], [&rate(0.0), &rate(1.0)]);
+        dense.set_inner(h, [&rate(INNER), &rate(1.0 - INNER)]);
+        for step in 0..=16 {
+            let x = f64::from(step) / 16.0;
+            assert!((dense.at(x) - value(x)).amax() < 1e-14, "{x}");
+        }
+    }
+}

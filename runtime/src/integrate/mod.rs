@@ -1,8 +1,9 @@
-//! Integrators: one step of a [`VectorField`](crate::VectorField), with error control and dense output.
+//! Integrators: one step of a [`VectorField`](crate::VectorField), with dense output.
 //!
-//! [`Stepper`] is all that the driver knows of them. [`Dop853`] and [`DormandPrince5`] are [`Embedded`] Runge-Kutta
-//! pairs: a [`Scheme`] brings the coefficients, [`Embedded`] the step, its control and its failures. [`Taylor`] sums
-//! power series whose coefficients are generated with the vector field
+//! [`Stepper`] is all that the driver knows of them. There are two frames: [`Embedded`] for Runge-Kutta pairs with an
+//! error estimate, of which a [`Scheme`] brings the coefficients, and [`FixedStep`] for methods that keep a step size,
+//! of which a [`Method`] brings the step. A frame has what its methods share: sizes of steps, failures, dense output.
+//! [`Taylor`] sums power series whose coefficients are generated with the vector field
 //! ([`TaylorField`](crate::TaylorField)).
 
 mod controller;
@@ -11,6 +12,12 @@ mod dop853;
 mod dop853_tableau;
 mod dopri5;
 mod embedded;
+mod fixed;
+mod gauss;
+mod iteration;
+mod lagrange_d_alembert;
+mod precise;
+mod rk4;
 mod stats;
 mod stepper;
 mod tableau;
@@ -21,6 +28,10 @@ pub use dense::Polynomial;
 pub use dop853::{Dop853, Dop853Scheme};
 pub use dopri5::{DormandPrince5, DormandPrince5Scheme};
 pub use embedded::{Embedded, Scheme};
+pub use fixed::{Advance, FixedStep, Method};
+pub use gauss::{Gauss, Gauss4, Gauss6};
+pub use lagrange_d_alembert::{ComposedPrinciple, Dla2, Dla4, MidpointPrinciple};
+pub use rk4::{ClassicalRungeKutta, Rk4};
 pub use stats::Counters;
 pub use stepper::{Series, StepFailure, Stepper};
 pub use taylor::{TAYLOR, Taylor};

@@ -4,15 +4,17 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Counters {
-    /// Evaluations of the vector field, those of rejected steps included.
+    /// Evaluations of the vector field, those of rejected steps included. A discrete principle evaluates the force and
+    /// solves for a velocity instead, which is as much work and counts as one.
     pub rate_evaluations: u64,
     /// Expansions of the motion in a power series.
     pub expansions: u64,
     /// Orders of these expansions together: what they cost grows with their squares.
     pub coefficients: u64,
-    /// Steps whose error estimate passed.
+    /// Steps that were made: their error estimate passed, or they have none.
     pub accepted: u64,
-    /// Trial steps thrown away: error too large, a fault, or a number that is not finite.
+    /// Trial steps thrown away: error too large, a fault, a number that is not finite, or an implicit step that was not
+    /// solved.
     pub rejected: u64,
     /// Steps whose dense output was built.
     pub dense_constructions: u64,

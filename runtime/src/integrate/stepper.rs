@@ -7,7 +7,7 @@ use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::jet::LENGTH;
 
-/// A one-step integrator with error control and dense output.
+/// A one-step integrator with dense output, whether it chooses its steps by an error estimate or keeps a size.
 ///
 /// After [`Stepper::start`], every [`Stepper::step`] makes one accepted step from the end of the last one. Both
 /// ends of the step stay readable until the next; states between them are had from [`Stepper::interpolate`] after
@@ -29,7 +29,8 @@ pub trait Stepper<F: VectorField> {
         counters: &mut Counters,
     ) -> Result<(), StepFailure>;
 
-    /// Begins again after a jump, with the step size known so far but none larger than `limit`.
+    /// Begins again after a jump, with the step size known so far but none larger than `limit`. An integrator that
+    /// keeps a size goes back to it within a few steps.
     ///
     /// # Errors
     /// [`StepFailure`] where the vector field does not exist at the new state.
@@ -48,6 +49,11 @@ pub trait Stepper<F: VectorField> {
     /// # Errors
     /// [`StepFailure`]; the last good state is still [`Stepper::end_state`].
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure>;
+
+    /// The size this integrator keeps in the run at hand; `None` if it chooses every step anew.
+    fn fixed_step(&self) -> Option<f64> {
+        None
+    }
 
     /// Takes `state` for the end of the last step, as a projection does, and evaluates the rate there anew.
     ///
@@ -115,6 +121,12 @@ pub enum StepFailure {
         /// Where.
         t: f64,
     },
+    /// The equations of an implicit step cannot be solved, not even in many small parts: the step is too long for the
+    /// fastest motion of the system.
+    NotConverged {
+        /// Start of the step.
+        t: f64,
+    },
     /// The vector field does not exist in whatever short step.
     Fault(Fault),
     /// The state or its rate is not finite in whatever short step.
@@ -128,6 +140,10 @@ impl fmt::Display for StepFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::StepUnderflow { t } => write!(f, "the step size underflows at t = {t}"),
+            Self::NotConverged { t } => write!(
+                f,
+                "the equations of the implicit step at t = {t} have no solution within reach: a shorter step may have"
+            ),
             Self::Fault(fault) => fault.fmt(f),
             Self::NonFinite { component } => write!(
                 f,

@@ -1,10 +1,12 @@
 //! A point of mass 1 in the plane, under a constant force, between surfaces given as functions.
 #![allow(dead_code, missing_docs, reason = "each test uses its part")]
 
+pub mod line;
+
 use dalembert::{
-    Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Impacting, Impacts, Law, Outcome,
-    ParameterError, Run, Simulation, Stepper, System, Taylor, TaylorField, Tolerance, VectorField,
-    jet::LENGTH,
+    Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Gauss4, Gauss6, Impacting, Impacts,
+    Law, Outcome, ParameterError, Rk4, Run, Simulation, Stepper, System, Taylor, TaylorField,
+    Tolerance, VectorField, jet::LENGTH,
 };
 use nalgebra::SVector;
 
@@ -170,27 +172,33 @@ pub fn at(x: f64, y: f64, vx: f64, vy: f64) -> State {
     State::new(x, y, vx, vy)
 }
 
-/// Runs with every integrator and several step limits; each result goes to `check` with its events.
+/// Runs with every integrator and several sizes of step; each result goes to `check` with its events.
 pub fn with_every_integrator<const S: usize>(
     particle: &Particle<S>,
     state: State,
     t_end: f64,
     mut check: impl FnMut(&Run<State>, &Log, &str),
 ) {
+    let tolerance = Tolerance::new(1e-12).unwrap();
+    macro_rules! check {
+        ($name:literal, $stepper:expr) => {
+            let mut log = Log::new();
+            let run = run_with(particle, $stepper, state, t_end, &mut log);
+            check(&run, &log, $name);
+        };
+    }
     for max_step in [f64::INFINITY, 0.25, 1e-3] {
-        let tolerance = Tolerance::new(1e-12).unwrap();
-        let eighth = Dop853::new(tolerance).with_max_step(max_step);
-        let fifth = DormandPrince5::new(tolerance).with_max_step(max_step);
-        let mut log = Log::new();
-        let run = run_with(particle, eighth, state, t_end, &mut log);
-        check(&run, &log, &format!("dop853 {max_step}"));
-        let mut log = Log::new();
-        let run = run_with(particle, fifth, state, t_end, &mut log);
-        check(&run, &log, &format!("dopri5 {max_step}"));
-        let taylor = Taylor::new(tolerance).with_max_step(max_step);
-        let mut log = Log::new();
-        let run = run_with(particle, taylor, state, t_end, &mut log);
-        check(&run, &log, &format!("taylor {max_step}"));
+        check!("dop853", Dop853::new(tolerance).with_max_step(max_step));
+        check!(
+            "dopri5",
+            DormandPrince5::new(tolerance).with_max_step(max_step)
+        );
+        check!("taylor", Taylor::new(tolerance).with_max_step(max_step));
+    }
+    for step in [0.25, 1e-3] {
+        check!("rk4", Rk4::new(tolerance).with_step(step));
+        check!("gauss4", Gauss4::new(tolerance).with_step(step));
+        check!("gauss6", Gauss6::new(tolerance).with_step(step));
     }
 }
 

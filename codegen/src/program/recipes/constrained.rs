@@ -20,6 +20,8 @@ pub fn constrained(model: &Model, derivation: &Derivation, form: Form) -> Option
         }),
         levels: levels(model, derivation),
         level_correction: level_correction(model, derivation),
+        reaction_force: reaction_force(model, derivation),
+        constrained_velocity: constrained_velocity(model, derivation),
     })
 }
 
@@ -58,18 +60,46 @@ fn forms(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// `p + mu_a eta^a` with `m mu = -(eta(qdot) + eta_0)`: the nearest momenta in the metric on D*, from momenta or
-/// velocities.
-fn project(model: &Model, derivation: &Derivation, arguments: Arguments) -> Function {
-    let mut kernel = Kernel::new(model, derivation, arguments);
-    let kinetic = kernel.lowered_velocity();
-    let affine: Vec<_> = derivation
+/// The `mu` of `m mu = -(eta(qdot) + eta_0)`: what is missing on the way to the nearest momenta on D*.
+fn shift(kernel: &mut Kernel<'_>, kinetic: &[Value]) -> Vec<Value> {
+    let affine: Vec<_> = kernel
+        .derivation
         .constraints
         .iter()
         .map(|constraint| constraint.affine)
         .collect();
     let affine = kernel.values(&affine);
-    let shift = kernel.constraint_solve(&kinetic, &affine);
+    kernel.constraint_solve(kinetic, &affine)
+}
+
+/// `lambda_a eta^a`
+fn reaction_force(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let multipliers: Vec<Value> = (0..kernel.constraints())
+        .map(|a| kernel.builder.input(Input::Multiplier(a)))
+        .collect();
+    let nothing = vec![kernel.builder.zero(); kernel.dimension()];
+    let outputs = kernel.add_constraint_force(&nothing, &multipliers);
+    kernel.finish(outputs)
+}
+
+/// `g^{-1} (p - A + mu_a eta^a)`, then `mu`.
+fn constrained_velocity(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
+    let kinetic = kernel.lowered_velocity();
+    let shift = shift(&mut kernel, &kinetic);
+    let momenta = kernel.add_constraint_force(&kinetic, &shift);
+    let mut outputs = kernel.raise(&momenta);
+    outputs.extend(shift);
+    kernel.finish(outputs)
+}
+
+/// `p + mu_a eta^a` with `m mu = -(eta(qdot) + eta_0)`: the nearest momenta in the metric on D*, from momenta or
+/// velocities.
+fn project(model: &Model, derivation: &Derivation, arguments: Arguments) -> Function {
+    let mut kernel = Kernel::new(model, derivation, arguments);
+    let kinetic = kernel.lowered_velocity();
+    let shift = shift(&mut kernel, &kinetic);
     let momenta = kernel.momenta();
     let outputs = kernel.add_constraint_force(&momenta, &shift);
     kernel.finish(outputs)

@@ -64,6 +64,13 @@ pub fn momentum(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
+/// `(t, q, qdot) -> dL/dq + F`
+pub fn force(model: &Model, derivation: &Derivation) -> Function {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Velocities);
+    let outputs = kernel.force();
+    kernel.finish(outputs)
+}
+
 /// `(t, q, p) -> 1/2 (p - A).qdot + V`, or `(t, q, u) -> 1/2 g(qdot, qdot) + V`
 pub fn energy(model: &Model, derivation: &Derivation, form: Form) -> Function {
     let mut kernel = Kernel::new(model, derivation, form.state_with_velocity());

@@ -35,6 +35,14 @@ pub fn run(
     let (json, html) = (open("--json", &args.json)?, open("--html", &args.html)?);
     let quiet = args.json.as_deref().is_some_and(is_stdout);
 
+    if args
+        .integrator
+        .is_some_and(|integrator| !integrator.is_adaptive())
+    {
+        return Err(CliError::Usage(
+            "--integrator: cases bound errors by tolerances; choose dop853, dopri5 or taylor",
+        ));
+    }
     let one = args.integrator.map(|integrator| [integrator]);
     let integrators: &[Integrator] = match &one {
         Some(one) => one,

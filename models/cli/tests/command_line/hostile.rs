@@ -56,7 +56,23 @@ fn unknown_names_bring_the_nearest_and_all() {
         ("simulate bouncing_ball --scene windy", &["--scene", "all"]),
         (
             "simulate bouncing_ball --integrator euler",
-            &["--integrator", "dop853", "dopri5", "taylor"],
+            &[
+                "--integrator",
+                "dop853",
+                "dopri5",
+                "taylor",
+                "rk4",
+                "gauss6",
+                "dla4",
+            ],
+        ),
+        (
+            "simulate bouncing_ball --step 0.1",
+            &["--step", "--tol", "--integrator rk4", "dla2"],
+        ),
+        (
+            "simulate bouncing_ball --integrator rk4 --step 0",
+            &["--step", "positive"],
         ),
         ("list --format xml", &["--format", "text", "json"]),
         ("simulat bouncing_ball", &["simulate"]),

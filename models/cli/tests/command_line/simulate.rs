@@ -61,6 +61,44 @@ fn samples_lie_on_the_closed_solution() {
 }
 
 #[test]
+fn integrators_of_fixed_step_take_one_and_tell_it() {
+    for (integrator, bound) in [
+        ("rk4", 1e-5),
+        ("gauss4", 1e-6),
+        ("gauss6", 1e-9),
+        ("dla2", 1e-1),
+        ("dla4", 1e-5),
+    ] {
+        let flags = format!("--integrator {integrator} --step 0.05");
+        let (exit, document) = document(&format!(
+            "simulate oscillator --set k=4 {flags} --samples 101"
+        ));
+        assert_eq!(
+            (exit, &document["step"]),
+            (Exit::Reached, &Value::from(0.05))
+        );
+        assert_eq!(document["counters"]["accepted"], 400);
+        for sample in document["samples"].as_array().unwrap() {
+            let (t, q) = (sample["t"].as_f64().unwrap(), numbers(&sample["q"]));
+            assert!((q[0] - t.cos()).abs() < bound, "{integrator} at {t}");
+        }
+        let told = run(&format!("simulate oscillator --set k=4 {flags}")).output;
+        assert!(
+            told.contains(&format!("{integrator}, global form, step 0.05\n")),
+            "{told}"
+        );
+        let told = run(&format!(
+            "simulate oscillator --set k=4 --integrator {integrator} --tol 1e-4"
+        ))
+        .output;
+        assert!(
+            told.contains("(from tol 1e-4; set it with --step)"),
+            "{told}"
+        );
+    }
+}
+
+#[test]
 fn impacts_are_located_and_samples_never_cross_them() {
     let (exit, document) = document("simulate bouncing_ball --until 10 --samples 1001");
     assert_eq!(exit, Exit::Reached);

@@ -10,7 +10,9 @@ use dalembert::describe::{
 use dalembert::error::ParameterError;
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::jet::LENGTH;
-use dalembert::{Fault, Impacting, Impacts, Scene, StateError, System, TaylorField, VectorField};
+use dalembert::{
+    Fault, Impacting, Impacts, Lagrangian, Scene, StateError, System, TaylorField, VectorField,
+};
 use nalgebra::SVector;
 
 /// What differs between the systems: mass, force and potential.
@@ -27,7 +29,7 @@ macro_rules! particle {
             type State = SVector<f64, $dim>;
 
             fn rate(&self, _t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault> {
-                let force = self.force(&std::array::from_fn(|i| state[i]));
+                let force = Particle::force(self, &std::array::from_fn(|i| state[i]));
                 for i in 0..$n {
                     rate[i] = state[$n + i] / self.mass();
                     rate[$n + i] = force[i];
@@ -48,9 +50,9 @@ macro_rules! particle {
                 coefficients: &mut [Self::State; LENGTH],
                 _jets: &mut Self::Jets,
             ) -> Result<(), Fault> {
-                let constant = self.force(&[0.0; $n]);
+                let constant = Particle::force(self, &[0.0; $n]);
                 for k in 0..order {
-                    let force = self.force(&std::array::from_fn(|i| coefficients[k][i]));
+                    let force = Particle::force(self, &std::array::from_fn(|i| coefficients[k][i]));
                     let scale = unit / (k + 1) as f64;
                     for i in 0..$n {
                         let own = if k == 0 { force[i] } else { force[i] - constant[i] };
@@ -106,6 +108,37 @@ macro_rules! particle {
             }
 
             $($hooks)*
+        }
+    };
+}
+
+/// `Lagrangian` of a [`Particle`] without constraints.
+macro_rules! free {
+    ($type:ty, $n:literal) => {
+        impl Lagrangian for $type {
+            type Reactions = SVector<f64, 0>;
+
+            fn force(&self, _t: f64, q: &Self::Vector, _qdot: &Self::Vector) -> Self::Vector {
+                SVector::from(Particle::force(self, &std::array::from_fn(|i| q[i])))
+            }
+
+            fn reaction_force(
+                &self,
+                _t: f64,
+                _q: &Self::Vector,
+                _reactions: &Self::Reactions,
+            ) -> Self::Vector {
+                Self::Vector::zeros()
+            }
+
+            fn constrained_velocity(
+                &self,
+                _t: f64,
+                _q: &Self::Vector,
+                p: &Self::Vector,
+            ) -> Result<(Self::Vector, Self::Reactions), Fault> {
+                Ok((p / self.mass(), SVector::zeros()))
+            }
         }
     };
 }
@@ -180,6 +213,8 @@ impl Particle<1> for BouncingBall {
 }
 
 particle!(BouncingBall, 1, 2, {});
+
+free!(BouncingBall, 1);
 
 impl Impacting for BouncingBall {
     type Gaps = SVector<f64, 1>;
@@ -331,6 +366,7 @@ impl Particle<2> for Oscillator {
 }
 
 particle!(Oscillator, 2, 4, {});
+free!(Oscillator, 2);
 
 impl Scene for Oscillator {
     type Effects = ();
@@ -476,6 +512,33 @@ particle!(Bead, 2, 4, {
         }
     }
 });
+
+impl Lagrangian for Bead {
+    type Reactions = SVector<f64, 1>;
+
+    fn force(&self, _t: f64, _q: &Self::Vector, _qdot: &Self::Vector) -> Self::Vector {
+        Self::Vector::zeros()
+    }
+
+    fn reaction_force(
+        &self,
+        _t: f64,
+        _q: &Self::Vector,
+        reactions: &Self::Reactions,
+    ) -> Self::Vector {
+        SVector::from([-reactions[0], reactions[0]])
+    }
+
+    fn constrained_velocity(
+        &self,
+        _t: f64,
+        _q: &Self::Vector,
+        p: &Self::Vector,
+    ) -> Result<(Self::Vector, Self::Reactions), Fault> {
+        let mean = 0.5 * (p[0] + p[1]);
+        Ok(([mean, mean].into(), [mean - p[1]].into()))
+    }
+}
 
 impl Scene for Bead {
     type Effects = ();

@@ -35,6 +35,9 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     document.field("form", settings.form.name())?;
     document.field("integrator", settings.integrator.name())?;
     document.field("tol", number(settings.tol))?;
+    if let Some(step) = ending.step {
+        document.field("step", number(step))?;
+    }
     document.field("outcome", outcome(finished))?;
     document.rows(
         "events",

@@ -47,10 +47,17 @@ pub fn uses_stdout(args: &SimulateArgs) -> bool {
 
 /// How the run is to be made.
 pub fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, CliError> {
+    if args.step.is_some() && args.integrator.is_adaptive() {
+        return Err(CliError::Usage(
+            "--step: dop853, dopri5 and taylor choose their steps by --tol; a step needs --integrator rk4, gauss4, gauss6, dla2 \
+             or dla4",
+        ));
+    }
     Ok(Settings {
         form: form(&model.description(), args)?,
         integrator: args.integrator,
         tol: args.tol,
+        step: args.step,
         until: horizon(model, args)?,
         impacts: impacts(&model.description(), args)?,
         laws: laws(&model.description(), &args.law)?,

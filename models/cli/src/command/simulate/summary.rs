@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use dalembert::impacts::law::Law;
 
 use super::Finished;
-use crate::driver::Ending;
+use crate::driver::{Ending, Settings};
 
 /// Writes the summary.
 pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
@@ -22,13 +22,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     )?;
     writeln!(output, "  impacts     {}", impacts(finished))?;
     writeln!(output, "  energy      {}", energy(ending))?;
-    writeln!(
-        output,
-        "  integrator  {}, {} form, tol {:e}",
-        settings.integrator.name(),
-        settings.form.name(),
-        settings.tol
-    )?;
+    writeln!(output, "  integrator  {}", integrator(ending, settings))?;
     let counters: Vec<String> = ending
         .counters
         .iter()
@@ -106,6 +100,23 @@ fn impacts(finished: &Finished<'_>) -> String {
         }
     }
     text
+}
+
+/// The integrator with what decides on its steps.
+fn integrator(ending: &Ending, settings: &Settings) -> String {
+    let name = format!(
+        "{}, {} form",
+        settings.integrator.name(),
+        settings.form.name()
+    );
+    let tol = settings.tol;
+    match (ending.step, settings.step) {
+        (None, _) => format!("{name}, tol {tol:e}"),
+        (Some(step), Some(_)) => format!("{name}, step {step}"),
+        (Some(step), None) => {
+            format!("{name}, step {step} (from tol {tol:e}; set it with --step)")
+        }
+    }
 }
 
 fn energy(ending: &Ending) -> String {

@@ -1,0 +1,434 @@
+//! Steps of one size: what the methods without error estimate share.
+//!
+//! A run is a grid of steps of the size that was asked for, or else of the automatic first step of the tolerance. What
+//! differs from it: the last step lands on the end; after an impact steps grow back from the length that the driver
+//! allows; a step in which the vector field does not exist is shortened until it does; and an implicit step that is
+//! not solved is made in 2, 4, 8, .. equal parts, which keeps the grid and what the method preserves.
+
+use super::controller::{RETREAT, Weights, first_step, least_step, not_finite};
+use super::dense::{INNER, Polynomial};
+use super::embedded::Counted;
+use super::precise::Precise;
+use super::stats::Counters;
+use super::stepper::{StepFailure, Stepper};
+use super::tolerance::Tolerance;
+use crate::contract::VectorField;
+use crate::error::Fault;
+use crate::state::StateVector;
+
+/// Largest factor between successive steps on the way back to the size of the run.
+const GROW: f64 = 4.0;
+
+/// A rest of the way to the end that is shorter than this part of a step joins the step before: it is rounding of the
+/// number of steps, not a piece of motion.
+const SLIVER: f64 = 1e-6;
+
+/// An implicit step is made in at most this many parts.
+const PARTS: u32 = 1 << 10;
+
+/// A method of fixed step: its names and orders. Implemented by the methods here.
+pub trait Method {
+    /// See [`Stepper::NAME`].
+    const NAME: &'static str;
+    /// Order of the solution at the ends of steps.
+    const ORDER: usize;
+    /// Order of the dense output between them.
+    const DENSE_ORDER: usize;
+    /// How often the cubic through the ends is refined by two rates inside; each time raises its order by one, up to 5.
+    const REFINEMENTS: u32;
+
+    /// What the method keeps from one step for the next besides the state.
+    type Memory<S: StateVector>: Copy;
+
+    /// Nothing kept.
+    fn memory<S: StateVector>() -> Self::Memory<S>;
+}
+
+/// One step of a method on a system.
+pub trait Advance<F: VectorField>: Method {
+    /// From `departure` over `h`; the state there.
+    #[doc(hidden)]
+    fn advance(
+        field: &mut Counted<'_, F>,
+        h: f64,
+        departure: &Departure<'_, F::State>,
+        memory: &mut Self::Memory<F::State>,
+    ) -> Result<Precise<F::State>, StepFailure>;
+}
+
+/// Where a step starts.
+#[derive(Debug, Clone, Copy)]
+pub struct Departure<'a, S> {
+    pub(super) t: f64,
+    pub(super) state: &'a Precise<S>,
+    pub(super) rate: &'a S,
+    /// What counts as a unit of each component, [`VectorField::scale`] at the start of the run.
+    pub(super) units: &'a S,
+}
+
+/// A method at work in steps of one size.
+#[derive(Debug, Clone, Copy)]
+pub struct FixedStep<S: StateVector, M: Method> {
+    tolerance: Tolerance,
+    given: Option<f64>,
+    /// The size of the run.
+    step: f64,
+    /// The size of the next step: that of the run, or less after an impact.
+    next: f64,
+    t: [f64; 2],
+    /// The length of the last step; the difference of its times has lost digits to their size.
+    made: f64,
+    /// The grid: since this time, this many steps of the run's size.
+    grid: (f64, f64),
+    units: S,
+    ends: [Precise<S>; 2],
+    rates: [S; 2],
+    memory: M::Memory<S>,
+    dense: Polynomial<S, 5>,
+    dense_ready: bool,
+}
+
+impl<S: StateVector, M: Method> FixedStep<S, M> {
+    /// Order of the solution at the ends of steps.
+    pub const ORDER: usize = M::ORDER;
+
+    /// An integrator whose step is found at the start: a power of two at most as long as the automatic first step of this
+    /// tolerance and the method's order, from the rate at the start alone, and then kept. Prefer [`FixedStep::with_step`] where the motion becomes faster.
+    pub fn new(tolerance: Tolerance) -> Self {
+        let zeros = S::zeros();
+        Self {
+            tolerance,
+            given: None,
+            step: 0.0,
+            next: 0.0,
+            t: [0.0; 2],
+            made: 0.0,
+            grid: (0.0, 0.0),
+            units: zeros,
+            ends: [Precise::new(zeros); 2],
+            rates: [zeros; 2],
+            memory: M::memory(),
+            dense: Polynomial::zero(),
+            dense_ready: false,
+        }
+    }
+
+    /// With steps of this size. Anything but a positive finite number is ignored.
+    #[must_use]
+    pub fn with_step(mut self, step: f64) -> Self {
+        self.given = (step > 0.0 && step.is_finite()).then_some(step);
+        self
+    }
+
+    /// Takes `(t, state)` for the end of a step, as a start does.
+    fn place<F: VectorField<State = S>>(
+        &mut self,
+        field: &mut Counted<'_, F>,
+        t: f64,
+        state: &S,
+    ) -> Result<(), StepFailure> {
+        self.t = [t; 2];
+        self.made = 0.0;
+        self.grid = (t, 0.0);
+        self.ends = [Precise::new(*state); 2];
+        self.dense_ready = false;
+        self.memory = M::memory();
+        self.units = usable(field.field.scale(t, state));
+        self.rates[1] = S::zeros();
+        evaluate(field, t, state, &mut self.rates[1])?;
+        check_finite(state, &self.rates[1])
+    }
+
+    /// The automatic first step, rounded down to a power of two: the times of the grid are exact then.
+    fn automatic_step<F: VectorField<State = S>>(
+        &self,
+        field: &mut Counted<'_, F>,
+        t: f64,
+        state: &S,
+        t_end: f64,
+    ) -> f64 {
+        let weights = Weights::new(self.tolerance, &self.units);
+        let (power, rate) = ((M::ORDER + 1) as f64, self.rates[1]);
+        let step = first_step(power, t_end - t, &weights, (state, &rate), |h| {
+            let mut moved = *state;
+            for i in 0..S::LEN {
+                moved.as_mut_slice()[i] += h * rate.as_slice()[i];
+            }
+            let mut after = S::zeros();
+            let known = evaluate(field, t + h, &moved, &mut after).is_ok();
+            (known && after.is_finite()).then_some(after)
+        });
+        const MANTISSA: u64 = (1 << (f64::MANTISSA_DIGITS - 1)) - 1;
+        f64::from_bits(step.to_bits() & !MANTISSA)
+    }
+
+    /// The end of the last step becomes the start of the next.
+    fn move_on(&mut self) {
+        self.t[0] = self.t[1];
+        self.ends[0] = self.ends[1];
+        self.rates[0] = self.rates[1];
+        self.dense_ready = false;
+    }
+
+    /// Puts the last good state back in place after a failure.
+    fn retract(&mut self) {
+        self.t[1] = self.t[0];
+        self.ends[1] = self.ends[0];
+        self.rates[1] = self.rates[0];
+    }
+
+    /// The length of a step of about `h`, and the time it leads to: `t_end` where that is in reach.
+    fn aim(&self, h: f64, t_end: f64) -> (f64, f64) {
+        let t = self.t[0];
+        let rest = t_end - t;
+        if rest <= h + SLIVER * h {
+            (rest, t_end)
+        } else if h == self.step {
+            // NOTE: the number of steps times their size does not add up rounding, and the length of a step does not
+            // depend on the time at which it is made.
+            (h, self.grid.0 + (self.grid.1 + 1.0) * h)
+        } else {
+            (h, t + h)
+        }
+    }
+
+    /// Makes the step in as few equal parts as it takes to solve it.
+    fn cross<F: VectorField<State = S>>(
+        &mut self,
+        field: &mut Counted<'_, F>,
+        h: f64,
+    ) -> Result<(), StepFailure>
+    where
+        M: Advance<F>,
+    {
+        let mut parts = 1;
+        loop {
+            let memory = self.memory;
+            match self.cross_in(field, h, parts) {
+                Err(StepFailure::NotConverged { .. }) if parts < PARTS => {
+                    field.counters.rejected += 1;
+                    self.memory = memory;
+                    parts *= 2;
+                }
+                outcome => return outcome,
+            }
+        }
+    }
+
+    fn cross_in<F: VectorField<State = S>>(
+        &mut self,
+        field: &mut Counted<'_, F>,
+        h: f64,
+        parts: u32,
+    ) -> Result<(), StepFailure>
+    where
+        M: Advance<F>,
+    {
+        let part = h / f64::from(parts);
+        (self.ends[1], self.rates[1]) = (self.ends[0], self.rates[0]);
+        for k in 0..parts {
+            let departure = Departure {
+                t: self.t[0] + f64::from(k) * part,
+                state: &self.ends[1],
+                rate: &self.rates[1],
+                units: &self.units,
+            };
+            let end = M::advance(field, part, &departure, &mut self.memory)?;
+            let t = self.t[0] + f64::from(k + 1) * part;
+            self.ends[1] = end;
+            evaluate(field, t, &end.value, &mut self.rates[1])?;
+            check_finite(&end.value, &self.rates[1])?;
+        }
+        Ok(())
+    }
+
+    /// Takes in a step that was made.
+    fn accept(&mut self, made: f64, arrival: f64) {
+        self.t[1] = arrival;
+        self.made = made;
+        self.next = (GROW * made).min(self.step);
+        if made == self.step {
+            self.grid.1 += 1.0;
+        } else {
+            self.grid = (arrival, 0.0);
+        }
+    }
+}
+
+/// The units with 1 for what is not a positive finite number.
+fn usable<S: StateVector>(mut units: S) -> S {
+    for unit in units.as_mut_slice() {
+        if !(*unit > 0.0 && unit.is_finite()) {
+            *unit = 1.0;
+        }
+    }
+    units
+}
+
+/// One evaluation that is called and not inlined: steps are the same code for every method, and a system whose rate is
+/// long is compiled once for all of them.
+#[inline(never)]
+pub(super) fn evaluate<F: VectorField>(
+    field: &mut Counted<'_, F>,
+    t: f64,
+    state: &F::State,
+    rate: &mut F::State,
+) -> Result<(), Fault> {
+    field.rate(t, state, rate)
+}
+
+fn check_finite<S: StateVector>(state: &S, rate: &S) -> Result<(), StepFailure> {
+    match not_finite(state).or(not_finite(rate)) {
+        Some(component) => Err(StepFailure::NonFinite { component }),
+        None => Ok(()),
+    }
+}
+
+impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
+    const NAME: &'static str = M::NAME;
+
+    fn start(
+        &mut self,
+        field: &F,
+        t: f64,
+        state: &F::State,
+        t_end: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        let mut field = Counted { field, counters };
+        self.place(&mut field, t, state)?;
+        self.step = match self.given {
+            Some(step) => step,
+            None => self.automatic_step(&mut field, t, state, t_end),
+        };
+        self.next = self.step;
+        Ok(())
+    }
+
+    fn restart(
+        &mut self,
+        field: &F,
+        t: f64,
+        state: &F::State,
+        limit: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        self.next = self.step.min(limit);
+        self.place(&mut Counted { field, counters }, t, state)
+    }
+
+    fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
+        self.move_on();
+        let mut field = Counted { field, counters };
+        let t = self.t[0];
+        let least = least_step(t);
+        let mut h = self.next.max(least);
+        loop {
+            let (made, arrival) = self.aim(h, t_end);
+            let attempt = match arrival > t {
+                true => self.cross(&mut field, made),
+                false => Err(StepFailure::StepUnderflow { t }),
+            };
+            let failure = match attempt {
+                Ok(()) => {
+                    field.counters.accepted += 1;
+                    self.accept(made, arrival);
+                    return Ok(());
+                }
+                Err(failure) => failure,
+            };
+            field.counters.rejected += 1;
+            h = made * RETREAT;
+            let is_curable = matches!(
+                failure,
+                StepFailure::Fault(_) | StepFailure::NonFinite { .. }
+            );
+            if !is_curable || h < least {
+                self.retract();
+                return Err(failure);
+            }
+        }
+    }
+
+    fn fixed_step(&self) -> Option<f64> {
+        Some(self.step)
+    }
+
+    fn replace_end(
+        &mut self,
+        field: &F,
+        state: &F::State,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        self.ends[1] = Precise::new(*state);
+        evaluate(
+            &mut Counted { field, counters },
+            self.t[1],
+            state,
+            &mut self.rates[1],
+        )?;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn t_start(&self) -> f64 {
+        self.t[0]
+    }
+
+    #[inline(always)]
+    fn t_end(&self) -> f64 {
+        self.t[1]
+    }
+
+    #[inline(always)]
+    fn start_state(&self) -> &F::State {
+        &self.ends[0].value
+    }
+
+    #[inline(always)]
+    fn end_state(&self) -> &F::State {
+        &self.ends[1].value
+    }
+
+    #[inline(always)]
+    fn end_rates(&self) -> [&F::State; 2] {
+        [&self.rates[0], &self.rates[1]]
+    }
+
+    #[inline(always)]
+    fn dense_ready(&self) -> bool {
+        self.dense_ready
+    }
+
+    fn prepare_dense(&mut self, field: &F, counters: &mut Counters) -> Result<(), Fault> {
+        if self.dense_ready {
+            return Ok(());
+        }
+        counters.dense_constructions += 1;
+        let mut field = Counted { field, counters };
+        let h = self.made;
+        let ends = [&self.ends[0].value, &self.ends[1].value];
+        let rates = [&self.rates[0], &self.rates[1]];
+        self.dense = Polynomial::zero();
+        self.dense.set_cubic(h, ends, rates);
+        for _ in 0..M::REFINEMENTS {
+            let mut inner = [F::State::zeros(); 2];
+            for (theta, rate) in [INNER, 1.0 - INNER].into_iter().zip(&mut inner) {
+                evaluate(
+                    &mut field,
+                    self.t[0] + theta * h,
+                    &self.dense.at(theta),
+                    rate,
+                )?;
+            }
+            self.dense.set_inner(h, [&inner[0], &inner[1]]);
+        }
+        self.dense_ready = true;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn interpolate(&self, theta: f64) -> F::State {
+        self.dense.at(theta)
+    }
+}

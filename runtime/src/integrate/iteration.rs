@@ -1,0 +1,97 @@
+//! When to stop a fixed-point iteration that is to be solved to rounding.
+//!
+//! It goes on while its changes decrease (E. Hairer, R. McLachlan, A. Razakarivony, *Achieving Brouwer's law with implicit
+//! Runge-Kutta methods*, 2008): where they no longer do, either nothing but rounding is left of them, or the
+//! iteration does not contract.
+
+/// Iterations after which a contraction has proved too slow: half the way to rounding per iteration takes as many.
+const LIMIT: u32 = 60;
+
+/// Changes below this part of the largest component may be rounding.
+const ROUNDING: f64 = 1.0 / (1_u64 << 36) as f64;
+
+/// What the changes so far say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// Another one.
+    GoOn,
+    /// Nothing but rounding is left.
+    Solved,
+    /// It does not contract, or too slowly.
+    Diverges,
+}
+
+/// An iteration on its way.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Iteration {
+    made: u32,
+    last: f64,
+    /// Changes that were no smaller than the one before.
+    grown: u32,
+}
+
+impl Iteration {
+    /// Before the first.
+    pub(super) const fn new() -> Self {
+        Self {
+            made: 0,
+            last: f64::INFINITY,
+            grown: 0,
+        }
+    }
+
+    /// After one more, that changed something of this size by this much.
+    pub(super) fn judge(&mut self, change: f64, size: f64) -> Verdict {
+        self.made += 1;
+        if change == 0.0 {
+            return Verdict::Solved;
+        }
+        if !(change.is_finite() && size.is_finite()) {
+            return Verdict::Diverges;
+        }
+        if change >= self.last {
+            if change <= ROUNDING * size {
+                return Verdict::Solved;
+            }
+            // NOTE: one growth is let pass: the first guess may be better than it looks in some direction.
+            self.grown += 1;
+        }
+        self.last = change;
+        if self.grown > 1 || self.made >= LIMIT {
+            Verdict::Diverges
+        } else {
+            Verdict::GoOn
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn end(changes: impl Iterator<Item = f64>) -> (Verdict, usize) {
+        let mut iteration = Iteration::new();
+        for (k, change) in changes.enumerate() {
+            match iteration.judge(change, 1.0) {
+                Verdict::GoOn => {}
+                verdict => return (verdict, k + 1),
+            }
+        }
+        (Verdict::GoOn, 0)
+    }
+
+    #[test]
+    fn contractions_end_at_rounding() {
+        let to_rounding = (1..).map(|k| 0.1_f64.powi(k).max(1.5e-16));
+        assert_eq!(end(to_rounding), (Verdict::Solved, 17));
+        let to_zero = [1e-3, 1e-9, 0.0].into_iter();
+        assert_eq!(end(to_zero), (Verdict::Solved, 3));
+    }
+
+    #[test]
+    fn growth_and_slowness_are_told() {
+        assert_eq!(end((1..).map(|k| 2.0_f64.powi(k))), (Verdict::Diverges, 3));
+        assert_eq!(end((1..).map(|k| 0.9_f64.powi(k))), (Verdict::Diverges, 60));
+        assert_eq!(end([f64::NAN].into_iter()), (Verdict::Diverges, 1));
+    }
+}

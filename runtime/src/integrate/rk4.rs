@@ -1,0 +1,66 @@
+//! The classical method of Runge and Kutta, order 4: explicit, fixed step, for teaching and for comparison.
+//!
+//! ```text
+//! k1 = f(t, y),  k2 = f(t + h/2, y + h k1/2),  k3 = f(t + h/2, y + h k2/2),  k4 = f(t + h, y + h k3)
+//! y1 = y + h (k1 + 2 k2 + 2 k3 + k4)/6
+//! ```
+//!
+//! W. Kutta, *Beitrag zur naeherungsweisen Integration totaler Differentialgleichungen*, 1901; Hairer, Norsett, Wanner I,
+//! II.1.
+
+use super::embedded::Counted;
+use super::fixed::{Advance, Departure, FixedStep, Method, evaluate};
+use super::precise::Precise;
+use super::stepper::StepFailure;
+use crate::contract::VectorField;
+use crate::state::StateVector;
+
+/// The classical Runge-Kutta method: order 4, dense output of order 4, four evaluations per step.
+///
+/// It preserves nothing but linear invariants: the energy error grows linearly in time, and constraints hold as the
+/// solution does, to order 4. Use it to compare with, and where a method that everybody knows is asked for; [`Dop853`](super::Dop853) is more accurate for the same work and tells its error.
+///
+/// # References
+/// Hairer, Norsett, Wanner, *Solving ordinary differential equations I*, II.1, Table 1.2.
+pub type Rk4<S> = FixedStep<S, ClassicalRungeKutta>;
+
+/// The step of [`Rk4`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ClassicalRungeKutta;
+
+impl Method for ClassicalRungeKutta {
+    const NAME: &'static str = "rk4";
+    const ORDER: usize = 4;
+    const DENSE_ORDER: usize = 4;
+    const REFINEMENTS: u32 = 1;
+
+    type Memory<S: StateVector> = ();
+
+    fn memory<S: StateVector>() -> Self::Memory<S> {}
+}
+
+/// The stages after the first: the part of the step that leads to each, and six times its weight.
+const STAGES: [(f64, f64); 3] = [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)];
+
+impl<F: VectorField> Advance<F> for ClassicalRungeKutta {
+    fn advance(
+        field: &mut Counted<'_, F>,
+        h: f64,
+        departure: &Departure<'_, F::State>,
+        (): &mut (),
+    ) -> Result<Precise<F::State>, StepFailure> {
+        let Departure { t, state, rate, .. } = *departure;
+        let (mut slope, mut sum) = (*rate, *rate);
+        for (part, weight) in STAGES {
+            let mut inside = state.value;
+            for i in 0..F::State::LEN {
+                inside.as_mut_slice()[i] = state.plus(i, part * h * slope.as_slice()[i]);
+            }
+            evaluate(field, t + part * h, &inside, &mut slope)?;
+            for i in 0..F::State::LEN {
+                sum.as_mut_slice()[i] += weight * slope.as_slice()[i];
+            }
+        }
+        Ok(state.advanced(|i| h * sum.as_slice()[i] / 6.0))
+    }
+}

@@ -1,0 +1,279 @@
+//! What methods of fixed step preserve, how much work they take, and how they go on where a step cannot be made.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+mod support;
+
+use core::ops::ControlFlow;
+
+use dalembert::integrate::{ClassicalRungeKutta, FixedStep, Gauss, Method};
+use dalembert::{
+    Counters, EventLog, Fault, Gauss4, Gauss6, Impacts, Law, Observer, Outcome, Rk4, Segment,
+    Simulation, Stepper, System, Tolerance,
+};
+use support::line::{Line, Plane, soliton, soliton_at};
+use support::{Particle, at, floor};
+
+fn tolerance() -> Tolerance {
+    Tolerance::new(1e-10).unwrap()
+}
+
+fn with_step<M: Method>(h: f64) -> FixedStep<Plane, M> {
+    FixedStep::new(tolerance()).with_step(h)
+}
+
+/// A pendulum in `(angle, velocity)`, of which only the rate is needed.
+fn pendulum() -> Line {
+    Line::new(|_, x, _| Ok(-x.sin()))
+}
+
+fn end<Step: Stepper<Line>>(system: &Line, stepper: Step, state: Plane, t_end: f64) -> Plane {
+    let run = Simulation::new(system, stepper, ())
+        .run(0.0, state, t_end, &mut ())
+        .unwrap();
+    assert_eq!(run.outcome, Outcome::Done);
+    run.state
+}
+
+/// The determinant of the derivative of the flow over `t_end`, by differences of fourth order.
+fn jacobian<M: Method>(t_end: f64, h: f64) -> f64
+where
+    FixedStep<Plane, M>: Stepper<Line>,
+{
+    let system = pendulum();
+    let at = |x: f64, v: f64| {
+        end(
+            &system,
+            with_step::<M>(h),
+            Plane::new(1.0 + x, 0.3 + v),
+            t_end,
+        )
+    };
+    let derivative = |dx: f64, dv: f64| {
+        let difference =
+            |size: f64| (at(size * dx, size * dv) - at(-size * dx, -size * dv)) / (2.0 * size);
+        let size = 2.0_f64.powi(-10);
+        (difference(size) * 4.0 - difference(2.0 * size)) / 3.0
+    };
+    let (a, b) = (derivative(1.0, 0.0), derivative(0.0, 1.0));
+    a[0] * b[1] - a[1] * b[0]
+}
+
+#[test]
+fn gauss_keeps_areas_and_the_classical_method_does_not() {
+    // Steps so long that the flow itself is off by a percent; differences leave 1e-9.
+    for defect in [
+        jacobian::<Gauss<2>>(20.0, 0.8),
+        jacobian::<Gauss<3>>(20.0, 0.8),
+    ] {
+        assert!((defect - 1.0).abs() < 1e-8, "{defect}");
+    }
+    let defect = jacobian::<ClassicalRungeKutta>(20.0, 0.8);
+    assert!((defect - 1.0).abs() > 1e-3, "{defect}");
+}
+
+#[test]
+fn gauss_runs_back_along_its_way() {
+    fn there_and_back<M: Method>(h: f64) -> f64
+    where
+        FixedStep<Plane, M>: Stepper<Line>,
+    {
+        let (system, start) = (pendulum(), Plane::new(1.2, 0.5));
+        let there = end(&system, with_step::<M>(h), start, 40.0);
+        let back = end(
+            &system,
+            with_step::<M>(h),
+            Plane::new(there[0], -there[1]),
+            40.0,
+        );
+        (back - Plane::new(start[0], -start[1])).amax()
+    }
+    assert!(there_and_back::<Gauss<2>>(0.5) < 1e-13);
+    assert!(there_and_back::<Gauss<3>>(0.5) < 1e-13);
+    assert!(there_and_back::<ClassicalRungeKutta>(0.5) > 1e-3);
+}
+
+#[test]
+fn quadratic_invariants_hold_to_rounding() {
+    // Angular momentum of the oscillator in its phase plane: x^2 + v^2.
+    let oscillator = Line::new(|_, x, _| Ok(-x));
+    for h in [0.3, 1.1] {
+        let four = end(
+            &oscillator,
+            with_step::<Gauss<2>>(h),
+            Plane::new(1.0, 0.0),
+            1000.0,
+        );
+        let six = end(
+            &oscillator,
+            with_step::<Gauss<3>>(h),
+            Plane::new(1.0, 0.0),
+            1000.0,
+        );
+        for state in [four, six] {
+            assert!((state.dot(&state) - 1.0).abs() < 1e-14, "{state}");
+        }
+    }
+}
+
+/// Counters of ten steps of 0.1 of the soliton.
+fn work<M: Method>() -> Counters
+where
+    FixedStep<Plane, M>: Stepper<Line>,
+{
+    let system = soliton();
+    Simulation::new(&system, with_step::<M>(0.1), ())
+        .run(0.0, soliton_at(0.0), 1.0, &mut ())
+        .unwrap()
+        .counters
+}
+
+#[test]
+fn work_is_as_counted() {
+    let counts = [
+        work::<ClassicalRungeKutta>(),
+        work::<Gauss<2>>(),
+        work::<Gauss<3>>(),
+    ];
+    for counters in counts {
+        assert_eq!((counters.accepted, counters.rejected), (10, 0));
+    }
+    // One at the start; then four per step, or one and two or three for each of 12.1 and 10.4 iterations: the guess is good
+    // to 1e-4 and 1e-5, and each iteration gains a factor 0.1.
+    let evaluations = counts.map(|counters| counters.rate_evaluations);
+    assert_eq!(evaluations, [41, 11 + 2 * 121, 11 + 3 * 104]);
+}
+
+#[test]
+fn steps_lie_on_a_grid_whose_rounding_does_not_add_up() {
+    struct Ends(Vec<f64>);
+    impl Observer<Line> for Ends {
+        fn step(&mut self, segment: &mut Segment<'_, Plane>) -> ControlFlow<()> {
+            self.0.push(segment.t_end());
+            ControlFlow::Continue(())
+        }
+    }
+    let mut ends = Ends(Vec::new());
+    let system = pendulum();
+    Simulation::new(&system, with_step::<ClassicalRungeKutta>(0.1), ())
+        .run(0.0, Plane::new(1.0, 0.0), 1000.05, &mut ends)
+        .unwrap();
+    assert_eq!(ends.0.len(), 10_001);
+    assert_eq!((ends.0[9_999], ends.0[10_000]), (1000.0, 1000.05));
+}
+
+#[test]
+fn step_is_chosen_once_and_told() {
+    let system = pendulum();
+    let mut simulation = Simulation::new(&system, Gauss4::new(tolerance()), ());
+    let run = simulation
+        .run(0.0, Plane::new(1.0, 0.2), 10.0, &mut ())
+        .unwrap();
+    let step = simulation.fixed_step().unwrap();
+    assert!(step > 1e-3 && step < 0.1, "{step}");
+    assert_eq!(run.counters.accepted, (10.0 / step).ceil() as u64);
+}
+
+#[test]
+fn a_step_too_long_to_be_solved_is_made_in_parts() {
+    // Frequency 40 at steps of 0.1: fixed point iteration contracts below about 0.05.
+    let stiff = Line::new(|_, x, _| Ok(-1600.0 * x));
+    let stepper = Gauss6::new(tolerance()).with_step(0.1);
+    let run = Simulation::new(&stiff, stepper, ())
+        .run(0.0, Plane::new(1.0, 0.0), 10.0, &mut ())
+        .unwrap();
+    assert_eq!((run.outcome, run.counters.accepted), (Outcome::Done, 100));
+    assert!(run.counters.rejected >= 100);
+    let energy = run.state[0].powi(2) + run.state[1].powi(2) / 1600.0;
+    assert!((energy - 1.0).abs() < 1e-13, "{energy}");
+}
+
+#[test]
+fn a_step_that_cannot_be_solved_ends_the_run_by_name() {
+    // 1e9 per unit of time: not even a thousandth of the step contracts.
+    let stiff = Line::new(|_, x, _| Ok(-1e18 * x));
+    let run = Simulation::new(&stiff, Gauss4::new(tolerance()).with_step(0.1), ())
+        .run(0.0, Plane::new(1.0, 0.0), 1.0, &mut ())
+        .unwrap();
+    assert_eq!(run.outcome, Outcome::NotConverged { t: 0.0 });
+    assert_eq!((run.t, run.state), (0.0, Plane::new(1.0, 0.0)));
+}
+
+#[test]
+fn a_fault_ahead_is_reached_before_it_is_reported() {
+    let fault = Fault::MetricNotPositive {
+        pivot: 0,
+        value: -1.0,
+    };
+    let system = Line::new(|_, x, _| match x > 2.0 {
+        true => Err(Fault::MetricNotPositive {
+            pivot: 0,
+            value: -1.0,
+        }),
+        false => Ok(0.0),
+    });
+    fn ends(system: &Line, stepper: impl Stepper<Line>) -> (Outcome, f64) {
+        let run = Simulation::new(system, stepper, ())
+            .run(0.0, Plane::new(0.0, 1.0), 10.0, &mut ())
+            .unwrap();
+        (run.outcome, run.t)
+    }
+    for (outcome, t) in [
+        ends(&system, Rk4::new(tolerance()).with_step(0.7)),
+        ends(&system, Gauss6::new(tolerance()).with_step(0.7)),
+    ] {
+        assert_eq!(outcome, fault.into());
+        assert!((t - 2.0).abs() < 1e-12, "{t}");
+    }
+}
+
+#[test]
+fn steps_grow_back_after_hops_and_accumulations_are_found() {
+    let ball = Particle::new([-1.0, 0.0], [floor]).with_law(Law::Restitution(0.5));
+    let stepper = Gauss4::new(tolerance()).with_step(0.5);
+    let mut log = EventLog::<_, 256>::new();
+    let run = Simulation::new(&ball, stepper, Impacts::declared(&ball))
+        .run(0.0, at(0.0, 0.0, 1.0, 0.0), 10.0, &mut log)
+        .unwrap();
+    assert!(
+        matches!(run.outcome, Outcome::Zeno { t, .. } if (t - 4.0).abs() < 1e-9),
+        "{}",
+        run.outcome
+    );
+    // A corner: one short flight, then a long one, over which steps are those of the run again.
+    let ball = Particle::new([-1.0, 0.0], [floor]);
+    let run = Simulation::new(&ball, stepper, Impacts::declared(&ball))
+        .run(0.0, at(1e-6, 0.0, 30.0, 0.0), 50.0, &mut log)
+        .unwrap();
+    assert_eq!(run.outcome, Outcome::Done);
+    assert!(run.counters.accepted < 110, "{:?}", run.counters);
+    assert!((ball.energy(run.t, &run.state).unwrap() - 450.000001).abs() < 1e-10);
+}
+
+#[test]
+fn two_runs_agree_to_the_bit() {
+    let system = pendulum();
+    let run = |h: f64| {
+        [
+            end(
+                &system,
+                with_step::<ClassicalRungeKutta>(h),
+                Plane::new(1.0, 0.5),
+                30.0,
+            ),
+            end(
+                &system,
+                with_step::<Gauss<2>>(h),
+                Plane::new(1.0, 0.5),
+                30.0,
+            ),
+            end(
+                &system,
+                with_step::<Gauss<3>>(h),
+                Plane::new(1.0, 0.5),
+                30.0,
+            ),
+        ]
+        .map(|state| [state[0].to_bits(), state[1].to_bits()])
+    };
+    assert_eq!(run(0.07), run(0.07));
+}
