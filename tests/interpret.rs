@@ -3,9 +3,10 @@
 
 use dalembert::{Described, Scene, StateVector, System, VectorField};
 use dalembert_codegen::model::Model;
-use dalembert_codegen::program::{Input, Lowered, Program, interpret::interpret, verify::verify};
+use dalembert_codegen::program::{Lowered, interpret::interpret, verify::verify};
 use dalembert_codegen::{compile, mechanics, spec};
 use dalembert_expr::SymbolId;
+use dalembert_tests::interpreted::{compare_motion, input};
 use dalembert_tests::sampling::{Visitor, states, visit_all};
 
 /// A model derived again from its own source text.
@@ -14,52 +15,14 @@ fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
     (compiled.model, compiled.derivation, compiled.programs)
 }
 
-/// The arguments of a function at a state of a system.
-fn input<'a, S: Described>(
-    system: &'a S,
-    t: f64,
-    state: &'a S::State,
-) -> impl Fn(Input) -> f64 + 'a {
-    let n = S::Vector::LEN;
-    let qdot = system.velocity(t, state).expect("a velocity");
-    move |input| match input {
-        Input::Time => t,
-        Input::Coordinate(i) => state.as_slice()[i],
-        Input::Momentum(i) | Input::Quasi(i) => state.as_slice()[n + i],
-        Input::Velocity(i) => qdot.as_slice()[i],
-        Input::Parameter(k) => system.parameter(k),
-        Input::Excess(_) | Input::MotionRate(_) | Input::Multiplier(_) => f64::NAN,
-    }
-}
-
 /// Emitted code does what the interpreter does, to the bit: the same operations in the same order.
 struct EmittedIsInterpreted(usize);
 
 impl Visitor for EmittedIsInterpreted {
     fn visit<S: Described + Scene>(&mut self, system: S) {
         let (_, _, programs) = derive(S::DESCRIPTION.source);
-        self.compare(&system, &programs.main);
-        self.compare(&system.global(), programs.global());
-    }
-}
-
-impl EmittedIsInterpreted {
-    fn compare<S: Described>(&mut self, system: &S, program: &Program) {
-        let name = S::DESCRIPTION.name;
-        for state in states(system, 5, 1) {
-            let at = input(system, 0.25, &state);
-            let mut rate = S::State::zeros();
-            system.rate(0.25, &state, &mut rate).expect("a rate");
-            let interpreted = interpret(&program.rate, &at).expect("a rate");
-            assert_eq!(rate.as_slice(), interpreted, "{name}: rate");
-            let energy = interpret(&program.energy, &at).expect("an energy")[0];
-            assert_eq!(
-                system.energy(0.25, &state).expect("an energy"),
-                energy,
-                "{name}: energy"
-            );
-            self.0 += 1;
-        }
+        self.0 += compare_motion(&system, &programs.main);
+        self.0 += compare_motion(&system.global(), programs.global());
     }
 }
 

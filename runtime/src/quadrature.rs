@@ -84,6 +84,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "minutes of arithmetic")]
     fn gradients_give_their_functions() {
         // f = atan(x) + x exp(y)
         let gradient = |x: f64, y: f64| [1.0 / (1.0 + x * x) + y.exp(), x * y.exp()];
@@ -98,6 +99,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "minutes of arithmetic")]
     fn poles_on_the_line_are_faults() {
         for power in [1, 2] {
             for y in [-1.0, -0.7] {

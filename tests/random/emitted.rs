@@ -6,10 +6,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use dalembert::Described;
-use dalembert_codegen::program::{Function, Input, interpret::interpret};
 use dalembert_tests::golden;
-use dalembert_tests::numeric::Numeric;
-use dalembert_tests::sampling::Random;
+use dalembert_tests::interpreted::{compare_motion, compare_report};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
@@ -56,53 +54,14 @@ fn the_declarations_are_those_that_are_drawn() {
     golden::compare_file(&path, &source());
 }
 
-/// Compares everything that is emitted for a model at random states.
+/// Compares everything that is emitted for a model at random states, in both forms.
 fn check<S: Described>(system: &S) {
-    let name = S::DESCRIPTION.name;
     let tokens = S::DESCRIPTION.source.parse().expect("tokens");
-    let programs = dalembert_codegen::compile(tokens)
-        .expect("a model")
-        .programs;
-    let program = programs.global();
-    let n = S::DESCRIPTION.coordinates.len();
-    let mut random = Random::new(n as u64);
-    for _ in 0..20 {
-        let mut numbers = |count| {
-            (0..count)
-                .map(|_| random.within(-1.0, 1.0))
-                .collect::<Vec<f64>>()
-        };
-        let (t, q, qdot) = (numbers(1)[0], numbers(n), numbers(n));
-        let state = Numeric::state(system, t, &q, &qdot);
-        let at = system.snapshot(t, &state);
-        let run = |function: &Function| {
-            let input = |input| match input {
-                Input::Time => t,
-                Input::Coordinate(i) => at.q[i],
-                Input::Velocity(i) => at.qdot[i],
-                Input::Momentum(i) => at.p[i],
-                Input::Parameter(k) => system.parameter(k),
-                Input::Excess(_)
-                | Input::Multiplier(_)
-                | Input::Quasi(_)
-                | Input::MotionRate(_) => f64::NAN,
-            };
-            interpret(function, &input).expect("a value")
-        };
-        assert_eq!(
-            Numeric::rate(system, t, &state),
-            run(&program.rate),
-            "{name}: rate"
-        );
-        assert_eq!(at.energy, run(&program.energy)[0], "{name}: energy");
-        let report = system.report(t, &state);
-        let mut expected = run(&program.geometry.function).into_iter();
-        for group in &program.geometry.groups {
-            let values: Vec<f64> = expected.by_ref().take(group.shape.count()).collect();
-            let emitted = report.0.get(&group.name);
-            assert_eq!(emitted, Some(&values), "{name}: {}", group.name);
-        }
-    }
+    let compiled = dalembert_codegen::compile(tokens).expect("a model");
+    let (main, global) = (&compiled.programs.main, compiled.programs.global());
+    compare_motion(system, main);
+    compare_motion(&system.global(), global);
+    compare_report(&system.global(), global);
 }
 
 macro_rules! check_all {

@@ -15,6 +15,7 @@ pub mod divergence;
 pub mod flow;
 pub mod formula;
 pub mod golden;
+pub mod interpreted;
 pub mod numeric;
 pub mod obstruction;
 pub mod reference;

@@ -1,0 +1,67 @@
+//! Emitted code beside the interpreter of the program it was emitted from.
+
+use dalembert::describe::Described;
+use dalembert::{StateVector, System, VectorField};
+use dalembert_codegen::program::{Function, Input, Program, interpret::interpret};
+
+use crate::numeric::Reported;
+use crate::sampling::states;
+
+/// The arguments of a function at a state of a system.
+///
+/// # Panics
+/// At a state without a velocity.
+pub fn input<'a, S: Described>(
+    system: &'a S,
+    t: f64,
+    state: &'a S::State,
+) -> impl Fn(Input) -> f64 + 'a {
+    let n = S::Vector::LEN;
+    let qdot = system.velocity(t, state).expect("a velocity");
+    move |input| match input {
+        Input::Time => t,
+        Input::Velocity(i) => qdot.as_slice()[i],
+        Input::Parameter(k) => system.parameter(k),
+        other => other.component(n).map_or(f64::NAN, |i| state.as_slice()[i]),
+    }
+}
+
+/// Asserts that rate, energy and velocity are what the interpreter gives, to the bit; says at how many states.
+///
+/// # Panics
+/// Where they are not.
+pub fn compare_motion<S: Described>(system: &S, program: &Program) -> usize {
+    let (name, t) = (S::DESCRIPTION.name, 0.25);
+    let states = states(system, 5, 1);
+    for state in &states {
+        let at = input(system, t, state);
+        let run = |function: &Function| interpret(function, &at).expect("a value");
+        let mut rate = S::State::zeros();
+        VectorField::rate(system, t, state, &mut rate).expect("a rate");
+        assert_eq!(rate.as_slice(), run(&program.rate), "{name}: rate");
+        let energy = System::energy(system, t, state).expect("an energy");
+        assert_eq!(energy, run(&program.energy)[0], "{name}: energy");
+        let qdot = System::velocity(system, t, state).expect("a velocity");
+        assert_eq!(qdot.as_slice(), run(&program.velocity), "{name}: velocity");
+    }
+    states.len()
+}
+
+/// As [`compare_motion`], for everything that is reported at a state.
+///
+/// # Panics
+/// Where they differ.
+pub fn compare_report<S: Described>(system: &S, program: &Program) {
+    let (name, t) = (S::DESCRIPTION.name, 0.25);
+    for state in states(system, 5, 2) {
+        let mut report = Reported::default();
+        system.inspect(t, &state, &mut report).expect("a report");
+        let values = interpret(&program.geometry.function, &input(system, t, &state));
+        let mut values = values.expect("a value").into_iter();
+        for group in &program.geometry.groups {
+            let expected: Vec<f64> = values.by_ref().take(group.shape.count()).collect();
+            let emitted = report.0.get(&group.name);
+            assert_eq!(emitted, Some(&expected), "{name}: {}", group.name);
+        }
+    }
+}
