@@ -197,7 +197,8 @@ fn errors_at<Disk: Stepper<RollingDisk>, Sleigh: Stepper<ChaplyginSleigh>>(
     of_disk.max(largest(&impacts, case))
 }
 
-/// Steps of fixed size, cut at impacts and begun anew after them, keep the order of the method.
+/// Steps of fixed size, cut at impacts and begun anew after them, keep the order of the method; measured above 1e-11,
+/// the errors of locating impacts that lie close to each other.
 #[test]
 fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
     macro_rules! check {
@@ -208,8 +209,8 @@ fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
                 errors_at(first.with_step(h), second.with_step(h))
             };
             let h = 1.0 / f64::from($steps);
-            let (coarse, fine) = (at(h), at(h / 16.0));
-            let slope = (coarse / fine).log2() / 4.0;
+            let (coarse, fine) = (at(h), at(h / 8.0));
+            let slope = (coarse / fine).log2() / 3.0;
             let order = $method::<<ChaplyginSleigh as dalembert::VectorField>::State>::ORDER as f64;
             let name = <$method<_> as Stepper<ChaplyginSleigh>>::NAME;
             println!("{name}: {coarse:.1e}, {fine:.1e}, slope {slope:.2}");
@@ -217,7 +218,7 @@ fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
             assert!(slope > order - 0.3, "{name}: {coarse:e}, {fine:e}");
         )*};
     }
-    check!(Rk4 80 1e-7 Gauss4 80 1e-7 Gauss6 20 1e-8 Dla2 100 1e-4 Dla4 80 1e-7);
+    check!(Rk4 80 1e-7 Gauss4 80 1e-7 Gauss6 40 1e-8 Dla2 100 1e-4 Dla4 80 1e-7);
 }
 
 /// On the circular table the nonholonomic plastic disk settles into running along the rim: the gap rate at impact

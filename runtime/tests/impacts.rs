@@ -99,6 +99,23 @@ fn a06_a07_a08_grazes_within_rounding_change_nothing_visible() {
 }
 
 #[test]
+fn a09_a_wall_crossed_at_rest_ends_the_run_where_it_is_crossed() {
+    fn cubic([x, y]: [f64; 2]) -> (f64, [f64; 2]) {
+        (y - x * x * x, [-3.0 * x * x, 1.0])
+    }
+    let particle = Particle::new([0.0, 0.0], [cubic]);
+    with_every_integrator(&particle, at(-1.0, 0.0, 1.0, 0.0), 2.0, |run, log, case| {
+        assert_eq!(
+            run.outcome,
+            Outcome::TangentialCrossing { surface: 0 },
+            "{case}"
+        );
+        assert_eq!(log.seen(), 0, "{case}");
+        assert!((run.t - 1.0).abs() < 1e-4, "{case}: {}", run.t);
+    });
+}
+
+#[test]
 fn a11_a_thin_slab_is_not_passed_at_high_speed() {
     const W: f64 = 1e-10;
     let near = |[x, _]: [f64; 2]| (1.0 - x, [-1.0, 0.0]);
@@ -263,6 +280,20 @@ fn b01_accumulating_impacts_end_as_zeno() {
                 assert!(run.state[0] >= x - 1e-14, "{case}");
             });
         }
+    }
+}
+
+#[test]
+fn accumulation_by_large_factors_is_seen_before_hops_are_rounding_errors() {
+    for e in [1e-3, 1e-4, 1e-6] {
+        let ball = Particle::new([-1.0, 0.0], [raised_floor as Gap]).with_law(Law::Restitution(e));
+        with_every_integrator(&ball, at(1.0, 0.0, 1.0, 0.0), 1e3, |run, log, case| {
+            let Outcome::Zeno { t, surface: 0 } = run.outcome else {
+                panic!("{case}, e = {e}: {} at {}", run.outcome, run.t);
+            };
+            assert!((t - 2.0 / (1.0 - e)).abs() < 1e-9, "{case}, e = {e}: {t}");
+            assert!(log.seen() <= 4, "{case}, e = {e}: {}", log.seen());
+        });
     }
 }
 

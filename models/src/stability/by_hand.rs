@@ -19,7 +19,9 @@ pub type Reset = fn([f64; 2]) -> [f64; 2];
 /// The point, under a constant acceleration, between surfaces that have a reset each.
 #[derive(Clone)]
 pub struct Point<const S: usize> {
+    /// The acceleration.
     pub acceleration: [f64; 2],
+    /// The surfaces.
     pub surfaces: [(Gap, Reset); S],
 }
 

@@ -4,6 +4,7 @@ use core::ops::ControlFlow;
 
 use dalembert::impacts::law::Law;
 use dalembert::integrate::Counters;
+use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
     Dop853, DormandPrince5, Event, Observer, Outcome, Scene, SceneEffects, Segment, Simulation,
     StateVector, Stepper, Taylor, TaylorField, Tolerance,
@@ -21,6 +22,7 @@ pub struct Course<'a, M: Scene + TaylorField> {
     state: M::State,
     until: f64,
     tolerance: [f64; 2],
+    steps: u64,
     effects: M::Effects,
 }
 
@@ -82,6 +84,7 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
             state,
             until,
             tolerance: [1e-12; 2],
+            steps: STEP_BUDGET,
             effects: system.effects(),
         }
     }
@@ -112,6 +115,12 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
     /// Up to this many impacts.
     pub fn impacts(mut self, budget: u64) -> Self {
         self.effects.set_impact_budget(Some(budget));
+        self
+    }
+
+    /// Up to this many steps.
+    pub fn steps(mut self, budget: u64) -> Self {
+        self.steps = budget;
         self
     }
 
@@ -168,6 +177,7 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
             t0,
             state,
             until,
+            steps,
             effects,
             ..
         } = self;
@@ -176,6 +186,7 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
             observer,
         };
         let run = Simulation::new(system, stepper, effects)
+            .with_step_budget(steps)
             .run(t0, state, until, &mut reader)
             .expect("a start");
         let velocity = system.velocity(run.t, &run.state);

@@ -2,11 +2,14 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{Event, Observer, System, VectorField};
+use dalembert::{Event, Observer, Segment, System, VectorField};
+use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, Random, U};
+use super::crossing::Oscillator;
 use super::location::Fall;
+use super::scaling::Hopper;
 use super::tables::{Rectangle, Sinai};
 use crate::PointBilliard;
 
@@ -99,11 +102,19 @@ pub const CASES: &[Case] = &[
         ..Case::QUICK
     },
     Case {
-        id: "F10",
-        title: "one ensemble on 1, 2 and 8 threads, in two orders",
-        right: "the same bits",
-        bound: "equal hashes of all last states",
-        run: Run::Integrators(threads),
+        id: "F08",
+        title: "error after ten impacts in a smooth potential, for steps halved three times",
+        right: "it falls with the order of the integrator, not with order 1",
+        bound: "exponent at most 1/2 less than the order",
+        run: Run::Integrators(order_across_impacts),
+        ..Case::QUICK
+    },
+    Case {
+        id: "F09",
+        title: "dense output between the impacts of an oscillator",
+        right: "cos between its reflections; nothing is interpolated across one",
+        bound: "ten times the largest error at ends of steps",
+        run: Run::Integrators(dense_across_impacts),
         ..Case::QUICK
     },
     Case {
@@ -121,22 +132,6 @@ pub const CASES: &[Case] = &[
         bound: "1e-11 per 100 impacts",
         pending: Some("no first variations: differences of runs lose half the digits"),
         ..Case::QUICK
-    },
-    Case {
-        id: "F13",
-        title: "F05 over 1e6 bounces: where the point is at equal times",
-        right: "uniform in area",
-        bound: "chi-square of 8 x 8 cells within 5 sigma",
-        run: Run::Once(uniform),
-        ..Case::NIGHTLY
-    },
-    Case {
-        id: "F14",
-        title: "1e8 impacts shown to an observer that keeps a sum",
-        right: "memory does not grow",
-        bound: "resident size constant to 1 MiB",
-        run: Run::Once(flat_memory),
-        ..Case::NIGHTLY
     },
 ];
 
@@ -397,144 +392,100 @@ fn turned_round(setting: Setting, report: &mut Report) {
     }
 }
 
-/// The bits of the last states of an ensemble, made by this many threads, folded in order of the members.
-fn hash(setting: Setting, threads: usize, backwards: bool) -> u64 {
-    const MEMBERS: usize = 16;
-    let member = |index: usize| {
-        let angle = 0.1 + index as f64;
-        let end =
-            Course::new(&Sinai {}, &[0.7, 0.1], &[angle.cos(), angle.sin()], 50.0).run(setting);
-        let bits = end.q.iter().chain(&end.qdot).map(|value| value.to_bits());
-        bits.fold(0_u64, |hash, bits| hash.rotate_left(7) ^ bits)
+fn order_across_impacts(setting: Setting, report: &mut Report) {
+    let system = Hopper::default();
+    let run = |step: f64| {
+        let forced = Setting {
+            max_step: Some(step),
+            ..setting
+        };
+        // A tolerance that never asks for shorter steps.
+        let end = Course::new(&system, &[1.0], &[0.3], 15.0)
+            .tol(1e3)
+            .run(forced);
+        (end.hits.len(), end.q[0])
     };
-    let mut hashes = vec![0_u64; MEMBERS];
-    let share = MEMBERS.div_ceil(threads);
-    std::thread::scope(|scope| {
-        for (block, part) in hashes.chunks_mut(share).enumerate() {
-            scope.spawn(move || {
-                let order: Vec<usize> = match backwards {
-                    true => (0..part.len()).rev().collect(),
-                    false => (0..part.len()).collect(),
-                };
-                for index in order {
-                    part[index] = member(block * share + index);
-                }
-            });
+    let exact = Course::new(&system, &[1.0], &[0.3], 15.0)
+        .tol(1e-14)
+        .run(Setting::free(Integrator::Dop853));
+    let Some(order) = setting.integrator.order() else {
+        // The order belongs to the tolerance: what falls is the error, with that.
+        for tol in [1e-6, 1e-9, 1e-12] {
+            let end = Course::new(&system, &[1.0], &[0.3], 15.0)
+                .tol(tol)
+                .run(setting);
+            report.near(
+                format!("x, tolerance {tol:e}"),
+                end.q[0],
+                exact.q[0],
+                100.0 * tol,
+            );
         }
-    });
-    hashes
+        return;
+    };
+    let first = if order == 5 { 0.1 } else { 0.4 };
+    let points: Vec<[f64; 2]> = [1.0, 0.5, 0.25]
         .into_iter()
-        .fold(0, |hash: u64, own| hash.wrapping_mul(31) ^ own)
+        .map(|share| {
+            let (impacts, x) = run(share * first);
+            report.equal(format!("impacts, {share}"), impacts, exact.hits.len());
+            [share * first, (x - exact.q[0]).abs()]
+        })
+        .collect();
+    let exponent = dalembert_cli::suite::exponent(&points).unwrap_or(f64::NAN);
+    report.error("order lost", (order as f64 - exponent).max(0.0), 0.5);
+    report.curve("error", ["step", "error"], points);
 }
 
-fn threads(setting: Setting, report: &mut Report) {
-    let one = hash(setting, 1, false);
-    for threads in [2, 8] {
-        report.equal(
-            format!("{threads} threads"),
-            hash(setting, threads, false),
-            one,
-        );
-        report.equal(
-            format!("{threads} threads, backwards"),
-            hash(setting, threads, true),
-            one,
-        );
+/// The largest errors of an oscillator at ends of steps and between them.
+struct Errors {
+    t1: f64,
+    ends: f64,
+    between: f64,
+}
+
+impl Errors {
+    /// Between reflections at odd multiples of `t1`, the oscillator is at the cosine of the time to the nearest even one.
+    fn at(&self, t: f64, x: f64) -> f64 {
+        let phase = (t + self.t1).rem_euclid(2.0 * self.t1) - self.t1;
+        (x - phase.cos()).abs()
     }
 }
 
-/// Counts the cells a path is in at equal times.
-struct Cells {
-    next: f64,
-    counts: [f64; 64],
-}
-
-impl Observer<Sinai> for Cells {
+impl Observer<Oscillator> for Errors {
     fn step(
         &mut self,
-        segment: &mut dalembert::Segment<'_, <Sinai as VectorField>::State>,
+        segment: &mut Segment<'_, <Oscillator as VectorField>::State>,
     ) -> ControlFlow<()> {
-        while self.next <= segment.t_end() {
-            let Ok(state) = segment.at(self.next) else {
+        let system = Oscillator::default();
+        let (start, end) = (segment.t_start(), segment.t_end());
+        self.ends = self
+            .ends
+            .max(self.at(end, system.position(segment.end())[0]));
+        for part in 1..8 {
+            let t = start + (end - start) * f64::from(part) / 8.0;
+            let Ok(state) = segment.at(t) else {
                 return ControlFlow::Break(());
             };
-            let q = Sinai {}.position(&state);
-            let cell = |x: f64| ((x + 1.0) * 4.0).clamp(0.0, 7.0) as usize;
-            self.counts[8 * cell(q[0]) + cell(q[1])] += 1.0;
-            self.next += 7.0;
+            self.between = self.between.max(self.at(t, system.position(&state)[0]));
         }
         ControlFlow::Continue(())
     }
 }
 
-fn uniform(report: &mut Report) {
-    let setting = Setting::free(dalembert_cli::Integrator::Dop853);
-    let mut cells = Cells {
-        next: 7.0,
-        counts: [0.0; 64],
+fn dense_across_impacts(setting: Setting, report: &mut Report) {
+    let system = Oscillator {
+        depth: 0.5,
+        ..Oscillator::default()
     };
-    let end = Course::new(&Sinai {}, &[0.7, 0.1], &[0.6, 0.8], 1e9)
-        .impacts(1_000_000)
-        .follow(setting, &mut cells);
-    report.class(&end.outcome, "impact_budget");
-    let areas = free_areas();
-    let (total, area): (f64, f64) = (cells.counts.iter().sum(), areas.iter().sum());
-    let used = || cells.counts.iter().zip(areas).filter(|(_, own)| *own > 0.0);
-    let chi: f64 = used()
-        .map(|(count, own)| (count - total * own / area).powi(2) / (total * own / area))
-        .sum();
-    let freedom = used().count() as f64 - 1.0;
-    report.error(
-        "chi-square in sigma",
-        ((chi - freedom) / (2.0 * freedom).sqrt()).max(0.0),
-        5.0,
-    );
-}
-
-/// Area of each of 8 x 8 cells outside of the disk, by strips.
-fn free_areas() -> [f64; 64] {
-    const STRIPS: usize = 4000;
-    let mut areas = [0.0; 64];
-    for (index, area) in areas.iter_mut().enumerate() {
-        let (left, low) = (index as f64 / 8.0, (index % 8) as f64);
-        let (left, low) = (left.floor() / 4.0 - 1.0, low / 4.0 - 1.0);
-        for strip in 0..STRIPS {
-            let x = left + 0.25 * (strip as f64 + 0.5) / STRIPS as f64;
-            let half = (0.25 - x * x).max(0.0).sqrt();
-            let covered = (low + 0.25).min(half) - low.max(-half);
-            *area += 0.25 / STRIPS as f64 * (0.25 - covered.max(0.0));
-        }
-        if *area < 1e-9 {
-            *area = 0.0;
-        }
-    }
-    areas
-}
-
-/// Pages of memory that the process holds, where the system says so.
-fn resident_pages() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
-    text.split_whitespace().nth(1)?.parse().ok()
-}
-
-fn flat_memory(report: &mut Report) {
-    let setting = Setting::free(dalembert_cli::Integrator::Dop853);
-    let run = |impacts: u64| {
-        let mut sum = 0.0;
-        let mut watch = Bounces {
-            system: &UNIT_CIRCLE,
-            count: 0,
-            see: |_, t, _, _| sum += t,
-        };
-        Course::new(&UNIT_CIRCLE, &[1.0, 0.0], &[-0.8, 0.6], 1e12)
-            .impacts(impacts)
-            .follow(setting, &mut watch)
+    let mut errors = Errors {
+        t1: 2.0 * core::f64::consts::FRAC_PI_3,
+        ends: 0.0,
+        between: 0.0,
     };
-    run(10_000);
-    let before = resident_pages();
-    let end = run(100_000_000);
-    report.class(&end.outcome, "impact_budget");
-    if let (Some(before), Some(after)) = (before, resident_pages()) {
-        report.error("pages of 4 KiB", after - before, 256.0);
-    }
+    let end = Course::new(&system, &[1.0], &[0.0], 40.0)
+        .tol(1e-8)
+        .follow(setting, &mut errors);
+    report.class(&end.outcome, "done");
+    report.error("between ends of steps", errors.between, 10.0 * errors.ends);
 }

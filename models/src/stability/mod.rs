@@ -10,14 +10,20 @@
 //! all the same, and when it begins to hold, the suite asks for the reason to be taken out.
 
 mod accumulation;
-mod by_hand;
+mod arithmetic;
+pub mod by_hand;
+mod conditioning;
 mod constrained;
 mod corners;
 pub mod course;
 mod crossing;
+mod drift;
+mod ensembles;
+mod input;
 mod laws;
 mod location;
 mod long;
+mod scaling;
 pub mod tables;
 mod zeno;
 
@@ -33,7 +39,13 @@ pub fn all() -> Vec<Case> {
         laws::CASES,
         corners::CASES,
         constrained::CASES,
+        drift::CASES,
+        conditioning::CASES,
+        scaling::CASES,
+        arithmetic::CASES,
         long::CASES,
+        ensembles::CASES,
+        input::CASES,
     ];
     let mut cases = sections.concat();
     cases.sort_by_key(|case| case.id);

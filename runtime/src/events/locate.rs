@@ -11,6 +11,9 @@ const DOUBTFUL: u32 = 3;
 /// Stretches looked at before the search stops where it is; the step is cut there.
 const STRETCHES: u32 = 4096;
 
+/// A gap this many times larger next to a change of sign than anywhere else in the step belongs to a pole.
+const PEAK: f64 = (1 << 10) as f64;
+
 /// Where a search begins.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Start {
@@ -50,7 +53,7 @@ pub(crate) enum Search {
 pub(crate) struct Line<'a, G, R> {
     /// The gap at a part of the step.
     pub gap: G,
-    /// The size of its rounding errors; asked for at most once.
+    /// The size of its rounding errors; asked for once or twice.
     pub rounding: R,
     /// Its samples over the whole step.
     pub whole: &'a [f64; SAMPLES],
@@ -121,7 +124,8 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
         }
         let slope = self.start.slope;
         let narrowed = narrow(drop, |theta| deflated((self.gap)(theta), theta, slope));
-        // A pole is told from a root by gaps that grow towards it.
+        // A pole is told from a root by gaps that grow towards it: from the ends of the interval, or, where that was
+        // narrow already, from what they are elsewhere in the step.
         let size = |drop: &Drop| {
             let gap = |i: usize| {
                 if slope.is_some() {
@@ -132,7 +136,13 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
             };
             gap(0).abs().max(gap(1).abs())
         };
-        if size(&narrowed) > size(&drop) {
+        let largest = self
+            .whole
+            .iter()
+            .fold(0.0_f64, |most, gap| most.max(gap.abs()));
+        let grown = size(&narrowed);
+        let mut is_peak = || grown > PEAK * largest && grown > PEAK * (self.rounding)();
+        if grown > size(&drop) || is_peak() {
             Search::Pole(after)
         } else {
             Search::Falls(narrowed.bracket())
@@ -430,6 +440,11 @@ mod tests {
     fn pole_and_rest_are_told_from_roots() {
         assert!(matches!(
             first(|x| 1.0 / (0.3 - x), FROM_ABOVE).0,
+            Search::Pole(_)
+        ));
+        // So close to a sample that the stretches around it are halved to neighbouring numbers.
+        assert!(matches!(
+            first(|x| 1.0 / (NODES[3] - 1e-13 - x), FROM_ABOVE).0,
             Search::Pole(_)
         ));
         let resting = Start {

@@ -99,23 +99,22 @@ impl<V: StateVector> Accumulation<V> {
     /// Takes in that flights shrink by `factor`: a geometric series. Its sum is a bad guess as long as the factor still
     /// changes, and again when the flights are made of rounding errors; in between successive guesses are closest.
     fn guess(&mut self, surface: usize, t: f64, factor: f64) {
-        let is_shrinking = self.shrunk.as_slice()[surface] > 0.0 && factor > 0.0 && factor < 1.0;
-        let rest = self.flights.as_slice()[surface] * factor / (1.0 - factor);
-        let guess = if is_shrinking && rest.is_finite() {
-            t + rest
-        } else {
-            f64::NAN
-        };
-        let spread = (guess - self.guesses.as_slice()[surface]).abs();
-        self.guesses.as_mut_slice()[surface] = guess;
-        if guess.is_nan() {
-            self.spreads.as_mut_slice()[surface] = f64::INFINITY;
+        if self.shrunk.as_slice()[surface] == 0.0 {
+            self.guesses.as_mut_slice()[surface] = f64::NAN;
             self.best.as_mut_slice()[surface] = f64::NAN;
-        } else if spread < self.spreads.as_slice()[surface]
-            || self.best.as_slice()[surface].is_nan()
-        {
-            self.spreads.as_mut_slice()[surface] = spread;
+            self.spreads.as_mut_slice()[surface] = f64::INFINITY;
+            return;
+        }
+        let guess = t + self.flights.as_slice()[surface] * factor / (1.0 - factor);
+        if !(factor > 0.0 && factor < 1.0 && guess.is_finite()) {
+            return;
+        }
+        let apart = (guess - self.guesses.as_slice()[surface]).abs();
+        let is_first = self.best.as_slice()[surface].is_nan();
+        self.guesses.as_mut_slice()[surface] = guess;
+        if is_first || apart < self.spreads.as_slice()[surface] {
             self.best.as_mut_slice()[surface] = guess;
+            self.spreads.as_mut_slice()[surface] = if is_first { f64::INFINITY } else { apart };
         }
     }
 

@@ -267,7 +267,11 @@ impl<Sys: Impacting> Watch<Sys> {
                 continue;
             }
             let samples = match &glance.series {
-                Some(series) => series.at_each(surface, NODES),
+                Some(series) => {
+                    let mut gaps = series.at_each(surface, NODES);
+                    gaps[SAMPLES - 1] = glance.gaps.as_slice()[surface];
+                    gaps
+                }
                 None => whole
                     .get_or_insert_with(|| samples(step, &self.gaps, &glance.gaps))
                     .map(|gaps| gaps.as_slice()[surface]),
@@ -527,7 +531,11 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     let mut rounding = || rounding_along(surface, step, sizes, &mut more);
     let on_series = series.as_ref().and_then(|series| {
         let line = Line {
-            gap: |part: f64| series.at(surface, part),
+            // At the end the gap itself: it may be negative by rounding where the polynomial is not.
+            gap: |part: f64| match part >= 1.0 {
+                true => whole[SAMPLES - 1],
+                false => series.at(surface, part),
+            },
             rounding: &mut rounding,
             whole,
             start,

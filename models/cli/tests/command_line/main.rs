@@ -9,6 +9,7 @@ mod eval;
 mod hostile;
 mod list;
 mod simulate;
+mod stability;
 mod systems;
 
 use dalembert_cli::{Entry, Exit, Streams, models, run_with};

@@ -1,0 +1,192 @@
+//! Section F, second part: many runs, many points, many impacts.
+
+use core::ops::ControlFlow;
+
+use dalembert::{Observer, Segment, System, VectorField};
+use dalembert_cli::Integrator;
+use dalembert_cli::suite::{Case, Report, Run, Setting};
+
+use super::course::Course;
+use super::tables::Sinai;
+use crate::PointBilliard;
+
+/// The cases.
+pub const CASES: &[Case] = &[
+    Case {
+        id: "F10",
+        title: "one ensemble on 1, 2 and 8 threads, in two orders",
+        right: "the same bits",
+        bound: "equal hashes of all last states",
+        run: Run::Integrators(threads),
+        ..Case::QUICK
+    },
+    Case {
+        id: "F13",
+        title: "F05 over 1e6 bounces: where the point is at equal times",
+        right: "uniform in area",
+        bound: "chi-square of 8 x 8 cells within 5 sigma",
+        run: Run::Once(uniform),
+        ..Case::NIGHTLY
+    },
+    Case {
+        id: "F14",
+        title: "1e8 impacts shown to an observer that keeps a sum",
+        right: "memory does not grow",
+        bound: "resident size constant to 1 MiB",
+        run: Run::Once(flat_memory),
+        ..Case::NIGHTLY
+    },
+];
+
+/// The bits of the last states of an ensemble, made by this many threads, folded in order of the members.
+fn hash(setting: Setting, threads: usize, backwards: bool) -> u64 {
+    const MEMBERS: usize = 16;
+    let member = |index: usize| {
+        let angle = 0.1 + index as f64;
+        let end =
+            Course::new(&Sinai {}, &[0.7, 0.1], &[angle.cos(), angle.sin()], 50.0).run(setting);
+        let bits = end.q.iter().chain(&end.qdot).map(|value| value.to_bits());
+        bits.fold(0_u64, |hash, bits| hash.rotate_left(7) ^ bits)
+    };
+    let mut hashes = vec![0_u64; MEMBERS];
+    let share = MEMBERS.div_ceil(threads);
+    std::thread::scope(|scope| {
+        for (block, part) in hashes.chunks_mut(share).enumerate() {
+            scope.spawn(move || {
+                let order: Vec<usize> = match backwards {
+                    true => (0..part.len()).rev().collect(),
+                    false => (0..part.len()).collect(),
+                };
+                for index in order {
+                    part[index] = member(block * share + index);
+                }
+            });
+        }
+    });
+    hashes
+        .into_iter()
+        .fold(0, |hash: u64, own| hash.wrapping_mul(31) ^ own)
+}
+
+fn threads(setting: Setting, report: &mut Report) {
+    let one = hash(setting, 1, false);
+    for threads in [2, 8] {
+        report.equal(
+            format!("{threads} threads"),
+            hash(setting, threads, false),
+            one,
+        );
+        report.equal(
+            format!("{threads} threads, backwards"),
+            hash(setting, threads, true),
+            one,
+        );
+    }
+}
+
+/// Counts the cells a path is in at equal times.
+struct Cells {
+    next: f64,
+    counts: [f64; 64],
+}
+
+impl Observer<Sinai> for Cells {
+    fn step(
+        &mut self,
+        segment: &mut Segment<'_, <Sinai as VectorField>::State>,
+    ) -> ControlFlow<()> {
+        while self.next <= segment.t_end() {
+            let Ok(state) = segment.at(self.next) else {
+                return ControlFlow::Break(());
+            };
+            let q = Sinai {}.position(&state);
+            let cell = |x: f64| ((x + 1.0) * 4.0).clamp(0.0, 7.0) as usize;
+            self.counts[8 * cell(q[0]) + cell(q[1])] += 1.0;
+            self.next += 7.0;
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+fn uniform(report: &mut Report) {
+    let setting = Setting::free(Integrator::Dop853);
+    let mut cells = Cells {
+        next: 7.0,
+        counts: [0.0; 64],
+    };
+    let end = Course::new(&Sinai {}, &[0.7, 0.1], &[0.6, 0.8], 1e9)
+        .impacts(1_000_000)
+        .follow(setting, &mut cells);
+    report.class(&end.outcome, "impact_budget");
+    let areas = free_areas();
+    let (total, area): (f64, f64) = (cells.counts.iter().sum(), areas.iter().sum());
+    let used = || cells.counts.iter().zip(areas).filter(|(_, own)| *own > 0.0);
+    let chi: f64 = used()
+        .map(|(count, own)| (count - total * own / area).powi(2) / (total * own / area))
+        .sum();
+    let freedom = used().count() as f64 - 1.0;
+    report.error(
+        "chi-square in sigma",
+        ((chi - freedom) / (2.0 * freedom).sqrt()).max(0.0),
+        5.0,
+    );
+}
+
+/// Area of each of 8 x 8 cells outside of the disk, by strips.
+fn free_areas() -> [f64; 64] {
+    const STRIPS: usize = 4000;
+    let mut areas = [0.0; 64];
+    for (index, area) in areas.iter_mut().enumerate() {
+        let (left, low) = (index as f64 / 8.0, (index % 8) as f64);
+        let (left, low) = (left.floor() / 4.0 - 1.0, low / 4.0 - 1.0);
+        for strip in 0..STRIPS {
+            let x = left + 0.25 * (strip as f64 + 0.5) / STRIPS as f64;
+            let half = (0.25 - x * x).max(0.0).sqrt();
+            let covered = (low + 0.25).min(half) - low.max(-half);
+            *area += 0.25 / STRIPS as f64 * (0.25 - covered.max(0.0));
+        }
+        if *area < 1e-9 {
+            *area = 0.0;
+        }
+    }
+    areas
+}
+
+/// Pages of memory that the process holds, where the system says so.
+fn resident_pages() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
+    text.split_whitespace().nth(1)?.parse().ok()
+}
+
+/// Adds up times of impacts.
+struct Sum(f64);
+
+impl Observer<PointBilliard> for Sum {
+    fn event(
+        &mut self,
+        event: &dalembert::Event<<PointBilliard as VectorField>::State>,
+    ) -> ControlFlow<()> {
+        self.0 += event.t;
+        ControlFlow::Continue(())
+    }
+}
+
+fn flat_memory(report: &mut Report) {
+    let setting = Setting::free(Integrator::Dop853);
+    let circle = PointBilliard {
+        m: 1.0,
+        ta: 1.0,
+        tb: 1.0,
+    };
+    let run = |impacts: u64| {
+        let course = Course::new(&circle, &[1.0, 0.0], &[-0.8, 0.6], 1e12).impacts(impacts);
+        course.follow(setting, &mut Sum(0.0))
+    };
+    run(10_000);
+    let before = resident_pages();
+    let end = run(100_000_000);
+    report.class(&end.outcome, "impact_budget");
+    if let (Some(before), Some(after)) = (before, resident_pages()) {
+        report.error("pages of 4 KiB", after - before, 256.0);
+    }
+}

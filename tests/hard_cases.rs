@@ -1,0 +1,339 @@
+//! Stored hard cases, computed with 50 and more digits: whispering galleries, grazes, accumulations, small inertia, a
+//! glancing wall, long runs of the disk.
+
+use dalembert::impacts::law::Law;
+use dalembert::{Constrained, Described, Impacting, System};
+use dalembert_cli::suite::{Setting, every_integrator};
+use dalembert_models::stability::by_hand::{Gap, Point, Reset};
+use dalembert_models::stability::course::{Course, End};
+use dalembert_models::{BouncingBall, ChaplyginSleigh, PointBilliard, RollingDisk};
+use dalembert_tests::reference::{number, numbers, read};
+use serde_json::Value;
+
+dalembert::model! {
+    /// A free point outside the unit disk.
+    pub DiskObstacle {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts { disk: x^2 + y^2 - 1 >= 0; }
+    }
+}
+
+dalembert::model! {
+    /// A knife edge before a wall at y = 0.
+    pub KnifeEdge {
+        coordinates { x; y; theta; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 + dot(theta)^2/6;
+        constraints { edge: sin(theta)*d(x) - cos(theta)*d(y) = 0; }
+        impacts { wall: -y >= 0; }
+    }
+}
+
+fn settings() -> impl Iterator<Item = Setting> {
+    every_integrator().iter().copied().map(Setting::free)
+}
+
+fn cases(document: &Value, name: &str) -> Vec<Value> {
+    document[name]
+        .as_array()
+        .unwrap_or_else(|| panic!("no {name}"))
+        .clone()
+}
+
+#[track_caller]
+fn assert_near(label: &str, found: &[f64], right: &[f64], bound: f64) {
+    assert_eq!(found.len(), right.len(), "{label}");
+    for (found, right) in found.iter().zip(right) {
+        assert!(
+            (found - right).abs() <= bound,
+            "{label}: {found} for {right}, bound {bound:e}"
+        );
+    }
+}
+
+#[test]
+fn whispering_galleries_keep_their_angle() {
+    let table = PointBilliard {
+        m: 1.0,
+        ta: 1.0,
+        tb: 1.0,
+    };
+    for case in cases(&read("hard_cases"), "circle_whispering_gallery_R=1") {
+        let count = case["impact_n"].as_u64().expect("a count");
+        let angle = number(&case["angle_with_tangent"]);
+        for setting in settings() {
+            let start = numbers(&case["qdot0"]);
+            let end = Course::new(&table, &[1.0, 0.0], &start, 1e6)
+                .impacts(count)
+                .run(setting);
+            // The angle with the tangent errs by u over itself, and adds up to the polar angle twice in each chord.
+            let bound = 256.0 * f64::EPSILON * count as f64 / angle;
+            assert_eq!(end.hits.len() as u64, count, "{}", setting.words());
+            assert_near("t", &[end.t], &[number(&case["t_n"])], bound);
+            assert_near("q", &end.q, &numbers(&case["q_n"]), bound);
+            assert_near("v", &end.qdot, &numbers(&case["qdot_plus_n"]), bound);
+        }
+    }
+}
+
+#[test]
+fn grazes_of_a_disk_are_impacts_or_not_as_their_offset_says() {
+    for case in cases(&read("hard_cases"), "grazing_disk_obstacle") {
+        let offset = number(&case["offset"]);
+        for setting in settings() {
+            let end = Course::new(
+                &DiskObstacle {},
+                &numbers(&case["q0"]),
+                &numbers(&case["qdot0"]),
+                4.0,
+            )
+            .run(setting);
+            let label = format!("{offset}, {}", setting.words());
+            assert!(end.outcome.is_done(), "{label}: {}", end.outcome);
+            if offset != 0.0 {
+                assert_eq!(
+                    end.hits.len() as u64,
+                    case["impacts"].as_u64().expect("a count"),
+                    "{label}"
+                );
+            }
+            // The speed at the wall is the root of twice the offset, and errs by the gap's rounding over itself.
+            let bound = 64.0 * f64::EPSILON / (2.0 * offset.abs()).sqrt().max(1e-8);
+            assert_near(&label, &end.q, &numbers(&case["q_at_t=4"]), 2.0 * bound);
+            if let (Some(hit), Some(t)) = (end.hits.first(), case.get("t")) {
+                assert_near(&label, &[hit.t], &[number(t)], bound);
+            }
+        }
+    }
+}
+
+#[test]
+fn an_inelastic_ball_accumulates_where_and_after_how_many_impacts_it_must() {
+    for case in cases(&read("hard_cases"), "inelastic_ball_zeno") {
+        let ball = BouncingBall {
+            m: 1.0,
+            g: number(&case["g"]),
+        };
+        let (e, limit) = (number(&case["e"]), number(&case["zeno_time"]));
+        for setting in settings() {
+            let end = Course::new(&ball, &[0.0], &[1.0], 2.0 * limit)
+                .law(0, Law::Restitution(e))
+                .run(setting);
+            let dalembert::Outcome::Zeno { t, .. } = end.outcome else {
+                panic!("e = {e}: {}", end.outcome)
+            };
+            assert_near("t", &[t], &[limit], 1e-10 * limit);
+            let before = end.hits.iter().filter(|hit| hit.t < limit - 1e-6).count() as u64;
+            let right = case["impacts_completed_before_zeno_minus_1e-6"]
+                .as_u64()
+                .expect("a count");
+            // For e = 0.999 a flight takes 1e-9 at the mark, and rounding has made of the time three times that.
+            let spread = if e > 0.99 { 8 } else { 0 };
+            assert!(
+                before.abs_diff(right) <= spread,
+                "e = {e}: {before} impacts for {right}"
+            );
+            assert_near(
+                "energy",
+                &[end.energy],
+                &[0.5 - number(&case["energy_lost_m=1"])],
+                1e-12,
+            );
+        }
+    }
+}
+
+#[test]
+fn the_sleigh_keeps_its_digits_for_small_inertia() {
+    for case in cases(&read("hard_cases"), "sleigh_small_I") {
+        let sleigh = ChaplyginSleigh {
+            m: 1.0,
+            I: number(&case["I"]),
+            a: 0.2,
+            ..ChaplyginSleigh::default()
+        };
+        let vector =
+            |name: &str| -> [f64; 3] { numbers(&case[name]).try_into().expect("three numbers") };
+        let state = sleigh
+            .state(0.0, &vector("q").into(), &vector("qdot").into())
+            .expect("a state");
+        // Reduced to D, the multiplier is a difference of forces of size 1: it has their rounding.
+        let reduced = sleigh.multipliers(0.0, &state).expect("multipliers")[0];
+        let (sleigh, q, qdot) = (sleigh.global(), vector("q"), vector("qdot"));
+        let state = sleigh.state(0.0, &q.into(), &qdot.into()).expect("a state");
+        let multiplier = sleigh.multipliers(0.0, &state).expect("multipliers")[0];
+        assert!(
+            (reduced - multiplier).abs() < 1e-15,
+            "I = {}: {reduced}",
+            case["I"]
+        );
+        let right = numbers(&case["multipliers"])[0];
+        let share = multiplier / right - 1.0;
+        // The turn rate is the rest of momenta of size 1, divided by the inertia.
+        let bound = 1e-12 + 1e-16 / sleigh.0.I;
+        assert!(
+            share.abs() < bound,
+            "I = {}: {multiplier} for {right}",
+            sleigh.0.I
+        );
+        assert_near(
+            "energy",
+            &[sleigh.energy(0.0, &state).expect("an energy")],
+            &[number(&case["energy"])],
+            1e-14,
+        );
+    }
+}
+
+#[test]
+fn a_knife_edge_hits_a_glancing_wall_by_every_law() {
+    for case in cases(&read("hard_cases"), "knife_edge_glancing_wall") {
+        let vector =
+            |name: &str| -> [f64; 3] { numbers(&case[name]).try_into().expect("three numbers") };
+        let state = KnifeEdge {}
+            .state(0.0, &vector("q").into(), &vector("qdot_minus").into())
+            .expect("a state");
+        let contact = KnifeEdge {}.contact(0, 0.0, &state).expect("a contact");
+        // Momenta of size 1 hold a normal part of size theta: an impulse of 2/theta carries their rounding errors.
+        let bound =
+            1e-14 * (1.0 + 100.0 * f64::EPSILON.sqrt() / number(&case["theta"]).powi(2).max(1e-16));
+        let rho = number(&case["geometry"]["ratio_r"]);
+        assert!(
+            (contact.rho() / rho - 1.0).abs() < 1e-12,
+            "rho {} for {rho}",
+            contact.rho()
+        );
+        for (name, coefficient) in [
+            ("elastic", f64::NAN),
+            ("nonholonomic_plastic", f64::NAN),
+            ("impact_plastic", f64::NAN),
+            ("totally_plastic", f64::NAN),
+            ("elastic_family_e=0.5", 0.5),
+        ] {
+            let law = Law::from_name(name, coefficient).unwrap_or(Law::Restitution(coefficient));
+            let mut after = state;
+            KnifeEdge {}.kick(&mut after, contact.impulse(law), &contact.direction);
+            let found = KnifeEdge {}.velocity(0.0, &after).expect("a velocity");
+            assert_near(
+                name,
+                found.as_slice(),
+                &numbers(&case["laws"][name]["qdot_plus"]),
+                bound,
+            );
+        }
+    }
+}
+
+#[test]
+fn the_disk_follows_its_reference_for_hundreds_of_impacts() {
+    for case in cases(&read("hard_cases"), "long_horizon_disk") {
+        let mut disk = RollingDisk::default();
+        for (index, parameter) in RollingDisk::DESCRIPTION.parameters.iter().enumerate() {
+            disk.set_parameter(index, number(&case["parameters"][parameter.name]));
+        }
+        let start = numbers(&case["initial(x,y,theta,phi,thetadot,phidot)"]);
+        let (phi, roll) = (start[3], start[4]);
+        let velocity = [
+            disk.R * phi.cos() * roll,
+            disk.R * phi.sin() * roll,
+            roll,
+            start[5],
+        ];
+        let is_regular = disk.ta == disk.tb;
+        for mark in cases(&case, "marks") {
+            let count = mark["n"].as_u64().expect("a count");
+            for setting in settings() {
+                let end = Course::new(&disk, &start[..4], &velocity, 1e6)
+                    .tol(1e-13)
+                    .impacts(count)
+                    .run(setting);
+                let label = format!("{}, impact {count}, {}", case["label"], setting.words());
+                let energy = number(&case["energy"]);
+                assert!(
+                    (end.energy / energy - 1.0).abs() < 1e-12,
+                    "{label}: energy {}",
+                    end.energy
+                );
+                assert_eq!(end.hits.len() as u64, count, "{label}");
+                // On the ellipse neighbouring motions separate.
+                if is_regular {
+                    let t = number(&mark["t"]);
+                    let (time, place) = match setting.integrator.order() {
+                        Some(..8) => (1e-8, 1e-4),
+                        _ => (1e-10, 1e-7),
+                    };
+                    assert!((end.t - t).abs() < time * t, "{label}: {} for {t}", end.t);
+                    assert_near(&label, &end.q[..2], &numbers(&mark["q"])[..2], place);
+                }
+            }
+        }
+    }
+}
+
+/// Treads along the curve of the case, and walls that multiply speeds by 1.25.
+fn treads(alpha: f64) -> Point<1> {
+    fn curve(a: f64, v0: f64, [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
+        let (b, slope) = (a * a, 2.0_f64.sqrt() * v0);
+        (
+            y - b * x * (slope - b * x),
+            [2.0 * b * b * x - b * slope, 1.0],
+        )
+    }
+    let surface: Gap = match alpha {
+        0.5 => |at| curve(0.5, 1.0, at),
+        _ => |at| curve(0.75, 1.25, at),
+    };
+    let reset: Reset = |[vx, vy]| [vx, -vy];
+    Point {
+        acceleration: [0.0, -1.0],
+        surfaces: [(surface, reset)],
+    }
+}
+
+#[test]
+fn rising_treads_are_hit_where_proposition_8_says() {
+    for case in cases(&read("accumulations"), "prop8") {
+        let (alpha, v0) = (number(&case["alpha"]), number(&case["v0"]));
+        for setting in settings() {
+            let end = Course::new(&treads(alpha), &[0.0, 0.0], &[1.0, v0], 10.0).run(setting);
+            let dalembert::Outcome::Zeno { t, .. } = end.outcome else {
+                panic!("alpha = {alpha}: {}", end.outcome)
+            };
+            assert_near("accumulation", &[t], &[number(&case["zeno_x=t"])], 1e-10);
+            assert!(end.hits.len() >= 3, "{} impacts", end.hits.len());
+            for (hit, right) in end.hits.iter().zip(cases(&case, "impacts")) {
+                // The time errs by the gap's rounding over the gap rate, which shrinks as the speed does.
+                let speed = number(&right["ydot_plus"]);
+                let bound = 1e-14 / speed;
+                assert_near("t", &[hit.t], &[number(&right["x=t"])], bound);
+                assert_near("y", &[hit.q[1]], &[number(&right["y"])], bound);
+                assert_near("speed", &[hit.after[1]], &[speed], 4.0 * bound);
+            }
+        }
+    }
+}
+
+#[test]
+fn super_elastic_walls_are_hit_where_example_4_says() {
+    let left: Gap = |[x, _]| (x, [1.0, 0.0]);
+    let right: Gap = |[x, _]| (1.0 - x, [-1.0, 0.0]);
+    let reset: Reset = |[vx, vy]| [-1.25 * vx, vy];
+    let walls = Point {
+        acceleration: [0.0; 2],
+        surfaces: [(left, reset), (right, reset)],
+    };
+    for case in cases(&read("accumulations"), "example4") {
+        let impacts = cases(&case, "impacts");
+        for setting in settings() {
+            let end: End = Course::new(&walls, &[0.0, 0.0], &[number(&case["v0"]), 0.0], 10.0)
+                .impacts(impacts.len() as u64)
+                .run(setting);
+            assert_eq!(end.hits.len(), impacts.len());
+            for (hit, right) in end.hits.iter().zip(&impacts) {
+                let speed = number(&right["speed_plus"]);
+                assert_near("t", &[hit.t], &[number(&right["t"])], 1e-13);
+                assert_near("speed", &[hit.after[0].abs() / speed], &[1.0], 1e-13);
+            }
+        }
+    }
+}

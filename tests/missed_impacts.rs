@@ -1,0 +1,269 @@
+//! No impact is missed, and none is invented: after every impact of a run the next one is computed in closed form from
+//! the state the run itself has, with arithmetic of its own, and must be what the run finds next.
+
+use core::ops::ControlFlow;
+
+use dalembert::{Event, Observer, Scene, StateVector, TaylorField};
+use dalembert_cli::suite::{Setting, every_integrator};
+use dalembert_models::PointBilliard;
+use dalembert_models::stability::course::{Course, Random};
+use dalembert_models::stability::tables::{Rectangle, Stadium};
+
+/// Rounding errors allowed in a time, in units of `2^-52` of the table's terms over the gap rate.
+const UNITS: f64 = 256.0;
+
+/// A next impact: how long until it, on which surface, and the gap rate it has.
+#[derive(Debug, Clone, Copy)]
+struct Next {
+    after: f64,
+    surface: usize,
+    rate: f64,
+}
+
+/// A table, as a closed form.
+trait Table: Scene + TaylorField {
+    /// The next impact from a point on the wall or inside, moving inwards.
+    fn next(&self, q: [f64; 2], v: [f64; 2]) -> Next;
+}
+
+/// When a line that begins in or on the conic `c + 2 b s + a s^2 >= 0`, `a < 0`, leaves it: the root farther ahead, in the
+/// form without cancellation.
+fn leaves(a: f64, b: f64, c: f64) -> f64 {
+    let root = (b * b - a * c.max(0.0)).sqrt();
+    if b >= 0.0 {
+        -(b + root) / a
+    } else {
+        c.max(0.0) / (root - b)
+    }
+}
+
+impl Table for PointBilliard {
+    fn next(&self, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Next {
+        let (p, q) = (self.ta * self.ta, self.tb * self.tb);
+        let (a, b) = (-(u * u / p + v * v / q), -(x * u / p + y * v / q));
+        let c = 1.0 - x * x / p - y * y / q;
+        let after = leaves(a, b, c);
+        Next {
+            after,
+            surface: 0,
+            rate: 2.0 * (b + a * after),
+        }
+    }
+}
+
+impl Table for Rectangle {
+    fn next(&self, q: [f64; 2], v: [f64; 2]) -> Next {
+        let mut first = Next {
+            after: f64::INFINITY,
+            surface: 0,
+            rate: 0.0,
+        };
+        for (i, length) in [self.a, self.b].into_iter().enumerate() {
+            let (surface, way) = if v[i] > 0.0 {
+                (2 * i + 1, length - q[i])
+            } else {
+                (2 * i, q[i])
+            };
+            let after = way / v[i].abs();
+            if after < first.after {
+                first = Next {
+                    after,
+                    surface,
+                    rate: -v[i].abs(),
+                };
+            }
+        }
+        first
+    }
+}
+
+impl Table for Stadium {
+    fn next(&self, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Next {
+        // The straight walls, where they are met between the half disks.
+        if v != 0.0 {
+            let after = (if v > 0.0 { 1.0 - y } else { 1.0 + y }) / v.abs();
+            if (x + u * after).abs() < 1.0 && after > 0.0 {
+                return Next {
+                    after,
+                    surface: usize::from(v > 0.0),
+                    rate: -v.abs(),
+                };
+            }
+        }
+        // The half disks, where their circles are left beyond the straight walls.
+        for (surface, side) in [(2, -1.0), (3, 1.0)] {
+            let from = x - side;
+            let (a, b) = (-(u * u + v * v), -(from * u + y * v));
+            let c = 1.0 - from * from - y * y;
+            let root = (b * b - a * c).sqrt();
+            let after = if b >= 0.0 {
+                -(b + root) / a
+            } else {
+                c / (root - b)
+            };
+            if after > 0.0 && side * (x + u * after) > 1.0 {
+                return Next {
+                    after,
+                    surface,
+                    rate: 2.0 * (b + a * after),
+                };
+            }
+        }
+        panic!("no wall is ahead of {x}, {y} at {u}, {v}");
+    }
+}
+
+/// Compares impact after impact.
+struct Watch<'a, T: Table> {
+    table: &'a T,
+    label: String,
+    expected: Next,
+    last: f64,
+    seen: u64,
+    worst: f64,
+}
+
+fn pair(values: &[f64]) -> [f64; 2] {
+    [values[0], values[1]]
+}
+
+impl<T: Table> Observer<T> for Watch<'_, T> {
+    fn event(&mut self, event: &Event<T::State>) -> ControlFlow<()> {
+        self.seen += 1;
+        let q = pair(self.table.position(&event.after).as_slice());
+        let v = pair(
+            self.table
+                .velocity(event.t, &event.after)
+                .expect("a velocity")
+                .as_slice(),
+        );
+        let Next {
+            after,
+            surface,
+            rate,
+        } = self.expected;
+        let late = event.t - self.last - after;
+        let allowed = UNITS * f64::EPSILON / rate.abs() + 4.0 * f64::EPSILON * event.t;
+        self.worst = self.worst.max(late.abs() / allowed);
+        assert!(
+            late.abs() <= allowed && event.surface == surface,
+            "{}: impact {} on {} after {}, not on {surface} after {after}; {} at {v:?}, allowed {allowed:e}",
+            self.label,
+            self.seen,
+            event.surface,
+            event.t - self.last,
+            format_args!("{q:?}"),
+        );
+        self.expected = self.table.next(q, v);
+        self.last = event.t;
+        ControlFlow::Continue(())
+    }
+}
+
+fn follow<T: Table>(
+    label: &str,
+    table: &T,
+    q: [f64; 2],
+    v: [f64; 2],
+    impacts: u64,
+    setting: Setting,
+) {
+    let mut watch = Watch {
+        table,
+        label: format!("{label}, {}", setting.words()),
+        expected: table.next(q, v),
+        last: 0.0,
+        seen: 0,
+        worst: 0.0,
+    };
+    let end = Course::new(table, &q, &v, 1e12)
+        .impacts(impacts)
+        .follow(setting, &mut watch);
+    assert_eq!(
+        (end.outcome.kind(), watch.seen),
+        ("impact_budget", impacts),
+        "{}",
+        watch.label
+    );
+    println!(
+        "{}: {impacts} impacts, worst time {:.2} of its bound",
+        watch.label, watch.worst
+    );
+}
+
+/// Every table and kind of start, a share of the impacts each.
+fn follow_all(impacts: u64) {
+    let mut random = Random::new(2026);
+    let circle = PointBilliard {
+        m: 1.0,
+        ta: 1.0,
+        tb: 1.0,
+    };
+    let ellipse = PointBilliard { ta: 2.0, ..circle };
+    let channel = Rectangle { a: 1.0, b: 1e-9 };
+    let share = impacts / (12 * every_integrator().len() as u64);
+    for setting in every_integrator().iter().copied().map(Setting::free) {
+        for angle in [0.3, 1e-2, 1e-4] {
+            let v = [-f64::sin(angle), f64::cos(angle)];
+            follow(
+                &format!("circle at {angle}"),
+                &circle,
+                [1.0, 0.0],
+                v,
+                share,
+                setting,
+            );
+            follow(
+                &format!("ellipse at {angle}"),
+                &ellipse,
+                [2.0, 0.0],
+                v,
+                share,
+                setting,
+            );
+        }
+        for _ in 0..2 {
+            let (q, angle) = (
+                [random.between(-0.9, 0.9), random.between(-0.9, 0.9)],
+                random.between(0.0, 6.0),
+            );
+            follow(
+                "stadium",
+                &Stadium {},
+                q,
+                [angle.cos(), angle.sin()],
+                share,
+                setting,
+            );
+            let q = [0.5 * q[0], 0.5 * q[1]];
+            follow(
+                "ellipse",
+                &ellipse,
+                q,
+                [angle.cos(), angle.sin()],
+                share,
+                setting,
+            );
+            let q = [0.5 + 0.5 * q[0], 0.5e-9];
+            follow(
+                "thin channel, fast",
+                &channel,
+                q,
+                [1e6 * angle.cos(), 1e6 * angle.sin()],
+                share,
+                setting,
+            );
+        }
+    }
+}
+
+#[test]
+fn none_of_ten_thousand_impacts_is_missed() {
+    follow_all(10_000);
+}
+
+#[test]
+#[ignore = "nightly: ten million impacts"]
+fn none_of_ten_million_impacts_is_missed() {
+    follow_all(10_000_000);
+}
