@@ -7,6 +7,7 @@ use dalembert_cli::suite::{Setting, every_integrator};
 use dalembert_models::stability::by_hand::{Gap, Point, Reset};
 use dalembert_models::stability::course::{Course, End};
 use dalembert_models::{BouncingBall, ChaplyginSleigh, PointBilliard, RollingDisk};
+use dalembert_tests::numeric::assert_near;
 use dalembert_tests::reference::{number, numbers, read};
 use serde_json::Value;
 
@@ -41,16 +42,6 @@ fn cases(document: &Value, name: &str) -> Vec<Value> {
 }
 
 #[track_caller]
-fn assert_near(label: &str, found: &[f64], right: &[f64], bound: f64) {
-    assert_eq!(found.len(), right.len(), "{label}");
-    for (found, right) in found.iter().zip(right) {
-        assert!(
-            (found - right).abs() <= bound,
-            "{label}: {found} for {right}, bound {bound:e}"
-        );
-    }
-}
-
 #[test]
 fn whispering_galleries_keep_their_angle() {
     let table = PointBilliard {

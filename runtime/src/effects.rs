@@ -5,7 +5,9 @@
 
 use crate::contract::System;
 use crate::error::Fault;
+use crate::forces::{Forces, NoForces};
 use crate::impacts::law::Law;
+use crate::impacts::policy::Policies;
 use crate::integrate::{Counters, Stepper};
 use crate::outcome::Outcome;
 use crate::record::{Interpolant, Observer};
@@ -130,6 +132,15 @@ impl Change {
 
 /// What else happens along a motion. An `Err` from any hook ends the run with that outcome.
 pub trait Effect<Sys: System> {
+    /// The forces it may add to the motion; [`NoForces`] if it never does.
+    type Forces: Forces<Sys>;
+
+    /// The forces it adds to the motion from now on. Asked for after every cut; a run in which they change goes on with
+    /// an integrator that is begun anew.
+    fn forces(&self) -> Option<Self::Forces> {
+        None
+    }
+
     /// At the first instant of a run, before the first step.
     ///
     /// # Errors
@@ -143,7 +154,8 @@ pub trait Effect<Sys: System> {
         Ok(())
     }
 
-    /// Proposes the earliest crossing in the step, as a part in (0, 1\] of it. `None`: let it pass whole.
+    /// Proposes the earliest crossing in the step, as a part in \[0, 1\] of it; at 0 the step is not made at all.
+    /// `None`: let it pass whole.
     ///
     /// # Errors
     /// The [`Outcome`] that ends the run, at the start of the step.
@@ -201,6 +213,11 @@ pub trait SceneEffects<Sys: System>: Effect<Sys> {
     fn set_projection(&mut self, on: bool) {
         let _ = on;
     }
+
+    /// Says what impacts do where a law alone does not tell how to go on.
+    fn set_policies(&mut self, policies: Policies) {
+        let _ = policies;
+    }
 }
 
 /// A system with the effects its declaration asks for.
@@ -212,7 +229,9 @@ pub trait Scene: System + Sized {
     fn effects(&self) -> Self::Effects;
 }
 
-impl<Sys: System> Effect<Sys> for () {}
+impl<Sys: System> Effect<Sys> for () {
+    type Forces = NoForces;
+}
 
 impl<Sys: System> SceneEffects<Sys> for () {}
 
@@ -227,7 +246,29 @@ fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 
 macro_rules! compose {
     ($($effect:ident $index:tt),+) => {
+        impl<Sys: System, $($effect: Forces<Sys>),+> Forces<Sys> for ($($effect,)+) {
+            #[inline(always)]
+            fn add(
+                &self,
+                system: &Sys,
+                t: f64,
+                state: &Sys::State,
+                rate: &mut Sys::State,
+            ) -> Result<(), Fault> {
+                $(self.$index.add(system, t, state, rate)?;)+
+                Ok(())
+            }
+        }
+
         impl<Sys: System, $($effect: Effect<Sys>),+> Effect<Sys> for ($($effect,)+) {
+            type Forces = ($(Option<$effect::Forces>,)+);
+
+            #[inline(always)]
+            fn forces(&self) -> Option<Self::Forces> {
+                let forces = ($(self.$index.forces(),)+);
+                ($(forces.$index.is_some())||+).then_some(forces)
+            }
+
             fn begin<O: Observer<Sys>>(
                 &mut self,
                 now: &mut Moment<'_, Sys>,
@@ -281,6 +322,10 @@ macro_rules! compose {
 
             fn set_projection(&mut self, on: bool) {
                 $(self.$index.set_projection(on);)+
+            }
+
+            fn set_policies(&mut self, policies: Policies) {
+                $(self.$index.set_policies(policies);)+
             }
         }
     };

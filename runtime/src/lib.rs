@@ -111,6 +111,7 @@ pub mod describe;
 pub mod effects;
 pub mod error;
 mod events;
+pub mod forces;
 mod generated;
 pub mod impacts;
 pub mod initial;
@@ -133,8 +134,10 @@ pub use contract::{
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
 pub use error::{Fault, ParameterError, StateError};
+pub use forces::{Forces, NoForces};
 pub use impacts::Impacts;
 pub use impacts::law::{Contact, Law};
+pub use impacts::policy::{Corner, Penetration, Policies, Rest};
 pub use initial::complete_velocities;
 pub use integrate::{
     Counters, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Stepper, Taylor, Tolerance,
@@ -142,7 +145,7 @@ pub use integrate::{
 };
 pub use outcome::{Outcome, Run, StartError};
 pub use projection::Projection;
-pub use record::{Event, EventLog, Observer, Segment};
+pub use record::{Event, EventLog, Hold, Observer, Segment};
 pub use simulation::Simulation;
 pub use state::StateVector;
 

@@ -18,6 +18,18 @@ pub enum Outcome {
         /// The surface last hit.
         surface: usize,
     },
+    /// Impacts accumulate while the energy grows.
+    Spasmodic {
+        /// Where they accumulate, extrapolated from the last flights.
+        t: f64,
+        /// The surface last hit.
+        surface: usize,
+    },
+    /// Several surfaces were hit at one time, and the state after it depends on the order of impacts.
+    Ambiguous {
+        /// The first and the last of them, in order of declaration.
+        surfaces: [usize; 2],
+    },
     /// An impact law left the state approaching the surface.
     StillPenetrating {
         /// The surface.
@@ -105,6 +117,8 @@ impl Outcome {
         match self {
             Self::Done => "done",
             Self::Zeno { .. } => "zeno",
+            Self::Spasmodic { .. } => "spasmodic",
+            Self::Ambiguous { .. } => "ambiguous",
             Self::StillPenetrating { .. } => "still_penetrating",
             Self::Contact { .. } => "contact",
             Self::TangentialCrossing { .. } => "tangential_crossing",
@@ -137,6 +151,16 @@ impl fmt::Display for Outcome {
             Self::Zeno { t, surface } => {
                 write!(f, "impacts on surface {surface} accumulate at t = {t}")
             }
+            Self::Spasmodic { t, surface } => write!(
+                f,
+                "impacts on surface {surface} accumulate at t = {t} while the energy grows"
+            ),
+            Self::Ambiguous {
+                surfaces: [first, last],
+            } => write!(
+                f,
+                "surfaces {first} and {last} are hit at one time, and the order of impacts matters"
+            ),
             Self::StillPenetrating { surface, rho } => {
                 write!(
                     f,

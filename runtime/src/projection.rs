@@ -7,6 +7,7 @@
 use crate::contract::Constrained;
 use crate::effects::{Change, Effect, Moment, SceneEffects};
 use crate::error::Fault;
+use crate::forces::NoForces;
 use crate::outcome::Outcome;
 use crate::record::Observer;
 use crate::state::StateVector;
@@ -143,6 +144,8 @@ fn exceeding<Sys: Constrained>(
 }
 
 impl<Sys: Constrained> Effect<Sys> for Projection<Sys> {
+    type Forces = NoForces;
+
     fn begin<O: Observer<Sys>>(
         &mut self,
         now: &mut Moment<'_, Sys>,

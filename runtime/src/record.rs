@@ -25,6 +25,21 @@ pub struct Event<S> {
     pub graze: bool,
 }
 
+/// The state comes to rest on a surface, or to slide along it, or leaves it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hold<S> {
+    /// When.
+    pub t: f64,
+    /// Index of the surface.
+    pub surface: usize,
+    /// The state, on the surface.
+    pub state: S,
+    /// Whether the motion is held on the surface from now on, or no more.
+    pub begins: bool,
+    /// Where impacts on the surface accumulate, extrapolated from the last hops, if that is how it begins.
+    pub accumulation: Option<f64>,
+}
+
 /// A stretch of smooth motion, from one step's start to its end or to the impact that cuts it short.
 pub struct Segment<'a, S> {
     pub(crate) t: [f64; 2],
@@ -95,6 +110,12 @@ pub trait Observer<Sys: System> {
         let _ = event;
         ControlFlow::Continue(())
     }
+
+    /// A surface begins or ceases to hold the motion.
+    fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
+        let _ = hold;
+        ControlFlow::Continue(())
+    }
 }
 
 /// Watches nothing.
@@ -107,6 +128,10 @@ impl<Sys: System, O: Observer<Sys>> Observer<Sys> for &mut O {
 
     fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
         (**self).event(event)
+    }
+
+    fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
+        (**self).hold(hold)
     }
 }
 

@@ -4,7 +4,8 @@ use core::ops::ControlFlow;
 
 use crate::contract::System;
 use crate::effects::{Change, Effect, Moment, StepView};
-use crate::integrate::{Counters, Stepper};
+use crate::forces::{Along, Driven};
+use crate::integrate::{Counters, Dop853, Stepper};
 use crate::outcome::{Outcome, Run, StartError};
 use crate::record::{Observer, Segment};
 use crate::state::StateVector;
@@ -74,6 +75,7 @@ impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, S
             stepper: &mut self.stepper,
             effects: &mut self.effects,
             budget: self.step_budget,
+            is_begun: false,
             t: t0,
             late: 0.0,
             flight: 0.0,
@@ -99,6 +101,8 @@ struct Course<'a, Sys: System, Step, Effects> {
     stepper: &'a mut Step,
     effects: &'a mut Effects,
     budget: u64,
+    /// Whether the integrator has made steps before.
+    is_begun: bool,
     t: f64,
     /// The part of the time that `t` cannot hold: lengths of flights add up without losing it.
     late: f64,
@@ -128,10 +132,28 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             counters: &mut self.counters,
         };
         self.effects.begin(&mut now, observer)?;
-        if self.t < t_end {
-            self.stepper
-                .start(self.system, self.t, &self.state, t_end, &mut self.counters)?;
+        while self.t < t_end {
+            match self.effects.forces() {
+                None => self.drive(t_end, observer)?,
+                Some(forces) => self.drive_under(forces, t_end, observer)?,
+            }
         }
+        Ok(())
+    }
+
+    /// Steps to the end, or to where the forces of the effects change.
+    fn drive<O: Observer<Sys>>(&mut self, t_end: f64, observer: &mut O) -> Result<(), Outcome> {
+        let (system, t, counters) = (self.system, self.t, &mut self.counters);
+        match self.is_begun {
+            false => self
+                .stepper
+                .start(system, t, &self.state, t_end, counters)?,
+            true => self
+                .stepper
+                .restart(system, t, &self.state, f64::INFINITY, counters)?,
+        }
+        self.is_begun = true;
+        let forces = self.effects.forces();
         while self.t < t_end {
             if self.counters.accepted >= self.budget {
                 return Err(Outcome::StepBudget);
@@ -144,17 +166,67 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             };
             match self.effects.propose(&mut view)? {
                 None => self.pass(observer)?,
-                Some(theta) => self.cut(theta, observer)?,
+                Some(theta) => {
+                    let limit = self.cut(theta, observer)?;
+                    if self.effects.forces() != forces {
+                        return Ok(());
+                    }
+                    let (t, counters) = (self.t, &mut self.counters);
+                    self.stepper
+                        .restart(self.system, t, &self.state, limit, counters)?;
+                }
             }
         }
         Ok(())
+    }
+
+    /// Steps to the end, or to where the forces change. Whatever integrator was chosen, with [`Dop853`] at its
+    /// tolerance: not every integrator takes forces that a system does not know.
+    fn drive_under<O: Observer<Sys>>(
+        &mut self,
+        forces: Effects::Forces,
+        t_end: f64,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        let field = Driven {
+            system: self.system,
+            forces,
+        };
+        let mut stepper = Along {
+            field: &field,
+            stepper: Dop853::new(self.stepper.tolerance()),
+        };
+        let mut course = Course {
+            system: self.system,
+            stepper: &mut stepper,
+            effects: &mut *self.effects,
+            budget: self.budget,
+            is_begun: false,
+            t: self.t,
+            late: self.late,
+            flight: self.flight,
+            state: self.state,
+            counters: self.counters,
+        };
+        let end = course.drive(t_end, observer);
+        let Course {
+            t,
+            late,
+            flight,
+            state,
+            counters,
+            ..
+        } = course;
+        (self.t, self.late, self.flight) = (t, late, flight);
+        (self.state, self.counters) = (state, counters);
+        end
     }
 
     /// The step passes whole.
     #[inline(always)]
     fn pass<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
         if let Some(coordinate) = self.system.outside_chart(self.stepper.end_state()) {
-            return self.leave_chart(1.0, coordinate, observer);
+            return Err(self.leave_chart(1.0, coordinate, observer));
         }
         self.t = self.stepper.t_end();
         self.flight += self.t - self.stepper.t_start();
@@ -172,14 +244,24 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         self.show(observer)
     }
 
-    /// The step ends at `theta`, where the effects act.
-    fn cut<O: Observer<Sys>>(&mut self, theta: f64, observer: &mut O) -> Result<(), Outcome> {
+    /// The step ends at `theta`, where the effects act. Returns the longest step to go on with.
+    fn cut<O: Observer<Sys>>(&mut self, theta: f64, observer: &mut O) -> Result<f64, Outcome> {
+        if theta <= 0.0 {
+            let mut now = Moment {
+                system: self.system,
+                t: self.t,
+                state: &mut self.state,
+                counters: &mut self.counters,
+            };
+            self.effects.act(theta, &mut now, observer)?;
+            return Ok(f64::INFINITY);
+        }
         let limit =
             FLIGHTS * (self.flight + theta * (self.stepper.t_end() - self.stepper.t_start()));
         self.flight = 0.0;
         self.arrive(theta)?;
         if let Some(coordinate) = self.system.outside_chart(&self.state) {
-            return self.leave_chart(theta, coordinate, observer);
+            return Err(self.leave_chart(theta, coordinate, observer));
         }
         let mut now = Moment {
             system: self.system,
@@ -196,9 +278,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             counters: &mut self.counters,
         };
         self.effects.act(theta, &mut now, observer)?;
-        self.stepper
-            .restart(self.system, self.t, &self.state, limit, &mut self.counters)?;
-        Ok(())
+        Ok(limit)
     }
 
     /// Sets time and state to those at `theta`.
@@ -245,7 +325,20 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         theta: f64,
         coordinate: usize,
         observer: &mut O,
-    ) -> Result<(), Outcome> {
+    ) -> Outcome {
+        match self.go_to_end_of_chart(theta, coordinate, observer) {
+            Ok(coordinate) => Outcome::LeftChart { coordinate },
+            Err(outcome) => outcome,
+        }
+    }
+
+    /// Returns the coordinate that leaves the chart first.
+    fn go_to_end_of_chart<O: Observer<Sys>>(
+        &mut self,
+        theta: f64,
+        coordinate: usize,
+        observer: &mut O,
+    ) -> Result<usize, Outcome> {
         self.stepper
             .prepare_dense(self.system, &mut self.counters)?;
         let (mut inside, mut outside, mut left) = (0.0, theta, coordinate);
@@ -261,6 +354,6 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         }
         self.arrive(inside)?;
         self.show(observer)?;
-        Err(Outcome::LeftChart { coordinate: left })
+        Ok(left)
     }
 }

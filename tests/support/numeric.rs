@@ -192,3 +192,18 @@ pub fn moved(state: &[f64], s: f64, direction: &[f64]) -> Vec<f64> {
         .map(|(own, slope)| own + s * slope)
         .collect()
 }
+
+/// Asserts that numbers are near to the right ones.
+///
+/// # Panics
+/// Where they are not.
+#[track_caller]
+pub fn assert_near(label: &str, found: &[f64], right: &[f64], bound: f64) {
+    assert_eq!(found.len(), right.len(), "{label}");
+    for (found, right) in found.iter().zip(right) {
+        assert!(
+            (found - right).abs() <= bound,
+            "{label}: {found} for {right}, bound {bound:e}"
+        );
+    }
+}

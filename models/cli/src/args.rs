@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::builder::ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use dalembert::impacts::law::Law;
+use dalembert::impacts::policy::{Corner, Penetration, Policies, Rest};
 use dalembert::integrate::{
     ClassicalRungeKutta, ComposedPrinciple, Dop853Scheme, DormandPrince5Scheme, Gauss, Method,
     MidpointPrinciple, Scheme, TAYLOR,
@@ -71,7 +72,8 @@ Examples:
   dalembert simulate rolling_disk --impacts 50 --law leading_edge=newton:0.5 --json -
   dalembert simulate double_pendulum --integrator gauss6 --step 0.01 --until 1000
   dalembert simulate chaplygin_sleigh --integrator dla4 --step pi/200
-  dalembert simulate bouncing_ball --q 1 --qdot 0 --until 10 --csv ball.csv";
+  dalembert simulate bouncing_ball --q 1 --qdot 0 --until 10 --csv ball.csv
+  dalembert simulate bouncing_ball --law newton:0.5 --rest contact --until 10";
 
 const EVAL_EXAMPLES: &str = "Input: a JSON array of states, {\"q\": [..], \"qdot\": [..]} or {\"q\": [..], \"p\": [..]}, with \"t\"
 if the model depends on time. Numbers may be decimal strings. Output: an array of the same length; a
@@ -271,6 +273,74 @@ pub enum Switch {
     Off,
 }
 
+/// What to do on a surface that the motion presses into.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum RestPolicy {
+    /// End the run, as `contact`, or as `zeno` where impacts accumulate.
+    #[default]
+    Stop,
+    /// Go on along the surface without friction, until it would have to pull.
+    Contact,
+}
+
+/// What to do after a law that leaves the state approaching.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum PenetrationPolicy {
+    /// End the run, as `still_penetrating`.
+    #[default]
+    Stop,
+    /// Repeat the law for ever: its limit is `impact_plastic`.
+    Repeat,
+    /// The same, and go on along the surface as with `--rest contact`.
+    Contact,
+}
+
+/// What to do where several surfaces are hit at one time, and their order matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum CornerPolicy {
+    /// End the run, as `ambiguous`.
+    #[default]
+    Stop,
+    /// Always first the surface declared first.
+    Ascending,
+    /// Always first the surface declared last.
+    Descending,
+}
+
+/// What impacts do where a law alone does not tell how to go on.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct PolicyArgs {
+    /// On a surface that the motion presses into: after impacts that accumulate, after a plastic impact, at the start.
+    #[arg(long, value_enum, default_value_t)]
+    pub rest: RestPolicy,
+    /// After a law that leaves the state approaching.
+    #[arg(long, value_enum, default_value_t)]
+    pub penetration: PenetrationPolicy,
+    /// At several surfaces at one time whose order matters.
+    #[arg(long, value_enum, default_value_t)]
+    pub corner: CornerPolicy,
+}
+
+impl PolicyArgs {
+    /// The policies of the run.
+    pub fn policies(self) -> Policies {
+        let rests =
+            self.rest == RestPolicy::Contact || self.penetration == PenetrationPolicy::Contact;
+        Policies {
+            rest: if rests { Rest::Contact } else { Rest::Stop },
+            penetration: match self.penetration {
+                PenetrationPolicy::Stop => Penetration::Stop,
+                PenetrationPolicy::Repeat | PenetrationPolicy::Contact => Penetration::Repeat,
+            },
+            corner: match self.corner {
+                CornerPolicy::Stop => Corner::Stop,
+                CornerPolicy::Ascending => Corner::Ascending,
+                CornerPolicy::Descending => Corner::Descending,
+            },
+        }
+    }
+}
+
 /// What `--law` takes.
 fn law_help() -> String {
     let laws = Law::NAMES.map(|(name, takes_coefficient)| match takes_coefficient {
@@ -302,6 +372,9 @@ pub struct SimulateArgs {
     /// The laws to use instead of the declared ones.
     #[arg(long, value_name = "[SURFACE=]LAW[:E]", help = law_help())]
     pub law: Vec<String>,
+    /// Where a law alone does not tell how to go on.
+    #[command(flatten)]
+    pub policies: PolicyArgs,
     /// The integrator.
     #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
     pub integrator: Integrator,

@@ -9,7 +9,9 @@ use dalembert::integrate::{
     Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4, Gauss6, Method, Rk4, Stepper,
     Taylor, Tolerance,
 };
-use dalembert::{Event, Observer, Outcome, SceneEffects, Segment, Simulation, StateVector};
+use dalembert::{
+    Event, Hold, Observer, Outcome, Policies, SceneEffects, Segment, Simulation, StateVector,
+};
 use serde_json::Value;
 
 use crate::args::{Form, Integrator};
@@ -29,6 +31,8 @@ pub(crate) struct Settings {
     pub impacts: Option<u64>,
     /// Laws by index of the surface, instead of the declared ones; a later one counts.
     pub laws: Vec<(usize, Law)>,
+    /// What impacts do where a law alone does not tell how to go on.
+    pub policies: Policies,
     /// Whether to project on the constraints, where the flags say.
     pub projection: Option<bool>,
 }
@@ -64,6 +68,17 @@ pub(crate) struct Impact {
     pub graze: bool,
 }
 
+/// A surface begins or ceases to hold the motion.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Contact {
+    pub t: f64,
+    pub surface: usize,
+    pub at: Point,
+    pub begins: bool,
+    /// Where impacts accumulate, if that is how it begins.
+    pub accumulation: Option<f64>,
+}
+
 /// A stretch of smooth motion.
 pub(crate) trait Piece {
     /// Its first and its last time.
@@ -80,6 +95,9 @@ pub(crate) trait Watch {
 
     /// An impact was carried out.
     fn impact(&mut self, impact: Impact);
+
+    /// A surface begins or ceases to hold the motion.
+    fn contact(&mut self, contact: Contact);
 }
 
 /// Runs a model from `t = 0`.
@@ -135,6 +153,7 @@ fn run<M: Model, S: Stepper<M>>(
     if settings.impacts.is_some() {
         effects.set_impact_budget(settings.impacts);
     }
+    effects.set_policies(settings.policies);
     if let Some(projection) = settings.projection {
         effects.set_projection(projection);
     }
@@ -187,6 +206,17 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
         });
         ControlFlow::Continue(())
     }
+
+    fn hold(&mut self, hold: &Hold<M::State>) -> ControlFlow<()> {
+        self.watch.contact(Contact {
+            t: hold.t,
+            surface: hold.surface,
+            at: point(self.model, hold.t, &hold.state),
+            begins: hold.begins,
+            accumulation: hold.accumulation,
+        });
+        ControlFlow::Continue(())
+    }
 }
 
 /// A segment of a run. Looking inside one makes its dense output ready, hence the cell.
@@ -222,8 +252,12 @@ fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, V
     let quasi_velocity = |index: usize| name(description.quasi_velocities.iter().copied(), index);
     let coordinate = |index: usize| name(names::coordinates(description), index);
     match *outcome {
-        Outcome::Zeno { t, surface: index } => {
+        Outcome::Zeno { t, surface: index } | Outcome::Spasmodic { t, surface: index } => {
             vec![("accumulates_at", json::number(t)), surface(index)]
+        }
+        Outcome::Ambiguous { surfaces } => {
+            let [first, last] = surfaces.map(|index| surface(index).1);
+            vec![("surfaces", Value::from(vec![first, last]))]
         }
         Outcome::StillPenetrating {
             surface: index,

@@ -1,6 +1,6 @@
 //! What is kept of a run: states at equally spaced times, the impacts, and the trace for a picture.
 
-use crate::driver::{Impact, Piece, Watch};
+use crate::driver::{Contact, Impact, Piece, Watch};
 use crate::entry::Point;
 use crate::plot::trace::Trace;
 use crate::progress::Progress;
@@ -45,6 +45,8 @@ pub struct Tally {
     pub grazing: u64,
     /// At the same time as another.
     pub simultaneous: u64,
+    /// Times that a surface began to hold the motion.
+    pub contacts: u64,
 }
 
 /// Keeps what was asked for while a run goes on.
@@ -55,6 +57,8 @@ pub struct Recorder {
     pub samples: Vec<(f64, Point)>,
     /// Impacts, in order of time, if they were asked for.
     pub impacts: Vec<Impact>,
+    /// Where surfaces begin and cease to hold the motion, if impacts were asked for.
+    pub contacts: Vec<Contact>,
     /// The trace, if a picture was asked for.
     pub trace: Option<Trace>,
     /// The number of impacts, kept or not.
@@ -91,6 +95,7 @@ impl Recorder {
             keeps_impacts: wanted.impacts,
             samples: Vec::new(),
             impacts: Vec::new(),
+            contacts: Vec::new(),
             trace: wanted.trace,
             tally: Tally::default(),
             progress,
@@ -134,6 +139,16 @@ impl Watch for Recorder {
         self.tally.count(&impact);
         if self.keeps_impacts {
             self.impacts.push(impact);
+        }
+    }
+
+    fn contact(&mut self, contact: Contact) {
+        if let Some(trace) = &mut self.trace {
+            trace.corner(contact.t, &contact.at);
+        }
+        self.tally.contacts += u64::from(contact.begins);
+        if self.keeps_impacts {
+            self.contacts.push(contact);
         }
     }
 }

@@ -54,10 +54,6 @@ dalembert::model! {
     }
 }
 
-/// Why corners of other angles are settled in order of declaration.
-const NO_AMBIGUOUS: &str =
-    "no `ambiguous` outcome: impacts at one time are carried out in order of declaration";
-
 /// The cases.
 pub const CASES: &[Case] = &[
     Case {
@@ -89,7 +85,6 @@ pub const CASES: &[Case] = &[
         title: "corners of angles 2 pi/5 and 100 degrees hit exactly",
         right: "the two orders differ",
         bound: "`ambiguous`",
-        pending: Some(NO_AMBIGUOUS),
         run: Run::Steps(other_angles),
         ..Case::QUICK
     },
@@ -106,7 +101,6 @@ pub const CASES: &[Case] = &[
         title: "masses 1, 2, 1 that touch, both ends moving in",
         right: "the order matters: metric angle acos(1/3)",
         bound: "`ambiguous`",
-        pending: Some(NO_AMBIGUOUS),
         run: Run::Steps(unequal_masses),
         ..Case::QUICK
     },

@@ -6,8 +6,8 @@ use dalembert::impacts::law::Law;
 use dalembert::integrate::Counters;
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
-    Dop853, DormandPrince5, Event, Observer, Outcome, Scene, SceneEffects, Segment, Simulation,
-    StateVector, Stepper, Taylor, TaylorField, Tolerance,
+    Dop853, DormandPrince5, Event, Hold, Observer, Outcome, Policies, Rest, Scene, SceneEffects,
+    Segment, Simulation, StateVector, Stepper, Taylor, TaylorField, Tolerance,
 };
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::Setting;
@@ -45,6 +45,21 @@ pub struct Hit {
     pub graze: bool,
 }
 
+/// Where a surface begins or ceases to hold the motion.
+#[derive(Debug, Clone)]
+pub struct Held {
+    /// When.
+    pub t: f64,
+    /// Which surface.
+    pub surface: usize,
+    /// Where.
+    pub q: Vec<f64>,
+    /// Whether it begins.
+    pub begins: bool,
+    /// Where impacts accumulate, if that is how it begins.
+    pub accumulation: Option<f64>,
+}
+
 /// Where a run ended.
 #[derive(Debug, Clone)]
 pub struct End {
@@ -60,6 +75,8 @@ pub struct End {
     pub energy: f64,
     /// The impacts.
     pub hits: Vec<Hit>,
+    /// Where surfaces begin and cease to hold the motion.
+    pub holds: Vec<Held>,
     /// The work done.
     pub counters: Counters,
 }
@@ -124,6 +141,20 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
         self
     }
 
+    /// Going on along surfaces instead of ending there.
+    pub fn resting(self) -> Self {
+        self.policies(Policies {
+            rest: Rest::Contact,
+            ..Policies::default()
+        })
+    }
+
+    /// With these policies.
+    pub fn policies(mut self, policies: Policies) -> Self {
+        self.effects.set_policies(policies);
+        self
+    }
+
     /// With or without projection on the constraints.
     pub fn projection(mut self, on: bool) -> Self {
         self.effects.set_projection(on);
@@ -135,9 +166,10 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
         let mut log = Log {
             system: self.system,
             hits: Vec::new(),
+            holds: Vec::new(),
         };
         let mut end = self.follow(setting, &mut log);
-        end.hits = log.hits;
+        (end.hits, end.holds) = (log.hits, log.holds);
         end
     }
 
@@ -199,6 +231,7 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
                 .unwrap_or_default(),
             energy: system.energy(run.t, &run.state).unwrap_or(f64::NAN),
             hits: Vec::new(),
+            holds: Vec::new(),
             counters: run.counters,
         }
     }
@@ -216,6 +249,7 @@ pub fn vector<V: StateVector>(values: &[f64]) -> V {
 struct Log<'a, M> {
     system: &'a M,
     hits: Vec<Hit>,
+    holds: Vec<Held>,
 }
 
 impl<M: Scene + TaylorField> Observer<M> for Log<'_, M> {
@@ -232,6 +266,17 @@ impl<M: Scene + TaylorField> Observer<M> for Log<'_, M> {
             after: velocity(&event.after),
             simultaneous: event.simultaneous,
             graze: event.graze,
+        });
+        ControlFlow::Continue(())
+    }
+
+    fn hold(&mut self, hold: &Hold<M::State>) -> ControlFlow<()> {
+        self.holds.push(Held {
+            t: hold.t,
+            surface: hold.surface,
+            q: self.system.position(&hold.state).as_slice().to_vec(),
+            begins: hold.begins,
+            accumulation: hold.accumulation,
         });
         ControlFlow::Continue(())
     }
@@ -256,6 +301,10 @@ impl<M: Scene + TaylorField, O: Observer<M>> Observer<M> for Reader<'_, O> {
 
     fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
         self.observer.event(event)
+    }
+
+    fn hold(&mut self, hold: &Hold<M::State>) -> ControlFlow<()> {
+        self.observer.hold(hold)
     }
 }
 

@@ -37,9 +37,6 @@ pub const CASES: &[Case] = &[
         title: "at rest on the floor",
         right: "rests for ever, no impacts, x = 0",
         bound: "x = 0 at t = 1e6",
-        pending: Some(
-            "no contact mode: a state pressed against a surface ends the run as `contact`",
-        ),
         run: Run::Integrators(at_rest),
         ..Case::QUICK
     },
@@ -117,9 +114,12 @@ fn thrown(setting: Setting, report: &mut Report, speed: f64, times: &[f64]) {
 }
 
 fn at_rest(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Fall::default(), &[0.0], &[0.0], 1e6).run(setting);
+    let end = Course::new(&Fall::default(), &[0.0], &[0.0], 1e6)
+        .resting()
+        .run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 0);
+    report.equal("holds", end.holds.len(), 1);
     report.equal("x", end.q[0], 0.0);
 }
 

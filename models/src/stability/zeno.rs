@@ -36,10 +36,6 @@ dalembert::model! {
     }
 }
 
-/// Why nothing goes on after an accumulation.
-const NO_CONTACT: &str =
-    "no contact mode: a run ends where impacts accumulate or a state is pressed against a surface";
-
 /// The cases.
 pub const CASES: &[Case] = &[
     Case {
@@ -55,7 +51,6 @@ pub const CASES: &[Case] = &[
         title: "a ball after its impacts have accumulated",
         right: "x = 0 for ever",
         bound: "`done`, x = 0 at ten times the Zeno time",
-        pending: Some(NO_CONTACT),
         run: Run::Steps(after_accumulation),
         ..Case::QUICK
     },
@@ -88,7 +83,6 @@ pub const CASES: &[Case] = &[
         title: "a ball on an incline across the accumulation",
         right: "s = s1 t + g sin(a) t^2/2, y = 0",
         bound: "P-STATE(1e3) at twice the Zeno time",
-        pending: Some(NO_CONTACT),
         run: Run::Steps(incline_after),
         ..Case::QUICK
     },
@@ -97,7 +91,6 @@ pub const CASES: &[Case] = &[
         title: "sliding down a sphere from its top at speed 1/2, and off it",
         right: "leaves where cos(phi) = (2 + v0^2)/3, and keeps the horizontal velocity cos(phi)^(3/2)",
         bound: "1e-10",
-        pending: Some(NO_CONTACT),
         run: Run::Steps(sphere),
         ..Case::QUICK
     },
@@ -106,7 +99,6 @@ pub const CASES: &[Case] = &[
         title: "one of two balls accumulates while the other bounces elastically",
         right: "the second ball's impacts as if it were alone: 2, 4, 6, ..",
         bound: "P-LOC",
-        pending: Some(NO_CONTACT),
         run: Run::Steps(two_balls),
         ..Case::QUICK
     },
@@ -148,13 +140,29 @@ fn geometric(setting: Setting, report: &mut Report) {
 }
 
 fn after_accumulation(setting: Setting, report: &mut Report) {
-    let ball = Fall {
-        e: 0.5,
-        ..Fall::default()
-    };
-    let end = Course::new(&ball, &[0.0], &[1.0], 40.0).run(setting);
-    report.class(&end.outcome, "done");
-    report.equal("x", end.q[0], 0.0);
+    for e in [0.1, 0.5, 0.9, 0.99] {
+        let ball = Fall {
+            e,
+            ..Fall::default()
+        };
+        let limit = 2.0 / (1.0 - e);
+        let end = Course::new(&ball, &[0.0], &[1.0], 10.0 * limit)
+            .resting()
+            .run(setting);
+        report.class(&end.outcome, "done");
+        report.equal(format!("x, e = {e}"), end.q[0], 0.0);
+        report.equal(format!("v, e = {e}"), end.qdot[0], 0.0);
+        report.equal(format!("holds, e = {e}"), end.holds.len(), 1);
+        for hold in end.holds {
+            let found = hold.accumulation.unwrap_or(f64::NAN);
+            report.near(
+                format!("accumulation, e = {e}"),
+                found,
+                limit,
+                1e-10 * limit,
+            );
+        }
+    }
 }
 
 fn slow_loss(setting: Setting, report: &mut Report) {
@@ -193,7 +201,9 @@ fn incline(setting: Setting, report: &mut Report) {
 fn incline_after(setting: Setting, report: &mut Report) {
     let system = Incline::default();
     let until = 4.0 / (system.g * system.slope.cos() * (1.0 - system.e));
-    let end = Course::new(&system, &[0.0, 0.0], &[0.7, 1.0], until).run(setting);
+    let end = Course::new(&system, &[0.0, 0.0], &[0.7, 1.0], until)
+        .resting()
+        .run(setting);
     report.class(&end.outcome, "done");
     let s = slid(&system, 0.7, until);
     report.near("s", end.q[0], s, 1e3 * U * s + end.eta(s));
@@ -201,15 +211,29 @@ fn incline_after(setting: Setting, report: &mut Report) {
 }
 
 fn sphere(setting: Setting, report: &mut Report) {
-    let end = Course::new(&SphereTop::default(), &[1.0, 0.0], &[0.0, 0.5], 3.0).run(setting);
+    let end = Course::new(&SphereTop::default(), &[1.0, 0.0], &[0.0, 0.5], 3.0)
+        .resting()
+        .run(setting);
     report.class(&end.outcome, "done");
     let (r, phi) = (end.q[0], end.q[1]);
     let horizontal = end.qdot[0] * phi.sin() + r * end.qdot[1] * phi.cos();
     report.near("horizontal velocity", horizontal, 0.75_f64.powf(1.5), 1e-10);
+    let left: Vec<f64> = end
+        .holds
+        .iter()
+        .filter(|hold| !hold.begins)
+        .map(|hold| hold.q[1].cos())
+        .collect();
+    report.equal("times left", left.len(), 1);
+    for cos in left {
+        report.near("cosine of the angle", cos, 0.75, 1e-10);
+    }
 }
 
 fn two_balls(setting: Setting, report: &mut Report) {
-    let end = Course::new(&TwoBalls::default(), &[0.0, 0.0], &[1.0, 1.0], 21.0).run(setting);
+    let end = Course::new(&TwoBalls::default(), &[0.0, 0.0], &[1.0, 1.0], 21.0)
+        .resting()
+        .run(setting);
     report.class(&end.outcome, "done");
     let second: Vec<f64> = end
         .hits
@@ -224,7 +248,7 @@ fn two_balls(setting: Setting, report: &mut Report) {
             format!("time {right}"),
             t,
             right,
-            location(t, end.eta(4.0), 1.0, 1.0),
+            location(t, end.eta(4.0), 1.0, 1.0) + 16.0 * U * right * (k + 1) as f64,
         );
     }
 }

@@ -4,6 +4,7 @@
 //! on one surface have shrunk several times in a row and the height that the next one will reach, about
 //! `gap rate * time / 4`, is below the rounding of the gap: it would be made of rounding errors.
 
+use super::growth::Growth;
 use crate::state::StateVector;
 
 /// Impacts at one time before they count as accumulated. A corner of angle `pi / n` takes up to `n`.
@@ -15,13 +16,27 @@ const SHRUNK: f64 = 3.0;
 /// One flight suffices that begins with less than this part of the rate of the one before.
 const STEEP: f64 = 0.125;
 
+/// How impacts accumulate, and when.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Ends {
+    /// Hops on one surface have become too small or too short to be seen.
+    Hops(f64),
+    /// Impacts on several surfaces follow each other at one time.
+    AtOneTime(f64),
+    /// Flights have become too short to be told, while the energy grew.
+    Spasmodic(f64),
+}
+
 /// What is remembered of the impacts so far.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accumulation<V> {
+    growth: Growth<V>,
     /// Time of the last impact on any surface.
     last: f64,
-    /// Impacts at that time so far, the first not counted.
+    /// Impacts at that time so far, the first not counted, and whether all were on one surface, and on which.
     repeated: u32,
+    is_alone: bool,
+    surface: usize,
     /// Per surface: time of the last impact, length of the last flight, gap rate it began with, and how many
     /// flights in a row were shorter than the one before.
     times: V,
@@ -46,8 +61,11 @@ impl<V: StateVector> Accumulation<V> {
         unknown.as_mut_slice().fill(f64::NAN);
         let zeros = V::zeros();
         Self {
+            growth: Growth::none(),
             last: f64::NEG_INFINITY,
             repeated: 0,
+            is_alone: true,
+            surface: 0,
             times,
             flights: infinite,
             rates: zeros,
@@ -59,17 +77,22 @@ impl<V: StateVector> Accumulation<V> {
     }
 
     /// Takes in an impact after which the gap rate is `rate`, 0 for one that does not bounce. `rounding` gives the
-    /// size of the gap's rounding errors. Returns the time of accumulation, if impacts accumulate.
+    /// size of the gap's rounding errors, `energy` the energy after the impact. Returns how impacts accumulate, if they
+    /// do.
     pub(super) fn add(
         &mut self,
         surface: usize,
         t: f64,
         rate: f64,
         rounding: impl FnOnce() -> f64,
-    ) -> Option<f64> {
-        self.repeated = if t == self.last { self.repeated + 1 } else { 0 };
-        self.last = t;
+        energy: impl FnOnce() -> f64,
+    ) -> Option<Ends> {
+        let is_repeated = t == self.last;
+        self.repeated = if is_repeated { self.repeated + 1 } else { 0 };
+        self.is_alone = !is_repeated || (self.is_alone && surface == self.surface);
+        (self.last, self.surface) = (t, surface);
         let flight = t - self.times.as_slice()[surface];
+        let flights = [self.flights.as_slice()[surface], flight];
         let before = self.rates.as_slice()[surface];
         let shrunk = &mut self.shrunk.as_mut_slice()[surface];
         *shrunk = match flight < self.flights.as_slice()[surface] {
@@ -82,11 +105,18 @@ impl<V: StateVector> Accumulation<V> {
         self.flights.as_mut_slice()[surface] = flight;
         self.rates.as_mut_slice()[surface] = rate;
         self.guess(surface, t, rate / before);
+        if let Some(t) = self.growth.add(surface, t, flights, energy) {
+            return Some(Ends::Spasmodic(t));
+        }
         if self.repeated >= AT_ONE_TIME {
-            return Some(t);
+            return Some(match self.is_alone {
+                true => Ends::Hops(self.limit(surface, t)),
+                false => Ends::AtOneTime(t),
+            });
         }
         let next = flight * (rate / before);
-        (shrinking && 0.25 * rate * next <= rounding()).then(|| self.limit(surface, t))
+        let is_hidden = shrinking && 0.25 * rate * next <= rounding();
+        is_hidden.then(|| Ends::Hops(self.limit(surface, t)))
     }
 
     /// The time of accumulation if the motion, just bounced off a surface at `t`, did not rise from it: the hop is

@@ -20,6 +20,25 @@ impl<G: StateVector> Hits<G> {
         }
     }
 
+    /// These surfaces.
+    pub(super) fn all_of(surfaces: impl Iterator<Item = usize>) -> Self {
+        let mut hits = Self::none();
+        hits.add(surfaces);
+        hits
+    }
+
+    /// These surfaces are at hand as well.
+    pub(super) fn add(&mut self, surfaces: impl Iterator<Item = usize>) {
+        for surface in surfaces {
+            self.at_hand.as_mut_slice()[surface] = 1.0;
+        }
+    }
+
+    /// Whether any is at hand.
+    pub(super) fn is_some(&self) -> bool {
+        self.at_hand.as_slice().contains(&1.0)
+    }
+
     fn is_approached(&self, surface: usize, rates: &G) -> bool {
         self.at_hand.as_slice()[surface] == 1.0
             && rates.as_slice()[surface] < -self.still.as_slice()[surface]
@@ -35,6 +54,13 @@ impl<G: StateVector> Hits<G> {
     /// The first of them.
     pub(super) fn first_approached(&self, rates: &G) -> Option<usize> {
         (0..G::LEN).find(|&surface| self.is_approached(surface, rates))
+    }
+
+    /// The last of them.
+    pub(super) fn last_approached(&self, rates: &G) -> Option<usize> {
+        (0..G::LEN)
+            .rev()
+            .find(|&surface| self.is_approached(surface, rates))
     }
 
     /// From now on, gap rates above `-rate` count as not approaching.

@@ -2,13 +2,17 @@
 
 use core::ops::ControlFlow;
 
-use super::accumulation::Accumulation;
+use super::accumulation::{Accumulation, Ends};
+use super::held::Held;
 use super::hits::Hits;
-use super::law::Law;
+use super::law::{Contact, Law};
 use super::override_table::Overrides;
+use super::policy::{Corner, Penetration, Policies, Rest};
+use super::resting::Resting;
 use super::watch::Watch;
 use crate::contract::Impacting;
-use crate::effects::{Effect, Moment, SceneEffects, StepView};
+use crate::effects::{Change, Effect, Moment, SceneEffects, StepView};
+use crate::error::Fault;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::record::{Event, Observer};
@@ -19,19 +23,29 @@ pub const IMPACT_BUDGET: u64 = 10_000_000;
 
 /// A gap rate after an impact that is this small a part of the one before it counts as 0: `2^-36`, what rounding
 /// leaves of a plastic impact in a metric of condition `1e4`.
-const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
+pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 
 /// Impacts of a system on its surfaces, each by its declared law unless another was chosen.
 ///
 /// Hits at the same time (within rounding) are carried out in order of index, again and again until no surface at
-/// hand is approached. A law that leaves the state approaching ends the run with
-/// [`Outcome::StillPenetrating`], with the state after the impact.
+/// hand is approached. Where that order matters, where a law leaves the state approaching, and where the motion presses
+/// into a surface, the [`Policies`] say how to go on; by default the run ends, after an impact with the state after it.
 #[derive(Debug, Clone)]
 pub struct Impacts<Sys: Impacting> {
     overrides: Overrides<Sys::Gaps>,
     budget: u64,
-    watch: Watch<Sys>,
-    accumulation: Accumulation<Sys::Gaps>,
+    pub(super) policies: Policies,
+    pub(super) watch: Watch<Sys>,
+    pub(super) accumulation: Accumulation<Sys::Gaps>,
+    pub(super) resting: Resting<Sys::Gaps>,
+}
+
+/// What an impact makes of a state.
+pub(super) struct Struck<Sys: Impacting> {
+    pub(super) after: Sys::State,
+    /// Gap rates after it.
+    pub(super) rates: Sys::Gaps,
+    contact: Contact<Sys::Impulse>,
 }
 
 impl<Sys: Impacting> Impacts<Sys> {
@@ -41,8 +55,10 @@ impl<Sys: Impacting> Impacts<Sys> {
         Self {
             overrides: Overrides::none(),
             budget: IMPACT_BUDGET,
+            policies: Policies::default(),
             watch: Watch::new(),
             accumulation: Accumulation::none(),
+            resting: Resting::none(),
         }
     }
 
@@ -60,6 +76,45 @@ impl<Sys: Impacting> Impacts<Sys> {
         self
     }
 
+    /// With these policies instead of the default ones.
+    #[must_use]
+    pub fn with_policies(mut self, policies: Policies) -> Self {
+        self.policies = policies;
+        self
+    }
+
+    /// The forces `lambda_c` of the surfaces that hold the motion at the moment, 0 for the others: a surface pushes by
+    /// `lambda_c pi_D^* dh_c`. `None` for a system that does not know the second rates of its gaps.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    pub fn contact_forces(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+    ) -> Result<Option<Sys::Gaps>, Fault> {
+        self.resting.held().sizes(system, t, state)
+    }
+
+    /// The motion presses into a surface at the start of a step.
+    fn press<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        step: &StepView<'_, Sys, Step>,
+    ) -> Result<Option<f64>, Outcome> {
+        let t = step.t_start();
+        // If it had bounced, hops have become too small to rise from the surface at all.
+        let accumulation = self.accumulation.ends_at(surface, t);
+        match (self.policies.rest, accumulation) {
+            (Rest::Stop, None) => return Err(Outcome::Contact { surface }),
+            (Rest::Stop, Some(t)) => return Err(Outcome::Zeno { t, surface }),
+            (Rest::Contact, Some(t)) => self.resting.note_accumulation(surface, t),
+            (Rest::Contact, None) => {}
+        }
+        self.resting.press(surface, t)
+    }
+
     /// The law in force on a surface.
     pub fn law_of(&self, system: &Sys, surface: usize) -> Law {
         self.overrides
@@ -68,7 +123,7 @@ impl<Sys: Impacting> Impacts<Sys> {
     }
 
     /// Carries out impacts until none of the surfaces at hand is approached.
-    fn strike<O: Observer<Sys>>(
+    pub(super) fn strike<O: Observer<Sys>>(
         &mut self,
         mut hits: Hits<Sys::Gaps>,
         now: &mut Moment<'_, Sys>,
@@ -76,7 +131,13 @@ impl<Sys: Impacting> Impacts<Sys> {
     ) -> Result<(), Outcome> {
         let mut rates = now.system.gap_rates(now.t, now.state)?;
         let mut several = hits.approached(&rates) > 1;
-        while let Some(surface) = hits.first_approached(&rates) {
+        if several
+            && self.policies.corner == Corner::Stop
+            && let Some(surfaces) = self.ambiguous(&hits, &rates, now)?
+        {
+            return Err(Outcome::Ambiguous { surfaces });
+        }
+        while let Some(surface) = self.next(&hits, &rates) {
             if now.counters.impacts >= self.budget {
                 return Err(Outcome::ImpactBudget);
             }
@@ -93,19 +154,17 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.watch.leave(&hits, now, rates)
     }
 
-    /// One impact; returns the gap rates after it.
-    fn impact<O: Observer<Sys>>(
-        &mut self,
+    /// What the law in force makes of a state that approaches a surface.
+    pub(super) fn struck(
+        &self,
+        system: &Sys,
         surface: usize,
-        simultaneous: bool,
-        rate: f64,
-        now: &mut Moment<'_, Sys>,
-        observer: &mut O,
-    ) -> Result<Sys::Gaps, Outcome> {
-        let (system, t, before) = (now.system, now.t, *now.state);
+        t: f64,
+        before: &Sys::State,
+    ) -> Result<Struck<Sys>, Outcome> {
         let law = self.law_of(system, surface);
-        let contact = system.contact(surface, t, &before)?;
-        let mut after = before;
+        let contact = system.contact(surface, t, before)?;
+        let mut after = *before;
         system.kick(&mut after, contact.impulse(law), &contact.direction);
         // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction; without this the
         // energy would drift like the number of impacts instead of its root.
@@ -117,59 +176,130 @@ impl<Sys: Impacting> Impacts<Sys> {
             system.kick(&mut after, correction, &contact.direction);
         }
         let rates = system.gap_rates(t, &after)?;
-        if let Some(component) = after.as_slice().iter().position(|value| !value.is_finite()) {
-            return Err(Outcome::NonFinite { component });
+        match after.as_slice().iter().position(|value| !value.is_finite()) {
+            Some(component) => Err(Outcome::NonFinite { component }),
+            None => Ok(Struck {
+                after,
+                rates,
+                contact,
+            }),
         }
-        *now.state = after;
+    }
+
+    /// One impact; returns the gap rates after it.
+    fn impact<O: Observer<Sys>>(
+        &mut self,
+        surface: usize,
+        simultaneous: bool,
+        rate: f64,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<Sys::Gaps, Outcome> {
+        let (t, before) = (now.t, *now.state);
+        let mut struck = self.struck(now.system, surface, t, &before)?;
+        let penetrates = self.penetrates(surface, rate, struck.rates.as_slice()[surface], now);
+        if penetrates && self.policies.penetration == Penetration::Repeat {
+            struck.take_rate(now.system, surface, t)?;
+        }
+        *now.state = struck.after;
         now.counters.impacts += 1;
-        let graze = self.watch.is_graze(surface);
         let event = Event {
             t,
             surface,
-            law,
+            law: self.law_of(now.system, surface),
             before,
-            after,
+            after: struck.after,
             simultaneous,
-            graze,
+            graze: self.watch.is_graze(surface),
         };
         if let ControlFlow::Break(()) = observer.event(&event) {
             return Err(Outcome::Stopped);
         }
-        let rate_after = rates.as_slice()[surface];
-        // The sign of the rate after a slow impact may be made of rounding errors, which the impact has multiplied.
-        let watch = &self.watch;
-        let is_approaching = rate_after < -STILL * rate.abs();
-        if is_approaching
-            && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
-        {
+        if penetrates && self.policies.penetration == Penetration::Stop {
             return Err(Outcome::StillPenetrating {
                 surface,
-                rho: contact.rho(),
+                rho: struck.contact.rho(),
             });
         }
         if now.counters.impacts >= self.budget {
             return Err(Outcome::ImpactBudget);
         }
-        let rounding = || watch.rounding(surface, now);
+        self.accumulate(surface, rate, struck, now)
+    }
+
+    /// Whether the state still approaches a surface after an impact at gap rate `rate`.
+    fn penetrates(
+        &self,
+        surface: usize,
+        rate: f64,
+        rate_after: f64,
+        now: &mut Moment<'_, Sys>,
+    ) -> bool {
+        // The sign of the rate after a slow impact may be made of rounding errors, which the impact has multiplied.
+        let watch = &self.watch;
+        rate_after < -STILL * rate.abs()
+            && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
+    }
+
+    /// Takes in an impact at gap rate `rate`; returns the gap rates to go on with.
+    fn accumulate(
+        &mut self,
+        surface: usize,
+        rate: f64,
+        mut struck: Struck<Sys>,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<Sys::Gaps, Outcome> {
+        let (system, t) = (now.system, now.t);
+        let rate_after = struck.rates.as_slice()[surface];
         let bounce = if rate_after > STILL * rate.abs() {
             rate_after
         } else {
             0.0
         };
-        match self.accumulation.add(surface, t, bounce, rounding) {
-            Some(t) => Err(Outcome::Zeno { t, surface }),
-            None => Ok(rates),
+        let energy = || system.energy(t, &struck.after).unwrap_or(f64::NAN);
+        let watch = &self.watch;
+        let rounding = || watch.rounding(surface, now);
+        match self.accumulation.add(surface, t, bounce, rounding, energy) {
+            None => Ok(struck.rates),
+            Some(Ends::Spasmodic(t)) => Err(Outcome::Spasmodic { t, surface }),
+            Some(Ends::Hops(t)) if self.policies.rest == Rest::Contact => {
+                // Hops too small to be seen: what is left of the last one is taken.
+                struck.take_rate(system, surface, now.t)?;
+                *now.state = struck.after;
+                self.resting.note_accumulation(surface, t);
+                Ok(struck.rates)
+            }
+            Some(Ends::Hops(t) | Ends::AtOneTime(t)) => Err(Outcome::Zeno { t, surface }),
         }
     }
 }
 
+impl<Sys: Impacting> Struck<Sys> {
+    /// Takes the whole gap rate of this surface.
+    fn take_rate(&mut self, system: &Sys, surface: usize, t: f64) -> Result<(), Outcome> {
+        let contact = system.contact(surface, t, &self.after)?;
+        let impulse = contact.impulse(Law::ImpactPlastic);
+        system.kick(&mut self.after, impulse, &contact.direction);
+        self.rates = system.gap_rates(t, &self.after)?;
+        Ok(())
+    }
+}
+
 impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
+    type Forces = Held<Sys::Gaps>;
+
+    #[inline(always)]
+    fn forces(&self) -> Option<Held<Sys::Gaps>> {
+        self.resting.forces()
+    }
+
     fn begin<O: Observer<Sys>>(
         &mut self,
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
         self.accumulation = Accumulation::none();
+        self.resting = Resting::none();
         let hits = self.watch.begin(now)?;
         self.strike(hits, now, observer)
     }
@@ -179,16 +309,19 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<Option<f64>, Outcome> {
-        self.watch.look(step).map_err(|outcome| match outcome {
-            // Hops have become too small to rise from the surface at all.
-            Outcome::Contact { surface } => {
-                match self.accumulation.ends_at(surface, step.t_start()) {
-                    Some(t) => Outcome::Zeno { t, surface },
-                    None => outcome,
-                }
-            }
-            outcome => outcome,
-        })
+        match self.watch.look(step) {
+            Ok(hit) if self.resting.is_none() => Ok(hit),
+            Ok(hit) => self.resting.look(hit, step),
+            Err(Outcome::Contact { surface }) => self.press(surface, step),
+            Err(outcome) => Err(outcome),
+        }
+    }
+
+    fn settle(&mut self, now: &mut Moment<'_, Sys>, _: bool) -> Result<Change, Outcome> {
+        match self.resting.forces() {
+            Some(held) => Ok(held.settle(now)?),
+            None => Ok(Change::Kept),
+        }
     }
 
     fn act<O: Observer<Sys>>(
@@ -197,8 +330,19 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
-        let hits = self.watch.hits(theta, now)?;
-        self.strike(hits, now, observer)
+        let held = *self.resting.held();
+        if self.resting.turn(now, observer)? {
+            let rates = now.system.gap_rates(now.t, now.state)?;
+            self.watch.hold(self.resting.held());
+            let at_hand = Hits::all_of(held.iter().chain(self.resting.held().iter()));
+            return self.watch.leave(&at_hand, now, rates);
+        }
+        let mut hits = self.watch.hits(theta, now)?;
+        hits.add(held.iter());
+        self.strike(hits, now, observer)?;
+        self.resting.bounce(now, observer)?;
+        self.watch.hold(self.resting.held());
+        Ok(())
     }
 }
 
@@ -213,5 +357,9 @@ impl<Sys: Impacting> SceneEffects<Sys> for Impacts<Sys> {
 
     fn set_impact_budget(&mut self, budget: Option<u64>) {
         self.budget = budget.unwrap_or(IMPACT_BUDGET);
+    }
+
+    fn set_policies(&mut self, policies: Policies) {
+        self.policies = policies;
     }
 }

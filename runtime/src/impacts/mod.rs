@@ -1,12 +1,19 @@
 //! Impacts: the laws, and the effect that carries them out.
 
 mod accumulation;
+mod corner;
 mod glance;
+mod growth;
+mod held;
 mod hits;
 mod impulse;
 pub mod law;
 mod override_table;
+pub mod policy;
+mod release;
+mod resting;
 mod series;
 mod watch;
 
+pub use held::Held;
 pub use impulse::{IMPACT_BUDGET, Impacts};

@@ -5,6 +5,7 @@
 //! Its root there is divided out, so it is neither found again nor hides a later one.
 
 use super::glance::{Glance, SAME_TIME, finite, glance};
+use super::held::{Held, second_rates};
 use super::hits::Hits;
 use super::series::GapSeries;
 use crate::contract::Impacting;
@@ -21,6 +22,9 @@ const FALLS: u32 = 1024;
 
 /// A gap rate this small a part of those at the ends of the step may belong to a graze.
 const SLOW: f64 = 1.0 / (1 << 10) as f64;
+
+/// Only a surface that is hit within this part of a step after another is asked for its rounding.
+const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 
 /// The gaps at the start of the coming step, and what was found in the last one looked at.
 #[derive(Debug, Clone)]
@@ -40,6 +44,10 @@ pub(super) struct Watch<Sys: Impacting> {
     length: f64,
     /// Largest absolute values of the state's components since the last impact: their rounding errors stay with it.
     sizes: Sys::State,
+    /// Steps since then: each has rounded the state.
+    steps: u32,
+    /// Surfaces that the motion is held on: their gaps are 0, and are not watched.
+    held: Held<Sys::Gaps>,
 }
 
 impl<Sys: Impacting> Watch<Sys> {
@@ -54,15 +62,23 @@ impl<Sys: Impacting> Watch<Sys> {
             bends: zeros,
             length: 0.0,
             sizes: Sys::State::zeros(),
+            steps: 0,
+            held: Held::none(),
         }
+    }
+
+    /// The surfaces that the motion is held on from now on.
+    pub(super) fn hold(&mut self, held: &Held<Sys::Gaps>) {
+        self.held = *held;
     }
 
     /// The surfaces at hand at the first instant of a run.
     pub(super) fn begin(&mut self, now: &mut Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
         self.proposed = None;
+        self.held = Held::none();
         self.grazes = Sys::Gaps::zeros();
         self.bends = Sys::Gaps::zeros();
-        self.sizes = *now.state;
+        (self.sizes, self.steps) = (*now.state, 0);
         let rates = now.system.gap_rates(now.t, now.state)?;
         let gaps = measured(now)?;
         let mut hits = Hits::<Sys::Gaps>::none();
@@ -87,35 +103,62 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Result<(), Outcome> {
         self.rates = rates;
         self.gaps = measured(now)?;
-        self.sizes = *now.state;
+        (self.sizes, self.steps) = (*now.state, 0);
         for surface in 0..Sys::Gaps::LEN {
-            if hits.at_hand.as_slice()[surface] == 1.0 {
+            if hits.at_hand.as_slice()[surface] == 1.0 || self.held.is_held(surface) {
                 self.gaps.as_mut_slice()[surface] = 0.0;
             }
         }
         self.check_negative(now)
     }
 
-    /// The surfaces hit where the step was cut.
+    /// The surfaces hit where the step was cut: those found there, and those whose gaps are 0 there within rounding.
     pub(super) fn hits(
         &mut self,
         theta: f64,
-        now: &Moment<'_, Sys>,
+        now: &mut Moment<'_, Sys>,
     ) -> Result<Hits<Sys::Gaps>, Outcome> {
         let mut hits = Hits::<Sys::Gaps>::none();
-        if self.proposed.is_some() {
-            for (hit, part) in hits
-                .at_hand
-                .as_mut_slice()
-                .iter_mut()
-                .zip(self.parts.as_slice())
-            {
-                if (part - theta) * self.length <= SAME_TIME * now.t.abs() {
-                    *hit = 1.0;
-                }
+        if self.proposed.is_none() {
+            return Ok(hits);
+        }
+        for (hit, part) in hits
+            .at_hand
+            .as_mut_slice()
+            .iter_mut()
+            .zip(self.parts.as_slice())
+        {
+            if (part - theta) * self.length <= SAME_TIME * now.t.abs() {
+                *hit = 1.0;
             }
         }
+        if Sys::Gaps::LEN > 1 && hits.is_some() {
+            self.add_beside(&mut hits, now)?;
+        }
         Ok(hits)
+    }
+
+    /// Adds the surfaces hit so soon after others that rounding decides which is first. In the direction of a flight the
+    /// rounding of its steps adds up.
+    fn add_beside(
+        &self,
+        hits: &mut Hits<Sys::Gaps>,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<(), Outcome> {
+        let gaps = measured(now)?;
+        let rates = now.system.gap_rates(now.t, now.state)?;
+        let roundings = 2.0 + f64::from(self.steps) / 16.0;
+        for surface in 0..Sys::Gaps::LEN {
+            let (gap, rate) = (gaps.as_slice()[surface], rates.as_slice()[surface]);
+            let is_near = rate < 0.0 && gap.abs() <= BESIDE * rate.abs() * self.length;
+            if is_near
+                && gap.abs() <= roundings * rounding(now, surface, &self.sizes)
+                && now.system.surface_active(surface, now.t, now.state)
+            {
+                hits.add([surface].into_iter());
+            }
+        }
+        Ok(())
     }
 
     /// Whether the hit on this surface is a graze.
@@ -152,6 +195,7 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Result<Option<f64>, Outcome> {
         let glance = glance(step)?;
         self.proposed = None;
+        self.steps = self.steps.saturating_add(1);
         for (size, value) in self
             .sizes
             .as_mut_slice()
@@ -187,7 +231,8 @@ impl<Sys: Impacting> Watch<Sys> {
                 self.gaps.as_slice()[surface],
                 before.as_slice()[surface] == 0.0,
             );
-            if at_hand && gap < 0.0 && !self.is_pressed(surface, step, glance) {
+            let is_held = self.held.is_held(surface);
+            if is_held || (at_hand && gap < 0.0 && !self.is_pressed(surface, step, glance)) {
                 self.gaps.as_mut_slice()[surface] = 0.0;
             }
         }
@@ -236,12 +281,18 @@ impl<Sys: Impacting> Watch<Sys> {
     /// Whether the step can pass this surface, told cheaply.
     #[inline(always)]
     fn is_clear(&self, surface: usize, glance: &Glance<Sys::Gaps>) -> bool {
+        if self.held.is_held(surface) {
+            return true;
+        }
         let at = |values: &Sys::Gaps| values.as_slice()[surface];
         let slopes = [
             at(&self.rates) * glance.length,
             at(&glance.rates) * glance.length,
         ];
+        // NOTE: negative throughout, a surface at hand is not clear but pressed.
+        let is_sunk = at(&self.gaps) == 0.0 && at(&glance.gaps) < 0.0;
         !glance.is_due(surface)
+            && !is_sunk
             && match &glance.series {
                 Some(series) => series.is_clear(surface, at(&self.gaps) == 0.0),
                 None => clear(
@@ -339,7 +390,9 @@ impl<Sys: Impacting> Watch<Sys> {
                 if part == 0.0 && start.slope.is_some() {
                     let pressed = self.is_pressed(surface, step, glance);
                     return match pressed {
-                        true if crosses_at_rest(surface, step, 0.0)? => {
+                        true if !is_accelerated(surface, step)?
+                            && crosses_at_rest(surface, step, 0.0)? =>
+                        {
                             Err(Outcome::TangentialCrossing { surface })
                         }
                         true => Err(Outcome::Contact { surface }),
@@ -492,6 +545,34 @@ fn is_approached<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<bool, Outcome> {
     let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
     Ok(rates.as_slice()[surface] < 0.0)
+}
+
+/// Parts of a step down to which the second rate of a gap is looked for in how its rate falls: half the digits, so that
+/// rounding of the second rate is not taken for one.
+const LEAST_PART: f64 = 1.0 / (1 << 26) as f64;
+
+/// Whether the second rate of a gap, which is 0 at the start of a step at rate 0, tells at least half of how its rate
+/// falls in some small part of the step.
+fn is_accelerated<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+) -> Result<bool, Outcome> {
+    let (t, start, [rate, _]) = (step.t_start(), step.start(), step.rates());
+    let Some(accelerations) = second_rates(step.system, t, start, rate)? else {
+        return Ok(false);
+    };
+    let acceleration = accelerations.as_slice()[surface];
+    let first = step.system.gap_rates(t, start)?.as_slice()[surface];
+    let mut part = 0.125;
+    while acceleration < 0.0 && part > LEAST_PART {
+        let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
+        let fall = rates.as_slice()[surface] - first;
+        if fall < 0.0 && fall > 2.0 * acceleration * part * step.length() {
+            return Ok(true);
+        }
+        part *= 0.125;
+    }
+    Ok(false)
 }
 
 /// Whether a gap that is 0 at this part of a step, at rate 0, goes on like the cube of time: told from the square, which

@@ -152,11 +152,6 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         self
     }
 
-    /// The tolerance.
-    pub fn tolerance(&self) -> Tolerance {
-        self.tolerance
-    }
-
     /// Takes `(t, state)` for the end of a step, as a start does.
     fn place<F: VectorField<State = S>>(
         &mut self,
@@ -228,6 +223,10 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
 
 impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
     const NAME: &'static str = M::NAME;
+
+    fn tolerance(&self) -> Tolerance {
+        self.tolerance
+    }
 
     fn start(
         &mut self,

@@ -287,6 +287,10 @@ fn check_finite<S: StateVector>(state: &S, rate: &S) -> Result<(), StepFailure> 
 impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
     const NAME: &'static str = M::NAME;
 
+    fn tolerance(&self) -> Tolerance {
+        self.tolerance
+    }
+
     fn start(
         &mut self,
         field: &F,

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use super::stats::Counters;
+use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::jet::LENGTH;
@@ -15,6 +16,9 @@ use crate::jet::LENGTH;
 pub trait Stepper<F: VectorField> {
     /// Name, as the command line writes it.
     const NAME: &'static str;
+
+    /// The tolerance it was made with.
+    fn tolerance(&self) -> Tolerance;
 
     /// Begins at `(t, state)`, heading for `t_end`: finds a first step size.
     ///

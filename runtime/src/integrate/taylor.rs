@@ -147,11 +147,6 @@ impl<F: TaylorField> Taylor<F> {
         self
     }
 
-    /// The tolerance.
-    pub fn tolerance(&self) -> Tolerance {
-        self.tolerance
-    }
-
     /// The order of the series.
     pub fn order(&self) -> usize {
         self.order
@@ -298,6 +293,10 @@ fn power_of_two(x: f64) -> f64 {
 
 impl<F: TaylorField> Stepper<F> for Taylor<F> {
     const NAME: &'static str = TAYLOR;
+
+    fn tolerance(&self) -> Tolerance {
+        self.tolerance
+    }
 
     fn start(
         &mut self,

@@ -6,7 +6,7 @@ use dalembert::describe::Description;
 use serde_json::{Map, Value, json};
 
 use super::Finished;
-use crate::driver::Impact;
+use crate::driver::{Contact, Impact};
 use crate::entry::Point;
 use crate::json::{Document, named, number, vector};
 
@@ -45,6 +45,13 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
             .impacts
             .iter()
             .map(|impact| event(&description, impact)),
+    )?;
+    document.rows(
+        "contacts",
+        record
+            .contacts
+            .iter()
+            .map(|contact| hold(&description, contact)),
     )?;
     document.rows(
         "samples",
@@ -86,6 +93,18 @@ fn event(description: &Description, impact: &Impact) -> Value {
         "qdot_minus": vector(&impact.before.qdot),
         "qdot_plus": vector(&impact.after.qdot),
         "energy": number(impact.after.energy),
+    })
+}
+
+/// Where a surface begins or ceases to hold the motion.
+fn hold(description: &Description, contact: &Contact) -> Value {
+    json!({
+        "t": number(contact.t),
+        "surface": description.surfaces.get(contact.surface).map(|surface| surface.name),
+        "begins": contact.begins,
+        "accumulates_at": contact.accumulation.map(number),
+        "q": vector(&contact.at.q),
+        "qdot": vector(&contact.at.qdot),
     })
 }
 

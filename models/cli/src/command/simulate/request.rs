@@ -61,6 +61,7 @@ pub fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, C
         until: horizon(model, args)?,
         impacts: impacts(&model.description(), args)?,
         laws: laws(&model.description(), &args.law)?,
+        policies: args.policies.policies(),
         projection: args.projection.map(|switch| switch == Switch::On),
     })
 }

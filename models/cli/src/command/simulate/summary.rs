@@ -99,6 +99,11 @@ fn impacts(finished: &Finished<'_>) -> String {
             text += &format!(", {count} {kind}");
         }
     }
+    match tally.contacts {
+        0 => {}
+        1 => text += ", held by a surface once",
+        count => text += &format!(", held by surfaces {count} times"),
+    }
     text
 }
 

@@ -1,0 +1,160 @@
+//! Forces that an effect adds to the motion for a while, as a surface does along which the motion is held.
+
+use crate::contract::{System, VectorField};
+use crate::error::Fault;
+use crate::integrate::{Counters, Series, StepFailure, Stepper, Tolerance};
+
+/// Forces on a system.
+pub trait Forces<Sys: System>: Copy + PartialEq {
+    /// Adds to `rate`, the rate of `state` without these forces.
+    ///
+    /// # Errors
+    /// A [`Fault`] where they do not exist; `rate` is unspecified then.
+    fn add(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        rate: &mut Sys::State,
+    ) -> Result<(), Fault>;
+}
+
+/// The forces of an effect that never adds any.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoForces {}
+
+impl<Sys: System> Forces<Sys> for NoForces {
+    fn add(&self, _: &Sys, _: f64, _: &Sys::State, _: &mut Sys::State) -> Result<(), Fault> {
+        match *self {}
+    }
+}
+
+impl<Sys: System, F: Forces<Sys>> Forces<Sys> for Option<F> {
+    #[inline(always)]
+    fn add(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        rate: &mut Sys::State,
+    ) -> Result<(), Fault> {
+        match self {
+            Some(forces) => forces.add(system, t, state, rate),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A system under forces.
+pub(crate) struct Driven<'a, Sys, F> {
+    pub(crate) system: &'a Sys,
+    pub(crate) forces: F,
+}
+
+impl<Sys: System, F: Forces<Sys>> VectorField for Driven<'_, Sys, F> {
+    type State = Sys::State;
+
+    fn rate(&self, t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault> {
+        self.system.rate(t, state, rate)?;
+        self.forces.add(self.system, t, state, rate)
+    }
+
+    fn scale(&self, t: f64, state: &Self::State) -> Self::State {
+        self.system.scale(t, state)
+    }
+}
+
+/// An integrator of a system under forces, where one of the system alone is expected: whatever field it is handed, it
+/// integrates its own.
+pub(crate) struct Along<'a, F, Step> {
+    pub(crate) field: &'a F,
+    pub(crate) stepper: Step,
+}
+
+impl<Sys, F, Step> Stepper<Sys> for Along<'_, F, Step>
+where
+    Sys: VectorField,
+    F: VectorField<State = Sys::State>,
+    Step: Stepper<F>,
+{
+    const NAME: &'static str = Step::NAME;
+
+    fn tolerance(&self) -> Tolerance {
+        self.stepper.tolerance()
+    }
+
+    fn start(
+        &mut self,
+        _: &Sys,
+        t: f64,
+        state: &Sys::State,
+        t_end: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        self.stepper.start(self.field, t, state, t_end, counters)
+    }
+
+    fn restart(
+        &mut self,
+        _: &Sys,
+        t: f64,
+        state: &Sys::State,
+        limit: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        self.stepper.restart(self.field, t, state, limit, counters)
+    }
+
+    fn step(&mut self, _: &Sys, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
+        self.stepper.step(self.field, t_end, counters)
+    }
+
+    fn fixed_step(&self) -> Option<f64> {
+        self.stepper.fixed_step()
+    }
+
+    fn replace_end(
+        &mut self,
+        _: &Sys,
+        state: &Sys::State,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        self.stepper.replace_end(self.field, state, counters)
+    }
+
+    fn t_start(&self) -> f64 {
+        self.stepper.t_start()
+    }
+
+    fn t_end(&self) -> f64 {
+        self.stepper.t_end()
+    }
+
+    fn start_state(&self) -> &Sys::State {
+        self.stepper.start_state()
+    }
+
+    fn end_state(&self) -> &Sys::State {
+        self.stepper.end_state()
+    }
+
+    fn end_rates(&self) -> [&Sys::State; 2] {
+        self.stepper.end_rates()
+    }
+
+    fn series(&self) -> Option<Series<'_, Sys::State>> {
+        self.stepper.series()
+    }
+
+    fn dense_ready(&self) -> bool {
+        self.stepper.dense_ready()
+    }
+
+    fn prepare_dense(&mut self, _: &Sys, counters: &mut Counters) -> Result<(), Fault> {
+        self.stepper.prepare_dense(self.field, counters)
+    }
+
+    fn interpolate(&self, theta: f64) -> Sys::State {
+        self.stepper.interpolate(theta)
+    }
+}

@@ -1,0 +1,275 @@
+//! Motion along surfaces: the forces that hold it there, and what integration drifts from them.
+//!
+//! A frictionless surface `c` pushes along `pi_D^* dh_c`. The sizes `lambda_c` of the forces of all surfaces held are
+//! those that keep every gap rate:
+//!
+//! ```text
+//! sum_d dh_c(pi_D grad h_d) lambda_d = -d^2 h_c/dt^2
+//! ```
+//!
+//! The same equations with gap rates or gaps on the right mend velocities and positions. Their matrix is symmetric and
+//! positive semidefinite, so that conjugate gradients solve them in as many steps as there are surfaces, one for one
+//! surface, without a matrix being kept.
+
+use crate::contract::Impacting;
+use crate::effects::{Change, Moment};
+use crate::error::Fault;
+use crate::forces::Forces;
+use crate::state::StateVector;
+
+/// Part of the right-hand side that is let be: rounding.
+const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
+
+/// Surfaces along which the motion is held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Held<G> {
+    /// 1 for those held.
+    surfaces: G,
+}
+
+impl<G: StateVector> Held<G> {
+    /// None.
+    pub(super) fn none() -> Self {
+        Self {
+            surfaces: G::zeros(),
+        }
+    }
+
+    pub(super) fn is_held(&self, surface: usize) -> bool {
+        self.surfaces.as_slice()[surface] == 1.0
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.iter().next().is_none()
+    }
+
+    pub(super) fn hold(&mut self, surface: usize) {
+        self.surfaces.as_mut_slice()[surface] = 1.0;
+    }
+
+    pub(super) fn release(&mut self, surface: usize) {
+        self.surfaces.as_mut_slice()[surface] = 0.0;
+    }
+
+    /// Those held, in order of index.
+    pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..G::LEN).filter(|&surface| self.is_held(surface))
+    }
+
+    /// The components of those held, zeros elsewhere.
+    fn only(&self, values: &G) -> G {
+        let mut only = *values;
+        for (value, held) in only.as_mut_slice().iter_mut().zip(self.surfaces.as_slice()) {
+            if *held != 1.0 {
+                *value = 0.0;
+            }
+        }
+        only
+    }
+
+    /// The sizes of the forces at a state. `None` for a system that does not know the second rates of its gaps.
+    pub(super) fn sizes<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+    ) -> Result<Option<G>, Fault> {
+        let mut rate = Sys::State::zeros();
+        system.rate(t, state, &mut rate)?;
+        self.sizes_at(system, t, state, &rate)
+    }
+
+    /// As [`Held::sizes`], where the rate without the forces is known.
+    fn sizes_at<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        rate: &Sys::State,
+    ) -> Result<Option<G>, Fault> {
+        match second_rates(system, t, state, rate)? {
+            Some(accelerations) => self.against(system, t, state, &accelerations),
+            None => Ok(None),
+        }
+    }
+
+    /// The sizes of the impulses, or forces, on the surfaces held that take these gap rates, or second rates.
+    fn against<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        rates: &G,
+    ) -> Result<Option<G>, Fault> {
+        let mut sizes = G::zeros();
+        let mut weights = G::zeros();
+        for surface in self.iter() {
+            let contact = system.contact(surface, t, state)?;
+            weights.as_mut_slice()[surface] = 1.0 / contact.constrained_compliance;
+        }
+        // What is missing, in units of each surface's own impulse, and the direction of search.
+        let mut missing = scaled(&self.only(rates), -1.0);
+        let mut search = times(&weights, &missing);
+        let mut squared = product(&search, &missing);
+        let least = NEGLIGIBLE * NEGLIGIBLE * squared;
+        for _ in 0..2 * G::LEN {
+            if squared <= least {
+                break;
+            }
+            let Some(response) = self.response(system, t, state, &search)? else {
+                return Ok(None);
+            };
+            let step = squared / product(&search, &response);
+            if !step.is_finite() {
+                break;
+            }
+            sizes = sum(&sizes, step, &search);
+            missing = sum(&missing, -step, &response);
+            let wanted = times(&weights, &missing);
+            let next = product(&wanted, &missing);
+            search = sum(&wanted, next / squared, &search);
+            squared = next;
+        }
+        Ok(Some(sizes))
+    }
+
+    /// What impulses of these sizes change the gap rates of the surfaces held by.
+    fn response<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        sizes: &G,
+    ) -> Result<Option<G>, Fault> {
+        let mut motion = Sys::Impulse::zeros();
+        for surface in self.iter() {
+            let contact = system.contact(surface, t, state)?;
+            motion = sum(&motion, sizes.as_slice()[surface], &contact.direction);
+        }
+        let responses = system.gap_responses(t, state, &motion)?;
+        Ok(responses.map(|responses| self.only(&responses)))
+    }
+
+    /// Adds impulses of these sizes, taken at `state`, to a state or to a rate.
+    fn push<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        sizes: &G,
+        to: &mut Sys::State,
+    ) -> Result<(), Fault> {
+        for surface in self.iter() {
+            let contact = system.contact(surface, t, state)?;
+            system.kick(to, sizes.as_slice()[surface], &contact.direction);
+        }
+        Ok(())
+    }
+
+    /// Brings the state back to the surfaces held: gaps and gap rates to 0, each to first order.
+    pub(super) fn settle<Sys: Impacting<Gaps = G>>(
+        &self,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<Change, Fault> {
+        if self.is_empty() {
+            return Ok(Change::Kept);
+        }
+        now.counters.event_evaluations += 1;
+        let gaps = now.system.gaps(now.t, now.state);
+        self.settle_positions(now, &gaps)?;
+        self.settle_rates(now)?;
+        Ok(Change::Changed)
+    }
+
+    /// Moves positions as an impulse would change velocities.
+    fn settle_positions<Sys: Impacting<Gaps = G>>(
+        &self,
+        now: &mut Moment<'_, Sys>,
+        gaps: &G,
+    ) -> Result<(), Fault> {
+        let (system, t) = (now.system, now.t);
+        let Some(sizes) = self.against(system, t, now.state, gaps)? else {
+            return Ok(());
+        };
+        let mut kicked = *now.state;
+        self.push(system, t, now.state, &sizes, &mut kicked)?;
+        let (qdot, moved) = (system.velocity(t, now.state)?, system.velocity(t, &kicked)?);
+        let difference = sum(&moved, -1.0, &qdot);
+        let q = sum(&system.position(now.state), 1.0, &difference);
+        *now.state = system.state_nearest(t, &q, &qdot)?;
+        Ok(())
+    }
+
+    /// Takes the gap rates.
+    pub(super) fn settle_rates<Sys: Impacting<Gaps = G>>(
+        &self,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<(), Fault> {
+        let (system, t, state) = (now.system, now.t, *now.state);
+        let rates = system.gap_rates(t, &state)?;
+        match self.against(system, t, &state, &rates)? {
+            Some(sizes) => self.push(system, t, &state, &sizes, now.state),
+            None => Ok(()),
+        }
+    }
+}
+
+impl<Sys: Impacting> Forces<Sys> for Held<Sys::Gaps> {
+    fn add(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        rate: &mut Sys::State,
+    ) -> Result<(), Fault> {
+        match self.sizes_at(system, t, state, rate)? {
+            Some(sizes) => self.push(system, t, state, &sizes, rate),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The second rates of all gaps where the state changes at this rate. `None` for a system that does not know them.
+pub(super) fn second_rates<Sys: Impacting>(
+    system: &Sys,
+    t: f64,
+    state: &Sys::State,
+    rate: &Sys::State,
+) -> Result<Option<Sys::Gaps>, Fault> {
+    let mut motion = Sys::Impulse::zeros();
+    let parts = rate.as_slice().iter().skip(Sys::Vector::LEN);
+    for (part, rate) in motion.as_mut_slice().iter_mut().zip(parts) {
+        *part = *rate;
+    }
+    system.gap_accelerations(t, state, &motion)
+}
+
+fn product<V: StateVector>(a: &V, b: &V) -> f64 {
+    let pairs = a.as_slice().iter().zip(b.as_slice());
+    pairs.map(|(a, b)| a * b).sum()
+}
+
+fn times<V: StateVector>(a: &V, b: &V) -> V {
+    let mut times = *a;
+    for (value, b) in times.as_mut_slice().iter_mut().zip(b.as_slice()) {
+        *value *= b;
+    }
+    times
+}
+
+fn scaled<V: StateVector>(a: &V, factor: f64) -> V {
+    let mut scaled = *a;
+    for value in scaled.as_mut_slice() {
+        *value *= factor;
+    }
+    scaled
+}
+
+/// `a + factor * b`
+fn sum<V: StateVector>(a: &V, factor: f64, b: &V) -> V {
+    let mut sum = *a;
+    for (value, b) in sum.as_mut_slice().iter_mut().zip(b.as_slice()) {
+        *value += factor * b;
+    }
+    sum
+}

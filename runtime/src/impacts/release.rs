@@ -1,0 +1,100 @@
+//! Where a motion along surfaces leaves one of them: where its force, which can only push, would have to pull.
+//!
+//! The force is a function of time along a step like a gap is, and its fall through zero is found in the same way.
+
+use super::held::Held;
+use crate::contract::Impacting;
+use crate::effects::StepView;
+use crate::error::Fault;
+use crate::events::crossing::{NODES, SAMPLES};
+use crate::events::locate::{Line, Search, Start};
+use crate::integrate::Stepper;
+use crate::outcome::Outcome;
+use crate::state::StateVector;
+
+/// Rounding of a force, in parts of the largest that it is in the step.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// A part of a step, and the surface that is left there; none where the search stopped.
+pub(super) type Release = (f64, Option<usize>);
+
+/// The first release in a step.
+pub(super) fn first_release<Sys: Impacting, Step: Stepper<Sys>>(
+    held: &Held<Sys::Gaps>,
+    step: &mut StepView<'_, Sys, Step>,
+) -> Result<Option<Release>, Outcome> {
+    step.prepare()?;
+    let mut samples = [Sys::Gaps::zeros(); SAMPLES];
+    for (sample, node) in samples.iter_mut().zip(NODES) {
+        *sample = sizes(held, step, node)?;
+    }
+    let mut first: Option<Release> = None;
+    for surface in held.iter() {
+        let until = first.map_or(1.0, |(part, _)| part);
+        let whole = samples.map(|sizes| sizes.as_slice()[surface]);
+        let found = first_fall(held, surface, step, &whole, until)?;
+        if let Some((part, _)) = found
+            && part < until
+        {
+            first = found;
+        }
+    }
+    Ok(first)
+}
+
+fn sizes<Sys: Impacting, Step: Stepper<Sys>>(
+    held: &Held<Sys::Gaps>,
+    step: &mut StepView<'_, Sys, Step>,
+    part: f64,
+) -> Result<Sys::Gaps, Fault> {
+    step.counters.rate_evaluations += 1;
+    let sizes = held.sizes(step.system, step.time(part), &step.state(part))?;
+    Ok(sizes.unwrap_or(Sys::Gaps::zeros()))
+}
+
+/// The first fall of the force of one surface.
+fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
+    held: &Held<Sys::Gaps>,
+    surface: usize,
+    step: &mut StepView<'_, Sys, Step>,
+    whole: &[f64; SAMPLES],
+    until: f64,
+) -> Result<Option<Release>, Outcome> {
+    let largest = whole
+        .iter()
+        .fold(0.0_f64, |most, size| most.max(size.abs()));
+    let above = whole[0] >= -ROUNDING * largest;
+    if !above && whole.iter().all(|&size| size < 0.0) {
+        // Pressed by the gap, pulled by the force: within rounding of neither.
+        return Err(Outcome::Contact { surface });
+    }
+    let mut fault = None;
+    let force = |part: f64| match sizes(held, step, part) {
+        Ok(sizes) => sizes.as_slice()[surface],
+        Err(found) => {
+            fault = Some(found);
+            f64::NAN
+        }
+    };
+    let line = Line {
+        gap: force,
+        rounding: || ROUNDING * largest,
+        whole,
+        start: Start {
+            from: 0.0,
+            above,
+            slope: None,
+            until,
+        },
+    };
+    let found = line.first_fall();
+    if let Some(fault) = fault {
+        return Err(fault.into());
+    }
+    Ok(match found {
+        Search::Clear => None,
+        Search::Falls(bracket) => Some((bracket.after, Some(surface))),
+        Search::Sinks(part) | Search::Pole(part) => Some((part, Some(surface))),
+        Search::Unfinished(part) => Some((part, None)),
+    })
+}

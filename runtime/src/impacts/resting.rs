@@ -1,0 +1,221 @@
+//! Resting on surfaces and sliding along them: when it begins, and when it ends.
+//!
+//! Every change happens where a step is cut: at its start where the motion presses into a surface at hand, inside where
+//! a force would have to pull, or at an impact on another surface.
+
+use core::ops::ControlFlow;
+
+use super::held::Held;
+use super::release::first_release;
+use crate::contract::Impacting;
+use crate::effects::{Moment, StepView};
+use crate::integrate::Stepper;
+use crate::outcome::Outcome;
+use crate::record::{Hold, Observer};
+use crate::state::StateVector;
+
+/// Changes at one time per surface before the motion counts as one that no choice of surfaces continues.
+const CHANGES: u32 = 4;
+
+/// A gap rate with less than this part of the kinetic energy counts as 0: squared `2^-36`, as for impacts.
+const STILL: f64 = 1.0 / (1_u128 << 72) as f64;
+
+/// What happens where the step is cut.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Turn {
+    Nothing,
+    /// The motion presses into this surface.
+    Press(usize),
+    /// This surface would have to pull.
+    Leave(usize),
+}
+
+/// The surfaces that the state rests on.
+#[derive(Debug, Clone)]
+pub(super) struct Resting<G> {
+    held: Held<G>,
+    turn: Turn,
+    /// Per surface, when impacts on it accumulated, until that is told.
+    accumulated: G,
+    /// When surfaces were last changed, and how often at that time.
+    changed: (f64, u32),
+}
+
+impl<G: StateVector> Resting<G> {
+    /// On none.
+    pub(super) fn none() -> Self {
+        let mut accumulated = G::zeros();
+        accumulated.as_mut_slice().fill(f64::NAN);
+        Self {
+            held: Held::none(),
+            turn: Turn::Nothing,
+            accumulated,
+            changed: (f64::NEG_INFINITY, 0),
+        }
+    }
+
+    pub(super) fn is_none(&self) -> bool {
+        self.held.is_empty()
+    }
+
+    pub(super) fn held(&self) -> &Held<G> {
+        &self.held
+    }
+
+    pub(super) fn forces(&self) -> Option<Held<G>> {
+        (!self.held.is_empty()).then_some(self.held)
+    }
+
+    /// Impacts on a surface accumulate at this time.
+    pub(super) fn note_accumulation(&mut self, surface: usize, t: f64) {
+        self.accumulated.as_mut_slice()[surface] = t;
+    }
+
+    /// The motion presses into a surface at the start of a step, at `t`.
+    pub(super) fn press(&mut self, surface: usize, t: f64) -> Result<Option<f64>, Outcome> {
+        self.count(surface, t)?;
+        self.turn = Turn::Press(surface);
+        Ok(Some(0.0))
+    }
+
+    /// Ends the run where surfaces are changed again and again at one time.
+    fn count(&mut self, surface: usize, t: f64) -> Result<(), Outcome> {
+        let (last, times) = self.changed;
+        self.changed = (t, if t == last { times + 1 } else { 0 });
+        if self.changed.1 > CHANGES * (G::LEN as u32 + 1) {
+            return Err(Outcome::Contact { surface });
+        }
+        Ok(())
+    }
+
+    /// The earlier of a hit and of the first release in a step.
+    pub(super) fn look<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
+        &mut self,
+        hit: Option<f64>,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<Option<f64>, Outcome> {
+        match first_release(&self.held, step)? {
+            Some((part, surface)) if hit.is_none_or(|hit| part < hit) => {
+                if let Some(surface) = surface {
+                    self.count(surface, step.time(part))?;
+                    self.turn = Turn::Leave(surface);
+                }
+                Ok(Some(part))
+            }
+            _ => Ok(hit),
+        }
+    }
+
+    /// Carries out what the step was cut for, if it was for this.
+    pub(super) fn turn<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+        &mut self,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<bool, Outcome> {
+        match core::mem::replace(&mut self.turn, Turn::Nothing) {
+            Turn::Nothing => return Ok(false),
+            Turn::Leave(surface) => self.leave(surface, now, observer)?,
+            Turn::Press(surface) => {
+                self.held.hold(surface);
+                if self.held.sizes(now.system, now.t, now.state)?.is_none() {
+                    return Err(Outcome::Contact { surface });
+                }
+                self.drop_pulling(Some(surface), now, observer)?;
+                self.held.settle(now)?;
+                let accumulated = self.accumulated.as_mut_slice();
+                let accumulation = core::mem::replace(&mut accumulated[surface], f64::NAN);
+                show(
+                    observer,
+                    Hold {
+                        t: now.t,
+                        surface,
+                        state: *now.state,
+                        begins: true,
+                        accumulation: (!accumulation.is_nan()).then_some(accumulation),
+                    },
+                )?;
+            }
+        }
+        Ok(true)
+    }
+
+    /// After impacts: leaves the surfaces that the motion now rises from, and those that would have to pull.
+    pub(super) fn bounce<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+        &mut self,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        if self.held.is_empty() {
+            return Ok(());
+        }
+        let (system, t) = (now.system, now.t);
+        let rates = system.gap_rates(t, now.state)?;
+        let (qdot, p) = (
+            system.velocity(t, now.state)?,
+            system.momentum(t, now.state)?,
+        );
+        let pairs = qdot.as_slice().iter().zip(p.as_slice());
+        let energy: f64 = pairs.map(|(v, p)| (v * p).abs()).sum();
+        for surface in 0..G::LEN {
+            let rate = rates.as_slice()[surface];
+            if self.held.is_held(surface) && rate > 0.0 {
+                let contact = system.contact(surface, t, now.state)?;
+                if rate * rate > STILL * energy * contact.constrained_compliance {
+                    self.leave(surface, now, observer)?;
+                }
+            }
+        }
+        self.held.settle_rates(now)?;
+        self.drop_pulling(None, now, observer)
+    }
+
+    /// Leaves surfaces that would have to pull, one after the other, but not the one just pressed.
+    fn drop_pulling<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+        &mut self,
+        pressed: Option<usize>,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        loop {
+            let Some(sizes) = self.held.sizes(now.system, now.t, now.state)? else {
+                return Ok(());
+            };
+            let size = |surface: usize| sizes.as_slice()[surface];
+            let pulling = self.held.iter().filter(|&surface| Some(surface) != pressed);
+            let worst = pulling.min_by(|&a, &b| size(a).total_cmp(&size(b)));
+            match worst {
+                Some(surface) if size(surface) < 0.0 => self.leave(surface, now, observer)?,
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    fn leave<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+        &mut self,
+        surface: usize,
+        now: &Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        self.held.release(surface);
+        show(
+            observer,
+            Hold {
+                t: now.t,
+                surface,
+                state: *now.state,
+                begins: false,
+                accumulation: None,
+            },
+        )
+    }
+}
+
+fn show<Sys: Impacting, O: Observer<Sys>>(
+    observer: &mut O,
+    hold: Hold<Sys::State>,
+) -> Result<(), Outcome> {
+    match observer.hold(&hold) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(Outcome::Stopped),
+    }
+}
