@@ -199,7 +199,7 @@ impl Writer<'_> {
         let mut items = Vec::new();
         for s in 0..self.derivation.surfaces.len() {
             let name = self.model.surfaces[s].name.display.clone();
-            let law = self.model.surfaces[s].law.text(&self.model.pool);
+            let law = self.model.law_text(s);
             let surface = &self.derivation.surfaces[s];
             let (gap, form, rate) = (surface.gap, surface.form.clone(), surface.rate);
             let conditions = surface.conditions.clone();

@@ -21,7 +21,7 @@ mod tests;
 
 pub use ast::*;
 pub use keyword::{
-    FUNCTIONS, LAWS, PIECEWISE, SECTIONS, foreign_function, is_function, is_not_differentiable,
+    FUNCTIONS, LAWS, PIECEWISE, RESET, SECTIONS, foreign_function, is_function, is_not_differentiable,
     is_rust_keyword,
 };
 pub use limits::{

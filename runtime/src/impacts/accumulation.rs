@@ -67,8 +67,7 @@ impl<V: StateVector> Accumulation<V> {
         rate: f64,
         rounding: impl FnOnce() -> f64,
     ) -> Option<f64> {
-        self.repeated = if t == self.last { self.repeated + 1 } else { 0 };
-        self.last = t;
+        let at_once = self.again(t);
         let flight = t - self.times.as_slice()[surface];
         let before = self.rates.as_slice()[surface];
         let shrunk = &mut self.shrunk.as_mut_slice()[surface];
@@ -82,11 +81,28 @@ impl<V: StateVector> Accumulation<V> {
         self.flights.as_mut_slice()[surface] = flight;
         self.rates.as_mut_slice()[surface] = rate;
         self.guess(surface, t, rate / before);
-        if self.repeated >= AT_ONE_TIME {
+        if at_once {
             return Some(t);
         }
         let next = flight * (rate / before);
         (shrinking && 0.25 * rate * next <= rounding()).then(|| self.limit(surface, t))
+    }
+
+    /// Takes in an impact after which the motion goes on through the surface: no flight begins there.
+    pub(super) fn pass(&mut self, surface: usize, t: f64) -> Option<f64> {
+        let at_once = self.again(t);
+        self.times.as_mut_slice()[surface] = f64::NEG_INFINITY;
+        self.flights.as_mut_slice()[surface] = f64::INFINITY;
+        self.rates.as_mut_slice()[surface] = 0.0;
+        self.shrunk.as_mut_slice()[surface] = 0.0;
+        at_once.then_some(t)
+    }
+
+    /// Counts an impact; whether there were too many at this time.
+    fn again(&mut self, t: f64) -> bool {
+        self.repeated = if t == self.last { self.repeated + 1 } else { 0 };
+        self.last = t;
+        self.repeated >= AT_ONE_TIME
     }
 
     /// The time of accumulation if the motion, just bounced off a surface at `t`, did not rise from it: the hop is

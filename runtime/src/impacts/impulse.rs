@@ -6,6 +6,7 @@ use super::accumulation::Accumulation;
 use super::hits::Hits;
 use super::law::Law;
 use super::override_table::Overrides;
+use super::reset::after_reset;
 use super::watch::Watch;
 use crate::contract::Impacting;
 use crate::effects::{Effect, Moment, SceneEffects, StepView};
@@ -26,6 +27,10 @@ const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 /// Hits at the same time (within rounding) are carried out in order of index, again and again until no surface at
 /// hand is approached. A law that leaves the state approaching ends the run with
 /// [`Outcome::StillPenetrating`], with the state after the impact.
+///
+/// A surface with the law [`Law::Reset`] has no side that is not allowed: it counts whenever its gap falls through 0 from
+/// above, and where the reset leaves it falling it is crossed. At the first instant of a run, and where a reset has moved
+/// the position, a surface at hand counts if it is approached.
 #[derive(Debug, Clone)]
 pub struct Impacts<Sys: Impacting> {
     overrides: Overrides<Sys::Gaps>,
@@ -80,14 +85,23 @@ impl<Sys: Impacting> Impacts<Sys> {
             if now.counters.impacts >= self.budget {
                 return Err(Outcome::ImpactBudget);
             }
-            if self.watch.is_tangential_crossing(surface) {
-                return Err(Outcome::TangentialCrossing { surface });
-            }
             let before = rates.as_slice()[surface];
-            hits.set_still(surface, STILL * before.abs());
-            rates = self.impact(surface, several, before, now, observer)?;
-            // What still approaches here does so within rounding.
-            hits.set_still(surface, -rates.as_slice()[surface]);
+            if self.law_of(now.system, surface) == Law::Reset {
+                let position = now.system.position(now.state);
+                rates = self.impact(surface, several, before, now, observer)?;
+                hits.set_done(surface);
+                if now.system.position(now.state) != position {
+                    self.watch.relocate(&mut hits, &rates, now)?;
+                }
+            } else {
+                if self.watch.is_tangential_crossing(surface) {
+                    return Err(Outcome::TangentialCrossing { surface });
+                }
+                hits.set_still(surface, STILL * before.abs());
+                rates = self.impact(surface, several, before, now, observer)?;
+                // What still approaches here does so within rounding.
+                hits.set_still(surface, -rates.as_slice()[surface]);
+            }
             several = several || hits.approached(&rates) > 0;
         }
         self.watch.leave(&hits, now, rates)
@@ -104,18 +118,13 @@ impl<Sys: Impacting> Impacts<Sys> {
     ) -> Result<Sys::Gaps, Outcome> {
         let (system, t, before) = (now.system, now.t, *now.state);
         let law = self.law_of(system, surface);
-        let contact = system.contact(surface, t, &before)?;
-        let mut after = before;
-        system.kick(&mut after, contact.impulse(law), &contact.direction);
-        // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction; without this the
-        // energy would drift like the number of impacts instead of its root.
-        let missed = contact.gap_rate
-            - contact.rate_taken(law)
-            - system.gap_rates(t, &after)?.as_slice()[surface];
-        let correction = missed / contact.constrained_compliance;
-        if correction.is_finite() {
-            system.kick(&mut after, correction, &contact.direction);
-        }
+        let (after, rho) = match law {
+            Law::Reset => (after_reset(system, surface, t, &before)?, None),
+            _ => {
+                let (after, rho) = kicked(system, surface, law, t, &before)?;
+                (after, Some(rho))
+            }
+        };
         let rates = system.gap_rates(t, &after)?;
         if let Some(component) = after.as_slice().iter().position(|value| !value.is_finite()) {
             return Err(Outcome::NonFinite { component });
@@ -139,28 +148,52 @@ impl<Sys: Impacting> Impacts<Sys> {
         // The sign of the rate after a slow impact may be made of rounding errors, which the impact has multiplied.
         let watch = &self.watch;
         let is_approaching = rate_after < -STILL * rate.abs();
-        if is_approaching
+        if let Some(rho) = rho
+            && is_approaching
             && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
         {
-            return Err(Outcome::StillPenetrating {
-                surface,
-                rho: contact.rho(),
-            });
+            return Err(Outcome::StillPenetrating { surface, rho });
         }
         if now.counters.impacts >= self.budget {
             return Err(Outcome::ImpactBudget);
         }
         let rounding = || watch.rounding(surface, now);
-        let bounce = if rate_after > STILL * rate.abs() {
-            rate_after
-        } else {
-            0.0
+        let accumulated = match law {
+            Law::Reset if rate_after <= 0.0 => self.accumulation.pass(surface, t),
+            Law::Reset => self.accumulation.add(surface, t, rate_after, rounding),
+            _ if rate_after > STILL * rate.abs() => {
+                self.accumulation.add(surface, t, rate_after, rounding)
+            }
+            _ => self.accumulation.add(surface, t, 0.0, rounding),
         };
-        match self.accumulation.add(surface, t, bounce, rounding) {
+        match accumulated {
             Some(t) => Err(Outcome::Zeno { t, surface }),
             None => Ok(rates),
         }
     }
+}
+
+/// The state after the impulse of a law, and `rho`.
+fn kicked<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    law: Law,
+    t: f64,
+    before: &Sys::State,
+) -> Result<(Sys::State, f64), Outcome> {
+    let contact = system.contact(surface, t, before)?;
+    let mut after = *before;
+    system.kick(&mut after, contact.impulse(law), &contact.direction);
+    // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction; without this the
+    // energy would drift like the number of impacts instead of its root.
+    let missed = contact.gap_rate
+        - contact.rate_taken(law)
+        - system.gap_rates(t, &after)?.as_slice()[surface];
+    let correction = missed / contact.constrained_compliance;
+    if correction.is_finite() {
+        system.kick(&mut after, correction, &contact.direction);
+    }
+    Ok((after, contact.rho()))
 }
 
 impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
@@ -170,6 +203,13 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         observer: &mut O,
     ) -> Result<(), Outcome> {
         self.accumulation = Accumulation::none();
+        for surface in 0..Sys::Gaps::LEN {
+            let resets = self.law_of(now.system, surface) == Law::Reset;
+            if resets && now.system.law(surface) != Law::Reset {
+                return Err(Outcome::NoReset { surface });
+            }
+            self.watch.set_passable(surface, resets);
+        }
         let hits = self.watch.begin(now)?;
         self.strike(hits, now, observer)
     }

@@ -6,6 +6,7 @@ mod hits;
 mod impulse;
 pub mod law;
 mod override_table;
+mod reset;
 mod series;
 mod watch;
 

@@ -31,9 +31,12 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
                 .map(|condition| resolver.difference(condition, &mut scope, "conditions"))
                 .collect();
             let law = resolver.law(surface.law.as_ref(), &mut scope);
+            let reset = resolver.reset(surface.law.as_ref(), &scope);
             resolver.within_budget(surface.gap.at);
             let conditions: Option<Vec<ExprId>> = conditions.into_iter().collect();
-            let (Some(gap), Some(conditions), Some(law)) = (gap, conditions, law) else {
+            let (Some(gap), Some(conditions), Some(law), Some(reset)) =
+                (gap, conditions, law, reset)
+            else {
                 break;
             };
             surfaces.push(Surface {
@@ -42,6 +45,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
                 gap,
                 conditions,
                 law,
+                reset,
                 item: surface.item,
             });
         }
