@@ -134,7 +134,7 @@ pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
 pub use error::{Fault, ParameterError, StateError};
 pub use impacts::Impacts;
-pub use impacts::law::{Contact, Law};
+pub use impacts::law::{Contact, Jump, Law};
 pub use initial::complete_velocities;
 pub use integrate::{
     Counters, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Stepper, Taylor, Tolerance,

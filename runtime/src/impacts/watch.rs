@@ -205,8 +205,14 @@ impl<Sys: Impacting> Watch<Sys> {
         let before = self.gaps;
         self.gaps = glance.gaps;
         self.rates = glance.rates;
-        if self.gaps.as_slice().iter().all(|&gap| gap >= 0.0) {
+        if self.gaps.as_slice().iter().all(|&gap| gap > 0.0) {
             return Ok(());
+        }
+        for surface in 0..Sys::Gaps::LEN {
+            if self.is_passable(surface) {
+                let start = before.as_slice()[surface];
+                self.keep_side(surface, start, step, glance);
+            }
         }
         for surface in 0..Sys::Gaps::LEN {
             let (gap, at_hand) = (
@@ -225,6 +231,22 @@ impl<Sys: Impacting> Watch<Sys> {
             state: &mut state,
             counters,
         })
+    }
+
+    /// A passable surface that is met within rounding at the end of the step, without a fall that counted, has not been
+    /// crossed: its gap gets the smallest number of the side that the motion came from.
+    fn keep_side<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        start: f64,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) {
+        let gap = self.gaps.as_slice()[surface];
+        let meets = gap == 0.0 && start != 0.0;
+        if meets || (gap < 0.0 && start > 0.0 && !self.is_sunk(surface, step, glance)) {
+            self.gaps.as_mut_slice()[surface] = f64::MIN_POSITIVE.copysign(start);
+        }
     }
 
     /// Whether the motion goes into a surface at hand, rather than along it within rounding. Rounding adds up
