@@ -83,8 +83,8 @@ fn a_crossing_at_gap_rate_zero_counts() {
 
 #[test]
 fn a_reset_that_bounces_is_a_bounce() {
-    let ball = Particle::new([-1.0, 0.0], [floor])
-        .with_reset(|_, s| at(s[0], s[1], -s[2], 0.5 * s[3]));
+    let ball =
+        Particle::new([-1.0, 0.0], [floor]).with_reset(|_, s| at(s[0], s[1], -s[2], 0.5 * s[3]));
     with_every_integrator(&ball, at(0.0, 0.0, 1.0, 8.0), 7.0, |run, log, case| {
         assert_done(run, case);
         assert_times(log, &[2.0, 4.0, 6.0], 1e-11, case);
@@ -94,8 +94,8 @@ fn a_reset_that_bounces_is_a_bounce() {
 
 #[test]
 fn bounces_of_a_reset_accumulate_as_others_do() {
-    let ball = Particle::new([-1.0, 0.0], [floor])
-        .with_reset(|_, s| at(s[0], s[1], -0.5 * s[2], s[3]));
+    let ball =
+        Particle::new([-1.0, 0.0], [floor]).with_reset(|_, s| at(s[0], s[1], -0.5 * s[2], s[3]));
     with_every_integrator(&ball, at(0.0, 0.0, 1.0, 0.0), 7.0, |run, _, case| {
         let Outcome::Zeno { t, surface: 0 } = run.outcome else {
             panic!("{case}: {:?}", run.outcome)
@@ -186,8 +186,8 @@ fn another_law_may_stand_for_a_reset() {
 
 #[test]
 fn numbers_that_are_not_finite_end_the_run() {
-    let ball = Particle::new([-1.0, 0.0], [floor])
-        .with_reset(|_, s| at(s[0], s[1], s[2], s[3] / 0.0));
+    let ball =
+        Particle::new([-1.0, 0.0], [floor]).with_reset(|_, s| at(s[0], s[1], s[2], s[3] / 0.0));
     with_every_integrator(&ball, at(1.0, 0.0, 0.0, 1.0), 5.0, |run, log, case| {
         assert_eq!(run.outcome, Outcome::NonFinite { component: 3 }, "{case}");
         assert_eq!(log.seen(), 0, "{case}");

@@ -81,7 +81,11 @@ fn factor(model: &Model, surface: usize, wall: &Wall) -> String {
         Law::NonholonomicPlastic => format!("multiplies it by (1 - 2*rho)^2, {RHO}"),
         Law::ImpactPlastic => "maps it to 0".to_owned(),
         Law::TotallyPlastic => format!("multiplies it by (1 - rho)^2, {RHO}"),
-        Law::Reset => match wall.reset.as_ref().and_then(|own| own.factor_text(&model.pool)) {
+        Law::Reset => match wall
+            .reset
+            .as_ref()
+            .and_then(|own| own.factor_text(&model.pool))
+        {
             Some(factor) => format!("multiplies it by {factor}"),
             None => format!("multiplies it by |D*G+/G-|, D the determinant of its reset, {RATES}"),
         },

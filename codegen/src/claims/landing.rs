@@ -13,14 +13,11 @@ use super::evidence::Wording;
 use super::finding::{Verdict, seed_of};
 use super::wall::Wall;
 use crate::mechanics::Derivation;
-use crate::model::Model;
+use crate::model::{Model, Reset};
 use crate::spec::ItemId;
 
 /// Mistakes in resets: where, what, and what to write.
-pub fn check_landings(
-    model: &mut Model,
-    derivation: &Derivation,
-) -> Vec<(ItemId, String, String)> {
+pub fn check_landings(model: &mut Model, derivation: &Derivation) -> Vec<(ItemId, String, String)> {
     let surfaces = model.surfaces.iter();
     if derivation.constraints.is_empty() || surfaces.clone().all(|own| own.reset.is_none()) {
         return Vec::new();
@@ -31,52 +28,78 @@ pub fn check_landings(
         let Some(reset) = model.surfaces[surface].reset.clone() else {
             continue;
         };
-        let name = model.surfaces[surface].name.display.clone();
-        let after = reset.replacements(&model.coordinates);
         let wall = Wall::of(model, derivation, surface);
-        for a in 0..derivation.constraints.len() {
-            let constraint = model.constraints[a].name.display.clone();
-            let residual = residual(model, a);
-            let landing = Landing {
-                change: model.pool.substitute(residual, &after),
-                shown: format!("residual of {constraint} after"),
-            };
-            let wording = Wording {
-                differs: format!("the reset of `{name}` leaves the constraint `{constraint}`"),
-                help: HELP.map(str::to_owned),
-                ..Wording::default()
-            };
-            let seed = seed_of(&model.snake_name);
-            let found = evidence_at_impact(model, &wall, &dynamics, &landing, seed);
-            if let Verdict::Refuted(witness) = found.verdict(true, wording, seed) {
-                mistakes.push((reset.item, witness.to_string(), witness.help));
-                continue;
-            }
-            let Some(level) = model.constraints[a].level.filter(|_| reset.moves()) else {
-                continue;
-            };
-            let moved = model.pool.substitute(level, &after);
-            let landing = Landing {
-                change: model.pool.sub(moved, level),
-                shown: format!("change of the level of {constraint}"),
-            };
-            let found = evidence_at_impact(model, &wall, &dynamics, &landing, seed);
-            if !found.shows_that_it_vanishes() {
-                let text = format!(
-                    "the reset of `{name}` is not known to keep the level of `{constraint}`"
-                );
-                let help = "a position stays on the level of an integrable constraint";
-                mistakes.push((reset.item, text, help.to_owned()));
-            }
+        let landing = Landings {
+            name: model.surfaces[surface].name.display.clone(),
+            reset: &reset,
+            wall: &wall,
+            dynamics: &dynamics,
+        };
+        for constraint in 0..derivation.constraints.len() {
+            let found = landing.check_velocity(model, constraint);
+            let found = found.or_else(|| landing.check_level(model, constraint));
+            mistakes.extend(found.map(|(text, help)| (reset.item, text, help)));
         }
     }
     mistakes
 }
 
-const HELP: [&str; 2] = [
-    "velocities after a reset satisfy the constraints at the position after it",
-    "",
-];
+/// The reset of a surface.
+struct Landings<'l> {
+    name: String,
+    reset: &'l Reset,
+    wall: &'l Wall,
+    dynamics: &'l Dynamics,
+}
+
+impl Landings<'_> {
+    /// What is wrong with the velocities after it, and what to write, if that can be told.
+    fn check_velocity(&self, model: &mut Model, a: usize) -> Option<(String, String)> {
+        let (name, constraint) = (&self.name, model.constraints[a].name.display.clone());
+        let residual = residual(model, a);
+        let question = Vanished {
+            change: self.after(model, residual),
+            shown: format!("residual of {constraint} after"),
+        };
+        let help = "velocities after a reset satisfy the constraints at the position after it";
+        let wording = Wording {
+            differs: format!("the reset of `{name}` leaves the constraint `{constraint}`"),
+            help: [help.to_owned(), String::new()],
+            ..Wording::default()
+        };
+        let seed = seed_of(&model.snake_name);
+        let found = evidence_at_impact(model, self.wall, self.dynamics, &question, seed);
+        match found.verdict(true, wording, seed) {
+            Verdict::Refuted(witness) => Some((witness.to_string(), witness.help)),
+            _ => None,
+        }
+    }
+
+    /// The same for the level of an integrable constraint.
+    fn check_level(&self, model: &mut Model, a: usize) -> Option<(String, String)> {
+        let level = model.constraints[a].level.filter(|_| self.reset.moves())?;
+        let (name, constraint) = (&self.name, model.constraints[a].name.display.clone());
+        let after = self.after(model, level);
+        let question = Vanished {
+            change: model.pool.sub(after, level),
+            shown: format!("change of the level of {constraint}"),
+        };
+        let seed = seed_of(&model.snake_name);
+        let found = evidence_at_impact(model, self.wall, self.dynamics, &question, seed);
+        (!found.shows_that_it_vanishes()).then(|| {
+            let text =
+                format!("the reset of `{name}` is not known to keep the level of `{constraint}`");
+            let help = "a position stays on the level of an integrable constraint";
+            (text, help.to_owned())
+        })
+    }
+
+    /// An expression of the state after the reset as one of the state before it.
+    fn after(&self, model: &mut Model, value: ExprId) -> ExprId {
+        let replacements = self.reset.replacements(&model.coordinates);
+        model.pool.substitute(value, &replacements)
+    }
+}
 
 /// `eta(qdot) + eta_0` of a constraint.
 fn residual(model: &mut Model, constraint: usize) -> ExprId {
@@ -91,12 +114,12 @@ fn residual(model: &mut Model, constraint: usize) -> ExprId {
 }
 
 /// Something that vanishes after an impact, as an expression of the state before it.
-struct Landing {
+struct Vanished {
     change: ExprId,
     shown: String,
 }
 
-impl AtImpact for Landing {
+impl AtImpact for Vanished {
     fn roots(&self) -> Vec<ExprId> {
         vec![self.change]
     }

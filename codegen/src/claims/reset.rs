@@ -78,7 +78,12 @@ impl ResetMap {
         point: &mut P,
     ) -> Option<Vec<Number<P>>> {
         let values = point.values(&model.pool, &model.pool.reachable(&self.velocities))?;
-        Some(self.velocities.iter().map(|id| values[id.index()]).collect())
+        Some(
+            self.velocities
+                .iter()
+                .map(|id| values[id.index()])
+                .collect(),
+        )
     }
 
     /// By how much the volume is multiplied, up to its sign.
@@ -130,12 +135,7 @@ impl Change {
 }
 
 /// `left / right` of two functions that are linear in the velocities, if it does not depend on them.
-fn ratio(
-    pool: &mut Pool,
-    left: ExprId,
-    right: ExprId,
-    velocities: &[SymbolId],
-) -> Option<ExprId> {
+fn ratio(pool: &mut Pool, left: ExprId, right: ExprId, velocities: &[SymbolId]) -> Option<ExprId> {
     velocities.iter().find_map(|&velocity| {
         let slope = pool.diff(right, velocity);
         if pool.zero_test(slope) != Zero::Refuted {
@@ -160,7 +160,11 @@ fn determinant(pool: &mut Pool, rows: &[Vec<ExprId>], columns: &[usize]) -> Expr
         if pool.is_syntactic_zero(first[column]) {
             continue;
         }
-        let rest: Vec<usize> = columns.iter().copied().filter(|&own| own != column).collect();
+        let rest: Vec<usize> = columns
+            .iter()
+            .copied()
+            .filter(|&own| own != column)
+            .collect();
         let minor = determinant(pool, others, &rest);
         let term = pool.mul(first[column], minor);
         total = match place % 2 {

@@ -253,26 +253,37 @@ fn emit_resets(context: &Context<'_>, functions: &Impacting) -> TokenStream {
         return TokenStream::new();
     }
     let n = context.dimension();
-    let arms = functions.resets.iter().enumerate().filter_map(|(s, function)| {
-        let Body { statements, outputs } = context.state_body(function.as_ref()?);
-        let (q, qdot) = outputs.split_at(n);
-        Some(quote! {
-            #s => {
-                #statements
-                ::dalembert::impacts::law::Jump {
-                    position: ::dalembert::__private::vector([#(#q),*]),
-                    velocity: ::dalembert::__private::vector([#(#qdot),*]),
+    let arms = functions
+        .resets
+        .iter()
+        .enumerate()
+        .filter_map(|(s, function)| {
+            let Body {
+                statements,
+                outputs,
+            } = context.state_body(function.as_ref()?);
+            let (q, qdot) = outputs.split_at(n);
+            Some(quote! {
+                #s => {
+                    #statements
+                    ::dalembert::impacts::law::Jump {
+                        position: ::dalembert::__private::vector([#(#q),*]),
+                        velocity: ::dalembert::__private::vector([#(#qdot),*]),
+                    }
                 }
-            }
-        })
-    });
+            })
+        });
     let mut lines = vec![
-        "Positions and velocities after the declared reset, as functions of those before it.".to_owned(),
+        "Positions and velocities after the declared reset, as functions of those before it."
+            .to_owned(),
         String::new(),
     ];
     for (s, function) in functions.resets.iter().enumerate() {
         if let Some(function) = function {
-            let (name, law) = (&context.model.surfaces[s].name.display, context.model.law_text(s));
+            let (name, law) = (
+                &context.model.surfaces[s].name.display,
+                context.model.law_text(s),
+            );
             lines.push(format!("* `{name}`: `{law}`, {}.", function.cost));
         }
     }

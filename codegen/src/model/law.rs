@@ -110,9 +110,7 @@ impl Reset {
     fn text(&self, pool: &Pool, coordinates: &[Coordinate]) -> String {
         let entries = self.replacements(coordinates).into_iter();
         let entries: String = entries
-            .map(|(symbol, value)| {
-                format!("{} = {}; ", pool.symbol_name(symbol), pool.text(value))
-            })
+            .map(|(symbol, value)| format!("{} = {}; ", pool.symbol_name(symbol), pool.text(value)))
             .collect();
         format!("{RESET} {{ {entries}}}")
     }

@@ -464,7 +464,11 @@ impl Impacting {
             coefficients,
             resets,
         } = self;
-        let declared = conditions.iter().chain(coefficients).chain(resets).flatten();
+        let declared = conditions
+            .iter()
+            .chain(coefficients)
+            .chain(resets)
+            .flatten();
         let moving = [gap_rates, gap_accelerations, gap_responses];
         [gaps, &gap_jet.function]
             .into_iter()

@@ -225,6 +225,7 @@ impl Writer<'_> {
                     condition,
                 ));
             }
+            items.extend(self.reset(s, &name, &subscript));
         }
         Section {
             title: "Impacts",
@@ -234,6 +235,24 @@ impl Writer<'_> {
             ],
             items,
         }
+    }
+
+    /// What a reset sets, one formula each.
+    fn reset(&mut self, s: usize, name: &str, subscript: &str) -> Vec<Item> {
+        let Some(reset) = self.model.surfaces[s].reset.clone() else {
+            return Vec::new();
+        };
+        let replacements = reset.replacements(&self.model.coordinates);
+        let formulas = replacements.into_iter().map(|(symbol, value)| {
+            let variable = self.model.pool.variable(symbol);
+            let [text, latex] = self.print(variable);
+            self.formula(
+                format!("{text}+[{name}]"),
+                format!("{{{latex}}}^+{subscript}"),
+                value,
+            )
+        });
+        formulas.collect()
     }
 
     pub(super) fn declared_outputs(&mut self) -> Section {

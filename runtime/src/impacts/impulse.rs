@@ -147,10 +147,10 @@ impl<Sys: Impacting> Impacts<Sys> {
         let rate_after = rates.as_slice()[surface];
         // The sign of the rate after a slow impact may be made of rounding errors, which the impact has multiplied.
         let watch = &self.watch;
-        let is_approaching = rate_after < -STILL * rate.abs();
+        let is_approaching = rate_after < -STILL * rate.abs()
+            && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now));
         if let Some(rho) = rho
             && is_approaching
-            && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
         {
             return Err(Outcome::StillPenetrating { surface, rho });
         }
@@ -158,13 +158,17 @@ impl<Sys: Impacting> Impacts<Sys> {
             return Err(Outcome::ImpactBudget);
         }
         let rounding = || watch.rounding(surface, now);
-        let accumulated = match law {
-            Law::Reset if rate_after <= 0.0 => self.accumulation.pass(surface, t),
-            Law::Reset => self.accumulation.add(surface, t, rate_after, rounding),
-            _ if rate_after > STILL * rate.abs() => {
-                self.accumulation.add(surface, t, rate_after, rounding)
-            }
-            _ => self.accumulation.add(surface, t, 0.0, rounding),
+        // A reset sets its rate to the last digit; an impulse leaves rounding errors of the rate it takes.
+        let still = if law == Law::Reset {
+            0.0
+        } else {
+            STILL * rate.abs()
+        };
+        let accumulated = if is_approaching {
+            self.accumulation.pass(surface, t)
+        } else {
+            let bounce = if rate_after > still { rate_after } else { 0.0 };
+            self.accumulation.add(surface, t, bounce, rounding)
         };
         match accumulated {
             Some(t) => Err(Outcome::Zeno { t, surface }),

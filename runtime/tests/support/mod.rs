@@ -145,12 +145,7 @@ impl<const S: usize> Impacting for Particle<S> {
         self.law
     }
 
-    fn reset(
-        &self,
-        surface: usize,
-        t: f64,
-        state: &State,
-    ) -> Result<Option<Jump<Vector>>, Fault> {
+    fn reset(&self, surface: usize, t: f64, state: &State) -> Result<Option<Jump<Vector>>, Fault> {
         if self.law != Law::Reset {
             return Ok(None);
         }

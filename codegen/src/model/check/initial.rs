@@ -109,7 +109,12 @@ impl Resolver<'_> {
     }
 
     /// Refuses a constant outside of the interval of its coordinate.
-    pub(super) fn check_in_chart(&mut self, written: &Scalar, index: usize, value: ExprId) -> Option<()> {
+    pub(super) fn check_in_chart(
+        &mut self,
+        written: &Scalar,
+        index: usize,
+        value: ExprId,
+    ) -> Option<()> {
         let coordinate = &self.symbols.coordinates[index];
         if self.is_in_chart(coordinate.topology, value) {
             return Some(());

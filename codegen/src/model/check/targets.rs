@@ -82,11 +82,7 @@ impl Resolver<'_> {
             }
             Some(Index::Each(binder)) => {
                 let mut targets = Vec::new();
-                for member in self
-                    .range(binder, &mut scope.clone())
-                    .into_iter()
-                    .flatten()
-                {
+                for member in self.range(binder, &mut scope.clone()).into_iter().flatten() {
                     let Some(offset) = self.offset(name, &binder.high, member, size) else {
                         break;
                     };
@@ -130,15 +126,16 @@ impl Section {
     fn help(self, name: &str) -> &'static str {
         match (self, name) {
             (Self::Initial, "t") => "a run starts at time 0",
-            (
-                Self::Initial,
-                "T" | "t_end" | "tend" | "t_max" | "tmax" | "end" | "duration",
-            ) => "the end of a run is written `until = 10;`",
+            (Self::Initial, "T" | "t_end" | "tend" | "t_max" | "tmax" | "end" | "duration") => {
+                "the end of a run is written `until = 10;`"
+            }
             (Self::Initial, _) => {
                 "initial values are given for coordinates, `dot(..)` of coordinates, and `until`"
             }
             (Self::Reset, "t") => "an impact takes no time",
-            (Self::Reset, _) => "what is reset is a coordinate or its velocity: `x = ..;`, `dot(x) = ..;`",
+            (Self::Reset, _) => {
+                "what is reset is a coordinate or its velocity: `x = ..;`, `dot(x) = ..;`"
+            }
         }
     }
 }
