@@ -1,7 +1,7 @@
 //! The words of the language: read where they are listed, documented, and those of the runtime where both have them.
 
 use dalembert::{Described, Impacting, Law};
-use dalembert_codegen::spec::{self, FUNCTIONS, LAWS, SECTIONS};
+use dalembert_codegen::spec::{self, FUNCTIONS, LAWS, RESET, SECTIONS};
 
 const LANGUAGE: &str = include_str!("../docs/language.md");
 const EQUATIONS: &str = include_str!("../docs/equations.md");
@@ -59,6 +59,7 @@ dalembert::model! {
             nonholonomic_plastic: x + 4 >= 0 => nonholonomic_plastic;
             impact_plastic: x + 5 >= 0 => impact_plastic;
             totally_plastic: x + 6 >= 0 => totally_plastic;
+            reset: x + 7 >= 0 => reset { dot(x) = -dot(x)/2; };
         }
     }
 }
@@ -70,10 +71,10 @@ fn every_law_of_the_language_is_the_runtimes_law_of_that_name() {
     assert_eq!(surfaces.len(), LAWS.len(), "a surface for each law");
     for (index, ((name, count), surface)) in LAWS.into_iter().zip(surfaces).enumerate() {
         let law = EveryLaw::default().law(index);
-        let written = if count == 1 {
-            format!("{name}(1/2)")
-        } else {
-            name.to_owned()
+        let written = match (name, count) {
+            (RESET, _) => "reset { dot(x) = -dot(x)/2; }".to_owned(),
+            (_, 1) => format!("{name}(1/2)"),
+            _ => name.to_owned(),
         };
         assert_eq!(
             (surface.name, surface.law, law.name()),

@@ -72,6 +72,7 @@ fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostic
     let mut model = model::check_within(&spec, steps)?;
     let derivation = mechanics::derive(&mut model);
     refuse_exhausted(&spec, &model)?;
+    refuse_landings(&spec, &mut model, &derivation)?;
     let claims::Examined { findings, volume } = claims::examine(&mut model, &derivation);
     refuse_exhausted(&spec, &model)?;
     refuse_claims(&spec, &findings)?;
@@ -96,6 +97,21 @@ fn refuse_exhausted(
         true => Err(diagnostics::too_many_steps(spec.name.at)),
         false => Ok(()),
     }
+}
+
+/// Refuses resets after which the state is off the constraints.
+fn refuse_landings(
+    spec: &spec::Spec,
+    model: &mut model::Model,
+    derivation: &mechanics::Derivation,
+) -> Result<(), diagnostics::Diagnostics> {
+    let mistakes = claims::check_landings(model, derivation);
+    refuse_exhausted(spec, model)?;
+    let mut diagnostics = diagnostics::Diagnostics::new();
+    for (item, text, help) in mistakes {
+        diagnostics.error(spec.location(item), text).help(help);
+    }
+    diagnostics.finish(())
 }
 
 /// Refuses claims that are false, and those that stay open without being assumed.

@@ -3,7 +3,7 @@
 //! Only [`VectorField`] is known to integrators. Time is an argument everywhere; autonomous systems ignore it.
 
 use crate::error::{Fault, ParameterError, StateError};
-use crate::impacts::law::{Contact, Law};
+use crate::impacts::law::{Contact, Jump, Law};
 use crate::jet::{Jets, LENGTH};
 use crate::state::StateVector;
 
@@ -330,7 +330,7 @@ pub trait Impacting: System {
     /// S numbers, one per surface, in the order of declaration.
     type Gaps: StateVector;
 
-    /// The gaps `h_s`; motion is allowed where they are not negative.
+    /// The gaps `h_s`; motion is allowed where they are not negative, and everywhere at a surface with a reset.
     fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps;
 
     /// The gap rates `dh_s(qdot) + d_t h_s`.
@@ -391,6 +391,20 @@ pub trait Impacting: System {
 
     /// The declared law of a surface, at this system's parameters.
     fn law(&self, surface: usize) -> Law;
+
+    /// Positions and velocities after the declared reset of a surface; `None` where its law is no reset.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn reset(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Option<Jump<Self::Vector>>, Fault> {
+        let _ = (surface, t, state);
+        Ok(None)
+    }
 
     /// What an impact on this surface needs.
     ///

@@ -37,6 +37,18 @@ pub enum Outcome {
         /// `dh(pi_D grad h) / dh(grad h)` there.
         rho: f64,
     },
+    /// A reset left the state off a constraint by more than 1e-9 of the sum of the absolute values of its terms.
+    ResetOffConstraint {
+        /// The surface.
+        surface: usize,
+        /// Index of the constraint.
+        constraint: usize,
+    },
+    /// The law `reset` was chosen for a surface that declares none.
+    NoReset {
+        /// The surface.
+        surface: usize,
+    },
     /// The state rests on a surface and the motion presses it in: going on needs a contact force.
     Contact {
         /// The surface.
@@ -120,6 +132,8 @@ impl Outcome {
             Self::Spasmodic { .. } => "spasmodic",
             Self::Ambiguous { .. } => "ambiguous",
             Self::StillPenetrating { .. } => "still_penetrating",
+            Self::ResetOffConstraint { .. } => "reset_off_constraint",
+            Self::NoReset { .. } => "no_reset",
             Self::Contact { .. } => "contact",
             Self::TangentialCrossing { .. } => "tangential_crossing",
             Self::StartsInside { .. } => "starts_inside",
@@ -167,6 +181,14 @@ impl fmt::Display for Outcome {
                     "the law of surface {surface} leaves the state approaching it (rho = {rho})"
                 )
             }
+            Self::ResetOffConstraint {
+                surface,
+                constraint,
+            } => write!(
+                f,
+                "the reset of surface {surface} leaves the state off constraint {constraint}"
+            ),
+            Self::NoReset { surface } => write!(f, "surface {surface} declares no reset"),
             Self::Contact { surface } => write!(
                 f,
                 "the state rests on surface {surface} and is pressed into it"

@@ -4,6 +4,7 @@ use dalembert_expr::{ExpansionPoint, ExprId, ModularPoint, RealPoint};
 
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Evidence, Vanishing, evidence};
+use super::reset::ResetMap;
 use super::sample::Sample;
 use super::wall::{Place, Wall};
 use crate::model::Model;
@@ -97,6 +98,7 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
     fn roots(&self) -> Vec<ExprId> {
         let mut roots = self.dynamics.roots();
         roots.extend(&self.wall.roots);
+        roots.extend(self.wall.reset.iter().flat_map(ResetMap::roots));
         roots.extend([self.wall.gap, self.wall.gap_rate]);
         roots.extend(self.question.roots());
         roots

@@ -7,6 +7,7 @@ use super::dynamics::{Dynamics, Number};
 use super::evidence::Wording;
 use super::finding::{Verdict, Witness};
 use super::potential::factor_text;
+use super::reset::ResetMap;
 use super::wall::Wall;
 use crate::mechanics::Derivation;
 use crate::model::{Law, Model};
@@ -23,6 +24,11 @@ pub(super) fn volume_remarks(
     let mut remarks = Vec::new();
     for surface in 0..model.surfaces.len() {
         let wall = Wall::of(model, derivation, surface);
+        if let Some(reason) = wall.reset.as_ref().and_then(ResetMap::open) {
+            let name = &model.surfaces[surface].name.display;
+            remarks.push(format!("an impact at {name} may change it: {reason}"));
+            continue;
+        }
         let volume = Volume {
             wall: &wall,
             stated,
@@ -30,10 +36,10 @@ pub(super) fn volume_remarks(
         let found = evidence_at_impact(model, &wall, dynamics, &volume, seed);
         let effect = match (found.verdict(true, Wording::default(), seed), stated) {
             (Verdict::Proved(_), _) => "keeps it".to_owned(),
-            (Verdict::Refuted(_), None) => factor(model, surface),
+            (Verdict::Refuted(_), None) => factor(model, surface, &wall),
             (Verdict::Refuted(witness), Some(_)) => changed(&witness),
             (Verdict::Undecided(_), None) => {
-                format!("{}, if that is not 1", factor(model, surface))
+                format!("{}, if that is not 1", factor(model, surface, &wall))
             }
             (Verdict::Undecided(reason), Some(_)) => format!("may change it: {reason}"),
         };
@@ -45,14 +51,14 @@ pub(super) fn volume_remarks(
             true => "",
             false => ", which moves,",
         };
-        let (name, law) = (&declared.name.display, declared.law.text(&model.pool));
+        let (name, law) = (&declared.name.display, model.law_text(surface));
         remarks.push(format!("an impact at {name}{moving} ({law}) {effect}"));
     }
     remarks
 }
 
 /// The Jacobian of a law in words.
-fn factor(model: &Model, surface: usize) -> String {
+fn factor(model: &Model, surface: usize, wall: &Wall) -> String {
     const RHO: &str = "rho = dh(pi_D grad h)/dh(grad h)";
     const RATES: &str = "G the gap rate before and after";
     let is_affine = model
@@ -75,6 +81,14 @@ fn factor(model: &Model, surface: usize) -> String {
         Law::NonholonomicPlastic => format!("multiplies it by (1 - 2*rho)^2, {RHO}"),
         Law::ImpactPlastic => "maps it to 0".to_owned(),
         Law::TotallyPlastic => format!("multiplies it by (1 - rho)^2, {RHO}"),
+        Law::Reset => match wall
+            .reset
+            .as_ref()
+            .and_then(|own| own.factor_text(&model.pool))
+        {
+            Some(factor) => format!("multiplies it by {factor}"),
+            None => format!("multiplies it by |D*G+/G-|, D the determinant of its reset, {RATES}"),
+        },
     }
 }
 

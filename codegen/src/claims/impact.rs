@@ -34,6 +34,10 @@ pub(super) fn check_conserved_under(
             .iter()
             .map(|own| (own.q, model.pool.diff(value, own.q)))
             .collect(),
+        after: model.surfaces[surface].reset.clone().map(|reset| {
+            let replacements = reset.replacements(&model.coordinates);
+            model.pool.substitute(value, &replacements)
+        }),
         value,
         written,
     };
@@ -59,6 +63,8 @@ pub(super) fn check_conserved_under(
 /// The change of a quantity in an impact.
 struct Jump<'j> {
     value: ExprId,
+    /// Its value after a reset.
+    after: Option<ExprId>,
     /// Its derivatives by the velocities.
     slopes: Vec<ExprId>,
     /// The same by the coordinates.
@@ -80,7 +86,7 @@ impl Jump<'_> {
 
 impl AtImpact for Jump<'_> {
     fn roots(&self) -> Vec<ExprId> {
-        vec![self.value]
+        self.after.iter().copied().chain([self.value]).collect()
     }
 
     fn terms<P: ExpansionPoint>(
@@ -89,7 +95,13 @@ impl AtImpact for Jump<'_> {
         point: &mut P,
         after: &[Number<P>],
     ) -> Option<Vec<Number<P>>> {
-        let [new, old] = after_and_before(model, point, after, self.value)?;
+        let [new, old] = match self.after {
+            Some(reset) => {
+                let values = point.values(&model.pool, &model.pool.reachable(&self.roots()))?;
+                [reset, self.value].map(|id| values[id.index()])
+            }
+            None => after_and_before(model, point, after, self.value)?,
+        };
         Some(vec![new, point.field().neg(old)])
     }
 
@@ -99,8 +111,13 @@ impl AtImpact for Jump<'_> {
         let slopes = self.slopes.iter().map(|own| values[own.index()].abs());
         let by_velocity = slopes.sum::<f64>() * largest;
         let before = magnitude(model, point, self.value) + self.slope_by_position(model, point)?;
-        value_with(model, point, after, self.value)?;
-        let new = magnitude(model, point, self.value) + self.slope_by_position(model, point)?;
+        let new = match self.after {
+            Some(reset) => magnitude(model, point, reset),
+            None => {
+                value_with(model, point, after, self.value)?;
+                magnitude(model, point, self.value) + self.slope_by_position(model, point)?
+            }
+        };
         Some(before + new + by_velocity)
     }
 

@@ -13,7 +13,8 @@
 //! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
 //! | `evidence.rs`, `continuity.rs` | does something vanish at all states? may it jump all the same? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
-//! | `wall.rs`, `collision.rs`, `hybrid.rs` | the map of an impact; what vanishes at impacts; what they do to a volume |
+//! | `wall.rs`, `reset.rs` | the map of an impact |
+//! | `collision.rs`, `hybrid.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume; do resets keep the constraints? |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
 //! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts in words |
 //!
@@ -44,6 +45,7 @@ mod global;
 mod gradient;
 mod hybrid;
 mod impact;
+mod landing;
 mod linear;
 mod momentum;
 mod obstruction;
@@ -51,6 +53,7 @@ mod polynomial;
 mod potential;
 pub mod problem;
 mod regularity;
+mod reset;
 mod sample;
 mod symmetry;
 mod trace;
@@ -68,6 +71,7 @@ pub use fit::Certified;
 pub use geometry::{Geometry, geometry_at};
 pub use global::Global;
 pub use gradient::{Gradient, Integral};
+pub use landing::check_landings;
 pub use momentum::{MomentumDensity, find_momentum_density};
 pub use obstruction::{Obstruction, find_obstruction};
 pub use potential::{Potential, Term, potential_text};

@@ -9,6 +9,8 @@
 //! totally plastic          eps = -rho G/dh(pi_D grad h)
 //! ```
 //!
+//! A reset ([`super::reset`]) is the map that was declared instead.
+//!
 //! The Jacobian with respect to `mu_C` is the determinant of the map in a fibre of D* times the ratio of the fluxes
 //! through the surface, `-G+/G-`. The determinant is the factor by which G is multiplied with the other sign, except for
 //! `elastic` and `restitution e` where constraints are affine: there it is e.
@@ -21,6 +23,7 @@ use dalembert_expr::{
 use super::conserved::with_velocities;
 use super::dynamics::{Dynamics, Number};
 use super::linear::{dot, solve};
+use super::reset::ResetMap;
 use super::sample::{Sample, sample, uses};
 use crate::mechanics::Derivation;
 use crate::model::{Law, Model};
@@ -31,6 +34,8 @@ pub(super) struct Wall {
     /// Metric (N N), forms (M N), dh (N), d_t h, coefficient.
     pub(super) roots: Vec<ExprId>,
     law: Law,
+    /// The map of the law `reset`.
+    pub(super) reset: Option<ResetMap>,
     is_affine: bool,
     pub(super) gap: ExprId,
     pub(super) gap_rate: ExprId,
@@ -72,6 +77,7 @@ impl Wall {
         roots.extend([own.rate, coefficient]);
         let coordinates: Vec<_> = model.coordinates.iter().map(|own| own.q).collect();
         Self {
+            reset: ResetMap::of(model, derivation, surface),
             roots,
             law,
             is_affine: derivation
@@ -96,6 +102,9 @@ impl Wall {
         model: &Model,
         point: &mut P,
     ) -> Option<Vec<Number<P>>> {
+        if let Some(reset) = &self.reset {
+            return reset.velocities_after(model, point);
+        }
         let (n, m) = (self.coordinates.len(), self.constraints);
         let field = point.field();
         let values = point.values(&model.pool, &model.pool.reachable(&self.roots))?;
@@ -162,6 +171,7 @@ impl Wall {
             Law::NonholonomicPlastic => field.mul(field.mul(field.integer(2), ratio()?), gap_rate),
             Law::ImpactPlastic => gap_rate,
             Law::TotallyPlastic => field.mul(ratio()?, gap_rate),
+            Law::Reset => return None,
         };
         let impulse = field.neg(field.mul(factor, field.inv(steep)?));
         let after = |(own, along): (&Vec<Number<P>>, &Vec<Number<P>>)| {
@@ -177,6 +187,9 @@ impl Wall {
         point: &mut P,
         after: &[Number<P>],
     ) -> Option<Number<P>> {
+        if let Some(reset) = &self.reset {
+            return reset.jacobian(model, point, self.gap_rate);
+        }
         let field = point.field();
         let values = point.values(&model.pool, &model.pool.reachable(&self.roots))?;
         let value = |id: ExprId| values[id.index()];

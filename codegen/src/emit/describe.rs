@@ -162,10 +162,9 @@ fn emit_constraint_infos(context: &Context<'_>) -> TokenStream {
 }
 
 fn emit_surface_infos(context: &Context<'_>) -> TokenStream {
-    let pool = &context.model.pool;
-    let infos = context.model.surfaces.iter().map(|surface| {
-        let name = &surface.name.display;
-        let law = surface.law.text(pool);
+    let surfaces = context.model.surfaces.iter().enumerate();
+    let infos = surfaces.map(|(s, surface)| {
+        let (name, law) = (&surface.name.display, context.model.law_text(s));
         quote!(::dalembert::describe::SurfaceInfo { name: #name, law: #law },)
     });
     quote!(#(#infos)*)

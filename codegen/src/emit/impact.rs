@@ -20,6 +20,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
     let conditions = emit_conditions(context, functions);
     let laws = emit_laws(context, functions);
     let contacts = emit_contacts(context, functions);
+    let resets = emit_resets(context, functions);
     let series = super::jet::emit_gap_series(context, &functions.gap_jet);
     let attributes = super::attributes();
     quote! {
@@ -32,6 +33,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
             #conditions
             #laws
             #contacts
+            #resets
         }
     }
 }
@@ -151,6 +153,7 @@ fn emit_laws(context: &Context<'_>, functions: &Impacting) -> TokenStream {
                 Law::NonholonomicPlastic => quote!(NonholonomicPlastic),
                 Law::ImpactPlastic => quote!(ImpactPlastic),
                 Law::TotallyPlastic => quote!(TotallyPlastic),
+                Law::Reset => quote!(Reset),
             };
             match coefficient {
                 Some(function) => {
@@ -240,6 +243,68 @@ fn emit_contacts(context: &Context<'_>, functions: &Impacting) -> TokenStream {
                 #(#arms)*
                 _ => ::core::result::Result::Err(::dalembert::Fault::SingularSurface { surface }),
             }
+        }
+    }
+}
+
+/// What the declared resets make of positions and velocities.
+fn emit_resets(context: &Context<'_>, functions: &Impacting) -> TokenStream {
+    if functions.resets.iter().all(Option::is_none) {
+        return TokenStream::new();
+    }
+    let n = context.dimension();
+    let arms = functions
+        .resets
+        .iter()
+        .enumerate()
+        .filter_map(|(s, function)| {
+            let Body {
+                statements,
+                outputs,
+            } = context.state_body(function.as_ref()?);
+            let (q, qdot) = outputs.split_at(n);
+            Some(quote! {
+                #s => {
+                    #statements
+                    ::dalembert::impacts::law::Jump {
+                        position: ::dalembert::__private::vector([#(#q),*]),
+                        velocity: ::dalembert::__private::vector([#(#qdot),*]),
+                    }
+                }
+            })
+        });
+    let mut lines = vec![
+        "Positions and velocities after the declared reset, as functions of those before it."
+            .to_owned(),
+        String::new(),
+    ];
+    for (s, function) in functions.resets.iter().enumerate() {
+        if let Some(function) = function {
+            let (name, law) = (
+                &context.model.surfaces[s].name.display,
+                context.model.law_text(s),
+            );
+            lines.push(format!("* `{name}`: `{law}`, {}.", function.cost));
+        }
+    }
+    let documentation = doc::lines(&lines);
+    quote! {
+        #documentation
+        #[inline]
+        fn reset(
+            &self,
+            surface: usize,
+            t: f64,
+            state: &Self::State,
+        ) -> ::core::result::Result<
+            ::core::option::Option<::dalembert::impacts::law::Jump<Self::Vector>>,
+            ::dalembert::Fault,
+        > {
+            let jump = match surface {
+                #(#arms)*
+                _ => return ::core::result::Result::Ok(::core::option::Option::None),
+            };
+            ::core::result::Result::Ok(::core::option::Option::Some(jump))
         }
     }
 }

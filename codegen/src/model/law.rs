@@ -1,6 +1,9 @@
 //! Declared impact laws. The runtime has one of the same name for each.
 
-use dalembert_expr::{ExprId, Pool};
+use dalembert_expr::{ExprId, Pool, SymbolId};
+
+use super::{Coordinate, Model, Surface};
+use crate::spec::{ItemId, RESET};
 
 /// A declared impact law; coefficients are expressions of the parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,6 +20,8 @@ pub enum Law {
     ImpactPlastic,
     /// `totally_plastic`
     TotallyPlastic,
+    /// `reset { .. }`: the map is [`Surface::reset`](super::Surface::reset).
+    Reset,
 }
 
 impl Law {
@@ -29,6 +34,7 @@ impl Law {
             ("nonholonomic_plastic", None) => Self::NonholonomicPlastic,
             ("impact_plastic", None) => Self::ImpactPlastic,
             ("totally_plastic", None) => Self::TotallyPlastic,
+            (RESET, None) => Self::Reset,
             _ => return None,
         })
     }
@@ -42,6 +48,7 @@ impl Law {
             Self::NonholonomicPlastic => "nonholonomic_plastic",
             Self::ImpactPlastic => "impact_plastic",
             Self::TotallyPlastic => "totally_plastic",
+            Self::Reset => RESET,
         }
     }
 
@@ -52,15 +59,71 @@ impl Law {
             Self::Elastic
             | Self::NonholonomicPlastic
             | Self::ImpactPlastic
-            | Self::TotallyPlastic => None,
+            | Self::TotallyPlastic
+            | Self::Reset => None,
+        }
+    }
+}
+
+/// What the law `reset` sets, by coordinate: expressions of the state before the impact, of parameters and of time.
+/// What has none stays.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reset {
+    /// Positions after the impact.
+    pub q: Vec<Option<ExprId>>,
+    /// Velocities after the impact.
+    pub qdot: Vec<Option<ExprId>>,
+    /// Where it was declared.
+    pub item: ItemId,
+}
+
+impl Reset {
+    /// A reset of `n` coordinates that changes nothing.
+    pub(super) fn identity(n: usize, item: ItemId) -> Self {
+        Self {
+            q: vec![None; n],
+            qdot: vec![None; n],
+            item,
         }
     }
 
-    /// As it was declared: `newton(e)`.
-    pub fn text(self, pool: &Pool) -> String {
-        match self.coefficient() {
-            Some(e) => format!("{}({})", self.name(), pool.text(e)),
-            None => self.name().to_owned(),
+    /// Whether a position is set.
+    pub fn moves(&self) -> bool {
+        self.q.iter().any(Option::is_some)
+    }
+
+    /// Everything that is set.
+    pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
+        self.q.iter().chain(&self.qdot).flatten().copied()
+    }
+
+    /// What becomes of coordinates and velocities: the symbols that are set, with their values after the impact.
+    pub fn replacements(&self, coordinates: &[Coordinate]) -> Vec<(SymbolId, ExprId)> {
+        let positions = coordinates.iter().map(|own| own.q).zip(&self.q);
+        let velocities = coordinates.iter().map(|own| own.qdot).zip(&self.qdot);
+        positions
+            .chain(velocities)
+            .filter_map(|(symbol, value)| Some((symbol, (*value)?)))
+            .collect()
+    }
+
+    fn text(&self, pool: &Pool, coordinates: &[Coordinate]) -> String {
+        let entries = self.replacements(coordinates).into_iter();
+        let entries: String = entries
+            .map(|(symbol, value)| format!("{} = {}; ", pool.symbol_name(symbol), pool.text(value)))
+            .collect();
+        format!("{RESET} {{ {entries}}}")
+    }
+}
+
+impl Model {
+    /// The law of a surface as it was declared: `newton(e)`.
+    pub fn law_text(&self, surface: usize) -> String {
+        let Surface { law, reset, .. } = &self.surfaces[surface];
+        match (law.coefficient(), reset) {
+            (Some(e), _) => format!("{}({})", law.name(), self.pool.text(e)),
+            (None, Some(reset)) => reset.text(&self.pool, &self.coordinates),
+            (None, None) => law.name().to_owned(),
         }
     }
 }

@@ -33,7 +33,7 @@ use crate::spec::ItemId;
 pub use crate::spec::Existence;
 pub use check::check;
 pub(crate) use check::check_within;
-pub use law::Law;
+pub use law::{Law, Reset};
 
 /// A checked model: all expressions live in `pool`.
 #[derive(Debug)]
@@ -230,6 +230,8 @@ pub struct Surface {
     pub conditions: Vec<ExprId>,
     /// Its law.
     pub law: Law,
+    /// The map of the law `reset`.
+    pub reset: Option<Reset>,
     /// Where it was declared.
     pub item: ItemId,
 }

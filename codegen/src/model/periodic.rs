@@ -3,7 +3,7 @@
 //! An angle that occurs only as an integer multiple inside of `sin`, `cos` and `tan` needs no further test. For any
 //! other occurrence the change of the whole declaration under `theta -> theta + 2*pi` is tested to be zero.
 
-use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
+use dalembert_expr::{ExprId, Function, Node, Pool, Rational, SymbolId};
 
 use super::Topology;
 use super::degree::is_zero;
@@ -14,9 +14,36 @@ impl Resolver<'_> {
     /// Refuses a declaration that is not periodic in an angle. `expr` is the declared quantity, `written` the text it
     /// came from.
     pub(super) fn check_periodic(&mut self, written: &[&Scalar], scope: &Scope, expr: ExprId) {
+        self.check_turns(written, scope, expr, is_periodic);
+    }
+
+    /// As [`Resolver::check_periodic`], of an expression that is an angle itself: a turn of an angle makes a number of
+    /// whole turns of it.
+    pub(super) fn check_periodic_angle(
+        &mut self,
+        written: &[&Scalar],
+        scope: &Scope,
+        expr: ExprId,
+    ) {
+        self.check_turns(written, scope, expr, |pool, expr, angle| {
+            let turns = turns(pool, expr, angle);
+            let variable = pool.variable(angle);
+            let turned = pool.scale(&Rational::from(turns), variable);
+            let rest = pool.sub(expr, turned);
+            is_periodic(pool, rest, angle)
+        });
+    }
+
+    fn check_turns(
+        &mut self,
+        written: &[&Scalar],
+        scope: &Scope,
+        expr: ExprId,
+        holds: impl Fn(&mut Pool, ExprId, SymbolId) -> bool,
+    ) {
         let angles = self.angles();
         for angle in bare_symbols(&self.pool, expr, &angles) {
-            if is_periodic(&mut self.pool, expr, angle) {
+            if holds(&mut self.pool, expr, angle) {
                 continue;
             }
             self.refuse_angle(written, scope, angle);
@@ -134,26 +161,41 @@ fn not_periodic_terms(pool: &Pool, argument: ExprId, angles: &[SymbolId]) -> Vec
     others.map(|(_, term)| term).collect()
 }
 
-/// Whether `expr` does not change when `angle` grows by `2*pi`: proved, or seen at several points.
-fn is_periodic(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> bool {
+/// `expr` where `angle` has grown by `2*pi`.
+fn after_a_turn(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> ExprId {
     let variable = pool.variable(angle);
     let two = pool.int(2);
     let pi = pool.pi();
     let turn = pool.mul(two, pi);
     let turned = pool.add(variable, turn);
-    let after = pool.substitute(expr, &[(angle, turned)]);
+    pool.substitute(expr, &[(angle, turned)])
+}
+
+/// By how many turns `expr` grows in a turn of `angle`, as far as a point shows.
+fn turns(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> i64 {
+    let after = after_a_turn(pool, expr, angle);
+    let values = pool.eval(&[after, expr], &|symbol| point(symbol, 0));
+    // Saturates where there is no value; then nothing is periodic.
+    ((values[0] - values[1]) / core::f64::consts::TAU).round() as i64
+}
+
+/// Whether `expr` does not change when `angle` grows by `2*pi`: proved, or seen at several points.
+fn is_periodic(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> bool {
+    let after = after_a_turn(pool, expr, angle);
     let change = pool.sub(after, expr);
     is_zero(pool, change) || (0..8).all(|seed| agrees_at(pool, expr, after, seed))
 }
 
+/// A number in `[0.3, 1.3)` for each symbol.
+fn point(symbol: SymbolId, seed: u32) -> f64 {
+    let spread = f64::from(seed + 1) * 0.618_033_988_749_894_9
+        + symbol.index() as f64 * 0.414_213_562_373_095_1;
+    0.3 + spread.fract()
+}
+
 /// Whether two expressions have the same value at a point, up to rounding; points outside their domain say nothing.
 fn agrees_at(pool: &Pool, left: ExprId, right: ExprId, seed: u32) -> bool {
-    let point = |symbol: SymbolId| {
-        let spread = f64::from(seed + 1) * 0.618_033_988_749_894_9
-            + symbol.index() as f64 * 0.414_213_562_373_095_1;
-        0.3 + spread.fract()
-    };
-    let values = pool.eval(&[left, right], &point);
+    let values = pool.eval(&[left, right], &|symbol| point(symbol, seed));
     let [left, right] = values.as_slice() else {
         return true;
     };

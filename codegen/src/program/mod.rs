@@ -447,6 +447,8 @@ pub struct Impacting {
     pub contacts: Vec<Function>,
     /// Per surface: the coefficient of its law, a function of the parameters.
     pub coefficients: Vec<Option<Function>>,
+    /// Per surface with the law `reset`: `(t, s) -> q, qdot` after it.
+    pub resets: Vec<Option<Function>>,
 }
 
 impl Impacting {
@@ -460,8 +462,13 @@ impl Impacting {
             conditions,
             contacts,
             coefficients,
+            resets,
         } = self;
-        let declared = conditions.iter().chain(coefficients).flatten();
+        let declared = conditions
+            .iter()
+            .chain(coefficients)
+            .chain(resets)
+            .flatten();
         let moving = [gap_rates, gap_accelerations, gap_responses];
         [gaps, &gap_jet.function]
             .into_iter()

@@ -199,7 +199,7 @@ impl Writer<'_> {
         let mut items = Vec::new();
         for s in 0..self.derivation.surfaces.len() {
             let name = self.model.surfaces[s].name.display.clone();
-            let law = self.model.surfaces[s].law.text(&self.model.pool);
+            let law = self.model.law_text(s);
             let surface = &self.derivation.surfaces[s];
             let (gap, form, rate) = (surface.gap, surface.form.clone(), surface.rate);
             let conditions = surface.conditions.clone();
@@ -225,6 +225,7 @@ impl Writer<'_> {
                     condition,
                 ));
             }
+            items.extend(self.reset(s, &name, &subscript));
         }
         Section {
             title: "Impacts",
@@ -234,6 +235,24 @@ impl Writer<'_> {
             ],
             items,
         }
+    }
+
+    /// What a reset sets, one formula each.
+    fn reset(&mut self, s: usize, name: &str, subscript: &str) -> Vec<Item> {
+        let Some(reset) = self.model.surfaces[s].reset.clone() else {
+            return Vec::new();
+        };
+        let replacements = reset.replacements(&self.model.coordinates);
+        let formulas = replacements.into_iter().map(|(symbol, value)| {
+            let variable = self.model.pool.variable(symbol);
+            let [text, latex] = self.print(variable);
+            self.formula(
+                format!("{text}+[{name}]"),
+                format!("{{{latex}}}^+{subscript}"),
+                value,
+            )
+        });
+        formulas.collect()
     }
 
     pub(super) fn declared_outputs(&mut self) -> Section {

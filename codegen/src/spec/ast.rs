@@ -334,6 +334,30 @@ pub struct Law {
     pub name: Word,
     /// Its coefficients.
     pub arguments: Vec<Scalar>,
+    /// What stands in the braces of `reset { .. }`.
+    pub assignments: Option<Vec<Assignment>>,
+    /// The declaration.
+    pub item: ItemId,
+}
+
+/// `theta = e;` or `dot(theta[i in 1..=N]) = e;` of a reset.
+#[derive(Debug)]
+pub struct Assignment {
+    /// What is given.
+    pub target: AssignmentTarget,
+    /// The coordinate with its index.
+    pub declared: Declared,
+    /// Its value after the impact.
+    pub value: Scalar,
+}
+
+/// What an entry of a reset gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AssignmentTarget {
+    /// A position.
+    Position,
+    /// A velocity.
+    Velocity,
 }
 
 /// `theta = e;`, `dot(theta[i in 1..=N]) = e;`, `until = e;`

@@ -20,7 +20,7 @@ pub const SECTIONS: [&str; 13] = [
 ];
 
 /// Words of the language that this version does not implement, each with what can be written instead.
-pub const NOT_IMPLEMENTED: [(&str, &str); 7] = [
+pub const NOT_IMPLEMENTED: [(&str, &str); 6] = [
     (
         "scenes",
         "leave it out; the model itself uses every declared force and surface",
@@ -29,10 +29,6 @@ pub const NOT_IMPLEMENTED: [(&str, &str); 7] = [
     ("transitions", "declare one model for each mode"),
     ("field", "give a `lagrangian`"),
     ("inputs", "declare a parameter and set it between runs"),
-    (
-        "reset",
-        "one of the laws `elastic`, `restitution(e)`, `newton(e)`, `nonholonomic_plastic`, `impact_plastic`, `totally_plastic`",
-    ),
     ("instantaneous", "declare the constraint in `constraints`"),
 ];
 
@@ -128,14 +124,18 @@ const NOT_DIFFERENTIABLE: [&str; 8] = [
 ];
 
 /// The impact laws, with the number of their coefficients.
-pub const LAWS: [(&str, usize); 6] = [
+pub const LAWS: [(&str, usize); 7] = [
     ("elastic", 0),
     ("restitution", 1),
     ("newton", 1),
     ("nonholonomic_plastic", 0),
     ("impact_plastic", 0),
     ("totally_plastic", 0),
+    (RESET, 0),
 ];
+
+/// The law that is a map: `reset { x = ..; dot(x) = ..; }`.
+pub const RESET: &str = "reset";
 
 /// Words with a meaning of their own in expressions.
 const RESERVED: [&str; 11] = [

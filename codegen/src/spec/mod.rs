@@ -21,8 +21,8 @@ mod tests;
 
 pub use ast::*;
 pub use keyword::{
-    FUNCTIONS, LAWS, PIECEWISE, SECTIONS, foreign_function, is_function, is_not_differentiable,
-    is_rust_keyword,
+    FUNCTIONS, LAWS, PIECEWISE, RESET, SECTIONS, foreign_function, is_function,
+    is_not_differentiable, is_rust_keyword,
 };
 pub use limits::{
     COORDINATES, EXPONENT, EXPONENT_DENOMINATOR_BITS, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS,

@@ -348,7 +348,8 @@ fn law_help() -> String {
         false => name.to_owned(),
     });
     format!(
-        "Use this impact law, at one surface or at all; may be repeated. Laws: {}, with E in [0, 1]",
+        "Use this impact law, at one surface or at all; may be repeated. Laws: {}, with E in [0, 1]; reset where one is \
+         declared",
         laws.join(", ")
     )
 }

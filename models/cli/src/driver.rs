@@ -263,7 +263,12 @@ fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, V
             surface: index,
             rho,
         } => vec![surface(index), ("rho", json::number(rho))],
+        Outcome::ResetOffConstraint {
+            surface: index,
+            constraint: broken,
+        } => vec![surface(index), constraint(broken)],
         Outcome::Contact { surface: index }
+        | Outcome::NoReset { surface: index }
         | Outcome::TangentialCrossing { surface: index }
         | Outcome::SingularSurface { surface: index } => vec![surface(index)],
         Outcome::StartsInside {

@@ -6,7 +6,9 @@
 use dalembert::describe::{Described, Description, Report};
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::state::StateVector;
-use dalembert::{Fault, Lagrangian, ParameterError, Scene, StateError, System, TaylorField};
+use dalembert::{
+    Fault, Lagrangian, ParameterError, Scene, SceneEffects, StateError, System, TaylorField,
+};
 
 use crate::args::{Form, OffConstraint};
 use crate::driver::{self, Ending, Settings, Watch};
@@ -140,6 +142,8 @@ pub(crate) trait AnyModel {
     fn state(&self, t: f64, origin: &Origin) -> Result<Vec<f64>, StateError>;
     fn region(&self, t: f64, q: &[f64]) -> Option<f64>;
     fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault>;
+    /// The law that a surface declares.
+    fn law(&self, surface: usize) -> Option<Law>;
     /// The state after the impact of a law.
     fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64>;
     fn simulate(
@@ -285,6 +289,10 @@ impl<M: Model> AnyModel for Typed<M> {
         let (q, qdot) = (global.position(&state), global.velocity(t, &state)?);
         let state = self.0.state_unchecked(t, &q, &qdot)?;
         self.0.inspect_frame(t, &state, report)
+    }
+
+    fn law(&self, surface: usize) -> Option<Law> {
+        self.0.effects().law(&self.0, surface)
     }
 
     fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64> {

@@ -49,6 +49,12 @@ pub enum CliError {
         /// The model.
         model: &'static str,
     },
+    /// The law `reset` for a surface without one.
+    #[error("--law: surface `{surface}` declares no reset")]
+    NoReset {
+        /// The surface.
+        surface: &'static str,
+    },
     /// Flags that do not go together, or one that needs another.
     #[error("{0}")]
     Usage(&'static str),

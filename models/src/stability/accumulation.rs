@@ -19,6 +19,30 @@ dalembert::model! {
     }
 }
 
+dalembert::model! {
+    /// A point thrown over treads along the curve `y = a^2 x (sqrt(2) v0 - a^2 x)`, horizontal where it meets them.
+    pub Treads {
+        coordinates { x; y; }
+        parameters { a > 0 = 1/2; v0 > 0 = 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        impacts { tread: y >= a^2*x*(sqrt(2)*v0 - a^2*x) => reset { dot(y) = -dot(y); }; }
+        claims { conserved under tread: energy; }
+    }
+}
+
+dalembert::model! {
+    /// A strip whose walls multiply the normal speed by `al` and the tangential one by `be`.
+    pub Strip {
+        coordinates { x; y; }
+        parameters { al > 0 = 5/4; be > 0 = 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts {
+            left: x >= 0 => reset { dot(x) = -al*dot(x); dot(y) = be*dot(y); };
+            right: x <= 1 => reset { dot(x) = -al*dot(x); dot(y) = be*dot(y); };
+        }
+    }
+}
+
 /// Why a field cannot be declared.
 const NO_FIELD: &str = "`field` is not implemented: a first-order system cannot be declared";
 
@@ -45,7 +69,7 @@ pub const CASES: &[Case] = &[
         title: "super-elastic walls, factor 1.25",
         right: "t_n = (1/v0) sum of 1.25^-k, accumulating at al/(v0 (al - 1)) = 5, speed unbounded",
         bound: "`spasmodic` within 1e-8; no infinite number",
-        run: Run::Steps(|setting, report| super_elastic(setting, report, |vy| vy)),
+        run: Run::Steps(|setting, report| super_elastic(setting, report, 1.0)),
         ..Case::QUICK
     },
     Case {
@@ -53,7 +77,7 @@ pub const CASES: &[Case] = &[
         title: "super-elastic strip whose tangential factor keeps the volume",
         right: "times as B08; al^2 be = 1",
         bound: "as B08",
-        run: Run::Steps(|setting, report| super_elastic(setting, report, |vy| vy * AL.powi(-2))),
+        run: Run::Steps(|setting, report| super_elastic(setting, report, AL.powi(-2))),
         ..Case::QUICK
     },
     Case {
@@ -108,18 +132,12 @@ pub const CASES: &[Case] = &[
 
 /// Elastic treads along `y = a^2 x (sqrt(2) - a^2 x)`, met at horizontal speed 1 and slope `v0 = 1`.
 fn treads(setting: Setting, report: &mut Report) {
-    const CURVES: [(f64, super::by_hand::Gap); 4] = [
-        (0.5, |at| rising(0.5, at)),
-        (0.7, |at| rising(0.7, at)),
-        (0.8, |at| rising(0.8, at)),
-        (0.84, |at| rising(0.84, at)),
-    ];
-    for (a, curve) in CURVES {
+    for a in [0.5, 0.7, 0.8, 0.84] {
         let k = 2.0_f64.sqrt() * a * a;
         let r = (1.0 - k) / (1.0 + k);
-        let system = Point {
-            acceleration: [0.0, -1.0],
-            surfaces: [(curve, |[vx, vy]| [vx, -vy])],
+        let system = Treads {
+            a,
+            ..Treads::default()
         };
         let end = Course::new(&system, &[0.0, 0.0], &[1.0, 1.0], 5.0 / k).run(setting);
         let bound = if a > 0.8 { 1e-6 } else { 1e-10 };
@@ -173,25 +191,13 @@ fn rising(a: f64, [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
 /// The factor of B08.
 const AL: f64 = 1.25;
 
-/// Walls at 0 and 1 that multiply the normal speed by [`AL`], and make of the tangential one what `tangential` says.
-fn strip(tangential: fn(f64) -> f64) -> Point<2> {
-    let left: super::by_hand::Gap = |[x, _]| (x, [1.0, 0.0]);
-    let right: super::by_hand::Gap = |[x, _]| (1.0 - x, [-1.0, 0.0]);
-    let plain: super::by_hand::Reset = |[vx, vy]| [-AL * vx, vy];
-    let slowed: super::by_hand::Reset = |[vx, vy]| [-AL * vx, vy * AL.powi(-2)];
-    let reset = if tangential(1.0) == 1.0 {
-        plain
-    } else {
-        slowed
-    };
-    Point {
-        acceleration: [0.0; 2],
-        surfaces: [(left, reset), (right, reset)],
-    }
+/// The strip with this tangential factor.
+fn strip(be: f64) -> Strip {
+    Strip { al: AL, be }
 }
 
-fn super_elastic(setting: Setting, report: &mut Report, tangential: fn(f64) -> f64) {
-    let end = Course::new(&strip(tangential), &[0.0, 0.0], &[1.0, 1.0], 10.0).run(setting);
+fn super_elastic(setting: Setting, report: &mut Report, be: f64) {
+    let end = Course::new(&strip(be), &[0.0, 0.0], &[1.0, 1.0], 10.0).run(setting);
     report.class(&end.outcome, "spasmodic");
     report.near("time", limit(&end.outcome), AL / (AL - 1.0), 1e-8 * 5.0);
     report.equal(
@@ -202,7 +208,7 @@ fn super_elastic(setting: Setting, report: &mut Report, tangential: fn(f64) -> f
 }
 
 fn super_elastic_impacts(setting: Setting, report: &mut Report) {
-    let end = Course::new(&strip(|vy| vy), &[0.0, 0.0], &[1.0, 1.0], 10.0)
+    let end = Course::new(&strip(1.0), &[0.0, 0.0], &[1.0, 1.0], 10.0)
         .impacts(40)
         .run(setting);
     report.class(&end.outcome, "impact_budget");

@@ -2,6 +2,7 @@
 
 use super::hits::Hits;
 use super::impulse::{Impacts, STILL};
+use super::law::Law;
 use super::policy::Corner;
 use crate::contract::Impacting;
 use crate::effects::Moment;
@@ -56,7 +57,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         Ok((difference > SAME * changes).then_some([first, last]))
     }
 
-    /// The state after all impacts in an order; `None` if they do not end.
+    /// The state after all impacts in an order; `None` if they do not end, or a reset takes it elsewhere.
     fn carried(
         &self,
         mut hits: Hits<Sys::Gaps>,
@@ -71,8 +72,16 @@ impl<Sys: Impacting> Impacts<Sys> {
             };
             hits.set_still(surface, STILL * rates.as_slice()[surface].abs());
             let struck = self.struck(now.system, surface, now.t, &state)?;
+            let position = now.system.position(&state);
             (state, rates) = (struck.after, struck.rates);
-            hits.set_still(surface, -rates.as_slice()[surface]);
+            if self.law_of(now.system, surface) == Law::Reset {
+                hits.set_done(surface);
+                if now.system.position(&state) != position {
+                    return Ok(None);
+                }
+            } else {
+                hits.set_still(surface, -rates.as_slice()[surface]);
+            }
         }
         Ok(None)
     }

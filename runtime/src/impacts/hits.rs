@@ -63,6 +63,24 @@ impl<G: StateVector> Hits<G> {
             .find(|&surface| self.is_approached(surface, rates))
     }
 
+    /// The gap was seen to fall through 0: it counts as approached, whatever its rate.
+    pub(super) fn set_fallen(&mut self, surface: usize) {
+        self.still.as_mut_slice()[surface] = f64::NEG_INFINITY;
+    }
+
+    /// The surface is at hand and was dealt with.
+    pub(super) fn set_done(&mut self, surface: usize) {
+        self.still.as_mut_slice()[surface] = f64::INFINITY;
+    }
+
+    /// The surfaces at hand are others now; those dealt with stay so.
+    pub(super) fn replace(&mut self, at_hand: G) {
+        self.at_hand = at_hand;
+        for still in self.still.as_mut_slice() {
+            *still = still.max(0.0);
+        }
+    }
+
     /// From now on, gap rates above `-rate` count as not approaching.
     pub(super) fn set_still(&mut self, surface: usize, rate: f64) {
         let still = &mut self.still.as_mut_slice()[surface];

@@ -5,9 +5,10 @@ use core::ops::ControlFlow;
 use super::accumulation::{Accumulation, Ends};
 use super::held::Held;
 use super::hits::Hits;
-use super::law::{Contact, Law};
+use super::law::Law;
 use super::override_table::Overrides;
 use super::policy::{Corner, Penetration, Policies, Rest};
+use super::reset::after_reset;
 use super::resting::Resting;
 use super::watch::Watch;
 use crate::contract::Impacting;
@@ -30,6 +31,10 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 /// Hits at the same time (within rounding) are carried out in order of index, again and again until no surface at
 /// hand is approached. Where that order matters, where a law leaves the state approaching, and where the motion presses
 /// into a surface, the [`Policies`] say how to go on; by default the run ends, after an impact with the state after it.
+///
+/// A surface with the law [`Law::Reset`] has no side that is not allowed: it counts whenever its gap falls through 0 from
+/// above, and where the reset leaves it falling it is crossed. At the first instant of a run, and where a reset has moved
+/// the position, a surface at hand counts if it is approached.
 #[derive(Debug, Clone)]
 pub struct Impacts<Sys: Impacting> {
     overrides: Overrides<Sys::Gaps>,
@@ -45,7 +50,8 @@ pub(super) struct Struck<Sys: Impacting> {
     pub(super) after: Sys::State,
     /// Gap rates after it.
     pub(super) rates: Sys::Gaps,
-    contact: Contact<Sys::Impulse>,
+    /// See [`Contact::rho`](super::law::Contact::rho); none after a reset.
+    rho: Option<f64>,
 }
 
 impl<Sys: Impacting> Impacts<Sys> {
@@ -141,14 +147,24 @@ impl<Sys: Impacting> Impacts<Sys> {
             if now.counters.impacts >= self.budget {
                 return Err(Outcome::ImpactBudget);
             }
-            if self.watch.is_tangential_crossing(surface) {
-                return Err(Outcome::TangentialCrossing { surface });
-            }
             let before = rates.as_slice()[surface];
-            hits.set_still(surface, STILL * before.abs());
-            rates = self.impact(surface, several, before, now, observer)?;
-            // What still approaches here does so within rounding.
-            hits.set_still(surface, -rates.as_slice()[surface]);
+            if self.law_of(now.system, surface) == Law::Reset {
+                let position = now.system.position(now.state);
+                rates = self.impact(surface, several, before, now, observer)?;
+                hits.set_done(surface);
+                if now.system.position(now.state) != position {
+                    self.watch.relocate(&mut hits, &rates, now)?;
+                    self.resting.leave_all(now, observer)?;
+                }
+            } else {
+                if self.watch.is_tangential_crossing(surface) {
+                    return Err(Outcome::TangentialCrossing { surface });
+                }
+                hits.set_still(surface, STILL * before.abs());
+                rates = self.impact(surface, several, before, now, observer)?;
+                // What still approaches here does so within rounding.
+                hits.set_still(surface, -rates.as_slice()[surface]);
+            }
             several = several || hits.approached(&rates) > 0;
         }
         self.watch.leave(&hits, now, rates)
@@ -163,26 +179,17 @@ impl<Sys: Impacting> Impacts<Sys> {
         before: &Sys::State,
     ) -> Result<Struck<Sys>, Outcome> {
         let law = self.law_of(system, surface);
-        let contact = system.contact(surface, t, before)?;
-        let mut after = *before;
-        system.kick(&mut after, contact.impulse(law), &contact.direction);
-        // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction; without this the
-        // energy would drift like the number of impacts instead of its root.
-        let missed = contact.gap_rate
-            - contact.rate_taken(law)
-            - system.gap_rates(t, &after)?.as_slice()[surface];
-        let correction = missed / contact.constrained_compliance;
-        if correction.is_finite() {
-            system.kick(&mut after, correction, &contact.direction);
-        }
+        let (after, rho) = match law {
+            Law::Reset => (after_reset(system, surface, t, before)?, None),
+            _ => {
+                let (after, rho) = kicked(system, surface, law, t, before)?;
+                (after, Some(rho))
+            }
+        };
         let rates = system.gap_rates(t, &after)?;
         match after.as_slice().iter().position(|value| !value.is_finite()) {
             Some(component) => Err(Outcome::NonFinite { component }),
-            None => Ok(Struck {
-                after,
-                rates,
-                contact,
-            }),
+            None => Ok(Struck { after, rates, rho }),
         }
     }
 
@@ -197,8 +204,10 @@ impl<Sys: Impacting> Impacts<Sys> {
     ) -> Result<Sys::Gaps, Outcome> {
         let (t, before) = (now.t, *now.state);
         let mut struck = self.struck(now.system, surface, t, &before)?;
+        // A reset that leaves the gap falling crosses the surface.
         let penetrates = self.penetrates(surface, rate, struck.rates.as_slice()[surface], now);
-        if penetrates && self.policies.penetration == Penetration::Repeat {
+        let repeats = self.policies.penetration == Penetration::Repeat;
+        if penetrates && repeats && struck.rho.is_some() {
             struck.take_rate(now.system, surface, t)?;
         }
         *now.state = struck.after;
@@ -215,16 +224,16 @@ impl<Sys: Impacting> Impacts<Sys> {
         if let ControlFlow::Break(()) = observer.event(&event) {
             return Err(Outcome::Stopped);
         }
-        if penetrates && self.policies.penetration == Penetration::Stop {
-            return Err(Outcome::StillPenetrating {
-                surface,
-                rho: struck.contact.rho(),
-            });
+        if let Some(rho) = struck.rho
+            && penetrates
+            && self.policies.penetration == Penetration::Stop
+        {
+            return Err(Outcome::StillPenetrating { surface, rho });
         }
         if now.counters.impacts >= self.budget {
             return Err(Outcome::ImpactBudget);
         }
-        self.accumulate(surface, rate, struck, now)
+        self.accumulate(surface, rate, penetrates, struck, now)
     }
 
     /// Whether the state still approaches a surface after an impact at gap rate `rate`.
@@ -241,28 +250,34 @@ impl<Sys: Impacting> Impacts<Sys> {
             && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
     }
 
-    /// Takes in an impact at gap rate `rate`; returns the gap rates to go on with.
+    /// Takes in an impact at gap rate `rate`, whether it `passes` through the surface; returns the gap rates to go on
+    /// with.
     fn accumulate(
         &mut self,
         surface: usize,
         rate: f64,
+        passes: bool,
         mut struck: Struck<Sys>,
         now: &mut Moment<'_, Sys>,
     ) -> Result<Sys::Gaps, Outcome> {
         let (system, t) = (now.system, now.t);
+        let is_reset = struck.rho.is_none();
         let rate_after = struck.rates.as_slice()[surface];
-        let bounce = if rate_after > STILL * rate.abs() {
-            rate_after
-        } else {
-            0.0
-        };
-        let energy = || system.energy(t, &struck.after).unwrap_or(f64::NAN);
+        // A reset sets its rate to the last digit; an impulse leaves rounding errors of the rate it takes.
+        let still = if is_reset { 0.0 } else { STILL * rate.abs() };
         let watch = &self.watch;
-        let rounding = || watch.rounding(surface, now);
-        match self.accumulation.add(surface, t, bounce, rounding, energy) {
+        let ends = if is_reset && passes {
+            self.accumulation.pass(surface, t)
+        } else {
+            let bounce = if rate_after > still { rate_after } else { 0.0 };
+            let energy = || system.energy(t, &struck.after).unwrap_or(f64::NAN);
+            let rounding = || watch.rounding(surface, now);
+            self.accumulation.add(surface, t, bounce, rounding, energy)
+        };
+        match ends {
             None => Ok(struck.rates),
             Some(Ends::Spasmodic(t)) => Err(Outcome::Spasmodic { t, surface }),
-            Some(Ends::Hops(t)) if self.policies.rest == Rest::Contact => {
+            Some(Ends::Hops(t)) if self.policies.rest == Rest::Contact && !is_reset => {
                 // Hops too small to be seen: what is left of the last one is taken.
                 struck.take_rate(system, surface, now.t)?;
                 *now.state = struck.after;
@@ -285,6 +300,29 @@ impl<Sys: Impacting> Struck<Sys> {
     }
 }
 
+/// The state after the impulse of a law, and `rho`.
+fn kicked<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    law: Law,
+    t: f64,
+    before: &Sys::State,
+) -> Result<(Sys::State, f64), Outcome> {
+    let contact = system.contact(surface, t, before)?;
+    let mut after = *before;
+    system.kick(&mut after, contact.impulse(law), &contact.direction);
+    // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction; without this the
+    // energy would drift like the number of impacts instead of its root.
+    let missed = contact.gap_rate
+        - contact.rate_taken(law)
+        - system.gap_rates(t, &after)?.as_slice()[surface];
+    let correction = missed / contact.constrained_compliance;
+    if correction.is_finite() {
+        system.kick(&mut after, correction, &contact.direction);
+    }
+    Ok((after, contact.rho()))
+}
+
 impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
     type Forces = Held<Sys::Gaps>;
 
@@ -300,6 +338,13 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
     ) -> Result<(), Outcome> {
         self.accumulation = Accumulation::none();
         self.resting = Resting::none();
+        for surface in 0..Sys::Gaps::LEN {
+            let resets = self.law_of(now.system, surface) == Law::Reset;
+            if resets && now.system.law(surface) != Law::Reset {
+                return Err(Outcome::NoReset { surface });
+            }
+            self.watch.set_passable(surface, resets);
+        }
         let hits = self.watch.begin(now)?;
         self.strike(hits, now, observer)
     }

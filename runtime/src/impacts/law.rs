@@ -1,6 +1,6 @@
-//! Impact laws: how large the impulse along `pi_D^* dh` is.
+//! Impact laws: how large the impulse along `pi_D^* dh` is, or what the state is reset to.
 //!
-//! Every law is `p+ = p + eps pi_D^* dh`; a law is a choice of `eps`. With `G` the gap rate
+//! Every law but `reset` is `p+ = p + eps pi_D^* dh`, a choice of `eps`. With `G` the gap rate
 //! `dh(qdot) + d_t h`, `rho = dh(pi_D grad h) / dh(grad h)`:
 //!
 //! | law | eps |
@@ -34,6 +34,18 @@ pub enum Law {
     ImpactPlastic,
     /// The gap rate is multiplied by `1 - rho`.
     TotallyPlastic,
+    /// The declared map of positions and velocities, [`Impacting::reset`](crate::Impacting::reset). The surface has no
+    /// side that is not allowed: where the map leaves the gap falling, it is crossed.
+    Reset,
+}
+
+/// Positions and velocities after a reset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jump<V> {
+    /// q, N numbers.
+    pub position: V,
+    /// qdot, N numbers.
+    pub velocity: V,
 }
 
 /// What an impact at a state needs, derived and emitted for each surface.
@@ -60,12 +72,12 @@ impl<V: StateVector> Contact<V> {
         self.constrained_compliance / self.free_compliance
     }
 
-    /// The impulse's size `eps`: `p+ = p + eps pi_D^* dh`.
+    /// The impulse's size `eps`: `p+ = p + eps pi_D^* dh`. NaN for [`Law::Reset`], which is no impulse.
     pub fn impulse(&self, law: Law) -> f64 {
         -self.rate_taken(law) / self.constrained_compliance
     }
 
-    /// What a law takes from the gap rate.
+    /// What a law takes from the gap rate; NaN for [`Law::Reset`].
     pub fn rate_taken(&self, law: Law) -> f64 {
         let elastic = self.constrained_rate + self.surface_rate;
         match law {
@@ -75,6 +87,7 @@ impl<V: StateVector> Contact<V> {
             Law::NonholonomicPlastic => 2.0 * self.rho() * self.gap_rate,
             Law::ImpactPlastic => self.gap_rate,
             Law::TotallyPlastic => self.rho() * self.gap_rate,
+            Law::Reset => f64::NAN,
         }
     }
 
@@ -86,13 +99,14 @@ impl<V: StateVector> Contact<V> {
 
 impl Law {
     /// The laws by the names the language and the command line use, with whether they take a coefficient.
-    pub const NAMES: [(&'static str, bool); 6] = [
+    pub const NAMES: [(&'static str, bool); 7] = [
         ("elastic", false),
         ("restitution", true),
         ("newton", true),
         ("nonholonomic_plastic", false),
         ("impact_plastic", false),
         ("totally_plastic", false),
+        ("reset", false),
     ];
 
     /// The law's name.
@@ -104,6 +118,7 @@ impl Law {
             Self::NonholonomicPlastic => "nonholonomic_plastic",
             Self::ImpactPlastic => "impact_plastic",
             Self::TotallyPlastic => "totally_plastic",
+            Self::Reset => "reset",
         }
     }
 
@@ -114,7 +129,8 @@ impl Law {
             Self::Elastic
             | Self::NonholonomicPlastic
             | Self::ImpactPlastic
-            | Self::TotallyPlastic => None,
+            | Self::TotallyPlastic
+            | Self::Reset => None,
         }
     }
 
@@ -127,6 +143,7 @@ impl Law {
             "nonholonomic_plastic" => Self::NonholonomicPlastic,
             "impact_plastic" => Self::ImpactPlastic,
             "totally_plastic" => Self::TotallyPlastic,
+            "reset" => Self::Reset,
             _ => return None,
         })
     }
@@ -153,7 +170,8 @@ mod tests {
             Law::Newton(_) => Some(Law::NonholonomicPlastic),
             Law::NonholonomicPlastic => Some(Law::ImpactPlastic),
             Law::ImpactPlastic => Some(Law::TotallyPlastic),
-            Law::TotallyPlastic => None,
+            Law::TotallyPlastic => Some(Law::Reset),
+            Law::Reset => None,
         }
     }
 

@@ -11,6 +11,7 @@ pub mod law;
 mod override_table;
 pub mod policy;
 mod release;
+mod reset;
 mod resting;
 mod series;
 mod watch;

@@ -190,6 +190,20 @@ impl<G: StateVector> Resting<G> {
         }
     }
 
+    /// Leaves every surface: the state was taken elsewhere.
+    pub(super) fn leave_all<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+        &mut self,
+        now: &Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        for surface in 0..G::LEN {
+            if self.held.is_held(surface) {
+                self.leave(surface, now, observer)?;
+            }
+        }
+        Ok(())
+    }
+
     fn leave<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         surface: usize,

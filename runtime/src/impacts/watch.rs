@@ -3,6 +3,8 @@
 //! The gaps and their rates at the ends, and one probe between, settle most steps without dense output. A gap of
 //! exactly 0 at the start of a step stands for a surface at hand: it was just hit, or touched within rounding.
 //! Its root there is divided out, so it is neither found again nor hides a later one.
+//!
+//! A surface is passable where its law is a reset: its gap may be negative, and falls count from above only.
 
 use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::{Held, second_rates};
@@ -29,8 +31,11 @@ const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 /// The gaps at the start of the coming step, and what was found in the last one looked at.
 #[derive(Debug, Clone)]
 pub(super) struct Watch<Sys: Impacting> {
-    /// Gaps at the start of the step; 0 for surfaces at hand, negative only where the surface does not count.
+    /// Gaps at the start of the step; 0 for surfaces at hand, negative only where the surface does not count or is
+    /// passable.
     gaps: Sys::Gaps,
+    /// 1 for passable surfaces.
+    passable: Sys::Gaps,
     rates: Sys::Gaps,
     /// The earliest proposal of the last step.
     proposed: Option<f64>,
@@ -55,6 +60,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let zeros = Sys::Gaps::zeros();
         Self {
             gaps: zeros,
+            passable: zeros,
             rates: zeros,
             proposed: None,
             parts: zeros,
@@ -72,26 +78,48 @@ impl<Sys: Impacting> Watch<Sys> {
         self.held = *held;
     }
 
+    /// Says whether a surface is passable in the coming run.
+    pub(super) fn set_passable(&mut self, surface: usize, passable: bool) {
+        self.passable.as_mut_slice()[surface] = f64::from(u8::from(passable));
+    }
+
+    fn is_passable(&self, surface: usize) -> bool {
+        self.passable.as_slice()[surface] == 1.0
+    }
+
     /// The surfaces at hand at the first instant of a run.
     pub(super) fn begin(&mut self, now: &mut Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
         self.proposed = None;
         self.held = Held::none();
+        let rates = now.system.gap_rates(now.t, now.state)?;
+        let mut hits = Hits::<Sys::Gaps>::none();
+        self.relocate(&mut hits, &rates, now)?;
+        Ok(hits)
+    }
+
+    /// The surfaces at hand at a position that the motion did not come to by itself.
+    pub(super) fn relocate(
+        &mut self,
+        hits: &mut Hits<Sys::Gaps>,
+        rates: &Sys::Gaps,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<(), Outcome> {
         self.grazes = Sys::Gaps::zeros();
         self.bends = Sys::Gaps::zeros();
         (self.sizes, self.steps) = (*now.state, 0);
-        let rates = now.system.gap_rates(now.t, now.state)?;
         let gaps = measured(now)?;
-        let mut hits = Hits::<Sys::Gaps>::none();
+        let mut at_hand = Sys::Gaps::zeros();
         for (surface, &gap) in gaps.as_slice().iter().enumerate() {
             if now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (rates.as_slice()[surface] * now.t).abs();
                 let state = *now.state;
                 if gap.abs() <= 2.0 * rounding(now, surface, &state) + drift {
-                    hits.at_hand.as_mut_slice()[surface] = 1.0;
+                    at_hand.as_mut_slice()[surface] = 1.0;
                 }
             }
         }
-        Ok(hits)
+        hits.replace(at_hand);
+        Ok(())
     }
 
     /// Takes in the state that motion goes on from, after impacts on the surfaces at hand.
@@ -122,14 +150,12 @@ impl<Sys: Impacting> Watch<Sys> {
         if self.proposed.is_none() {
             return Ok(hits);
         }
-        for (hit, part) in hits
-            .at_hand
-            .as_mut_slice()
-            .iter_mut()
-            .zip(self.parts.as_slice())
-        {
+        for (surface, part) in self.parts.as_slice().iter().enumerate() {
             if (part - theta) * self.length <= SAME_TIME * now.t.abs() {
-                *hit = 1.0;
+                hits.add([surface].into_iter());
+                if self.is_passable(surface) {
+                    hits.set_fallen(surface);
+                }
             }
         }
         if Sys::Gaps::LEN > 1 && hits.is_some() {
@@ -151,6 +177,9 @@ impl<Sys: Impacting> Watch<Sys> {
         for surface in 0..Sys::Gaps::LEN {
             let (gap, rate) = (gaps.as_slice()[surface], rates.as_slice()[surface]);
             let is_near = rate < 0.0 && gap.abs() <= BESIDE * rate.abs() * self.length;
+            if self.is_passable(surface) && self.gaps.as_slice()[surface] <= 0.0 {
+                continue;
+            }
             if is_near
                 && gap.abs() <= roundings * rounding(now, surface, &self.sizes)
                 && now.system.surface_active(surface, now.t, now.state)
@@ -223,8 +252,14 @@ impl<Sys: Impacting> Watch<Sys> {
         let before = self.gaps;
         self.gaps = glance.gaps;
         self.rates = glance.rates;
-        if self.gaps.as_slice().iter().all(|&gap| gap >= 0.0) {
+        if self.gaps.as_slice().iter().all(|&gap| gap > 0.0) {
             return Ok(());
+        }
+        for surface in 0..Sys::Gaps::LEN {
+            if self.is_passable(surface) {
+                let start = before.as_slice()[surface];
+                self.keep_side(surface, start, step, glance);
+            }
         }
         for surface in 0..Sys::Gaps::LEN {
             let (gap, at_hand) = (
@@ -244,6 +279,22 @@ impl<Sys: Impacting> Watch<Sys> {
             state: &mut state,
             counters,
         })
+    }
+
+    /// A passable surface that is met within rounding at the end of the step, without a fall that counted, has not been
+    /// crossed: its gap gets the smallest number of the side that the motion came from.
+    fn keep_side<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        start: f64,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) {
+        let gap = self.gaps.as_slice()[surface];
+        let meets = gap == 0.0 && start != 0.0;
+        if meets || (gap < 0.0 && start > 0.0 && !self.is_sunk(surface, step, glance)) {
+            self.gaps.as_mut_slice()[surface] = f64::MIN_POSITIVE.copysign(start);
+        }
     }
 
     /// Whether the motion goes into a surface at hand, rather than along it within rounding. Rounding adds up
@@ -355,9 +406,11 @@ impl<Sys: Impacting> Watch<Sys> {
         let gap = self.gaps.as_slice()[surface];
         let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
         let until = self.proposed.unwrap_or(1.0);
+        // A passable surface at hand has counted: it is left upwards, or crossed.
+        let crosses = self.is_passable(surface) && slope.is_some_and(|slope| slope <= 0.0);
         let mut start = Start {
             from: 0.0,
-            above: gap >= 0.0,
+            above: gap >= 0.0 && !crosses,
             slope,
             until,
         };
@@ -429,7 +482,8 @@ impl<Sys: Impacting> Watch<Sys> {
         let mut evaluations = 1;
         let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
         step.counters.event_evaluations += evaluations;
-        if gap < -2.0 * rounding && is_active(surface, step, part) {
+        let counts = !self.is_passable(surface) && is_active(surface, step, part);
+        if gap < -2.0 * rounding && counts {
             return Err(Outcome::StartsInside { surface, gap });
         }
         Ok(())
@@ -475,7 +529,8 @@ impl<Sys: Impacting> Watch<Sys> {
     fn check_negative(&mut self, now: &mut Moment<'_, Sys>) -> Result<(), Outcome> {
         for surface in 0..Sys::Gaps::LEN {
             let gap = self.gaps.as_slice()[surface];
-            if gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
+            let is_wall = !self.is_passable(surface);
+            if is_wall && gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (self.rates.as_slice()[surface] * now.t).abs();
                 if gap < -2.0 * rounding(now, surface, &self.sizes) - drift {
                     return Err(Outcome::StartsInside { surface, gap });

@@ -5,7 +5,7 @@ pub mod line;
 
 use dalembert::{
     Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Gauss4, Gauss6, Impacting, Impacts,
-    Law, Outcome, ParameterError, Rk4, Run, Simulation, Stepper, System, Taylor, TaylorField,
+    Jump, Law, Outcome, ParameterError, Rk4, Run, Simulation, Stepper, System, Taylor, TaylorField,
     Tolerance, VectorField, jet::LENGTH,
 };
 use nalgebra::SVector;
@@ -23,6 +23,8 @@ pub struct Particle<const S: usize> {
     pub law: Law,
     /// Where each surface counts.
     pub active: fn(usize, [f64; 2]) -> bool,
+    /// What the law `reset` makes of a state.
+    pub reset: fn(usize, State) -> State,
 }
 
 impl<const S: usize> Particle<S> {
@@ -32,7 +34,15 @@ impl<const S: usize> Particle<S> {
             surfaces,
             law: Law::Elastic,
             active: |_, _| true,
+            reset: |_, state| state,
         }
+    }
+
+    /// With a reset on every surface.
+    pub fn with_reset(mut self, reset: fn(usize, State) -> State) -> Self {
+        self.law = Law::Reset;
+        self.reset = reset;
+        self
     }
 
     pub fn with_law(mut self, law: Law) -> Self {
@@ -133,6 +143,17 @@ impl<const S: usize> Impacting for Particle<S> {
 
     fn law(&self, _: usize) -> Law {
         self.law
+    }
+
+    fn reset(&self, surface: usize, t: f64, state: &State) -> Result<Option<Jump<Vector>>, Fault> {
+        if self.law != Law::Reset {
+            return Ok(None);
+        }
+        let after = (self.reset)(surface, *state);
+        Ok(Some(Jump {
+            position: self.position(&after),
+            velocity: self.velocity(t, &after)?,
+        }))
     }
 
     fn contact(&self, surface: usize, _: f64, state: &State) -> Result<Contact<Vector>, Fault> {

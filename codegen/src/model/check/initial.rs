@@ -3,10 +3,10 @@
 use dalembert_expr::ExprId;
 
 use super::super::resolve::{Resolver, Scope};
-use super::super::symbols::Meaning;
 use super::super::{Initial, Topology};
-use crate::diagnostics::{Location, nearest};
-use crate::spec::{Declared, Index, InitialTarget, InitialValue, Scalar};
+use super::targets::Section;
+use crate::diagnostics::Location;
+use crate::spec::{Declared, InitialTarget, InitialValue, Scalar};
 
 /// All initial values by coordinate.
 pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Initial {
@@ -19,7 +19,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Initial {
     };
     let mut given: Vec<(InitialTarget, usize, Location)> = Vec::new();
     for entry in &spec.initial {
-        for (index, scope) in resolver.targets(entry) {
+        for (index, scope) in resolver.initial_targets(entry) {
             resolver.given_once(&mut given, entry, index);
             let Some(value) = resolver.initial_value(entry, index, scope) else {
                 break;
@@ -61,6 +61,14 @@ fn target_text(entry: &InitialValue) -> String {
 }
 
 impl Resolver<'_> {
+    /// The coordinates that an entry is about, each with what its index stands for; one without meaning for `until`.
+    fn initial_targets(&mut self, entry: &InitialValue) -> Vec<(usize, Scope)> {
+        match entry.target {
+            InitialTarget::Until => vec![(0, Scope::default())],
+            _ => self.targets(&entry.declared, &Scope::default(), Section::Initial),
+        }
+    }
+
     /// Refuses a second value for the same quantity.
     fn given_once(
         &mut self,
@@ -101,7 +109,12 @@ impl Resolver<'_> {
     }
 
     /// Refuses a constant outside of the interval of its coordinate.
-    fn check_in_chart(&mut self, written: &Scalar, index: usize, value: ExprId) -> Option<()> {
+    pub(super) fn check_in_chart(
+        &mut self,
+        written: &Scalar,
+        index: usize,
+        value: ExprId,
+    ) -> Option<()> {
         let coordinate = &self.symbols.coordinates[index];
         if self.is_in_chart(coordinate.topology, value) {
             return Some(());
@@ -122,114 +135,5 @@ impl Resolver<'_> {
         };
         let value = self.constant_value(value);
         value.is_nan() || (self.constant_value(low) < value && value < self.constant_value(high))
-    }
-
-    /// The coordinates that an entry is about, each with what its index stands for; one without meaning for `until`.
-    fn targets(&mut self, entry: &InitialValue) -> Vec<(usize, Scope)> {
-        if entry.target == InitialTarget::Until {
-            return vec![(0, Scope::default())];
-        }
-        let name = &entry.declared.name;
-        match self
-            .symbols
-            .names
-            .get(&name.text)
-            .map(|(meaning, _)| *meaning)
-        {
-            Some(Meaning::Coordinate(index)) => match &entry.declared.index {
-                None => vec![(index, Scope::default())],
-                Some(_) => self.no_target(
-                    name.at,
-                    format!("`{}` is not a family", name.text),
-                    format!("write `{}`", name.text),
-                ),
-            },
-            Some(Meaning::Coordinates(first, size)) => {
-                self.family_targets(&entry.declared, first, size)
-            }
-            Some(meaning) => {
-                let text = format!("`{}` is a {}, not a coordinate", name.text, meaning.noun());
-                let help = "parameters take their values from `parameters`".to_owned();
-                self.no_target(name.at, text, help)
-            }
-            None => self.unknown_target(entry),
-        }
-    }
-
-    fn family_targets(
-        &mut self,
-        declared: &Declared,
-        first: usize,
-        size: usize,
-    ) -> Vec<(usize, Scope)> {
-        let name = &declared.name;
-        match &declared.index {
-            None => {
-                let help = format!(
-                    "write `{}[1]`, or `{}[i in 1..={size}]` for all",
-                    name.text, name.text
-                );
-                self.no_target(
-                    name.at,
-                    format!("`{}` is a family of {size}", name.text),
-                    help,
-                )
-            }
-            Some(Index::One(index)) => {
-                let member = self.integer(index, &mut Scope::default());
-                let offset = member.and_then(|member| self.offset(name, index, member, size));
-                offset
-                    .map(|offset| (first + offset, Scope::default()))
-                    .into_iter()
-                    .collect()
-            }
-            Some(Index::Each(binder)) => {
-                let mut targets = Vec::new();
-                for member in self
-                    .range(binder, &mut Scope::default())
-                    .into_iter()
-                    .flatten()
-                {
-                    let Some(offset) = self.offset(name, &binder.high, member, size) else {
-                        break;
-                    };
-                    let value = self.pool.int(member);
-                    let mut scope = Scope::default();
-                    scope.bind(&binder.name.text, value.into());
-                    targets.push((first + offset, scope));
-                }
-                targets
-            }
-        }
-    }
-
-    fn unknown_target(&mut self, entry: &InitialValue) -> Vec<(usize, Scope)> {
-        let name = &entry.declared.name;
-        let fields = self
-            .symbols
-            .coordinates
-            .iter()
-            .map(|coordinate| coordinate.name.field.as_str());
-        let help = if let Some(help) = self.velocity_help(&name.text) {
-            help
-        } else if let Some(help) = self.member_help(&name.text) {
-            help
-        } else if let Some(near) = nearest(&name.text, fields.chain(["until"])) {
-            format!("did you mean `{near}`?")
-        } else {
-            match name.text.as_str() {
-                "t" => "a run starts at time 0".to_owned(),
-                "T" | "t_end" | "tend" | "t_max" | "tmax" | "end" | "duration" => {
-                    "the end of a run is written `until = 10;`".to_owned()
-                }
-                _ => "initial values are given for coordinates, `dot(..)` of coordinates, and `until`".to_owned(),
-            }
-        };
-        self.no_target(name.at, format!("unknown coordinate `{}`", name.text), help)
-    }
-
-    fn no_target(&mut self, at: Location, text: String, help: String) -> Vec<(usize, Scope)> {
-        self.refuse::<()>(at, text, &help);
-        Vec::new()
     }
 }

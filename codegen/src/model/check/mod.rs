@@ -14,7 +14,9 @@ mod names;
 mod outputs;
 mod parameters;
 mod regular;
+mod resets;
 mod surfaces;
+mod targets;
 
 use std::collections::BTreeSet;
 
@@ -23,7 +25,7 @@ use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 use super::natural;
 use super::resolve::{Resolver, Scope};
 use super::{
-    Claim, Constraint, Force, Initial, Lagrangian, Model, Output, QuasiForm, Surface, View,
+    Claim, Constraint, Force, Initial, Lagrangian, Model, Output, QuasiForm, Reset, Surface, View,
 };
 use crate::diagnostics::{self, Diagnostics};
 use crate::spec::{PIECEWISE, STEPS, Scalar, Spec};
@@ -169,7 +171,8 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
                 .iter()
                 .chain([&surface.gap])
                 .copied()
-                .chain(surface.law.coefficient()),
+                .chain(surface.law.coefficient())
+                .chain(surface.reset.iter().flat_map(Reset::expressions)),
         );
     }
     used.extend(

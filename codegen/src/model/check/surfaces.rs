@@ -1,10 +1,10 @@
 //! Impact surfaces: functions of position with a regular zero set that allowed motion can reach.
 
-use dalembert_expr::ExprId;
+use dalembert_expr::{ExprId, Pool, SymbolId};
 
 use super::super::degree::is_zero;
 use super::super::resolve::{Resolver, Scope};
-use super::super::{Constraint, Surface};
+use super::super::{Constraint, Law, Surface};
 use super::names::Names;
 use crate::diagnostics::listed;
 use crate::spec::{self, Comparison, SURFACES};
@@ -31,9 +31,12 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
                 .map(|condition| resolver.difference(condition, &mut scope, "conditions"))
                 .collect();
             let law = resolver.law(surface.law.as_ref(), &mut scope);
+            let reset = resolver.reset(surface.law.as_ref(), &scope);
             resolver.within_budget(surface.gap.at);
             let conditions: Option<Vec<ExprId>> = conditions.into_iter().collect();
-            let (Some(gap), Some(conditions), Some(law)) = (gap, conditions, law) else {
+            let (Some(gap), Some(conditions), Some(law), Some(reset)) =
+                (gap, conditions, law, reset)
+            else {
                 break;
             };
             surfaces.push(Surface {
@@ -42,6 +45,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
                 gap,
                 conditions,
                 law,
+                reset,
                 item: surface.item,
             });
         }
@@ -142,6 +146,7 @@ pub(super) fn check_distinct(resolver: &mut Resolver<'_>, surfaces: &[Surface]) 
         for first in &surfaces[..index] {
             if first.conditions != second.conditions
                 || !is_proportional(resolver, first.gap, second.gap)
+                || count_both_ways(&resolver.pool, first, second)
             {
                 continue;
             }
@@ -157,6 +162,15 @@ pub(super) fn check_distinct(resolver: &mut Resolver<'_>, surfaces: &[Surface]) 
             );
         }
     }
+}
+
+/// Whether two surfaces with resets, the same up to a constant factor, lie opposite: one counts what falls, the other
+/// what rises.
+fn count_both_ways(pool: &Pool, first: &Surface, second: &Surface) -> bool {
+    let are_resets = [first, second].iter().all(|own| own.law == Law::Reset);
+    let point = |symbol: SymbolId| 0.3 + (symbol.index() as f64 * 0.618_033_988_749_894_9).fract();
+    let gaps = pool.eval(&[first.gap, second.gap], &point);
+    are_resets && gaps[0] * gaps[1] < 0.0
 }
 
 /// Whether the quotient of two functions is constant: `f d(g) - g d(f) = 0`.

@@ -188,6 +188,10 @@ fn report_surfaces(kernel: &mut Kernel<'_>, results: &mut Results) {
             results.scalar(format!("impacts.{name}.{quantity}"), value);
         }
         results.vector(format!("impacts.{name}.direction"), contact.direction);
+        if let Some([q, qdot]) = impact::reset_values(kernel, s) {
+            results.vector(format!("impacts.{name}.reset_q"), q);
+            results.vector(format!("impacts.{name}.reset_qdot"), qdot);
+        }
     }
 }
 

@@ -51,7 +51,32 @@ pub fn impacting(
                 Some(position_function(model, derivation, &[coefficient]))
             })
             .collect(),
+        resets: (0..model.surfaces.len())
+            .map(|s| reset(model, derivation, form, s))
+            .collect(),
     })
+}
+
+fn reset(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Option<Function> {
+    let mut kernel = Kernel::new(model, derivation, form.state());
+    let [q, qdot] = reset_values(&mut kernel, s)?;
+    Some(kernel.finish([q, qdot].concat()))
+}
+
+/// Positions and velocities after the reset of a surface, if it has one.
+pub(super) fn reset_values(kernel: &mut Kernel<'_>, s: usize) -> Option<[Vec<Value>; 2]> {
+    let model = kernel.model;
+    let reset = model.surfaces[s].reset.as_ref()?;
+    let symbols = model.coordinates.iter().map(|own| own.q);
+    let before: Vec<Value> = symbols.map(|symbol| kernel.symbol(symbol)).collect();
+    let velocities = kernel.velocity();
+    let mut after = |values: &[Option<ExprId>], before: Vec<Value>| -> Vec<Value> {
+        let pairs = values.iter().zip(before);
+        pairs
+            .map(|(value, before)| value.map_or(before, |value| kernel.value(value)))
+            .collect()
+    };
+    Some([after(&reset.q, before), after(&reset.qdot, velocities)])
 }
 
 /// A function of the same expressions of every surface.

@@ -4,8 +4,8 @@ use proc_macro2::{Delimiter, TokenTree};
 
 use super::super::ast::{Comparison, Law, Scalar, Spec, Surface, Word};
 use super::super::cursor::{Cursor, Read, Refused, tokens_of};
-use super::super::keyword::LAWS;
-use super::{labelled, refused_word};
+use super::super::keyword::{LAWS, RESET};
+use super::{labelled, refused_word, reset};
 use crate::diagnostics::listed;
 
 const FORM: &str = "name: h >= 0 when g > 0 => LAW;";
@@ -21,7 +21,7 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
             return Err(cursor.unexpected("expected `when`", "write `when a > 0 when b > 0`"));
         }
     }
-    let law = law(cursor)?;
+    let law = law(cursor, spec)?;
     let item = spec.item(gap.at);
     spec.surfaces.push(Surface {
         declared,
@@ -124,7 +124,7 @@ fn oriented(left: Scalar, right: Scalar, turned: bool) -> Comparison {
 }
 
 /// Reads `=> LAW`, if it is there.
-fn law(cursor: &mut Cursor<'_>) -> Read<Option<Law>> {
+fn law(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<Option<Law>> {
     if let Some(sign) = ["->", ",", ":"]
         .into_iter()
         .find(|sign| cursor.is_operator(sign))
@@ -135,13 +135,15 @@ fn law(cursor: &mut Cursor<'_>) -> Read<Option<Law>> {
     if cursor.eat_operator("=>").is_none() {
         return Ok(None);
     }
-    refused_word(cursor, &["reset"])?;
     if !matches!(cursor.peek(), Some(TokenTree::Ident(_))) {
         let help = format!("the laws are {}", listed(LAWS.map(|(law, _)| law)));
         return Err(cursor.unexpected("expected an impact law", &help));
     }
     let name = cursor.name("an impact law")?;
-    let arguments = arguments(cursor, &name)?;
+    let (arguments, assignments) = match name.text == RESET {
+        true => (Vec::new(), Some(reset::assignments(cursor)?)),
+        false => (arguments(cursor, &name)?, None),
+    };
     if cursor.eat_operator(",").is_some() {
         refused_word(cursor, &["instantaneous"])?;
         return Err(cursor.unexpected("expected `;`", FORM));
@@ -152,7 +154,13 @@ fn law(cursor: &mut Cursor<'_>) -> Read<Option<Law>> {
             &format!("conditions stand before the law: `{FORM}`"),
         ));
     }
-    Ok(Some(Law { name, arguments }))
+    let item = spec.item(name.at);
+    Ok(Some(Law {
+        name,
+        arguments,
+        assignments,
+        item,
+    }))
 }
 
 /// The coefficients of a law.

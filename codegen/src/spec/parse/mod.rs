@@ -8,6 +8,7 @@ mod header;
 mod impacts;
 mod initial;
 mod parameters;
+mod reset;
 mod source;
 mod view;
 

@@ -70,13 +70,14 @@ pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Resu
     Ok(exit)
 }
 
-/// The laws without a coefficient, and those whose coefficient was given.
+/// The impulses without a coefficient, and those whose coefficient was given.
 fn laws(args: &EvalArgs) -> Vec<Law> {
     let plain = Law::NAMES
         .iter()
         .filter(|(_, takes_coefficient)| !takes_coefficient);
     let mut laws: Vec<Law> = plain
         .filter_map(|(name, _)| Law::from_name(name, 0.0))
+        .filter(|law| *law != Law::Reset)
         .collect();
     laws.extend(args.restitution.map(Law::Restitution));
     laws.extend(args.newton.map(Law::Newton));
@@ -112,8 +113,8 @@ fn evaluate(model: &dyn AnyModel, given: &Given, laws: &[Law]) -> Result<Value, 
     Ok(row.into())
 }
 
-/// The laws of one surface. Where its impact map does not exist (its gradient may vanish away from the
-/// surface) that is said instead; it is no fault of the state.
+/// The laws of one surface, a declared reset after the impulses. Where no impulse exists (its gradient may vanish away
+/// from the surface) that is said instead; it is no fault of the state.
 fn evaluate_laws(
     model: &dyn AnyModel,
     t: f64,
@@ -125,24 +126,53 @@ fn evaluate_laws(
     let description = model.description();
     let fault = |fault: &Fault| refusal(&description, &StateError::Fault(*fault));
     let name = description.surfaces[surface].name;
-    let Some(contact) = collected.contact(name) else {
-        return fault(&Fault::SingularSurface { surface });
-    };
     let mut results = Map::new();
-    for &law in laws {
-        let after = Collected::at(model, t, &model.impact(state, &contact, law));
+    match collected.contact(name) {
+        Some(contact) => {
+            for &law in laws {
+                let after = Collected::at(model, t, &model.impact(state, &contact, law));
+                let result = match after {
+                    Ok(after) => struck(after, name).into(),
+                    Err(error) => fault(&error),
+                };
+                results.insert(law.name().to_owned(), result);
+            }
+        }
+        None if collected.reset(name).is_none() => {
+            return fault(&Fault::SingularSurface { surface });
+        }
+        None => {}
+    }
+    if let Some(reset) = collected.reset(name) {
+        let after = model
+            .state(t, &reset)
+            .and_then(|state| Ok(Collected::at(model, t, &state)?));
         let result = match after {
-            Ok(mut after) => json!({
-                "qdot_plus": after.take("qdot"),
-                "p_plus": after.take("p"),
-                "gap_rate_plus": after.contact_scalar(name, "gap_rate").map_or(Value::Null, json::number),
-                "energy_plus": after.take("energy"),
-            }),
-            Err(error) => fault(&error),
+            Ok(after) => {
+                let mut fields = struck(after, name);
+                fields.insert("q_plus".to_owned(), json::vector(&reset.q));
+                fields.into()
+            }
+            Err(error) => refusal(&description, &error),
         };
-        results.insert(law.name().to_owned(), result);
+        results.insert(Law::Reset.name().to_owned(), result);
     }
     results.into()
+}
+
+/// What is printed of a state after an impact.
+fn struck(mut after: Collected, surface: &str) -> Map<String, Value> {
+    let gap_rate = after.contact_scalar(surface, "gap_rate");
+    let fields = [
+        ("qdot_plus", after.take("qdot")),
+        ("p_plus", after.take("p")),
+        ("gap_rate_plus", gap_rate.map_or(Value::Null, json::number)),
+        ("energy_plus", after.take("energy")),
+    ];
+    fields
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
 }
 
 /// `{"error": {"kind", "message"}}`

@@ -6,7 +6,8 @@ use dalembert::Fault;
 use dalembert::describe::Report;
 use serde_json::{Map, Value};
 
-use crate::entry::{AnyModel, Contacted};
+use crate::args::OffConstraint;
+use crate::entry::{AnyModel, Contacted, Origin, Rates};
 use crate::json;
 
 /// Everything reported at one state. Names that begin with `impacts.` are data of a surface's contact.
@@ -43,6 +44,21 @@ impl Collected {
         self.contact_scalars
             .get(&format!("impacts.{surface}.{name}"))
             .copied()
+    }
+
+    /// Positions and velocities after the reset of a surface, if it declares one.
+    pub fn reset(&self, surface: &str) -> Option<Origin> {
+        let vector = |name| {
+            let found = self
+                .contact_vectors
+                .get(&format!("impacts.{surface}.{name}"));
+            found.cloned()
+        };
+        Some(Origin {
+            q: vector("reset_q")?,
+            rates: Rates::Velocities(vector("reset_qdot")?),
+            policy: OffConstraint::Keep,
+        })
     }
 
     /// The contact of a surface, where an impulse can change its gap rate.

@@ -86,14 +86,19 @@ fn outcome(finished: &Finished<'_>) -> Value {
 }
 
 fn event(description: &Description, impact: &Impact) -> Value {
-    json!({
+    let mut event = json!({
         "t": number(impact.t),
         "surface": description.surfaces.get(impact.surface).map(|surface| surface.name),
         "q": vector(&impact.after.q),
         "qdot_minus": vector(&impact.before.qdot),
         "qdot_plus": vector(&impact.after.qdot),
         "energy": number(impact.after.energy),
-    })
+    });
+    // A reset of positions.
+    if impact.before.q != impact.after.q {
+        event["q_minus"] = vector(&impact.before.q);
+    }
+    event
 }
 
 /// Where a surface begins or ceases to hold the motion.

@@ -60,7 +60,7 @@ pub fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, C
         step: args.step,
         until: horizon(model, args)?,
         impacts: impacts(&model.description(), args)?,
-        laws: laws(&model.description(), &args.law)?,
+        laws: laws(model, &args.law)?,
         policies: args.policies.policies(),
         projection: args.projection.map(|switch| switch == Switch::On),
     })
@@ -109,7 +109,8 @@ fn impacts(description: &Description, args: &SimulateArgs) -> Result<Option<u64>
 }
 
 /// The laws of `--law`, in order: a later one counts.
-fn laws(description: &Description, flags: &[String]) -> Result<Vec<(usize, Law)>, CliError> {
+fn laws(model: &dyn AnyModel, flags: &[String]) -> Result<Vec<(usize, Law)>, CliError> {
+    let description = &model.description();
     let mut laws = Vec::new();
     for flag in flags {
         let (surface, law) = match flag.split_once('=') {
@@ -130,7 +131,16 @@ fn laws(description: &Description, flags: &[String]) -> Result<Vec<(usize, Law)>
             None => laws.extend((0..description.surfaces.len()).map(|surface| (surface, law))),
         }
     }
-    Ok(laws)
+    let declares_reset = |surface: usize| model.law(surface) == Some(Law::Reset);
+    match laws
+        .iter()
+        .find(|&&(surface, law)| law == Law::Reset && !declares_reset(surface))
+    {
+        Some(&(surface, _)) => Err(CliError::NoReset {
+            surface: description.surfaces[surface].name,
+        }),
+        None => Ok(laws),
+    }
 }
 
 /// `LAW[:E]`

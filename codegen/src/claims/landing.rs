@@ -1,0 +1,145 @@
+//! Do resets keep the constraints? The state after an impact must be in D at its new position, and on the same level of
+//! every integrable constraint: positions are brought back to it after every step.
+//!
+//! What residues and real points refute is refused here. That velocities satisfy the constraints may stay open, as every
+//! run checks it at every impact; that levels are kept must be proved, as no run does.
+
+use dalembert_expr::{ExpansionPoint, ExprId, RealPoint, SymbolId};
+
+use super::collision::{AtImpact, evidence_at_impact};
+use super::conserved::magnitude;
+use super::dynamics::{Dynamics, Number};
+use super::evidence::Wording;
+use super::finding::{Verdict, seed_of};
+use super::wall::Wall;
+use crate::mechanics::Derivation;
+use crate::model::{Model, Reset};
+use crate::spec::ItemId;
+
+/// Mistakes in resets: where, what, and what to write.
+pub fn check_landings(model: &mut Model, derivation: &Derivation) -> Vec<(ItemId, String, String)> {
+    let surfaces = model.surfaces.iter();
+    if derivation.constraints.is_empty() || surfaces.clone().all(|own| own.reset.is_none()) {
+        return Vec::new();
+    }
+    let dynamics = Dynamics::of(model, derivation);
+    let mut mistakes = Vec::new();
+    for surface in 0..model.surfaces.len() {
+        let Some(reset) = model.surfaces[surface].reset.clone() else {
+            continue;
+        };
+        let wall = Wall::of(model, derivation, surface);
+        let landing = Landings {
+            name: model.surfaces[surface].name.display.clone(),
+            reset: &reset,
+            wall: &wall,
+            dynamics: &dynamics,
+        };
+        for constraint in 0..derivation.constraints.len() {
+            let found = landing.check_velocity(model, constraint);
+            let found = found.or_else(|| landing.check_level(model, constraint));
+            mistakes.extend(found.map(|(text, help)| (reset.item, text, help)));
+        }
+    }
+    mistakes
+}
+
+/// The reset of a surface.
+struct Landings<'l> {
+    name: String,
+    reset: &'l Reset,
+    wall: &'l Wall,
+    dynamics: &'l Dynamics,
+}
+
+impl Landings<'_> {
+    /// What is wrong with the velocities after it, and what to write, if that can be told.
+    fn check_velocity(&self, model: &mut Model, a: usize) -> Option<(String, String)> {
+        let (name, constraint) = (&self.name, model.constraints[a].name.display.clone());
+        let residual = residual(model, a);
+        let question = Vanished {
+            change: self.after(model, residual),
+            shown: format!("residual of {constraint} after"),
+        };
+        let help = "velocities after a reset satisfy the constraints at the position after it";
+        let wording = Wording {
+            differs: format!("the reset of `{name}` leaves the constraint `{constraint}`"),
+            help: [help.to_owned(), String::new()],
+            ..Wording::default()
+        };
+        let seed = seed_of(&model.snake_name);
+        let found = evidence_at_impact(model, self.wall, self.dynamics, &question, seed);
+        match found.verdict(true, wording, seed) {
+            Verdict::Refuted(witness) => Some((witness.to_string(), witness.help)),
+            _ => None,
+        }
+    }
+
+    /// The same for the level of an integrable constraint.
+    fn check_level(&self, model: &mut Model, a: usize) -> Option<(String, String)> {
+        let level = model.constraints[a].level.filter(|_| self.reset.moves())?;
+        let (name, constraint) = (&self.name, model.constraints[a].name.display.clone());
+        let after = self.after(model, level);
+        let question = Vanished {
+            change: model.pool.sub(after, level),
+            shown: format!("change of the level of {constraint}"),
+        };
+        let seed = seed_of(&model.snake_name);
+        let found = evidence_at_impact(model, self.wall, self.dynamics, &question, seed);
+        (!found.shows_that_it_vanishes()).then(|| {
+            let text =
+                format!("the reset of `{name}` is not known to keep the level of `{constraint}`");
+            let help = "a position stays on the level of an integrable constraint";
+            (text, help.to_owned())
+        })
+    }
+
+    /// An expression of the state after the reset as one of the state before it.
+    fn after(&self, model: &mut Model, value: ExprId) -> ExprId {
+        let replacements = self.reset.replacements(&model.coordinates);
+        model.pool.substitute(value, &replacements)
+    }
+}
+
+/// `eta(qdot) + eta_0` of a constraint.
+fn residual(model: &mut Model, constraint: usize) -> ExprId {
+    let velocities: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+    let own = &model.constraints[constraint];
+    let (form, mut terms) = (own.form.clone(), vec![own.affine]);
+    for (entry, symbol) in form.into_iter().zip(velocities) {
+        let velocity = model.pool.variable(symbol);
+        terms.push(model.pool.mul(entry, velocity));
+    }
+    model.pool.sum(&terms)
+}
+
+/// Something that vanishes after an impact, as an expression of the state before it.
+struct Vanished {
+    change: ExprId,
+    shown: String,
+}
+
+impl AtImpact for Vanished {
+    fn roots(&self) -> Vec<ExprId> {
+        vec![self.change]
+    }
+
+    fn terms<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        _: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
+        let values = point.values(&model.pool, &model.pool.reachable(&[self.change]))?;
+        Some(vec![values[self.change.index()]])
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {
+        let largest = after.iter().fold(0.0, |size: f64, own| size.max(own.abs()));
+        Some(magnitude(model, point, self.change) + largest)
+    }
+
+    fn shown(&self, terms: &[f64]) -> Vec<(String, f64)> {
+        vec![(self.shown.clone(), terms[0])]
+    }
+}

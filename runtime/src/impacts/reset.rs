@@ -1,0 +1,39 @@
+//! Resets: the declared map of positions and velocities, carried out on a state.
+
+use crate::contract::Impacting;
+use crate::error::StateError;
+use crate::outcome::Outcome;
+use crate::state::StateVector;
+
+/// The state after the reset of a surface: in its chart, and on the constraints.
+pub(super) fn after_reset<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    t: f64,
+    before: &Sys::State,
+) -> Result<Sys::State, Outcome> {
+    let Some(jump) = system.reset(surface, t, before)? else {
+        return Err(Outcome::NoReset { surface });
+    };
+    let (q, qdot) = (jump.position, jump.velocity);
+    // What a reset leaves alone keeps its last digit: momenta are not made of velocities and taken apart again.
+    if q == system.position(before) && qdot == system.velocity(t, before)? {
+        return Ok(*before);
+    }
+    let mut components = q.as_slice().iter().chain(qdot.as_slice());
+    if let Some(component) = components.position(|value| !value.is_finite()) {
+        return Err(Outcome::NonFinite { component });
+    }
+    let after = system.state_unchecked(t, &q, &qdot)?;
+    if let Some(coordinate) = system.outside_chart(&after) {
+        return Err(Outcome::LeftChart { coordinate });
+    }
+    match system.admit(t, &q, &qdot) {
+        Err(StateError::OffConstraint { constraint, .. }) => Err(Outcome::ResetOffConstraint {
+            surface,
+            constraint,
+        }),
+        // `admit` refuses nothing else.
+        _ => Ok(after),
+    }
+}
