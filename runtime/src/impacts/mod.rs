@@ -13,7 +13,9 @@ pub mod policy;
 mod release;
 mod reset;
 mod resting;
+mod search;
 mod series;
+mod tangency;
 mod watch;
 
 pub use held::Held;

@@ -7,23 +7,15 @@
 //! A surface is passable where its law is a reset: its gap may be negative, and falls count from above only.
 
 use super::glance::{Glance, SAME_TIME, finite, glance};
-use super::held::{Held, second_rates};
+use super::held::Held;
 use super::hits::Hits;
-use super::series::GapSeries;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
-use crate::events::crossing::{NODES, SAMPLES, clear};
-use crate::events::locate::{Line, Search, Start, confirm};
+use crate::events::crossing::clear;
 use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
-
-/// Falls looked at in one step on one surface before the step is cut: those that are no impacts are passed over.
-const FALLS: u32 = 1024;
-
-/// A gap rate this small a part of those at the ends of the step may belong to a graze.
-const SLOW: f64 = 1.0 / (1 << 10) as f64;
 
 /// Only a surface that is hit within this part of a step after another is asked for its rounding.
 const BESIDE: f64 = 1.0 / (1 << 20) as f64;
@@ -33,22 +25,22 @@ const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 pub(super) struct Watch<Sys: Impacting> {
     /// Gaps at the start of the step; 0 for surfaces at hand, negative only where the surface does not count or is
     /// passable.
-    gaps: Sys::Gaps,
+    pub(super) gaps: Sys::Gaps,
     /// 1 for passable surfaces.
     passable: Sys::Gaps,
-    rates: Sys::Gaps,
+    pub(super) rates: Sys::Gaps,
     /// The earliest proposal of the last step.
-    proposed: Option<f64>,
+    pub(super) proposed: Option<f64>,
     /// Per surface, the part of the last step at which it is hit; meaningful while something is proposed.
-    parts: Sys::Gaps,
+    pub(super) parts: Sys::Gaps,
     /// 1 where that hit is a graze, 2 where the surface is crossed there although the gap rate vanishes.
-    grazes: Sys::Gaps,
+    pub(super) grazes: Sys::Gaps,
     /// How fast the gap rate changes about that hit.
-    bends: Sys::Gaps,
+    pub(super) bends: Sys::Gaps,
     /// Length of the last step.
-    length: f64,
+    pub(super) length: f64,
     /// Largest absolute values of the state's components since the last impact: their rounding errors stay with it.
-    sizes: Sys::State,
+    pub(super) sizes: Sys::State,
     /// Steps since then: each has rounded the state.
     steps: u32,
     /// Surfaces that the motion is held on: their gaps are 0, and are not watched.
@@ -83,7 +75,7 @@ impl<Sys: Impacting> Watch<Sys> {
         self.passable.as_mut_slice()[surface] = f64::from(u8::from(passable));
     }
 
-    fn is_passable(&self, surface: usize) -> bool {
+    pub(super) fn is_passable(&self, surface: usize) -> bool {
         self.passable.as_slice()[surface] == 1.0
     }
 
@@ -297,41 +289,9 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Whether the motion goes into a surface at hand, rather than along it within rounding. Rounding adds up
-    /// along a wall, so its sum over the steps says nothing.
-    fn is_pressed<Step: Stepper<Sys>>(
-        &self,
-        surface: usize,
-        step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
-    ) -> bool {
-        let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
-        glance.rates.as_slice()[surface] * glance.length < -rounding
-    }
-
-    /// Whether the gap is negative at the end of the step, by more than rounding: a motion along a wall falls and rises
-    /// through it by that much.
-    fn is_sunk<Step: Stepper<Sys>>(
-        &self,
-        surface: usize,
-        step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
-    ) -> bool {
-        let gap = glance.gaps.as_slice()[surface];
-        if gap >= 0.0 {
-            return false;
-        }
-        let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
-        gap < -2.0 * rounding
-    }
-
     /// Whether the step can pass this surface, told cheaply.
     #[inline(always)]
-    fn is_clear(&self, surface: usize, glance: &Glance<Sys::Gaps>) -> bool {
+    pub(super) fn is_clear(&self, surface: usize, glance: &Glance<Sys::Gaps>) -> bool {
         if self.held.is_held(surface) {
             return true;
         }
@@ -354,177 +314,6 @@ impl<Sys: Impacting> Watch<Sys> {
             }
     }
 
-    /// Looks for the earliest hit along the dense output.
-    fn search<Step: Stepper<Sys>>(
-        &mut self,
-        step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
-    ) -> Result<(), Outcome> {
-        step.prepare()?;
-        self.length = glance.length;
-        let mut whole = None;
-        for surface in 0..Sys::Gaps::LEN {
-            self.parts.as_mut_slice()[surface] = f64::INFINITY;
-            if self.is_clear(surface, glance) {
-                continue;
-            }
-            let samples = match &glance.series {
-                Some(series) => {
-                    let mut gaps = series.at_each(surface, NODES);
-                    gaps[SAMPLES - 1] = glance.gaps.as_slice()[surface];
-                    gaps
-                }
-                None => whole
-                    .get_or_insert_with(|| samples(step, &self.gaps, &glance.gaps))
-                    .map(|gaps| gaps.as_slice()[surface]),
-            };
-            let (part, is_hit) = match self.first_hit(surface, step, &samples, glance)? {
-                Found::Hit(part) => (part, true),
-                Found::Unfinished(part) => (part, false),
-                Found::Nothing if glance.is_due(surface) && is_active(surface, step, 1.0) => {
-                    (1.0, true)
-                }
-                Found::Nothing => continue,
-            };
-            if is_hit {
-                self.parts.as_mut_slice()[surface] = part;
-                self.note_graze(surface, part, step, glance)?;
-            }
-            self.proposed = Some(self.proposed.map_or(part, |earliest| earliest.min(part)));
-        }
-        Ok(())
-    }
-
-    /// The first fall of this gap that is an impact: the surface counts there, and is approached.
-    fn first_hit<Step: Stepper<Sys>>(
-        &self,
-        surface: usize,
-        step: &mut StepView<'_, Sys, Step>,
-        samples: &[f64; SAMPLES],
-        glance: &Glance<Sys::Gaps>,
-    ) -> Result<Found, Outcome> {
-        let gap = self.gaps.as_slice()[surface];
-        let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
-        let until = self.proposed.unwrap_or(1.0);
-        // A passable surface at hand has counted: it is left upwards, or crossed.
-        let crosses = self.is_passable(surface) && slope.is_some_and(|slope| slope <= 0.0);
-        let mut start = Start {
-            from: 0.0,
-            above: gap >= 0.0 && !crosses,
-            slope,
-            until,
-        };
-        let mut tangential = None;
-        for _ in 0..FALLS {
-            let found = first_fall(surface, step, &self.sizes, samples, start, &glance.series);
-            let (part, after) = match found {
-                Search::Clear => {
-                    let sunk = self.is_sunk(surface, step, glance);
-                    return Ok(tangential
-                        .filter(|_| sunk)
-                        .map_or(Found::Nothing, Found::Hit));
-                }
-                Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
-                Search::Pole(after) => {
-                    self.check_behind_pole(surface, after, step)?;
-                    start = Start {
-                        from: after,
-                        above: false,
-                        slope: None,
-                        until,
-                    };
-                    continue;
-                }
-                Search::Sinks(part) => (part, part),
-                Search::Falls(bracket) => (bracket.before, bracket.after),
-            };
-            step.counters.crossings += 1;
-            if is_active(surface, step, part) {
-                if part == 0.0 && start.slope.is_some() {
-                    let pressed = self.is_pressed(surface, step, glance);
-                    return match pressed {
-                        true if !is_accelerated(surface, step)?
-                            && crosses_at_rest(surface, step, 0.0)? =>
-                        {
-                            Err(Outcome::TangentialCrossing { surface })
-                        }
-                        true => Err(Outcome::Contact { surface }),
-                        false => Ok(Found::Nothing),
-                    };
-                }
-                if is_approached(surface, step, part)? || is_approached(surface, step, after)? {
-                    return Ok(Found::Hit(if part > 0.0 { part } else { after }));
-                }
-                tangential = tangential.or(Some(after));
-            }
-            start = Start {
-                from: after,
-                above: false,
-                slope: None,
-                until,
-            };
-            if after >= 1.0 {
-                return Ok(Found::Nothing);
-            }
-        }
-        Ok(Found::Unfinished(start.from))
-    }
-
-    /// Behind a pole the surface must not count: the motion is on the side that is not allowed, and met no wall.
-    fn check_behind_pole<Step: Stepper<Sys>>(
-        &self,
-        surface: usize,
-        part: f64,
-        step: &mut StepView<'_, Sys, Step>,
-    ) -> Result<(), Outcome> {
-        let gaps = step.system.gaps(step.time(part), &step.state(part));
-        let gap = gaps.as_slice()[surface];
-        let mut evaluations = 1;
-        let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
-        let counts = !self.is_passable(surface) && is_active(surface, step, part);
-        if gap < -2.0 * rounding && counts {
-            return Err(Outcome::StartsInside { surface, gap });
-        }
-        Ok(())
-    }
-
-    /// Marks a hit so slow that the gap's lowest value would be within its rounding.
-    fn note_graze<Step: Stepper<Sys>>(
-        &mut self,
-        surface: usize,
-        part: f64,
-        step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
-    ) -> Result<(), Outcome> {
-        let ends = [
-            self.rates.as_slice()[surface],
-            glance.rates.as_slice()[surface],
-        ];
-        let state = step.state(part);
-        let rate = step.system.gap_rates(step.time(part), &state)?.as_slice()[surface];
-        let (other, apart) = if part > 0.5 {
-            (ends[0], part)
-        } else {
-            (ends[1], 1.0 - part)
-        };
-        self.bends.as_mut_slice()[surface] = (other - rate).abs() / (apart * self.length);
-        let mut graze = 0.0;
-        if rate.abs() <= SLOW * ends[0].abs().max(ends[1].abs()) {
-            let mut evaluations = 0;
-            let rounding = || rounding_along(surface, step, &self.sizes, &mut evaluations);
-            if self.is_slow(surface, rate, rounding) {
-                graze = 1.0;
-            }
-            step.counters.event_evaluations += evaluations;
-        }
-        if graze == 1.0 && crosses_at_rest(surface, step, part)? {
-            graze = 2.0;
-        }
-        self.grazes.as_mut_slice()[surface] = graze;
-        Ok(())
-    }
-
     /// Surfaces that count have a gap that is not negative beyond rounding; within rounding they are at hand.
     fn check_negative(&mut self, now: &mut Moment<'_, Sys>) -> Result<(), Outcome> {
         for surface in 0..Sys::Gaps::LEN {
@@ -540,13 +329,6 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         Ok(())
     }
-}
-
-/// The first hit of one surface in a step.
-enum Found {
-    Nothing,
-    Hit(f64),
-    Unfinished(f64),
 }
 
 /// Gaps at a moment, all finite.
@@ -565,147 +347,4 @@ fn rounding<Sys: Impacting>(now: &mut Moment<'_, Sys>, surface: usize, sizes: &S
         sizes,
         &mut now.counters.event_evaluations,
     )
-}
-
-/// The size of a gap's rounding errors along a step, from components that have had these sizes.
-fn rounding_along<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &StepView<'_, Sys, Step>,
-    sizes: &Sys::State,
-    evaluations: &mut u64,
-) -> f64 {
-    resolution(
-        step.system,
-        surface,
-        step.t_end(),
-        step.end(),
-        sizes,
-        evaluations,
-    )
-}
-
-fn is_active<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &StepView<'_, Sys, Step>,
-    part: f64,
-) -> bool {
-    step.system
-        .surface_active(surface, step.time(part), &step.state(part))
-}
-
-fn is_approached<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &StepView<'_, Sys, Step>,
-    part: f64,
-) -> Result<bool, Outcome> {
-    let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
-    Ok(rates.as_slice()[surface] < 0.0)
-}
-
-/// Parts of a step down to which the second rate of a gap is looked for in how its rate falls: half the digits, so that
-/// rounding of the second rate is not taken for one.
-const LEAST_PART: f64 = 1.0 / (1 << 26) as f64;
-
-/// Whether the second rate of a gap, which is 0 at the start of a step at rate 0, tells at least half of how its rate
-/// falls in some small part of the step.
-fn is_accelerated<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &StepView<'_, Sys, Step>,
-) -> Result<bool, Outcome> {
-    let (t, start, [rate, _]) = (step.t_start(), step.start(), step.rates());
-    let Some(accelerations) = second_rates(step.system, t, start, rate)? else {
-        return Ok(false);
-    };
-    let acceleration = accelerations.as_slice()[surface];
-    let first = step.system.gap_rates(t, start)?.as_slice()[surface];
-    let mut part = 0.125;
-    while acceleration < 0.0 && part > LEAST_PART {
-        let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
-        let fall = rates.as_slice()[surface] - first;
-        if fall < 0.0 && fall > 2.0 * acceleration * part * step.length() {
-            return Ok(true);
-        }
-        part *= 0.125;
-    }
-    Ok(false)
-}
-
-/// Whether a gap that is 0 at this part of a step, at rate 0, goes on like the cube of time: told from the square, which
-/// is a graze or a contact, by what the rate changes in an eighth and in a quarter of the rest.
-fn crosses_at_rest<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &StepView<'_, Sys, Step>,
-    part: f64,
-) -> Result<bool, Outcome> {
-    let rate = |share: f64| {
-        let part = part + share * (1.0 - part);
-        let rates = step.system.gap_rates(step.time(part), &step.state(part));
-        rates.map(|rates| rates.as_slice()[surface])
-    };
-    let (first, eighth, quarter) = (rate(0.0)?, rate(0.125)?, rate(0.25)?);
-    // A quarter of the change for the cube, half of it for the square.
-    Ok(quarter < first && eighth - first > 0.375 * (quarter - first))
-}
-
-/// The first fall of a gap, with its time to the last bits. On a series it is looked for on the polynomial; what is
-/// not a plain fall there is left to the gap itself.
-fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &mut StepView<'_, Sys, Step>,
-    sizes: &Sys::State,
-    whole: &[f64; SAMPLES],
-    start: Start,
-    series: &Option<GapSeries<Sys::Gaps>>,
-) -> Search {
-    let (mut evaluations, mut more) = (0, 0);
-    let mut gap = |part: f64| {
-        evaluations += 1;
-        step.system
-            .gaps(step.time(part), &step.state(part))
-            .as_slice()[surface]
-    };
-    let mut rounding = || rounding_along(surface, step, sizes, &mut more);
-    let on_series = series.as_ref().and_then(|series| {
-        let line = Line {
-            // At the end the gap itself: it may be negative by rounding where the polynomial is not.
-            gap: |part: f64| match part >= 1.0 {
-                true => whole[SAMPLES - 1],
-                false => series.at(surface, part),
-            },
-            rounding: &mut rounding,
-            whole,
-            start,
-        };
-        match line.first_fall() {
-            Search::Clear => Some(Search::Clear),
-            Search::Falls(near) => confirm(near, start.slope, &mut gap).map(Search::Falls),
-            _ => None,
-        }
-    });
-    let found = on_series.unwrap_or_else(|| {
-        let line = Line {
-            gap,
-            rounding,
-            whole,
-            start,
-        };
-        line.first_fall()
-    });
-    step.counters.event_evaluations += evaluations + more;
-    found
-}
-
-/// Gaps at the samples over a whole step; those at the ends are known.
-fn samples<Sys: Impacting, Step: Stepper<Sys>>(
-    step: &mut StepView<'_, Sys, Step>,
-    first: &Sys::Gaps,
-    last: &Sys::Gaps,
-) -> [Sys::Gaps; SAMPLES] {
-    let mut samples = [*first; SAMPLES];
-    samples[SAMPLES - 1] = *last;
-    for j in 1..SAMPLES - 1 {
-        samples[j] = step.system.gaps(step.time(NODES[j]), &step.state(NODES[j]));
-    }
-    step.counters.event_evaluations += SAMPLES as u64 - 2;
-    samples
 }

@@ -1,0 +1,53 @@
+//! Gaps that are zero at rate zero: whether the motion presses into the surface, or crosses it.
+
+use super::held::second_rates;
+use crate::contract::Impacting;
+use crate::effects::StepView;
+use crate::integrate::Stepper;
+use crate::outcome::Outcome;
+use crate::state::StateVector;
+
+/// Parts of a step down to which the second rate of a gap is looked for in how its rate falls: half the digits, so that
+/// rounding of the second rate is not taken for one.
+const LEAST_PART: f64 = 1.0 / (1 << 26) as f64;
+
+/// Whether the second rate of a gap, which is 0 at the start of a step at rate 0, tells at least half of how its rate
+/// falls in some small part of the step.
+pub(super) fn is_accelerated<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+) -> Result<bool, Outcome> {
+    let (t, start, [rate, _]) = (step.t_start(), step.start(), step.rates());
+    let Some(accelerations) = second_rates(step.system, t, start, rate)? else {
+        return Ok(false);
+    };
+    let acceleration = accelerations.as_slice()[surface];
+    let first = step.system.gap_rates(t, start)?.as_slice()[surface];
+    let mut part = 0.125;
+    while acceleration < 0.0 && part > LEAST_PART {
+        let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
+        let fall = rates.as_slice()[surface] - first;
+        if fall < 0.0 && fall > 2.0 * acceleration * part * step.length() {
+            return Ok(true);
+        }
+        part *= 0.125;
+    }
+    Ok(false)
+}
+
+/// Whether a gap that is 0 at this part of a step, at rate 0, goes on like the cube of time: told from the square, which
+/// is a graze or a contact, by what the rate changes in an eighth and in a quarter of the rest.
+pub(super) fn crosses_at_rest<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    part: f64,
+) -> Result<bool, Outcome> {
+    let rate = |share: f64| {
+        let part = part + share * (1.0 - part);
+        let rates = step.system.gap_rates(step.time(part), &step.state(part));
+        rates.map(|rates| rates.as_slice()[surface])
+    };
+    let (first, eighth, quarter) = (rate(0.0)?, rate(0.125)?, rate(0.25)?);
+    // A quarter of the change for the cube, half of it for the square.
+    Ok(quarter < first && eighth - first > 0.375 * (quarter - first))
+}
