@@ -87,7 +87,7 @@ impl<V: StateVector> Accumulation<V> {
         rounding: impl FnOnce() -> f64,
         energy: impl FnOnce() -> f64,
     ) -> Option<Ends> {
-        let at_once = self.again(surface, t);
+        self.count(surface, t);
         let flight = t - self.times.as_slice()[surface];
         let flights = [self.flights.as_slice()[surface], flight];
         let before = self.rates.as_slice()[surface];
@@ -105,7 +105,7 @@ impl<V: StateVector> Accumulation<V> {
         if let Some(t) = self.growth.add(surface, t, flights, energy) {
             return Some(Ends::Spasmodic(t));
         }
-        if at_once {
+        if self.repeated >= AT_ONE_TIME {
             return Some(match self.is_alone {
                 true => Ends::Hops(self.limit(surface, t)),
                 false => Ends::AtOneTime(t),
@@ -118,21 +118,21 @@ impl<V: StateVector> Accumulation<V> {
 
     /// Takes in an impact after which the motion goes on through the surface: no flight begins there.
     pub(super) fn pass(&mut self, surface: usize, t: f64) -> Option<Ends> {
-        let at_once = self.again(surface, t);
+        self.count(surface, t);
         self.times.as_mut_slice()[surface] = f64::NEG_INFINITY;
         self.flights.as_mut_slice()[surface] = f64::INFINITY;
         self.rates.as_mut_slice()[surface] = 0.0;
         self.shrunk.as_mut_slice()[surface] = 0.0;
-        at_once.then_some(Ends::AtOneTime(t))
+        self.growth.forget(surface);
+        (self.repeated >= AT_ONE_TIME).then_some(Ends::AtOneTime(t))
     }
 
-    /// Counts an impact; whether there were too many at this time.
-    fn again(&mut self, surface: usize, t: f64) -> bool {
+    /// Counts impacts at one time.
+    fn count(&mut self, surface: usize, t: f64) {
         let is_repeated = t == self.last;
         self.repeated = if is_repeated { self.repeated + 1 } else { 0 };
         self.is_alone = !is_repeated || (self.is_alone && surface == self.surface);
         (self.last, self.surface) = (t, surface);
-        self.repeated >= AT_ONE_TIME
     }
 
     /// The time of accumulation if the motion, just bounced off a surface at `t`, did not rise from it: the hop is

@@ -2,7 +2,6 @@
 
 use super::hits::Hits;
 use super::impulse::{Impacts, STILL};
-use super::law::Law;
 use super::policy::Corner;
 use crate::contract::Impacting;
 use crate::effects::Moment;
@@ -41,6 +40,9 @@ impl<Sys: Impacting> Impacts<Sys> {
         let (Some(ascending), Some(descending)) = (ascending, descending) else {
             return Ok(None);
         };
+        if now.system.position(&ascending) != now.system.position(&descending) {
+            return Ok(Some([first, last]));
+        }
         let energy = |a: &Sys::State, b: &Sys::State| -> Result<f64, Outcome> {
             let system = now.system;
             let (v, w) = (system.velocity(now.t, a)?, system.velocity(now.t, b)?);
@@ -57,7 +59,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         Ok((difference > SAME * changes).then_some([first, last]))
     }
 
-    /// The state after all impacts in an order; `None` if they do not end, or a reset takes it elsewhere.
+    /// The state after all impacts in an order; `None` if they do not end.
     fn carried(
         &self,
         mut hits: Hits<Sys::Gaps>,
@@ -72,16 +74,12 @@ impl<Sys: Impacting> Impacts<Sys> {
             };
             hits.set_still(surface, STILL * rates.as_slice()[surface].abs());
             let struck = self.struck(now.system, surface, now.t, &state)?;
-            let position = now.system.position(&state);
-            (state, rates) = (struck.after, struck.rates);
-            if self.law_of(now.system, surface) == Law::Reset {
-                hits.set_done(surface);
-                if now.system.position(&state) != position {
-                    return Ok(None);
-                }
-            } else {
-                hits.set_still(surface, -rates.as_slice()[surface]);
+            if now.system.position(&struck.after) != now.system.position(&state) {
+                // A reset has left the corner.
+                return Ok(Some(struck.after));
             }
+            (state, rates) = (struck.after, struck.rates);
+            hits.set_still(surface, -rates.as_slice()[surface]);
         }
         Ok(None)
     }

@@ -51,6 +51,11 @@ impl<V: StateVector> Growth<V> {
         }
     }
 
+    /// No flight has ended on this surface.
+    pub(super) fn forget(&mut self, surface: usize) {
+        self.counts.as_mut_slice()[surface] = 0.0;
+    }
+
     /// Takes in a flight that ends at `t`, and the one before. Returns the time of accumulation, if flights have become
     /// too short to be told while the energy grew.
     pub(super) fn add(

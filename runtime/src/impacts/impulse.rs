@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 use super::accumulation::{Accumulation, Ends};
 use super::held::Held;
 use super::hits::Hits;
-use super::law::Law;
+use super::law::{Contact, Law};
 use super::override_table::Overrides;
 use super::policy::{Corner, Penetration, Policies, Rest};
 use super::reset::after_reset;
@@ -34,7 +34,7 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 ///
 /// A surface with the law [`Law::Reset`] has no side that is not allowed: it counts whenever its gap falls through 0 from
 /// above, and where the reset leaves it falling it is crossed. At the first instant of a run, and where a reset has moved
-/// the position, a surface at hand counts if it is approached.
+/// the position, a surface at hand counts if it is approached. No motion is held along such a surface.
 #[derive(Debug, Clone)]
 pub struct Impacts<Sys: Impacting> {
     overrides: Overrides<Sys::Gaps>,
@@ -50,8 +50,8 @@ pub(super) struct Struck<Sys: Impacting> {
     pub(super) after: Sys::State,
     /// Gap rates after it.
     pub(super) rates: Sys::Gaps,
-    /// See [`Contact::rho`](super::law::Contact::rho); none after a reset.
-    rho: Option<f64>,
+    /// Of an impulse; a reset has none.
+    contact: Option<Contact<Sys::Impulse>>,
 }
 
 impl<Sys: Impacting> Impacts<Sys> {
@@ -112,13 +112,18 @@ impl<Sys: Impacting> Impacts<Sys> {
         let t = step.t_start();
         // If it had bounced, hops have become too small to rise from the surface at all.
         let accumulation = self.accumulation.ends_at(surface, t);
-        match (self.policies.rest, accumulation) {
-            (Rest::Stop, None) => return Err(Outcome::Contact { surface }),
-            (Rest::Stop, Some(t)) => return Err(Outcome::Zeno { t, surface }),
-            (Rest::Contact, Some(t)) => self.resting.note_accumulation(surface, t),
-            (Rest::Contact, None) => {}
+        match (self.may_rest(surface), accumulation) {
+            (false, None) => return Err(Outcome::Contact { surface }),
+            (false, Some(t)) => return Err(Outcome::Zeno { t, surface }),
+            (true, Some(t)) => self.resting.note_accumulation(surface, t),
+            (true, None) => {}
         }
         self.resting.press(surface, t)
+    }
+
+    /// Whether the motion may go on along a surface. One with a reset holds nothing.
+    fn may_rest(&self, surface: usize) -> bool {
+        self.policies.rest == Rest::Contact && !self.watch.is_passable(surface)
     }
 
     /// The law in force on a surface.
@@ -154,7 +159,8 @@ impl<Sys: Impacting> Impacts<Sys> {
                 hits.set_done(surface);
                 if now.system.position(now.state) != position {
                     self.watch.relocate(&mut hits, &rates, now)?;
-                    self.resting.leave_all(now, observer)?;
+                    self.resting.keep(&hits.at_hand, now, observer)?;
+                    self.watch.hold(self.resting.held());
                 }
             } else {
                 if self.watch.is_tangential_crossing(surface) {
@@ -179,17 +185,35 @@ impl<Sys: Impacting> Impacts<Sys> {
         before: &Sys::State,
     ) -> Result<Struck<Sys>, Outcome> {
         let law = self.law_of(system, surface);
-        let (after, rho) = match law {
-            Law::Reset => (after_reset(system, surface, t, before)?, None),
-            _ => {
-                let (after, rho) = kicked(system, surface, law, t, before)?;
-                (after, Some(rho))
-            }
-        };
+        if law == Law::Reset {
+            let after = after_reset(system, surface, t, before)?;
+            let rates = system.gap_rates(t, &after)?;
+            return Ok(Struck {
+                after,
+                rates,
+                contact: None,
+            });
+        }
+        let contact = system.contact(surface, t, before)?;
+        let mut after = *before;
+        system.kick(&mut after, contact.impulse(law), &contact.direction);
+        // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction; without this the
+        // energy would drift like the number of impacts instead of its root.
+        let missed = contact.gap_rate
+            - contact.rate_taken(law)
+            - system.gap_rates(t, &after)?.as_slice()[surface];
+        let correction = missed / contact.constrained_compliance;
+        if correction.is_finite() {
+            system.kick(&mut after, correction, &contact.direction);
+        }
         let rates = system.gap_rates(t, &after)?;
         match after.as_slice().iter().position(|value| !value.is_finite()) {
             Some(component) => Err(Outcome::NonFinite { component }),
-            None => Ok(Struck { after, rates, rho }),
+            None => Ok(Struck {
+                after,
+                rates,
+                contact: Some(contact),
+            }),
         }
     }
 
@@ -204,10 +228,9 @@ impl<Sys: Impacting> Impacts<Sys> {
     ) -> Result<Sys::Gaps, Outcome> {
         let (t, before) = (now.t, *now.state);
         let mut struck = self.struck(now.system, surface, t, &before)?;
-        // A reset that leaves the gap falling crosses the surface.
         let penetrates = self.penetrates(surface, rate, struck.rates.as_slice()[surface], now);
-        let repeats = self.policies.penetration == Penetration::Repeat;
-        if penetrates && repeats && struck.rho.is_some() {
+        let repeats = struck.contact.is_some() && self.policies.penetration == Penetration::Repeat;
+        if penetrates && repeats {
             struck.take_rate(now.system, surface, t)?;
         }
         *now.state = struck.after;
@@ -224,16 +247,26 @@ impl<Sys: Impacting> Impacts<Sys> {
         if let ControlFlow::Break(()) = observer.event(&event) {
             return Err(Outcome::Stopped);
         }
-        if let Some(rho) = struck.rho
+        if let Some(contact) = struck.contact
             && penetrates
             && self.policies.penetration == Penetration::Stop
         {
-            return Err(Outcome::StillPenetrating { surface, rho });
+            return Err(Outcome::StillPenetrating {
+                surface,
+                rho: contact.rho(),
+            });
         }
         if now.counters.impacts >= self.budget {
             return Err(Outcome::ImpactBudget);
         }
-        self.accumulate(surface, rate, penetrates, struck, now)
+        match struck.contact {
+            // It goes on through the surface.
+            None if penetrates => match self.accumulation.pass(surface, t) {
+                Some(_) => Err(Outcome::Zeno { t, surface }),
+                None => Ok(struck.rates),
+            },
+            _ => self.accumulate(surface, rate, struck, now),
+        }
     }
 
     /// Whether the state still approaches a surface after an impact at gap rate `rate`.
@@ -250,34 +283,30 @@ impl<Sys: Impacting> Impacts<Sys> {
             && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
     }
 
-    /// Takes in an impact at gap rate `rate`, whether it `passes` through the surface; returns the gap rates to go on
-    /// with.
+    /// Takes in an impact at gap rate `rate`; returns the gap rates to go on with.
     fn accumulate(
         &mut self,
         surface: usize,
         rate: f64,
-        passes: bool,
         mut struck: Struck<Sys>,
         now: &mut Moment<'_, Sys>,
     ) -> Result<Sys::Gaps, Outcome> {
         let (system, t) = (now.system, now.t);
-        let is_reset = struck.rho.is_none();
         let rate_after = struck.rates.as_slice()[surface];
-        // A reset sets its rate to the last digit; an impulse leaves rounding errors of the rate it takes.
-        let still = if is_reset { 0.0 } else { STILL * rate.abs() };
-        let watch = &self.watch;
-        let ends = if is_reset && passes {
-            self.accumulation.pass(surface, t)
-        } else {
-            let bounce = if rate_after > still { rate_after } else { 0.0 };
-            let energy = || system.energy(t, &struck.after).unwrap_or(f64::NAN);
-            let rounding = || watch.rounding(surface, now);
-            self.accumulation.add(surface, t, bounce, rounding, energy)
+        // A reset sets the rate to its last digit; an impulse leaves rounding errors of the rate it takes.
+        let still = match struck.contact {
+            Some(_) => STILL * rate.abs(),
+            None => 0.0,
         };
-        match ends {
+        let bounce = if rate_after > still { rate_after } else { 0.0 };
+        let may_rest = self.may_rest(surface);
+        let energy = || system.energy(t, &struck.after).unwrap_or(f64::NAN);
+        let watch = &self.watch;
+        let rounding = || watch.rounding(surface, now);
+        match self.accumulation.add(surface, t, bounce, rounding, energy) {
             None => Ok(struck.rates),
             Some(Ends::Spasmodic(t)) => Err(Outcome::Spasmodic { t, surface }),
-            Some(Ends::Hops(t)) if self.policies.rest == Rest::Contact && !is_reset => {
+            Some(Ends::Hops(t)) if may_rest => {
                 // Hops too small to be seen: what is left of the last one is taken.
                 struck.take_rate(system, surface, now.t)?;
                 *now.state = struck.after;
@@ -298,29 +327,6 @@ impl<Sys: Impacting> Struck<Sys> {
         self.rates = system.gap_rates(t, &self.after)?;
         Ok(())
     }
-}
-
-/// The state after the impulse of a law, and `rho`.
-fn kicked<Sys: Impacting>(
-    system: &Sys,
-    surface: usize,
-    law: Law,
-    t: f64,
-    before: &Sys::State,
-) -> Result<(Sys::State, f64), Outcome> {
-    let contact = system.contact(surface, t, before)?;
-    let mut after = *before;
-    system.kick(&mut after, contact.impulse(law), &contact.direction);
-    // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction; without this the
-    // energy would drift like the number of impacts instead of its root.
-    let missed = contact.gap_rate
-        - contact.rate_taken(law)
-        - system.gap_rates(t, &after)?.as_slice()[surface];
-    let correction = missed / contact.constrained_compliance;
-    if correction.is_finite() {
-        system.kick(&mut after, correction, &contact.direction);
-    }
-    Ok((after, contact.rho()))
 }
 
 impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {

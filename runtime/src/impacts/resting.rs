@@ -169,6 +169,21 @@ impl<G: StateVector> Resting<G> {
         self.drop_pulling(None, now, observer)
     }
 
+    /// After a reset of positions: leaves the surfaces that are not at hand any more.
+    pub(super) fn keep<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+        &mut self,
+        at_hand: &G,
+        now: &Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        for surface in 0..G::LEN {
+            if self.held.is_held(surface) && at_hand.as_slice()[surface] != 1.0 {
+                self.leave(surface, now, observer)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Leaves surfaces that would have to pull, one after the other, but not the one just pressed.
     fn drop_pulling<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
@@ -188,20 +203,6 @@ impl<G: StateVector> Resting<G> {
                 _ => return Ok(()),
             }
         }
-    }
-
-    /// Leaves every surface: the state was taken elsewhere.
-    pub(super) fn leave_all<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
-        &mut self,
-        now: &Moment<'_, Sys>,
-        observer: &mut O,
-    ) -> Result<(), Outcome> {
-        for surface in 0..G::LEN {
-            if self.held.is_held(surface) {
-                self.leave(surface, now, observer)?;
-            }
-        }
-        Ok(())
     }
 
     fn leave<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(

@@ -144,7 +144,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         for (surface, part) in self.parts.as_slice().iter().enumerate() {
             if (part - theta) * self.length <= SAME_TIME * now.t.abs() {
-                hits.add([surface].into_iter());
+                hits.at_hand.as_mut_slice()[surface] = 1.0;
                 if self.is_passable(surface) {
                     hits.set_fallen(surface);
                 }
@@ -169,10 +169,10 @@ impl<Sys: Impacting> Watch<Sys> {
         for surface in 0..Sys::Gaps::LEN {
             let (gap, rate) = (gaps.as_slice()[surface], rates.as_slice()[surface]);
             let is_near = rate < 0.0 && gap.abs() <= BESIDE * rate.abs() * self.length;
-            if self.is_passable(surface) && self.gaps.as_slice()[surface] <= 0.0 {
-                continue;
-            }
+            // One that was passed, or has counted, lies behind.
+            let is_ahead = !self.is_passable(surface) || self.gaps.as_slice()[surface] > 0.0;
             if is_near
+                && is_ahead
                 && gap.abs() <= roundings * rounding(now, surface, &self.sizes)
                 && now.system.surface_active(surface, now.t, now.state)
             {
@@ -300,8 +300,9 @@ impl<Sys: Impacting> Watch<Sys> {
             at(&self.rates) * glance.length,
             at(&glance.rates) * glance.length,
         ];
-        // NOTE: negative throughout, a surface at hand is not clear but pressed.
-        let is_sunk = at(&self.gaps) == 0.0 && at(&glance.gaps) < 0.0;
+        // NOTE: negative throughout, a surface at hand is not clear but pressed, unless it is passed.
+        let is_passed = self.is_passable(surface) && slopes[0] <= 0.0;
+        let is_sunk = at(&self.gaps) == 0.0 && at(&glance.gaps) < 0.0 && !is_passed;
         !glance.is_due(surface)
             && !is_sunk
             && match &glance.series {
