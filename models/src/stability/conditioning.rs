@@ -72,7 +72,7 @@ pub const CASES: &[Case] = &[
         right: "the constraint forces are not determined there",
         bound: "`singular_constraint` within 1e-9 of y = 0",
         pending: Some(
-            "a rank that drops at one instant is stepped over: constraints are looked at where rates are evaluated",
+            "a rank that drops at one instant is stepped over: pivots are no longer known once the rates are evaluated",
         ),
         run: Run::Integrators(rank_drops),
         ..Case::QUICK

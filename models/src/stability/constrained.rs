@@ -65,7 +65,7 @@ pub const CASES: &[Case] = &[
         right: "a straight line at constant velocity",
         bound: "1e-8",
         pending: Some(
-            "angles near the pole turn faster than steps of double precision resolve: no second chart",
+            "rates of the frame are differences of terms of size 1/theta^2, whose rounding stops the step control: no second chart",
         ),
         run: Run::Integrators(|setting, report| {
             past_the_pole(setting, report, 1e-6);
