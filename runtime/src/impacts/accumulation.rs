@@ -33,10 +33,9 @@ pub(super) struct Accumulation<V> {
     growth: Growth<V>,
     /// Time of the last impact on any surface.
     last: f64,
-    /// Impacts at that time so far, the first not counted, and whether all were on one surface, and on which.
+    /// Impacts at that time so far, the first not counted; and how many on each surface.
     repeated: u32,
-    is_alone: bool,
-    surface: usize,
+    on_each: V,
     /// Per surface: time of the last impact, length of the last flight, gap rate it began with, and how many
     /// flights in a row were shorter than the one before.
     times: V,
@@ -64,8 +63,7 @@ impl<V: StateVector> Accumulation<V> {
             growth: Growth::none(),
             last: f64::NEG_INFINITY,
             repeated: 0,
-            is_alone: true,
-            surface: 0,
+            on_each: zeros,
             times,
             flights: infinite,
             rates: zeros,
@@ -106,10 +104,12 @@ impl<V: StateVector> Accumulation<V> {
             return Some(Ends::Spasmodic(t));
         }
         if self.repeated >= AT_ONE_TIME {
-            return Some(match self.is_alone {
-                true => Ends::Hops(self.limit(surface, t)),
-                false => Ends::AtOneTime(t),
-            });
+            return match self.hops_on() {
+                None => Some(Ends::AtOneTime(t)),
+                Some(hopping) if hopping == surface => Some(Ends::Hops(self.limit(surface, t))),
+                // Another surface that happens to be hit where hops on this one end.
+                Some(_) => None,
+            };
         }
         let next = flight * (rate / before);
         let is_hidden = shrinking && 0.25 * rate * next <= rounding();
@@ -129,10 +129,20 @@ impl<V: StateVector> Accumulation<V> {
 
     /// Counts impacts at one time.
     fn count(&mut self, surface: usize, t: f64) {
-        let is_repeated = t == self.last;
-        self.repeated = if is_repeated { self.repeated + 1 } else { 0 };
-        self.is_alone = !is_repeated || (self.is_alone && surface == self.surface);
-        (self.last, self.surface) = (t, surface);
+        if t == self.last {
+            self.repeated += 1;
+        } else {
+            self.repeated = 0;
+            self.on_each = V::zeros();
+        }
+        self.on_each.as_mut_slice()[surface] += 1.0;
+        self.last = t;
+    }
+
+    /// The surface that almost all impacts at this time were on, if they do not go to and fro between several.
+    fn hops_on(&self) -> Option<usize> {
+        let most = 0.75 * f64::from(self.repeated);
+        self.on_each.as_slice().iter().position(|&own| own > most)
     }
 
     /// The time of accumulation if the motion, just bounced off a surface at `t`, did not rise from it: the hop is

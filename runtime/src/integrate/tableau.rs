@@ -33,33 +33,6 @@ pub(super) fn combine<S: StateVector>(base: &S, h: f64, stages: &[S], terms: &[T
     }
 }
 
-/// What [`combine`] gives for a row that sums to `node`, written as
-///
-/// ```text
-/// base + h (node k_1 + sum over the other terms of coefficient * (k_j - k_1))
-/// ```
-///
-/// That is exact for constant rates. Rounded coefficients, and sums in which large ones cancel, push every step in the
-/// same direction otherwise.
-#[inline(always)]
-pub(super) fn combine_changes<S: StateVector>(
-    base: &S,
-    h: f64,
-    node: f64,
-    stages: &[S],
-    terms: &[Term],
-    out: &mut S,
-) {
-    for i in 0..S::LEN {
-        let first = stages[0].as_slice()[i];
-        let mut slope = node * first;
-        for &(stage, coefficient) in &terms[1..] {
-            slope += coefficient * (stages[stage].as_slice()[i] - first);
-        }
-        out.as_mut_slice()[i] = base.as_slice()[i] + h * slope;
-    }
-}
-
 /// The larger of two sizes; not a number once one is.
 ///
 /// Errors are measured by their largest component, not by their mean: components that are integrated without error, as

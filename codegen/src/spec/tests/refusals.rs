@@ -136,10 +136,6 @@ fn declarations_to_come_are_refused_by_name() {
         refused_in(&format!("«{word}» {{ a: b; }}"), &message);
     }
     refused_in(
-        "impacts { w: x >= 0 => «reset» { x = 1; }; }",
-        "`reset` is not implemented in this version",
-    );
-    refused_in(
         "impacts { w: x >= 0 => elastic, «instantaneous» { }; }",
         "`instantaneous` is not implemented",
     );

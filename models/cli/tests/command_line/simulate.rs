@@ -29,6 +29,7 @@ fn a_document_has_the_keys_of_the_interface() {
         "tol",
         "outcome",
         "events",
+        "contacts",
         "samples",
         "counters",
     ];
