@@ -29,14 +29,23 @@ mod surroundings {
     struct Ok;
     struct Default;
     const x: f64 = 1.0;
+    const q: usize = 0;
+    const state: usize = 0;
+    use shadowed::coordinate::{phi, y};
+    use shadowed::surface::floor;
     const M: f64 = 2.0;
     fn components() {}
 
+    /// The places that a caller has imported are those of the model.
+    pub fn places() -> [usize; 3] {
+        [y, phi, floor]
+    }
+
     dalembert::model! {
         pub(crate) Shadowed {
-            coordinates { y; L; }
+            coordinates { y; L; phi: angle; }
             parameters { m > 0 = 1; }
-            lagrangian = m/2*(dot(y)^2 + dot(L)^2) - y;
+            lagrangian = m/2*(dot(y)^2 + dot(L)^2 + dot(phi)^2) - y*cos(phi);
             constraints { slide: d(L) - y*d(y) = 0; }
             impacts { floor: y >= 0; }
         }
@@ -111,6 +120,7 @@ fn models_compile_in_hostile_surroundings() {
     use dalembert::{Described, System};
     assert_eq!(local(), 3.0);
     assert_eq!(surroundings::Shadowed::DESCRIPTION.name, "shadowed");
+    assert_eq!(surroundings::places(), [0, 2, 0]);
     // A parameter without default: no `Default`, and a refusal until it is set.
     let mut bare = bare::Bare::with_defaults();
     assert!(bare.check_parameters().is_err());

@@ -185,3 +185,34 @@ pub fn admit<S: Constrained>(
     }
     Ok(())
 }
+
+/// The names of arguments of generated functions, as functions: imported around generated code, they hide constants
+/// of these names that its surroundings may have, and give way to locals.
+#[rustfmt::skip]
+#[allow(missing_docs)]
+pub mod arguments {
+    pub fn t() {}
+    pub fn state() {}
+    pub fn rate() {}
+    pub fn q() {}
+    pub fn qdot() {}
+    pub fn p() {}
+    pub fn excess() {}
+    pub fn forms() {}
+    pub fn affine() {}
+    pub fn surface() {}
+    pub fn values() {}
+    pub fn report() {}
+    pub fn size() {}
+    pub fn direction() {}
+    pub fn motion() {}
+    pub fn unit() {}
+    pub fn order() {}
+    pub fn coefficients() {}
+    pub fn jets() {}
+    pub fn gaps() {}
+    pub fn k() {}
+    pub fn weight() {}
+    pub fn inverse() {}
+    pub fn step() {}
+}

@@ -60,9 +60,16 @@ pub fn tokens(model: &Model, derivation: &Derivation, programs: &Lowered) -> Tok
         parameters::emit_parameters(&context),
         indices::emit_indices(&context),
     ];
+    let shadows = names::emit_shadows(model);
     let contexts = [Some(context), global].into_iter().flatten();
     let items = contexts.flat_map(|context| implementations(&context));
-    own.into_iter().chain(items).collect()
+    quote! {
+        #(#own)*
+        const _: () = {
+            #shadows
+            #(#items)*
+        };
+    }
 }
 
 /// What is implemented for a type of the model.

@@ -32,7 +32,7 @@ pub(super) struct Names {
     pub parameters: Vec<TokenStream>,
 }
 
-/// Names that generated functions use for their own arguments.
+/// Names that generated functions use for their own arguments and locals; `dalembert::__private::arguments` has each of them.
 const ARGUMENTS: [&str; 24] = [
     "t",
     "state",
@@ -122,6 +122,27 @@ impl Names {
 
 fn arguments() -> BTreeSet<String> {
     ARGUMENTS.iter().map(|name| (*name).to_string()).collect()
+}
+
+/// Functions that hide constants of the surroundings. Rust takes a pattern that is the name of a constant in scope for
+/// that constant, and after `use disk::coordinate::phi` there is one for each index that a caller has imported; a
+/// function of the same name gives way to a local.
+pub(super) fn emit_shadows(model: &Model) -> TokenStream {
+    let names: BTreeSet<&str> = (model.coordinates.iter().map(|item| &item.name))
+        .chain(model.constraints.iter().map(|item| &item.name))
+        .chain(model.frame.iter().map(|item| &item.name))
+        .chain(model.surfaces.iter().map(|item| &item.name))
+        .chain(model.outputs.iter().map(|item| &item.name))
+        .map(|name| name.field.as_str())
+        .collect();
+    let names = names
+        .into_iter()
+        .map(|name| Ident::new(name, Span::call_site()));
+    quote! {
+        #[allow(unused_imports)]
+        use ::dalembert::__private::arguments::*;
+        #(#[allow(dead_code, non_snake_case)] fn #names() {})*
+    }
 }
 
 /// The places of all parameters in the struct.
