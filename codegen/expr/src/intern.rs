@@ -7,7 +7,7 @@ use std::hash::{BuildHasherDefault, Hash, Hasher};
 /// NOTE: the standard hasher is keyed and, in an unoptimised build, several times slower; nodes are hashed on every
 /// constructor call.
 #[derive(Default, Clone, Debug)]
-pub(crate) struct WordHasher(u64);
+pub struct WordHasher(u64);
 
 impl WordHasher {
     /// The hash of one value.
@@ -58,7 +58,7 @@ impl Hasher for WordHasher {
 }
 
 /// For maps that are looked up and never iterated.
-pub(crate) type WordHash = BuildHasherDefault<WordHasher>;
+pub type WordHash = BuildHasherDefault<WordHasher>;
 
 /// An open-addressing table of positions into a vector that its owner keeps.
 #[derive(Clone, Debug, Default)]

@@ -64,6 +64,7 @@ mod taylor;
 mod zero;
 
 pub use field::Modulus;
+pub use intern::{WordHash, WordHasher};
 pub use node::{Assumption, ExprId, Function, Node, SymbolId};
 pub use point::{ModularFailure, ModularPoint};
 pub use pool::Pool;

@@ -10,6 +10,7 @@ use std::collections::HashMap;
 
 use dalembert_expr::{
     Arithmetic, ExpansionPoint, ExprId, Function, ModularPoint, Modulus, Pool, Rational, SymbolId,
+    WordHash,
 };
 
 /// The position of a step.
@@ -54,7 +55,7 @@ pub struct Trace {
     /// The operations, in an order that can be carried out.
     pub operations: Vec<Operation>,
     residues: Vec<u64>,
-    known: HashMap<Operation, Step>,
+    known: HashMap<Operation, Step, WordHash>,
 }
 
 impl Trace {
@@ -190,7 +191,7 @@ impl Arithmetic for Tracer<'_> {
 pub(super) struct TracedPoint<'t> {
     point: ModularPoint,
     tracer: Tracer<'t>,
-    set: HashMap<SymbolId, Step>,
+    set: HashMap<SymbolId, Step, WordHash>,
 }
 
 impl<'t> TracedPoint<'t> {
@@ -201,7 +202,7 @@ impl<'t> TracedPoint<'t> {
         Self {
             point,
             tracer: Tracer { trace, field },
-            set: HashMap::new(),
+            set: HashMap::default(),
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use dalembert_expr::{Function as Elementary, Rational};
+use dalembert_expr::{Function as Elementary, Rational, WordHash};
 
 use super::{Cost, Function, Guard, Input, Op, Value, schedule};
 
@@ -14,7 +14,7 @@ use super::{Cost, Function, Guard, Input, Op, Value, schedule};
 pub struct Builder {
     ops: Vec<Op>,
     names: Vec<Option<String>>,
-    numbered: HashMap<Op, Value>,
+    numbered: HashMap<Op, Value, WordHash>,
 }
 
 impl Builder {

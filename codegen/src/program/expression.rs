@@ -4,12 +4,12 @@
 //! a factor that several terms share is multiplied once (`a*b + a*c` becomes `a*(b + c)`), the most frequent
 //! first. Powers are products; negative powers of one product share one division.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use dalembert_expr::{ExprId, Node, Pool, Rational, SymbolId};
+use dalembert_expr::{ExprId, Node, Pool, Rational, SymbolId, WordHash};
 
-use super::Value;
 use super::builder::Builder;
+use super::{Input, Op, Value};
 
 /// A term of a sum: coefficient and factors with their exponents.
 type Term = (Rational, Vec<(ExprId, Rational)>);
@@ -24,8 +24,10 @@ enum Pending {
 #[derive(Debug)]
 pub struct Expressions<'a> {
     pool: &'a Pool,
-    values: HashMap<ExprId, Value>,
-    bindings: HashMap<SymbolId, Value>,
+    values: HashMap<ExprId, Value, WordHash>,
+    /// Those with a value that depend on anything but parameters and numbers.
+    moving: HashSet<ExprId, WordHash>,
+    bindings: HashMap<SymbolId, Value, WordHash>,
 }
 
 impl<'a> Expressions<'a> {
@@ -33,8 +35,9 @@ impl<'a> Expressions<'a> {
     pub fn new(pool: &'a Pool) -> Self {
         Self {
             pool,
-            values: HashMap::new(),
-            bindings: HashMap::new(),
+            values: HashMap::default(),
+            moving: HashSet::default(),
+            bindings: HashMap::default(),
         }
     }
 
@@ -54,6 +57,9 @@ impl<'a> Expressions<'a> {
         for id in self.pending(root) {
             let value = self.lower_node(builder, id);
             self.values.insert(id, value);
+            if self.is_moving(builder, id) {
+                self.moving.insert(id);
+            }
         }
         self.values[&root]
     }
@@ -62,13 +68,15 @@ impl<'a> Expressions<'a> {
     fn pending(&self, root: ExprId) -> Vec<ExprId> {
         let mut found = Vec::new();
         let mut stack = vec![root];
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::<ExprId, WordHash>::default();
         while let Some(id) = stack.pop() {
             if self.values.contains_key(&id) || !seen.insert(id) {
                 continue;
             }
             found.push(id);
-            stack.extend(operands(self.pool.node(id)));
+            self.pool
+                .node(id)
+                .for_each_operand(|operand| stack.push(operand));
         }
         found.sort_unstable();
         found
@@ -178,7 +186,7 @@ impl<'a> Expressions<'a> {
     /// Parameters are multiplied first: what depends on them alone is then shared between products.
     fn lower_product(&self, builder: &mut Builder, factors: &[(ExprId, Rational)]) -> Value {
         let mut ordered: Vec<&(ExprId, Rational)> = factors.iter().collect();
-        ordered.sort_by_key(|(base, _)| (self.is_moving(builder, *base), *base));
+        ordered.sort_by_key(|(base, _)| (self.moving.contains(base), *base));
         let (mut numerator, mut denominator) = (builder.integer(1), builder.integer(1));
         for (base, exponent) in ordered {
             let power = positive_power(builder, self.values[base], &exponent.abs());
@@ -190,17 +198,17 @@ impl<'a> Expressions<'a> {
         builder.div(numerator, denominator)
     }
 
-    /// Whether an expression depends on anything but parameters and numbers.
+    /// Whether an expression whose operands are lowered depends on anything but parameters and numbers.
     fn is_moving(&self, builder: &Builder, id: ExprId) -> bool {
-        self.pool.symbols(id).iter().any(|symbol| {
+        let node = self.pool.node(id);
+        if let Node::Symbol(symbol) = node {
             let value = self.bindings.get(symbol);
-            !value.is_some_and(|&value| {
-                matches!(
-                    builder.op(value),
-                    super::Op::Input(super::Input::Parameter(_))
-                )
-            })
-        })
+            let is_parameter = |value| matches!(builder.op(value), Op::Input(Input::Parameter(_)));
+            return !value.is_some_and(|&value| is_parameter(value));
+        }
+        let mut found = false;
+        node.for_each_operand(|operand| found |= self.moving.contains(&operand));
+        found
     }
 }
 
@@ -215,16 +223,6 @@ pub fn positive_power(builder: &mut Builder, base: Value, exponent: &Rational) -
             builder.mul(root, rest)
         }
         _ => builder.power(base, exponent.clone()),
-    }
-}
-
-fn operands(node: &Node) -> Vec<ExprId> {
-    match node {
-        Node::Number(_) | Node::Pi | Node::Symbol(_) => Vec::new(),
-        Node::Sum { terms, .. } => terms.iter().flat_map(|(_, id)| [*id]).collect(),
-        Node::Product(factors) => factors.iter().map(|(id, _)| *id).collect(),
-        Node::Call(_, argument) => vec![*argument],
-        Node::Atan2(y, x) => vec![*y, *x],
     }
 }
 
@@ -243,7 +241,7 @@ fn most_frequent_factor(terms: &[Term]) -> Option<ExprId> {
         let whole = factors.filter(|(_, exponent)| exponent.is_integer() && exponent.is_positive());
         whole.map(|(base, _)| *base)
     };
-    let mut counts: HashMap<ExprId, usize> = HashMap::new();
+    let mut counts: HashMap<ExprId, usize, WordHash> = HashMap::default();
     for base in shareable() {
         *counts.entry(base).or_default() += 1;
     }
