@@ -38,16 +38,38 @@ macro_rules! of_each_claimed {
 /// The implementation of `InvariantVolume` that a declaration gets, formatted; empty if there is none.
 fn emitted(source: &str) -> String {
     let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens")).expect(source);
-    let mut file: syn::File = syn::parse2(tokens).expect("items");
-    file.items.retain(|item| {
+    let file: syn::File = syn::parse2(tokens).expect("items");
+    let items = file.items.into_iter().flat_map(|item| match item {
+        syn::Item::Const(own) => implementations(*own.expr),
+        other => vec![other],
+    });
+    let is_volume = |item: &syn::Item| {
         let syn::Item::Impl(item) = item else {
             return false;
         };
         let path = item.trait_.as_ref().map(|(path, _)| path);
         let last = path.and_then(|path| path.segments.last());
         last.is_some_and(|segment| segment.ident == "InvariantVolume")
+    };
+    let items = items.filter(is_volume).collect();
+    prettyplease::unparse(&syn::File {
+        items,
+        attrs: Vec::new(),
+        shebang: None,
+    })
+}
+
+/// The items of a block.
+fn implementations(block: syn::Expr) -> Vec<syn::Item> {
+    let syn::Expr::Block(block) = block else {
+        return Vec::new();
+    };
+    let statements = block.block.stmts.into_iter();
+    let items = statements.filter_map(|statement| match statement {
+        syn::Stmt::Item(item) => Some(item),
+        _ => None,
     });
-    prettyplease::unparse(&file)
+    items.collect()
 }
 
 #[test]

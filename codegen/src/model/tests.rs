@@ -239,6 +239,53 @@ fn integrable_constraints_are_noted() {
 }
 
 #[test]
+fn differences_that_lose_their_digits_are_noted() {
+    let notes = |potential: &str| {
+        let source = format!(
+            "P {{ coordinates {{ x; theta: angle; }} parameters {{ k > 0; s; }}
+                lagrangian = (dot(x)^2 + dot(theta)^2)/2 - s*x - ({potential}); }}"
+        );
+        let own = model(&source).notes.into_iter();
+        let own = own.filter(|note| note.contains("loses its digits"));
+        own.collect::<Vec<_>>().join("; ")
+    };
+    for (potential, note) in [
+        (
+            "k*(1 - cos(theta))",
+            "`1 - cos(theta)` in `lagrangian` loses its digits near `theta = 0`: write `2*sin(theta/2)^2`",
+        ),
+        (
+            "k - k*cos(2*theta)",
+            "`1 - cos(2*theta)` in `lagrangian` loses its digits near `2*theta = 0`: write `2*sin(theta)^2`",
+        ),
+        (
+            "cosh(x) - 1",
+            "`cosh(x) - 1` in `lagrangian` loses its digits near `x = 0`: write `2*sinh(x/2)^2`",
+        ),
+        (
+            "k*exp(-x) - k",
+            "`exp(-x) - 1` in `lagrangian` loses its digits near `-x = 0`: write `-2*exp(-x/2)*sinh(x/2)`",
+        ),
+        (
+            "3*sqrt(1 + x) - 3",
+            "`sqrt(x + 1) - 1` in `lagrangian` loses its digits near `x = 0`: write `x/(sqrt(x + 1) + 1)`",
+        ),
+        (
+            "(sqrt(k^2 + x^2) - k)^2",
+            "`sqrt(k^2 + x^2) - k` in `lagrangian` loses its digits near `x^2 = 0`: write `x^2/(k + sqrt(k^2 + x^2))`",
+        ),
+        ("2*sin(theta/2)^2 + 1 + cos(theta)", ""),
+        ("2 - cos(theta)", ""),
+        ("sqrt(2 + x) - 1", ""),
+        ("sqrt(k^2 + x^2) + k", ""),
+        ("k*(1 - cos(s))", ""),
+        ("exp(1 + x^2) - 1", ""),
+    ] {
+        assert_eq!(notes(potential), note, "{potential}");
+    }
+}
+
+#[test]
 fn remarks_name_what_a_person_should_see() {
     let model = model(
         "P { coordinates { x; y; } parameters { m; k; }

@@ -3,6 +3,7 @@
 //! Every declaration is resolved and checked by itself first; what concerns several of them (ranks, surfaces against
 //! constraints) follows for those without a fault. So independent mistakes are all reported.
 
+mod cancellation;
 mod claims;
 mod constraints;
 mod coordinates;
@@ -135,6 +136,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
 fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec<String> {
     let mut notes = natural::notes(resolver, lagrangian);
     notes.extend(integrable::notes(resolver, &parts.constraints));
+    notes.extend(cancellation::notes(resolver, lagrangian, parts));
     notes.extend(laws::notes(resolver, &parts.surfaces, &parts.constraints));
     notes.extend(initial::notes(resolver, &parts.initial));
     notes.extend(parameters::unused(

@@ -245,6 +245,23 @@ pub fn refusal(source: &str) -> Option<String> {
         .map(|error| error.to_string())
 }
 
+/// The notes of the generator on a declaration, a line each.
+pub fn notes(source: &str) -> String {
+    use dalembert_codegen::report::{Item, Section, report};
+    let Ok(report) = report(source) else {
+        return String::new();
+    };
+    let sections = report.sections.into_iter();
+    let notes = sections.filter(|section| section.title == Section::NOTES);
+    let words = notes
+        .flat_map(|section| section.items)
+        .filter_map(|item| match item {
+            Item::Words(words) => Some(words),
+            _ => None,
+        });
+    words.collect::<Vec<_>>().join("\n")
+}
+
 /// Every integrator that chooses its steps: cases bound errors by tolerances, which those of fixed step do not know.
 pub fn every_integrator() -> &'static [Integrator] {
     &[Integrator::Dop853, Integrator::Dopri5, Integrator::Taylor]

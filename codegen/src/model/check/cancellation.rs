@@ -1,0 +1,214 @@
+//! Remarks on differences whose terms nearly agree somewhere, and that have another form in which they do not.
+//!
+//! Looked for are `p f(e) - p` with `f(0) = 1`, for the functions in [`safe`], and `sqrt(p^2 + e) - p`: near `e = 0` the
+//! terms agree in their first digits, and what is left of them is rounding.
+
+use std::collections::BTreeMap;
+
+use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign, SymbolId};
+
+use super::super::resolve::Resolver;
+use super::super::{Constraint, Lagrangian};
+use super::Parts;
+
+/// A difference, what is 0 where it loses its digits, and the form that keeps them.
+struct Cancellation {
+    difference: ExprId,
+    argument: ExprId,
+    safe: ExprId,
+}
+
+/// Factors of a product with their exponents.
+type Powers = Vec<(ExprId, Rational)>;
+
+/// What may cancel in a sum.
+enum Candidate {
+    /// `p f(e) - p`
+    Call(Function, ExprId),
+    /// `root - p`, with `p` a multiple of a summand, or a number.
+    Root {
+        root: ExprId,
+        radicand: ExprId,
+        p: (Rational, Option<ExprId>),
+    },
+}
+
+/// Remarks on everything that is evaluated along a run; each difference once.
+pub(super) fn notes(
+    resolver: &Resolver<'_>,
+    lagrangian: &Lagrangian,
+    parts: &Parts,
+) -> Vec<String> {
+    let mut found = Vec::new();
+    for (place, roots) in places(lagrangian, parts) {
+        for id in resolver.pool.reachable(&roots) {
+            let candidates = candidates(&resolver.pool, id).into_iter();
+            found.extend(candidates.map(|candidate| (place, candidate)));
+        }
+    }
+    if found.is_empty() {
+        return Vec::new();
+    }
+    // The other forms are made in a copy: a remark adds nothing to the model.
+    let mut pool = resolver.pool.clone();
+    let moving = resolver.symbols.moving();
+    let mut notes = BTreeMap::new();
+    for (place, candidate) in found {
+        let Some(own) = cancellation(&mut pool, &candidate) else {
+            continue;
+        };
+        let never = matches!(pool.sign(own.argument), Sign::Positive | Sign::Negative);
+        if never || !pool.depends_on_any(own.argument, &moving) {
+            continue;
+        }
+        let [text, zero, safe] = [own.difference, own.argument, own.safe].map(|id| pool.text(id));
+        notes.entry(own.difference).or_insert_with(|| {
+            format!("`{text}` in `{place}` loses its digits near `{zero} = 0`: write `{safe}`")
+        });
+    }
+    if pool.is_exhausted() {
+        return Vec::new();
+    }
+    notes.into_values().collect()
+}
+
+/// What was declared, by name.
+fn places<'a>(
+    lagrangian: &Lagrangian,
+    parts: &'a Parts,
+) -> impl Iterator<Item = (&'a str, Vec<ExprId>)> {
+    let form = |constraint: &Constraint| {
+        let affine = [constraint.affine];
+        constraint.form.iter().copied().chain(affine).collect()
+    };
+    let constraints = parts.constraints.iter();
+    let forces = parts.forces.iter();
+    let surfaces = parts.surfaces.iter();
+    let outputs = parts.outputs.iter();
+    [("lagrangian", vec![lagrangian.whole])]
+        .into_iter()
+        .chain(constraints.map(move |own| (own.name.display.as_str(), form(own))))
+        .chain(forces.map(|own| (own.name.display.as_str(), own.form.clone())))
+        .chain(surfaces.map(|own| (own.name.display.as_str(), vec![own.gap])))
+        .chain(outputs.map(|own| (own.name.display.as_str(), vec![own.value])))
+}
+
+/// Those among the summands of an expression.
+fn candidates(pool: &Pool, id: ExprId) -> Vec<Candidate> {
+    if !matches!(pool.node(id), Node::Sum { .. }) {
+        return Vec::new();
+    }
+    let (constant, terms) = pool.linear_form(id);
+    let powers: Vec<Powers> = terms.iter().map(|(_, term)| powers(pool, *term)).collect();
+    let of_terms = powers.iter().cloned().zip(&terms);
+    let summands: BTreeMap<Powers, (Option<ExprId>, &Rational)> = of_terms
+        .map(|(powers, (own, term))| (powers, (Some(*term), own)))
+        .chain([(Powers::new(), (None, &constant))])
+        .collect();
+    let mut found = Vec::new();
+    for ((own, term), powers) in terms.iter().zip(&powers) {
+        let cancels = |other: &Rational| *other == -own.clone();
+        for (index, (base, exponent)) in powers.iter().enumerate() {
+            if let Node::Call(function, argument) = pool.node(*base)
+                && is_one_at_zero(*function)
+                && exponent.is_one()
+            {
+                let mut others = powers.clone();
+                others.remove(index);
+                if summands
+                    .get(&others)
+                    .is_some_and(|(_, other)| cancels(other))
+                {
+                    found.push(Candidate::Call(*function, *argument));
+                }
+            }
+        }
+        if let [(radicand, exponent)] = powers.as_slice()
+            && *exponent == Rational::new(1, 2)
+        {
+            let shares = summands.values().filter_map(|(other, subtracted)| {
+                Some((*other, subtracted.checked_div(&-own.clone())?))
+            });
+            let root = |(other, share)| Candidate::Root {
+                root: *term,
+                radicand: *radicand,
+                p: (share, other),
+            };
+            found.extend(shares.map(root));
+        }
+    }
+    found
+}
+
+/// The factors of a term, with their exponents.
+fn powers(pool: &Pool, term: ExprId) -> Powers {
+    match pool.node(term) {
+        Node::Product(powers) => powers.to_vec(),
+        _ => vec![(term, Rational::from(1))],
+    }
+}
+
+/// Whether the function is 1 where its argument is 0, and has another form of its difference from 1.
+fn is_one_at_zero(function: Function) -> bool {
+    matches!(function, Function::Cos | Function::Cosh | Function::Exp)
+}
+
+/// The form of a candidate that keeps its digits, if there is one.
+fn cancellation(pool: &mut Pool, candidate: &Candidate) -> Option<Cancellation> {
+    match candidate {
+        Candidate::Call(function, argument) => safe(pool, *function, *argument),
+        Candidate::Root {
+            root,
+            radicand,
+            p: (share, other),
+        } => {
+            let other = other.unwrap_or_else(|| pool.one());
+            let p = pool.scale(share, other);
+            root_less(pool, *root, *radicand, p)
+        }
+    }
+}
+
+/// The other form of the difference of 1 and a function that is 1 where its argument is 0.
+fn safe(pool: &mut Pool, function: Function, argument: ExprId) -> Option<Cancellation> {
+    let half = pool.scale(&Rational::new(1, 2), argument);
+    let (factors, sign) = match function {
+        Function::Cos => ([Function::Sin, Function::Sin], -1),
+        Function::Cosh => ([Function::Sinh, Function::Sinh], 1),
+        Function::Exp => ([Function::Exp, Function::Sinh], 1),
+        _ => return None,
+    };
+    let [one, call] = [pool.one(), pool.call(function, argument)];
+    let difference = pool.combine(&[(Rational::from(sign), call), (Rational::from(-sign), one)]);
+    let factors = factors.map(|factor| pool.call(factor, half));
+    let product = pool.product(&factors);
+    Some(Cancellation {
+        difference,
+        argument,
+        safe: pool.scale(&Rational::from(2), product),
+    })
+}
+
+/// `sqrt(p^2 + e) - p = e/(sqrt(p^2 + e) + p)` for a positive `p`.
+fn root_less(pool: &mut Pool, root: ExprId, radicand: ExprId, p: ExprId) -> Option<Cancellation> {
+    if pool.sign(p) != Sign::Positive {
+        return None;
+    }
+    let square = pool.mul(p, p);
+    let argument = pool.sub(radicand, square);
+    if summands(pool, argument) >= summands(pool, radicand) {
+        return None;
+    }
+    let sum = pool.add(root, p);
+    Some(Cancellation {
+        difference: pool.sub(root, p),
+        argument,
+        safe: pool.div(argument, sum),
+    })
+}
+
+/// How many terms a sum has.
+fn summands(pool: &Pool, id: ExprId) -> usize {
+    let (constant, terms) = pool.linear_form(id);
+    terms.len() + usize::from(constant != Rational::from(0))
+}
