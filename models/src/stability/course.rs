@@ -106,6 +106,11 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
         }
     }
 
+    /// The state it begins with.
+    pub fn start(&self) -> &M::State {
+        &self.state
+    }
+
     /// From another time on.
     pub fn at(mut self, t0: f64) -> Self {
         self.t0 = t0;

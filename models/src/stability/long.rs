@@ -6,16 +6,11 @@ use dalembert::{Event, Observer, Segment, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
-use super::course::{Course, Random, U};
+use super::course::{Course, U};
 use super::crossing::Oscillator;
-use super::location::Fall;
 use super::scaling::Hopper;
 use super::tables::{Rectangle, Sinai};
 use crate::PointBilliard;
-
-/// Why energies drift.
-const BIASED: &str = "the coefficients of the Runge-Kutta tables are rounded: stages err by up to 100 u of h^2 x'', in the same \
-                      direction in every flight";
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -57,24 +52,6 @@ pub const CASES: &[Case] = &[
         right: "the position by unfolding",
         bound: "8 u t v",
         run: Run::Integrators(|setting, report| rectangle(setting, report, 1_000_000)),
-        ..Case::NIGHTLY
-    },
-    Case {
-        id: "F04",
-        title: "energy of elastic balls from 32 starts over 2^12 impacts",
-        right: "rounding errors that add up like a random walk",
-        bound: "root mean square below 16 u sqrt(n); exponent at most 0.6",
-        pending: Some(BIASED),
-        run: Run::Integrators(|setting, report| energy_drift(setting, report, 12)),
-        ..Case::QUICK
-    },
-    Case {
-        id: "F04b",
-        title: "energy of elastic balls from 32 starts over 2^20 impacts",
-        right: "as F04",
-        bound: "as F04",
-        pending: Some(BIASED),
-        run: Run::Integrators(|setting, report| energy_drift(setting, report, 20)),
         ..Case::NIGHTLY
     },
     Case {
@@ -265,64 +242,6 @@ fn rectangle(setting: Setting, report: &mut Report, bounces: u64) {
     report.class(&end.outcome, "impact_budget");
     report.error("worst position over its bound", worst, 1.0);
     report.curve("position", ["bounce", "error"], marks);
-}
-
-fn energy_drift(setting: Setting, report: &mut Report, doublings: u32) {
-    let mut random = Random::new(4);
-    let mut squares = vec![0.0; doublings as usize + 1];
-    for _ in 0..32 {
-        let speed = random.between(0.5, 2.0);
-        let system = Fall::default();
-        let start = 0.5 * speed * speed;
-        let mut watch = Energies {
-            system: &system,
-            start,
-            count: 0,
-            squares: &mut squares,
-        };
-        let end = Course::new(&system, &[0.0], &[speed], 1e9)
-            .impacts(1 << doublings)
-            .follow(setting, &mut watch);
-        report.class(&end.outcome, "impact_budget");
-    }
-    let points: Vec<[f64; 2]> = squares
-        .iter()
-        .enumerate()
-        .map(|(power, sum)| [2.0_f64.powi(power as i32), (sum / 32.0).sqrt()])
-        .collect();
-    let share = points
-        .iter()
-        .map(|[n, error]| error / (16.0 * U * n.sqrt()));
-    report.error("worst drift over its bound", share.fold(0.0, f64::max), 1.0);
-    let exponent = dalembert_cli::suite::exponent(&points[points.len() / 2..]).unwrap_or(f64::NAN);
-    report.error("exponent", exponent, 0.6);
-    report.curve(
-        "energy",
-        ["impacts", "root mean square of the relative error"],
-        points,
-    );
-}
-
-/// Adds up squares of relative energy errors at impacts 1, 2, 4, ..
-struct Energies<'a> {
-    system: &'a Fall,
-    start: f64,
-    count: u64,
-    squares: &'a mut [f64],
-}
-
-impl Observer<Fall> for Energies<'_> {
-    fn event(&mut self, event: &Event<<Fall as VectorField>::State>) -> ControlFlow<()> {
-        self.count += 1;
-        if self.count.is_power_of_two() {
-            let energy = self
-                .system
-                .energy(event.t, &event.after)
-                .unwrap_or(f64::NAN);
-            self.squares[self.count.ilog2() as usize] += (energy / self.start - 1.0).powi(2);
-        }
-        ControlFlow::Continue(())
-    }
 }
 
 fn sinai(setting: Setting, report: &mut Report) {

@@ -18,12 +18,14 @@ mod corners;
 pub mod course;
 mod crossing;
 mod drift;
+mod energy;
 mod ensembles;
 mod input;
 mod laws;
 mod location;
 mod long;
 mod scaling;
+mod structure;
 pub mod tables;
 mod zeno;
 
@@ -44,6 +46,8 @@ pub fn all() -> Vec<Case> {
         scaling::CASES,
         arithmetic::CASES,
         long::CASES,
+        energy::CASES,
+        structure::CASES,
         ensembles::CASES,
         input::CASES,
     ];

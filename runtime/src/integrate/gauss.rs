@@ -28,7 +28,7 @@ use crate::state::StateVector;
 /// [`Rk4`](super::Rk4) loses 5e-3 steadily; with [`Gauss6`] 1.3e-11, and 1.1e-14 at `h = 0.005`.
 ///
 /// With constraints, in the form reduced to D it is symmetric there: the energy of regular reversible motion is bounded
-/// (steered knife edge of `tests/structure/long_runs.rs`, `h = 0.05`, `H = 0.5`: 1.8e-10, drift 1e-14). In global form it
+/// (steered knife edge of `models/src/stability/structure.rs`, `h = 0.05`, `H = 0.5`: 1.8e-10, drift 1e-14). In global form it
 /// keeps D to order 4 only and leaves it further and further (energy error 6e-2, like `t^2`); the effect `Projection`
 /// returns to D, but is not symmetric, and the energy drifts steadily (5e-6). Prefer [`Dla4`](super::Dla4) there.
 ///

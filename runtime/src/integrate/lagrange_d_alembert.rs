@@ -37,7 +37,7 @@ use crate::state::StateVector;
 /// - Holonomic constraints (`d(f) = 0`) hold on velocities; their levels `f` are kept to order 2, to rounding where `f` is
 ///   quadratic, and the effect `Projection` returns to them.
 ///
-/// Measured over a million steps of 0.05 (`tests/structure/long_runs.rs`), largest error of the energy and its drift: a
+/// Measured over a million steps of 0.05 (`models/src/stability/structure.rs`), largest error of the energy and its drift: a
 /// knife edge in a quadratic potential, steered by a pendulum (`H = 0.5`) 3.8e-4 and 1e-8, with [`Dla4`] 2.2e-8 and
 /// 1e-12; the nonholonomic particle (`H = 0.8`) 4.7e-4 and 2e-7, with [`Dla4`] 1.5e-8 and 1e-12. The knife edge in a
 /// magnetic field, with the steering coupled to the place (`H = 0.4`): 3e-3 to 7e-3, growing like `t^0.5`; with [`Dla4`]

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign, SymbolId};
+use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign};
 
 use super::super::resolve::Resolver;
 use super::super::{Constraint, Lagrangian};

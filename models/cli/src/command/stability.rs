@@ -25,7 +25,7 @@ pub fn run(
     args: &StabilityArgs,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
-    let cases = selected(suite, args)?;
+    let mut cases = selected(suite, args)?;
     let open = |flag, path: &Option<_>| {
         path.as_deref()
             .map(|path| Sink::open(flag, path))
@@ -48,6 +48,14 @@ pub fn run(
         Some(one) => one,
         None => suite::every_integrator(),
     };
+    cases.retain(|case| case.is_measured_by(integrators));
+    if let (true, Some(integrator)) = (cases.is_empty(), args.integrator) {
+        return Err(CliError::value(
+            "--integrator",
+            integrator.name(),
+            "an integrator by which the cases are measured",
+        ));
+    }
     let mut progress = Steps::new(cases.len(), streams.terminal);
     let mut findings = Vec::with_capacity(cases.len());
     for case in cases {

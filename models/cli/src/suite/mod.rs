@@ -50,6 +50,14 @@ impl Case {
         ..Self::QUICK
     };
 
+    /// Whether one of these integrators measures it, or none is needed.
+    pub fn is_measured_by(&self, integrators: &[Integrator]) -> bool {
+        match self.run {
+            Run::Chosen(chosen, _) => chosen.iter().any(|one| integrators.contains(one)),
+            _ => true,
+        }
+    }
+
     /// The section it belongs to: the letter of its number.
     pub fn section(&self) -> &'static str {
         self.id.get(..1).unwrap_or_default()
@@ -65,6 +73,8 @@ pub enum Run {
     Once(fn(&mut Report)),
     /// By every integrator, with steps as long as it likes.
     Integrators(fn(Setting, &mut Report)),
+    /// As [`Run::Integrators`], by these alone.
+    Chosen(&'static [Integrator], fn(Setting, &mut Report)),
     /// By every integrator with steps of any length, of at most [`FORCED_STEPS`], and with its dense output read in
     /// every step. The class of the outcome must not change.
     Steps(fn(Setting, &mut Report)),
@@ -112,6 +122,9 @@ impl Run {
             Self::Absent => Vec::new(),
             Self::Once(_) => free.take(1).collect(),
             Self::Integrators(_) => free.collect(),
+            Self::Chosen(chosen, _) => free
+                .filter(|setting| chosen.contains(&setting.integrator))
+                .collect(),
             Self::Steps(_) => free.flat_map(forced).collect(),
         }
     }
@@ -121,7 +134,9 @@ impl Run {
         match self {
             Self::Absent => {}
             Self::Once(run) => run(&mut report),
-            Self::Integrators(run) | Self::Steps(run) => run(setting, &mut report),
+            Self::Integrators(run) | Self::Chosen(_, run) | Self::Steps(run) => {
+                run(setting, &mut report);
+            }
         }
         report
     }

@@ -1,0 +1,181 @@
+//! Section F, second part: the energy over many elastic impacts.
+
+use core::ops::ControlFlow;
+
+use dalembert::{Event, Observer, Scene, System, TaylorField};
+use dalembert_cli::Integrator;
+use dalembert_cli::suite::{Case, Report, Run, Setting};
+
+use super::course::{Course, Random, U};
+use super::location::Fall;
+use crate::RollingDisk;
+
+const WALK: &str = "rounding errors that add up like a random walk";
+const BOUND: &str = "root mean square below 16 u sqrt(n); exponent at most 0.6";
+
+/// The integrator whose steps are as exact as their rounding.
+const SERIES: &[Integrator] = &[Integrator::Taylor];
+
+/// Those with tables.
+const TABLES: &[Integrator] = &[Integrator::Dop853, Integrator::Dopri5];
+
+/// Why energies drift with tables.
+const BIASED: &str = "the coefficients of the Runge-Kutta tables are rounded: stages err by up to 100 u of h^2 x'', in the same \
+                      direction in every flight";
+
+/// The cases.
+pub const CASES: &[Case] = &[
+    Case {
+        id: "F04",
+        title: "energy of elastic balls from 32 starts over 2^12 impacts",
+        right: WALK,
+        bound: BOUND,
+        run: Run::Chosen(SERIES, |setting, report| balls(setting, report, 12)),
+        ..Case::QUICK
+    },
+    Case {
+        id: "F04b",
+        title: "energy of elastic balls from 32 starts over 2^20 impacts",
+        right: WALK,
+        bound: BOUND,
+        run: Run::Chosen(SERIES, |setting, report| balls(setting, report, 20)),
+        ..Case::NIGHTLY
+    },
+    Case {
+        id: "F04c",
+        title: "energy of elastic balls from 32 starts over 2^12 impacts, Runge-Kutta",
+        right: WALK,
+        bound: BOUND,
+        pending: Some(BIASED),
+        run: Run::Chosen(TABLES, |setting, report| balls(setting, report, 12)),
+        ..Case::QUICK
+    },
+    Case {
+        id: "F15",
+        title: "energy of the elastic disk from 32 starts over 2^12 impacts",
+        right: WALK,
+        bound: BOUND,
+        run: Run::Chosen(SERIES, |setting, report| disks(setting, report, 12)),
+        ..Case::QUICK
+    },
+    Case {
+        id: "F15b",
+        title: "energy of the elastic disk from 32 starts over 2^20 impacts",
+        right: WALK,
+        bound: BOUND,
+        run: Run::Chosen(SERIES, |setting, report| disks(setting, report, 20)),
+        ..Case::NIGHTLY
+    },
+];
+
+/// Runs that are started.
+const STARTS: u32 = 32;
+
+/// Impacts before which a random walk has not begun to look like one.
+const FIRST: f64 = 64.0;
+
+fn balls(setting: Setting, report: &mut Report, doublings: u32) {
+    let mut random = Random::new(4);
+    let mut walk = Walk::new(doublings);
+    let ball = Fall::default();
+    for _ in 0..STARTS {
+        let speed = random.between(0.5, 2.0);
+        let course = Course::new(&ball, &[0.0], &[speed], 1e9);
+        walk.follow(&ball, course, setting, report);
+    }
+    walk.judge(report);
+}
+
+fn disks(setting: Setting, report: &mut Report, doublings: u32) {
+    let mut walk = Walk::new(doublings);
+    // In the middle of the table, rolling and turning.
+    let (disk, upright) = (RollingDisk::default(), core::f64::consts::FRAC_PI_2);
+    for start in 0..STARTS {
+        let roll = 8.0 + 0.125 * f64::from(start);
+        let velocity = [
+            disk.R * upright.cos() * roll,
+            disk.R * upright.sin() * roll,
+            roll,
+            0.2,
+        ];
+        let course = Course::new(&disk, &[0.0, 0.0, 0.0, upright], &velocity, 1e8).tol(1e-15);
+        walk.follow(&disk, course, setting, report);
+    }
+    walk.judge(report);
+}
+
+/// Squares of relative energy errors at impacts 1, 2, 4, .., summed over starts.
+struct Walk {
+    doublings: u32,
+    squares: Vec<f64>,
+}
+
+impl Walk {
+    fn new(doublings: u32) -> Self {
+        Self {
+            doublings,
+            squares: vec![0.0; doublings as usize + 1],
+        }
+    }
+
+    fn follow<'a, M: Scene + TaylorField>(
+        &mut self,
+        system: &'a M,
+        course: Course<'a, M>,
+        setting: Setting,
+        report: &mut Report,
+    ) {
+        let course = course.impacts(1 << self.doublings);
+        let mut energies = Energies {
+            system,
+            start: system.energy(0.0, course.start()).unwrap_or(f64::NAN),
+            count: 0,
+            squares: &mut self.squares,
+        };
+        let end = course.follow(setting, &mut energies);
+        report.class(&end.outcome, "impact_budget");
+    }
+
+    fn judge(self, report: &mut Report) {
+        let squares = self.squares.iter().enumerate();
+        let mean = |sum: f64| (sum / f64::from(STARTS)).sqrt();
+        let points: Vec<[f64; 2]> = squares
+            .map(|(power, sum)| [2.0_f64.powi(power as i32), mean(*sum)])
+            .collect();
+        let share = points
+            .iter()
+            .map(|[n, error]| error / (16.0 * U * n.sqrt()));
+        report.error("worst drift over its bound", share.fold(0.0, f64::max), 1.0);
+        // Where nothing was lost at all, there is nothing that grows.
+        let is_late = |[n, error]: &[f64; 2]| *n >= FIRST && *error != 0.0;
+        let late: Vec<[f64; 2]> = points.iter().copied().filter(is_late).collect();
+        let exponent = dalembert_cli::suite::exponent(&late).unwrap_or(0.0);
+        report.error(format!("exponent from {FIRST} impacts on"), exponent, 0.6);
+        report.curve(
+            "energy",
+            ["impacts", "root mean square of the relative error"],
+            points,
+        );
+    }
+}
+
+struct Energies<'a, M> {
+    system: &'a M,
+    start: f64,
+    count: u64,
+    squares: &'a mut [f64],
+}
+
+impl<M: System> Observer<M> for Energies<'_, M> {
+    fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
+        self.count += 1;
+        if self.count.is_power_of_two() {
+            let energy = self
+                .system
+                .energy(event.t, &event.after)
+                .unwrap_or(f64::NAN);
+            self.squares[self.count.ilog2() as usize] += (energy / self.start - 1.0).powi(2);
+        }
+        ControlFlow::Continue(())
+    }
+}
