@@ -38,11 +38,13 @@ macro_rules! of_each_claimed {
 /// The implementation of `InvariantVolume` that a declaration gets, formatted; empty if there is none.
 fn emitted(source: &str) -> String {
     let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens")).expect(source);
-    let file: syn::File = syn::parse2(tokens).expect("items");
-    let items = file.items.into_iter().flat_map(|item| match item {
-        syn::Item::Const(own) => implementations(*own.expr),
-        other => vec![other],
-    });
+    let mut file: syn::File = syn::parse2(tokens).expect("items");
+    let items = std::mem::take(&mut file.items)
+        .into_iter()
+        .flat_map(|item| match item {
+            syn::Item::Const(own) => implementations(*own.expr),
+            other => vec![other],
+        });
     let is_volume = |item: &syn::Item| {
         let syn::Item::Impl(item) = item else {
             return false;
@@ -51,12 +53,8 @@ fn emitted(source: &str) -> String {
         let last = path.and_then(|path| path.segments.last());
         last.is_some_and(|segment| segment.ident == "InvariantVolume")
     };
-    let items = items.filter(is_volume).collect();
-    prettyplease::unparse(&syn::File {
-        items,
-        attrs: Vec::new(),
-        shebang: None,
-    })
+    file.items = items.filter(is_volume).collect();
+    prettyplease::unparse(&file)
 }
 
 /// The items of a block.

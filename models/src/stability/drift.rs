@@ -29,7 +29,7 @@ pub const CASES: &[Case] = &[
         right: "eta(qdot) constant",
         bound: "1e-12 over 1e3 units of time, as a share of the terms",
         pending: Some(
-            "the coefficients of the Runge-Kutta tables are rounded: each of 2e4 steps errs by up to u in the same direction",
+            "the coefficients of the Runge-Kutta tables are rounded: every step errs by up to u in the same direction",
         ),
         run: Run::Chosen(&[Integrator::Dopri5], off_the_constraint),
         ..Case::QUICK

@@ -99,7 +99,9 @@ pub const CASES: &[Case] = &[
         title: "one run on several machines with the feature `strict`",
         right: "the same bits",
         bound: "a hash kept with the sources",
-        pending: Some("the feature `strict` is being built; one machine cannot tell"),
+        pending: Some(
+            "needs a build with the feature `strict`: `tests/strict.rs` compares one with bits that are stored",
+        ),
         ..Case::QUICK
     },
     Case {
