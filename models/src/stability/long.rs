@@ -151,12 +151,15 @@ fn circle(setting: Setting, report: &mut Report, bounces: u64) {
     let turn = core::f64::consts::PI - 0.6;
     let (vy, vx) = 0.3_f64.sin_cos();
     let (mut worst, mut marks, mut last) = (0.0_f64, Vec::new(), [0.0; 2]);
+    let (mut inwards, mut squares) = (0.0_f64, 0.0_f64);
     let mut watch = Bounces {
         system: &UNIT_CIRCLE,
         count: 0,
         see: |n: u64, _, [x, y]: [f64; 2], [u, v]: [f64; 2]| {
             let (sin, cos) = (n as f64 * turn).sin_cos();
             worst = worst.max((x - cos).hypot(y - sin));
+            let gap = 1.0 - x * x - y * y;
+            (inwards, squares) = (inwards + gap, squares + gap * gap);
             last = [u * u + v * v - 1.0, x * v - y * u - vy];
             if n.is_power_of_two() || PLAIN.iter().any(|(mark, _)| *mark == n) {
                 marks.push([n as f64, worst]);
@@ -175,6 +178,9 @@ fn circle(setting: Setting, report: &mut Report, bounces: u64) {
     let walk = 16.0 * U * (bounces as f64).sqrt();
     report.error("energy", last[0].abs(), walk);
     report.error("angular momentum", last[1].abs(), walk);
+    // Impacts on one side only would be a bias, with which angles drift.
+    let lean = inwards.abs() / (bounces as f64 * squares).sqrt();
+    report.error("mean gap over its root mean square", lean, 0.25);
     report.curve("position", ["bounce", "largest error"], marks);
 }
 

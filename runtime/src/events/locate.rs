@@ -32,6 +32,8 @@ pub(crate) struct Start {
 pub(crate) struct Bracket {
     pub before: f64,
     pub after: f64,
+    /// The one of the two at which the gap is closer to 0.
+    pub nearest: f64,
 }
 
 /// What a search found.
@@ -118,7 +120,7 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
 
     /// Narrows the interval in which the gap falls.
     fn narrow(&mut self, drop: Drop) -> Search {
-        let Bracket { before, after } = drop.bracket();
+        let Bracket { before, after, .. } = drop.bracket();
         if before > self.start.until {
             return Search::Clear;
         }
@@ -220,7 +222,15 @@ impl Drop {
         } else {
             [self.x[1], self.x[0]]
         };
-        Bracket { before, after }
+        let nearest = match self.f[0].abs() <= self.f[1].abs() {
+            true => self.x[0],
+            false => self.x[1],
+        };
+        Bracket {
+            before,
+            after,
+            nearest,
+        }
     }
 }
 
@@ -365,7 +375,7 @@ mod tests {
     };
 
     fn assert_falls_at(found: Search, root: f64) {
-        let Search::Falls(Bracket { before, after }) = found else {
+        let Search::Falls(Bracket { before, after, .. }) = found else {
             panic!("{found:?}")
         };
         assert!(before < after && after - before <= 4.0 * f64::EPSILON * root);

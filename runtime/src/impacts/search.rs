@@ -91,7 +91,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let mut tangential = None;
         for _ in 0..FALLS {
             let found = first_fall(surface, step, &self.sizes, samples, start, &glance.series);
-            let (part, after) = match found {
+            let (part, after, nearest) = match found {
                 Search::Clear => {
                     let sunk = self.is_sunk(surface, step, glance);
                     return Ok(tangential
@@ -109,8 +109,8 @@ impl<Sys: Impacting> Watch<Sys> {
                     };
                     continue;
                 }
-                Search::Sinks(part) => (part, part),
-                Search::Falls(bracket) => (bracket.before, bracket.after),
+                Search::Sinks(part) => (part, part, part),
+                Search::Falls(bracket) => (bracket.before, bracket.after, bracket.nearest),
             };
             step.counters.crossings += 1;
             if is_active(surface, step, part) {
@@ -127,7 +127,11 @@ impl<Sys: Impacting> Watch<Sys> {
                     };
                 }
                 if is_approached(surface, step, part)? || is_approached(surface, step, after)? {
-                    return Ok(Found::Hit(if part > 0.0 { part } else { after }));
+                    let there = match nearest == part || is_regular(step, nearest) {
+                        true => nearest,
+                        false => part,
+                    };
+                    return Ok(Found::Hit(if there > 0.0 { there } else { after }));
                 }
                 tangential = tangential.or(Some(after));
             }
@@ -256,6 +260,21 @@ pub(super) fn is_active<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> bool {
     step.system
         .surface_active(surface, step.time(part), &step.state(part))
+}
+
+/// Whether the motion exists at a part of a step, which may lie on the other side of a surface by rounding.
+///
+/// NOTE: an impact is placed where the gap is closest to 0, on whichever side that is. Were it always the allowed one,
+/// positions would be rounded away from the surface, and times and angular momenta drift like the number of impacts.
+fn is_regular<Sys: Impacting, Step: Stepper<Sys>>(
+    step: &mut StepView<'_, Sys, Step>,
+    part: f64,
+) -> bool {
+    let state = step.state(part);
+    let mut rate = Sys::State::zeros();
+    step.counters.rate_evaluations += 1;
+    let exists = step.system.rate(step.time(part), &state, &mut rate);
+    exists.is_ok() && rate.is_finite() && step.system.outside_chart(&state).is_none()
 }
 
 fn is_approached<Sys: Impacting, Step: Stepper<Sys>>(
