@@ -42,6 +42,9 @@ pub enum Command {
     /// Run a model from a state to an end time or a number of impacts.
     #[command(after_help = SIMULATE_EXAMPLES)]
     Simulate(Box<SimulateArgs>),
+    /// Measure what accuracy costs: error, work and time of every integrator over tolerances.
+    #[command(after_help = ACCURACY_EXAMPLES)]
+    Accuracy(Box<AccuracyArgs>),
     /// Evaluate everything that is derived at given states.
     #[command(after_help = EVAL_EXAMPLES)]
     Eval(EvalArgs),
@@ -74,6 +77,15 @@ Examples:
   dalembert simulate chaplygin_sleigh --integrator dla4 --step pi/200
   dalembert simulate bouncing_ball --q 1 --qdot 0 --until 10 --csv ball.csv
   dalembert simulate bouncing_ball --law newton:0.5 --rest contact --until 10";
+
+const ACCURACY_EXAMPLES: &str = "An error is the largest difference of a position from a reference run at 64 equally spaced times and at the end,
+as a share of the largest absolute value of that coordinate (of an angle, at least 1). Times are those of this machine.
+Exit status: 0, or 1 if nothing reaches the error that is wanted.
+
+Examples:
+  dalembert accuracy double_pendulum --until 10
+  dalembert accuracy rolling_disk --until 2 --wanted 1e-9
+  dalembert accuracy chaplygin_sleigh --integrator dop853 --integrator taylor --csv sleigh.csv --plot sleigh.svg";
 
 const EVAL_EXAMPLES: &str = "Input: a JSON array of states, {\"q\": [..], \"qdot\": [..]} or {\"q\": [..], \"p\": [..]}, with \"t\"
 if the model depends on time. Numbers may be decimal strings. Output: an array of the same length; a
@@ -211,6 +223,11 @@ pub enum Integrator {
 }
 
 impl Integrator {
+    /// All of them.
+    pub fn every() -> &'static [Self] {
+        Self::value_variants()
+    }
+
     /// The name on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
@@ -354,9 +371,9 @@ fn law_help() -> String {
     )
 }
 
-/// `simulate`
+/// A run but for its integrator.
 #[derive(Debug, Args)]
-pub struct SimulateArgs {
+pub struct RunArgs {
     /// The model.
     #[command(flatten)]
     pub model: ModelArgs,
@@ -366,16 +383,31 @@ pub struct SimulateArgs {
     /// End time; without it the model's `until`.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub until: Option<f64>,
-    /// Stop after this many impacts. Without --until the run may then take up to 3600 units of time, or the
-    /// model's `until` if that is longer, to get there.
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
-    pub impacts: Option<u64>,
     /// The laws to use instead of the declared ones.
     #[arg(long, value_name = "[SURFACE=]LAW[:E]", help = law_help())]
     pub law: Vec<String>,
     /// Where a law alone does not tell how to go on.
     #[command(flatten)]
     pub policies: PolicyArgs,
+    /// The form of the equations. Without it reduced where the model has such a form; global for states that are kept
+    /// off the constraints and with --projection.
+    #[arg(long, value_enum)]
+    pub form: Option<Form>,
+    /// Whether to project on the constraints after each step, in global form; without it as the scene declares.
+    #[arg(long, value_enum)]
+    pub projection: Option<Switch>,
+}
+
+/// `simulate`
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// The run.
+    #[command(flatten)]
+    pub run: RunArgs,
+    /// Stop after this many impacts. Without --until the run may then take up to 3600 units of time, or the
+    /// model's `until` if that is longer, to get there.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
+    pub impacts: Option<u64>,
     /// The integrator.
     #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
     pub integrator: Integrator,
@@ -385,6 +417,9 @@ pub struct SimulateArgs {
     /// Relative error allowed per step, between 1e-15 and 0.1.
     #[arg(long, value_name = "X", default_value = "1e-10", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
     pub tol: f64,
+    /// Measure the error of the run against a reference as exact as `f64` allows, which takes three more runs.
+    #[arg(long)]
+    pub verify: bool,
     /// Number of equally spaced times from 0 to the end, both included, to record (at most 1000000).
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(0..=1_000_000), default_value_t = 1000)]
     pub samples: u64,
@@ -397,13 +432,35 @@ pub struct SimulateArgs {
     /// Draw the run: the declared view, or all coordinates against time.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// The form of the equations. Without it reduced where the model has such a form; global for states that are kept
-    /// off the constraints and with --projection.
+}
+
+/// `accuracy`
+#[derive(Debug, Args)]
+pub struct AccuracyArgs {
+    /// The runs.
+    #[command(flatten)]
+    pub run: RunArgs,
+    /// The error that is wanted: say which integrator reaches it in the least time.
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
+    pub wanted: Option<f64>,
+    /// Only this integrator; may be repeated.
     #[arg(long, value_enum)]
-    pub form: Option<Form>,
-    /// Whether to project on the constraints after each step, in global form; without it as the scene declares.
-    #[arg(long, value_enum)]
-    pub projection: Option<Switch>,
+    pub integrator: Vec<Integrator>,
+    /// How often each case is timed; the median counts.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 5)]
+    pub rounds: u32,
+    /// Seconds that a run may take; an integrator is not tried at tighter tolerances once it takes longer.
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive), default_value = "1")]
+    pub patience: f64,
+    /// Write what was measured as a table; `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write everything as one JSON document; `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Draw the work-precision diagram: time against error.
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
 }
 
 /// `eval`

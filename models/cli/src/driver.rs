@@ -10,7 +10,7 @@ use dalembert::integrate::{
     Taylor, Tolerance,
 };
 use dalembert::{
-    Event, Hold, Observer, Outcome, Policies, SceneEffects, Segment, Simulation, StateVector,
+    Event, Hold, Observer, Outcome, Policies, Run, SceneEffects, Segment, Simulation, StateVector,
 };
 use serde_json::Value;
 
@@ -100,7 +100,16 @@ pub(crate) trait Watch {
     fn contact(&mut self, contact: Contact);
 }
 
-/// Runs a model from `t = 0`.
+/// A run that has ended, in the model's own type.
+pub(crate) struct Solved<S> {
+    pub run: Run<S>,
+    /// The step that the integrator kept, if it keeps one.
+    pub step: Option<f64>,
+    /// The law in force on each surface.
+    pub laws: Vec<Option<Law>>,
+}
+
+/// Runs a model from `t = 0`, and shows the run to a watch.
 ///
 /// # Errors
 /// Why the runtime refuses to start, as text.
@@ -110,10 +119,37 @@ pub(crate) fn simulate<M: Model>(
     settings: &Settings,
     watch: &mut dyn Watch,
 ) -> Result<Ending, String> {
+    let first = point(model, 0.0, &state);
+    let mut bridge = Bridge { model, watch };
+    let Solved { run, step, laws } = solve(model, &state, settings, &mut bridge)?;
+    Ok(Ending {
+        kind: run.outcome.kind(),
+        details: details(&M::DESCRIPTION, &run.outcome),
+        t: run.t,
+        first,
+        last: point(model, run.t, &run.state),
+        counters: counters(&run.counters),
+        step,
+        laws,
+        reached: run.outcome.is_done()
+            || (settings.impacts.is_some() && run.outcome == Outcome::ImpactBudget),
+    })
+}
+
+/// Runs a model from `t = 0`.
+///
+/// # Errors
+/// As [`simulate`].
+pub(crate) fn solve<M: Model, O: Observer<M>>(
+    model: &M,
+    state: &M::State,
+    settings: &Settings,
+    observer: &mut O,
+) -> Result<Solved<M::State>, String> {
     let tolerance = Tolerance::new(settings.tol).map_err(|error| error.to_string())?;
     macro_rules! run {
         ($stepper:expr) => {
-            run(model, $stepper, state, settings, watch)
+            run(model, $stepper, state, settings, observer)
         };
     }
     match settings.integrator {
@@ -139,13 +175,13 @@ fn stepping<S: StateVector, M: Method>(
     }
 }
 
-fn run<M: Model, S: Stepper<M>>(
+fn run<M: Model, S: Stepper<M>, O: Observer<M>>(
     model: &M,
     stepper: S,
-    state: M::State,
+    state: &M::State,
     settings: &Settings,
-    watch: &mut dyn Watch,
-) -> Result<Ending, String> {
+    observer: &mut O,
+) -> Result<Solved<M::State>, String> {
     let mut effects = model.effects();
     for &(surface, law) in &settings.laws {
         effects.set_law(surface, law);
@@ -160,23 +196,14 @@ fn run<M: Model, S: Stepper<M>>(
     let laws = (0..M::DESCRIPTION.surfaces.len())
         .map(|surface| effects.law(model, surface))
         .collect();
-    let first = point(model, 0.0, &state);
-    let mut bridge = Bridge { model, watch };
     let mut simulation = Simulation::new(model, stepper, effects);
     let run = simulation
-        .run(0.0, state, settings.until, &mut bridge)
+        .run(0.0, *state, settings.until, observer)
         .map_err(|error| error.to_string())?;
-    Ok(Ending {
-        kind: run.outcome.kind(),
-        details: details(&M::DESCRIPTION, &run.outcome),
-        t: run.t,
-        first,
-        last: point(model, run.t, &run.state),
-        counters: counters(&run.counters),
+    Ok(Solved {
+        run,
         step: simulation.fixed_step(),
         laws,
-        reached: run.outcome.is_done()
-            || (settings.impacts.is_some() && run.outcome == Outcome::ImpactBudget),
     })
 }
 

@@ -10,6 +10,7 @@ use dalembert::{
     Fault, Lagrangian, ParameterError, Scene, SceneEffects, StateError, System, TaylorField,
 };
 
+use crate::accuracy::{self, Plan, Study, Verified};
 use crate::args::{Form, OffConstraint};
 use crate::driver::{self, Ending, Settings, Watch};
 use crate::error::state_text;
@@ -152,6 +153,16 @@ pub(crate) trait AnyModel {
         settings: &Settings,
         watch: &mut dyn Watch,
     ) -> Result<Ending, String>;
+    /// What accuracy costs from this state on; `tell` hears what is about to be measured.
+    fn study(
+        &self,
+        origin: &Origin,
+        base: &Settings,
+        plan: &Plan,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Study, String>;
+    /// The measured error of a run.
+    fn verify(&self, origin: &Origin, settings: &Settings) -> Result<Verified, String>;
 }
 
 /// The data of a contact as `inspect` reports them.
@@ -221,6 +232,25 @@ impl<M: Model> Typed<M> {
             _ => system.state_unchecked(t, &q, &qdot)?,
         })
     }
+}
+
+/// What is to be done with the model in the form that the settings ask for, and the state in it.
+macro_rules! in_form {
+    ($typed:ident, $origin:ident, $settings:ident, |$model:ident, $state:ident| $work:expr) => {{
+        let text = |error| state_text(&M::DESCRIPTION, &error);
+        match $settings.form {
+            Form::Reduced => {
+                let $model = &$typed.0;
+                let $state = $typed.prepare($model, 0.0, $origin).map_err(text)?;
+                $work
+            }
+            Form::Global => {
+                let $model = &$typed.0.global();
+                let $state = $typed.prepare($model, 0.0, $origin).map_err(text)?;
+                $work
+            }
+        }
+    }};
 }
 
 impl<M: Model> AnyModel for Typed<M> {
@@ -316,18 +346,27 @@ impl<M: Model> AnyModel for Typed<M> {
         settings: &Settings,
         watch: &mut dyn Watch,
     ) -> Result<Ending, String> {
-        let text = |error| state_text(&M::DESCRIPTION, &error);
-        match settings.form {
-            Form::Reduced => {
-                let state = self.prepare(&self.0, 0.0, origin).map_err(text)?;
-                driver::simulate(&self.0, state, settings, watch)
-            }
-            Form::Global => {
-                let global = self.0.global();
-                let state = self.prepare(&global, 0.0, origin).map_err(text)?;
-                driver::simulate(&global, state, settings, watch)
-            }
-        }
+        in_form!(self, origin, settings, |model, state| driver::simulate(
+            model, state, settings, watch
+        ))
+    }
+
+    fn study(
+        &self,
+        origin: &Origin,
+        base: &Settings,
+        plan: &Plan,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Study, String> {
+        in_form!(self, origin, base, |model, state| accuracy::study(
+            model, &state, base, plan, tell
+        ))
+    }
+
+    fn verify(&self, origin: &Origin, settings: &Settings) -> Result<Verified, String> {
+        in_form!(self, origin, settings, |model, state| accuracy::verify(
+            model, &state, settings
+        ))
     }
 }
 

@@ -24,6 +24,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod accuracy;
 mod args;
 mod catalogue;
 mod command;
@@ -37,6 +38,7 @@ mod names;
 mod plot;
 mod progress;
 mod record;
+mod run_request;
 mod scalar;
 mod sink;
 mod state_input;
@@ -133,6 +135,7 @@ fn dispatch(
         Command::Derive(args) => command::derive::run(models, args, streams.output),
         Command::Check(args) => command::check::run(models, args, streams.output),
         Command::Simulate(args) => command::simulate::run(models, args, streams),
+        Command::Accuracy(args) => command::accuracy::run(models, args, streams),
         Command::Eval(args) => command::eval::run(models, args, streams),
         Command::Stability(args) => command::stability::run(catalogue.suite(), args, streams),
     }

@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+pub mod accuracy;
 pub mod check;
 pub mod derive;
 pub mod eval;

@@ -1,9 +1,9 @@
 //! `simulate`: a run from a state to its end, kept as a summary, a table, a document and a picture.
 
 mod document;
-mod request;
 mod summary;
 
+use crate::accuracy::Verified;
 use crate::args::SimulateArgs;
 use crate::driver::{Ending, Settings};
 use crate::entry::{AnyModel, Entry, Origin};
@@ -14,7 +14,7 @@ use crate::progress::Progress;
 use crate::record::{Grid, Recorder, Wanted};
 use crate::sink::Sink;
 use crate::state_input::{build_model, initial_state};
-use crate::{Streams, table};
+use crate::{Streams, run_request, table};
 
 /// A run that has ended, with what the files say of it.
 pub(crate) struct Finished<'a> {
@@ -23,6 +23,8 @@ pub(crate) struct Finished<'a> {
     pub settings: &'a Settings,
     pub record: Recorder,
     pub ending: Ending,
+    /// Its measured error, if that was asked for.
+    pub verified: Option<Verified>,
 }
 
 /// Carries out `simulate`.
@@ -35,10 +37,10 @@ pub fn run(
     args: &SimulateArgs,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
-    request::check_outputs(args)?;
-    let model = build_model(models, &args.model)?;
-    let settings = request::settings(model.as_ref(), args)?;
-    let origin = initial_state(model.as_ref(), &args.state)?;
+    run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
+    let model = build_model(models, &args.run.model)?;
+    let settings = settings(model.as_ref(), args)?;
+    let origin = initial_state(model.as_ref(), &args.run.state)?;
     // Opened before the run: a path that cannot be written is better known at once.
     let [csv, json, plot] = [
         ("--csv", &args.csv),
@@ -53,12 +55,17 @@ pub fn run(
     let (csv, json, plot) = (csv?, json?, plot?);
 
     let (record, ending) = carry_out(model.as_ref(), &origin, &settings, args, streams.terminal)?;
+    let verified = match args.verify {
+        true => Some(verify(model.as_ref(), &origin, &settings, &ending)?),
+        false => None,
+    };
     let finished = Finished {
         model: model.as_ref(),
-        scene: &args.model.scene,
+        scene: &args.run.model.scene,
         settings: &settings,
         record,
         ending,
+        verified,
     };
 
     let description = model.description();
@@ -79,7 +86,7 @@ pub fn run(
         })?;
         sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
     }
-    if !request::uses_stdout(args) {
+    if !run_request::uses_stdout([&args.csv, &args.json]) {
         summary::write(streams.output, &finished)?;
     }
     Ok(if finished.ending.reached {
@@ -87,6 +94,42 @@ pub fn run(
     } else {
         Exit::Other
     })
+}
+
+/// How the run is to be made.
+fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, CliError> {
+    if args.step.is_some() && args.integrator.is_adaptive() {
+        return Err(CliError::Usage(
+            "--step: dop853, dopri5 and taylor choose their steps by --tol; a step needs --integrator rk4, gauss4, gauss6, dla2 \
+             or dla4",
+        ));
+    }
+    let settings =
+        run_request::settings(model, &args.run, args.impacts, (args.integrator, args.tol))?;
+    Ok(Settings {
+        step: args.step,
+        ..settings
+    })
+}
+
+/// Measures the error of a run up to where it ended.
+fn verify(
+    model: &dyn AnyModel,
+    origin: &Origin,
+    settings: &Settings,
+    ending: &Ending,
+) -> Result<Verified, CliError> {
+    let until = match settings.impacts {
+        // The horizon is far beyond the last impact that was asked for; positions are compared on the way to it, and
+        // a little later, where other runs may have it.
+        Some(_) => ending.t * 1.01,
+        None => settings.until,
+    };
+    let settings = Settings {
+        until,
+        ..settings.clone()
+    };
+    model.verify(origin, &settings).map_err(CliError::Start)
 }
 
 /// Makes the run. Where the end time is not known beforehand the same run is made twice, first to find the end
@@ -104,7 +147,7 @@ fn carry_out(
         end: settings.until,
         count: if sampled { args.samples } else { 0 },
     };
-    if sampled && settings.impacts.is_some() && args.until.is_none() {
+    if sampled && settings.impacts.is_some() && args.run.until.is_none() {
         let nothing = Wanted {
             grid: Grid { count: 0, ..grid },
             impacts: false,

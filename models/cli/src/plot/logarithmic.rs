@@ -17,19 +17,33 @@ const HEIGHT: f64 = 300.0;
 const LABELS: f64 = 64.0;
 const EDGE: f64 = 14.0;
 
-/// Draws curves that have the same axes.
+/// Draws curves that have the same axes, each with its exponent.
 ///
 /// # Errors
 /// What the drawing library says.
 pub fn draw(title: &str, subtitle: &str, curves: &[Curve]) -> Result<String, String> {
-    let drawn: Vec<Vec<[f64; 2]>> = curves.iter().map(drawable).collect();
-    let items: Vec<Item> = curves
+    let labels: Vec<String> = curves
         .iter()
-        .zip(&drawn)
+        .map(|curve| label(curve, &drawable(curve)))
+        .collect();
+    draw_labelled((title, subtitle), curves, &labels, &[])
+}
+
+/// Draws curves that have the same axes under these labels, with rings around some points.
+///
+/// # Errors
+/// What the drawing library says.
+pub fn draw_labelled(
+    (title, subtitle): (&str, &str),
+    curves: &[Curve],
+    labels: &[String],
+    rings: &[[f64; 2]],
+) -> Result<String, String> {
+    let drawn: Vec<Vec<[f64; 2]>> = curves.iter().map(drawable).collect();
+    let items: Vec<Item> = labels
+        .iter()
         .enumerate()
-        .map(|(index, (curve, points))| {
-            Item::new(Symbol::Line, style::curve(index), label(curve, points))
-        })
+        .map(|(index, label)| Item::new(Symbol::Line, style::curve(index), label.as_str()))
         .collect();
     let strip = legend::height(&items, WIDTH);
     let size = (WIDTH, TITLE_HEIGHT + strip + HEIGHT);
@@ -70,6 +84,10 @@ pub fn draw(title: &str, subtitle: &str, curves: &[Curve]) -> Result<String, Str
             let line = PathElement::new(points.clone(), colour.stroke_width(stroke(1.4)));
             chart.draw_series([line]).map_err(message)?;
         }
+        let rings = rings
+            .iter()
+            .map(|&[x, y]| Circle::new((x, y), px(6.0), style::INK.stroke_width(stroke(1.2))));
+        chart.draw_series(rings).map_err(message)?;
         Ok(())
     })
 }

@@ -9,6 +9,7 @@ mod portrait;
 mod region;
 mod style;
 pub mod trace;
+pub mod work;
 
 use crate::driver::Impact;
 use crate::entry::{AnyModel, Point};

@@ -2,8 +2,8 @@
 
 use plotters::style::RGBColor;
 
-/// Colours that colour-blind people can tell apart (Okabe and Ito), those that are readable on white.
-pub const PALETTE: [RGBColor; 7] = [
+/// Colours that colour-blind people can tell apart (Okabe and Ito), those that are readable on white, and a brown.
+pub const PALETTE: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -11,6 +11,7 @@ pub const PALETTE: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
     RGBColor(60, 60, 60),
+    RGBColor(150, 100, 40),
 ];
 
 /// The path in a portrait.

@@ -3,6 +3,7 @@
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
 
+mod accuracy;
 mod check;
 mod derive;
 mod eval;

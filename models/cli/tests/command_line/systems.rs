@@ -348,7 +348,7 @@ impl Described for BouncingBall {
 /// Two springs of different strength in a round dish.
 #[derive(Debug, Clone)]
 pub struct Oscillator {
-    k: f64,
+    pub k: f64,
 }
 
 impl Particle<2> for Oscillator {

@@ -18,6 +18,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         settings,
         record,
         ending,
+        verified,
     } = finished;
     let description = model.description();
     let values: Vec<f64> = (0..description.parameters.len())
@@ -39,6 +40,14 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         document.field("step", number(step))?;
     }
     document.field("outcome", outcome(finished))?;
+    if let Some(verified) = verified {
+        let error = json!({
+            "measured": number(verified.error),
+            "floor": number(verified.floor),
+            "ends_as_reference": verified.agrees,
+        });
+        document.field("error", error)?;
+    }
     document.rows(
         "events",
         record

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use dalembert::impacts::law::Law;
 
 use super::Finished;
+use crate::accuracy::Verified;
 use crate::driver::{Ending, Settings};
 
 /// Writes the summary.
@@ -23,12 +24,36 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     writeln!(output, "  impacts     {}", impacts(finished))?;
     writeln!(output, "  energy      {}", energy(ending))?;
     writeln!(output, "  integrator  {}", integrator(ending, settings))?;
+    if let Some(verified) = &finished.verified {
+        writeln!(output, "  error       {}", error(verified))?;
+    }
     let counters: Vec<String> = ending
         .counters
         .iter()
         .map(|(name, count)| format!("{name} {count}"))
         .collect();
     writeln!(output, "  counters    {}", counters.join(", "))
+}
+
+/// The measured error, and what it was measured by.
+fn error(verified: &Verified) -> String {
+    let Verified {
+        error,
+        floor,
+        agrees,
+        outcome,
+        impacts,
+    } = verified;
+    if !agrees {
+        return format!(
+            "{error:.1e}: the reference ends otherwise, {} after {impacts} impacts",
+            outcome.kind()
+        );
+    }
+    match error <= floor {
+        true => format!("at most {floor:.1e}, to which the reference is known"),
+        false => format!("{error:.1e} of the positions (reference known to {floor:.1e})"),
+    }
 }
 
 /// The model and its scene.

@@ -1,9 +1,11 @@
-//! From flags to the settings of a run.
+//! From the flags that `simulate` and `accuracy` share to the settings of a run.
 
 use dalembert::describe::Description;
 use dalembert::impacts::law::Law;
 
-use crate::args::{Form, OffConstraint, SimulateArgs, Switch};
+use std::path::PathBuf;
+
+use crate::args::{Form, Integrator, OffConstraint, RunArgs, Switch};
 use crate::driver::Settings;
 use crate::entry::AnyModel;
 use crate::error::CliError;
@@ -13,9 +15,9 @@ use crate::{names, scalar};
 /// The time a run with `--impacts` alone may take, unless the model's own `until` is longer.
 const IMPACT_HORIZON: f64 = 3600.0;
 
-/// Refuses outputs that exclude each other.
-pub fn check_outputs(args: &SimulateArgs) -> Result<(), CliError> {
-    if let Some(path) = &args.plot
+/// Refuses outputs that exclude each other: the paths of `--csv`, `--json` and `--plot`.
+pub fn check_outputs(paths: [&Option<PathBuf>; 3]) -> Result<(), CliError> {
+    if let Some(path) = paths[2]
         && path
             .extension()
             .is_none_or(|extension| !extension.eq_ignore_ascii_case("svg"))
@@ -26,7 +28,6 @@ pub fn check_outputs(args: &SimulateArgs) -> Result<(), CliError> {
             "a file name that ends in .svg",
         ));
     }
-    let paths = [&args.csv, &args.json, &args.plot];
     let clash =
         |first: usize, second: usize| paths[first].is_some() && paths[first] == paths[second];
     if clash(0, 1) || clash(0, 2) || clash(1, 2) {
@@ -37,29 +38,31 @@ pub fn check_outputs(args: &SimulateArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Whether a document or a table goes to the standard output, which then holds nothing else.
-pub fn uses_stdout(args: &SimulateArgs) -> bool {
-    [&args.csv, &args.json]
-        .into_iter()
-        .flatten()
-        .any(|path| is_stdout(path))
+/// Whether a table or a document goes to the standard output, which then holds nothing else.
+pub fn uses_stdout(paths: [&Option<PathBuf>; 2]) -> bool {
+    paths.into_iter().flatten().any(|path| is_stdout(path))
 }
 
-/// How the run is to be made.
-pub fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, CliError> {
-    if args.step.is_some() && args.integrator.is_adaptive() {
+/// How a run is to be made: by this integrator at this tolerance, until the time or the number of impacts that is asked
+/// for.
+pub fn settings(
+    model: &dyn AnyModel,
+    args: &RunArgs,
+    impacts: Option<u64>,
+    (integrator, tol): (Integrator, f64),
+) -> Result<Settings, CliError> {
+    if impacts.is_some() && model.description().surfaces.is_empty() {
         return Err(CliError::Usage(
-            "--step: dop853, dopri5 and taylor choose their steps by --tol; a step needs --integrator rk4, gauss4, gauss6, dla2 \
-             or dla4",
+            "--impacts: the model has no impact surfaces",
         ));
     }
     Ok(Settings {
         form: form(&model.description(), args)?,
-        integrator: args.integrator,
-        tol: args.tol,
-        step: args.step,
-        until: horizon(model, args)?,
-        impacts: impacts(&model.description(), args)?,
+        integrator,
+        tol,
+        step: None,
+        until: horizon(model, args.until, impacts)?,
+        impacts,
         laws: laws(model, &args.law)?,
         policies: args.policies.policies(),
         projection: args.projection.map(|switch| switch == Switch::On),
@@ -67,7 +70,7 @@ pub fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, C
 }
 
 /// The form of the equations: as asked for, else reduced where that can hold the state and what is asked of it.
-fn form(description: &Description, args: &SimulateArgs) -> Result<Form, CliError> {
+fn form(description: &Description, args: &RunArgs) -> Result<Form, CliError> {
     let has_reduced = !description.quasi_velocities.is_empty();
     let needs_global =
         args.state.off_constraint == OffConstraint::Keep || args.projection.is_some();
@@ -84,12 +87,16 @@ fn form(description: &Description, args: &SimulateArgs) -> Result<Form, CliError
     }
 }
 
-fn horizon(model: &dyn AnyModel, args: &SimulateArgs) -> Result<f64, CliError> {
+fn horizon(
+    model: &dyn AnyModel,
+    until: Option<f64>,
+    impacts: Option<u64>,
+) -> Result<f64, CliError> {
     let declared = model
         .initial()
         .until
         .filter(|until| until.is_finite() && *until > 0.0);
-    match (args.until, args.impacts, declared) {
+    match (until, impacts, declared) {
         (Some(until), ..) => Ok(until),
         (None, Some(_), declared) => Ok(declared.unwrap_or(0.0).max(IMPACT_HORIZON)),
         (None, None, Some(until)) => Ok(until),
@@ -97,15 +104,6 @@ fn horizon(model: &dyn AnyModel, args: &SimulateArgs) -> Result<f64, CliError> {
             "the model declares no usable `until`; say when to stop with --until T or --impacts N",
         )),
     }
-}
-
-fn impacts(description: &Description, args: &SimulateArgs) -> Result<Option<u64>, CliError> {
-    if args.impacts.is_some() && description.surfaces.is_empty() {
-        return Err(CliError::Usage(
-            "--impacts: the model has no impact surfaces",
-        ));
-    }
-    Ok(args.impacts)
 }
 
 /// The laws of `--law`, in order: a later one counts.

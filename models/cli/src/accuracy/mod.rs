@@ -1,0 +1,399 @@
+//! What accuracy costs: the measured error of integrators over tolerances, with the work and the time they take, and
+//! which of them is the cheapest for an error that is wanted.
+//!
+//! An error is measured, never estimated: it is the largest difference of a position from a reference run at
+//! [`TIMES`] equally spaced times and at the end, as a share of the largest absolute value that this coordinate takes
+//! there (of an angle, at least one radian). The reference is a run of Taylor series at [`FINEST`]; a second one with
+//! other steps shows how far it can be trusted, which is the [`Study::floor`].
+//!
+//! ```
+//! use dalembert::{Described, System};
+//! use dalembert_cli::accuracy::choose;
+//!
+//! dalembert::model! {
+//!     /// A pendulum.
+//!     pub Pendulum {
+//!         coordinates { theta: angle; }
+//!         lagrangian = dot(theta)^2/2 + cos(theta);
+//!     }
+//! }
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let pendulum = Pendulum {};
+//!     let state = pendulum.state(0.0, &[2.0].into(), &[0.0].into())?;
+//!     let choice = choose(&pendulum, &state, 10.0, 1e-6)?;
+//!     assert!(choice.error <= 1e-6);
+//!     println!("{} at {:e}", choice.integrator.name(), choice.tol);
+//!     Ok(())
+//! }
+//! ```
+
+mod probe;
+
+use std::time::{Duration, Instant};
+
+use dalembert::integrate::Counters;
+use dalembert::{Outcome, Policies};
+use thiserror::Error;
+
+use crate::args::{Form, Integrator};
+use crate::driver::{self, Settings};
+use crate::entry::Model;
+use probe::{Probe, Track};
+
+/// Equally spaced times at which positions are compared.
+pub const TIMES: usize = 64;
+
+/// The tolerances of the two reference runs: below rounding, so that their steps differ and nothing else does.
+pub const FINEST: [f64; 2] = [1e-16, 1e-18];
+
+/// What is measured.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// How long the runs are, from `t = 0`.
+    pub until: f64,
+    /// The integrators.
+    pub integrators: Vec<Integrator>,
+    /// The tolerances, from loose to tight. An integrator of fixed step takes the step that suits one where the run
+    /// starts.
+    pub tolerances: Vec<f64>,
+    /// How often each case is timed; the cases take turns, so that a slow moment of the machine meets all of them.
+    pub rounds: u32,
+    /// The least time of one timing: shorter runs are repeated.
+    pub least: Duration,
+    /// A run that takes longer is the last of its integrator: tighter tolerances take longer still.
+    pub patience: Duration,
+    /// So is one whose error is at most this.
+    pub enough: f64,
+}
+
+impl Plan {
+    /// Every integrator at tolerances of 1e-3 to 1e-15.
+    pub fn new(until: f64) -> Self {
+        Self {
+            until,
+            integrators: Integrator::every().to_vec(),
+            tolerances: (3..=15).map(power_of_ten).collect(),
+            rounds: 5,
+            least: Duration::from_millis(2),
+            patience: Duration::from_secs(1),
+            enough: 0.0,
+        }
+    }
+}
+
+/// `10^-decade`, correctly rounded.
+fn power_of_ten(decade: u32) -> f64 {
+    format!("1e-{decade}").parse().unwrap_or(f64::NAN)
+}
+
+/// An integrator at a tolerance, and what it reached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// The integrator.
+    pub integrator: Integrator,
+    /// The tolerance.
+    pub tol: f64,
+    /// Its step, if it keeps one.
+    pub step: Option<f64>,
+    /// The measured error.
+    pub error: f64,
+    /// Whether it ended as the reference did, after as many impacts.
+    pub agrees: bool,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// When.
+    pub t: f64,
+    /// The work.
+    pub counters: Counters,
+    /// Microseconds per unit of time of the model, the median of several.
+    pub microseconds: f64,
+}
+
+/// What was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// How long the runs were meant to be.
+    pub until: f64,
+    /// What two reference runs differ by: smaller errors are not told from 0.
+    pub floor: f64,
+    /// How the reference ended.
+    pub outcome: Outcome,
+    /// The impacts of the reference.
+    pub impacts: u64,
+    /// The cases, by integrator and from loose to tight.
+    pub samples: Vec<Sample>,
+    /// Integrators that were left out, and why.
+    pub absent: Vec<(Integrator, String)>,
+}
+
+/// Why there is no choice.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum NoChoice {
+    /// The runs did not begin.
+    #[error("{0}")]
+    Start(String),
+    /// Nothing that was measured is as accurate.
+    #[error(
+        "no run has an error below {wanted:e}; the least is {least:e}, and the reference is known to {floor:e}"
+    )]
+    OutOfReach {
+        /// What was wanted.
+        wanted: f64,
+        /// The least error of all.
+        least: f64,
+        /// How far the reference can be trusted.
+        floor: f64,
+    },
+}
+
+impl Study {
+    /// The fastest of the cases that reach an error, and end as the reference does.
+    ///
+    /// # Errors
+    /// [`NoChoice::OutOfReach`] if there is none, or the reference itself is not known as well as that.
+    pub fn choose(&self, wanted: f64) -> Result<&Sample, NoChoice> {
+        let reached = self
+            .samples
+            .iter()
+            .filter(|it| it.agrees && it.error <= wanted);
+        let best = reached.min_by(|a, b| a.microseconds.total_cmp(&b.microseconds));
+        let agreeing = self.samples.iter().filter(|it| it.agrees);
+        let least = agreeing.map(|it| it.error).fold(f64::INFINITY, f64::min);
+        let floor = self.floor;
+        best.filter(|_| floor <= wanted)
+            .ok_or(NoChoice::OutOfReach {
+                wanted,
+                least,
+                floor,
+            })
+    }
+
+    /// The fastest case of each decade of errors that one reaches, from loose to tight.
+    pub fn cheapest(&self) -> Vec<(f64, &Sample)> {
+        let decades = (1..=16).map(power_of_ten);
+        decades
+            .filter_map(|decade| Some((decade, self.choose(decade).ok()?)))
+            .collect()
+    }
+}
+
+/// The integrator and the tolerance to take for a wanted error over a horizon, by measuring all of them.
+///
+/// The state is one of the scene; both stay as they are.
+///
+/// # Errors
+/// [`NoChoice`].
+pub fn choose<M: Model>(
+    scene: &M,
+    state: &M::State,
+    horizon: f64,
+    wanted: f64,
+) -> Result<Sample, NoChoice> {
+    let plan = Plan {
+        enough: wanted,
+        ..Plan::new(horizon)
+    };
+    let study = measure(scene, state, &plan).map_err(NoChoice::Start)?;
+    study.choose(wanted).copied()
+}
+
+/// Measures what a plan asks for.
+///
+/// # Errors
+/// Why the reference does not begin, as text.
+pub fn measure<M: Model>(scene: &M, state: &M::State, plan: &Plan) -> Result<Study, String> {
+    let base = Settings {
+        form: Form::Reduced,
+        integrator: Integrator::Taylor,
+        tol: FINEST[0],
+        step: None,
+        until: plan.until,
+        impacts: None,
+        laws: Vec::new(),
+        policies: Policies::default(),
+        projection: None,
+    };
+    study(scene, state, &base, plan, &mut |_| {})
+}
+
+/// A case before it is timed.
+struct Case {
+    sample: Sample,
+    settings: Settings,
+    repeats: u32,
+    times: Vec<f64>,
+}
+
+/// Measures, with everything but integrator and tolerance taken from `base`; tells what it is about to do.
+pub(crate) fn study<M: Model>(
+    model: &M,
+    state: &M::State,
+    base: &Settings,
+    plan: &Plan,
+    tell: &mut dyn FnMut(&str),
+) -> Result<Study, String> {
+    tell("reference");
+    let reference = reference(model, state, base)?;
+    let mut cases: Vec<Case> = Vec::new();
+    let mut absent = Vec::new();
+    for &integrator in &plan.integrators {
+        for &tol in &plan.tolerances {
+            tell(&format!("{} at {tol:e}", integrator.name()));
+            let settings = Settings {
+                integrator,
+                tol,
+                ..base.clone()
+            };
+            let begun = Instant::now();
+            let track = match track(model, state, &settings) {
+                Ok(track) => track,
+                Err(reason) => {
+                    absent.push((integrator, reason));
+                    break;
+                }
+            };
+            let once = begun.elapsed();
+            let last = cases.last().map(|case| case.sample);
+            // Steps are halved or doubled to suit a tolerance: two of them may suit the same.
+            if last.is_some_and(|it| {
+                it.integrator == integrator && it.step.is_some() && it.step == track.step
+            }) {
+                continue;
+            }
+            let case = case(track, settings, &reference, once, plan);
+            let is_enough = case.sample.agrees && case.sample.error <= plan.enough;
+            cases.push(case);
+            if is_enough {
+                break;
+            }
+            if once > plan.patience {
+                absent.push((
+                    integrator,
+                    format!("tolerances below {tol:e} take more than {:.0?} a run", once),
+                ));
+                break;
+            }
+        }
+    }
+    for round in 0..plan.rounds {
+        tell(&format!("timing, round {} of {}", round + 1, plan.rounds));
+        for case in &mut cases {
+            case.time(model, state)?;
+        }
+    }
+    Ok(Study {
+        until: plan.until,
+        floor: reference.floor,
+        outcome: reference.track.outcome,
+        impacts: reference.track.counters.impacts,
+        samples: cases.into_iter().map(Case::timed).collect(),
+        absent,
+    })
+}
+
+fn case(
+    track: Track,
+    settings: Settings,
+    reference: &Reference,
+    once: Duration,
+    plan: &Plan,
+) -> Case {
+    let repeats = (plan.least.as_secs_f64() / once.as_secs_f64().max(1e-9)).ceil();
+    Case {
+        sample: Sample {
+            integrator: settings.integrator,
+            tol: settings.tol,
+            step: track.step,
+            error: track.distance(&reference.track),
+            agrees: track.ends_as(&reference.track),
+            outcome: track.outcome,
+            t: track.t,
+            counters: track.counters,
+            microseconds: f64::NAN,
+        },
+        settings,
+        repeats: repeats.max(1.0) as u32,
+        times: Vec::new(),
+    }
+}
+
+impl Case {
+    fn time<M: Model>(&mut self, model: &M, state: &M::State) -> Result<(), String> {
+        let begun = Instant::now();
+        for _ in 0..self.repeats {
+            let solved = driver::solve(model, state, &self.settings, &mut ())?;
+            std::hint::black_box(solved.run.state);
+        }
+        let seconds = begun.elapsed().as_secs_f64() / f64::from(self.repeats);
+        self.times.push(seconds * 1e6 / self.sample.t);
+        Ok(())
+    }
+
+    fn timed(mut self) -> Sample {
+        self.times.sort_by(f64::total_cmp);
+        let middle = self.times.get(self.times.len() / 2);
+        Sample {
+            microseconds: middle.copied().unwrap_or(f64::NAN),
+            ..self.sample
+        }
+    }
+}
+
+/// A run that others are measured by.
+struct Reference {
+    track: Track,
+    floor: f64,
+}
+
+fn reference<M: Model>(model: &M, state: &M::State, base: &Settings) -> Result<Reference, String> {
+    let [first, second] = FINEST.map(|tol| {
+        let settings = Settings {
+            integrator: Integrator::Taylor,
+            tol,
+            step: None,
+            ..base.clone()
+        };
+        track(model, state, &settings)
+    });
+    let (track, second) = (first?, second?);
+    let floor = match second.ends_as(&track) {
+        true => second.distance(&track),
+        false => f64::INFINITY,
+    };
+    Ok(Reference { track, floor })
+}
+
+fn track<M: Model>(model: &M, state: &M::State, settings: &Settings) -> Result<Track, String> {
+    let mut probe = Probe::new(model, settings.until);
+    let solved = driver::solve(model, state, settings, &mut probe)?;
+    Ok(probe.track(&solved))
+}
+
+/// The measured error of one run, with what the reference is known to, and whether both ended alike.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Verified {
+    pub error: f64,
+    pub floor: f64,
+    pub agrees: bool,
+    pub outcome: Outcome,
+    pub impacts: u64,
+}
+
+/// Makes a run again, and measures its error.
+pub(crate) fn verify<M: Model>(
+    model: &M,
+    state: &M::State,
+    settings: &Settings,
+) -> Result<Verified, String> {
+    let reference = reference(model, state, settings)?;
+    let track = track(model, state, settings)?;
+    Ok(Verified {
+        error: track.distance(&reference.track),
+        floor: reference.floor,
+        agrees: track.ends_as(&reference.track),
+        outcome: reference.track.outcome,
+        impacts: reference.track.counters.impacts,
+    })
+}

@@ -1,0 +1,203 @@
+//! `accuracy`: what accuracy costs, as a table for people, as CSV, JSON and a work-precision diagram.
+
+mod document;
+mod spreadsheet;
+
+use std::io::{self, Write};
+use std::time::Duration;
+
+use crate::accuracy::{FINEST, NoChoice, Plan, Sample, Study};
+use crate::args::{AccuracyArgs, Integrator};
+use crate::driver::Settings;
+use crate::entry::{AnyModel, Entry};
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::plot::work;
+use crate::progress::Steps;
+use crate::sink::Sink;
+use crate::state_input::{build_model, initial_state};
+use crate::{Streams, run_request};
+
+/// A study with what the files say of it.
+struct Finished<'a> {
+    model: &'a dyn AnyModel,
+    scene: &'a str,
+    settings: &'a Settings,
+    study: Study,
+    wanted: Option<f64>,
+}
+
+/// Carries out `accuracy`.
+///
+/// # Errors
+/// Bad flags, a state that is refused, a file that cannot be written. A wanted error that nothing reaches is not an error
+/// but an [`Exit`].
+pub fn run(
+    models: &[Entry],
+    args: &AccuracyArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
+    let model = build_model(models, &args.run.model)?;
+    let finest = (Integrator::Taylor, FINEST[0]);
+    let settings = run_request::settings(model.as_ref(), &args.run, None, finest)?;
+    let origin = initial_state(model.as_ref(), &args.run.state)?;
+    let open = |flag, path: &Option<_>| {
+        path.as_deref()
+            .map(|path| Sink::open(flag, path))
+            .transpose()
+    };
+    let (csv, json) = (open("--csv", &args.csv)?, open("--json", &args.json)?);
+    let plot = open("--plot", &args.plot)?;
+
+    let plan = plan(args, settings.until);
+    let cases = plan.integrators.len() * plan.tolerances.len();
+    let mut progress = Steps::new(cases + plan.rounds as usize + 1, streams.terminal);
+    let study = model
+        .study(&origin, &settings, &plan, &mut |what| {
+            progress.begin(what);
+            progress.aside(|| {});
+        })
+        .map_err(CliError::Start)?;
+    progress.finish();
+    let finished = Finished {
+        model: model.as_ref(),
+        scene: &args.run.model.scene,
+        settings: &settings,
+        study,
+        wanted: args.wanted,
+    };
+    if let Some(sink) = json {
+        sink.write(streams, |output| document::write(output, &finished))?;
+    }
+    if let Some(sink) = csv {
+        sink.write(streams, |output| {
+            spreadsheet::write(output, &finished.study)
+        })?;
+    }
+    if let Some(sink) = plot {
+        let svg = work::draw(&finished.title(), &finished.subtitle(), &finished.study);
+        let svg = svg.map_err(|reason| CliError::Plot {
+            flag: "--plot",
+            path: sink.path(),
+            reason,
+        })?;
+        sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
+    }
+    if !run_request::uses_stdout([&args.csv, &args.json]) {
+        write(streams.output, &finished)?;
+    }
+    Ok(match finished.choice() {
+        Some(Err(_)) => Exit::Other,
+        _ => Exit::Reached,
+    })
+}
+
+fn plan(args: &AccuracyArgs, until: f64) -> Plan {
+    let everything = Plan::new(until);
+    Plan {
+        integrators: match args.integrator.is_empty() {
+            true => everything.integrators,
+            false => args.integrator.clone(),
+        },
+        rounds: args.rounds,
+        patience: Duration::from_secs_f64(args.patience),
+        ..everything
+    }
+}
+
+impl Finished<'_> {
+    fn title(&self) -> String {
+        let name = self.model.description().name;
+        match self.scene {
+            "all" => format!("What accuracy costs: {name}"),
+            scene => format!("What accuracy costs: {name}, scene {scene}"),
+        }
+    }
+
+    fn subtitle(&self) -> String {
+        let Study { until, floor, .. } = self.study;
+        let form = self.settings.form.name();
+        format!(
+            "{form} form, until t = {until}; reference known to {floor:.1e}; rings: the fastest of a decade"
+        )
+    }
+
+    /// The answer to what is wanted.
+    fn choice(&self) -> Option<Result<&Sample, NoChoice>> {
+        self.wanted.map(|wanted| self.study.choose(wanted))
+    }
+}
+
+/// The table, and the answer.
+fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
+    let study = &finished.study;
+    writeln!(output, "{}", finished.title())?;
+    writeln!(
+        output,
+        "{} form, until t = {}; reference: {} after {} impacts, known to {:.1e}",
+        finished.settings.form.name(),
+        study.until,
+        study.outcome.kind(),
+        study.impacts,
+        study.floor
+    )?;
+    writeln!(
+        output,
+        "\n{:8} {:>6} {:>10} {:>9} {:>9} {:>8} {:>12}",
+        "", "tol", "error", "rates", "steps", "impacts", "us per unit"
+    )?;
+    let cheapest = study.cheapest();
+    for sample in &study.samples {
+        let is_cheapest = cheapest.iter().any(|(_, best)| *best == sample);
+        writeln!(
+            output,
+            "{:8} {:>6} {:>10} {:>9} {:>9} {:>8} {:>12.3}{}{}",
+            sample.integrator.name(),
+            format!("{:e}", sample.tol),
+            format!("{:.1e}", sample.error),
+            evaluations(sample),
+            sample.counters.accepted,
+            sample.counters.impacts,
+            sample.microseconds,
+            if is_cheapest { "  *" } else { "" },
+            if sample.agrees {
+                String::new()
+            } else {
+                format!("  {}", sample.outcome.kind())
+            },
+        )?;
+    }
+    writeln!(
+        output,
+        "\n*  the fastest of those with errors of a decade or less"
+    )?;
+    for (integrator, reason) in &study.absent {
+        writeln!(output, "{}: {reason}", integrator.name())?;
+    }
+    match finished.choice() {
+        None => Ok(()),
+        Some(Ok(best)) => writeln!(output, "\n{}", answer(finished, best)),
+        Some(Err(reason)) => writeln!(output, "\n{reason}"),
+    }
+}
+
+/// What is to be used.
+fn answer(finished: &Finished<'_>, best: &Sample) -> String {
+    format!(
+        "for an error of {:e}: --integrator {} --tol {:e}; it erred by {:.1e} and took {:.3} us per unit of time here",
+        finished.wanted.unwrap_or(f64::NAN),
+        best.integrator.name(),
+        best.tol,
+        best.error,
+        best.microseconds
+    )
+}
+
+/// Evaluations of the rate; for series, their coefficients.
+fn evaluations(sample: &Sample) -> u64 {
+    match sample.integrator {
+        Integrator::Taylor => sample.counters.coefficients,
+        _ => sample.counters.rate_evaluations,
+    }
+}

@@ -1,0 +1,89 @@
+//! A study as one JSON document.
+
+use std::io::{self, Write};
+
+use serde_json::{Value, json};
+
+use super::Finished;
+use crate::accuracy::Sample;
+use crate::json::{Document, named, number};
+
+/// Writes the document.
+///
+/// # Errors
+/// Whatever the stream says.
+pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
+    let description = finished.model.description();
+    let names = description
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name);
+    let values: Vec<f64> = (0..description.parameters.len())
+        .map(|index| finished.model.parameter(index))
+        .collect();
+    let study = &finished.study;
+
+    let mut document = Document::begin(output)?;
+    document.field("model", description.name)?;
+    document.field("scene", finished.scene)?;
+    document.field("parameters", named(names, &values))?;
+    document.field("form", finished.settings.form.name())?;
+    document.field("until", number(study.until))?;
+    let reference = json!({
+        "outcome": study.outcome.kind(),
+        "impacts": study.impacts,
+        "floor": number(study.floor),
+    });
+    document.field("reference", reference)?;
+    document.rows("cases", study.samples.iter().map(case))?;
+    let cheapest = study.cheapest();
+    document.rows(
+        "cheapest",
+        cheapest.iter().map(|(decade, best)| chosen(*decade, best)),
+    )?;
+    let absent = study.absent.iter();
+    document.rows(
+        "absent",
+        absent.map(
+            |(integrator, reason)| json!({ "integrator": integrator.name(), "reason": reason }),
+        ),
+    )?;
+    if let (Some(wanted), Some(choice)) = (finished.wanted, finished.choice()) {
+        let answer = match choice {
+            Ok(best) => chosen(wanted, best),
+            Err(reason) => json!({ "error": number(wanted), "reason": reason.to_string() }),
+        };
+        document.field("wanted", answer)?;
+    }
+    document.end()
+}
+
+fn case(sample: &Sample) -> Value {
+    let counters = &sample.counters;
+    json!({
+        "integrator": sample.integrator.name(),
+        "tol": number(sample.tol),
+        "step": sample.step.map(number),
+        "error": number(sample.error),
+        "ends_as_reference": sample.agrees,
+        "outcome": sample.outcome.kind(),
+        "t": number(sample.t),
+        "impacts": counters.impacts,
+        "rate_evaluations": counters.rate_evaluations,
+        "coefficients": counters.coefficients,
+        "accepted": counters.accepted,
+        "rejected": counters.rejected,
+        "microseconds_per_unit": number(sample.microseconds),
+    })
+}
+
+/// The fastest case for an error.
+fn chosen(error: f64, best: &Sample) -> Value {
+    json!({
+        "error": number(error),
+        "integrator": best.integrator.name(),
+        "tol": number(best.tol),
+        "measured": number(best.error),
+        "microseconds_per_unit": number(best.microseconds),
+    })
+}

@@ -1,0 +1,202 @@
+use dalembert::{Described, Dop853, Simulation, System, Tolerance};
+use dalembert_cli::Integrator;
+use dalembert_cli::accuracy::{NoChoice, Plan, TIMES, choose, measure};
+
+use super::systems::{BouncingBall, Oscillator};
+use super::*;
+
+/// Quick to measure.
+fn plan(until: f64) -> Plan {
+    Plan {
+        integrators: vec![Integrator::Dop853, Integrator::Rk4],
+        tolerances: vec![1e-3, 1e-6, 1e-9],
+        rounds: 1,
+        least: std::time::Duration::ZERO,
+        ..Plan::new(until)
+    }
+}
+
+/// Keeps the largest difference from a solution at the times that are compared.
+struct Closed<'a, F> {
+    system: &'a Oscillator,
+    until: f64,
+    next: usize,
+    worst: [f64; 2],
+    solution: F,
+}
+
+impl<F: Fn(f64) -> [f64; 2]> dalembert::Observer<Oscillator> for Closed<'_, F> {
+    fn step(
+        &mut self,
+        segment: &mut dalembert::Segment<'_, <Oscillator as dalembert::VectorField>::State>,
+    ) -> std::ops::ControlFlow<()> {
+        while self.next < TIMES {
+            let t = self.until * (self.next + 1) as f64 / TIMES as f64;
+            if t > segment.t_end() {
+                break;
+            }
+            let q = self.system.position(&segment.at(t).unwrap());
+            let right = (self.solution)(t);
+            for i in 0..2 {
+                self.worst[i] = self.worst[i].max((q[i] - right[i]).abs());
+            }
+            self.next += 1;
+        }
+        std::ops::ControlFlow::Continue(())
+    }
+}
+
+#[test]
+fn a_measured_error_is_the_distance_from_the_closed_form() {
+    let mut system = Oscillator::with_defaults();
+    system.k = 4.0;
+    let until = 7.0;
+    let state = system
+        .state(0.0, &[1.0, 0.5].into(), &[0.0, 0.0].into())
+        .unwrap();
+    let study = measure(&system, &state, &plan(until)).unwrap();
+    assert!(study.floor < 1e-14, "{:e}", study.floor);
+    assert_eq!(study.samples.len(), 6);
+    for sample in study
+        .samples
+        .iter()
+        .filter(|it| it.integrator == Integrator::Dop853)
+    {
+        let mut closed = Closed {
+            system: &system,
+            until,
+            next: 0,
+            worst: [0.0; 2],
+            solution: |t: f64| [t.cos(), 0.5 * (2.0 * t).cos()],
+        };
+        let stepper = Dop853::new(Tolerance::new(sample.tol).unwrap());
+        Simulation::new(&system, stepper, dalembert::Scene::effects(&system))
+            .run(0.0, state, until, &mut closed)
+            .unwrap();
+        // Shares of the largest value at a time that is compared, which is nearly the amplitude.
+        let expected = closed.worst[0].max(closed.worst[1] / 0.5);
+        assert!(
+            (sample.error / expected - 1.0).abs() < 0.02,
+            "tol {:e}: {:e} for {expected:e}",
+            sample.tol,
+            sample.error
+        );
+    }
+}
+
+#[test]
+fn runs_that_end_otherwise_are_no_choice() {
+    let ball = BouncingBall::with_defaults();
+    let state = ball.state(0.0, &[1.0].into(), &[0.0].into()).unwrap();
+    let study = measure(&ball, &state, &plan(3.0)).unwrap();
+    assert!(study.impacts > 0);
+    assert!(study.samples.iter().all(|sample| sample.agrees));
+    let mut changed = study.clone();
+    changed.impacts += 1;
+    for sample in &mut changed.samples {
+        sample.agrees = false;
+    }
+    assert!(matches!(
+        changed.choose(1.0),
+        Err(NoChoice::OutOfReach { .. })
+    ));
+    assert!(changed.cheapest().is_empty());
+}
+
+#[test]
+fn the_choice_reaches_what_is_wanted_in_the_least_time() {
+    let mut system = Oscillator::with_defaults();
+    system.k = 4.0;
+    let state = system
+        .state(0.0, &[1.0, 0.5].into(), &[0.0, 0.0].into())
+        .unwrap();
+    let choice = choose(&system, &state, 2.0, 1e-7).unwrap();
+    assert!(choice.error <= 1e-7 && choice.microseconds > 0.0);
+
+    let study = measure(&system, &state, &plan(2.0)).unwrap();
+    let error = study.choose(1e-30).unwrap_err().to_string();
+    assert!(
+        error.starts_with("no run has an error below 1e-30"),
+        "{error}"
+    );
+    let best = study.choose(1e-2).unwrap();
+    for sample in study.samples.iter().filter(|sample| sample.error <= 1e-2) {
+        assert!(best.microseconds <= sample.microseconds);
+    }
+}
+
+const QUICK: &str = "--rounds 1 --integrator dop853 --integrator gauss4 --patience 0.05";
+
+#[test]
+fn it_is_told_as_a_table_as_a_document_and_as_a_picture() {
+    let folder = std::env::temp_dir().join(format!("dalembert-accuracy-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).display().to_string();
+    let done = run(&format!(
+        "accuracy bouncing_ball --until 3 {QUICK} --wanted 1e-6 --csv {} --plot {}",
+        path("a.csv"),
+        path("a.svg")
+    ));
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    assert!(
+        done.output.contains("for an error of 1e-6: --integrator "),
+        "{}",
+        done.output
+    );
+    let csv = std::fs::read_to_string(path("a.csv")).unwrap();
+    assert!(csv.starts_with("integrator,tol,step,error,ends_as_reference,outcome,"));
+    assert!(csv.lines().count() > 13, "{csv}");
+    let svg = std::fs::read_to_string(path("a.svg")).unwrap();
+    for text in [
+        "microseconds per unit of time",
+        "error of the positions",
+        "dop853",
+        "gauss4",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+
+    let document = run(&format!(
+        "accuracy bouncing_ball --until 3 {QUICK} --wanted 1e-6 --json -"
+    ))
+    .json();
+    let cases = document["cases"].as_array().unwrap();
+    assert!(cases.len() >= 13);
+    assert!(document["wanted"]["measured"].as_f64().unwrap() <= 1e-6);
+    assert_eq!(document["reference"]["outcome"], "done");
+    assert!(!document["cheapest"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn what_nothing_reaches_is_said() {
+    let done = run(&format!(
+        "accuracy oscillator --set k=4 --until 2 {QUICK} --wanted 1e-40"
+    ));
+    assert_eq!(done.exit, Exit::Other);
+    assert!(
+        done.output.contains("no run has an error below 1e-40"),
+        "{}",
+        done.output
+    );
+}
+
+#[test]
+fn a_run_is_verified_against_the_reference() {
+    let done =
+        run("simulate oscillator --set k=4 --until 7 --integrator dopri5 --tol 1e-4 --verify");
+    let line = done
+        .output
+        .lines()
+        .find(|line| line.contains("  error "))
+        .unwrap();
+    assert!(line.contains("reference known to"), "{line}");
+    let document =
+        run("simulate bouncing_ball --until 3 --tol 1e-4 --verify --samples 2 --json -").json();
+    let error = &document["error"];
+    assert_eq!(error["ends_as_reference"], true);
+    assert!(error["measured"].as_f64().unwrap() < 1e-2);
+    assert!(error["floor"].as_f64().unwrap() < 1e-13);
+    let plain = run("simulate oscillator --set k=4 --until 7").output;
+    assert!(!plain.contains("  error "), "{plain}");
+}
