@@ -70,7 +70,7 @@ fn a_measured_error_is_the_distance_from_the_closed_form() {
             solution: |t: f64| [t.cos(), 0.5 * (2.0 * t).cos()],
         };
         let stepper = Dop853::new(Tolerance::new(sample.tol).unwrap());
-        Simulation::new(&system, stepper, dalembert::Scene::effects(&system))
+        Simulation::new(&system, stepper, ())
             .run(0.0, state, until, &mut closed)
             .unwrap();
         // Shares of the largest value at a time that is compared, which is nearly the amplitude.
