@@ -63,8 +63,8 @@ pub struct Plan {
     pub least: Duration,
     /// A run that takes longer is the last of its integrator: tighter tolerances take longer still.
     pub patience: Duration,
-    /// So is one whose error is at most this.
-    pub enough: f64,
+    /// So is one whose error is at most this, if that is enough.
+    pub enough: Option<f64>,
 }
 
 impl Plan {
@@ -77,7 +77,7 @@ impl Plan {
             rounds: 5,
             least: Duration::from_millis(2),
             patience: Duration::from_secs(1),
-            enough: 0.0,
+            enough: None,
         }
     }
 }
@@ -192,7 +192,7 @@ pub fn choose<M: Model>(
     wanted: f64,
 ) -> Result<Sample, NoChoice> {
     let plan = Plan {
-        enough: wanted,
+        enough: Some(wanted),
         ..Plan::new(horizon)
     };
     let study = measure(scene, state, &plan).map_err(NoChoice::Start)?;
@@ -263,7 +263,8 @@ pub(crate) fn study<M: Model>(
                 continue;
             }
             let case = case(track, settings, &reference, once, plan);
-            let is_enough = case.sample.agrees && case.sample.error <= plan.enough;
+            let reaches = |error| case.sample.agrees && case.sample.error <= error;
+            let is_enough = plan.enough.is_some_and(reaches);
             cases.push(case);
             if is_enough {
                 break;

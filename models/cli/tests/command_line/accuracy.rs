@@ -104,6 +104,21 @@ fn runs_that_end_otherwise_are_no_choice() {
 }
 
 #[test]
+fn an_error_of_nothing_at_all_ends_no_ladder() {
+    // At rest nothing errs.
+    let mut system = Oscillator::with_defaults();
+    system.k = 4.0;
+    let state = system
+        .state(0.0, &[0.0, 0.0].into(), &[0.0, 0.0].into())
+        .unwrap();
+    let study = measure(&system, &state, &plan(2.0)).unwrap();
+    let adaptive = study.samples.iter();
+    let adaptive = adaptive.filter(|it| it.integrator == Integrator::Dop853);
+    assert_eq!(adaptive.count(), 3);
+    assert!(study.samples.iter().all(|sample| sample.error == 0.0));
+}
+
+#[test]
 fn the_choice_reaches_what_is_wanted_in_the_least_time() {
     let mut system = Oscillator::with_defaults();
     system.k = 4.0;
