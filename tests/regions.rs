@@ -32,6 +32,15 @@ dalembert::model! {
     }
 }
 
+dalembert::model! {
+    /// A falling ball above a floor that lies less than a rounding error inside the chart.
+    pub Brink {
+        coordinates { y in (0, 9); }
+        lagrangian = dot(y)^2/2 - y;
+        impacts { floor: y >= 1e-17; }
+    }
+}
+
 /// Counts impacts and asserts that every one of them happens where its surface counts.
 #[derive(Default)]
 struct Checked {
@@ -106,4 +115,21 @@ fn a_stadium_keeps_its_particle() {
     );
     let energy = stadium.energy(500.0, &run.state).expect("an energy");
     assert!((energy - 0.5).abs() < 1e-12, "{energy}");
+}
+
+/// An impact is placed where the gap is closest to 0 on either side, but never where the motion does not exist.
+#[test]
+fn an_impact_at_the_end_of_a_chart_is_inside_it() {
+    let brink = Brink {};
+    for start in 1..40 {
+        let state = brink
+            .state(0.0, &[f64::from(start) / 7.0].into(), &[0.0].into())
+            .expect("a state");
+        let stepper = Dop853::new(Tolerance::new(1e-10).expect("a tolerance"));
+        let run = Simulation::new(&brink, stepper, brink.effects())
+            .run(0.0, state, 100.0, &mut ())
+            .expect("a start");
+        assert_eq!(run.outcome, Outcome::Done, "from {start}/7 at {}", run.t);
+        assert!(run.counters.impacts > 10);
+    }
 }

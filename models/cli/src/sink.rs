@@ -43,6 +43,14 @@ impl Sink {
         }
     }
 
+    /// Opens the file of a flag, if the flag was given.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn open_given(flag: &'static str, path: Option<&Path>) -> Result<Option<Self>, CliError> {
+        path.map(|path| Self::open(flag, path)).transpose()
+    }
+
     /// Its path.
     pub fn path(&self) -> PathBuf {
         match self {

@@ -1,4 +1,4 @@
-//! Samples and impacts as CSV: `t`, coordinates, velocities, `energy`, outputs, `event`.
+//! Tables as CSV; that of a run has samples and impacts: `t`, coordinates, velocities, `energy`, outputs, `event`.
 
 use std::io::{self, Write};
 
@@ -19,20 +19,29 @@ pub fn write(
     samples: &[(f64, Point)],
     impacts: &[Impact],
 ) -> io::Result<()> {
-    let rows = write_rows(
-        csv::Writer::from_writer(output),
-        description,
-        samples,
-        impacts,
-    );
-    rows.map_err(|error| match error.into_kind() {
-        csv::ErrorKind::Io(error) => error,
-        kind => io::Error::other(format!("{kind:?}")),
+    write_rows(output, |writer| {
+        write_run(writer, description, samples, impacts)
     })
 }
 
-fn write_rows(
-    mut writer: csv::Writer<&mut dyn Write>,
+/// Writes rows of CSV, to the end.
+///
+/// # Errors
+/// Whatever the stream says, or that a row has another length than the first.
+pub fn write_rows(
+    output: &mut dyn Write,
+    rows: impl FnOnce(&mut csv::Writer<&mut dyn Write>) -> csv::Result<()>,
+) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(output);
+    rows(&mut writer).map_err(|error| match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        kind => io::Error::other(format!("{kind:?}")),
+    })?;
+    writer.flush()
+}
+
+fn write_run(
+    writer: &mut csv::Writer<&mut dyn Write>,
     description: &Description,
     samples: &[(f64, Point)],
     impacts: &[Impact],
@@ -48,7 +57,6 @@ fn write_rows(
     for impact in impacts {
         writer.write_record(row(impact.t, &impact.after, surface(description, impact)))?;
     }
-    writer.flush()?;
     Ok(())
 }
 

@@ -42,7 +42,7 @@ use crate::entry::Model;
 use probe::{Probe, Track};
 
 /// Equally spaced times at which positions are compared.
-pub const TIMES: usize = 64;
+pub const TIMES: u64 = 64;
 
 /// The tolerances of the two reference runs: below rounding, so that their steps differ and nothing else does.
 pub const FINEST: [f64; 2] = [1e-16, 1e-18];
@@ -239,44 +239,10 @@ pub(crate) fn study<M: Model>(
     let mut cases: Vec<Case> = Vec::new();
     let mut absent = Vec::new();
     for &integrator in &plan.integrators {
-        for &tol in &plan.tolerances {
-            tell(&format!("{} at {tol:e}", integrator.name()));
-            let settings = Settings {
-                integrator,
-                tol,
-                ..base.clone()
-            };
-            let begun = Instant::now();
-            let track = match track(model, state, &settings) {
-                Ok(track) => track,
-                Err(reason) => {
-                    absent.push((integrator, reason));
-                    break;
-                }
-            };
-            let once = begun.elapsed();
-            let last = cases.last().map(|case| case.sample);
-            // Steps are halved or doubled to suit a tolerance: two of them may suit the same.
-            if last.is_some_and(|it| {
-                it.integrator == integrator && it.step.is_some() && it.step == track.step
-            }) {
-                continue;
-            }
-            let case = case(track, settings, &reference, once, plan);
-            let reaches = |error| case.sample.agrees && case.sample.error <= error;
-            let is_enough = plan.enough.is_some_and(reaches);
-            cases.push(case);
-            if is_enough {
-                break;
-            }
-            if once > plan.patience {
-                absent.push((
-                    integrator,
-                    format!("tolerances below {tol:e} take more than {:.0?} a run", once),
-                ));
-                break;
-            }
-        }
+        let mut ladder = Ladder::new(plan, &reference);
+        let end = ladder.climb(model, state, base, integrator, tell);
+        cases.append(&mut ladder.cases);
+        absent.extend(end.err().map(|reason| (integrator, reason)));
     }
     for round in 0..plan.rounds {
         tell(&format!("timing, round {} of {}", round + 1, plan.rounds));
@@ -292,6 +258,66 @@ pub(crate) fn study<M: Model>(
         samples: cases.into_iter().map(Case::timed).collect(),
         absent,
     })
+}
+
+/// The cases of one integrator, from loose to tight.
+struct Ladder<'a> {
+    plan: &'a Plan,
+    reference: &'a Reference,
+    cases: Vec<Case>,
+}
+
+impl<'a> Ladder<'a> {
+    fn new(plan: &'a Plan, reference: &'a Reference) -> Self {
+        Self {
+            plan,
+            reference,
+            cases: Vec::new(),
+        }
+    }
+
+    /// Makes them, up to the first that is accurate enough or takes too long; why there are no more, as text.
+    fn climb<M: Model>(
+        &mut self,
+        model: &M,
+        state: &M::State,
+        base: &Settings,
+        integrator: Integrator,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<(), String> {
+        for &tol in &self.plan.tolerances {
+            tell(&format!("{} at {tol:e}", integrator.name()));
+            let settings = Settings {
+                integrator,
+                tol,
+                ..base.clone()
+            };
+            let begun = Instant::now();
+            let track = track(model, state, &settings)?;
+            let once = begun.elapsed();
+            // Steps are halved or doubled to suit a tolerance: two of them may suit the same.
+            let last = self.cases.last().and_then(|case| case.sample.step);
+            if track.step.is_some() && track.step == last {
+                continue;
+            }
+            let case = case(track, settings, self.reference, once, self.plan);
+            let Sample { agrees, error, .. } = case.sample;
+            self.cases.push(case);
+            if self
+                .plan
+                .enough
+                .is_some_and(|enough| agrees && error <= enough)
+            {
+                break;
+            }
+            if once > self.plan.patience {
+                return Err(format!(
+                    "tolerances below {tol:e} take more than {once:.0?} a run"
+                ));
+            }
+        }
+        Ok(())
+    }
 }
 
 fn case(
@@ -328,7 +354,13 @@ impl Case {
             std::hint::black_box(solved.run.state);
         }
         let seconds = begun.elapsed().as_secs_f64() / f64::from(self.repeats);
-        self.times.push(seconds * 1e6 / self.sample.t);
+        // Of a run that ends where it begins, the time of the run.
+        let length = if self.sample.t > 0.0 {
+            self.sample.t
+        } else {
+            1.0
+        };
+        self.times.push(seconds * 1e6 / length);
         Ok(())
     }
 

@@ -9,11 +9,12 @@ use dalembert::{Observer, Outcome, Segment, StateVector};
 use super::TIMES;
 use crate::driver::Solved;
 use crate::entry::Model;
+use crate::record::Grid;
 
 /// Keeps positions at equally spaced times.
 pub struct Probe<'a, M> {
     model: &'a M,
-    until: f64,
+    times: Grid,
     positions: Vec<Vec<f64>>,
 }
 
@@ -22,9 +23,16 @@ impl<'a, M: Model> Probe<'a, M> {
     pub fn new(model: &'a M, until: f64) -> Self {
         Self {
             model,
-            until,
-            positions: Vec::with_capacity(TIMES + 1),
+            times: Grid {
+                end: until,
+                count: TIMES + 1,
+            },
+            positions: Vec::new(),
         }
+    }
+
+    fn next_time(&self) -> Option<f64> {
+        self.times.time(self.positions.len() as u64)
     }
 
     /// The track of the run that was watched.
@@ -44,11 +52,8 @@ impl<'a, M: Model> Probe<'a, M> {
 
 impl<M: Model> Observer<M> for Probe<'_, M> {
     fn step(&mut self, segment: &mut Segment<'_, M::State>) -> ControlFlow<()> {
-        while self.positions.len() < TIMES {
-            let t = self.until * (self.positions.len() + 1) as f64 / TIMES as f64;
-            if t > segment.t_end() {
-                break;
-            }
+        let end = segment.t_end();
+        while let Some(t) = self.next_time().filter(|&t| t <= end) {
             let position = match segment.at(t) {
                 Ok(state) => self.model.position(&state).as_slice().to_vec(),
                 Err(_) => vec![f64::NAN; M::DESCRIPTION.coordinates.len()],
@@ -92,7 +97,9 @@ impl Track {
             let components = own.iter().zip(right).zip(&scales);
             components.map(|((own, right), scale)| (own - right).abs() / scale)
         });
-        let end = (self.t - reference.t).abs() / reference.t;
+        let late = (self.t - reference.t).abs();
+        // A run that ends where it begins has no length to compare with.
+        let end = if late == 0.0 { 0.0 } else { late / reference.t };
         let number = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
         differences.map(number).fold(number(end), f64::max)
     }

@@ -42,13 +42,9 @@ pub fn run(
     let finest = (Integrator::Taylor, FINEST[0]);
     let settings = run_request::settings(model.as_ref(), &args.run, None, finest)?;
     let origin = initial_state(model.as_ref(), &args.run.state)?;
-    let open = |flag, path: &Option<_>| {
-        path.as_deref()
-            .map(|path| Sink::open(flag, path))
-            .transpose()
-    };
-    let (csv, json) = (open("--csv", &args.csv)?, open("--json", &args.json)?);
-    let plot = open("--plot", &args.plot)?;
+    let csv = Sink::open_given("--csv", args.csv.as_deref())?;
+    let json = Sink::open_given("--json", args.json.as_deref())?;
+    let plot = Sink::open_given("--plot", args.plot.as_deref())?;
 
     let plan = plan(args, settings.until);
     let cases = plan.integrators.len() * plan.tolerances.len();

@@ -42,17 +42,9 @@ pub fn run(
     let settings = settings(model.as_ref(), args)?;
     let origin = initial_state(model.as_ref(), &args.run.state)?;
     // Opened before the run: a path that cannot be written is better known at once.
-    let [csv, json, plot] = [
-        ("--csv", &args.csv),
-        ("--json", &args.json),
-        ("--plot", &args.plot),
-    ]
-    .map(|(flag, path)| {
-        path.as_deref()
-            .map(|path| Sink::open(flag, path))
-            .transpose()
-    });
-    let (csv, json, plot) = (csv?, json?, plot?);
+    let csv = Sink::open_given("--csv", args.csv.as_deref())?;
+    let json = Sink::open_given("--json", args.json.as_deref())?;
+    let plot = Sink::open_given("--plot", args.plot.as_deref())?;
 
     let (record, ending) = carry_out(model.as_ref(), &origin, &settings, args, streams.terminal)?;
     let verified = match args.verify {

@@ -26,13 +26,9 @@ pub fn run(
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
     let mut cases = selected(suite, args)?;
-    let open = |flag, path: &Option<_>| {
-        path.as_deref()
-            .map(|path| Sink::open(flag, path))
-            .transpose()
-    };
     check_outputs(args)?;
-    let (json, html) = (open("--json", &args.json)?, open("--html", &args.html)?);
+    let json = Sink::open_given("--json", args.json.as_deref())?;
+    let html = Sink::open_given("--html", args.html.as_deref())?;
     let quiet = args.json.as_deref().is_some_and(is_stdout);
 
     if args

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use crate::accuracy::{Sample, Study};
+use crate::table::write_rows;
 
 const HEAD: [&str; 13] = [
     "integrator",
@@ -25,20 +26,11 @@ const HEAD: [&str; 13] = [
 /// # Errors
 /// Whatever the stream says.
 pub fn write(output: &mut dyn Write, study: &Study) -> io::Result<()> {
-    let rows = write_rows(csv::Writer::from_writer(output), study);
-    rows.map_err(|error| match error.into_kind() {
-        csv::ErrorKind::Io(error) => error,
-        kind => io::Error::other(format!("{kind:?}")),
+    write_rows(output, |writer| {
+        writer.write_record(HEAD)?;
+        let mut rows = study.samples.iter().map(row);
+        rows.try_for_each(|row| writer.write_record(row))
     })
-}
-
-fn write_rows(mut writer: csv::Writer<&mut dyn Write>, study: &Study) -> csv::Result<()> {
-    writer.write_record(HEAD)?;
-    for sample in &study.samples {
-        writer.write_record(row(sample))?;
-    }
-    writer.flush()?;
-    Ok(())
 }
 
 fn row(sample: &Sample) -> [String; 13] {
