@@ -6,8 +6,29 @@ use dalembert_codegen::model::Model;
 use dalembert_codegen::program::{Lowered, interpret::interpret, verify::verify};
 use dalembert_codegen::{compile, mechanics, spec};
 use dalembert_expr::SymbolId;
+use dalembert_tests::command::models;
 use dalembert_tests::interpreted::{compare_motion, input};
 use dalembert_tests::sampling::{Visitor, states, visit_all};
+
+/// Names of what is visited.
+struct Names(Vec<&'static str>);
+
+impl Visitor for Names {
+    fn visit<S: Described + Scene>(&mut self, _: S) {
+        self.0.push(S::DESCRIPTION.name);
+    }
+}
+
+#[test]
+fn every_model_of_the_command_line_is_visited() {
+    let mut visited = Names(Vec::new());
+    visit_all(&mut visited);
+    let known: Vec<_> = models()
+        .iter()
+        .map(|entry| entry.description().name)
+        .collect();
+    assert_eq!(visited.0, known);
+}
 
 /// A model derived again from its own source text.
 fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {

@@ -121,7 +121,7 @@ pub trait Observer<Sys: System> {
 /// Watches nothing.
 impl<Sys: System> Observer<Sys> for () {}
 
-impl<Sys: System, O: Observer<Sys>> Observer<Sys> for &mut O {
+impl<Sys: System, O: Observer<Sys> + ?Sized> Observer<Sys> for &mut O {
     fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
         (**self).step(segment)
     }

@@ -182,6 +182,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
 
     /// Steps to the end, or to where the forces change. Whatever integrator was chosen, with [`Dop853`] at its
     /// tolerance: not every integrator takes forces that a system does not know.
+    #[inline(never)]
     fn drive_under<O: Observer<Sys>>(
         &mut self,
         forces: Effects::Forces,
@@ -245,6 +246,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     }
 
     /// The step ends at `theta`, where the effects act. Returns the longest step to go on with.
+    #[inline(never)]
     fn cut<O: Observer<Sys>>(&mut self, theta: f64, observer: &mut O) -> Result<f64, Outcome> {
         if theta <= 0.0 {
             let mut now = Moment {
@@ -320,6 +322,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     }
 
     /// At `theta` the motion is outside the chart: goes to the last state inside it, by bisection.
+    #[cold]
     fn leave_chart<O: Observer<Sys>>(
         &mut self,
         theta: f64,

@@ -79,27 +79,3 @@ pub fn visit_all(visitor: &mut impl Visitor) {
         CurvedDual RouthSphere OnePole
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    struct Names(Vec<&'static str>);
-
-    impl Visitor for Names {
-        fn visit<S: Described + dalembert::Scene>(&mut self, _: S) {
-            self.0.push(S::DESCRIPTION.name);
-        }
-    }
-
-    #[test]
-    fn every_model_of_the_command_line_is_visited() {
-        let mut visited = Names(Vec::new());
-        visit_all(&mut visited);
-        let known: Vec<_> = crate::command::models()
-            .iter()
-            .map(|entry| entry.description().name)
-            .collect();
-        assert_eq!(visited.0, known);
-    }
-}

@@ -1,5 +1,5 @@
 //! The systems of `reference/verdicts_visible.json` as a user writes them, each with what is true of it: that this file
-//! compiles is the proof. `tests/visible_claims.rs` shows that they are those systems.
+//! compiles is the proof. `tests/claims/visible.rs` shows that they are those systems.
 
 use crate::numeric::Numeric;
 

@@ -140,11 +140,11 @@ pub(crate) fn simulate<M: Model>(
 ///
 /// # Errors
 /// As [`simulate`].
-pub(crate) fn solve<M: Model, O: Observer<M>>(
+pub(crate) fn solve<M: Model>(
     model: &M,
     state: &M::State,
     settings: &Settings,
-    observer: &mut O,
+    observer: &mut dyn Observer<M>,
 ) -> Result<Solved<M::State>, String> {
     let tolerance = Tolerance::new(settings.tol).map_err(|error| error.to_string())?;
     macro_rules! run {
@@ -175,12 +175,14 @@ fn stepping<S: StateVector, M: Method>(
     }
 }
 
-fn run<M: Model, S: Stepper<M>, O: Observer<M>>(
+/// NOTE: of the observer nothing but its trait is known, so that integrators are compiled once for a model, whatever
+/// watches them.
+fn run<M: Model, S: Stepper<M>>(
     model: &M,
     stepper: S,
     state: &M::State,
     settings: &Settings,
-    observer: &mut O,
+    mut observer: &mut dyn Observer<M>,
 ) -> Result<Solved<M::State>, String> {
     let mut effects = model.effects();
     for &(surface, law) in &settings.laws {
@@ -198,7 +200,7 @@ fn run<M: Model, S: Stepper<M>, O: Observer<M>>(
         .collect();
     let mut simulation = Simulation::new(model, stepper, effects);
     let run = simulation
-        .run(0.0, *state, settings.until, observer)
+        .run(0.0, *state, settings.until, &mut observer)
         .map_err(|error| error.to_string())?;
     Ok(Solved {
         run,
