@@ -20,7 +20,7 @@ fn plan(until: f64) -> Plan {
 struct Closed<'a, F> {
     system: &'a Oscillator,
     until: f64,
-    next: usize,
+    next: u64,
     worst: [f64; 2],
     solution: F,
 }
