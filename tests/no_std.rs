@@ -6,7 +6,7 @@ use std::process::Command;
 #[test]
 fn a_program_without_std_links_and_runs() {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("no_std/Cargo.toml");
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_std");
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("outside");
     let status = Command::new(env!("CARGO"))
         .args(["build", "--quiet", "--release", "--manifest-path"])
         .arg(manifest)

@@ -10,6 +10,9 @@ use dalembert_tests::golden;
 struct Build {
     name: &'static str,
     profile: &'static str,
+    /// The folder it is built in. One for each machine: the C part of the elementary functions is not built anew when
+    /// only its machine changes.
+    target: &'static str,
     /// What the compiler of Rust and that of C may use of the machine.
     flags: &'static str,
     cpu: &'static str,
@@ -18,18 +21,21 @@ struct Build {
 const UNOPTIMISED: Build = Build {
     name: "unoptimised",
     profile: "dev",
+    target: "outside",
     flags: "",
     cpu: "x86-64",
 };
 const OPTIMISED: Build = Build {
     name: "optimised",
     profile: "release",
+    target: "outside",
     flags: "",
     cpu: "x86-64",
 };
 const NATIVE: Build = Build {
     name: "native",
     profile: "release",
+    target: "native",
     flags: "-C target-cpu=native",
     cpu: "native",
 };
@@ -45,10 +51,7 @@ impl Build {
 
     fn binary(&self) -> PathBuf {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("strict");
-        // NOTE: a folder each; the C part of the elementary functions is not built anew when only its machine changes.
-        let target = Path::new(env!("CARGO_TARGET_TMPDIR"))
-            .join("strict")
-            .join(self.name);
+        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join(self.target);
         let status = Command::new(env!("CARGO"))
             .args([
                 "build",

@@ -4,64 +4,75 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use dalembert::{
-    Counters, Described, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Lagrangian, Rk4,
-    Scene, Simulation, Stepper, Taylor, TaylorField, Tolerance,
-};
+use dalembert::{Described, Lagrangian, Scene, StateVector, TaylorField};
+use dalembert_tests::command::dalembert;
 use dalembert_tests::golden;
 use dalembert_tests::sampling::{Visitor, states, visit_all};
+use serde_json::Value;
 
-/// How long the motions are followed, and the step of those that keep one.
-const TIME: f64 = 1.0;
-const STEP: f64 = 1.0 / 64.0;
+/// How long the motions are followed.
+const TIME: &str = "1";
+
+/// Every integrator, with its tolerance or the step that it keeps.
+const INTEGRATORS: [(&str, [&str; 2]); 8] = [
+    ("dop853", ["--tol", "1e-9"]),
+    ("dopri5", ["--tol", "1e-9"]),
+    ("taylor", ["--tol", "1e-9"]),
+    ("rk4", ["--step", "0.015625"]),
+    ("gauss4", ["--step", "0.015625"]),
+    ("gauss6", ["--step", "0.015625"]),
+    ("dla2", ["--step", "0.015625"]),
+    ("dla4", ["--step", "0.015625"]),
+];
 
 /// Rate evaluations, coefficients of series, accepted and rejected steps, dense constructions, impacts, projections.
-fn numbers(counters: Counters) -> String {
-    let Counters {
-        rate_evaluations,
-        coefficients,
-        accepted,
-        rejected,
-        dense_constructions,
-        impacts,
-        projections,
-        ..
-    } = counters;
-    format!(
-        "{rate_evaluations:6} {coefficients:6} {accepted:5} {rejected:4} {dense_constructions:4} {impacts:4} {projections:4}"
-    )
-}
+const COUNTERS: [(&str, usize); 7] = [
+    ("rate_evaluations", 6),
+    ("coefficients", 6),
+    ("accepted", 5),
+    ("rejected", 4),
+    ("dense_constructions", 4),
+    ("impacts", 4),
+    ("projections", 4),
+];
 
 #[derive(Default)]
 struct Work(String);
 
-impl Work {
-    fn of<S: Described + Scene + Lagrangian, Step: Stepper<S>>(
-        &mut self,
-        system: &S,
-        stepper: Step,
-    ) {
-        let state = states(system, 1, 7)[0];
-        let run = Simulation::new(system, stepper, system.effects())
-            .run(0.0, state, TIME, &mut ())
-            .expect("a start");
-        let (name, kind) = (S::DESCRIPTION.name, run.outcome.kind());
-        let work = numbers(run.counters);
-        writeln!(self.0, "{name:28} {:7} {work}  {kind}", Step::NAME).expect("a string");
-    }
+fn list<V: StateVector>(vector: V) -> String {
+    let numbers: Vec<String> = vector.as_slice().iter().map(f64::to_string).collect();
+    numbers.join(",")
 }
 
 impl Visitor for Work {
     fn visit<S: Described + Scene + TaylorField + Lagrangian>(&mut self, system: S) {
-        let tolerance = Tolerance::new(1e-9).expect("a tolerance");
-        self.of(&system, Dop853::new(tolerance));
-        self.of(&system, DormandPrince5::new(tolerance));
-        self.of(&system, Taylor::new(tolerance));
-        self.of(&system, Rk4::new(tolerance).with_step(STEP));
-        self.of(&system, Gauss4::new(tolerance).with_step(STEP));
-        self.of(&system, Gauss6::new(tolerance).with_step(STEP));
-        self.of(&system, Dla2::new(tolerance).with_step(STEP));
-        self.of(&system, Dla4::new(tolerance).with_step(STEP));
+        let state = states(&system, 1, 7)[0];
+        let q = list(system.position(&state));
+        let qdot = list(system.velocity(0.0, &state).expect("a velocity"));
+        let name = S::DESCRIPTION.name;
+        for (integrator, accuracy) in INTEGRATORS {
+            let mut line = vec!["simulate", name, "--integrator", integrator];
+            line.extend(accuracy);
+            line.extend(["--until", TIME, "--q", &q, "--qdot", &qdot]);
+            line.extend([
+                "--off-constraint",
+                "project",
+                "--samples",
+                "0",
+                "--json",
+                "-",
+            ]);
+            let finished = dalembert(&line, "");
+            let run: Value = serde_json::from_str(&finished.output)
+                .unwrap_or_else(|_| panic!("{line:?}: {}", finished.errors));
+            write!(self.0, "{name:28} {integrator:7}").expect("a string");
+            for (counter, width) in COUNTERS {
+                let count = run["counters"][counter].as_u64().expect("a count");
+                write!(self.0, " {count:width$}").expect("a string");
+            }
+            let kind = run["outcome"]["kind"].as_str().expect("a kind");
+            writeln!(self.0, "  {kind}").expect("a string");
+        }
     }
 }
 
