@@ -64,8 +64,24 @@ pub(crate) struct Line<'a, G, R> {
 }
 
 impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
-    /// Finds the first fall, stretch after stretch; unclear stretches are halved.
+    /// Finds the first fall.
     pub(crate) fn first_fall(mut self) -> Search {
+        match self.isolate() {
+            Ok(drop) => self.narrow(drop),
+            Err(search) => search,
+        }
+    }
+
+    /// The ends of an interval in which the first fall lies, alone; what else was found where there is none.
+    pub(crate) fn first_interval(mut self) -> Result<[f64; 2], Search> {
+        self.isolate().map(|drop| {
+            let Bracket { before, after, .. } = drop.bracket();
+            [before, after]
+        })
+    }
+
+    /// Looks for the first fall stretch after stretch; unclear stretches are halved.
+    fn isolate(&mut self) -> Result<Drop, Search> {
         let (mut above, mut rose) = (self.start.above, self.start.slope.is_none());
         let mut floor = None;
         // The stretch number `index` of those of length `(1 - from) / 2^depth`.
@@ -73,7 +89,7 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
         for _ in 0..STRETCHES {
             let [left, right] = stretch(self.start.from, index, depth);
             if left > self.start.until {
-                return Search::Clear;
+                return Err(Search::Clear);
             }
             let samples = self.samples(left, right);
             let values = deflate(&samples, [left, right], self.start.slope);
@@ -82,12 +98,12 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
                 Signs::Negative if above => {
                     let floor = *floor.get_or_insert_with(&mut self.rounding);
                     if samples.iter().any(|gap| *gap < -floor) {
-                        return Search::Sinks(if rose { left } else { 0.0 });
+                        return Err(Search::Sinks(if rose { left } else { 0.0 }));
                     }
                 }
                 Signs::Negative => {}
                 Signs::Falls => match first_drop(&values, [left, right]) {
-                    Some(drop) => return self.narrow(drop),
+                    Some(drop) => return self.of_interest(drop),
                     None => above = false,
                 },
                 Signs::Unclear => {
@@ -103,7 +119,7 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
                         continue;
                     }
                     if !flat && let Some(drop) = first_drop(&values, [left, right]) {
-                        return self.narrow(drop);
+                        return self.of_interest(drop);
                     }
                 }
             }
@@ -112,18 +128,25 @@ impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
                 (index, depth) = (index / 2, depth - 1);
             }
             if depth == 0 {
-                return Search::Clear;
+                return Err(Search::Clear);
             }
         }
-        Search::Unfinished(stretch(self.start.from, index, depth)[0])
+        Err(Search::Unfinished(
+            stretch(self.start.from, index, depth)[0],
+        ))
+    }
+
+    /// A fall, unless it lies where nothing is of interest.
+    fn of_interest(&self, drop: Drop) -> Result<Drop, Search> {
+        match drop.bracket().before > self.start.until {
+            true => Err(Search::Clear),
+            false => Ok(drop),
+        }
     }
 
     /// Narrows the interval in which the gap falls.
     fn narrow(&mut self, drop: Drop) -> Search {
-        let Bracket { before, after, .. } = drop.bracket();
-        if before > self.start.until {
-            return Search::Clear;
-        }
+        let Bracket { after, .. } = drop.bracket();
         let slope = self.start.slope;
         let narrowed = narrow(drop, |theta| deflated((self.gap)(theta), theta, slope));
         // A pole is told from a root by gaps that grow towards it: from the ends of the interval, or, where that was
@@ -232,43 +255,6 @@ impl Drop {
             nearest,
         }
     }
-}
-
-/// Tries to enclose a fall that is found on a nearby function, each further away than the last.
-const TRIES: u32 = 8;
-
-/// Factor between the distances of these tries.
-const WIDER: f64 = 8.0;
-
-/// The fall of a gap next to that of a function which differs from it by little more than rounding errors; `None` if the
-/// gap does not fall there. `slope` as in [`Start`].
-pub(crate) fn confirm(
-    near: Bracket,
-    slope: Option<f64>,
-    mut gap: impl FnMut(f64) -> f64,
-) -> Option<Bracket> {
-    let mut value = |theta: f64| deflated(gap(theta), theta, slope);
-    let here = near.before;
-    let at_here = value(here);
-    let forward = at_here >= 0.0;
-    let mut distance = 4.0 * f64::EPSILON * here;
-    for _ in 0..TRIES {
-        let there = match forward {
-            true => (here + distance).min(1.0),
-            false => (here - distance).max(0.0),
-        };
-        let at_there = value(there);
-        if (at_there >= 0.0) != forward {
-            // A third point that coincides with the second: the first trial halves.
-            let drop = Drop {
-                x: [here, there, there],
-                f: [at_here, at_there, at_there],
-            };
-            return Some(narrow(drop, value).bracket());
-        }
-        distance *= WIDER;
-    }
-    None
 }
 
 /// The first value that is negative after one that is not.

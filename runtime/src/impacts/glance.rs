@@ -54,12 +54,11 @@ pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<Glance<Sys::Gaps>, Outcome> {
     let (t, length) = (step.t_end(), step.length());
     let gaps = finite::<Sys>(step.system.gaps(t, step.end()))?;
-    let rates = step.system.gap_rates(t, step.end())?;
     step.counters.event_evaluations += 1;
     let series = GapSeries::of(step, &gaps);
-    let probe = match series {
-        Some(_) => gaps,
-        None => probe(step),
+    let (rates, probe) = match &series {
+        Some(series) => (series.last_rates(length), gaps),
+        None => (step.system.gap_rates(t, step.end())?, probe(step)),
     };
     Ok(Glance {
         gaps,

@@ -8,7 +8,7 @@ use super::watch::Watch;
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::events::crossing::{NODES, SAMPLES};
-use crate::events::locate::{Line, Search, Start, confirm};
+use crate::events::locate::{Bracket, Line, Search, Start};
 use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
@@ -23,7 +23,8 @@ const SLOW: f64 = 1.0 / (1 << 10) as f64;
 /// The first hit of one surface in a step.
 enum Found {
     Nothing,
-    Hit(f64),
+    /// At this part of the step, with this gap rate.
+    Hit(f64, f64),
     Unfinished(f64),
 }
 
@@ -52,17 +53,17 @@ impl<Sys: Impacting> Watch<Sys> {
                     .get_or_insert_with(|| samples(step, &self.gaps, &glance.gaps))
                     .map(|gaps| gaps.as_slice()[surface]),
             };
-            let (part, is_hit) = match self.first_hit(surface, step, &samples, glance)? {
-                Found::Hit(part) => (part, true),
-                Found::Unfinished(part) => (part, false),
+            let (part, rate) = match self.first_hit(surface, step, &samples, glance)? {
+                Found::Hit(part, rate) => (part, Some(rate)),
+                Found::Unfinished(part) => (part, None),
                 Found::Nothing if glance.is_due(surface) && is_active(surface, step, 1.0) => {
-                    (1.0, true)
+                    (1.0, Some(glance.rates.as_slice()[surface]))
                 }
                 Found::Nothing => continue,
             };
-            if is_hit {
+            if let Some(rate) = rate {
                 self.parts.as_mut_slice()[surface] = part;
-                self.note_graze(surface, part, step, glance)?;
+                self.note_graze(surface, part, rate, step, glance)?;
             }
             self.proposed = Some(self.proposed.map_or(part, |earliest| earliest.min(part)));
         }
@@ -94,9 +95,10 @@ impl<Sys: Impacting> Watch<Sys> {
             let (part, after, nearest) = match found {
                 Search::Clear => {
                     let sunk = self.is_sunk(surface, step, glance);
-                    return Ok(tangential
-                        .filter(|_| sunk)
-                        .map_or(Found::Nothing, Found::Hit));
+                    return match tangential.filter(|_| sunk) {
+                        Some(part) => Ok(Found::Hit(part, rate_at(surface, step, part)?)),
+                        None => Ok(Found::Nothing),
+                    };
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
                 Search::Pole(after) => {
@@ -126,12 +128,13 @@ impl<Sys: Impacting> Watch<Sys> {
                         false => Ok(Found::Nothing),
                     };
                 }
-                if is_approached(surface, step, part)? || is_approached(surface, step, after)? {
-                    let there = match nearest == part || is_regular(step, nearest) {
-                        true => nearest,
-                        false => part,
-                    };
-                    return Ok(Found::Hit(if there > 0.0 { there } else { after }));
+                let places = Bracket {
+                    before: part,
+                    after,
+                    nearest,
+                };
+                if let Some((there, rate)) = approach(surface, step, places)? {
+                    return Ok(Found::Hit(there, rate));
                 }
                 tangential = tangential.or(Some(after));
             }
@@ -172,6 +175,7 @@ impl<Sys: Impacting> Watch<Sys> {
         &mut self,
         surface: usize,
         part: f64,
+        rate: f64,
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
     ) -> Result<(), Outcome> {
@@ -179,8 +183,6 @@ impl<Sys: Impacting> Watch<Sys> {
             self.rates.as_slice()[surface],
             glance.rates.as_slice()[surface],
         ];
-        let state = step.state(part);
-        let rate = step.system.gap_rates(step.time(part), &state)?.as_slice()[surface];
         let (other, apart) = if part > 0.5 {
             (ends[0], part)
         } else {
@@ -262,28 +264,57 @@ pub(super) fn is_active<Sys: Impacting, Step: Stepper<Sys>>(
         .surface_active(surface, step.time(part), &step.state(part))
 }
 
-/// Whether the motion exists at a part of a step, which may lie on the other side of a surface by rounding.
+/// Where an impact is placed and the gap rate there, unless the surface is not approached.
 ///
-/// NOTE: an impact is placed where the gap is closest to 0, on whichever side that is. Were it always the allowed one,
-/// positions would be rounded away from the surface, and times and angular momenta drift like the number of impacts.
-fn is_regular<Sys: Impacting, Step: Stepper<Sys>>(
-    step: &mut StepView<'_, Sys, Step>,
-    part: f64,
-) -> bool {
-    let state = step.state(part);
-    let mut rate = Sys::State::zeros();
-    step.counters.rate_evaluations += 1;
-    let exists = step.system.rate(step.time(part), &state, &mut rate);
-    exists.is_ok() && rate.is_finite() && step.system.outside_chart(&state).is_none()
+/// NOTE: that is where the gap is closest to 0, on whichever side; but never where there is no motion behind the surface.
+/// Were it always the allowed side, positions would be rounded away from the surface, and times and angular momenta
+/// drift like the number of impacts.
+fn approach<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    places: Bracket,
+) -> Result<Option<(f64, f64)>, Outcome> {
+    let Bracket {
+        before,
+        after,
+        nearest,
+    } = places;
+    let regular = match nearest > 0.0 && nearest != before {
+        true => regular_rate(surface, step, nearest),
+        false => None,
+    };
+    let (there, rate) = match regular {
+        Some(rate) => (nearest, rate),
+        None => {
+            let there = if before > 0.0 { before } else { after };
+            (there, rate_at(surface, step, there)?)
+        }
+    };
+    let falls = |part| Ok::<_, Outcome>(rate_at(surface, step, part)? < 0.0);
+    let is_approached = rate < 0.0 || falls(before)? || falls(after)?;
+    Ok(is_approached.then_some((there, rate)))
 }
 
-fn is_approached<Sys: Impacting, Step: Stepper<Sys>>(
+/// The gap rate at a part of a step, if the motion exists there.
+fn regular_rate<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,
     part: f64,
-) -> Result<bool, Outcome> {
+) -> Option<f64> {
+    let state = step.state(part);
+    let rates = step.system.gap_rates(step.time(part), &state).ok()?;
+    let exists = rates.is_finite() && step.system.outside_chart(&state).is_none();
+    exists.then_some(rates.as_slice()[surface])
+}
+
+/// The gap rate at a part of a step.
+fn rate_at<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    part: f64,
+) -> Result<f64, Outcome> {
     let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
-    Ok(rates.as_slice()[surface] < 0.0)
+    Ok(rates.as_slice()[surface])
 }
 
 /// The first fall of a gap, with its time to the last bits. On a series it is looked for on the polynomial; what is
@@ -315,10 +346,13 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
             whole,
             start,
         };
-        match line.first_fall() {
-            Search::Clear => Some(Search::Clear),
-            Search::Falls(near) => confirm(near, start.slope, &mut gap).map(Search::Falls),
-            _ => None,
+        match line.first_interval() {
+            Ok(ends) => {
+                let fall = series.fall(surface, start.slope.is_some(), ends, &mut gap);
+                fall.map(Search::Falls)
+            }
+            Err(Search::Clear) => Some(Search::Clear),
+            Err(_) => None,
         }
     });
     let found = on_series.unwrap_or_else(|| {

@@ -167,6 +167,9 @@ impl<Sys: Impacting> Watch<Sys> {
         let rates = now.system.gap_rates(now.t, now.state)?;
         let roundings = 2.0 + f64::from(self.steps) / 16.0;
         for surface in 0..Sys::Gaps::LEN {
+            if hits.at_hand.as_slice()[surface] == 1.0 {
+                continue;
+            }
             let (gap, rate) = (gaps.as_slice()[surface], rates.as_slice()[surface]);
             let is_near = rate < 0.0 && gap.abs() <= BESIDE * rate.abs() * self.length;
             // One that was passed, or has counted, lies behind.

@@ -152,22 +152,15 @@ impl<F: TaylorField> Taylor<F> {
         self.order
     }
 
-    /// Takes `(t, state)` for the end of a step, as a start does.
-    fn place(
-        &mut self,
-        field: &F,
-        t: f64,
-        state: &F::State,
-        counters: &mut Counters,
-    ) -> Result<(), StepFailure> {
+    /// Takes `(t, state)` for the end of a step, as a start does. The rate there is the first coefficient of the series to
+    /// come.
+    fn place(&mut self, field: &F, t: f64, state: &F::State) -> Result<(), StepFailure> {
         self.t = [t; 2];
         self.start = *state;
         self.end = *state;
         self.rests = [F::State::zeros(); 2];
         self.weights = Weights::new(self.tolerance, &field.scale(t, state));
-        counters.rate_evaluations += 1;
-        field.rate(t, state, &mut self.rates[1])?;
-        match not_finite(state).or(not_finite(&self.rates[1])) {
+        match not_finite(state) {
             Some(component) => Err(StepFailure::NonFinite { component }),
             None => Ok(()),
         }
@@ -215,11 +208,11 @@ impl<F: TaylorField> Taylor<F> {
         }
         // The weights hold the tolerance already.
         let order = self.order as f64;
-        let reach = |size: f64, power: f64| match size > 0.0 {
-            true => math::exp((SAFETY - math::ln(size)) / power),
+        let logarithm = |size: f64, power: f64| match size > 0.0 {
+            true => (SAFETY - math::ln(size)) / power,
             false => f64::INFINITY,
         };
-        reach(sizes[0], order).min(reach(sizes[1], order - 1.0))
+        math::exp(logarithm(sizes[0], order).min(logarithm(sizes[1], order - 1.0)))
     }
 
     /// Sets the end of the step at `theta` units of time, and gives the derivative of the polynomial there.
@@ -278,6 +271,17 @@ impl<F: TaylorField> Taylor<F> {
     }
 }
 
+/// A vector times a number.
+#[inline(always)]
+fn scaled<V: StateVector>(vector: &V, factor: f64) -> V {
+    let mut product = *vector;
+    product
+        .as_mut_slice()
+        .iter_mut()
+        .for_each(|entry| *entry *= factor);
+    product
+}
+
 /// The order that belongs to a tolerance.
 fn order(tolerance: f64) -> usize {
     let order = 1.0 - 0.5 * math::ln(tolerance);
@@ -306,7 +310,12 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         t_end: f64,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
-        self.place(field, t, state, counters)?;
+        self.place(field, t, state)?;
+        counters.rate_evaluations += 1;
+        field.rate(t, state, &mut self.rates[1])?;
+        if let Some(component) = not_finite(&self.rates[1]) {
+            return Err(StepFailure::NonFinite { component });
+        }
         self.limit = self.first_step.unwrap_or(f64::INFINITY);
         let size = self.weights.norm(state, |i| state.as_slice()[i]);
         let speed = self.weights.norm(state, |i| self.rates[1].as_slice()[i]);
@@ -324,10 +333,10 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         t: f64,
         state: &F::State,
         limit: f64,
-        counters: &mut Counters,
+        _: &mut Counters,
     ) -> Result<(), StepFailure> {
         self.limit = limit;
-        self.place(field, t, state, counters)
+        self.place(field, t, state)
     }
 
     #[inline]
@@ -335,10 +344,10 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         self.t[0] = self.t[1];
         self.start = self.end;
         self.rests[0] = self.rests[1];
-        self.rates[0] = self.rates[1];
         let t = self.t[0];
         let least = least_step(t);
         let reach = self.expand(field, counters)?.min(LONGEST) * self.unit;
+        self.rates[0] = scaled(&self.coefficients[1], 1.0 / self.unit);
         let mut h = reach.min(self.max_step).min(self.limit).max(least);
         self.next_unit = power_of_two(h);
         loop {
