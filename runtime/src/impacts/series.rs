@@ -135,11 +135,6 @@ impl<G: StateVector> GapSeries<G> {
         rates
     }
 
-    /// The largest absolute value that the gap of a surface can have at this part of the step.
-    pub(super) fn bound(&self, surface: usize, part: f64) -> f64 {
-        self.at(surface, part).abs() + self.doubts.as_slice()[surface]
-    }
-
     /// The fall of the gap of a surface in an interval at whose ends the polynomial has different signs: Newton's method
     /// on the polynomial, a root at the start divided out, and one step of it on the gap itself. `None` where that does
     /// not end at once, or the gap is not what the polynomial says.
