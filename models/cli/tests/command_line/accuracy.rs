@@ -46,14 +46,18 @@ impl<F: Fn(f64) -> [f64; 2]> dalembert::Observer<Oscillator> for Closed<'_, F> {
     }
 }
 
-#[test]
-fn a_measured_error_is_the_distance_from_the_closed_form() {
+/// The oscillator that moves like `cos(t)` along x and `cos(2 t)` along y, let go at rest.
+fn oscillator(q: [f64; 2]) -> (Oscillator, <Oscillator as dalembert::VectorField>::State) {
     let mut system = Oscillator::with_defaults();
     system.k = 4.0;
+    let state = system.state(0.0, &q.into(), &[0.0, 0.0].into()).unwrap();
+    (system, state)
+}
+
+#[test]
+fn a_measured_error_is_the_distance_from_the_closed_form() {
     let until = 7.0;
-    let state = system
-        .state(0.0, &[1.0, 0.5].into(), &[0.0, 0.0].into())
-        .unwrap();
+    let (system, state) = oscillator([1.0, 0.5]);
     let study = measure(&system, &state, &plan(until)).unwrap();
     assert!(study.floor < 1e-14, "{:e}", study.floor);
     assert_eq!(study.samples.len(), 6);
@@ -106,11 +110,7 @@ fn runs_that_end_otherwise_are_no_choice() {
 #[test]
 fn an_error_of_nothing_at_all_ends_no_ladder() {
     // At rest nothing errs.
-    let mut system = Oscillator::with_defaults();
-    system.k = 4.0;
-    let state = system
-        .state(0.0, &[0.0, 0.0].into(), &[0.0, 0.0].into())
-        .unwrap();
+    let (system, state) = oscillator([0.0, 0.0]);
     let study = measure(&system, &state, &plan(2.0)).unwrap();
     let adaptive = study.samples.iter();
     let adaptive = adaptive.filter(|it| it.integrator == Integrator::Dop853);
@@ -120,11 +120,7 @@ fn an_error_of_nothing_at_all_ends_no_ladder() {
 
 #[test]
 fn the_choice_reaches_what_is_wanted_in_the_least_time() {
-    let mut system = Oscillator::with_defaults();
-    system.k = 4.0;
-    let state = system
-        .state(0.0, &[1.0, 0.5].into(), &[0.0, 0.0].into())
-        .unwrap();
+    let (system, state) = oscillator([1.0, 0.5]);
     let choice = choose(&system, &state, 2.0, 1e-7).unwrap();
     assert!(choice.error <= 1e-7 && choice.microseconds > 0.0);
 
