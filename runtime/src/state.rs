@@ -48,3 +48,13 @@ impl<const D: usize> StateVector for SVector<f64, D> {
         self.data.as_mut_slice()
     }
 }
+
+/// A vector times a number.
+#[inline(always)]
+pub(crate) fn scaled<V: StateVector>(vector: &V, factor: f64) -> V {
+    let mut scaled = *vector;
+    for component in scaled.as_mut_slice() {
+        *component *= factor;
+    }
+    scaled
+}

@@ -15,7 +15,7 @@ use crate::contract::Impacting;
 use crate::effects::{Change, Moment};
 use crate::error::Fault;
 use crate::forces::Forces;
-use crate::state::StateVector;
+use crate::state::{StateVector, scaled};
 
 /// Part of the right-hand side that is let be: rounding.
 const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
@@ -255,14 +255,6 @@ fn times<V: StateVector>(a: &V, b: &V) -> V {
         *value *= b;
     }
     times
-}
-
-fn scaled<V: StateVector>(a: &V, factor: f64) -> V {
-    let mut scaled = *a;
-    for value in scaled.as_mut_slice() {
-        *value *= factor;
-    }
-    scaled
 }
 
 /// `a + factor * b`

@@ -30,7 +30,7 @@ use crate::contract::TaylorField;
 use crate::error::Fault;
 use crate::jet::{Jets, LENGTH};
 use crate::math;
-use crate::state::StateVector;
+use crate::state::{StateVector, scaled};
 
 /// The name of [`Taylor`], known without a system.
 pub const TAYLOR: &str = "taylor";
@@ -269,17 +269,6 @@ impl<F: TaylorField> Taylor<F> {
         self.rests[1] = self.rests[0];
         self.rates[1] = self.rates[0];
     }
-}
-
-/// A vector times a number.
-#[inline(always)]
-fn scaled<V: StateVector>(vector: &V, factor: f64) -> V {
-    let mut product = *vector;
-    product
-        .as_mut_slice()
-        .iter_mut()
-        .for_each(|entry| *entry *= factor);
-    product
 }
 
 /// The order that belongs to a tolerance.
