@@ -36,13 +36,9 @@ pub fn expand(input: TokenStream) -> TokenStream {
 /// Every mistake of the first stage that found any.
 pub fn try_expand(input: TokenStream) -> Result<TokenStream, diagnostics::Diagnostics> {
     let mut compiled = compile(input)?;
-    let findings = compiled.findings.iter().map(claims::Finding::note);
-    compiled.model.notes.extend(findings);
-    Ok(emit::tokens(
-        &compiled.model,
-        &compiled.derivation,
-        &compiled.programs,
-    ))
+    compiled.note_findings();
+    compiled.scenes.iter_mut().for_each(Compiled::note_findings);
+    Ok(emit::tokens(&compiled))
 }
 
 /// A model after all stages but the last.
@@ -56,6 +52,16 @@ pub struct Compiled {
     pub findings: Vec<claims::Finding>,
     /// What is emitted.
     pub programs: program::Lowered,
+    /// Its scenes, in order; each is a model of its own, without scenes.
+    pub scenes: Vec<Compiled>,
+}
+
+impl Compiled {
+    /// Says what became of the claims where a person reads of the model.
+    fn note_findings(&mut self) {
+        let findings = self.findings.iter().map(claims::Finding::note);
+        self.model.notes.extend(findings);
+    }
 }
 
 /// All stages but the last.
@@ -70,14 +76,35 @@ pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics>
 fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
     let spec = spec::parse(input)?;
     let mut model = model::check_within(&spec, steps)?;
+    let scenes: Vec<model::Model> = (0..model.scenes.len())
+        .map(|scene| model.in_scene(scene))
+        .collect();
+    model.claims = model.own_claims();
+    let mut compiled = compile_checked(&spec, model, claims::examine)?;
+    let mut mistakes = diagnostics::Diagnostics::new();
+    for scene in scenes {
+        match compile_checked(&spec, scene, claims::examine_scene) {
+            Ok(scene) => compiled.scenes.push(scene),
+            Err(others) => mistakes.extend(others),
+        }
+    }
+    mistakes.finish(compiled)
+}
+
+/// The stages after the first two, of a model or of one of its scenes.
+fn compile_checked(
+    spec: &spec::Spec,
+    mut model: model::Model,
+    examine: fn(&mut model::Model, &mechanics::Derivation) -> claims::Examined,
+) -> Result<Compiled, diagnostics::Diagnostics> {
     let derivation = mechanics::derive(&mut model);
-    refuse_exhausted(&spec, &model)?;
-    refuse_landings(&spec, &mut model, &derivation)?;
-    let claims::Examined { findings, volume } = claims::examine(&mut model, &derivation);
-    refuse_exhausted(&spec, &model)?;
-    refuse_claims(&spec, &findings)?;
+    refuse_exhausted(spec, &model)?;
+    refuse_landings(spec, &mut model, &derivation)?;
+    let claims::Examined { findings, volume } = examine(&mut model, &derivation);
+    refuse_exhausted(spec, &model)?;
+    refuse_claims(spec, &findings)?;
     let programs = program::lower(&model, &derivation, volume.as_ref());
-    refuse_oversize(&spec, &programs)?;
+    refuse_oversize(spec, &programs)?;
     // What is printed of an accepted model may take as long as it does.
     model.pool.lift_budget();
     Ok(Compiled {
@@ -85,6 +112,7 @@ fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostic
         derivation,
         findings,
         programs,
+        scenes: Vec::new(),
     })
 }
 

@@ -46,6 +46,10 @@ dalembert::model! {
             /// The opposite end stays above the table.
             trailing_edge: table(x - R*cos(phi), y - R*sin(phi)) >= 0;
         }
+        scenes {
+            /// An unbounded plane.
+            free;
+        }
         initial { phi = pi/2; dot(theta) = 10; dot(phi) = 0.2; until = 20; }
         view { path: (x, y); region: table(x, y) >= 0; }
         claims {
@@ -56,6 +60,7 @@ dalembert::model! {
             conserved under leading_edge: energy;
             symmetry: partial(phi) - y*partial(x) + x*partial(y);
         }
+        claims for free { conserved: dot(theta); }
     }
 }
 

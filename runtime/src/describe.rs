@@ -3,7 +3,7 @@
 //! Implemented by `model!` for every model, so that a tool can list, set and re-derive any of them.
 
 pub use crate::assumption::Assumption;
-use crate::contract::System;
+use crate::contract::{Lagrangian, System, TaylorField};
 use crate::effects::Scene;
 use crate::error::Fault;
 
@@ -114,6 +114,11 @@ pub trait Described: System + Clone {
     /// Names, docs, topology, parameters, surfaces, scenes, source text.
     const DESCRIPTION: Description;
 
+    /// Shows the type of each declared scene, in order; the model itself, the scene `all`, is not among them.
+    fn visit_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
+        let _ = visitor;
+    }
+
     /// The same system in its global form, with the state (q, p) on T*Q, off the constraints too. The model itself
     /// where it has no form reduced to D.
     type Global: Described<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
@@ -165,6 +170,14 @@ pub trait Described: System + Clone {
         let _ = (t, state, report);
         Ok(())
     }
+}
+
+/// Sees the types of a model's scenes (see [`Described::visit_scenes`]).
+pub trait SceneVisitor {
+    /// A scene of this name: the model with what the scene leaves of its effects, and the parameters of the model.
+    fn visit<S>(&mut self, name: &'static str)
+    where
+        S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static;
 }
 
 /// The declared initial condition.

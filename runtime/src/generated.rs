@@ -215,4 +215,5 @@ pub mod arguments {
     pub fn weight() {}
     pub fn inverse() {}
     pub fn step() {}
+    pub fn visitor() {}
 }

@@ -404,7 +404,8 @@ fn check_divergence(own: &Comparison<'_>) -> Result<(), TestCaseError> {
         .sum();
     let rate = own.dense.rate(own.at.t, q, p);
     let size = rate.iter().fold(1.0_f64, |size, rate| size.max(rate.abs()));
-    let actual = own.run(&own.compiled.programs.global().divergence);
+    let density = own.compiled.programs.global().density.as_ref();
+    let actual = own.run(&density.expect("of a whole model").divergence);
     same_within(
         "divergence",
         &actual,

@@ -56,6 +56,23 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
     Examined { findings, volume }
 }
 
+/// As [`examine()`], for a scene: with `volume` a density is looked for where no claim is about one.
+pub fn examine_scene(model: &mut Model, derivation: &Derivation) -> Examined {
+    let mut examined = examine(model, derivation);
+    if model.extras.volume && examined.volume.is_none() {
+        let (verdict, remarks, volume) = examine_volume(model, derivation);
+        let found = match verdict {
+            Verdict::Proved(certificate) => certificate.to_string(),
+            Verdict::Refuted(witness) => witness.to_string(),
+            Verdict::Undecided(reason) => format!("undecided: {reason}"),
+        };
+        let found = [vec![found], remarks].concat().join("; ");
+        model.notes.push(format!("density of the scene: {found}"));
+        examined.volume = volume;
+    }
+    examined
+}
+
 /// What would be said of `density: exact`, claimed or not, and the volume if there is one that can be emitted.
 pub fn examine_volume(
     model: &mut Model,

@@ -64,7 +64,7 @@ mod wall;
 pub use conditions::{Condition, Equation, Scan, find_conditions};
 pub use dynamics::{Dynamics, Motion};
 pub use exactness::{Exactness, Local, decide, decide_local};
-pub use examine::{Examined, examine, examine_volume};
+pub use examine::{Examined, examine, examine_scene, examine_volume};
 pub use existence::Decision;
 pub use finding::{Certificate, Finding, Verdict, Witness};
 pub use fit::Certified;

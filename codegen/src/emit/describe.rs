@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
 use super::function::{Body, emit_body, number};
-use super::{Context, parameters};
+use super::{Context, doc, parameters, scene};
 use crate::model::{Assumption, Topology};
 use crate::program::Form;
 use crate::program::recipes::geometry::Shape;
@@ -12,14 +12,14 @@ use crate::program::recipes::geometry::Shape;
 /// `impl Described`
 pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
-    let (model, global_name) = (&context.names.model, &context.names.global);
+    let (own, global_name) = (&context.names.own, &context.names.global);
     let description = match context.is_wrapped() {
-        true => quote!(<#model as ::dalembert::Described>::DESCRIPTION),
+        true => quote!(<#own as ::dalembert::Described>::DESCRIPTION),
         false => emit_description(context),
     };
-    let defaults = match context.is_wrapped() {
-        true => quote!(Self(<#model as ::dalembert::Described>::with_defaults())),
-        false => parameters::with_defaults(context.model),
+    let defaults = match &context.names.held {
+        Some(held) => quote!(Self(<#held as ::dalembert::Described>::with_defaults())),
+        None => parameters::with_defaults(context.model),
     };
     let (global_type, global) = match context.program.form {
         Form::Global => (quote!(Self), quote!(*self)),
@@ -29,6 +29,7 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
     let initial = emit_initial(context);
     let declared = emit_declared(context);
     let inspect = emit_inspect(context);
+    let scenes = scene::emit_visit(context);
     let attributes = super::attributes();
     quote! {
         #attributes
@@ -46,6 +47,7 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
             #initial
             #declared
             #inspect
+            #scenes
         }
     }
 }
@@ -53,12 +55,7 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
 fn emit_description(context: &Context<'_>) -> TokenStream {
     let model = context.model;
     let (type_name, name) = (&model.name, &model.snake_name);
-    let documentation = model
-        .documentation
-        .iter()
-        .map(|line| line.trim())
-        .collect::<Vec<_>>()
-        .join("\n");
+    let documentation = doc::text(&model.documentation);
     let source = &model.source;
     let coordinates = emit_coordinate_infos(context);
     let parameters = emit_parameter_infos(context);
@@ -71,6 +68,7 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
     };
     let outputs = model.outputs.iter().map(|output| &output.name.display);
     let view = emit_view_info(context);
+    let scenes = scene::emit_infos(context);
     quote! {
         ::dalembert::describe::Description {
             type_name: #type_name,
@@ -84,7 +82,7 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
             quasi_velocities: &[#(#quasi),*],
             surfaces: &[#surfaces],
             outputs: &[#(#outputs),*],
-            scenes: &["all"],
+            scenes: &[#scenes],
             view: #view,
         }
     }
@@ -384,16 +382,16 @@ fn emit_reduced_inspect(statements: &TokenStream, reports: &[TokenStream]) -> To
     }
 }
 
-/// `impl Scene`: the effects of everything that was declared.
+/// `impl Scene`: the effects of everything that is used.
 pub(super) fn emit_scene(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let (mut types, mut values) = (Vec::new(), Vec::new());
     // A state reduced to D has nothing to be brought back to but the positions of integrable constraints.
-    let is_projected =
+    let drifts =
         context.program.constrained.as_ref().is_some_and(|own| {
             context.program.form == Form::Global || !own.levels.outputs.is_empty()
         });
-    if is_projected {
+    if drifts && context.model.extras.projection {
         types.push(quote!(::dalembert::Projection<Self>));
         values.push(quote!(::dalembert::Projection::new()));
     }

@@ -20,6 +20,12 @@ pub(super) fn lines<S: AsRef<str>>(lines: &[S]) -> TokenStream {
     quote!(#(#lines)*)
 }
 
+/// The lines of a doc comment as a text.
+pub fn text(lines: &[String]) -> String {
+    let lines: Vec<&str> = lines.iter().map(|line| line.trim()).collect();
+    lines.join("\n")
+}
+
 /// A doc comment that says formula and cost.
 pub(super) fn formula(text: &str, cost: &Cost) -> TokenStream {
     lines(&[format!("`{text}`"), String::new(), format!("{cost}.")])

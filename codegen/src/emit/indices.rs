@@ -3,24 +3,23 @@
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
-use super::{Context, doc};
-use crate::model::Name;
+use super::{Context, doc, scene};
+use crate::model::{Name, Surface};
 
 /// A declared name with its doc comment.
 type Entry<'a> = (&'a Name, &'a [String]);
 
-/// The module, with a module inside for each kind of names that there are.
-pub(super) fn emit_indices(context: &Context<'_>) -> TokenStream {
+/// The module, with a module inside for each kind of names that there are, and the types of the scenes.
+pub(super) fn emit_indices(context: &Context<'_>, scenes: &[Vec<Context<'_>>]) -> TokenStream {
     let model = context.model;
     let visibility: TokenStream = match model.visibility.as_str() {
         "" => quote!(pub(crate)),
         written => written.parse().unwrap_or_default(),
     };
-    let module = &context.names.module;
+    let module = Ident::new(&model.snake_name, Span::call_site());
     let title = format!(" Indices of the names declared in [`{}`].", model.name);
     let coordinates = model.coordinates.iter();
     let constraints = model.constraints.iter();
-    let surfaces = model.surfaces.iter();
     let quasi = model
         .frame
         .iter()
@@ -42,22 +41,29 @@ pub(super) fn emit_indices(context: &Context<'_>) -> TokenStream {
             "quasi-velocities, counted after the coordinates of a state",
             quasi,
         ),
-        emit_module(
-            "surface",
-            "impact surfaces",
-            surfaces.map(|item| (&item.name, item.documentation.as_slice())),
-        ),
+        emit_surfaces(&model.surfaces),
         emit_module(
             "output",
             "outputs",
             outputs.map(|item| (&item.name, item.documentation.as_slice())),
         ),
     ];
+    let scenes = scene::emit_types(model, scenes);
     quote! {
         #[doc = #title]
         #[allow(dead_code, non_upper_case_globals)]
-        #visibility mod #module { #(#parts)* }
+        #visibility mod #module { #(#parts)* #(#scenes)* }
     }
+}
+
+/// The module of the indices of impact surfaces.
+pub(super) fn emit_surfaces(surfaces: &[Surface]) -> TokenStream {
+    let surfaces = surfaces.iter();
+    emit_module(
+        "surface",
+        "impact surfaces",
+        surfaces.map(|item| (&item.name, item.documentation.as_slice())),
+    )
 }
 
 fn emit_module<'a>(

@@ -32,7 +32,7 @@ pub(super) fn emit_lagrangian(context: &Context<'_>) -> TokenStream {
 
 /// The parts do not depend on the form of the state: the model's own.
 fn emit_delegated(context: &Context<'_>) -> TokenStream {
-    let (type_name, model) = (&context.names.type_name, &context.names.model);
+    let (type_name, model) = (&context.names.type_name, &context.names.own);
     let attributes = super::attributes();
     quote! {
         #attributes

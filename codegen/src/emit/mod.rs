@@ -14,55 +14,55 @@ mod lagrangian;
 mod names;
 mod parameters;
 mod reduced;
+mod scene;
 mod volume;
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::mechanics::{Derivation, Frame};
-use crate::model::Model;
-use crate::program::{Form, Lowered, Program};
+use crate::Compiled;
+use crate::mechanics::Frame;
+use crate::model::{Model, Scene};
+use crate::program::{Form, Program};
+pub use doc::text;
 use names::Names;
 
 /// What every emitter reads.
 struct Context<'a> {
+    /// What is used: the whole model, or what a scene leaves of it.
     model: &'a Model,
+    /// The scenes of the whole model.
+    scenes: &'a [Scene],
     frame: Option<&'a Frame>,
     program: &'a Program,
     names: Names,
 }
 
 impl Context<'_> {
-    /// Whether the type holds the model, whose parameters it has.
+    /// Whether the type is that of the global form of a model or a scene whose own is reduced.
     fn is_wrapped(&self) -> bool {
         self.frame.is_some() && self.program.form == Form::Global
     }
 }
 
-/// The generated items of a model: those of its type, and where that one is reduced to D, those of the type of its
-/// global form.
-pub fn tokens(model: &Model, derivation: &Derivation, programs: &Lowered) -> TokenStream {
-    let frame = derivation.frame.as_ref().ok();
-    let names = Names::of(model, frame);
-    let global = programs.global.as_ref().map(|program| Context {
-        model,
-        frame,
-        program,
-        names: names.of_global(model),
-    });
-    let context = Context {
-        model,
-        frame,
-        program: &programs.main,
-        names,
-    };
+/// The generated items of a model: those of its type and of the types of its scenes, and where one of them is reduced
+/// to D, those of the type of its global form.
+pub fn tokens(compiled: &Compiled) -> TokenStream {
+    let model = &compiled.model;
+    let contexts = contexts(compiled, &model.scenes, |names| names);
+    let scenes: Vec<Vec<Context<'_>>> = model
+        .scenes
+        .iter()
+        .zip(&compiled.scenes)
+        .map(|(scene, own)| contexts_of_scene(model, scene, own))
+        .collect();
     let own = [
-        parameters::emit_parameters(&context),
-        indices::emit_indices(&context),
+        parameters::emit_parameters(&contexts[0]),
+        indices::emit_indices(&contexts[0], &scenes),
     ];
     let shadows = names::emit_shadows(model);
-    let contexts = [Some(context), global].into_iter().flatten();
-    let items = contexts.flat_map(|context| implementations(&context));
+    let contexts = contexts.iter().chain(scenes.iter().flatten());
+    let items = contexts.flat_map(implementations);
     quote! {
         #(#own)*
         const _: () = {
@@ -70,6 +70,48 @@ pub fn tokens(model: &Model, derivation: &Derivation, programs: &Lowered) -> Tok
             #(#items)*
         };
     }
+}
+
+/// What is emitted of a model or a scene: its own form, then the global one if that is another.
+fn contexts<'a>(
+    compiled: &'a Compiled,
+    scenes: &'a [Scene],
+    own_names: impl FnOnce(Names) -> Names,
+) -> Vec<Context<'a>> {
+    let Compiled {
+        model,
+        derivation,
+        programs,
+        ..
+    } = compiled;
+    let frame = derivation.frame.as_ref().ok();
+    let names = own_names(Names::of(model, frame));
+    let global = programs.global.as_ref().map(|program| Context {
+        model,
+        scenes,
+        frame,
+        program,
+        names: names.of_global(model),
+    });
+    let own = Context {
+        model,
+        scenes,
+        frame,
+        program: &programs.main,
+        names,
+    };
+    [Some(own), global].into_iter().flatten().collect()
+}
+
+/// As [`contexts`], of a scene.
+fn contexts_of_scene<'a>(
+    model: &'a Model,
+    scene: &'a Scene,
+    compiled: &'a Compiled,
+) -> Vec<Context<'a>> {
+    contexts(compiled, &model.scenes, |names| {
+        names.of_scene(model, scene)
+    })
 }
 
 /// What is implemented for a type of the model.

@@ -6,20 +6,20 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use crate::mechanics::Frame;
-use crate::model::{Model, Name};
+use crate::model::{Model, Name, Scene};
 use crate::program::{Function, Input, Op};
 
 /// Identifiers of a model's quantities inside generated functions.
 #[derive(Clone)]
 pub(super) struct Names {
-    /// The type that holds the parameters.
-    pub model: Ident,
-    /// The type of the global form, where that is another.
-    pub global: Ident,
-    /// The module of indices.
-    pub module: Ident,
-    /// The type that functions are made for: the model's, or that of its global form.
+    /// The type that functions are made for: the model's or a scene's, or that of its global form.
     pub type_name: TokenStream,
+    /// The type of the model or the scene itself.
+    pub own: TokenStream,
+    /// The type of its global form, where that is another.
+    pub global: TokenStream,
+    /// The type that has the parameters, if it is another: a scene holds it, a global form holds a model or a scene.
+    pub held: Option<TokenStream>,
     /// Locals that hold coordinates.
     pub coordinates: Vec<Ident>,
     /// Locals that hold momenta.
@@ -33,7 +33,7 @@ pub(super) struct Names {
 }
 
 /// Names that generated functions use for their own arguments and locals; `dalembert::__private::arguments` has each of them.
-const ARGUMENTS: [&str; 24] = [
+const ARGUMENTS: [&str; 25] = [
     "t",
     "state",
     "rate",
@@ -58,9 +58,16 @@ const ARGUMENTS: [&str; 24] = [
     "weight",
     "inverse",
     "step",
+    "visitor",
 ];
 
+/// The identifier of the type of the global form.
+pub(super) fn global_name(type_name: &str) -> Ident {
+    Ident::new(&format!("{type_name}Global"), Span::call_site())
+}
+
 impl Names {
+    /// Those of the model's own type.
     pub fn of(model: &Model, frame: Option<&Frame>) -> Self {
         let mut taken = arguments();
         let mut locals = |prefix: &str, suffix: &str| -> Vec<Ident> {
@@ -83,11 +90,12 @@ impl Names {
             })
             .collect();
         let type_name = Ident::new(&model.name, Span::call_site());
+        let global = global_name(&model.name);
         Self {
-            module: Ident::new(&model.snake_name, Span::call_site()),
             type_name: quote!(#type_name),
-            global: Ident::new(&format!("{}Global", model.name), Span::call_site()),
-            model: type_name,
+            own: quote!(#type_name),
+            global: quote!(#global),
+            held: None,
             coordinates,
             momenta,
             velocities,
@@ -96,12 +104,31 @@ impl Names {
         }
     }
 
-    /// Those of the type of the global form, which holds the model.
-    pub fn of_global(&self, model: &Model) -> Self {
-        let global = &self.global;
+    /// Those of a scene of the model, whose type stands in the module of indices and holds the model.
+    pub fn of_scene(self, model: &Model, scene: &Scene) -> Self {
+        let module = Ident::new(&model.snake_name, Span::call_site());
+        let type_name = Ident::new(&scene.type_name, Span::call_site());
+        let global = global_name(&scene.type_name);
         Self {
-            type_name: quote!(#global),
+            type_name: quote!(#module::#type_name),
+            held: Some(self.own),
+            own: quote!(#module::#type_name),
+            global: quote!(#module::#global),
             parameters: places(model, &quote!(self.0)),
+            ..self
+        }
+    }
+
+    /// Those of the type of the global form, which holds the model or the scene.
+    pub fn of_global(&self, model: &Model) -> Self {
+        let holder = match self.held {
+            None => quote!(self.0),
+            Some(_) => quote!(self.0.0),
+        };
+        Self {
+            type_name: self.global.clone(),
+            held: Some(self.own.clone()),
+            parameters: places(model, &holder),
             ..self.clone()
         }
     }

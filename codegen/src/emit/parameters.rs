@@ -3,21 +3,21 @@
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
-use super::{Context, doc, function::number};
+use super::{Context, doc, function::number, names};
 use crate::model::{Assumption, Model, Parameter};
 use crate::program::Form;
 
 /// The struct, and `Default` when every parameter has one.
 pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
     let model = context.model;
-    let type_name = &context.names.model;
+    let type_name = &context.names.own;
     let visibility: TokenStream = model.visibility.parse().unwrap_or_default();
     let documentation = doc::lines(&documentation(context));
     let fields = families(&model.parameters)
         .into_iter()
         .map(|family| emit_field_of(model, family));
     let default = emit_default(context);
-    let global = emit_global(context);
+    let global = emit_global(context, &model.name, "model", &visibility);
     quote! {
         #documentation
         #[allow(non_snake_case, clippy::all, clippy::pedantic, clippy::nursery)]
@@ -28,27 +28,33 @@ pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// The type of the global form, where the model's own is reduced.
-fn emit_global(context: &Context<'_>) -> TokenStream {
+/// The type of the global form, where the form of the model's or the scene's own type is reduced.
+pub(super) fn emit_global(
+    context: &Context<'_>,
+    type_name: &str,
+    noun: &str,
+    visibility: &TokenStream,
+) -> TokenStream {
     if context.program.form == Form::Global {
         return TokenStream::new();
     }
-    let (model, global) = (&context.names.model, &context.names.global);
-    let visibility: TokenStream = context.model.visibility.parse().unwrap_or_default();
-    let title = format!(
-        " [`{model}`] in its global form, off the constraints too, with the state `(q, p)`."
-    );
+    let own = Ident::new(type_name, Span::call_site());
+    let global = names::global_name(type_name);
+    let title =
+        format!(" [`{own}`] in its global form, off the constraints too, with the state `(q, p)`.");
+    let held = format!(" The {noun} with its parameters.");
     quote! {
         #[doc = #title]
         #[derive(Debug, Clone, Copy, PartialEq)]
         #visibility struct #global(
-            /// The model with its parameters.
-            pub #model,
+            #[doc = #held]
+            pub #own,
         );
     }
 }
 
-fn documentation(context: &Context<'_>) -> Vec<String> {
+/// What the documentation of the type of a model or a scene says.
+pub(super) fn documentation(context: &Context<'_>) -> Vec<String> {
     let model = context.model;
     let mut lines = model.documentation.clone();
     lines.push(String::new());
@@ -116,16 +122,18 @@ pub(super) fn with_defaults(model: &Model) -> TokenStream {
     quote!(Self { #(#fields),* })
 }
 
+/// Whether every parameter has a default.
+pub(super) fn have_defaults(model: &Model) -> bool {
+    let mut parameters = model.parameters.iter();
+    parameters.all(|parameter| parameter.default.is_some())
+}
+
 fn emit_default(context: &Context<'_>) -> TokenStream {
     let model = context.model;
-    if model
-        .parameters
-        .iter()
-        .any(|parameter| parameter.default.is_none())
-    {
+    if !have_defaults(model) {
         return TokenStream::new();
     }
-    let type_name = &context.names.model;
+    let type_name = &context.names.own;
     let value = with_defaults(model);
     let attributes = super::attributes();
     quote! {

@@ -7,17 +7,19 @@ use super::function::number;
 use super::{Context, doc};
 use crate::program::Function;
 
-/// `impl Divergence`
+/// `impl Divergence`, where volumes are asked for.
 pub(super) fn emit_divergence(context: &Context<'_>) -> TokenStream {
+    let Some(density) = &context.program.density else {
+        return TokenStream::new();
+    };
     let type_name = &context.names.type_name;
-    let program = context.program;
-    let divergence = context.state_body(&program.divergence);
+    let divergence = context.state_body(&density.divergence);
     let formula = "-theta(qdot) - m_ab W^b(eta_0^a) - m_ab (d_t eta^a)(W^b) + m_ab (d_t g)(W^a, W^b) \
                    + tr(dF/dqdot . pi_D g^-1)";
-    let divergence_doc = doc::formula(formula, &program.divergence.cost);
+    let divergence_doc = doc::formula(formula, &density.divergence.cost);
     let (divergence_statements, value) = (divergence.statements, &divergence.outputs[0]);
-    let form = context.position_body(&program.density_form);
-    let form_doc = doc::formula("theta = m_ab L_{W^a} eta^b", &program.density_form.cost);
+    let form = context.position_body(&density.form);
+    let form_doc = doc::formula("theta = m_ab L_{W^a} eta^b", &density.form.cost);
     let (form_statements, theta) = (form.statements, form.outputs);
     let attributes = super::attributes();
     quote! {
@@ -102,7 +104,7 @@ pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
 
 /// That of the model, for the type that holds it: the volume depends on the configuration alone.
 fn emit_delegated_volume(context: &Context<'_>) -> TokenStream {
-    let (type_name, model) = (&context.names.type_name, &context.names.model);
+    let (type_name, model) = (&context.names.type_name, &context.names.own);
     let attributes = super::attributes();
     let own = quote!(<#model as ::dalembert::InvariantVolume>);
     quote! {

@@ -21,6 +21,7 @@ mod range;
 #[cfg(test)]
 mod refusals;
 mod resolve;
+mod scene;
 mod symbols;
 #[cfg(test)]
 mod tests;
@@ -34,9 +35,10 @@ pub use crate::spec::Existence;
 pub use check::check;
 pub(crate) use check::check_within;
 pub use law::{Law, Reset};
+pub use scene::{Extras, Parts, Scene};
 
 /// A checked model: all expressions live in `pool`.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Model {
     /// The expressions.
     pub pool: Pool,
@@ -72,6 +74,10 @@ pub struct Model {
     pub view: Option<View>,
     /// The declared outputs.
     pub outputs: Vec<Output>,
+    /// The declared scenes; a scene itself has none.
+    pub scenes: Vec<Scene>,
+    /// What is used besides forces and surfaces.
+    pub extras: Extras,
     /// The declared claims.
     pub claims: Vec<Claim>,
     /// Symbols that stand for derived quantities in outputs and claims.
@@ -162,7 +168,7 @@ pub enum Assumption {
 }
 
 /// `L = 1/2 qdot^T g qdot + A.qdot - V`.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Lagrangian {
     /// The whole as written, in coordinates, velocities, parameters and time.
     pub whole: ExprId,
@@ -177,7 +183,7 @@ pub struct Lagrangian {
 }
 
 /// `eta(qdot) + eta_0 = 0`.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Constraint {
     /// Its name.
     pub name: Name,
@@ -194,7 +200,7 @@ pub struct Constraint {
 }
 
 /// A force as a one-form; coefficients may depend on coordinates, velocities and time.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Force {
     /// Its name.
     pub name: Name,
@@ -205,7 +211,7 @@ pub struct Force {
 }
 
 /// A one-form whose value on the velocity is a quasi-velocity.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct QuasiForm {
     /// Its name.
     pub name: Name,
@@ -218,7 +224,7 @@ pub struct QuasiForm {
 }
 
 /// An impact surface `h = 0`; motion is allowed where `h >= 0`.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Surface {
     /// Its name.
     pub name: Name,
@@ -237,7 +243,7 @@ pub struct Surface {
 }
 
 /// The declared initial condition: expressions of the parameters.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Initial {
     /// Positions by coordinate; unnamed ones are 0.
     pub q: Vec<Option<ExprId>>,
@@ -248,7 +254,7 @@ pub struct Initial {
 }
 
 /// What a picture shows.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct View {
     /// The point drawn, two functions of `(t, q)`.
     pub path: [ExprId; 2],
@@ -261,7 +267,7 @@ pub struct View {
 }
 
 /// A quantity carried to tables and plots.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Output {
     /// Its name.
     pub name: Name,
@@ -282,6 +288,8 @@ pub struct Claim {
     pub text: String,
     /// Whether an answer that stays open is accepted.
     pub is_assumed: bool,
+    /// The index of the scene that it is about; the model itself if there is none.
+    pub scene: Option<usize>,
     /// Where it was declared.
     pub item: ItemId,
 }
@@ -318,7 +326,7 @@ impl Statement {
 }
 
 /// Symbols that stand for derived quantities where outputs and claims name them.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct DerivedSymbols {
     /// `energy`
     pub energy: SymbolId,

@@ -2,7 +2,7 @@
 
 use super::jet::{Jet, degree};
 use super::recipes::{constrained, declared, geometry, impact, motion, reduced, volume};
-use super::{Form, Input, Program};
+use super::{Density, Form, Input, Program};
 use crate::claims::Volume;
 use crate::mechanics::Derivation;
 use crate::model::Model;
@@ -73,8 +73,10 @@ fn lower_form(
         impacting: impact::impacting(model, derivation, form, |gaps| {
             Jet::of(gaps, &components, component)
         }),
-        divergence: geometry::divergence(model, derivation, form),
-        density_form: geometry::density_form(model, derivation),
+        density: model.extras.volume.then(|| Density {
+            divergence: geometry::divergence(model, derivation, form),
+            form: geometry::density_form(model, derivation),
+        }),
         volume: found.map(|found| volume::invariant_volume(model, derivation, found)),
         outputs: declared::outputs(model, derivation, form),
         view_path: model

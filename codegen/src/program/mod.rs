@@ -248,10 +248,8 @@ pub struct Program {
     pub constrained: Option<Constrained>,
     /// With surfaces.
     pub impacting: Option<Impacting>,
-    /// The divergence with respect to `mu_C`: `(t, s) -> div`.
-    pub divergence: Function,
-    /// The density form: `(t, q) -> theta`.
-    pub density_form: Function,
+    /// Where volumes are asked for.
+    pub density: Option<Density>,
     /// With an invariant volume.
     pub volume: Option<InvariantVolume>,
     /// The declared outputs: `(t, s) -> values`.
@@ -287,8 +285,7 @@ impl Program {
             geometry,
             constrained,
             impacting,
-            divergence,
-            density_form,
+            density,
             volume,
             outputs,
             view_path,
@@ -299,7 +296,8 @@ impl Program {
         let mut functions = vec![rate, scale, velocity, momentum, energy, force];
         functions.extend([&jet.function, &geometry.function]);
         functions.extend(reduced.iter().flat_map(Reduced::functions));
-        functions.extend([divergence, density_form, initial]);
+        functions.extend(density.iter().flat_map(Density::functions));
+        functions.push(initial);
         let declared = [outputs, view_path, view_region, until];
         functions.extend(declared.into_iter().flatten());
         functions.extend(constrained.iter().flat_map(Constrained::functions));
@@ -395,6 +393,22 @@ pub struct Return {
 impl Return {
     fn functions(&self) -> [&Function; 2] {
         [&self.nearest, &self.restore]
+    }
+}
+
+/// What the motion does to the volume `mu_C`.
+#[derive(Debug)]
+pub struct Density {
+    /// The divergence with respect to `mu_C`: `(t, s) -> div`.
+    pub divergence: Function,
+    /// The density form: `(t, q) -> theta`.
+    pub form: Function,
+}
+
+impl Density {
+    fn functions(&self) -> [&Function; 2] {
+        let Self { divergence, form } = self;
+        [divergence, form]
     }
 }
 

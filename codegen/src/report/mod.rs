@@ -26,6 +26,7 @@ use equations::Writer;
 
 use crate::claims::Finding;
 use crate::diagnostics::Diagnostics;
+use crate::emit::text;
 use crate::model::Model;
 use crate::program::{Cost, Program};
 use crate::{Compiled, compile};
@@ -33,7 +34,7 @@ use crate::{Compiled, compile};
 /// A derivation in words and formulas.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// The model's name in snake case.
+    /// The name in snake case, of the model or of the scene.
     pub name: String,
     /// Its doc comment.
     pub documentation: String,
@@ -41,6 +42,8 @@ pub struct Report {
     pub sections: Vec<Section>,
     /// The verdicts on its claims, in order.
     pub findings: Vec<Finding>,
+    /// Those of its scenes, in order.
+    pub scenes: Vec<Report>,
 }
 
 /// A part of a report.
@@ -124,12 +127,30 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
     let tokens: TokenStream = source
         .parse()
         .map_err(|error: LexError| ReportError::Tokens(error.to_string()))?;
+    let mut compiled = compile(tokens).map_err(ReportError::Declaration)?;
+    let names: Vec<String> = (compiled.model.scenes.iter())
+        .map(|scene| scene.name.clone())
+        .collect();
+    let scenes = std::mem::take(&mut compiled.scenes);
+    let scenes = scenes.into_iter().zip(names);
+    let scenes = scenes.map(|(scene, name)| report_of(scene, name));
+    let scenes = scenes.collect();
+    let name = compiled.model.snake_name.clone();
+    Ok(Report {
+        scenes,
+        ..report_of(compiled, name)
+    })
+}
+
+/// The report of a model or a scene.
+fn report_of(compiled: Compiled, name: String) -> Report {
     let Compiled {
         mut model,
         derivation,
         findings,
         programs,
-    } = compile(tokens).map_err(ReportError::Declaration)?;
+        scenes: _,
+    } = compiled;
     let mut writer = Writer {
         model: &mut model,
         derivation: &derivation,
@@ -142,23 +163,31 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
         writer.frame(),
         writer.surfaces(),
         writer.declared_outputs(),
-        writer.volume(),
     ];
+    if writer.model.extras.volume {
+        sections.push(writer.volume());
+    }
+    sections.push(scenes(&model));
     sections.push(claims(&findings));
     sections.push(work(&model, &programs.main));
     sections.push(notes(&model));
     sections.retain(|section| !section.items.is_empty());
-    Ok(Report {
-        name: model.snake_name.clone(),
-        documentation: model
-            .documentation
-            .iter()
-            .map(|line| line.trim())
-            .collect::<Vec<_>>()
-            .join("\n"),
+    Report {
+        name,
+        documentation: text(&model.documentation),
         sections,
         findings,
-    })
+        scenes: Vec::new(),
+    }
+}
+
+/// What each scene uses.
+fn scenes(model: &Model) -> Section {
+    let items = model.scenes.iter().map(|scene| {
+        let used = model.used(&scene.parts);
+        Item::Words(format!("{}: {used}", scene.name))
+    });
+    Section::plain("Scenes", items.collect())
 }
 
 /// Operation counts of the emitted functions.

@@ -46,7 +46,9 @@ pub struct Spec {
     pub view: View,
     /// `outputs { .. }`
     pub outputs: Vec<Quantity>,
-    /// `claims { .. }`
+    /// `scenes { .. }`
+    pub scenes: Vec<Scene>,
+    /// `claims { .. }` and `claims for SCENE { .. }`
     pub claims: Vec<Claim>,
     items: Vec<Location>,
 }
@@ -72,6 +74,7 @@ impl Spec {
             initial: Vec::new(),
             view: View::default(),
             outputs: Vec::new(),
+            scenes: Vec::new(),
             claims: Vec::new(),
             items: Vec::new(),
         }
@@ -391,6 +394,19 @@ pub struct View {
     pub region: Option<Comparison>,
 }
 
+/// `windy: billiard, drag;`
+#[derive(Debug)]
+pub struct Scene {
+    /// Its name.
+    pub name: Word,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
+    /// The forces, surfaces, scenes and extras that it uses.
+    pub parts: Vec<Declared>,
+    /// The declaration.
+    pub item: ItemId,
+}
+
 /// A theorem about the model, to be proved or refuted while it builds.
 #[derive(Debug)]
 pub struct Claim {
@@ -398,6 +414,8 @@ pub struct Claim {
     pub statement: Statement,
     /// Whether an answer that stays open is accepted: `assume ..`.
     pub is_assumed: bool,
+    /// The scene it is about; the whole model if there is none.
+    pub scene: Option<Word>,
     /// The declaration.
     pub item: ItemId,
 }

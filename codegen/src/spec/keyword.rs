@@ -3,7 +3,7 @@
 use dalembert_expr::Function;
 
 /// The section keywords of this version, as they may begin a declaration of a model.
-pub const SECTIONS: [&str; 13] = [
+pub const SECTIONS: [&str; 14] = [
     "const",
     "coordinates",
     "parameters",
@@ -16,19 +16,20 @@ pub const SECTIONS: [&str; 13] = [
     "initial",
     "view",
     "outputs",
+    "scenes",
     "claims",
 ];
 
 /// Words of the language that this version does not implement, each with what can be written instead.
 pub const NOT_IMPLEMENTED: [(&str, &str); 6] = [
-    (
-        "scenes",
-        "leave it out; the model itself uses every declared force and surface",
-    ),
     ("modes", "declare one model for each mode"),
     ("transitions", "declare one model for each mode"),
     ("field", "give a `lagrangian`"),
     ("inputs", "declare a parameter and set it between runs"),
+    (
+        "variations",
+        "leave it out; differences of runs from neighbouring states approximate them",
+    ),
     ("instantaneous", "declare the constraint in `constraints`"),
 ];
 
@@ -136,6 +137,13 @@ pub const LAWS: [(&str, usize); 7] = [
 
 /// The law that is a map: `reset { x = ..; dot(x) = ..; }`.
 pub const RESET: &str = "reset";
+
+/// What a scene may use besides named forces and surfaces: the return to the constraints after steps, and density form,
+/// divergence and invariant volume.
+pub const EXTRAS: [&str; 2] = ["projection", "volume"];
+
+/// The scene that the model itself is: everything that was declared.
+pub const WHOLE: &str = "all";
 
 /// Words with a meaning of their own in expressions.
 const RESERVED: [&str; 11] = [

@@ -16,6 +16,8 @@ pub const COORDINATES: usize = 64;
 pub const PARAMETERS: usize = 256;
 /// Impact surfaces of a model, families expanded.
 pub const SURFACES: usize = 256;
+/// Scenes of a model; each is derived and emitted like a model of its own.
+pub const SCENES: usize = 32;
 /// Magnitude of an exponent.
 pub const EXPONENT: i64 = 4096;
 /// Bits of the denominator of an exponent.

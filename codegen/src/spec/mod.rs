@@ -21,11 +21,11 @@ mod tests;
 
 pub use ast::*;
 pub use keyword::{
-    FUNCTIONS, LAWS, PIECEWISE, RESET, SECTIONS, foreign_function, is_function,
-    is_not_differentiable, is_rust_keyword,
+    EXTRAS, FUNCTIONS, LAWS, PIECEWISE, RESET, SECTIONS, WHOLE, foreign_function, is_function,
+    is_not_differentiable, is_rust_keyword, not_implemented,
 };
 pub use limits::{
     COORDINATES, EXPONENT, EXPONENT_DENOMINATOR_BITS, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS,
-    RESOLVED_DEPTH, RESOLVED_PARTS, STEPS, SURFACES,
+    RESOLVED_DEPTH, RESOLVED_PARTS, SCENES, STEPS, SURFACES,
 };
-pub use parse::parse;
+pub use parse::{camel_case, parse};

@@ -136,6 +136,9 @@ pub struct ListArgs {
 pub struct DeriveArgs {
     /// Name of the model, as `list` prints it.
     pub model: String,
+    /// The scene.
+    #[arg(long, value_name = "SCENE", default_value = "all")]
+    pub scene: String,
     /// How to print.
     #[arg(long, value_enum, default_value_t = DeriveFormat::Text)]
     pub format: DeriveFormat,

@@ -3,7 +3,7 @@
 //! [`Entry::of`] instantiates [`Typed`] for a model type, and with it the emitted code; everything else in this
 //! crate works on slices of numbers through [`AnyModel`] and is compiled once.
 
-use dalembert::describe::{Described, Description, Report};
+use dalembert::describe::{Described, Description, Report, SceneVisitor};
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::state::StateVector;
 use dalembert::{
@@ -26,19 +26,14 @@ pub struct Entry {
 type Build = fn() -> Box<dyn AnyModel>;
 
 impl Entry {
-    /// The entry of a model type; the model itself is the scene `all`.
+    /// The entry of a model type with its scenes; the model itself is the scene `all`.
     pub fn of<M: Model>() -> Self {
-        Self {
+        let mut entry = Self {
             description: M::DESCRIPTION,
             scenes: vec![("all", Typed::<M>::boxed)],
-        }
-    }
-
-    /// Adds a scene: a type of its own, with the model's parameters.
-    #[must_use]
-    pub fn with_scene<M: Model>(mut self, name: &'static str) -> Self {
-        self.scenes.push((name, Typed::<M>::boxed));
-        self
+        };
+        M::visit_scenes(&mut entry);
+        entry
     }
 
     /// What the model says of itself.
@@ -54,6 +49,15 @@ impl Entry {
     /// The model in the scene of this index, with declared defaults.
     pub(crate) fn with_defaults(&self, scene: usize) -> Box<dyn AnyModel> {
         (self.scenes[scene].1)()
+    }
+}
+
+impl SceneVisitor for Entry {
+    fn visit<S>(&mut self, name: &'static str)
+    where
+        S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static,
+    {
+        self.scenes.push((name, Typed::<S>::boxed));
     }
 }
 

@@ -3,12 +3,16 @@
 use dalembert_expr::{Assumption as Known, ExprId, Node};
 
 use super::super::resolve::{DerivedNames, Resolver, Scope};
-use super::super::{Claim, Name, Statement, Surface};
+use super::super::{Claim, Name, Scene, Statement, Surface};
 use crate::diagnostics::listed;
 use crate::spec;
 
 /// All claims.
-pub(super) fn resolve(resolver: &mut Resolver<'_>, surfaces: &[Surface]) -> Vec<Claim> {
+pub(super) fn resolve(
+    resolver: &mut Resolver<'_>,
+    surfaces: &[Surface],
+    scenes: &[Scene],
+) -> Vec<Claim> {
     let spec = resolver.spec;
     resolver.derived_names = DerivedNames::Claims;
     let mut claims: Vec<Claim> = Vec::new();
@@ -16,7 +20,20 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>, surfaces: &[Surface]) -> Vec<
         let Some((statement, text)) = resolver.statement(&claim.statement, surfaces) else {
             continue;
         };
-        if let Some(first) = claims.iter().find(|other| other.text == text) {
+        let scene = match &claim.scene {
+            None => None,
+            Some(word) => {
+                let found = resolver.scene(word, scenes).filter(|scene| {
+                    resolver.check_surface_of(claim, &statement, &scenes[*scene], surfaces)
+                });
+                match found {
+                    Some(scene) => Some(scene),
+                    None => continue,
+                }
+            }
+        };
+        let is_same = |other: &&Claim| other.text == text && other.scene == scene;
+        if let Some(first) = claims.iter().find(is_same) {
             let (at, first) = (spec.location(claim.item), spec.location(first.item));
             let error = resolver
                 .diagnostics
@@ -30,6 +47,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>, surfaces: &[Surface]) -> Vec<
             statement,
             text,
             is_assumed: claim.is_assumed,
+            scene,
             item: claim.item,
         });
     }
@@ -103,6 +121,57 @@ impl Resolver<'_> {
         let help = "velocities are written `dot(x)`";
         self.forbid(written, &scope, expr, &differentials, text, help)?;
         Some(expr)
+    }
+
+    /// The index of the scene of this name.
+    fn scene(&mut self, word: &spec::Word, scenes: &[Scene]) -> Option<usize> {
+        let found = scenes.iter().position(|own| own.name == word.text);
+        found.or_else(|| {
+            // A scene that was refused is missing; its own mistake has been told.
+            if self
+                .spec
+                .scenes
+                .iter()
+                .any(|own| own.name.text == word.text)
+            {
+                return None;
+            }
+            let help = match scenes {
+                [] if word.text == spec::WHOLE => "write `claims { .. }`".to_owned(),
+                [] => "the model declares no scenes".to_owned(),
+                _ => {
+                    let names = scenes.iter().map(|own| own.name.as_str());
+                    format!("the scenes are {}", listed(names))
+                }
+            };
+            let text = format!("`{}` is not a scene", word.text);
+            self.refuse(word.at, text, &help)
+        })
+    }
+
+    /// Whether a scene uses the surface that a claim about it names, and says so where it does not.
+    fn check_surface_of(
+        &mut self,
+        claim: &spec::Claim,
+        statement: &Statement,
+        scene: &Scene,
+        surfaces: &[Surface],
+    ) -> bool {
+        let Statement::Conserved {
+            under: Some(surface),
+            ..
+        } = statement
+        else {
+            return true;
+        };
+        if scene.parts.surfaces.contains(surface) {
+            return true;
+        }
+        let (scene, surface) = (&scene.name, &surfaces[*surface].name.display);
+        let text = format!("the scene `{scene}` does not use the surface `{surface}`");
+        let help = format!("add `{surface}` to the scene, or leave the claim out");
+        let at = self.spec.location(claim.item);
+        self.refuse::<()>(at, text, &help).is_some()
     }
 
     /// The surface of a declared name.

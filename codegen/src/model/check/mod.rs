@@ -16,6 +16,7 @@ mod outputs;
 mod parameters;
 mod regular;
 mod resets;
+mod scenes;
 mod surfaces;
 mod targets;
 
@@ -26,7 +27,8 @@ use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 use super::natural;
 use super::resolve::{Resolver, Scope};
 use super::{
-    Claim, Constraint, Force, Initial, Lagrangian, Model, Output, QuasiForm, Reset, Surface, View,
+    Claim, Constraint, Extras, Force, Initial, Lagrangian, Model, Output, QuasiForm, Reset, Scene,
+    Surface, View,
 };
 use crate::diagnostics::{self, Diagnostics};
 use crate::spec::{PIECEWISE, STEPS, Scalar, Spec};
@@ -42,6 +44,7 @@ struct Parts {
     initial: Initial,
     view: Option<View>,
     outputs: Vec<Output>,
+    scenes: Vec<Scene>,
     claims: Vec<Claim>,
 }
 
@@ -70,9 +73,11 @@ pub(crate) fn check_within(spec: &Spec, steps: u64) -> Result<Model, Diagnostics
         initial: initial::resolve(&mut resolver),
         view: outputs::view(&mut resolver),
         outputs: outputs::resolve(&mut resolver),
+        scenes: Vec::new(),
         claims: Vec::new(),
     };
-    parts.claims = claims::resolve(&mut resolver, &parts.surfaces);
+    parts.scenes = scenes::resolve(&mut resolver, &parts.forces, &parts.surfaces);
+    parts.claims = claims::resolve(&mut resolver, &parts.surfaces, &parts.scenes);
     together(&mut resolver, &parts);
     if let Some(at) = resolver.exhausted {
         return Err(diagnostics::too_many_steps(at));
@@ -127,6 +132,8 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
         initial: parts.initial,
         view: parts.view,
         outputs: parts.outputs,
+        scenes: parts.scenes,
+        extras: Extras::ALL,
         claims: parts.claims,
         derived: symbols.derived,
         notes,
@@ -158,6 +165,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
         initial,
         view,
         outputs,
+        scenes: _,
         claims,
     } = parts;
     let mut used: Vec<ExprId> = vec![lagrangian.whole];

@@ -122,8 +122,10 @@ pub fn reduced_geometry(model: &Model, derivation: &Derivation) -> Geometry {
         .map(|i| (0..size).map(|j| entry(i, j)).collect())
         .collect();
     results.matrix("G_D", rows, size);
-    let density = kernel.density_in_frame();
-    results.scalar("mu_C_density_frame", density);
+    if model.extras.volume {
+        let density = kernel.density_in_frame();
+        results.scalar("mu_C_density_frame", density);
+    }
     Geometry {
         function: kernel.finish(results.values),
         groups: results.groups,
@@ -172,6 +174,9 @@ fn report_constraints(kernel: &mut Kernel<'_>, results: &mut Results) {
     results.matrix("constraint_mass_inverse", frame.inverse_mass.clone(), m);
     let projector = frame.projector(kernel);
     results.matrix("pi_D", projector, n);
+    if !kernel.model.extras.volume {
+        return;
+    }
     let theta = frame.density_form(kernel);
     let divergence = frame.divergence(kernel, &theta);
     results.vector("density_form_theta", theta);

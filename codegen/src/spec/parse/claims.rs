@@ -47,6 +47,7 @@ pub(super) fn claim(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     spec.claims.push(Claim {
         statement,
         is_assumed,
+        scene: None,
         item,
     });
     Ok(())

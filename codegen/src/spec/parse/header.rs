@@ -102,7 +102,7 @@ fn snake_case(name: &str) -> String {
 }
 
 /// `rolling_disk` as `RollingDisk`.
-fn camel_case(name: &str) -> String {
+pub fn camel_case(name: &str) -> String {
     let capitalised = |word: &str| {
         let mut letters = word.chars();
         let first = letters.next().into_iter().flat_map(char::to_uppercase);

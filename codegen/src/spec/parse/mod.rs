@@ -9,6 +9,7 @@ mod impacts;
 mod initial;
 mod parameters;
 mod reset;
+mod scenes;
 mod source;
 mod view;
 
@@ -19,6 +20,8 @@ use super::cursor::{Cursor, Read, tokens_of};
 use super::keyword::{self, SECTIONS, not_implemented};
 use super::limits::check_nesting;
 use crate::diagnostics::{Diagnostics, Location, listed, nearest};
+
+pub use header::camel_case;
 
 /// Reads the declaration of a model.
 ///
@@ -121,7 +124,11 @@ fn begins_declaration(word: &Ident, next: Option<&TokenTree>) -> bool {
     let word = word.to_string();
     let known = SECTIONS.contains(&word.as_str()) || not_implemented(&word).is_some();
     match next {
-        Some(TokenTree::Ident(_)) => word == "let" || word == "const",
+        Some(TokenTree::Ident(next)) => match word.as_str() {
+            "let" | "const" => true,
+            "claims" => next == "for",
+            _ => false,
+        },
         Some(TokenTree::Punct(punct)) => word == "lagrangian" && punct.as_char() == '=',
         Some(TokenTree::Group(group)) => known && group.delimiter() == Delimiter::Brace,
         _ => false,
@@ -153,6 +160,7 @@ fn declare(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         "impacts" => section(&word, cursor, spec, impacts::surface),
         "initial" => section(&word, cursor, spec, initial::value),
         "view" => section(&word, cursor, spec, view::entry),
+        "scenes" => section(&word, cursor, spec, scenes::scene),
         "claims" => claims_section(&word, cursor, spec),
         _ => Err(unknown_declaration(&word, cursor)),
     }
@@ -217,15 +225,18 @@ fn section(
     Ok(())
 }
 
-/// `claims { .. }`; claims about a scene wait for scenes.
+/// `claims { .. }` about the whole model, `claims for SCENE { .. }` about a scene.
 fn claims_section(keyword: &Word, cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
-    if cursor.is_word("for") {
-        let help = "claims are about the whole model: write `claims { .. }`";
-        let text = "claims for a scene are not implemented in this version";
-        let word = cursor.name("a scene")?;
-        return Err(cursor.refuse(word.at, text, help));
+    let scene = match cursor.eat_word("for") {
+        true => Some(cursor.name("the name of a scene")?),
+        false => None,
+    };
+    let first = spec.claims.len();
+    let read = section(keyword, cursor, spec, claims::claim);
+    for claim in &mut spec.claims[first..] {
+        claim.scene.clone_from(&scene);
     }
-    section(keyword, cursor, spec, claims::claim)
+    read
 }
 
 /// How many tokens stand before the next `;`.

@@ -131,7 +131,7 @@ fn declarations_are_known() {
 
 #[test]
 fn declarations_to_come_are_refused_by_name() {
-    for word in ["scenes", "modes", "transitions", "field", "inputs"] {
+    for word in ["modes", "transitions", "field", "inputs"] {
         let message = format!("`{word}` is not implemented in this version\nhelp: ");
         refused_in(&format!("«{word}» {{ a: b; }}"), &message);
     }

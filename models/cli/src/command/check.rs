@@ -24,7 +24,8 @@ struct Check {
 /// Everything that was looked at.
 struct Examined {
     checks: Vec<Check>,
-    claims: Vec<Finding>,
+    /// With the scene that they are about.
+    claims: Vec<(&'static str, Finding)>,
     notes: Vec<String>,
 }
 
@@ -49,7 +50,7 @@ pub fn run(models: &[Entry], args: &CheckArgs, output: &mut dyn Write) -> Result
     let examined = Examined {
         checks,
         notes: notes(model, derived.as_ref()),
-        claims: derived.map(|report| report.findings).unwrap_or_default(),
+        claims: derived.map(|own| findings(model, own)).unwrap_or_default(),
     };
     match args.format {
         Format::Text => write_text(output, model, &examined)?,
@@ -57,6 +58,16 @@ pub fn run(models: &[Entry], args: &CheckArgs, output: &mut dyn Write) -> Result
     }
     let passed = examined.checks.iter().all(|check| check.failure.is_none());
     Ok(if passed { Exit::Reached } else { Exit::Other })
+}
+
+/// The verdicts on the claims about the model itself, then those on the claims about its scenes.
+fn findings(model: &dyn AnyModel, report: report::Report) -> Vec<(&'static str, Finding)> {
+    let of_scenes = report.scenes.into_iter().map(|scene| scene.findings);
+    let all = [report.findings].into_iter().chain(of_scenes);
+    let named = model.description().scenes.iter().zip(all);
+    named
+        .flat_map(|(scene, findings)| findings.into_iter().map(|own| (*scene, own)))
+        .collect()
 }
 
 /// Defaults against assumptions, then the initial state, as far as the defaults allow.
@@ -191,8 +202,8 @@ fn write_text(
         }
     }
     writeln!(output, "claims")?;
-    for claim in &examined.claims {
-        write_claim(output, claim)?;
+    for (scene, claim) in &examined.claims {
+        write_claim(output, scene, claim)?;
     }
     if examined.claims.is_empty() {
         writeln!(output, "  none")?;
@@ -208,8 +219,12 @@ fn write_text(
 }
 
 /// The verdict, then the claim as written, and below it what was found.
-fn write_claim(output: &mut dyn Write, finding: &Finding) -> Result<(), CliError> {
-    writeln!(output, "  {:9} {}", finding.word(), finding.claim)?;
+fn write_claim(output: &mut dyn Write, scene: &str, finding: &Finding) -> Result<(), CliError> {
+    let about = match scene {
+        "all" => String::new(),
+        _ => format!(" (scene {scene})"),
+    };
+    writeln!(output, "  {:9} {}{about}", finding.word(), finding.claim)?;
     let grounds = finding.grounds();
     let lines = grounds
         .lines()
@@ -303,13 +318,20 @@ fn write_json(
     document.rows("checks", examined.checks.iter().map(|check| {
         json!({ "check": check.subject, "passed": check.failure.is_none(), "failure": check.failure })
     }))?;
-    document.rows("claims", examined.claims.iter().map(claim_json))?;
+    document.rows(
+        "claims",
+        examined
+            .claims
+            .iter()
+            .map(|(scene, claim)| claim_json(scene, claim)),
+    )?;
     document.field("notes", examined.notes.clone())?;
     Ok(document.end()?)
 }
 
-fn claim_json(finding: &Finding) -> Value {
+fn claim_json(scene: &str, finding: &Finding) -> Value {
     let mut claim = json!({
+        "scene": scene,
         "claim": finding.claim,
         "verdict": finding.word(),
         "grounds": finding.grounds(),

@@ -9,6 +9,7 @@ use crate::args::{DeriveArgs, DeriveFormat};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::names;
 use crate::state_input::find_model;
 
 /// Carries out `derive`.
@@ -17,8 +18,13 @@ use crate::state_input::find_model;
 /// An unknown model, or whatever the generator says of its source.
 pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Result<Exit, CliError> {
     let entry = find_model(models, &args.model)?;
-    let report =
+    let scene = names::find("--scene", "scene", &args.scene, entry.scenes())?;
+    let mut report =
         report(entry.description().source).map_err(|error| CliError::Derive(error.to_string()))?;
+    // The model itself is the first of its scenes.
+    if let Some(scene) = scene.checked_sub(1) {
+        report = report.scenes.swap_remove(scene);
+    }
     let text = match args.format {
         DeriveFormat::Text => text(&report),
         DeriveFormat::Latex => latex(&report),

@@ -1,0 +1,83 @@
+//! Scenes: a type for each in the module of indices, which holds the model with its parameters.
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
+
+use super::{Context, doc, indices, parameters};
+use crate::model::{Model, Scene};
+use crate::spec::WHOLE;
+
+/// The types of all scenes with what stands beside each of them; `contexts` are those of the scenes, in order.
+pub(super) fn emit_types(model: &Model, contexts: &[Vec<Context<'_>>]) -> Vec<TokenStream> {
+    let scenes = model.scenes.iter().zip(contexts);
+    scenes
+        .map(|(scene, contexts)| emit_type(model, scene, &contexts[0]))
+        .collect()
+}
+
+/// `pub struct Billiard(pub super::RollingDisk);`, the type of its global form, and the indices of its surfaces.
+fn emit_type(model: &Model, scene: &Scene, context: &Context<'_>) -> TokenStream {
+    let holder = Ident::new(&model.name, Span::call_site());
+    let type_name = Ident::new(&scene.type_name, Span::call_site());
+    let module = Ident::new(&scene.name, Span::call_site());
+    let used = model.used(&scene.parts);
+    let mut lines = parameters::documentation(context);
+    lines.insert(
+        scene.documentation.len(),
+        format!(
+            " The scene `{}` of [`{holder}`](super::{holder}): {used}.",
+            scene.name
+        ),
+    );
+    lines.insert(scene.documentation.len(), String::new());
+    let documentation = doc::lines(&lines);
+    let global = parameters::emit_global(context, &scene.type_name, "scene", &quote!(pub));
+    let surfaces = indices::emit_surfaces(&context.model.surfaces);
+    let title = format!(" Indices of what the scene `{}` uses.", scene.name);
+    let default = parameters::have_defaults(model).then(|| {
+        quote! {
+            impl ::core::default::Default for #type_name {
+                /// The scene with the declared defaults.
+                fn default() -> Self { Self(<super::#holder as ::core::default::Default>::default()) }
+            }
+        }
+    });
+    quote! {
+        #documentation
+        #[allow(private_interfaces)]
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct #type_name(
+            /// The model with its parameters.
+            pub super::#holder,
+        );
+        #default
+        #global
+        #[doc = #title]
+        pub mod #module { #surfaces }
+    }
+}
+
+/// The names of all scenes as `DESCRIPTION` has them, the model itself first.
+pub(super) fn emit_infos(context: &Context<'_>) -> TokenStream {
+    let names = context.scenes.iter().map(|scene| scene.name.as_str());
+    let names = [WHOLE].into_iter().chain(names);
+    quote!(#(#names),*)
+}
+
+/// `visit_scenes`, of the model's own type.
+pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
+    if context.scenes.is_empty() || context.names.held.is_some() {
+        return TokenStream::new();
+    }
+    let module = Ident::new(&context.model.snake_name, Span::call_site());
+    let visits = context.scenes.iter().map(|scene| {
+        let type_name = Ident::new(&scene.type_name, Span::call_site());
+        let name = &scene.name;
+        quote!(visitor.visit::<#module::#type_name>(#name);)
+    });
+    quote! {
+        fn visit_scenes<Visitor: ::dalembert::describe::SceneVisitor>(visitor: &mut Visitor) {
+            #(#visits)*
+        }
+    }
+}

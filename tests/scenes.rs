@@ -1,0 +1,341 @@
+//! Scenes: each has the code of a model that was declared with nothing but what the scene uses.
+
+use std::collections::BTreeMap;
+
+use dalembert::describe::SceneVisitor;
+use dalembert::{
+    Described, Divergence, Dop853, Impacts, Lagrangian, Outcome, Projection, Scene, Simulation,
+    System, TaylorField, Tolerance,
+};
+use dalembert_cli::Exit;
+use dalembert_tests::command::dalembert;
+use quote::ToTokens;
+
+/// A blade on a tilted plane between two walls and a lid, with two frictions.
+const BLADE: &str = "
+    coordinates { x; y; theta: angle; }
+    parameters { m > 0 = 1.5; I > 0 = 0.4; a = 0.2; g = 0.7; c >= 0 = 0.3; k >= 0 = 0.1; }
+    lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2
+        + m*a*dot(theta)*(cos(theta)*dot(y) - sin(theta)*dot(x)) + m*g*x;
+    constraints { knife: sin(theta)*d(x) - cos(theta)*d(y) = 0; }
+    frame { v: cos(theta)*d(x) + sin(theta)*d(y); omega: d(theta); }
+    initial { dot(theta) = 1; dot(x) = 0.5; until = 3; }";
+
+/// The same where no frame is declared or found.
+const TWISTED: &str = "
+    coordinates { x; y; z; }
+    parameters { m > 0 = 1.5; c >= 0 = 0.3; k >= 0 = 0.1; g = 1; }
+    lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(z)^2) + m*g*x;
+    constraints { twist: (y - z)*d(x) + x*d(y) + y*z*d(z) = 0; }
+    initial { x = 0.5; y = 0.2; until = 1; }";
+
+const DRAG: &str = "drag: -c*dot(x)*d(x) - c*dot(y)*d(y);";
+const DAMPING: &str = "damping: -k*dot(y)*d(y);";
+const SIDES: &str = "side[1]: x + 1 >= 0; side[2]: 1 - x >= 0 => restitution(0.5);";
+const LID: &str = "lid: 2 - y >= 0 when x > t;";
+
+/// The functions, types and constants of the traits of a type.
+type Implemented = BTreeMap<(String, String), String>;
+
+/// What is implemented for a type, but for the trait by which it describes itself.
+fn implemented(source: &str, type_name: &str) -> Implemented {
+    let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens")).expect(source);
+    let file: syn::File = syn::parse2(tokens).expect("items");
+    let blocks = file.items.iter().filter_map(|item| match item {
+        syn::Item::Const(own) => Some(&*own.expr),
+        _ => None,
+    });
+    let statements = blocks.flat_map(|block| match block {
+        syn::Expr::Block(own) => own.block.stmts.as_slice(),
+        _ => &[],
+    });
+    let mut all = Implemented::new();
+    for statement in statements {
+        let syn::Stmt::Item(syn::Item::Impl(own)) = statement else {
+            continue;
+        };
+        let last = |path: &syn::Path| path.segments.last().expect("a name").ident.to_string();
+        let (Some((path, _)), syn::Type::Path(of)) = (&own.trait_, &*own.self_ty) else {
+            continue;
+        };
+        let name = last(path);
+        if last(&of.path) == type_name && name != "Described" {
+            all.extend(own.items.iter().map(|item| {
+                let (item, text) = named(item);
+                ((name.clone(), item), text)
+            }));
+        }
+    }
+    assert!(!all.is_empty(), "{type_name} of {source}");
+    all
+}
+
+/// The name of an item of a trait, and what it is.
+fn named(item: &syn::ImplItem) -> (String, String) {
+    let (name, tokens) = match item {
+        syn::ImplItem::Fn(own) => (&own.sig.ident, own.block.to_token_stream()),
+        syn::ImplItem::Type(own) => (&own.ident, own.ty.to_token_stream()),
+        syn::ImplItem::Const(own) => (&own.ident, own.expr.to_token_stream()),
+        _ => panic!("what traits have no other items"),
+    };
+    (name.to_string(), tokens.to_string())
+}
+
+/// Asserts that a scene that uses these parts has what the model has that was declared with them alone.
+fn assert_same(body: &str, [forces, impacts]: [&str; 2], uses: &str) {
+    let plain = format!("P {{ {body} forces {{ {forces} }} impacts {{ {impacts} }} }}");
+    let all = format!("forces {{ {DRAG} {DAMPING} }} impacts {{ {LID} {SIDES} }}");
+    let scene = format!("P {{ {body} {all} scenes {{ only: {uses} projection, volume; }} }}");
+    for [type_name, plain_name] in [["Only", "P"], ["OnlyGlobal", "PGlobal"]] {
+        if plain_name == "PGlobal" && body == TWISTED {
+            continue;
+        }
+        // A scene holds the model, whose parameters are one step further away.
+        let own: Implemented = implemented(&scene, type_name)
+            .into_iter()
+            .filter(|((name, _), _)| name != "InvariantVolume")
+            .map(|(name, text)| {
+                (
+                    name,
+                    text.replace("self . 0 .", "self .")
+                        .replace("p :: Only", "P"),
+                )
+            })
+            .collect();
+        assert_eq!(own, implemented(&plain, plain_name), "{uses}");
+    }
+}
+
+#[test]
+fn a_scene_has_the_code_of_a_model_with_nothing_else() {
+    for body in [BLADE, TWISTED] {
+        assert_same(body, ["", ""], "");
+        assert_same(body, [DRAG, ""], "drag,");
+        assert_same(body, ["", SIDES], "side,");
+        assert_same(body, [DAMPING, LID], "lid, damping,");
+        assert_same(
+            body,
+            [&format!("{DRAG}{DAMPING}"), SIDES],
+            "damping, drag, side[2], side[i in 1..=1],",
+        );
+    }
+}
+
+dalembert::model! {
+    /// A point that is thrown, with drag and a motor, between two walls.
+    pub Thrown {
+        coordinates { x; y; }
+        parameters { m > 0 = 2; c >= 0 = 0.5; f = 3; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2);
+        forces { drag: -c*dot(x)*d(x) - c*dot(y)*d(y); motor: f*d(x); }
+        impacts { left: x + 1 >= 0; right: 1 - x >= 0 => newton(0.5); }
+        scenes {
+            /// Straight lines.
+            free;
+            slowed: drag;
+            walls: left, right;
+            slowed_right: slowed, right, volume;
+        }
+        initial { dot(x) = 1; until = 10; }
+        claims { not conserved: energy; }
+        claims for free { conserved: energy; conserved: dot(x); }
+        claims for walls { conserved under left: energy; not conserved under right: energy; }
+    }
+}
+
+dalembert::model! {
+    /// A blade in global form, on a line that the projection keeps.
+    Guided {
+        coordinates { x; y; theta: angle; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(theta)^2)/2;
+        constraints { line: dot(y) = 0; knife: sin(theta)*d(x) - cos(theta)*d(y) = x*d(theta); }
+        scenes { bare; kept: projection; }
+        initial { dot(x) = 1; theta = 0.3; until = 1; }
+    }
+}
+
+/// A run of a system with the effects it comes with.
+fn run<S: Described + Scene>(system: &S, until: f64) -> (S::State, Outcome, u64) {
+    let initial = system.initial();
+    let state = system
+        .state(0.0, &initial.q, &initial.qdot)
+        .expect("a state");
+    let stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
+    let run = Simulation::new(system, stepper, system.effects())
+        .run(0.0, state, until, &mut ())
+        .expect("a start");
+    (run.state, run.outcome, run.counters.impacts)
+}
+
+#[test]
+fn a_scene_moves_under_what_it_uses() {
+    let thrown = Thrown {
+        f: -1.0,
+        ..Thrown::default()
+    };
+    let (state, outcome, impacts) = run(&thrown::Free(thrown), 10.0);
+    assert_eq!((outcome, impacts), (Outcome::Done, 0));
+    assert!((state.as_slice()[0] - 10.0).abs() < 1e-12);
+    // x = m v/c (1 - exp(-c t/m))
+    let (state, _, impacts) = run(&thrown::Slowed(thrown), 10.0);
+    assert_eq!(impacts, 0);
+    assert!((state.as_slice()[0] - 4.0 * (1.0 - (-2.5_f64).exp())).abs() < 1e-11);
+    // Elastic on the left, half the speed from the right: 1, 1 + 2/0.5, 5 + 2/0.5, ..
+    let (state, _, impacts) = run(&thrown::Walls(thrown), 9.5);
+    assert_eq!(impacts, 3);
+    assert!((state.as_slice()[0] - 0.875).abs() < 1e-12, "{state:?}");
+    let (_, _, impacts) = run(&thrown::SlowedRight(thrown), 10.0);
+    assert_eq!(impacts, 1);
+}
+
+/// Compiles where the effects of a scene are these.
+fn has_effects<S: Scene<Effects = Effects>, Effects>(_: &S) {}
+
+#[test]
+fn what_a_scene_leaves_out_is_no_part_of_its_effects() {
+    let thrown = Thrown::default();
+    has_effects::<_, ()>(&thrown::Free(thrown));
+    has_effects::<_, (Impacts<thrown::Walls>,)>(&thrown::Walls(thrown));
+    let guided = Guided {};
+    has_effects::<_, ()>(&guided::Bare(guided));
+    has_effects::<_, (Projection<guided::Kept>,)>(&guided::Kept(guided));
+    has_effects::<_, (Projection<Guided>,)>(&guided);
+}
+
+#[test]
+fn densities_are_there_where_they_are_asked_for() {
+    let scene = thrown::SlowedRight::default();
+    let state = scene
+        .state(0.0, &[0.0, 0.0].into(), &[1.0, 0.0].into())
+        .expect("a state");
+    // -2 c/m
+    assert!((scene.divergence(0.0, &state).expect("a divergence") + 0.5).abs() < 1e-15);
+    let source = Thrown::DESCRIPTION.source;
+    let has = |scene: &str| {
+        let all = implemented(source, scene);
+        all.keys()
+            .any(|(name, _)| name == "Divergence" || name == "InvariantVolume")
+    };
+    assert!(has("SlowedRight") && has("Thrown"));
+    assert!(!has("Free") && !has("Slowed") && !has("Walls"));
+    let wide = source.replace("slowed_right :", "w : volume ; slowed_right :");
+    let wide = match wide == source {
+        true => source.replace("slowed_right:", "w: volume; slowed_right:"),
+        false => wide,
+    };
+    let all = implemented(&wide, "W");
+    assert!(
+        all.keys().any(|(name, _)| name == "InvariantVolume"),
+        "dx dy dvx dvy"
+    );
+}
+
+/// What a model shows of its scenes.
+#[derive(Default)]
+struct Shown(Vec<(&'static str, Vec<&'static str>, Vec<&'static str>)>);
+
+impl SceneVisitor for Shown {
+    fn visit<S>(&mut self, name: &'static str)
+    where
+        S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static,
+    {
+        let surfaces = S::DESCRIPTION.surfaces.iter();
+        let surfaces = surfaces.map(|surface| surface.name).collect();
+        self.0
+            .push((name, S::DESCRIPTION.forces.to_vec(), surfaces));
+    }
+}
+
+#[test]
+fn a_model_shows_its_scenes() {
+    let mut shown = Shown::default();
+    Thrown::visit_scenes(&mut shown);
+    let expected: [(&str, &[&str], &[&str]); 4] = [
+        ("free", &[], &[]),
+        ("slowed", &["drag"], &[]),
+        ("walls", &[], &["left", "right"]),
+        ("slowed_right", &["drag"], &["right"]),
+    ];
+    let shown: Vec<(&str, &[&str], &[&str])> = shown
+        .0
+        .iter()
+        .map(|(name, forces, surfaces)| (*name, forces.as_slice(), surfaces.as_slice()))
+        .collect();
+    assert_eq!(shown, expected);
+    let names = ["all", "free", "slowed", "walls", "slowed_right"];
+    assert_eq!(Thrown::DESCRIPTION.scenes, names);
+    assert_eq!(thrown::Free::DESCRIPTION.scenes, names);
+    assert_eq!(thrown::slowed_right::surface::right, 0);
+    assert_eq!(thrown::surface::right, 1);
+}
+
+#[test]
+fn a_claim_about_a_scene_is_examined_there() {
+    let refusal = |claims: &str| {
+        let source = format!(
+            "P {{ coordinates {{ x; }} parameters {{ c > 0; }} lagrangian = dot(x)^2/2;
+                forces {{ drag: -c*dot(x)*d(x); }} impacts {{ floor: x >= 0; }}
+                scenes {{ free; slowed: drag; floored: floor; }} {claims} }}"
+        );
+        let refused = dalembert_codegen::try_expand(source.parse().expect("tokens"));
+        refused.err().map(|errors| {
+            let messages = errors.iter().map(|own| own.message().to_owned());
+            messages.collect::<Vec<_>>().join("\n")
+        })
+    };
+    let proved = "claims for free { conserved: dot(x); } claims for floored { conserved under floor: energy; }
+        claims for slowed { not conserved: energy; } claims { not conserved: energy; }";
+    assert_eq!(refusal(proved), None);
+    let text =
+        refusal("claims for slowed { conserved: energy; } claims for free { density: none; }");
+    let text = text.expect("two refusals");
+    assert!(text.contains("`conserved: energy` is refuted"), "{text}");
+    assert!(text.contains("`density: none` is refuted"), "{text}");
+    let text = refusal("claims for slowed { conserved under floor: energy; }").expect("a refusal");
+    assert!(
+        text.contains("the scene `slowed` does not use the surface `floor`"),
+        "{text}"
+    );
+}
+
+/// What a command line prints, as JSON.
+fn printed(line: &str, input: &str) -> serde_json::Value {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let done = dalembert(&words, input);
+    assert_eq!(done.exit, Exit::Reached, "{line}: {}", done.errors);
+    serde_json::from_str(&done.output).expect("JSON")
+}
+
+#[test]
+fn the_command_line_runs_prints_and_derives_a_scene() {
+    let run = printed(
+        "simulate rolling_disk --scene free --until 200 --json -",
+        "",
+    );
+    assert_eq!(run["scene"], "free");
+    assert_eq!(run["events"], serde_json::json!([]));
+    let state = r#"[{"q": [0, 0, 0, 0], "qdot": [0.1, 0, 10, 0.2]}]"#;
+    let whole = printed("eval rolling_disk", state);
+    let free = printed("eval rolling_disk --scene free", state);
+    assert_eq!(free[0]["pdot"], whole[0]["pdot"]);
+    for name in [
+        "density_form_theta",
+        "divergence_mu_C",
+        "log_density",
+        "mu_C_density_frame",
+    ] {
+        assert!(!whole[0][name].is_null(), "{name} in {whole}");
+        assert!(free[0][name].is_null(), "{name} in {free}");
+    }
+    assert_eq!(free[0]["impacts"], serde_json::json!({}));
+    let whole = printed("derive rolling_disk --format json", "").to_string();
+    let free = printed("derive rolling_disk --scene free --format json", "").to_string();
+    let mentions = |text: &str, part: &str| text.contains(part);
+    assert!(mentions(&whole, "leading_edge") && !mentions(&free, "leading_edge"));
+    let checked = printed("check rolling_disk --format json", "");
+    assert_eq!(checked["scenes"], serde_json::json!(["all", "free"]));
+    let claims = checked["claims"].as_array().expect("claims");
+    let of_free = claims.iter().filter(|claim| claim["scene"] == "free");
+    let of_free: Vec<_> = of_free.map(|claim| claim["claim"].clone()).collect();
+    assert_eq!(of_free, ["conserved: dot(theta)"]);
+}
