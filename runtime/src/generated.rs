@@ -75,6 +75,18 @@ pub fn independent_constraint(
     }
 }
 
+/// Below this ratio of a pivot of the constraint mass matrix to the entry it comes from more than six digits are lost.
+const LEAST_PIVOT_RATIO: f64 = 1e-6;
+
+/// `pivot > LEAST_PIVOT_RATIO * diagonal`, or the fault of a dependent constraint.
+#[inline(always)]
+pub fn regular_mass(constraint: usize, pivot: f64, diagonal: f64) -> Result<(), Fault> {
+    match pivot > LEAST_PIVOT_RATIO * diagonal {
+        true => Ok(()),
+        false => Err(singular_constraint(constraint, pivot, diagonal)),
+    }
+}
+
 /// As [`independent_constraint`], or the fault of a frame that is singular.
 #[inline(always)]
 pub fn independent_form(quasi: usize, squared: f64, reference: f64) -> Result<(), Fault> {

@@ -196,6 +196,14 @@ impl<'a> Writer<'a> {
                 };
                 quote!(::dalembert::__private::independent_constraint(#constraint, #squared, #reference)?;)
             }
+            Guard::Mass {
+                constraint,
+                pivot,
+                diagonal,
+            } => {
+                let (pivot, diagonal) = (at(pivot), at(diagonal));
+                quote!(::dalembert::__private::regular_mass(#constraint, #pivot, #diagonal)?;)
+            }
             Guard::Frame {
                 quasi,
                 squared,

@@ -71,6 +71,9 @@ fn holds(guard: &Guard, values: &[f64]) -> bool {
             reference: Some(reference),
             ..
         } => values[squared.index()] > Guard::LEAST_SQUARED_RATIO * values[reference.index()],
+        Guard::Mass {
+            pivot, diagonal, ..
+        } => values[pivot.index()] > Guard::LEAST_PIVOT_RATIO * values[diagonal.index()],
     }
 }
 

@@ -5,8 +5,9 @@ use dalembert_expr::{ExprId, Sign, SymbolId};
 
 use super::builder::Builder;
 use super::expression::Expressions;
-use super::linear::{Ldlt, Orthogonal};
-use super::{Form, Function, Guard, Input, Value};
+use super::linear::Ldlt;
+use super::mass::ConstraintFactors;
+use super::{Form, Function, Input, Value};
 use crate::mechanics::Derivation;
 use crate::mechanics::constraint::regular_minor;
 use crate::model::Model;
@@ -53,7 +54,7 @@ pub struct Kernel<'a> {
     expressions: Expressions<'a>,
     arguments: Arguments,
     ldlt: Option<Ldlt>,
-    orthogonal: Option<Orthogonal>,
+    constraint_factors: Option<ConstraintFactors>,
     qdot: Option<Vec<Value>>,
     multipliers: Option<Vec<Value>>,
     /// `X_i`
@@ -72,7 +73,7 @@ impl<'a> Kernel<'a> {
             expressions: Expressions::new(&model.pool),
             arguments,
             ldlt: None,
-            orthogonal: None,
+            constraint_factors: None,
             qdot: None,
             multipliers: None,
             frame_fields: None,
@@ -284,7 +285,7 @@ impl<'a> Kernel<'a> {
         regular_minor(&self.model.pool, &self.derivation.constraints)
     }
 
-    fn orthogonalise(&mut self, which: &[usize]) -> Orthogonal {
+    fn factor_constraints(&mut self, which: &[usize]) -> ConstraintFactors {
         let mut columns = Vec::new();
         for &a in which {
             let form = self.derivation.constraints[a].form.clone();
@@ -293,27 +294,21 @@ impl<'a> Kernel<'a> {
         }
         let independent = self.regular_minor().is_some();
         self.with_ldlt(|builder, ldlt| {
-            Orthogonal::factor(builder, ldlt, columns, |index, squared, reference| {
-                Guard::Constraint {
-                    constraint: which[index],
-                    squared,
-                    reference: reference.filter(|_| !independent),
-                }
-            })
+            ConstraintFactors::factor(builder, ldlt, columns, which, independent)
         })
     }
 
     /// Runs `work` with the factors of all constraint forms.
     pub fn with_constraints<T>(
         &mut self,
-        work: impl FnOnce(&mut Builder, &Ldlt, &Orthogonal) -> T,
+        work: impl FnOnce(&mut Builder, &Ldlt, &ConstraintFactors) -> T,
     ) -> T {
-        let factors = match self.orthogonal.take() {
+        let factors = match self.constraint_factors.take() {
             Some(factors) => factors,
-            None => self.orthogonalise(&(0..self.constraints()).collect::<Vec<_>>()),
+            None => self.factor_constraints(&(0..self.constraints()).collect::<Vec<_>>()),
         };
         let result = self.with_ldlt(|builder, ldlt| work(builder, ldlt, &factors));
-        self.orthogonal = Some(factors);
+        self.constraint_factors = Some(factors);
         result
     }
 
@@ -325,7 +320,7 @@ impl<'a> Kernel<'a> {
 
     /// As [`Kernel::constraint_solve`] with `b = 0`, for some of the constraints only.
     pub fn partial_solve(&mut self, which: &[usize], s: &[Value]) -> Vec<Value> {
-        let factors = self.orthogonalise(which);
+        let factors = self.factor_constraints(which);
         let zero = self.builder.zero();
         let y = vec![zero; self.dimension()];
         self.with_ldlt(|builder, ldlt| factors.solve(builder, ldlt, y, s))

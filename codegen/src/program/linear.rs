@@ -7,7 +7,8 @@
 //! `m^{ab} = <C_a, C_b>`. Modified Gram-Schmidt without square roots gives `C = Q U`, `U` unit upper triangular,
 //! `<Q_a, Q_b> = n_a delta_ab`, hence `m = U^T diag(n) U` although `m` is never formed: forming it would square
 //! the condition number and lose every digit when forms are nearly dependent. The right-hand side is
-//! orthogonalised as a further column, which makes the solve backward stable (Bjorck, BIT 7 (1967)).
+//! orthogonalised as a further column, which makes the solve backward stable (Bjorck, BIT 7 (1967)). Many constraints
+//! that meet few others are the exception: see [`super::mass`].
 
 use super::builder::Builder;
 use super::{Guard, Value};
@@ -26,6 +27,19 @@ pub struct Ldlt {
 impl Ldlt {
     /// Factorises; `metric[i][j]` for `j <= i`. `positive[i]`: whether `metric[i][i]` is known to be positive.
     pub fn factor(builder: &mut Builder, metric: &[Vec<Value>], positive: &[bool]) -> Self {
+        Self::factor_guarded(builder, metric, |builder, i, value| {
+            if !(positive[i] && value == metric[i][i]) {
+                builder.guard(Guard::Pivot { pivot: i, value });
+            }
+        })
+    }
+
+    /// Factorises; `guard` is told each pivot before it is divided by.
+    pub fn factor_guarded(
+        builder: &mut Builder,
+        metric: &[Vec<Value>],
+        guard: impl Fn(&mut Builder, usize, Value),
+    ) -> Self {
         let n = metric.len();
         let mut below: Vec<Vec<Value>> = Vec::with_capacity(n);
         let mut pivots: Vec<Value> = Vec::with_capacity(n);
@@ -47,12 +61,7 @@ impl Ldlt {
             for j in 0..i {
                 pivot = builder.sub_product(pivot, scaled[j], row[j]);
             }
-            if !(positive[i] && pivot == metric[i][i]) {
-                builder.guard(Guard::Pivot {
-                    pivot: i,
-                    value: pivot,
-                });
-            }
+            guard(builder, i, pivot);
             inverse_pivots.push(builder.reciprocal(pivot));
             pivots.push(pivot);
             below.push(row);

@@ -13,6 +13,7 @@ pub mod jet;
 pub mod kernel;
 pub mod linear;
 pub mod lower;
+pub mod mass;
 pub mod recipes;
 pub mod reduced;
 pub mod schedule;
@@ -112,6 +113,16 @@ pub enum Guard {
         /// Squared norm before; `None` where independence was proved.
         reference: Option<Value>,
     },
+    /// `pivot > least * diagonal`, else `SingularConstraint`; a pivot of the constraint mass matrix and the diagonal
+    /// entry it comes from.
+    Mass {
+        /// Number of the constraint.
+        constraint: usize,
+        /// The pivot.
+        pivot: Value,
+        /// The entry of the matrix.
+        diagonal: Value,
+    },
     /// As [`Guard::Constraint`] for the form of a quasi-velocity, else `SingularFrame`.
     Frame {
         /// Number of the quasi-velocity.
@@ -135,6 +146,9 @@ impl Guard {
     /// `4 * 2^-52`, where the projected form consists of rounding errors only.
     pub const LEAST_SQUARED_RATIO: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
 
+    /// Below this ratio of a pivot of the constraint mass matrix to its entry the solve loses more than six digits.
+    pub const LEAST_PIVOT_RATIO: f64 = 1e-6;
+
     /// The values the guard reads.
     pub fn operands(&self) -> impl Iterator<Item = Value> {
         let (first, second) = match *self {
@@ -145,6 +159,9 @@ impl Guard {
             | Self::Frame {
                 squared, reference, ..
             } => (squared, reference),
+            Self::Mass {
+                pivot, diagonal, ..
+            } => (pivot, Some(diagonal)),
             Self::Surface { squared, .. } => (squared, None),
         };
         core::iter::once(first).chain(second)

@@ -78,6 +78,15 @@ fn map_guard(guard: Guard, map: impl Fn(Value) -> Value) -> Guard {
             squared: map(squared),
             reference: reference.map(map),
         },
+        Guard::Mass {
+            constraint,
+            pivot,
+            diagonal,
+        } => Guard::Mass {
+            constraint,
+            pivot: map(pivot),
+            diagonal: map(diagonal),
+        },
         Guard::Surface { surface, squared } => Guard::Surface {
             surface,
             squared: map(squared),

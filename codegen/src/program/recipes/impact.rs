@@ -202,7 +202,7 @@ pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues
     let rest = match kernel.constraints() {
         0 => free.clone(),
         _ => kernel.with_constraints(|builder, ldlt, factors| {
-            factors.reduce(builder, ldlt, free.clone()).1
+            factors.project(builder, ldlt, free.clone())
         }),
     };
     let (compliances, direction) = kernel.with_ldlt(|builder, ldlt| {

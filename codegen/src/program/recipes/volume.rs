@@ -62,7 +62,7 @@ fn log_volume(kernel: &mut Kernel<'_>, volume: &Volume) -> Value {
 fn term_value(kernel: &mut Kernel<'_>, term: Term, minor: &[usize]) -> Value {
     match term {
         Term::MassDeterminant => {
-            let squares = kernel.with_constraints(|_, _, factors| factors.squares.clone());
+            let squares = kernel.with_constraints(|_, _, factors| factors.squares().to_vec());
             sum_of_logarithms(kernel, &squares)
         }
         Term::MetricDeterminant => log_metric_determinant(kernel),

@@ -1,0 +1,307 @@
+//! The constraint mass matrix `m^{ab} = eta^a(W^b)` itself, factorised where it is sparse.
+//!
+//! In a long chain each constraint meets two others: `m` is tridiagonal and its factors take O(M) operations, while
+//! orthogonal columns fill up. The price is that the condition number of the forms enters squared, so pivots are watched:
+//! `d_a/m^{aa}` is the squared sine of the angle between a form and those eliminated before it, and its reciprocal bounds
+//! how many times rounding errors grow there. Below [`Guard::LEAST_PIVOT_RATIO`] the function ends with
+//! `SingularConstraint` where orthogonalisation would still go on.
+//!
+//! Constraints are eliminated in the order of minimum degree (Tinney and Walker, Proc. IEEE 55 (1967)).
+
+use super::builder::Builder;
+use super::linear::{Ldlt, Orthogonal};
+use super::{Guard, Value};
+
+/// Constraints below which orthogonalisation is always taken: what it costs more is small.
+const LEAST: usize = 8;
+
+/// How the system of the constraint forms is solved.
+#[derive(Debug)]
+pub enum ConstraintFactors {
+    /// By orthogonal columns.
+    Orthogonal(Orthogonal),
+    /// By the factors of `m^{ab}`.
+    Sparse(SparseMass),
+}
+
+/// The factors of `m^{ab}` in an order that keeps them sparse.
+#[derive(Debug)]
+pub struct SparseMass {
+    /// `C_a = L^{-1} eta^a`
+    columns: Vec<Vec<Value>>,
+    /// The constraint that is eliminated at each place.
+    order: Vec<usize>,
+    /// The factors, by place.
+    factors: Ldlt,
+}
+
+impl ConstraintFactors {
+    /// Factorises the columns `C_a = L^{-1} eta^a`, whose constraints are numbered `which`; `independent`: whether
+    /// their forms are known to be.
+    pub fn factor(
+        builder: &mut Builder,
+        metric: &Ldlt,
+        columns: Vec<Vec<Value>>,
+        which: &[usize],
+        independent: bool,
+    ) -> Self {
+        if let Some(order) = sparse_order(builder, &columns) {
+            return Self::Sparse(SparseMass::factor(builder, metric, columns, order, which));
+        }
+        let guard = |index: usize, squared, reference: Option<Value>| Guard::Constraint {
+            constraint: which[index],
+            squared,
+            reference: reference.filter(|_| !independent),
+        };
+        Self::Orthogonal(Orthogonal::factor(builder, metric, columns, guard))
+    }
+
+    /// Numbers whose product is `det m^{ab}`.
+    pub fn squares(&self) -> &[Value] {
+        match self {
+            Self::Orthogonal(own) => &own.squares,
+            Self::Sparse(own) => &own.factors.pivots,
+        }
+    }
+
+    /// What is left of `y` without its components along the columns.
+    pub fn project(&self, builder: &mut Builder, metric: &Ldlt, y: Vec<Value>) -> Vec<Value> {
+        match self {
+            Self::Orthogonal(own) => own.reduce(builder, metric, y).1,
+            Self::Sparse(own) => own.project(builder, metric, y),
+        }
+    }
+
+    /// The `lambda` with `m lambda = -(C^T D^{-1} y + s)`.
+    pub fn solve(
+        &self,
+        builder: &mut Builder,
+        metric: &Ldlt,
+        y: Vec<Value>,
+        s: &[Value],
+    ) -> Vec<Value> {
+        match self {
+            Self::Orthogonal(own) => own.solve(builder, metric, y, s),
+            Self::Sparse(own) => {
+                let products = own.products(builder, metric, &y);
+                let sums: Vec<Value> = products
+                    .iter()
+                    .zip(s)
+                    .map(|(&product, &s)| builder.add(product, s))
+                    .collect();
+                let solution = own.solve(builder, &sums);
+                solution.into_iter().map(|own| builder.neg(own)).collect()
+            }
+        }
+    }
+
+    /// `m_ab`
+    pub fn inverse_mass(&self, builder: &mut Builder) -> Vec<Vec<Value>> {
+        match self {
+            Self::Orthogonal(own) => own.inverse_mass(builder),
+            Self::Sparse(own) => own.inverse(builder),
+        }
+    }
+}
+
+impl SparseMass {
+    fn factor(
+        builder: &mut Builder,
+        metric: &Ldlt,
+        columns: Vec<Vec<Value>>,
+        order: Vec<usize>,
+        which: &[usize],
+    ) -> Self {
+        let mass: Vec<Vec<Value>> = (0..order.len())
+            .map(|i| {
+                let entries = order[..=i].iter();
+                entries
+                    .map(|&b| metric.inner(builder, &columns[order[i]], &columns[b]))
+                    .collect()
+            })
+            .collect();
+        let guard = |builder: &mut Builder, place: usize, pivot: Value| {
+            builder.guard(Guard::Mass {
+                constraint: which[order[place]],
+                pivot,
+                diagonal: mass[place][place],
+            });
+        };
+        let factors = Ldlt::factor_guarded(builder, &mass, guard);
+        Self {
+            columns,
+            order,
+            factors,
+        }
+    }
+
+    /// `C^T D^{-1} y`
+    fn products(&self, builder: &mut Builder, metric: &Ldlt, y: &[Value]) -> Vec<Value> {
+        let columns = self.columns.iter();
+        columns
+            .map(|column| metric.inner(builder, column, y))
+            .collect()
+    }
+
+    /// `m^{-1} r`
+    fn solve(&self, builder: &mut Builder, r: &[Value]) -> Vec<Value> {
+        let placed: Vec<Value> = self.order.iter().map(|&a| r[a]).collect();
+        let solution = self.factors.solve(builder, &placed);
+        let mut result = vec![builder.zero(); r.len()];
+        for (&a, value) in self.order.iter().zip(solution) {
+            result[a] = value;
+        }
+        result
+    }
+
+    fn project(&self, builder: &mut Builder, metric: &Ldlt, y: Vec<Value>) -> Vec<Value> {
+        let products = self.products(builder, metric, &y);
+        let weights = self.solve(builder, &products);
+        let mut rest = y;
+        for (column, &weight) in self.columns.iter().zip(&weights) {
+            for (entry, &component) in rest.iter_mut().zip(column) {
+                *entry = builder.sub_product(*entry, weight, component);
+            }
+        }
+        rest
+    }
+
+    fn inverse(&self, builder: &mut Builder) -> Vec<Vec<Value>> {
+        let m = self.order.len();
+        let unit = |builder: &mut Builder, a: usize| -> Vec<Value> {
+            let entries = (0..m).map(|b| builder.integer(i64::from(a == b)));
+            entries.collect()
+        };
+        let mut rows: Vec<Vec<Value>> = (0..m)
+            .map(|a| {
+                let unit = unit(builder, a);
+                self.solve(builder, &unit)
+            })
+            .collect();
+        // Of the two roundings of an entry one is taken, so that the matrix is symmetric.
+        for a in 0..m {
+            for b in 0..a {
+                rows[b][a] = rows[a][b];
+            }
+        }
+        rows
+    }
+}
+
+/// The order of elimination, if the factors of `m` take less than half of what orthogonal columns take.
+fn sparse_order(builder: &Builder, columns: &[Vec<Value>]) -> Option<Vec<usize>> {
+    if columns.len() < LEAST {
+        return None;
+    }
+    let patterns: Vec<Vec<bool>> = columns
+        .iter()
+        .map(|column| column.iter().map(|&own| !builder.is_zero(own)).collect())
+        .collect();
+    let (order, sparse) = minimum_degree(&patterns);
+    (2 * sparse < orthogonal_work(&patterns)).then_some(order)
+}
+
+/// How many components two columns have in common.
+fn common(a: &[bool], b: &[bool]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| **a && **b).count()
+}
+
+/// How many components a column has.
+fn entries(column: &[bool]) -> usize {
+    common(column, column)
+}
+
+/// Products that the modified Gram-Schmidt method makes of columns with these components and of one right-hand side that
+/// has all of them.
+fn orthogonal_work(patterns: &[Vec<bool>]) -> usize {
+    let mut filled: Vec<Vec<bool>> = Vec::new();
+    let mut work = 0;
+    for pattern in patterns {
+        let mut pattern = pattern.clone();
+        work += 2 * entries(&pattern);
+        for earlier in &filled {
+            let shared = common(earlier, &pattern);
+            if shared > 0 {
+                work += 2 * shared + entries(earlier);
+                for (own, &other) in pattern.iter_mut().zip(earlier) {
+                    *own |= other;
+                }
+            }
+        }
+        // Its square, and the component of the right-hand side along it, taken off.
+        work += 5 * entries(&pattern);
+        filled.push(pattern);
+    }
+    work
+}
+
+/// The order in which the constraint with fewest neighbours comes next, and the products of the factorisation of `m` in
+/// it and of one solve, those of the entries of `m` among them.
+fn minimum_degree(patterns: &[Vec<bool>]) -> (Vec<usize>, usize) {
+    let m = patterns.len();
+    let mut meets: Vec<Vec<bool>> = patterns
+        .iter()
+        .map(|own| {
+            patterns
+                .iter()
+                .map(|other| common(own, other) > 0)
+                .collect()
+        })
+        .collect();
+    let mut work = 0;
+    for (a, own) in patterns.iter().enumerate() {
+        let products: usize = patterns[..=a].iter().map(|other| common(own, other)).sum();
+        work += 2 * (products + entries(own));
+    }
+    let mut left: Vec<usize> = (0..m).collect();
+    let mut order = Vec::with_capacity(m);
+    while !left.is_empty() {
+        let degree = |a: usize| left.iter().filter(|b| **b != a && meets[a][**b]).count();
+        // The first of those with fewest: the order is the same for every build.
+        let Some(place) = (0..left.len()).min_by_key(|place| degree(left[*place])) else {
+            break;
+        };
+        let next = left.remove(place);
+        let neighbours: Vec<usize> = left.iter().copied().filter(|b| meets[next][*b]).collect();
+        work += 1 + neighbours.len() * (neighbours.len() + 7) / 2;
+        for &a in &neighbours {
+            for &b in &neighbours {
+                meets[a][b] = true;
+            }
+        }
+        order.push(next);
+    }
+    (order, work)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns with ones at these components.
+    fn patterns(size: usize, columns: &[&[usize]]) -> Vec<Vec<bool>> {
+        let column = |own: &&[usize]| (0..size).map(|i| own.contains(&i)).collect();
+        columns.iter().map(column).collect()
+    }
+
+    #[test]
+    fn a_chain_takes_work_in_proportion_to_its_length() {
+        let work = |links: usize| {
+            let columns: Vec<Vec<usize>> = (0..links).map(|a| vec![a, a + 1]).collect();
+            let columns: Vec<&[usize]> = columns.iter().map(Vec::as_slice).collect();
+            let patterns = patterns(links + 1, &columns);
+            (minimum_degree(&patterns).1, orthogonal_work(&patterns))
+        };
+        let (short, long) = (work(16), work(32));
+        assert!(long.0 - short.0 <= 16 * 16, "{short:?} {long:?}");
+        assert!(long.1 > 3 * short.1, "{short:?} {long:?}");
+    }
+
+    #[test]
+    fn the_middle_of_a_star_is_eliminated_last() {
+        let patterns = patterns(4, &[&[0, 1, 2, 3], &[0], &[1], &[2], &[3]]);
+        let (order, _) = minimum_degree(&patterns);
+        // With one neighbour left the middle counts as much as what is left beside it.
+        assert_eq!(order[..3], [1, 2, 3]);
+    }
+}
