@@ -1,6 +1,8 @@
 //! The command line's grammar. What it accepts is an interface; values are checked where they are used,
 //! because only there is it known which names the model has.
 
+mod ensemble;
+
 use std::path::PathBuf;
 
 use clap::builder::ValueParser;
@@ -13,6 +15,7 @@ use dalembert::integrate::{
 };
 
 use crate::scalar;
+pub use ensemble::EnsembleArgs;
 
 /// Derive, evaluate and simulate mechanical systems declared with `dalembert::model!`.
 #[derive(Debug, Parser)]
@@ -42,6 +45,9 @@ pub enum Command {
     /// Run a model from a state to an end time or a number of impacts.
     #[command(after_help = SIMULATE_EXAMPLES)]
     Simulate(Box<SimulateArgs>),
+    /// Run many members of one scene: initial states and parameters on a grid, at random or from a file.
+    #[command(after_help = ensemble::EXAMPLES)]
+    Ensemble(Box<EnsembleArgs>),
     /// Measure what accuracy costs: error, work and time of every integrator over tolerances.
     #[command(after_help = ACCURACY_EXAMPLES)]
     Accuracy(Box<AccuracyArgs>),
@@ -401,12 +407,9 @@ pub struct RunArgs {
     pub projection: Option<Switch>,
 }
 
-/// `simulate`
+/// The integrator of a run, and what ends it before its time.
 #[derive(Debug, Args)]
-pub struct SimulateArgs {
-    /// The run.
-    #[command(flatten)]
-    pub run: RunArgs,
+pub struct CourseArgs {
     /// Stop after this many impacts. Without --until the run may then take up to 3600 units of time, or the
     /// model's `until` if that is longer, to get there.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
@@ -420,6 +423,20 @@ pub struct SimulateArgs {
     /// Relative error allowed per step, between 1e-15 and 0.1.
     #[arg(long, value_name = "X", default_value = "1e-10", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
     pub tol: f64,
+    /// Stop after this many steps, with the outcome `step_budget`.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
+    pub steps: Option<u64>,
+}
+
+/// `simulate`
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// The run.
+    #[command(flatten)]
+    pub run: RunArgs,
+    /// Its integrator and its end.
+    #[command(flatten)]
+    pub course: CourseArgs,
     /// Measure the error of the run against a reference as exact as `f64` allows, which takes three more runs.
     #[arg(long)]
     pub verify: bool,

@@ -9,6 +9,7 @@ use dalembert::integrate::{
     Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4, Gauss6, Method, Rk4, Stepper,
     Taylor, Tolerance,
 };
+use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
     Event, Hold, Observer, Outcome, Policies, Run, SceneEffects, Segment, Simulation, StateVector,
 };
@@ -26,6 +27,8 @@ pub(crate) struct Settings {
     pub tol: f64,
     /// The step of an integrator of fixed step, where the flags say.
     pub step: Option<f64>,
+    /// Stop after this many steps.
+    pub steps: Option<u64>,
     pub until: f64,
     /// Stop after this many impacts.
     pub impacts: Option<u64>,
@@ -198,7 +201,8 @@ fn run<M: Model, S: Stepper<M>>(
     let laws = (0..M::DESCRIPTION.surfaces.len())
         .map(|surface| effects.law(model, surface))
         .collect();
-    let mut simulation = Simulation::new(model, stepper, effects);
+    let budget = settings.steps.unwrap_or(STEP_BUDGET);
+    let mut simulation = Simulation::new(model, stepper, effects).with_step_budget(budget);
     let run = simulation
         .run(0.0, *state, settings.until, &mut observer)
         .map_err(|error| error.to_string())?;
@@ -331,7 +335,7 @@ fn name(mut names: impl Iterator<Item = &'static str>, index: usize) -> Value {
         .map_or_else(|| Value::from(index), Value::from)
 }
 
-fn counters(counters: &Counters) -> Vec<(&'static str, u64)> {
+pub(crate) fn counters(counters: &Counters) -> Vec<(&'static str, u64)> {
     vec![
         ("rate_evaluations", counters.rate_evaluations),
         ("expansions", counters.expansions),

@@ -30,6 +30,7 @@ mod catalogue;
 mod command;
 pub mod drift;
 mod driver;
+mod ensemble;
 mod entry;
 mod error;
 mod exit;
@@ -135,6 +136,7 @@ fn dispatch(
         Command::Derive(args) => command::derive::run(models, args, streams.output),
         Command::Check(args) => command::check::run(models, args, streams.output),
         Command::Simulate(args) => command::simulate::run(models, args, streams),
+        Command::Ensemble(args) => command::ensemble::run(models, args, streams),
         Command::Accuracy(args) => command::accuracy::run(models, args, streams),
         Command::Eval(args) => command::eval::run(models, args, streams),
         Command::Stability(args) => command::stability::run(catalogue.suite(), args, streams),

@@ -90,6 +90,52 @@ impl Steps {
     }
 }
 
+/// How many members of an ensemble are done; shown after a second.
+pub struct Count {
+    done: u64,
+    members: u64,
+    started: Option<Instant>,
+    bar: Option<ProgressBar>,
+}
+
+impl Count {
+    /// Progress through so many members; shown only if `terminal`.
+    pub fn new(members: u64, terminal: bool) -> Self {
+        Self {
+            done: 0,
+            members,
+            started: terminal.then(Instant::now),
+            bar: None,
+        }
+    }
+
+    /// One more is done; so many of all did not reach their end.
+    pub fn done(&mut self, strayed: u64) {
+        self.done += 1;
+        let Some(started) = self.started else { return };
+        let seconds = started.elapsed().as_secs_f64();
+        if seconds < 1.0 {
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(|| new_bar(self.members));
+        // The bar itself does not draw more often than a terminal can show.
+        bar.set_position(self.done);
+        let rate = self.done as f64 / seconds;
+        let left = (self.members - self.done) as f64 / rate;
+        bar.set_message(format!(
+            "{} of {} members, {strayed} did not reach their end, {left:.0} s left",
+            self.done, self.members
+        ));
+    }
+
+    /// Removes the bar.
+    pub fn finish(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 fn new_bar(parts: u64) -> ProgressBar {
     let bar = ProgressBar::new(parts);
     // The template is a constant; should indicatif refuse it, its default style does as well.

@@ -67,7 +67,8 @@ pub struct Recorder {
 }
 
 impl Tally {
-    fn count(&mut self, impact: &Impact) {
+    /// Counts an impact.
+    pub fn count(&mut self, impact: &Impact) {
         if self.per_surface.len() <= impact.surface {
             self.per_surface.resize(impact.surface + 1, 0);
         }

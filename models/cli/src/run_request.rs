@@ -1,11 +1,11 @@
-//! From the flags that `simulate` and `accuracy` share to the settings of a run.
+//! From the flags that `simulate`, `ensemble` and `accuracy` share to the settings of a run.
 
 use dalembert::describe::Description;
 use dalembert::impacts::law::Law;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use crate::args::{Form, Integrator, OffConstraint, RunArgs, Switch};
+use crate::args::{CourseArgs, Form, Integrator, OffConstraint, RunArgs, Switch};
 use crate::driver::Settings;
 use crate::entry::AnyModel;
 use crate::error::CliError;
@@ -15,9 +15,9 @@ use crate::{names, scalar};
 /// The time a run with `--impacts` alone may take, unless the model's own `until` is longer.
 const IMPACT_HORIZON: f64 = 3600.0;
 
-/// Refuses outputs that exclude each other: the paths of `--csv`, `--json` and `--plot`.
-pub fn check_outputs(paths: [&Option<PathBuf>; 3]) -> Result<(), CliError> {
-    if let Some(path) = paths[2]
+/// Refuses a picture that is no SVG.
+pub fn check_plot(path: Option<&Path>) -> Result<(), CliError> {
+    if let Some(path) = path
         && path
             .extension()
             .is_none_or(|extension| !extension.eq_ignore_ascii_case("svg"))
@@ -28,6 +28,12 @@ pub fn check_outputs(paths: [&Option<PathBuf>; 3]) -> Result<(), CliError> {
             "a file name that ends in .svg",
         ));
     }
+    Ok(())
+}
+
+/// Refuses outputs that exclude each other: the paths of `--csv`, `--json` and `--plot`.
+pub fn check_outputs(paths: [&Option<PathBuf>; 3]) -> Result<(), CliError> {
+    check_plot(paths[2].as_deref())?;
     let clash =
         |first: usize, second: usize| paths[first].is_some() && paths[first] == paths[second];
     if clash(0, 1) || clash(0, 2) || clash(1, 2) {
@@ -41,6 +47,26 @@ pub fn check_outputs(paths: [&Option<PathBuf>; 3]) -> Result<(), CliError> {
 /// Whether a table or a document goes to the standard output, which then holds nothing else.
 pub fn uses_stdout(paths: [&Option<PathBuf>; 2]) -> bool {
     paths.into_iter().flatten().any(|path| is_stdout(path))
+}
+
+/// How a run is to be made by the integrator of the flags, until the end they say.
+pub fn course(
+    model: &dyn AnyModel,
+    run: &RunArgs,
+    course: &CourseArgs,
+) -> Result<Settings, CliError> {
+    if course.step.is_some() && course.integrator.is_adaptive() {
+        return Err(CliError::Usage(
+            "--step: dop853, dopri5 and taylor choose their steps by --tol; a step needs --integrator rk4, gauss4, gauss6, dla2 \
+             or dla4",
+        ));
+    }
+    let integrator = (course.integrator, course.tol);
+    Ok(Settings {
+        step: course.step,
+        steps: course.steps,
+        ..settings(model, run, course.impacts, integrator)?
+    })
 }
 
 /// How a run is to be made: by this integrator at this tolerance, until the time or the number of impacts that is asked
@@ -61,6 +87,7 @@ pub fn settings(
         integrator,
         tol,
         step: None,
+        steps: None,
         until: horizon(model, args.until, impacts)?,
         impacts,
         laws: laws(model, &args.law)?,

@@ -64,6 +64,14 @@ pub fn positive(text: &str) -> Result<f64, String> {
     within(text, |value| value > 0.0, "a positive number")
 }
 
+/// A number that is not negative.
+///
+/// # Errors
+/// What is expected.
+pub fn nonnegative(text: &str) -> Result<f64, String> {
+    within(text, |value| value >= 0.0, "a number that is not negative")
+}
+
 /// An error tolerance.
 ///
 /// # Errors

@@ -1,5 +1,7 @@
 //! From flags to a model with its parameters, and to the state a run starts from.
 
+use dalembert::StateError;
+
 use crate::args::{ModelArgs, OffConstraint, StateArgs};
 use crate::entry::{AnyModel, Entry, Origin, Rates, Start};
 use crate::error::CliError;
@@ -60,68 +62,137 @@ fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
 /// # Errors
 /// Anything about the flags, or why the system refuses the state.
 pub fn initial_state(model: &dyn AnyModel, args: &StateArgs) -> Result<Origin, CliError> {
-    let policy = args.off_constraint;
-    let vector = |flag: &str, text: &str| numbers(model, flag, text);
-    let (place, origin) = match (&args.q, &args.qdot, &args.p) {
-        (Some(q), Some(qdot), None) => {
-            let (q, qdot) = (vector("--q", q)?, vector("--qdot", qdot)?);
-            let rates = Rates::Velocities(qdot);
-            ("--q, --qdot", Origin { q, rates, policy })
-        }
-        (Some(q), None, Some(p)) => {
-            let (q, p) = (vector("--q", q)?, vector("--p", p)?);
-            let rates = Rates::Momenta(p);
-            ("--q, --p", Origin { q, rates, policy })
-        }
-        (None, None, None) => return named_state(model, &args.initial, policy),
-        (Some(_), ..) => return Err(CliError::Usage("--q needs --qdot or --p")),
-        (None, ..) => return Err(CliError::Usage("--qdot and --p need --q")),
-    };
-    match model.state(0.0, &origin) {
-        Ok(_) => Ok(origin),
-        Err(error) => Err(CliError::state(place, &model.description(), error)),
-    }
+    let beginning = Beginning::of(model, args)?;
+    let refuse = |error| CliError::state(beginning.place(args), &model.description(), error);
+    beginning.settle(model, args.off_constraint).map_err(refuse)
 }
 
-/// The model's `initial` with some changes `name=value`; velocities that nobody names follow from the constraints.
+/// The model's own `initial`; velocities that it does not name follow from the constraints.
 ///
 /// # Errors
-/// Anything about the changes, or why the system refuses the state.
-pub fn named_state(
-    model: &dyn AnyModel,
-    changes: &[String],
-    policy: OffConstraint,
-) -> Result<Origin, CliError> {
-    let mut start = model.initial();
-    for change in changes
-        .iter()
-        .flat_map(|list| list.split(','))
-        .filter(|change| !change.trim().is_empty())
-    {
-        apply_change(model, &mut start, change)?;
+/// Why the system refuses the state.
+pub fn declared_state(model: &dyn AnyModel) -> Result<Origin, CliError> {
+    Beginning::Named(model.initial())
+        .settle(model, OffConstraint::Error)
+        .map_err(|error| CliError::state(DECLARED, &model.description(), error))
+}
+
+/// Where a state without flags comes from.
+const DECLARED: &str = "the model's `initial`";
+
+/// A state before it is checked; single numbers of it may still be changed.
+#[derive(Debug, Clone)]
+pub enum Beginning {
+    /// The model's `initial`, with changes; velocities that nobody named follow from the constraints.
+    Named(Start),
+    /// Every number is given.
+    Given {
+        /// Positions.
+        q: Vec<f64>,
+        /// Velocities or momenta.
+        rates: Rates,
+    },
+}
+
+impl Beginning {
+    /// What the flags say.
+    ///
+    /// # Errors
+    /// Anything about the flags.
+    pub fn of(model: &dyn AnyModel, args: &StateArgs) -> Result<Self, CliError> {
+        let vector = |flag: &str, text: &str| numbers(model, flag, text);
+        let (q, rates) = match (&args.q, &args.qdot, &args.p) {
+            (Some(q), Some(qdot), None) => {
+                let q = vector("--q", q)?;
+                (q, Rates::Velocities(vector("--qdot", qdot)?))
+            }
+            (Some(q), None, Some(p)) => (vector("--q", q)?, Rates::Momenta(vector("--p", p)?)),
+            (None, None, None) => return Self::named(model, &args.initial),
+            (Some(_), ..) => return Err(CliError::Usage("--q needs --qdot or --p")),
+            (None, ..) => return Err(CliError::Usage("--qdot and --p need --q")),
+        };
+        Ok(Self::Given { q, rates })
     }
-    let place = if changes.is_empty() {
-        "the model's `initial`"
-    } else {
-        "--initial"
-    };
-    let refuse = |error| CliError::state(place, &model.description(), error);
-    let (qdot, policy) = match model.complete_velocity(&start.q, &start.qdot, &start.named) {
-        // Completed velocities satisfy the constraints; a residual of the state is rounding on the way through
-        // the momenta, which can be all there is of a constraint whose terms vanish here.
-        Ok(qdot) => (qdot, OffConstraint::Keep),
-        Err(error) if policy == OffConstraint::Error => return Err(refuse(error)),
-        // The named velocities contradict the constraints, and that is for the policy to settle.
-        Err(_) => (start.qdot, policy),
-    };
-    let origin = Origin {
-        q: start.q,
-        rates: Rates::Velocities(qdot),
-        policy,
-    };
-    match model.state(0.0, &origin) {
-        Ok(_) => Ok(origin),
-        Err(error) => Err(refuse(error)),
+
+    /// The model's `initial` with some changes `name=value`.
+    fn named(model: &dyn AnyModel, changes: &[String]) -> Result<Self, CliError> {
+        let mut start = model.initial();
+        for change in changes
+            .iter()
+            .flat_map(|list| list.split(','))
+            .filter(|change| !change.trim().is_empty())
+        {
+            apply_change(model, &mut start, change)?;
+        }
+        Ok(Self::Named(start))
+    }
+
+    /// Sets a coordinate.
+    pub fn set_position(&mut self, index: usize, value: f64) {
+        match self {
+            Self::Named(start) => start.q[index] = value,
+            Self::Given { q, .. } => q[index] = value,
+        }
+    }
+
+    /// Sets a velocity. Where momenta are given there are none to set, and nothing changes.
+    pub fn set_velocity(&mut self, index: usize, value: f64) {
+        match self {
+            Self::Named(start) => {
+                start.qdot[index] = value;
+                start.named[index] = true;
+            }
+            Self::Given {
+                rates: Rates::Velocities(qdot),
+                ..
+            } => qdot[index] = value,
+            Self::Given { .. } => {}
+        }
+    }
+
+    /// The state, complete and checked.
+    ///
+    /// # Errors
+    /// Why the system refuses it.
+    pub fn settle(
+        &self,
+        model: &dyn AnyModel,
+        policy: OffConstraint,
+    ) -> Result<Origin, StateError> {
+        let (q, rates, policy) = match self {
+            Self::Given { q, rates } => (q, rates.clone(), policy),
+            Self::Named(start) => {
+                let completed = model.complete_velocity(&start.q, &start.qdot, &start.named);
+                let (qdot, policy) = match completed {
+                    // Completed velocities satisfy the constraints; a residual of the state is rounding on the way
+                    // through the momenta, which can be all there is of a constraint whose terms vanish here.
+                    Ok(qdot) => (qdot, OffConstraint::Keep),
+                    Err(error) if policy == OffConstraint::Error => return Err(error),
+                    // The named velocities contradict the constraints, and that is for the policy to settle.
+                    Err(_) => (start.qdot.clone(), policy),
+                };
+                (&start.q, Rates::Velocities(qdot), policy)
+            }
+        };
+        let origin = Origin {
+            q: q.clone(),
+            rates,
+            policy,
+        };
+        model.state(0.0, &origin).map(|_| origin)
+    }
+
+    /// The flags it comes from, for messages.
+    fn place(&self, args: &StateArgs) -> &'static str {
+        match self {
+            Self::Named(_) if args.initial.is_empty() => DECLARED,
+            Self::Named(_) => "--initial",
+            Self::Given {
+                rates: Rates::Velocities(_),
+                ..
+            } => "--q, --qdot",
+            Self::Given { .. } => "--q, --p",
+        }
     }
 }
 

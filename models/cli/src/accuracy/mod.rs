@@ -209,6 +209,7 @@ pub fn measure<M: Model>(scene: &M, state: &M::State, plan: &Plan) -> Result<Stu
         integrator: Integrator::Taylor,
         tol: FINEST[0],
         step: None,
+        steps: None,
         until: plan.until,
         impacts: None,
         laws: Vec::new(),
@@ -386,6 +387,7 @@ fn reference<M: Model>(model: &M, state: &M::State, base: &Settings) -> Result<R
             integrator: Integrator::Taylor,
             tol,
             step: None,
+            steps: None,
             ..base.clone()
         };
         track(model, state, &settings)

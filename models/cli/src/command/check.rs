@@ -7,13 +7,13 @@ use dalembert_codegen::claims::{Finding, Verdict};
 use dalembert_codegen::report::{self, Item, Section};
 use serde_json::{Value, json};
 
-use crate::args::{CheckArgs, Format, OffConstraint};
+use crate::args::{CheckArgs, Format};
 use crate::entry::{AnyModel, Entry};
 use crate::error::{CliError, fault_text};
 use crate::exit::Exit;
 use crate::json::{Document, number};
 use crate::names;
-use crate::state_input::{find_model, named_state};
+use crate::state_input::{declared_state, find_model};
 
 /// One thing that was looked at: what, and what is wrong with it.
 struct Check {
@@ -82,7 +82,7 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
     if model.check_parameters().is_err() {
         return checks;
     }
-    let initial = named_state(model, &[], OffConstraint::Error);
+    let initial = declared_state(model);
     let failure = initial.as_ref().err().map(CliError::to_string);
     checks.push(Check {
         subject: "the initial state is admissible",

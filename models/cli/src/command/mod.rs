@@ -3,6 +3,7 @@
 pub mod accuracy;
 pub mod check;
 pub mod derive;
+pub mod ensemble;
 pub mod eval;
 pub mod list;
 pub mod simulate;

@@ -39,7 +39,7 @@ pub fn run(
 ) -> Result<Exit, CliError> {
     run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
     let model = build_model(models, &args.run.model)?;
-    let settings = settings(model.as_ref(), args)?;
+    let settings = run_request::course(model.as_ref(), &args.run, &args.course)?;
     let origin = initial_state(model.as_ref(), &args.run.state)?;
     // Opened before the run: a path that cannot be written is better known at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
@@ -85,22 +85,6 @@ pub fn run(
         Exit::Reached
     } else {
         Exit::Other
-    })
-}
-
-/// How the run is to be made.
-fn settings(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Settings, CliError> {
-    if args.step.is_some() && args.integrator.is_adaptive() {
-        return Err(CliError::Usage(
-            "--step: dop853, dopri5 and taylor choose their steps by --tol; a step needs --integrator rk4, gauss4, gauss6, dla2 \
-             or dla4",
-        ));
-    }
-    let settings =
-        run_request::settings(model, &args.run, args.impacts, (args.integrator, args.tol))?;
-    Ok(Settings {
-        step: args.step,
-        ..settings
     })
 }
 

@@ -2,12 +2,13 @@
 
 mod canvas;
 pub mod contour;
+pub mod density;
 mod history;
 mod legend;
 pub mod logarithmic;
 mod portrait;
 mod region;
-mod style;
+pub mod style;
 pub mod trace;
 pub mod work;
 

@@ -6,6 +6,7 @@
 mod accuracy;
 mod check;
 mod derive;
+mod ensemble;
 mod eval;
 mod hostile;
 mod list;

@@ -1,0 +1,33 @@
+//! A density as CSV: a cell a row.
+
+use std::io::{self, Write};
+
+use crate::ensemble::density::{Counts, Density};
+use crate::table;
+
+/// Writes the middle of every cell, how many states were in it, and the density there: their share of all that were in
+/// any, divided by the area of the cell.
+///
+/// # Errors
+/// Whatever the stream says.
+pub fn write(output: &mut dyn Write, density: &Density, counts: &Counts) -> io::Result<()> {
+    let total = counts.total();
+    let all = total.iter().sum::<u64>() as f64;
+    let [x, y] = &density.axes;
+    table::write_rows(output, |writer| {
+        writer.write_record([&x.name, &y.name, "count", "density"])?;
+        for (cell, &count) in total.iter().enumerate() {
+            let middle = |axis: &crate::ensemble::density::Axis, bin: usize| {
+                0.5 * (axis.edge(bin) + axis.edge(bin + 1))
+            };
+            let share = if count == 0 { 0.0 } else { count as f64 / all };
+            writer.write_record([
+                format!("{:?}", middle(x, cell % x.bins)),
+                format!("{:?}", middle(y, cell / x.bins)),
+                count.to_string(),
+                format!("{:?}", share / density.cell_area()),
+            ])?;
+        }
+        Ok(())
+    })
+}

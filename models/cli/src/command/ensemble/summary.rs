@@ -1,0 +1,171 @@
+//! An ensemble in a few lines of text.
+
+use std::io::{self, Write};
+
+use super::Finished;
+use crate::ensemble::density::{Checkpoint, Counts, Density};
+use crate::error::counted;
+use crate::names;
+
+/// Writes the summary.
+///
+/// # Errors
+/// Whatever the stream says.
+pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
+    let Finished {
+        tally, settings, ..
+    } = finished;
+    writeln!(output, "{}", title(finished))?;
+    let outcomes = tally.outcomes.iter();
+    let outcomes: Vec<String> = outcomes
+        .map(|(kind, count)| format!("{kind} {count}"))
+        .collect();
+    writeln!(output, "  outcomes    {}", outcomes.join(", "))?;
+    for strayed in &tally.first_strayed {
+        let reason = match strayed.reason.as_str() {
+            "" => String::new(),
+            reason => format!(" ({reason})"),
+        };
+        writeln!(
+            output,
+            "              member {}: {}{reason}",
+            strayed.member, strayed.outcome
+        )?;
+    }
+    let told = tally.first_strayed.len() as u64;
+    if tally.strayed > told {
+        writeln!(output, "              and {} more", tally.strayed - told)?;
+    }
+    writeln!(output, "  impacts     {}", impacts(finished))?;
+    writeln!(
+        output,
+        "  energy      largest change {:.1e}, relative {:.1e}",
+        tally.energy_change, tally.relative_change
+    )?;
+    writeln!(
+        output,
+        "  integrator  {}, {} form, tol {:e}",
+        settings.integrator.name(),
+        settings.form.name(),
+        settings.tol
+    )?;
+    writeln!(output, "  time        {}", time(finished))?;
+    match &finished.density {
+        Some((density, counts, checkpoints)) => write_density(output, density, counts, checkpoints),
+        None => Ok(()),
+    }
+}
+
+/// The model, its scene and the number of members.
+pub fn title(finished: &Finished<'_>) -> String {
+    let name = finished.model.description().name;
+    let scene = finished.metadata["scene"].as_str().unwrap_or("all");
+    let members = counted(finished.tally.members as usize, "member");
+    match scene {
+        "all" => format!("{name}, {members}"),
+        scene => format!("{name}, scene {scene}, {members}"),
+    }
+}
+
+/// What stands under the title of a picture.
+pub fn caption(finished: &Finished<'_>, checkpoints: &[Checkpoint]) -> String {
+    let Some((density, counts, _)) = &finished.density else {
+        return String::new();
+    };
+    let states: u64 = counts.total().iter().sum();
+    let mut text = format!("{states} states, every {} of time", density.every);
+    if density.discard > 0.0 {
+        text += &format!(" from {}", density.discard);
+    }
+    if let Some(last) = checkpoints.last() {
+        text += "; distance of halves";
+        if !last.over_time.is_nan() {
+            text += &format!(" of time {:.3}", last.over_time);
+        }
+        if !last.over_members.is_nan() {
+            text += &format!(", of members {:.3}", last.over_members);
+        }
+        text += &format!(", of independent states {:.3}", last.independent);
+    }
+    text
+}
+
+fn impacts(finished: &Finished<'_>) -> String {
+    let description = finished.model.description();
+    let impacts = &finished.tally.impacts;
+    if impacts.is_empty() {
+        return "none: the model has no surfaces".to_owned();
+    }
+    let each = names::surfaces(&description).zip(impacts);
+    let each: Vec<String> = each
+        .map(|(name, count)| format!("{name} {count}"))
+        .collect();
+    format!("{} ({})", impacts.iter().sum::<u64>(), each.join(", "))
+}
+
+fn time(finished: &Finished<'_>) -> String {
+    let seconds = finished.elapsed.as_secs_f64();
+    let ran = finished.tally.members - finished.kept;
+    let mut text = format!(
+        "{seconds:.2} s on {}, {:.0} members per second",
+        counted(finished.threads as usize, "thread"),
+        ran as f64 / seconds
+    );
+    if finished.kept > 0 {
+        text += &format!(
+            " ({} were there)",
+            counted(finished.kept as usize, "member")
+        );
+    }
+    text
+}
+
+fn write_density(
+    output: &mut dyn Write,
+    density: &Density,
+    counts: &Counts,
+    checkpoints: &[Checkpoint],
+) -> io::Result<()> {
+    let [x, y] = &density.axes;
+    let states: u64 = counts.total().iter().sum();
+    writeln!(
+        output,
+        "  density     {states} states over {} in [{}, {}) and {} in [{}, {}), {} x {} cells",
+        x.name, x.range[0], x.range[1], y.name, y.range[0], y.range[1], x.bins, y.bins
+    )?;
+    if counts.outside() > 0 {
+        writeln!(
+            output,
+            "              {} more outside of it: give the ranges, as in --density {}=A..B,{}=A..B",
+            counts.outside(),
+            x.name,
+            y.name
+        )?;
+    }
+    writeln!(
+        output,
+        "\n  total variation distance between the densities of two halves (1 if they have nothing in common)\n  \
+         {:>6} {:>12} {:>9} {:>9} {:>12}",
+        "part", "states", "time", "members", "independent"
+    )?;
+    for it in checkpoints {
+        let distance = |value: f64| match value.is_nan() {
+            true => "-".to_owned(),
+            false => format!("{value:.4}"),
+        };
+        writeln!(
+            output,
+            "  {:>6} {:>12} {:>9} {:>9} {:>12}",
+            format!("1/{}", (1.0 / it.part).round()),
+            it.samples,
+            distance(it.over_time),
+            distance(it.over_members),
+            distance(it.independent)
+        )?;
+    }
+    writeln!(
+        output,
+        "  independent: what as many states that do not depend on each other would show; more says that the density has not \
+         converged"
+    )
+}

@@ -1,0 +1,142 @@
+//! Whether a density has converged: the total variation distance, half of the sum of absolute differences, between the
+//! densities of two halves of the states.
+
+use super::Counts;
+use super::counts::CLASSES;
+
+/// The halves of a part of all states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Checkpoint {
+    /// The part: 1/16, 1/8, .. 1.
+    pub part: f64,
+    /// How many states are in it.
+    pub samples: u64,
+    /// The distance between its earlier and its later half; NaN where one is empty.
+    pub over_time: f64,
+    /// The distance between two halves of its members; NaN where one is empty.
+    pub over_members: f64,
+    /// The mean distance between halves of as many states that are independent of each other, with the density of all.
+    pub independent: f64,
+}
+
+/// The checkpoints, from the smallest part.
+pub fn convergence(counts: &Counts) -> Vec<Checkpoint> {
+    let total = counts.total();
+    let all: u64 = total.iter().sum();
+    let cells = total.len();
+    (0..CLASSES - 1)
+        .rev()
+        .map(|class| {
+            let over_time = halves(|class| &counts.of_time(class)[..cells], class);
+            let over_members = halves(|class| &counts.of_members(class)[..cells], class);
+            let samples = over_time.samples;
+            Checkpoint {
+                part: 1.0 / (1_u64 << class) as f64,
+                samples,
+                over_time: over_time.distance,
+                over_members: over_members.distance,
+                independent: expected(&total, all, samples),
+            }
+        })
+        .collect()
+}
+
+struct Halves {
+    samples: u64,
+    distance: f64,
+}
+
+/// A class is the later half of it and all that follow.
+fn halves<'a>(of: impl Fn(usize) -> &'a [u64], class: usize) -> Halves {
+    let later = of(class);
+    let mut earlier = vec![0; later.len()];
+    for class in class + 1..CLASSES {
+        let counts = earlier.iter_mut().zip(of(class));
+        counts.for_each(|(sum, count)| *sum += count);
+    }
+    let sums = [&earlier[..], later].map(|counts| counts.iter().sum::<u64>());
+    let [first, second] = sums.map(|sum| sum as f64);
+    let pairs = earlier.iter().zip(later);
+    let differences =
+        pairs.map(|(&one, &other)| (one as f64 / first - other as f64 / second).abs());
+    Halves {
+        samples: sums[0] + sums[1],
+        distance: 0.5 * differences.sum::<f64>(),
+    }
+}
+
+/// The mean distance between the densities of two samples of `samples/2` states each, drawn independently from the density
+/// `total/all`: the counts of a cell are nearly Poisson.
+fn expected(total: &[u64], all: u64, samples: u64) -> f64 {
+    let half = 0.5 * samples as f64;
+    let means = total
+        .iter()
+        .filter(|&&count| count > 0)
+        .map(|&count| half * count as f64 / all as f64);
+    0.5 * means.map(mean_difference).sum::<f64>() / half
+}
+
+/// The mean of `abs(X - Y)` for independent Poisson numbers of this mean: `z e^-z (I_0(z) + I_1(z))` with `z` twice the
+/// mean and `I` the modified Bessel functions.
+fn mean_difference(mean: f64) -> f64 {
+    let z = 2.0 * mean;
+    if z > 30.0 {
+        // The sum of the asymptotic series of both, which errs by less than 1e-6 here.
+        let inverse = 1.0 / z;
+        let series = 2.0 - inverse * (0.25 + inverse * (0.046_875 + inverse * 0.029_296_875));
+        return z * series / (core::f64::consts::TAU * z).sqrt();
+    }
+    let half = 0.5 * z;
+    let (mut term, mut sum) = (1.0, 0.0);
+    for k in 0..200 {
+        let k = f64::from(k);
+        // (z/2)^2k/k!^2 of I_0, and the same times (z/2)/(k + 1) of I_1.
+        sum += term * (1.0 + half / (k + 1.0));
+        term *= (half / (k + 1.0)).powi(2);
+        if term < 1e-17 * sum {
+            break;
+        }
+    }
+    z * (-z).exp() * sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mean by summing over both numbers.
+    fn direct(mean: f64) -> f64 {
+        let mut weights = vec![(-mean).exp()];
+        for k in 1..200 {
+            weights.push(weights[k - 1] * mean / k as f64);
+        }
+        let mut sum = 0.0;
+        for (i, first) in weights.iter().enumerate() {
+            for (j, second) in weights.iter().enumerate() {
+                sum += (i as f64 - j as f64).abs() * first * second;
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn mean_differences_of_poisson_numbers() {
+        for mean in [1e-3, 0.5, 3.0, 14.0, 16.0, 40.0] {
+            let (got, right) = (mean_difference(mean), direct(mean));
+            assert!(
+                (got / right - 1.0).abs() < 2e-6,
+                "{mean}: {got} for {right}"
+            );
+        }
+    }
+
+    #[test]
+    fn halves_that_have_nothing_in_common_are_at_distance_1() {
+        let classes = [[0, 8], [4, 0], [2, 0], [1, 0], [1, 0], [0, 0]];
+        let all = halves(|class| &classes[class][..], 0);
+        assert_eq!((all.samples, all.distance), (16, 1.0));
+        let half = halves(|class| &classes[class][..], 1);
+        assert_eq!((half.samples, half.distance), (8, 0.0));
+        assert!(halves(|class| &classes[class][..], 4).distance.is_nan());
+    }
+}

@@ -1,0 +1,303 @@
+//! The file that rows are appended to while members are run, and from which a run that was cut off goes on.
+//!
+//! Beside `FILE` stand `FILE.meta.json`, which says of what ensemble the rows are, and, while a density is counted,
+//! `FILE.counts`: the counts of the first so many members. What is kept after a cut are the rows that are complete, of
+//! which counts are known.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use serde_json::{Map, Value};
+
+use super::density::Counts;
+use super::row::{Columns, Field, Row};
+use crate::error::CliError;
+
+/// Time between two looks of somebody who watches the file, and what a cut loses at most of it.
+const FLUSH: Duration = Duration::from_secs(1);
+
+/// Time between two writings of counts.
+const SAVE: Duration = Duration::from_secs(10);
+
+/// The file, open.
+pub struct Journal {
+    flag: &'static str,
+    path: PathBuf,
+    writer: BufWriter<File>,
+    flushed: Instant,
+    saved: Instant,
+}
+
+/// The path with something appended to its name.
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(ending);
+    PathBuf::from(name)
+}
+
+impl Journal {
+    /// Begins a file.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn create(
+        flag: &'static str,
+        path: &Path,
+        columns: &Columns,
+        metadata: &Map<String, Value>,
+    ) -> Result<Self, CliError> {
+        let created = || {
+            let file = File::create(path)?;
+            let mut text = serde_json::to_string_pretty(metadata)?;
+            text.push('\n');
+            replace(&beside(path, ".meta.json"), text.as_bytes())?;
+            remove(&beside(path, ".counts"))?;
+            let mut journal = Self::over(flag, path, file);
+            journal.writer.write_all(&columns.header())?;
+            journal.writer.flush()?;
+            Ok(journal)
+        };
+        created().map_err(|source| failed(flag, path, source))
+    }
+
+    /// Opens a file that was begun, shows `see` the rows that are kept, and says how many they are. `None` where there is
+    /// nothing to keep; rows that were shown then do not count.
+    ///
+    /// # Errors
+    /// It cannot be read or written, or is of another ensemble.
+    pub fn resume(
+        flag: &'static str,
+        path: &Path,
+        columns: &Columns,
+        metadata: &Map<String, Value>,
+        (first_member, counts): (u64, Option<&mut Counts>),
+        see: &mut dyn FnMut(&Row),
+    ) -> Result<Option<(Self, u64)>, CliError> {
+        if !path.exists() {
+            return Ok(None);
+        }
+        let whole = |source| failed(flag, path, source);
+        compare(path, metadata)?;
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .open(path)
+            .map_err(whole)?;
+        let counted = match counts {
+            None => u64::MAX,
+            Some(counts) => load(&beside(path, ".counts"), counts).map_err(whole)?,
+        };
+        let mut scan = Scan::of(&mut file, columns, first_member);
+        let complete = scan.run(counted, see).map_err(whole)?;
+        // Counts cannot be taken back: where rows were lost that they know of, both begin anew.
+        let is_short = counted != u64::MAX && complete.rows < counted;
+        if complete.length == 0 || is_short {
+            return Ok(None);
+        }
+        file.set_len(complete.length).map_err(whole)?;
+        file.seek(SeekFrom::End(0)).map_err(whole)?;
+        Ok(Some((Self::over(flag, path, file), complete.rows)))
+    }
+
+    fn over(flag: &'static str, path: &Path, file: File) -> Self {
+        Self {
+            flag,
+            path: path.to_owned(),
+            writer: BufWriter::with_capacity(1 << 16, file),
+            flushed: Instant::now(),
+            saved: Instant::now(),
+        }
+    }
+
+    /// Appends a row, after which `members` are in the file and counted in `counts`.
+    ///
+    /// # Errors
+    /// Whatever the file says.
+    pub fn append(
+        &mut self,
+        line: &[u8],
+        members: u64,
+        counts: Option<&Counts>,
+    ) -> Result<(), CliError> {
+        let written = self.try_append(line, members, counts);
+        written.map_err(|source| failed(self.flag, &self.path, source))
+    }
+
+    fn try_append(&mut self, line: &[u8], members: u64, counts: Option<&Counts>) -> io::Result<()> {
+        self.writer.write_all(line)?;
+        if self.flushed.elapsed() >= FLUSH {
+            self.writer.flush()?;
+            self.flushed = Instant::now();
+        }
+        match counts {
+            Some(counts) if self.saved.elapsed() >= SAVE => {
+                self.writer.flush()?;
+                save(&beside(&self.path, ".counts"), members, counts)?;
+                self.saved = Instant::now();
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Ends the file, which then is complete.
+    ///
+    /// # Errors
+    /// Whatever the file says.
+    pub fn finish(mut self, members: u64, counts: Option<&Counts>) -> Result<(), CliError> {
+        let finished = self.writer.flush().and_then(|()| match counts {
+            Some(counts) => save(&beside(&self.path, ".counts"), members, counts),
+            None => Ok(()),
+        });
+        finished.map_err(|source| failed(self.flag, &self.path, source))
+    }
+}
+
+fn failed(flag: &'static str, path: &Path, source: io::Error) -> CliError {
+    CliError::File {
+        flag,
+        path: path.to_owned(),
+        source,
+    }
+}
+
+/// Shows all rows of a complete file.
+///
+/// # Errors
+/// Whatever the file says.
+#[cfg(feature = "parquet")]
+pub fn read_rows(
+    path: &Path,
+    columns: &Columns,
+    first_member: u64,
+    see: &mut dyn FnMut(&Row),
+) -> io::Result<()> {
+    let mut file = File::open(path)?;
+    Scan::of(&mut file, columns, first_member)
+        .run(u64::MAX, see)
+        .map(drop)
+}
+
+/// Removes a journal that was not asked for, and what stands beside it.
+///
+/// # Errors
+/// Whatever the system says.
+pub fn discard(path: &Path) -> io::Result<()> {
+    remove(path)?;
+    remove(&beside(path, ".meta.json"))?;
+    remove(&beside(path, ".counts"))
+}
+
+/// Refuses to go on with another ensemble.
+fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
+    let place = beside(path, ".meta.json");
+    let invalid = |reason: String| CliError::Input {
+        place: format!("--resume {}", place.display()),
+        reason,
+    };
+    let text = fs::read(&place).map_err(|source| failed("--resume", &place, source))?;
+    let before: Map<String, Value> =
+        serde_json::from_slice(&text).map_err(|error| invalid(error.to_string()))?;
+    let differs = metadata
+        .iter()
+        .find(|(key, value)| before.get(*key) != Some(value));
+    match differs {
+        None => Ok(()),
+        Some((key, value)) => {
+            let was = before
+                .get(key)
+                .map_or_else(|| "absent".to_owned(), Value::to_string);
+            Err(invalid(format!(
+                "the file is of another ensemble: `{key}` was {was} and is {value}; give the same flags, or leave out --resume \
+                 to begin anew"
+            )))
+        }
+    }
+}
+
+/// The complete rows at the beginning of a file.
+struct Scan<'a> {
+    reader: BufReader<&'a mut File>,
+    columns: &'a Columns,
+    first_member: u64,
+}
+
+/// How much of a file is complete.
+struct Complete {
+    rows: u64,
+    length: u64,
+}
+
+impl<'a> Scan<'a> {
+    fn of(file: &'a mut File, columns: &'a Columns, first_member: u64) -> Self {
+        Self {
+            reader: BufReader::new(file),
+            columns,
+            first_member,
+        }
+    }
+
+    /// Reads up to so many rows; a last one that was cut off is none.
+    fn run(&mut self, most: u64, see: &mut dyn FnMut(&Row)) -> io::Result<Complete> {
+        let mut complete = Complete { rows: 0, length: 0 };
+        let mut line = Vec::new();
+        if !self.next_line(&mut line)? || line != self.columns.header() {
+            return Ok(complete);
+        }
+        complete.length = line.len() as u64;
+        while complete.rows < most && self.next_line(&mut line)? {
+            let Some(row) = self.columns.parse(&line) else {
+                break;
+            };
+            if row.first() != Some(&Field::Integer(self.first_member + complete.rows)) {
+                break;
+            }
+            see(&row);
+            complete.rows += 1;
+            complete.length += line.len() as u64;
+        }
+        Ok(complete)
+    }
+
+    /// Whether there is another line with an end.
+    fn next_line(&mut self, line: &mut Vec<u8>) -> io::Result<bool> {
+        line.clear();
+        self.reader.read_until(b'\n', line)?;
+        Ok(line.ends_with(b"\n"))
+    }
+}
+
+/// Writes a file whole or not at all.
+fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
+    let new = beside(path, ".new");
+    fs::write(&new, content)?;
+    fs::rename(&new, path)
+}
+
+fn remove(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+fn save(path: &Path, members: u64, counts: &Counts) -> io::Result<()> {
+    let mut content = members.to_le_bytes().to_vec();
+    counts.write(&mut content)?;
+    replace(path, &content)
+}
+
+/// How many members the counts are of; 0 where there are none.
+fn load(path: &Path, counts: &mut Counts) -> io::Result<u64> {
+    let mut file = match File::open(path) {
+        Ok(file) => BufReader::new(file),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(0),
+        Err(error) => return Err(error),
+    };
+    let mut members = [0; 8];
+    file.read_exact(&mut members)?;
+    counts.read(&mut file)?;
+    Ok(u64::from_le_bytes(members))
+}

@@ -1,0 +1,267 @@
+//! The members of an ensemble: what each of them starts with.
+
+use std::ops::Range;
+
+use dalembert::describe::Description;
+use serde_json::{Value, json};
+
+use super::fingerprint::fingerprint;
+use super::vary::{self, Asked, Draw, Quantity, Values, Varied};
+use crate::error::CliError;
+
+/// All members, of every shard.
+#[derive(Debug, Clone)]
+pub struct Members {
+    names: Vec<String>,
+    quantities: Vec<Quantity>,
+    source: Source,
+    count: u64,
+}
+
+#[derive(Debug, Clone)]
+enum Source {
+    /// Every value of one meets every value of the others; the last runs fastest.
+    Product {
+        values: Vec<Values>,
+        seed: Option<u64>,
+    },
+    /// Rows one after the other.
+    Listed(Vec<f64>),
+}
+
+impl Members {
+    /// The members of `--vary`, `--members` and `--random`.
+    ///
+    /// # Errors
+    /// What is wrong with a flag.
+    pub fn varied(
+        flags: &[String],
+        members: Option<u64>,
+        seed: Option<u64>,
+        description: &Description,
+    ) -> Result<Self, CliError> {
+        let asked = Asked {
+            members,
+            random: seed.is_some(),
+        };
+        let varied: Result<Vec<Varied>, CliError> = flags
+            .iter()
+            .map(|text| vary::parse(text, description, asked))
+            .collect();
+        let varied = varied?;
+        for (index, (name, quantity, _)) in varied.iter().enumerate() {
+            if varied[..index]
+                .iter()
+                .any(|(_, other, _)| other == quantity)
+            {
+                return Err(CliError::value("--vary", name, "every name once"));
+            }
+        }
+        let product = varied
+            .iter()
+            .try_fold(1_u64, |product, (.., values)| {
+                product.checked_mul(values.count())
+            })
+            .ok_or(CliError::Usage("--vary: more members than can be counted"))?;
+        let count = match (seed, members) {
+            (Some(_), None) => return Err(CliError::Usage("--random needs --members N")),
+            (Some(_), Some(_)) if varied.is_empty() => {
+                return Err(CliError::Usage("--random needs --vary: nothing is drawn"));
+            }
+            (Some(_), Some(count)) => count,
+            (None, Some(count)) if !varied.is_empty() && count != product => {
+                return Err(CliError::value(
+                    "--members",
+                    count.to_string(),
+                    format!("{product}, the product of the counts of --vary"),
+                ));
+            }
+            (None, Some(count)) if varied.is_empty() && count > 1 => {
+                return Err(CliError::Usage(
+                    "--members: nothing differs between them; say what with --vary or --from",
+                ));
+            }
+            (None, _) => product,
+        };
+        let (mut names, mut quantities, mut values) = (Vec::new(), Vec::new(), Vec::new());
+        for (name, quantity, its_values) in varied {
+            names.push(name);
+            quantities.push(quantity);
+            values.push(its_values);
+        }
+        Ok(Self {
+            names,
+            quantities,
+            source: Source::Product { values, seed },
+            count,
+        })
+    }
+
+    /// Members that are listed, a row of values for each.
+    pub fn listed(named: Vec<(String, Quantity)>, rows: Vec<f64>) -> Self {
+        let count = (rows.len() / named.len().max(1)) as u64;
+        let (names, quantities) = named.into_iter().unzip();
+        Self {
+            names,
+            quantities,
+            source: Source::Listed(rows),
+            count,
+        }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The names of what differs.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// What differs.
+    pub fn quantities(&self) -> &[Quantity] {
+        &self.quantities
+    }
+
+    /// The values of a member, in the order of the quantities.
+    pub fn values(&self, member: u64) -> Vec<f64> {
+        let width = self.quantities.len();
+        match &self.source {
+            Source::Listed(rows) => {
+                let first = member as usize * width;
+                rows[first..first + width].to_vec()
+            }
+            Source::Product { values, seed } => {
+                let mut rest = member;
+                let mut row: Vec<f64> = (0..width)
+                    .rev()
+                    .map(|quantity| {
+                        let count = values[quantity].count();
+                        let index = rest % count;
+                        rest /= count;
+                        let draw = Draw {
+                            seed: seed.unwrap_or(0),
+                            member,
+                            quantity: quantity as u32,
+                        };
+                        values[quantity].value(index, draw)
+                    })
+                    .collect();
+                row.reverse();
+                row
+            }
+        }
+    }
+
+    /// What tells these members from others.
+    pub fn metadata(&self) -> Value {
+        match &self.source {
+            Source::Listed(rows) => {
+                let bits: Vec<u8> = rows.iter().flat_map(|value| value.to_le_bytes()).collect();
+                json!({ "count": self.count, "names": self.names, "listed": fingerprint(&bits) })
+            }
+            Source::Product { values, seed } => {
+                let varied = self.names.iter().zip(values);
+                let varied: Vec<Value> = varied.map(|(name, values)| spell(name, values)).collect();
+                json!({ "count": self.count, "varied": varied, "seed": seed })
+            }
+        }
+    }
+}
+
+fn spell(name: &str, values: &Values) -> Value {
+    match values {
+        Values::Spaced { ends, count } => json!({ "name": name, "ends": ends, "count": count }),
+        Values::List(values) => json!({ "name": name, "values": values }),
+        Values::Uniform(ends) => json!({ "name": name, "uniform": ends }),
+        Values::Normal { mean, deviation } => {
+            json!({ "name": name, "mean": mean, "deviation": deviation })
+        }
+    }
+}
+
+/// A block of members.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// Which, from 1.
+    pub index: u64,
+    /// Of how many.
+    pub of: u64,
+}
+
+impl Shard {
+    /// All members in one.
+    pub const WHOLE: Self = Self { index: 1, of: 1 };
+
+    /// `I/N`
+    ///
+    /// # Errors
+    /// Anything else.
+    pub fn parse(text: &str) -> Result<Self, CliError> {
+        let parsed = text.split_once('/').and_then(|(index, of)| {
+            Some(Self {
+                index: index.trim().parse().ok()?,
+                of: of.trim().parse().ok()?,
+            })
+        });
+        parsed
+            .filter(|shard| (1..=shard.of).contains(&shard.index))
+            .ok_or_else(|| CliError::value("--shard", text, "I/N with I from 1 to N, such as 3/8"))
+    }
+
+    /// Its members: blocks differ in length by one at most.
+    pub fn range(self, count: u64) -> Range<u64> {
+        let bound =
+            |index: u64| (u128::from(count) * u128::from(index) / u128::from(self.of)) as u64;
+        bound(self.index - 1)..bound(self.index)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_follow_each_other_without_gap() {
+        for (count, of) in [(10, 3), (2, 5), (0, 2), (u64::MAX, 7)] {
+            let ranges: Vec<_> = (1..=of)
+                .map(|index| Shard { index, of }.range(count))
+                .collect();
+            assert_eq!(ranges[0].start, 0);
+            assert_eq!(ranges[of as usize - 1].end, count);
+            assert!(ranges.windows(2).all(|pair| pair[0].end == pair[1].start));
+        }
+    }
+
+    #[test]
+    fn products_run_through_the_last_first() {
+        let members = Members {
+            names: vec!["x".to_owned(), "e".to_owned()],
+            quantities: vec![Quantity::Position(0), Quantity::Parameter(2)],
+            source: Source::Product {
+                values: vec![
+                    Values::Spaced {
+                        ends: [0.0, 1.0],
+                        count: 3,
+                    },
+                    Values::List(vec![5.0, 7.0]),
+                ],
+                seed: None,
+            },
+            count: 6,
+        };
+        let rows: Vec<_> = (0..6).map(|member| members.values(member)).collect();
+        assert_eq!(
+            rows,
+            [
+                [0.0, 5.0],
+                [0.0, 7.0],
+                [0.5, 5.0],
+                [0.5, 7.0],
+                [1.0, 5.0],
+                [1.0, 7.0]
+            ]
+        );
+    }
+}

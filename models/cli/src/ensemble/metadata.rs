@@ -1,0 +1,118 @@
+//! What tells an ensemble from another, in files.
+
+use clap::ValueEnum;
+use dalembert::describe::Description;
+use serde_json::{Map, Value, json};
+
+use super::fingerprint::fingerprint;
+use super::members::Shard;
+use super::runner::Shared;
+use crate::args::StateArgs;
+use crate::entry::{AnyModel, Rates};
+use crate::error::CliError;
+use crate::json::{named, number};
+use crate::names;
+use crate::state_input::Beginning;
+
+/// Everything that rows and counts depend on. Keys are the same whatever the flags; what was not asked for is `null`.
+///
+/// # Errors
+/// What is wrong with the flags of the state.
+pub fn metadata(
+    model: &dyn AnyModel,
+    shared: &Shared<'_>,
+    shard: Shard,
+) -> Result<Map<String, Value>, CliError> {
+    let description = model.description();
+    let Shared {
+        run,
+        settings,
+        members,
+        density,
+        ..
+    } = shared;
+    let names = description.parameters.iter().map(|it| it.name);
+    let values: Vec<f64> = (0..description.parameters.len())
+        .map(|index| model.parameter(index))
+        .collect();
+    let laws = settings.laws.iter();
+    let laws: Vec<Value> = laws
+        .map(|(surface, law)| {
+            let surface = names::surfaces(&description).nth(*surface);
+            json!({ "surface": surface, "law": law.to_string() })
+        })
+        .collect();
+    let range = shard.range(members.count());
+    let value = json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "model": description.name,
+        "scene": run.model.scene,
+        "model_hash": fingerprint(description.source.as_bytes()),
+        "model_source": description.source,
+        "parameters": named(names, &values),
+        "start": start(model, &description, &run.state)?,
+        "members": members.metadata(),
+        "shard": {
+            "index": shard.index,
+            "of": shard.of,
+            "first": range.start,
+            "members": range.end - range.start,
+        },
+        "form": settings.form.name(),
+        "integrator": settings.integrator.name(),
+        "tol": number(settings.tol),
+        "step": settings.step.map(number),
+        "until": number(settings.until),
+        "impacts": settings.impacts,
+        "steps": settings.steps,
+        "laws": laws,
+        "rest": word(run.policies.rest),
+        "penetration": word(run.policies.penetration),
+        "corner": word(run.policies.corner),
+        "projection": settings.projection,
+        "density": density.map(|density| density.metadata()),
+    });
+    match value {
+        Value::Object(metadata) => Ok(metadata),
+        _ => Ok(Map::new()),
+    }
+}
+
+/// What members start with but for what is varied.
+fn start(
+    model: &dyn AnyModel,
+    description: &Description,
+    args: &StateArgs,
+) -> Result<Value, CliError> {
+    let (q, rates, given) = match Beginning::of(model, args)? {
+        Beginning::Named(start) => {
+            let given = start.named;
+            (start.q, Rates::Velocities(start.qdot), given)
+        }
+        Beginning::Given { q, rates } => {
+            let given = vec![true; q.len()];
+            (q, rates, given)
+        }
+    };
+    let coordinates = || names::coordinates(description);
+    let (kind, rates) = match rates {
+        Rates::Velocities(qdot) => ("qdot", qdot),
+        Rates::Momenta(p) => ("p", p),
+    };
+    // Velocities that nobody names follow from the constraints.
+    let known = coordinates().zip(&rates).zip(given);
+    let known = known
+        .filter(|(_, given)| *given)
+        .map(|((name, &rate), _)| (name.to_owned(), number(rate)));
+    Ok(json!({
+        "q": named(coordinates(), &q),
+        kind: known.collect::<Map<_, _>>(),
+        "off_constraint": word(args.off_constraint),
+    }))
+}
+
+/// A value of a flag as it is written.
+fn word(value: impl ValueEnum) -> Option<String> {
+    let value = value.to_possible_value()?;
+    Some(value.get_name().to_owned())
+}

@@ -1,0 +1,108 @@
+//! Ranges for a density that does not give them: those of a few members, run for a while. They depend on the whole
+//! ensemble, not on the shard.
+
+use super::density::{Axis, Density, Wish, count_samples};
+use super::runner::{Runner, Shared};
+use crate::driver::{Contact, Impact, Piece, Settings, Watch};
+use crate::error::CliError;
+use crate::plot::style;
+
+/// Members that are run.
+const MEMBERS: u64 = 16;
+
+/// Samples of each.
+const SAMPLES: f64 = 256.0;
+
+/// Room beyond what they visited, as a share of it.
+const ROOM: f64 = 0.05;
+
+/// The density that is wished for, with its ranges.
+///
+/// # Errors
+/// There is no time to count in; what is wrong with the flags of the model.
+pub fn density(
+    wish: Wish,
+    shared: Shared<'_>,
+    [every, discard]: [f64; 2],
+) -> Result<Density, CliError> {
+    let until = shared.settings.until;
+    let samples = count_samples(discard, every, until);
+    if samples == 0 {
+        return Err(CliError::Usage(
+            "--density: a run ends before there is anything to count; make --every or --discard smaller, or --until later",
+        ));
+    }
+    let mut axes = wish.axes;
+    if axes.iter().any(|axis| axis.range[0].is_nan()) {
+        let settings = Settings {
+            until: until.min(discard + SAMPLES * every),
+            ..shared.settings.clone()
+        };
+        let shared = Shared {
+            settings: &settings,
+            ..shared
+        };
+        let ranges = visited(shared, &axes, discard)?;
+        for (axis, range) in axes.iter_mut().zip(ranges) {
+            if axis.range[0].is_nan() {
+                axis.range = range;
+            }
+        }
+    }
+    Ok(Density {
+        axes,
+        every,
+        discard,
+        samples,
+    })
+}
+
+/// The ranges of what axes show, over members from the whole of the ensemble.
+fn visited(shared: Shared<'_>, axes: &[Axis; 2], discard: f64) -> Result<[[f64; 2]; 2], CliError> {
+    let mut seen = Seen {
+        axes,
+        discard,
+        extremes: [Vec::new(), Vec::new()],
+    };
+    let mut runner = Runner::new(shared)?;
+    let count = shared.members.count();
+    let some = MEMBERS.min(count);
+    for index in 0..some {
+        let member = u128::from(index) * u128::from(count) / u128::from(some);
+        // How it ends does not matter here: its row will tell.
+        let _ = runner.watched(member as u64, &mut seen);
+    }
+    Ok(seen
+        .extremes
+        .map(|values| style::padded(values.into_iter(), ROOM)))
+}
+
+/// Keeps the least and the greatest value at the ends of steps.
+struct Seen<'a> {
+    axes: &'a [Axis; 2],
+    discard: f64,
+    /// Nothing yet, or both.
+    extremes: [Vec<f64>; 2],
+}
+
+impl Watch for Seen<'_> {
+    fn step(&mut self, piece: &dyn Piece) {
+        let (_, end) = piece.span();
+        if end < self.discard {
+            return;
+        }
+        let point = piece.at(end);
+        for (axis, extremes) in self.axes.iter().zip(&mut self.extremes) {
+            let value = axis.shown.value(&point);
+            if value.is_finite() {
+                let low = extremes.first().map_or(value, |low| low.min(value));
+                let high = extremes.last().map_or(value, |high| high.max(value));
+                *extremes = vec![low, high];
+            }
+        }
+    }
+
+    fn impact(&mut self, _impact: Impact) {}
+
+    fn contact(&mut self, _contact: Contact) {}
+}

@@ -1,0 +1,231 @@
+//! Work on threads whose results come in order.
+//!
+//! Threads take blocks of items as they become free; results that come too early wait. How far threads may run ahead of
+//! the first result that is missing is bounded, and with it what waits.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+
+/// Blocks that each thread may be ahead.
+const AHEAD: u64 = 8;
+
+/// How the work is divided.
+#[derive(Debug, Clone, Copy)]
+pub struct Division {
+    /// Threads.
+    pub threads: u64,
+    /// Items of a block.
+    pub block: u64,
+}
+
+impl Division {
+    /// Blocks of at most `largest` items, of which every thread gets many.
+    pub fn new(items: u64, threads: u64, largest: u64) -> Self {
+        let threads = threads.clamp(1, items.max(1));
+        let block = (items / (threads * 16)).clamp(1, largest.max(1));
+        Self { threads, block }
+    }
+}
+
+/// Works on all items. `prepare` is called once on every thread, `work` for every item, `take` on the calling thread with
+/// every result in the order of the items.
+///
+/// # Errors
+/// The first error of `take`, which ends the work.
+pub fn in_order<W, T: Send, E>(
+    items: Range<u64>,
+    division: Division,
+    prepare: impl Fn() -> W + Sync,
+    work: impl Fn(&mut W, u64) -> T + Sync,
+    mut take: impl FnMut(u64, T) -> Result<(), E>,
+) -> Result<(), E> {
+    let gate = Gate::new(items.clone(), division);
+    thread::scope(|scope| {
+        // Dropped at the end, also of an error: nothing waits for results that nobody takes.
+        let _closing = Closing(&gate);
+        let (sender, receiver) = mpsc::channel();
+        for _ in 0..division.threads {
+            let sender: Sender<(u64, Vec<T>)> = sender.clone();
+            let (gate, prepare, work) = (&gate, &prepare, &work);
+            scope.spawn(move || {
+                let _closing = Closing(gate);
+                let mut worker = prepare();
+                while let Some(block) = gate.next() {
+                    let start = block.start;
+                    let results = block.map(|item| work(&mut worker, item)).collect();
+                    if sender.send((start, results)).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        collect(items.start, &receiver, &gate, &mut take)
+    })
+}
+
+/// Takes results in order until no thread is left.
+fn collect<T, E>(
+    first: u64,
+    receiver: &Receiver<(u64, Vec<T>)>,
+    gate: &Gate,
+    take: &mut impl FnMut(u64, T) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut next = first;
+    let mut early = BTreeMap::new();
+    for (start, results) in receiver {
+        early.insert(start, results);
+        while let Some(results) = early.remove(&next) {
+            for result in results {
+                take(next, result)?;
+                next += 1;
+            }
+            gate.taken(next);
+        }
+    }
+    Ok(())
+}
+
+/// Gives out blocks.
+struct Gate {
+    state: Mutex<State>,
+    moved: Condvar,
+    end: u64,
+    block: u64,
+    /// Items that may be given out before they are taken.
+    ahead: u64,
+}
+
+struct State {
+    /// The first item that was not given out.
+    next: u64,
+    /// The first item whose result was not taken.
+    taken: u64,
+    /// Threads that work, and the one that takes.
+    is_closed: bool,
+}
+
+impl Gate {
+    fn new(items: Range<u64>, division: Division) -> Self {
+        let state = State {
+            next: items.start,
+            taken: items.start,
+            is_closed: false,
+        };
+        Self {
+            state: Mutex::new(state),
+            moved: Condvar::new(),
+            end: items.end,
+            block: division.block,
+            ahead: AHEAD * division.threads * division.block,
+        }
+    }
+
+    /// The next block, once it is not too far ahead.
+    fn next(&self) -> Option<Range<u64>> {
+        let too_early = |state: &mut State| {
+            !state.is_closed && state.next < self.end && state.next - state.taken >= self.ahead
+        };
+        let waited = self.moved.wait_while(self.lock(), too_early);
+        let mut state = waited.unwrap_or_else(PoisonError::into_inner);
+        if state.is_closed || state.next >= self.end {
+            return None;
+        }
+        let start = state.next;
+        state.next = self.end.min(start + self.block);
+        Some(start..state.next)
+    }
+
+    fn taken(&self, taken: u64) {
+        self.lock().taken = taken;
+        self.moved.notify_all();
+    }
+
+    fn close(&self) {
+        self.lock().is_closed = true;
+        self.moved.notify_all();
+    }
+
+    /// The state is whole whenever the lock is free, whoever panicked.
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Ends the work of all when one of them leaves: it has panicked, or there is nothing left to give out.
+struct Closing<'a>(&'a Gate);
+
+impl Drop for Closing<'_> {
+    fn drop(&mut self) {
+        let done = self.0.lock().next >= self.0.end;
+        if !done {
+            self.0.close();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering};
+    use std::time::Duration;
+
+    use super::*;
+
+    fn squares(items: Range<u64>, division: Division) -> Vec<u64> {
+        let mut taken = Vec::new();
+        let take = |item, square| {
+            taken.push(item);
+            taken.push(square);
+            Ok::<(), ()>(())
+        };
+        let done = in_order(items, division, || (), |(), item| item * item, take);
+        assert_eq!(done, Ok(()));
+        taken
+    }
+
+    #[test]
+    fn results_come_in_order_whatever_the_threads() {
+        let expected: Vec<u64> = (5..500).flat_map(|item| [item, item * item]).collect();
+        for threads in [1, 2, 7] {
+            for block in [1, 3, 1000] {
+                assert_eq!(squares(5..500, Division { threads, block }), expected);
+            }
+        }
+        assert!(squares(5..5, Division::new(0, 4, 64)).is_empty());
+    }
+
+    #[test]
+    fn nobody_runs_far_ahead_of_a_slow_item() {
+        let division = Division {
+            threads: 2,
+            block: 1,
+        };
+        let furthest = AtomicU64::new(0);
+        let work = |(): &mut (), item| {
+            if item == 0 {
+                thread::sleep(Duration::from_millis(50));
+                assert!(furthest.load(Ordering::SeqCst) < 2 * AHEAD);
+            }
+            furthest.fetch_max(item, Ordering::SeqCst);
+        };
+        let done = in_order(0..1000, division, || (), work, |_, ()| Ok::<(), ()>(()));
+        assert_eq!((done, furthest.into_inner()), (Ok(()), 999));
+    }
+
+    #[test]
+    fn an_error_ends_the_work() {
+        let worked = AtomicU64::new(0);
+        let work = |(): &mut (), _| worked.fetch_add(1, Ordering::SeqCst);
+        let division = Division {
+            threads: 3,
+            block: 2,
+        };
+        let take = |item, _| if item == 10 { Err("full") } else { Ok(()) };
+        let done = in_order(0..1_000_000, division, || (), work, take);
+        assert_eq!(done, Err("full"));
+        assert!(worked.into_inner() < 100);
+    }
+}

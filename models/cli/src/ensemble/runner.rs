@@ -1,0 +1,204 @@
+//! Runs members, one at a time: whatever happens to one of them is a row of its own.
+
+use std::any::Any;
+use std::borrow::Cow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use dalembert::integrate::Counters;
+
+use super::density::{Density, Sampler, Visits};
+use super::members::Members;
+use super::row::{Field, Row};
+use super::vary::Quantity;
+use crate::args::RunArgs;
+use crate::driver::{self, Contact, Ending, Impact, Piece, Settings, Watch};
+use crate::entry::{AnyModel, Entry, Origin, Point};
+use crate::error::{CliError, state_text};
+use crate::record::Tally;
+use crate::state_input::{Beginning, build_model};
+
+/// The outcome of a member that the system does not let begin.
+const REFUSED: &str = "refused";
+
+/// The outcome of a member in whose run the program failed.
+const PANICKED: &str = "panicked";
+
+/// What the runs of all members share.
+#[derive(Clone, Copy)]
+pub struct Shared<'a> {
+    pub models: &'a [Entry],
+    pub run: &'a RunArgs,
+    pub settings: &'a Settings,
+    pub members: &'a Members,
+    pub density: Option<&'a Density>,
+}
+
+/// A member that has been run.
+pub struct Done {
+    pub row: Row,
+    /// What it visited, if that was asked for.
+    pub visits: Option<Visits>,
+}
+
+/// Runs members on one thread.
+pub struct Runner<'a> {
+    shared: Shared<'a>,
+    model: Box<dyn AnyModel>,
+}
+
+impl<'a> Runner<'a> {
+    /// One that has run nothing.
+    ///
+    /// # Errors
+    /// What is wrong with the flags of the model.
+    pub fn new(shared: Shared<'a>) -> Result<Self, CliError> {
+        let model = build_model(shared.models, &shared.run.model)?;
+        Ok(Self { shared, model })
+    }
+
+    /// Runs a member.
+    pub fn run(&mut self, member: u64) -> Done {
+        let mut seen = Seen {
+            tally: Tally::default(),
+            sampler: self.shared.density.map(Sampler::new),
+        };
+        let ended = self.watched(member, &mut seen);
+        let visits = seen.sampler.map(|sampler| match &ended {
+            Ok(ending) => sampler.finish(ending.t, &ending.last),
+            Err(_) => sampler.finish(
+                f64::NEG_INFINITY,
+                &Point::undefined(&self.model.description()),
+            ),
+        });
+        Done {
+            row: self.row(member, &ended, &seen.tally),
+            visits,
+        }
+    }
+
+    /// Runs a member before a watch. A member that cannot begin or in whose run the program fails has an outcome and a
+    /// reason.
+    pub fn watched(
+        &mut self,
+        member: u64,
+        watch: &mut dyn Watch,
+    ) -> Result<Ending, (&'static str, String)> {
+        match catch_unwind(AssertUnwindSafe(|| self.attempt(member, watch))) {
+            Ok(Ok(ending)) => Ok(ending),
+            Ok(Err(reason)) => Err((REFUSED, reason)),
+            Err(panic) => {
+                // What a panic leaves behind is not used again; a model that was built once can be built again.
+                if let Ok(model) = build_model(self.shared.models, &self.shared.run.model) {
+                    self.model = model;
+                }
+                Err((PANICKED, message(panic.as_ref())))
+            }
+        }
+    }
+
+    /// Why a member cannot begin, as text.
+    fn attempt(&mut self, member: u64, watch: &mut dyn Watch) -> Result<Ending, String> {
+        let origin = self.origin(member)?;
+        self.model.simulate(&origin, self.shared.settings, watch)
+    }
+
+    /// Gives the model a member's parameters; its state, or why there is none.
+    fn origin(&mut self, member: u64) -> Result<Origin, String> {
+        let Shared { members, run, .. } = self.shared;
+        let values = members.values(member);
+        let pairs = || members.quantities().iter().zip(&values);
+        for (quantity, &value) in pairs() {
+            if let Quantity::Parameter(index) = *quantity {
+                self.model.set_parameter(index, value);
+            }
+        }
+        let model = self.model.as_ref();
+        let mut beginning = Beginning::of(model, &run.state).map_err(|error| error.to_string())?;
+        for (quantity, &value) in pairs() {
+            match *quantity {
+                Quantity::Position(index) => beginning.set_position(index, value),
+                Quantity::Velocity(index) => beginning.set_velocity(index, value),
+                Quantity::Parameter(_) => {}
+            }
+        }
+        let settled = beginning.settle(model, run.state.off_constraint);
+        settled.map_err(|error| state_text(&model.description(), &error))
+    }
+
+    fn row(
+        &self,
+        member: u64,
+        ended: &Result<Ending, (&'static str, String)>,
+        tally: &Tally,
+    ) -> Row {
+        let description = self.model.description();
+        let number = |value: f64| Field::Number(value);
+        let mut row = vec![Field::Integer(member)];
+        row.extend(self.shared.members.values(member).into_iter().map(number));
+        let (outcome, reason) = match ended {
+            Ok(ending) => (ending.kind, details(ending)),
+            Err((outcome, reason)) => (*outcome, reason.replace(['\n', '\r'], " ")),
+        };
+        row.push(Field::Text(Cow::Borrowed(outcome)));
+        let nothing = Point::undefined(&description);
+        let (t, last, change) = match ended {
+            Ok(ending) => {
+                let change = ending.last.energy - ending.first.energy;
+                (ending.t, &ending.last, change)
+            }
+            Err(_) => (f64::NAN, &nothing, f64::NAN),
+        };
+        let state = last.q.iter().chain(&last.qdot).copied();
+        let numbers = [t].into_iter().chain(state).chain([last.energy, change]);
+        row.extend(numbers.chain(last.outputs.iter().copied()).map(number));
+        let surfaces = 0..description.surfaces.len();
+        row.extend(surfaces.map(|surface| Field::Integer(tally.on(surface))));
+        row.push(Field::Integer(tally.contacts));
+        let none = driver::counters(&Counters::default());
+        let counters = ended.as_ref().map_or(&none, |ending| &ending.counters);
+        row.extend(counters.iter().map(|&(_, count)| Field::Integer(count)));
+        row.push(Field::Text(Cow::Owned(reason)));
+        row
+    }
+}
+
+/// What an outcome says besides its kind.
+fn details(ending: &Ending) -> String {
+    let details = ending.details.iter();
+    let details: Vec<String> = details
+        .map(|(name, value)| match value.as_str() {
+            Some(text) => format!("{name} {text}"),
+            None => format!("{name} {value}"),
+        })
+        .collect();
+    details.join(", ")
+}
+
+/// What a panic says.
+fn message(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("without a message").to_owned()
+}
+
+/// What is kept of a run.
+struct Seen<'a> {
+    tally: Tally,
+    sampler: Option<Sampler<'a>>,
+}
+
+impl Watch for Seen<'_> {
+    fn step(&mut self, piece: &dyn Piece) {
+        if let Some(sampler) = &mut self.sampler {
+            sampler.follow(piece);
+        }
+    }
+
+    fn impact(&mut self, impact: Impact) {
+        self.tally.count(&impact);
+    }
+
+    fn contact(&mut self, contact: Contact) {
+        self.tally.contacts += u64::from(contact.begins);
+    }
+}

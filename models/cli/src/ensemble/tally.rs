@@ -1,0 +1,118 @@
+//! What is known of all members together.
+
+use std::collections::BTreeMap;
+
+use super::row::{Columns, Field, Row};
+
+/// Members that did not reach their end and are told by name.
+const TOLD: usize = 5;
+
+/// A member that did not reach its end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Strayed {
+    /// The member.
+    pub member: u64,
+    /// Its outcome.
+    pub outcome: String,
+    /// What the outcome says besides.
+    pub reason: String,
+}
+
+/// Sums over members.
+#[derive(Debug, Clone)]
+pub struct Tally {
+    places: Places,
+    /// Members.
+    pub members: u64,
+    /// How many of them ended how.
+    pub outcomes: BTreeMap<String, u64>,
+    /// Impacts on each surface.
+    pub impacts: Vec<u64>,
+    /// The largest absolute change of an energy.
+    pub energy_change: f64,
+    /// The largest as a share of the energy at the start.
+    pub relative_change: f64,
+    /// How many did not reach their end.
+    pub strayed: u64,
+    /// The first of them.
+    pub first_strayed: Vec<Strayed>,
+}
+
+/// Where in a row things stand.
+#[derive(Debug, Clone)]
+struct Places {
+    outcome: Option<usize>,
+    energy: Option<usize>,
+    impacts: Vec<usize>,
+    reason: Option<usize>,
+}
+
+impl Tally {
+    /// Of rows with these columns; none yet.
+    pub fn new(columns: &Columns) -> Self {
+        let named = columns.iter().enumerate();
+        let impacts = named.filter(|(_, (name, _))| name.starts_with("impacts."));
+        let places = Places {
+            outcome: columns.position("outcome"),
+            energy: columns.position("energy"),
+            impacts: impacts.map(|(index, _)| index).collect(),
+            reason: columns.position("reason"),
+        };
+        Self {
+            members: 0,
+            outcomes: BTreeMap::new(),
+            impacts: vec![0; places.impacts.len()],
+            energy_change: 0.0,
+            relative_change: 0.0,
+            strayed: 0,
+            first_strayed: Vec::new(),
+            places,
+        }
+    }
+
+    /// Adds a row; `reached` says which outcomes are those that were asked for.
+    pub fn add(&mut self, row: &Row, reached: impl Fn(&str) -> bool) {
+        let text = |place: Option<usize>| match place.and_then(|place| row.get(place)) {
+            Some(Field::Text(text)) => text.as_ref(),
+            _ => "",
+        };
+        let number = |place: usize| match row.get(place) {
+            Some(Field::Number(value)) => *value,
+            _ => f64::NAN,
+        };
+        self.members += 1;
+        let outcome = text(self.places.outcome);
+        match self.outcomes.get_mut(outcome) {
+            Some(count) => *count += 1,
+            None => {
+                self.outcomes.insert(outcome.to_owned(), 1);
+            }
+        }
+        for (sum, &place) in self.impacts.iter_mut().zip(&self.places.impacts) {
+            if let Some(Field::Integer(count)) = row.get(place) {
+                *sum += count;
+            }
+        }
+        if let Some(place) = self.places.energy {
+            let (energy, change) = (number(place), number(place + 1));
+            // The largest of numbers; what is not a number is not among them.
+            self.energy_change = self.energy_change.max(change.abs());
+            let relative = (change / (energy - change)).abs();
+            if relative.is_finite() {
+                self.relative_change = self.relative_change.max(relative);
+            }
+        }
+        if !reached(outcome) {
+            self.strayed += 1;
+            if self.first_strayed.len() < TOLD
+                && let Some(&Field::Integer(member)) = row.first()
+            {
+                self.first_strayed.push(Strayed {
+                    member,
+                    outcome: outcome.to_owned(),
+                    reason: text(self.places.reason).to_owned(),
+                });
+            }
+        }
+    }
+}

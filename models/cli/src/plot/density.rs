@@ -1,0 +1,234 @@
+//! A density as a map of colours with axes and a colour bar.
+
+use plotters::coord::types::RangedCoordf64;
+use plotters::element::{PathElement, Rectangle};
+use plotters::prelude::{Cartesian2d, ChartBuilder, ChartContext, SVGBackend};
+use plotters::style::{Color, RGBColor};
+
+use super::canvas::{self, Area, TITLE_HEIGHT, message, px, stroke, text};
+use super::style::{self, Axis};
+use crate::ensemble::density::Density;
+
+/// Width of the picture, in pixels.
+const WIDTH: f64 = 900.0;
+
+/// Least and greatest height of the map, in pixels.
+const HEIGHT: [f64; 2] = [260.0, 760.0];
+
+/// Room for axis labels, left and below, for the colour bar, and the margins around, in pixels.
+const LEFT: f64 = 62.0;
+const BELOW: f64 = 40.0;
+const BAR: f64 = 100.0;
+const EDGE: f64 = 12.0;
+const ABOVE: f64 = 10.0;
+
+/// Width of the colour bar, in pixels.
+const BAR_WIDTH: f64 = 16.0;
+
+/// Colours that are told apart.
+const LEVELS: usize = 64;
+
+/// Colours from few to many, dark to light, of the map `viridis` (public domain) at equal distances; colour-blind people
+/// can tell them apart, and they keep their order in grey.
+const COLOURS: [[u8; 3]; 9] = [
+    [68, 1, 84],
+    [71, 44, 122],
+    [59, 81, 139],
+    [44, 113, 142],
+    [33, 144, 141],
+    [39, 173, 129],
+    [92, 200, 99],
+    [170, 220, 50],
+    [253, 231, 37],
+];
+
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Draws the counts of all cells as a density, under a title and a subtitle. Cells without a count stay white.
+///
+/// # Errors
+/// What the drawing library says.
+pub fn draw(
+    density: &Density,
+    counts: &[u64],
+    (title, subtitle): (&str, &str),
+) -> Result<String, String> {
+    let [x, y] = &density.axes;
+    let span = |range: [f64; 2]| range[1] - range[0];
+    let room = WIDTH - EDGE - LEFT - BAR;
+    // Equal scales where the sides are of one size; what is not alike fills the sheet.
+    let ratio = span(y.range) / span(x.range);
+    let is_alike = (0.2..=5.0).contains(&ratio);
+    let height = match is_alike {
+        true => (room * ratio).clamp(HEIGHT[0], HEIGHT[1]),
+        false => 0.6 * room,
+    };
+    let width = match is_alike {
+        true => (height / ratio).min(room),
+        false => room,
+    };
+    let scale = Scale::of(density, counts);
+    let size = (WIDTH, TITLE_HEIGHT + ABOVE + height + BELOW + EDGE);
+    let mut cells = String::new();
+    let svg = canvas::sheet(size, title, subtitle, |body| {
+        let right = WIDTH - EDGE - LEFT - width;
+        let mut chart = axes(&body, density, right)?;
+        cells = paths(&chart, density, counts, &scale);
+        bar(&body, &scale, [EDGE + LEFT + width, height])?;
+        frame(&mut chart, density)
+    })?;
+    // NOTE: one path for each colour, as text: the drawing library would write an element of a hundred bytes for every
+    // cell.
+    let end = svg.rfind("</svg>").unwrap_or(svg.len());
+    Ok(format!("{}{cells}{}", &svg[..end], &svg[end..]))
+}
+
+/// From densities to colours.
+struct Scale {
+    /// The density that takes the last colour.
+    top: f64,
+    /// Whether there are greater ones.
+    is_clipped: bool,
+    /// The density of one count.
+    unit: f64,
+}
+
+impl Scale {
+    /// Up to the largest density; where few cells stand out beyond measure, up to what all but one in 200 have.
+    fn of(density: &Density, counts: &[u64]) -> Self {
+        let all: u64 = counts.iter().sum();
+        let unit = 1.0 / (all.max(1) as f64 * density.cell_area());
+        let mut sorted: Vec<u64> = counts.iter().copied().filter(|&count| count > 0).collect();
+        sorted.sort_unstable();
+        let largest = sorted.last().copied().unwrap_or(1);
+        let usual = sorted
+            .get(sorted.len() * 199 / 200)
+            .copied()
+            .unwrap_or(largest);
+        let is_clipped = largest > 4 * usual;
+        let top = if is_clipped { usual } else { largest };
+        Self {
+            top: top as f64 * unit,
+            is_clipped,
+            unit,
+        }
+    }
+
+    fn level(&self, count: u64) -> usize {
+        let part = count as f64 * self.unit / self.top;
+        ((part * LEVELS as f64) as usize).min(LEVELS - 1)
+    }
+}
+
+/// The colour of a level, between those of the table.
+fn colour(level: usize) -> RGBColor {
+    let place = level as f64 / (LEVELS - 1) as f64 * (COLOURS.len() - 1) as f64;
+    let first = (place as usize).min(COLOURS.len() - 2);
+    let part = place - first as f64;
+    let mix = |i: usize| {
+        let [low, high] = [COLOURS[first][i], COLOURS[first + 1][i]].map(f64::from);
+        (low + part * (high - low)).round() as u8
+    };
+    RGBColor(mix(0), mix(1), mix(2))
+}
+
+fn axes<'a, 'b>(
+    area: &'a Area<'b>,
+    density: &Density,
+    right: f64,
+) -> Result<Chart<'a, 'b>, String> {
+    let [x, y] = &density.axes;
+    let mut chart = ChartBuilder::on(area)
+        .margin_top(px(ABOVE))
+        .margin_right(px(right))
+        .margin_bottom(px(EDGE))
+        .margin_left(px(EDGE))
+        .x_label_area_size(px(BELOW))
+        .y_label_area_size(px(LEFT))
+        .build_cartesian_2d(x.range[0]..x.range[1], y.range[0]..y.range[1])
+        .map_err(message)?;
+    let (across, up) = (Axis::new(x.range, 8), Axis::new(y.range, 8));
+    chart
+        .configure_mesh()
+        .x_desc(&x.name)
+        .y_desc(&y.name)
+        .x_labels(across.labels)
+        .y_labels(up.labels)
+        .x_label_formatter(&|value| across.label(*value))
+        .y_label_formatter(&|value| up.label(*value))
+        .max_light_lines(0)
+        .bold_line_style(style::GRID.stroke_width(stroke(0.8)))
+        .axis_style(style::INK.stroke_width(stroke(0.8)))
+        .set_all_tick_mark_size(px(4.0))
+        .label_style(text(11.0, style::INK))
+        .axis_desc_style(text(13.0, style::INK))
+        .draw()
+        .map_err(message)?;
+    Ok(chart)
+}
+
+/// A line around the map.
+fn frame(chart: &mut Chart<'_, '_>, density: &Density) -> Result<(), String> {
+    let [[left, right], [bottom, top]] = density.axes.each_ref().map(|axis| axis.range);
+    let line = vec![(left, top), (right, top), (right, bottom)];
+    let element = PathElement::new(line, style::INK.stroke_width(stroke(0.8)));
+    chart.draw_series([element]).map_err(message).map(drop)
+}
+
+/// The cells as paths of SVG, one for each colour; neighbours along x of the same colour are one rectangle.
+fn paths(chart: &Chart<'_, '_>, density: &Density, counts: &[u64], scale: &Scale) -> String {
+    let [x, y] = &density.axes;
+    let mut levels = vec![String::new(); LEVELS];
+    for (j, row) in counts.chunks(x.bins).enumerate() {
+        let mut from = 0;
+        while from < x.bins {
+            let level = |i: usize| (row[i] > 0).then(|| scale.level(row[i]));
+            let own = level(from);
+            let to = (from..x.bins).find(|&i| level(i) != own).unwrap_or(x.bins);
+            if let Some(own) = own {
+                let (left, bottom) = chart.backend_coord(&(x.edge(from), y.edge(j)));
+                let (right, top) = chart.backend_coord(&(x.edge(to), y.edge(j + 1)));
+                levels[own] += &format!("M{left} {top}H{right}V{bottom}H{left}z");
+            }
+            from = to;
+        }
+    }
+    let drawn = levels
+        .iter()
+        .enumerate()
+        .filter(|(_, path)| !path.is_empty());
+    drawn
+        .map(|(level, path)| {
+            let RGBColor(r, g, b) = colour(level);
+            format!(
+                "<path shape-rendering=\"crispEdges\" fill=\"#{r:02X}{g:02X}{b:02X}\" d=\"{path}\"/>\n"
+            )
+        })
+        .collect()
+}
+
+/// The colour bar to the right of the map, with the densities at its ends and between.
+fn bar(area: &Area<'_>, scale: &Scale, [left, height]: [f64; 2]) -> Result<(), String> {
+    let left = left + 18.0;
+    let at = |x: f64, part: f64| (px(left + x), px(ABOVE + height * (1.0 - part)));
+    for level in 0..LEVELS {
+        let part = |level: usize| level as f64 / LEVELS as f64;
+        let corners = [at(0.0, part(level + 1)), at(BAR_WIDTH, part(level))];
+        area.draw(&Rectangle::new(corners, colour(level).filled()))
+            .map_err(message)?;
+    }
+    let axis = Axis::new([0.0, scale.top], 5);
+    for label in 0..=4 {
+        let part = f64::from(label) / 4.0;
+        let (x, y) = at(BAR_WIDTH + 5.0, part);
+        let sign = if scale.is_clipped && label == 4 {
+            "\u{2265} "
+        } else {
+            ""
+        };
+        let words = format!("{sign}{}", axis.label(part * scale.top));
+        area.draw_text(&words, &text(11.0, style::INK), (x, y - px(5.0)))
+            .map_err(message)?;
+    }
+    Ok(())
+}

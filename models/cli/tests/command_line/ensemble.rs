@@ -1,0 +1,461 @@
+//! Ensembles: the same rows whatever the threads, the shard or the interruption; members that fail; densities that are
+//! known.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::*;
+
+/// A folder that is removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = format!("dalembert-ensemble-{name}-{}", std::process::id());
+        let path = std::env::temp_dir().join(folder);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.0.join(name)).unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        fs::remove_dir_all(&self.0).unwrap();
+    }
+}
+
+/// Balls of which every ninth begins below the floor.
+const BALLS: &str = "ensemble bouncing_ball --vary x=-0.5..3.5:9 --vary x_dot=-1..1:15 --until 6";
+
+/// The rows on the standard output.
+fn rows(line: &str) -> String {
+    run(&format!("{line} --csv -")).output
+}
+
+/// A column of a table.
+fn column(table: &str, name: &str) -> Vec<String> {
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let index = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .position(|own| own == name)
+        .unwrap_or_else(|| panic!("no column {name}"));
+    let records = reader.records().map(Result::unwrap);
+    records.map(|record| record[index].to_owned()).collect()
+}
+
+fn numbers_of(table: &str, name: &str) -> Vec<f64> {
+    let column = column(table, name);
+    column.iter().map(|text| text.parse().unwrap()).collect()
+}
+
+#[test]
+fn rows_do_not_depend_on_threads() {
+    let one = rows(&format!("{BALLS} --threads 1"));
+    assert_eq!(one.lines().count(), 1 + 9 * 15);
+    for threads in [2, 5] {
+        assert_eq!(rows(&format!("{BALLS} --threads {threads}")), one);
+    }
+}
+
+#[test]
+fn shards_one_after_the_other_are_the_whole() {
+    for line in [
+        BALLS,
+        "ensemble bouncing_ball --random 7 --members 50 --vary x=1+-0.1 --vary x_dot=-1..1 --until 2",
+    ] {
+        let whole = rows(line);
+        let mut parts = String::new();
+        for shard in 1..=4 {
+            let part = rows(&format!("{line} --shard {shard}/4"));
+            let (header, rest) = part.split_once('\n').unwrap();
+            if shard == 1 {
+                parts = format!("{header}\n");
+            }
+            parts += rest;
+        }
+        assert_eq!(parts, whole);
+    }
+}
+
+#[test]
+fn a_row_is_what_simulate_says() {
+    let table = rows("ensemble bouncing_ball --vary x=0.5..2:4 --vary m=1,2 --until 10");
+    assert_eq!(
+        numbers_of(&table, "in.x"),
+        [0.5, 0.5, 1.0, 1.0, 1.5, 1.5, 2.0, 2.0]
+    );
+    assert_eq!(
+        numbers_of(&table, "in.m"),
+        [1.0, 2.0, 1.0, 2.0, 1.0, 2.0, 1.0, 2.0]
+    );
+    let single =
+        run("simulate bouncing_ball --initial x=1.5 --set m=2 --until 10 --samples 1 --json -")
+            .json();
+    let member = 5;
+    assert_eq!(
+        numbers(&single["outcome"]["q"]),
+        [numbers_of(&table, "end.x")[member]]
+    );
+    assert_eq!(
+        numbers(&single["outcome"]["qdot"]),
+        [numbers_of(&table, "end.x_dot")[member]]
+    );
+    let impacts = column(&table, "impacts.floor");
+    assert_eq!(
+        impacts[member],
+        single["events"].as_array().unwrap().len().to_string()
+    );
+    let accepted = column(&table, "accepted");
+    assert_eq!(accepted[member], single["counters"]["accepted"].to_string());
+}
+
+#[test]
+fn a_bad_member_is_a_row_and_harms_no_other() {
+    let done = run(&format!("{BALLS} --csv -"));
+    assert_eq!(done.exit, Exit::Other);
+    let outcomes = column(&done.output, "outcome");
+    let bad = outcomes
+        .iter()
+        .filter(|outcome| *outcome == "starts_inside")
+        .count();
+    assert_eq!((bad, outcomes.len()), (15, 135));
+    assert!(outcomes[15..].iter().all(|outcome| outcome == "done"));
+    assert!(column(&done.output, "reason")[0].contains("surface floor, gap -0.5"));
+    // The others are as without it.
+    let good = rows("ensemble bouncing_ball --vary x=0..3.5:8 --vary x_dot=-1..1:15 --until 6");
+    assert_eq!(column(&good, "end.x"), column(&done.output, "end.x")[15..]);
+
+    let done = run("ensemble bouncing_ball --vary m=-1,1,0 --until 2 --csv -");
+    assert_eq!(
+        column(&done.output, "outcome"),
+        ["refused", "done", "refused"]
+    );
+    assert!(column(&done.output, "reason")[0].contains("`m`"));
+    assert_eq!(column(&done.output, "t"), ["NaN", "2.0", "NaN"]);
+
+    let done = run("ensemble bouncing_ball --vary x=1e-9,1 --until 2 --steps 100");
+    assert_eq!(done.exit, Exit::Other);
+    for part in ["done 1, step_budget 1", "member 0: step_budget"] {
+        assert!(done.output.contains(part), "{}", done.output);
+    }
+    let done = run("ensemble bead --vary y=0,2,0.5 --until 1");
+    assert!(
+        done.output
+            .contains("member 1: refused (coordinate `y` lies outside")
+    );
+}
+
+#[test]
+fn draws_belong_to_members() {
+    let line = "ensemble bouncing_ball --random 7 --vary x=2+-0.1 --vary m=1..3 --until 1";
+    let [short, long] = [20, 400].map(|count| rows(&format!("{line} --members {count}")));
+    assert!(long.starts_with(&short));
+    let heights = numbers_of(&long, "in.x");
+    let mean = heights.iter().sum::<f64>() / 400.0;
+    assert!((mean - 2.0).abs() < 0.02, "{mean}");
+    assert!(
+        numbers_of(&long, "in.m")
+            .iter()
+            .all(|m| (1.0..3.0).contains(m))
+    );
+    let other = rows(&line.replace("--random 7", "--random 8 --members 20"));
+    assert_ne!(column(&other, "in.x"), column(&short, "in.x"));
+}
+
+#[test]
+fn members_are_read_from_tables() {
+    let folder = Folder::new("from");
+    let path = folder.path("run.csv");
+    run(&format!(
+        "simulate bouncing_ball --until 3 --samples 5 --csv {path}"
+    ));
+    let table = rows(&format!("ensemble bouncing_ball --from {path} --until 1"));
+    assert_eq!(column(&table, "in.x"), column(&folder.read("run.csv"), "x"));
+    assert_eq!(
+        column(&table, "in.x_dot"),
+        column(&folder.read("run.csv"), "x_dot")
+    );
+
+    // What an ensemble wrote, again.
+    let first = rows("ensemble bouncing_ball --vary x=1..2:3 --vary g=1,2 --until 1");
+    fs::write(folder.0.join("rows.csv"), &first).unwrap();
+    let again = rows(&format!(
+        "ensemble bouncing_ball --from {} --until 1",
+        folder.path("rows.csv")
+    ));
+    assert_eq!(again, first);
+    let done = run_on(
+        "x,m\n1,2\n",
+        &["ensemble", "bouncing_ball", "--from", "-", "--until", "1"],
+    );
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+}
+
+#[test]
+fn a_run_that_was_cut_off_goes_on_to_the_same_file() {
+    let folder = Folder::new("resume");
+    let density = "--density x_dot=-3..3,x=0..4:8 --every 0.25";
+    for more in ["", density] {
+        let line = format!("{BALLS} {more} --csv {}", folder.path("rows.csv"));
+        run(&line);
+        let (whole, meta) = (folder.read("rows.csv"), folder.read("rows.csv.meta.json"));
+        let document = || run(&format!("{line} --resume --json -")).output;
+        let complete = document();
+        for cut in [
+            0,
+            10,
+            whole.len() / 3,
+            whole.len() / 2,
+            whole.len() - 1,
+            whole.len(),
+        ] {
+            fs::write(folder.0.join("rows.csv"), &whole.as_bytes()[..cut]).unwrap();
+            // Counts of a density are known of as many rows as are there, or of none.
+            let _ = fs::remove_file(folder.0.join("rows.csv.counts"));
+            assert_eq!(document(), complete, "cut at {cut}");
+            assert_eq!(folder.read("rows.csv"), whole, "cut at {cut}");
+            assert_eq!(folder.read("rows.csv.meta.json"), meta);
+        }
+    }
+    // Rows that were done are not done again.
+    let done = run(&format!(
+        "{BALLS} {density} --resume --csv {}",
+        folder.path("rows.csv")
+    ));
+    assert!(
+        done.output.contains("(135 members were there)"),
+        "{}",
+        done.output
+    );
+    let other = BALLS.replace("--until 6", "--until 7");
+    let refused = run(&format!(
+        "{other} {density} --resume --csv {}",
+        folder.path("rows.csv")
+    ));
+    assert_eq!(refused.exit, Exit::Refused);
+    assert!(
+        refused.errors.contains("`until` was 6.0 and is 7.0"),
+        "{}",
+        refused.errors
+    );
+}
+
+#[test]
+fn a_ball_has_every_speed_for_the_same_time() {
+    let folder = Folder::new("density");
+    // Thrown up from the floor at speed 1, thrice a flight of length 2: all speeds from -1 to 1 alike.
+    let done = run(&format!(
+        "ensemble bouncing_ball --q 0 --qdot 1 --until 40000 --every 0.0123 --discard 2 --density x_dot=-1..1,x=0..0.5:10x20 \
+         --cells {} --plot {} --json {}",
+        folder.path("cells.csv"),
+        folder.path("density.svg"),
+        folder.path("all.json")
+    ));
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    let cells = folder.read("cells.csv");
+    let mut speeds = [0.0; 10];
+    for (index, count) in numbers_of(&cells, "count").into_iter().enumerate() {
+        speeds[index % 10] += count;
+    }
+    let all: f64 = speeds.iter().sum();
+    assert!(all > 3.2e6);
+    for count in speeds {
+        assert!((count / all - 0.1).abs() < 2e-5, "{speeds:?}");
+    }
+    // Where the ball is at this speed: x = (1 - v^2)/2.
+    let (v, x) = (numbers_of(&cells, "x_dot"), numbers_of(&cells, "x"));
+    for (index, density) in numbers_of(&cells, "density").into_iter().enumerate() {
+        let right = (1.0 - v[index] * v[index]) / 2.0;
+        assert!(density == 0.0 || (x[index] - right).abs() < 0.12);
+    }
+
+    let document: Value = serde_json::from_str(&folder.read("all.json")).unwrap();
+    let convergence = document["convergence"].as_array().unwrap();
+    assert_eq!(convergence.len(), 5);
+    let last = &convergence[4];
+    assert_eq!(last["states"].as_f64(), Some(all));
+    // Far more even than independent states would be.
+    assert!(last["halves_of_time"].as_f64() < last["independent"].as_f64());
+    assert!(last["halves_of_members"].is_null());
+    let svg = folder.read("density.svg");
+    for text in [
+        "x_dot",
+        "distance of halves of time",
+        "crispEdges",
+        "</svg>",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+}
+
+#[test]
+fn counts_do_not_depend_on_threads_and_tell_of_what_is_outside() {
+    let line = format!("{BALLS} --density x_dot,x=0..1:7 --every 0.1 --json -");
+    let one = run(&format!("{line} --threads 1")).output;
+    assert_eq!(run(&format!("{line} --threads 3")).output, one);
+    let document: Value = serde_json::from_str(&one).unwrap();
+    let counts = document["counts"].as_array().unwrap();
+    let inside: f64 = counts.iter().flat_map(numbers).sum();
+    let outside = document["density_outside"].as_f64().unwrap();
+    assert_eq!(inside + outside, 120.0 * 60.0);
+    assert!(outside > 1000.0);
+    // The range that was not given holds everything that was seen.
+    let range = numbers(&document["density"]["axes"][0]["range"]);
+    assert!(range[0] < -2.0 && range[1] > 2.0, "{range:?}");
+    let text = run(&format!("{BALLS} --density x_dot,x=0..1:7")).output;
+    for part in ["more outside of it", "1/16", "independent"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn flags_that_are_wrong_are_named() {
+    let cases: [(&str, &[&str]); 25] = [
+        ("--vary z=0..1:3", &["--vary", "`z`", "x, x_dot, m, g"]),
+        ("--vary x", &["--vary", "NAME=A..B"]),
+        ("--vary x=0..1", &["--vary x", "COUNT", "--members"]),
+        ("--vary x=0..1:0", &["--vary x", "positive"]),
+        ("--vary x=0..b:3", &["--vary x", "`b`", "finite"]),
+        ("--vary x=1+-0.1", &["--vary x", "--random"]),
+        ("--vary x=1 --vary x=2", &["--vary", "once"]),
+        ("--vary x=0..1:3 --members 4", &["--members", "3"]),
+        ("--members 4", &["--members", "--vary"]),
+        ("--random 1 --vary x=0..1", &["--random", "--members"]),
+        ("--random 1 --members 4", &["--random", "--vary"]),
+        ("--random 1 --members 4 --vary x=1,2", &["--vary x", "C+-S"]),
+        ("--shard 0/3", &["--shard", "I/N"]),
+        ("--shard 4/3", &["--shard", "I/N"]),
+        ("--threads 0", &["--threads"]),
+        ("--resume", &["--resume", "--csv"]),
+        ("--csv - --json -", &["--csv", "--json", "once"]),
+        ("--csv - --parquet rows", &["--csv -", "--parquet"]),
+        ("--plot a.svg", &["--density"]),
+        ("--density x", &["--density", "two names"]),
+        ("--density x,y", &["--density", "`y`"]),
+        ("--density x,x_dot:0", &["--density", "1 to 1000"]),
+        ("--density x=1..0,x_dot", &["--density", "A below B"]),
+        ("--density x,x_dot --discard 9", &["--density", "--discard"]),
+        ("--from nowhere.csv", &["--from", "nowhere.csv"]),
+    ];
+    for (flags, parts) in cases {
+        let done = run(&format!("ensemble bouncing_ball --until 5 {flags}"));
+        assert_eq!(done.exit, Exit::Refused, "{flags} gave {}", done.output);
+        assert!(done.output.is_empty(), "{flags}");
+        for part in parts {
+            assert!(
+                done.errors.contains(part),
+                "`{flags}` gave `{}`",
+                done.errors
+            );
+        }
+    }
+    let tables = [
+        ("a,b\n1,2\n", "`a`"),
+        ("t,energy\n1,2\n", "no column"),
+        ("x\none\n", "line 2, column `x`"),
+        ("x,m\n1\n", "fields"),
+        ("x,x\n1,1\n", "once"),
+    ];
+    for (table, part) in tables {
+        let words = ["ensemble", "bouncing_ball", "--until", "1", "--from", "-"];
+        let done = run_on(table, &words);
+        assert_eq!(done.exit, Exit::Refused, "{table}");
+        assert!(done.errors.contains(part), "{table}: {}", done.errors);
+    }
+}
+
+#[cfg(not(feature = "parquet"))]
+#[test]
+fn parquet_needs_its_feature() {
+    let done = run("ensemble bouncing_ball --until 5 --parquet rows.parquet");
+    assert_eq!(done.exit, Exit::Refused);
+    assert!(
+        done.errors.contains("--features parquet"),
+        "{}",
+        done.errors
+    );
+}
+
+#[cfg(feature = "parquet")]
+mod as_parquet {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::Field;
+
+    use super::*;
+
+    #[test]
+    fn parquet_holds_the_rows_of_the_table() {
+        let folder = Folder::new("parquet");
+        let line = format!("{BALLS} --parquet {}", folder.path("rows.parquet"));
+        let done = run(&line);
+        assert_eq!(done.exit, Exit::Other, "{}", done.errors);
+        let written = fs::read(folder.0.join("rows.parquet")).unwrap();
+        // Nothing else is left, and with a table beside it the file is the same.
+        assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1);
+        run(&format!("{line} --csv {}", folder.path("rows.csv")));
+        assert_eq!(fs::read(folder.0.join("rows.parquet")).unwrap(), written);
+
+        let file = fs::File::open(folder.0.join("rows.parquet")).unwrap();
+        let reader = SerializedFileReader::new(file).unwrap();
+        let metadata = reader
+            .metadata()
+            .file_metadata()
+            .key_value_metadata()
+            .unwrap();
+        let entry = |key: &str| {
+            let found = metadata.iter().find(|entry| entry.key == key);
+            found.and_then(|entry| entry.value.clone()).unwrap()
+        };
+        assert_eq!(entry("dalembert.model"), "bouncing_ball");
+        assert_eq!(entry("dalembert.tol"), "1e-10");
+        assert_eq!(entry("dalembert.model_hash").len(), 16);
+
+        let mut table = csv::Reader::from_path(folder.0.join("rows.csv")).unwrap();
+        let header: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
+        let mut rows = reader.get_row_iter(None).unwrap();
+        for record in table.records() {
+            let row = rows.next().unwrap().unwrap();
+            for (index, (name, field)) in row.get_column_iter().enumerate() {
+                assert_eq!(*name, header[index]);
+                let text = match field {
+                    Field::ULong(value) => value.to_string(),
+                    Field::Double(value) => format!("{value:?}"),
+                    Field::Str(text) => text.clone(),
+                    other => panic!("{name}: {other}"),
+                };
+                assert_eq!(text, record.as_ref().unwrap()[index], "{name}");
+            }
+        }
+        assert!(rows.next().is_none());
+    }
+
+    #[test]
+    fn parquet_is_made_of_what_is_continued() {
+        let folder = Folder::new("parquet-resume");
+        let line = format!("{BALLS} --parquet {}", folder.path("rows.parquet"));
+        run(&line);
+        let whole = fs::read(folder.0.join("rows.parquet")).unwrap();
+        // As after a cut: some rows beside the file that is to be.
+        run(&format!(
+            "{BALLS} --csv {}",
+            folder.path("rows.parquet.rows.csv")
+        ));
+        let rows = folder.read("rows.parquet.rows.csv");
+        let torn = &rows.as_bytes()[..rows.len() / 2];
+        fs::write(folder.0.join("rows.parquet.rows.csv"), torn).unwrap();
+        fs::remove_file(folder.0.join("rows.parquet")).unwrap();
+        let done = run(&format!("{line} --resume"));
+        assert!(done.output.contains("were there"), "{}", done.output);
+        assert_eq!(fs::read(folder.0.join("rows.parquet")).unwrap(), whole);
+    }
+}
