@@ -90,37 +90,46 @@ impl Steps {
     }
 }
 
-/// How many members of an ensemble are done; shown after a second.
+/// How many members of an ensemble are done; shown from the start, because one may take long.
 pub struct Count {
     done: u64,
     members: u64,
-    started: Option<Instant>,
+    started: Instant,
+    /// Time from the start at which the words are changed next.
+    next: Duration,
     bar: Option<ProgressBar>,
 }
+
+/// Time between two changes of a bar.
+const TICK: Duration = Duration::from_millis(200);
 
 impl Count {
     /// Progress through so many members; shown only if `terminal`.
     pub fn new(members: u64, terminal: bool) -> Self {
+        let bar = terminal.then(|| new_bar(members));
+        if let Some(bar) = &bar {
+            bar.enable_steady_tick(TICK);
+        }
         Self {
             done: 0,
             members,
-            started: terminal.then(Instant::now),
-            bar: None,
+            started: Instant::now(),
+            next: TICK,
+            bar,
         }
     }
 
     /// One more is done; so many of all did not reach their end.
     pub fn done(&mut self, strayed: u64) {
         self.done += 1;
-        let Some(started) = self.started else { return };
-        let seconds = started.elapsed().as_secs_f64();
-        if seconds < 1.0 {
+        let Some(bar) = &self.bar else { return };
+        let elapsed = self.started.elapsed();
+        if elapsed < self.next {
             return;
         }
-        let bar = self.bar.get_or_insert_with(|| new_bar(self.members));
-        // The bar itself does not draw more often than a terminal can show.
+        self.next = elapsed + TICK;
         bar.set_position(self.done);
-        let rate = self.done as f64 / seconds;
+        let rate = self.done as f64 / elapsed.as_secs_f64();
         let left = (self.members - self.done) as f64 / rate;
         bar.set_message(format!(
             "{} of {} members, {strayed} did not reach their end, {left:.0} s left",

@@ -20,7 +20,7 @@ Exit status: 0 every member reached its end, 1 some member did not, 2 bad flags 
 
 Examples:
   dalembert ensemble rolling_disk --vary theta_dot=9.995..10.005 --members 10000 --csv disks.csv
-  dalembert ensemble bouncing_ball --vary x=0.5..2:20 --vary e=0.5,0.8,1 --until 10
+  dalembert ensemble bouncing_ball --vary x=0.5..2:20 --vary g=1.62,9.81 --until 10
   dalembert ensemble double_pendulum --random 7 --members 1000 --vary a=1+-0.01 --vary b=0..pi --csv swing.csv
   dalembert ensemble double_pendulum --from states.csv --shard 3/8 --csv part3.csv --resume
   dalembert ensemble rolling_disk --vary theta_dot=9..11 --members 64 --until 2000 --density x,y:200 --plot disks.svg";

@@ -18,8 +18,8 @@ use crate::error::CliError;
 /// Time between two looks of somebody who watches the file, and what a cut loses at most of it.
 const FLUSH: Duration = Duration::from_secs(1);
 
-/// Time between two writings of counts.
-const SAVE: Duration = Duration::from_secs(10);
+/// Writing counts takes one part in so many of the time at most.
+const SAVING: u32 = 20;
 
 /// The file, open.
 pub struct Journal {
@@ -28,6 +28,8 @@ pub struct Journal {
     writer: BufWriter<File>,
     flushed: Instant,
     saved: Instant,
+    /// Time between two writings of counts.
+    patience: Duration,
 }
 
 /// The path with something appended to its name.
@@ -108,6 +110,7 @@ impl Journal {
             writer: BufWriter::with_capacity(1 << 16, file),
             flushed: Instant::now(),
             saved: Instant::now(),
+            patience: FLUSH,
         }
     }
 
@@ -132,10 +135,12 @@ impl Journal {
             self.flushed = Instant::now();
         }
         match counts {
-            Some(counts) if self.saved.elapsed() >= SAVE => {
+            Some(counts) if self.saved.elapsed() >= self.patience => {
+                let begun = Instant::now();
                 self.writer.flush()?;
                 save(&beside(&self.path, ".counts"), members, counts)?;
                 self.saved = Instant::now();
+                self.patience = FLUSH.max(SAVING * begun.elapsed());
                 Ok(())
             }
             _ => Ok(()),
@@ -300,4 +305,64 @@ fn load(path: &Path, counts: &mut Counts) -> io::Result<u64> {
     file.read_exact(&mut members)?;
     counts.read(&mut file)?;
     Ok(u64::from_le_bytes(members))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ensemble::density::{Axis, Density, Shown};
+    use crate::ensemble::row::{Kind, csv_line};
+
+    fn density() -> Density {
+        let axis = Axis {
+            name: "x".to_owned(),
+            shown: Shown::Energy,
+            is_circle: false,
+            range: [0.0, 1.0],
+            bins: 2,
+        };
+        Density {
+            axes: [axis.clone(), axis],
+            every: 1.0,
+            discard: 0.0,
+            samples: 4,
+        }
+    }
+
+    /// The rows that are kept of a file of members 7, 8 and 9, of which so many are counted.
+    fn kept(name: &str, counted: Option<u64>) -> Option<(u64, u64)> {
+        let path = std::env::temp_dir().join(format!("dalembert-{name}-{}", std::process::id()));
+        let columns = Columns::unnamed(&[Kind::Integer, Kind::Number]);
+        let metadata = Map::from_iter([("tol".to_owned(), Value::from(0.5))]);
+        let journal = Journal::create("--csv", &path, &columns, &metadata);
+        let mut journal = journal.expect("the folder can be written");
+        for member in 7..10 {
+            let row = vec![Field::Integer(member), Field::Number(0.1)];
+            let appended = journal.append(&csv_line(&row), member - 6, None);
+            appended.expect("the file can be written");
+        }
+        let mut counts = Counts::new(&density());
+        let finished = journal.finish(counted.unwrap_or(0), counted.map(|_| &counts));
+        finished.expect("the file can be written");
+        let counts = counted.map(|_| &mut counts);
+        let mut seen = 0;
+        let mut see = |_: &Row| seen += 1;
+        let resumed = Journal::resume("--csv", &path, &columns, &metadata, (7, counts), &mut see);
+        let resumed = resumed.expect("the file can be read");
+        let rows = resumed.map(|(_, rows)| rows);
+        let lines = fs::read_to_string(&path).map_or(0, |text| text.lines().count() as u64 - 1);
+        discard(&path).expect("the files can be removed");
+        rows.map(|rows| {
+            assert_eq!(rows, seen);
+            (rows, lines)
+        })
+    }
+
+    #[test]
+    fn rows_that_are_not_counted_are_made_again() {
+        assert_eq!(kept("uncounted", None), Some((3, 3)));
+        assert_eq!(kept("counted", Some(3)), Some((3, 3)));
+        assert_eq!(kept("behind", Some(2)), Some((2, 2)));
+        assert_eq!(kept("ahead", Some(4)), None);
+    }
 }

@@ -74,7 +74,18 @@ fn visited(shared: Shared<'_>, axes: &[Axis; 2], discard: f64) -> Result<[[f64; 
     }
     Ok(seen
         .extremes
-        .map(|values| style::padded(values.into_iter(), ROOM)))
+        .map(|values| rounded(style::padded(values.into_iter(), ROOM))))
+}
+
+/// The range with ends of few digits, a little wider.
+fn rounded([low, high]: [f64; 2]) -> [f64; 2] {
+    let decade = (high - low).log10().floor() as i32 - 1;
+    // Quotients of whole numbers are the nearest to decimals; products with 0.01 are not.
+    let (digit, part) = (10f64.powi(decade.max(0)), 10f64.powi((-decade).max(0)));
+    [
+        (low / digit * part).floor() * digit / part,
+        (high / digit * part).ceil() * digit / part,
+    ]
 }
 
 /// Keeps the least and the greatest value at the ends of steps.
@@ -105,4 +116,16 @@ impl Watch for Seen<'_> {
     fn impact(&mut self, _impact: Impact) {}
 
     fn contact(&mut self, _contact: Contact) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded;
+
+    #[test]
+    fn ranges_get_ends_of_few_digits() {
+        assert_eq!(rounded([-0.15973, 0.16056]), [-0.16, 0.17]);
+        assert_eq!(rounded([9.0, 1234.5]), [0.0, 1300.0]);
+        assert_eq!(rounded([1.0, 2.0]), [1.0, 2.0]);
+    }
 }

@@ -80,6 +80,15 @@ impl Columns {
         Self { columns }
     }
 
+    /// Columns of these kinds, for tests.
+    #[cfg(test)]
+    pub fn unnamed(kinds: &[Kind]) -> Self {
+        let columns = kinds.iter().map(|&kind| ("c".to_owned(), kind));
+        Self {
+            columns: columns.collect(),
+        }
+    }
+
     /// Names and kinds.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&str, Kind)> {
         self.columns
@@ -155,10 +164,7 @@ mod tests {
 
     #[test]
     fn lines_read_back_to_the_same_row() {
-        let kinds = [Kind::Integer, Kind::Number, Kind::Number, Kind::Text];
-        let columns = Columns {
-            columns: kinds.map(|kind| ("c".to_owned(), kind)).to_vec(),
-        };
+        let columns = Columns::unnamed(&[Kind::Integer, Kind::Number, Kind::Number, Kind::Text]);
         let row = vec![
             Field::Integer(u64::MAX),
             Field::Number(0.1),

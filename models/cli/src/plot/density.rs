@@ -207,28 +207,27 @@ fn paths(chart: &Chart<'_, '_>, density: &Density, counts: &[u64], scale: &Scale
         .collect()
 }
 
-/// The colour bar to the right of the map, with the densities at its ends and between.
+/// The colour bar to the right of the map, with densities beside it.
 fn bar(area: &Area<'_>, scale: &Scale, [left, height]: [f64; 2]) -> Result<(), String> {
     let left = left + 18.0;
     let at = |x: f64, part: f64| (px(left + x), px(ABOVE + height * (1.0 - part)));
     for level in 0..LEVELS {
-        let part = |level: usize| level as f64 / LEVELS as f64;
-        let corners = [at(0.0, part(level + 1)), at(BAR_WIDTH, part(level))];
+        // Up to the top, where the next is painted over it: no seam shows between them.
+        let corners = [at(0.0, 1.0), at(BAR_WIDTH, level as f64 / LEVELS as f64)];
         area.draw(&Rectangle::new(corners, colour(level).filled()))
             .map_err(message)?;
     }
-    let axis = Axis::new([0.0, scale.top], 5);
-    for label in 0..=4 {
-        let part = f64::from(label) / 4.0;
-        let (x, y) = at(BAR_WIDTH + 5.0, part);
-        let sign = if scale.is_clipped && label == 4 {
-            "\u{2265} "
-        } else {
-            ""
-        };
-        let words = format!("{sign}{}", axis.label(part * scale.top));
-        area.draw_text(&words, &text(11.0, style::INK), (x, y - px(5.0)))
-            .map_err(message)?;
+    let write = |words: &str, (x, y): (i32, i32)| {
+        area.draw_text(words, &text(11.0, style::INK), (x, y - px(5.0)))
+            .map_err(message)
+    };
+    let axis = Axis::new([0.0, scale.top], 6);
+    for value in axis.ticks() {
+        let place = at(BAR_WIDTH + 5.0, value / scale.top);
+        write(&axis.label(value), place)?;
     }
-    Ok(())
+    if scale.is_clipped {
+        write("and more", at(0.0, 1.0 + 8.0 / height))?;
+    }
+    write("density", at(0.0, -14.0 / height))
 }

@@ -74,6 +74,15 @@ impl Axis {
         }
     }
 
+    /// The values that labels stand at.
+    pub fn ticks(&self) -> impl Iterator<Item = f64> + use<> {
+        let Self { range, step, .. } = *self;
+        let first = (range[0] / step).ceil();
+        (0..)
+            .map(move |k| (first + f64::from(k)) * step)
+            .take_while(move |tick| *tick <= range[1])
+    }
+
     /// The label of a value: as many decimals as the step needs, or an exponent where there would be many.
     pub fn label(&self, value: f64) -> String {
         let largest = self.range[0].abs().max(self.range[1].abs());
@@ -129,6 +138,13 @@ mod tests {
         assert_eq!(Axis::new([0.0, 20.0], 8).label(15.0), "15");
         assert_eq!(Axis::new([-0.3, 0.3], 6).label(-1e-17), "0.0");
         assert_eq!(Axis::new([0.0, 3e-7], 6).label(2.5e-7), "2.5e-7");
+    }
+
+    #[test]
+    fn ticks_lie_in_the_range() {
+        let ticks = |range| Axis::new(range, 4).ticks().collect::<Vec<_>>();
+        assert_eq!(ticks([0.0, 40.0]), [0.0, 10.0, 20.0, 30.0, 40.0]);
+        assert_eq!(ticks([-0.9, 3.1]), [0.0, 1.0, 2.0, 3.0]);
     }
 
     #[test]

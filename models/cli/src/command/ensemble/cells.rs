@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::ensemble::density::{Counts, Density};
+use crate::ensemble::density::{Axis, Counts, Density};
 use crate::table;
 
 /// Writes the middle of every cell, how many states were in it, and the density there: their share of all that were in
@@ -17,9 +17,7 @@ pub fn write(output: &mut dyn Write, density: &Density, counts: &Counts) -> io::
     table::write_rows(output, |writer| {
         writer.write_record([&x.name, &y.name, "count", "density"])?;
         for (cell, &count) in total.iter().enumerate() {
-            let middle = |axis: &crate::ensemble::density::Axis, bin: usize| {
-                0.5 * (axis.edge(bin) + axis.edge(bin + 1))
-            };
+            let middle = |axis: &Axis, bin: usize| 0.5 * (axis.edge(bin) + axis.edge(bin + 1));
             let share = if count == 0 { 0.0 } else { count as f64 / all };
             writer.write_record([
                 format!("{:?}", middle(x, cell % x.bins)),

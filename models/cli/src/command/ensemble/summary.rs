@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::Finished;
-use crate::ensemble::density::{Checkpoint, Counts, Density};
+use crate::ensemble::density::{Axis, Checkpoint, Counts, Density};
 use crate::error::counted;
 use crate::names;
 
@@ -73,9 +73,9 @@ pub fn caption(finished: &Finished<'_>, checkpoints: &[Checkpoint]) -> String {
         return String::new();
     };
     let states: u64 = counts.total().iter().sum();
-    let mut text = format!("{states} states, every {} of time", density.every);
+    let mut text = format!("{states} states, {} of time apart", density.every);
     if density.discard > 0.0 {
-        text += &format!(" from {}", density.discard);
+        text += &format!(", after {}", density.discard);
     }
     if let Some(last) = checkpoints.last() {
         text += "; distance of halves";
@@ -120,6 +120,22 @@ fn time(finished: &Finished<'_>) -> String {
     text
 }
 
+/// `1/16`, .. `1/2`, `all`.
+fn part(part: f64) -> String {
+    match (1.0 / part).round() {
+        1.0 => "all".to_owned(),
+        parts => format!("1/{parts}"),
+    }
+}
+
+/// `x in [-0.2, 0.2)`, with six significant digits.
+fn range(axis: &Axis) -> String {
+    let [low, high] = axis
+        .range
+        .map(|end| format!("{end:.5e}").parse().unwrap_or(end));
+    format!("{} in [{low}, {high})", axis.name)
+}
+
 fn write_density(
     output: &mut dyn Write,
     density: &Density,
@@ -130,8 +146,11 @@ fn write_density(
     let states: u64 = counts.total().iter().sum();
     writeln!(
         output,
-        "  density     {states} states over {} in [{}, {}) and {} in [{}, {}), {} x {} cells",
-        x.name, x.range[0], x.range[1], y.name, y.range[0], y.range[1], x.bins, y.bins
+        "  density     {states} states over {} and {}, {} x {} cells",
+        range(x),
+        range(y),
+        x.bins,
+        y.bins
     )?;
     if counts.outside() > 0 {
         writeln!(
@@ -156,7 +175,7 @@ fn write_density(
         writeln!(
             output,
             "  {:>6} {:>12} {:>9} {:>9} {:>12}",
-            format!("1/{}", (1.0 / it.part).round()),
+            part(it.part),
             it.samples,
             distance(it.over_time),
             distance(it.over_members),

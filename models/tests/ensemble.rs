@@ -1,0 +1,70 @@
+//! An ensemble whose process is killed goes on to the very files that it would have written undisturbed.
+
+// A test may fail by panicking.
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Long enough to be killed in the middle.
+const DISKS: &str = "ensemble rolling_disk --random 5 --members 1000 --vary theta_dot=10+-0.1 --vary phi=0..pi --until 100 \
+                     --threads 2";
+
+fn ensemble(more: &str, rows: &Path, output: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_dalembert"));
+    command.args(DISKS.split_whitespace());
+    command.args(more.split_whitespace()).args(output);
+    command.arg("--resume").arg("--csv").arg(rows);
+    command.stdout(Stdio::piped()).stderr(Stdio::inherit());
+    command
+}
+
+/// Waits until the file has this many bytes.
+fn wait_for(path: &Path, bytes: u64) {
+    let begun = Instant::now();
+    while fs::metadata(path).map_or(0, |file| file.len()) < bytes {
+        assert!(begun.elapsed() < Duration::from_secs(120));
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn kill_and_go_on(name: &str, more: &str) {
+    let folder = format!("dalembert-killed-{name}-{}", std::process::id());
+    let folder = std::env::temp_dir().join(folder);
+    fs::create_dir_all(&folder).unwrap();
+    let [whole, killed] = ["whole.csv", "killed.csv"].map(|name| folder.join(name));
+    let document = ["--json", "-"];
+    let expected = ensemble(more, &whole, &document).output().unwrap();
+    assert!(expected.status.success());
+    let rows = fs::read(&whole).unwrap();
+
+    let mut cuts = 0;
+    for part in [4, 2] {
+        let mut process = ensemble(more, &killed, &[]).spawn().unwrap();
+        wait_for(&killed, rows.len() as u64 / part);
+        process.kill().unwrap();
+        process.wait().unwrap();
+        let left = fs::read(&killed).unwrap();
+        assert!(rows.starts_with(&left));
+        cuts += usize::from(left.len() < rows.len());
+    }
+    assert!(cuts > 0);
+    let resumed = ensemble(more, &killed, &document).output().unwrap();
+    assert!(resumed.status.success());
+    assert_eq!(fs::read(&killed).unwrap(), rows);
+    assert_eq!(resumed.stdout, expected.stdout);
+    fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn a_killed_ensemble_goes_on_to_the_same_rows() {
+    kill_and_go_on("rows", "");
+}
+
+#[test]
+fn a_killed_ensemble_goes_on_to_the_same_density() {
+    kill_and_go_on("density", "--density x,y:20");
+}
