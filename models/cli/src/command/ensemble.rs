@@ -81,27 +81,11 @@ pub fn run(
     let plot = Sink::open_given("--plot", args.plot.as_deref())?;
 
     let begun = Instant::now();
-    let file = row_file(args);
-    let rows = match (&args.csv, &file) {
-        (Some(path), _) if is_stdout(path) => Rows::Stream(&mut *streams.output),
-        (_, Some((flag, path))) => Rows::File {
-            flag,
-            path,
-            resume: args.resume,
-        },
-        _ => Rows::Nowhere,
-    };
     let Summary {
         tally,
         counts,
         kept,
-    } = ensemble::execute(&plan, rows, streams.terminal)?;
-    if let (Some(parquet), Some((_, rows))) = (&args.parquet, &file) {
-        write_parquet(parquet, rows, &plan)?;
-        if args.csv.is_none() {
-            journal::discard(rows)?;
-        }
-    }
+    } = execute(args, &plan, streams)?;
     let finished = Finished {
         model,
         settings: &settings,
@@ -120,6 +104,36 @@ pub fn run(
         0 => Exit::Reached,
         _ => Exit::Other,
     })
+}
+
+/// Runs the members and writes their rows.
+fn execute(
+    args: &EnsembleArgs,
+    plan: &Plan<'_>,
+    streams: &mut Streams<'_>,
+) -> Result<Summary, CliError> {
+    let file = row_file(args);
+    let rows = match (&args.csv, &file) {
+        (Some(path), _) if is_stdout(path) => Rows::Stream(&mut *streams.output),
+        (_, Some((flag, path))) => Rows::File {
+            flag,
+            path,
+            resume: args.resume,
+        },
+        _ => Rows::Nowhere,
+    };
+    let summary = ensemble::execute(plan, rows, streams.terminal)?;
+    if let (Some(parquet), Some((flag, path))) = (&args.parquet, &file) {
+        write_parquet(parquet, path, plan)?;
+        if args.csv.is_none() {
+            journal::discard(path).map_err(|source| CliError::File {
+                flag,
+                path: path.clone(),
+                source,
+            })?;
+        }
+    }
+    Ok(summary)
 }
 
 /// Writes what is known of the whole.

@@ -57,32 +57,7 @@ impl Members {
                 return Err(CliError::value("--vary", name, "every name once"));
             }
         }
-        let product = varied
-            .iter()
-            .try_fold(1_u64, |product, (.., values)| {
-                product.checked_mul(values.count())
-            })
-            .ok_or(CliError::Usage("--vary: more members than can be counted"))?;
-        let count = match (seed, members) {
-            (Some(_), None) => return Err(CliError::Usage("--random needs --members N")),
-            (Some(_), Some(_)) if varied.is_empty() => {
-                return Err(CliError::Usage("--random needs --vary: nothing is drawn"));
-            }
-            (Some(_), Some(count)) => count,
-            (None, Some(count)) if !varied.is_empty() && count != product => {
-                return Err(CliError::value(
-                    "--members",
-                    count.to_string(),
-                    format!("{product}, the product of the counts of --vary"),
-                ));
-            }
-            (None, Some(count)) if varied.is_empty() && count > 1 => {
-                return Err(CliError::Usage(
-                    "--members: nothing differs between them; say what with --vary or --from",
-                ));
-            }
-            (None, _) => product,
-        };
+        let count = count(&varied, asked)?;
         let (mut names, mut quantities, mut values) = (Vec::new(), Vec::new(), Vec::new());
         for (name, quantity, its_values) in varied {
             names.push(name);
@@ -167,6 +142,29 @@ impl Members {
                 json!({ "count": self.count, "varied": varied, "seed": seed })
             }
         }
+    }
+}
+
+/// How many members the flags ask for.
+fn count(varied: &[Varied], asked: Asked) -> Result<u64, CliError> {
+    let mut factors = varied.iter().map(|(.., values)| values.count());
+    let product = factors.try_fold(1_u64, u64::checked_mul);
+    let product = product.ok_or(CliError::Usage("--vary: more members than can be counted"))?;
+    match (asked.random, asked.members) {
+        (true, None) => Err(CliError::Usage("--random needs --members N")),
+        (true, Some(_)) if varied.is_empty() => {
+            Err(CliError::Usage("--random needs --vary: nothing is drawn"))
+        }
+        (true, Some(count)) => Ok(count),
+        (false, Some(count)) if varied.is_empty() && count > 1 => Err(CliError::Usage(
+            "--members: nothing differs between them; say what with --vary or --from",
+        )),
+        (false, Some(count)) if count != product => Err(CliError::value(
+            "--members",
+            count.to_string(),
+            format!("{product}, the product of the counts of --vary"),
+        )),
+        (false, _) => Ok(product),
     }
 }
 

@@ -1,6 +1,6 @@
 //! How much time motion spends where: states at equally spaced times, counted on a grid of cells over two quantities.
 //!
-//! The densities of Clark and Bloch (Figures 7 and 8) are those of `x,y:100` and `x,y:200` with `--every 1 --until 1e6`.
+//! Those of Clark and Bloch (Figures 7 and 8) are of `x,y:100` and `x,y:200` with `--every 1 --until 1e6`.
 
 mod convergence;
 mod counts;
