@@ -1,11 +1,13 @@
-//! A run allocates nothing, and the same run gives the same bits twice.
+//! A run allocates nothing, the same run gives the same bits twice, and what memory and stack it takes does not depend on
+//! how long it is.
 
 use dalembert::{
     Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Scene, Simulation, Stepper, Taylor,
     Tolerance,
 };
-use dalembert_models::{ChaplyginSleigh, RollingDisk};
-use dalembert_tests::allocation::{Counting, allocations};
+use dalembert_cli::{Exit, Streams};
+use dalembert_models::{ChaplyginSleigh, PointBilliard, RollingDisk};
+use dalembert_tests::allocation::{Counting, allocations, peak};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -57,4 +59,56 @@ fn a_run_with_impacts_and_projection_allocates_nothing_and_repeats_to_the_bit() 
     let (first, second) = (runs(), runs());
     assert!(first.iter().all(|(_, count)| *count == 0), "{first:?}");
     assert_eq!(first, second);
+}
+
+/// Half a byte of stack for each step would be more than there is.
+const STACK: usize = 512 << 10;
+
+#[test]
+fn a_million_steps_need_no_more_stack_than_a_few() {
+    let long = || {
+        let billiard = PointBilliard::default();
+        let tolerance = Tolerance::new(1e-9).expect("a tolerance");
+        let stepper = Rk4::new(tolerance).with_step(1e-3);
+        let state = state_of(&billiard);
+        let mut simulation = Simulation::new(&billiard, stepper, billiard.effects());
+        let run = simulation.run(0.0, state, 1e3, &mut ());
+        let counters = run.expect("a start").counters;
+        assert!(
+            counters.accepted > 1_000_000 && counters.impacts > 100,
+            "{counters:?}"
+        );
+    };
+    let thread = std::thread::Builder::new().stack_size(STACK).spawn(long);
+    thread.expect("a thread").join().expect("a run");
+}
+
+/// The most bytes that a command holds.
+fn held(line: &str) -> isize {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let mut exit = None;
+    let bytes = peak(|| {
+        let mut streams = Streams {
+            input: &mut std::io::empty(),
+            output: &mut std::io::sink(),
+            errors: &mut std::io::sink(),
+            terminal: false,
+        };
+        let models = dalembert_cli::models![PointBilliard];
+        exit = Some(dalembert_cli::run_with(&words, &models, &mut streams));
+    });
+    assert_eq!(exit, Some(Exit::Reached), "{line}");
+    bytes
+}
+
+/// Tables hold the rows that they print; what is counted and summed up holds nothing for a step or an impact.
+#[test]
+fn a_long_run_of_the_command_line_holds_no_more_than_a_short_one() {
+    let [short, long] = [10, 2000].map(|until| {
+        let bytes = held(&format!(
+            "dalembert simulate point_billiard --until {until}"
+        ));
+        bytes.cast_unsigned()
+    });
+    assert!(long <= short + 256, "{short} and {long} bytes");
 }
