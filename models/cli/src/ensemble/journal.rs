@@ -5,7 +5,7 @@
 //! which counts are known.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -15,8 +15,8 @@ use super::density::Counts;
 use super::row::{Columns, Field, Row};
 use crate::error::CliError;
 
-/// Time between two looks of somebody who watches the file, and what a cut loses at most of it.
-const FLUSH: Duration = Duration::from_secs(1);
+/// Least time between two writings of counts.
+const SAVE: Duration = Duration::from_secs(1);
 
 /// Writing counts takes one part in so many of the time at most.
 const SAVING: u32 = 20;
@@ -25,8 +25,7 @@ const SAVING: u32 = 20;
 pub struct Journal {
     flag: &'static str,
     path: PathBuf,
-    writer: BufWriter<File>,
-    flushed: Instant,
+    file: File,
     saved: Instant,
     /// Time between two writings of counts.
     patience: Duration,
@@ -57,8 +56,7 @@ impl Journal {
             replace(&beside(path, ".meta.json"), text.as_bytes())?;
             remove(&beside(path, ".counts"))?;
             let mut journal = Self::over(flag, path, file);
-            journal.writer.write_all(&columns.header())?;
-            journal.writer.flush()?;
+            journal.file.write_all(&columns.header())?;
             Ok(journal)
         };
         created().map_err(|source| failed(flag, path, source))
@@ -107,40 +105,39 @@ impl Journal {
         Self {
             flag,
             path: path.to_owned(),
-            writer: BufWriter::with_capacity(1 << 16, file),
-            flushed: Instant::now(),
+            file,
             saved: Instant::now(),
-            patience: FLUSH,
+            patience: SAVE,
         }
     }
 
-    /// Appends a row, after which `members` are in the file and counted in `counts`.
+    /// Appends lines, after which `members` are in the file and counted in `counts`.
     ///
     /// # Errors
     /// Whatever the file says.
     pub fn append(
         &mut self,
-        line: &[u8],
+        lines: &[u8],
         members: u64,
         counts: Option<&Counts>,
     ) -> Result<(), CliError> {
-        let written = self.try_append(line, members, counts);
+        let written = self.try_append(lines, members, counts);
         written.map_err(|source| failed(self.flag, &self.path, source))
     }
 
-    fn try_append(&mut self, line: &[u8], members: u64, counts: Option<&Counts>) -> io::Result<()> {
-        self.writer.write_all(line)?;
-        if self.flushed.elapsed() >= FLUSH {
-            self.writer.flush()?;
-            self.flushed = Instant::now();
-        }
+    fn try_append(
+        &mut self,
+        lines: &[u8],
+        members: u64,
+        counts: Option<&Counts>,
+    ) -> io::Result<()> {
+        self.file.write_all(lines)?;
         match counts {
             Some(counts) if self.saved.elapsed() >= self.patience => {
                 let begun = Instant::now();
-                self.writer.flush()?;
                 save(&beside(&self.path, ".counts"), members, counts)?;
                 self.saved = Instant::now();
-                self.patience = FLUSH.max(SAVING * begun.elapsed());
+                self.patience = SAVE.max(SAVING * begun.elapsed());
                 Ok(())
             }
             _ => Ok(()),
@@ -151,11 +148,11 @@ impl Journal {
     ///
     /// # Errors
     /// Whatever the file says.
-    pub fn finish(mut self, members: u64, counts: Option<&Counts>) -> Result<(), CliError> {
-        let finished = self.writer.flush().and_then(|()| match counts {
+    pub fn finish(self, members: u64, counts: Option<&Counts>) -> Result<(), CliError> {
+        let finished = match counts {
             Some(counts) => save(&beside(&self.path, ".counts"), members, counts),
             None => Ok(()),
-        });
+        };
         finished.map_err(|source| failed(self.flag, &self.path, source))
     }
 }

@@ -118,19 +118,24 @@ pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summar
             Ok(runner) => Ok(runner.run(member)),
             Err(error) => Err(CliError::Start(error.to_string())),
         },
-        |member, done| {
-            let Done { row, visits } = done?;
-            summary.tally.add(&row, reached);
-            if let (Some(counts), Some(visits)) = (&mut summary.counts, &visits) {
-                counts.add(member, visits);
+        |first, block| {
+            let mut lines = Vec::new();
+            let mut members = first - range.start;
+            for done in block {
+                let Done { row, visits } = done?;
+                summary.tally.add(&row, reached);
+                if let (Some(counts), Some(visits)) = (&mut summary.counts, &visits) {
+                    counts.add(range.start + members, visits);
+                }
+                lines.append(&mut csv_line(&row));
+                members += 1;
+                progress.done(summary.tally.strayed);
             }
-            progress.done(summary.tally.strayed);
             match &mut output {
                 Output::Nowhere => Ok(()),
-                Output::Stream(stream) => Ok(stream.write_all(&csv_line(&row))?),
+                Output::Stream(stream) => Ok(stream.write_all(&lines)?),
                 Output::Journal(journal) => {
-                    let members = member + 1 - range.start;
-                    journal.append(&csv_line(&row), members, summary.counts.as_ref())
+                    journal.append(&lines, members, summary.counts.as_ref())
                 }
             }
         },

@@ -31,7 +31,7 @@ impl Division {
 }
 
 /// Works on all items. `prepare` is called once on every thread, `work` for every item, `take` on the calling thread with
-/// every result in the order of the items.
+/// the first item of every block and the results of the block, in the order of the items.
 ///
 /// # Errors
 /// The first error of `take`, which ends the work.
@@ -40,7 +40,7 @@ pub fn in_order<W, T: Send, E>(
     division: Division,
     prepare: impl Fn() -> W + Sync,
     work: impl Fn(&mut W, u64) -> T + Sync,
-    mut take: impl FnMut(u64, T) -> Result<(), E>,
+    mut take: impl FnMut(u64, Vec<T>) -> Result<(), E>,
 ) -> Result<(), E> {
     let gate = Gate::new(items.clone(), division);
     thread::scope(|scope| {
@@ -72,17 +72,16 @@ fn collect<T, E>(
     first: u64,
     receiver: &Receiver<(u64, Vec<T>)>,
     gate: &Gate,
-    take: &mut impl FnMut(u64, T) -> Result<(), E>,
+    take: &mut impl FnMut(u64, Vec<T>) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut next = first;
     let mut early = BTreeMap::new();
     for (start, results) in receiver {
         early.insert(start, results);
         while let Some(results) = early.remove(&next) {
-            for result in results {
-                take(next, result)?;
-                next += 1;
-            }
+            let count = results.len() as u64;
+            take(next, results)?;
+            next += count;
             gate.taken(next);
         }
     }
@@ -176,9 +175,10 @@ mod tests {
 
     fn squares(items: Range<u64>, division: Division) -> Vec<u64> {
         let mut taken = Vec::new();
-        let take = |item, square| {
-            taken.push(item);
-            taken.push(square);
+        let take = |first, squares: Vec<u64>| {
+            for (item, square) in (first..).zip(squares) {
+                taken.extend([item, square]);
+            }
             Ok::<(), ()>(())
         };
         let done = in_order(items, division, || (), |(), item| item * item, take);
@@ -211,7 +211,7 @@ mod tests {
             }
             furthest.fetch_max(item, Ordering::SeqCst);
         };
-        let done = in_order(0..1000, division, || (), work, |_, ()| Ok::<(), ()>(()));
+        let done = in_order(0..1000, division, || (), work, |_, _| Ok::<(), ()>(()));
         assert_eq!((done, furthest.into_inner()), (Ok(()), 999));
     }
 
@@ -223,7 +223,7 @@ mod tests {
             threads: 3,
             block: 2,
         };
-        let take = |item, _| if item == 10 { Err("full") } else { Ok(()) };
+        let take = |first, _| if first == 10 { Err("full") } else { Ok(()) };
         let done = in_order(0..1_000_000, division, || (), work, take);
         assert_eq!(done, Err("full"));
         assert!(worked.into_inner() < 100);
