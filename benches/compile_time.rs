@@ -10,7 +10,7 @@ use dalembert::Described;
 use dalembert_benches::table::{Layout, Table};
 use dalembert_benches::timing::{is_benchmark, median, timed};
 use dalembert_codegen::{mechanics, model, program, spec, try_expand};
-use dalembert_models::{Chain2, Chain4, Chain8, Chain16, DoublePendulum, RollingDisk};
+use dalembert_models::{Chain16, DoublePendulum, RollingDisk};
 
 /// What is measured of one expansion.
 struct Expansion {
@@ -68,33 +68,55 @@ fn expansions(rounds: usize) -> Table {
     table
 }
 
-/// The chain of N links, and the powers of N that fit.
+/// A chain of 16 unit masses by their places, with the rods as constraints.
+const RODS: &str = "Rods16 {
+    const N = 16;
+    coordinates { x[N]; y[N]; }
+    parameters { g = 9.81; }
+    let X[0] = 0;
+    let X[i in 1..=N] = x[i];
+    let Y[0] = 0;
+    let Y[i in 1..=N] = y[i];
+    lagrangian = sum(i in 1..=N: 1/2*(dot(x[i])^2 + dot(y[i])^2) - g*y[i]);
+    constraints {
+        rod[i in 1..=N]: (X[i] - X[i-1])*(d(X[i]) - d(X[i-1])) + (Y[i] - Y[i-1])*(d(Y[i]) - d(Y[i-1])) = 0;
+    }
+}";
+
+/// Both declarations of the chain of 16 links.
+fn chains() -> [(&'static str, &'static str); 2] {
+    [("angles", Chain16::DESCRIPTION.source), ("rods", RODS)]
+}
+
+/// The declaration of a chain with another number of links.
+fn with_links(source: &str, links: usize) -> String {
+    source.replace("16", &links.to_string())
+}
+
+/// The chain of N links in both declarations, and the powers of N that fit.
 fn growth(rounds: usize) -> Table {
-    let sources = [
-        (2.0, Chain2::DESCRIPTION.source),
-        (4.0, Chain4::DESCRIPTION.source),
-        (8.0, Chain8::DESCRIPTION.source),
-        (16.0, Chain16::DESCRIPTION.source),
-    ];
-    let mut table = Table::new(["links", "operations", "ms"]);
-    let (mut work, mut time) = (Vec::new(), Vec::new());
-    for (n, source) in sources {
-        let expansion = expand(source, rounds);
-        work.push((n, expansion.operations as f64));
-        time.push((n, expansion.time));
-        let [operations, time] = [expansion.operations as f64, expansion.time];
+    let mut table = Table::new(["chain by", "links", "operations", "ms"]);
+    for (name, source) in chains() {
+        let (mut work, mut time) = (Vec::new(), Vec::new());
+        for links in [2, 4, 8, 16, 32] {
+            let expansion = expand(&with_links(source, links), rounds);
+            work.push((links as f64, expansion.operations as f64));
+            time.push((links as f64, expansion.time));
+            table.push([
+                name.to_owned(),
+                links.to_string(),
+                expansion.operations.to_string(),
+                format!("{:.3}", expansion.time),
+            ]);
+        }
+        let [work, time] = [work, time].map(|points| fitted_power(&points));
         table.push([
-            format!("{n}"),
-            format!("{operations}"),
-            format!("{time:.3}"),
+            name.to_owned(),
+            "power of N".into(),
+            format!("{work:.2}"),
+            format!("{time:.2}"),
         ]);
     }
-    let [work, time] = [fitted_power(&work), fitted_power(&time)];
-    table.push([
-        "power of N".into(),
-        format!("{work:.2}"),
-        format!("{time:.2}"),
-    ]);
     table
 }
 
@@ -180,16 +202,20 @@ fn program(name: &str, source: &str) -> String {
 /// Seconds that cargo takes when a user's crate has changed, by model; the models take turns.
 fn builds(rounds: usize) -> Table {
     let crate_ = UserCrate::create();
-    let mut programs = vec![("no model", WITHOUT_MODEL.to_owned())];
-    for description in [
-        DoublePendulum::DESCRIPTION,
-        RollingDisk::DESCRIPTION,
-        Chain4::DESCRIPTION,
-        Chain8::DESCRIPTION,
-        Chain16::DESCRIPTION,
-    ] {
+    let mut programs = vec![("no model".to_owned(), WITHOUT_MODEL.to_owned())];
+    for description in [DoublePendulum::DESCRIPTION, RollingDisk::DESCRIPTION] {
         let text = program(description.type_name, description.source);
-        programs.push((description.name, text));
+        programs.push((description.name.to_owned(), text));
+    }
+    for (name, source) in chains() {
+        for links in BUILT_LINKS {
+            let source = with_links(source, links);
+            let type_name = source
+                .split_whitespace()
+                .find(|word| word.ends_with(&links.to_string()));
+            let text = program(type_name.expect("a name"), &source);
+            programs.push((format!("chain of {links} by {name}"), text));
+        }
     }
     let mut times = vec![[const { Vec::new() }; COMMANDS.len()]; programs.len()];
     for round in 0..rounds {
@@ -204,10 +230,13 @@ fn builds(rounds: usize) -> Table {
     let mut table = Table::new(["model", "check_s", "build_s", "release_s"]);
     for ((name, _), times) in programs.iter().zip(times) {
         let [check, build, release] = times.map(|times| format!("{:.2}", median(times)));
-        table.push([(*name).to_owned(), check, build, release]);
+        table.push([name.clone(), check, build, release]);
     }
     table
 }
+
+/// Chains whose programs are built.
+const BUILT_LINKS: [usize; 3] = [8, 16, 32];
 
 fn main() {
     let layout = Layout::from_arguments();
