@@ -3,12 +3,12 @@
 use core::ops::ControlFlow;
 
 use dalembert::{Observer, Segment, System, VectorField};
-use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
+use dalembert_cli::{Entry, Exit, Integrator, Streams, run_with};
 
 use super::course::Course;
 use super::tables::Sinai;
-use crate::PointBilliard;
+use crate::{BouncingBall, PointBilliard};
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -37,6 +37,48 @@ pub const CASES: &[Case] = &[
         ..Case::NIGHTLY
     },
 ];
+
+/// The rows of an ensemble of balls that start at these heights, as the command line writes them, and its exit.
+fn rows(heights: &[f64]) -> (Vec<String>, Exit) {
+    let heights = heights.iter().map(|height| format!("{height}\n"));
+    let table: String = std::iter::once("x\n".to_owned()).chain(heights).collect();
+    let (mut output, mut errors) = (Vec::new(), Vec::new());
+    let mut streams = Streams {
+        input: &mut table.as_bytes(),
+        output: &mut output,
+        errors: &mut errors,
+        terminal: false,
+    };
+    let line = "dalembert ensemble bouncing_ball --from - --until 1 --csv -";
+    let exit = run_with(
+        line.split(' '),
+        &[Entry::of::<BouncingBall>()],
+        &mut streams,
+    );
+    let text = String::from_utf8_lossy(&output);
+    (text.lines().skip(1).map(str::to_owned).collect(), exit)
+}
+
+/// H05
+pub fn empty(report: &mut Report) {
+    let (rows, exit) = rows(&[]);
+    report.equal("rows", rows.len(), 0);
+    report.equal("exit", exit, Exit::Reached);
+}
+
+/// H06
+pub fn one_bad_member(report: &mut Report) {
+    let mut heights: Vec<f64> = (0..10_000).map(|k| 0.5 + 1e-4 * f64::from(k)).collect();
+    let (good, exit) = rows(&heights);
+    report.equal("exit without it", exit, Exit::Reached);
+    heights[4711] = -1.0;
+    let (rows, exit) = rows(&heights);
+    report.equal("exit", exit, Exit::Other);
+    let changed: Vec<usize> = (0..rows.len()).filter(|&k| rows[k] != good[k]).collect();
+    report.equal("rows that differ", changed, vec![4711]);
+    let done = rows.iter().filter(|row| row.contains(",done,")).count();
+    report.equal("done", done, 9999);
+}
 
 /// The bits of the last states of an ensemble, made by this many threads, folded in order of the members.
 fn hash(setting: Setting, threads: usize, backwards: bool) -> u64 {

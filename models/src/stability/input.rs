@@ -10,11 +10,9 @@ use dalembert::{
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::Course;
+use super::ensembles;
 use super::location::Fall;
 use crate::{BouncingBall, RollingDisk};
-
-/// Why ensembles are not measured.
-const NO_ENSEMBLE: &str = "`ensemble` is not built: a run has one member";
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -55,7 +53,7 @@ pub const CASES: &[Case] = &[
         title: "an empty ensemble",
         right: "an empty result",
         bound: "no error",
-        pending: Some(NO_ENSEMBLE),
+        run: Run::Once(ensembles::empty),
         ..Case::QUICK
     },
     Case {
@@ -63,7 +61,7 @@ pub const CASES: &[Case] = &[
         title: "one bad member among 1e4",
         right: "only that member fails",
         bound: "9999 are done",
-        pending: Some(NO_ENSEMBLE),
+        run: Run::Once(ensembles::one_bad_member),
         ..Case::QUICK
     },
     Case {

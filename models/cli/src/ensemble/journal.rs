@@ -75,7 +75,8 @@ impl Journal {
         (first_member, counts): (u64, Option<&mut Counts>),
         see: &mut dyn FnMut(&Row),
     ) -> Result<Option<(Self, u64)>, CliError> {
-        if !path.exists() {
+        // A file that is empty was begun just now: what stands beside it may be of another ensemble.
+        if fs::metadata(path).map_or(0, |file| file.len()) == 0 {
             return Ok(None);
         }
         let whole = |source| failed(flag, path, source);
