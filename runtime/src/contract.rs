@@ -4,7 +4,7 @@
 
 use crate::error::{Fault, ParameterError, StateError};
 use crate::impacts::law::{Contact, Jump, Law};
-use crate::jet::{Jets, LENGTH};
+use crate::jet::{Jets, LENGTH, Work};
 use crate::state::StateVector;
 
 /// A first-order system of ordinary differential equations on a state of fixed size.
@@ -38,6 +38,9 @@ pub trait VectorField {
 pub trait TaylorField: VectorField {
     /// Room for the coefficients of intermediate values.
     type Jets: Jets;
+
+    /// What an expansion takes, if it is known: the order of series is chosen by it.
+    const WORK: Option<Work> = None;
 
     /// Writes the power series of the motion that is at `coefficients[0]` at time `t`:
     ///

@@ -1,7 +1,18 @@
 //! Sums over Taylor coefficients, as generated code calls them.
 
+use crate::math::mul_add;
+
 /// Coefficients that a series may have: orders 0 to 32.
 pub const LENGTH: usize = 33;
+
+/// What the expansions of a system take, in multiplications.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Work {
+    /// Values at one moment: of a rate, and of gaps where there are surfaces.
+    pub values: u32,
+    /// Sums over products of coefficients: each takes a multiplication for every pair of coefficients.
+    pub sums: u32,
+}
 
 /// Room for the coefficients of several series.
 pub trait Jets: Copy {
@@ -9,8 +20,82 @@ pub trait Jets: Copy {
     const ZERO: Self;
 }
 
-impl<const H: usize> Jets for [[f64; LENGTH]; H] {
-    const ZERO: Self = [[0.0; LENGTH]; H];
+impl<const W: usize, const H: usize> Jets for [[f64; W]; H] {
+    const ZERO: Self = [[0.0; W]; H];
+}
+
+/// `1 / k`; 0 at 0.
+pub const INVERSES: [f64; LENGTH] = {
+    let mut inverses = [0.0; LENGTH];
+    let mut k = 1;
+    while k < LENGTH {
+        inverses[k] = 1.0 / k as f64;
+        k += 1;
+    }
+    inverses
+};
+
+/// `sum a_j b_(k-j)` for `j` in `1..k`, of `W` pairs of series side by side. Row `j` holds coefficient `j` of all
+/// series: the `a` from place `a` on, the `b` from place `b` on.
+#[inline(always)]
+pub fn middles<const W: usize, const P: usize>(
+    rows: &[[f64; P]; LENGTH],
+    a: usize,
+    b: usize,
+    k: usize,
+) -> [f64; W] {
+    let rows = &rows[1..k.clamp(1, LENGTH - 1)];
+    let mut sums = [0.0; W];
+    for (x, y) in rows.iter().zip(rows.iter().rev()) {
+        for i in 0..W {
+            sums[i] = mul_add(x[a + i], y[b + i], sums[i]);
+        }
+    }
+    sums
+}
+
+/// Half of `sum a_j a_(k-j)` for `j` in `1..k`, each product once, of `W` series side by side as in [`middles`].
+#[inline(always)]
+pub fn halves<const W: usize, const P: usize>(
+    rows: &[[f64; P]; LENGTH],
+    a: usize,
+    k: usize,
+) -> [f64; W] {
+    let k = k.clamp(1, LENGTH - 1);
+    let pairs = (k - 1) / 2;
+    let (left, right) = (&rows[1..=pairs], &rows[k - pairs..k]);
+    let mut sums = [0.0; W];
+    if k.is_multiple_of(2) {
+        let centre = &rows[k / 2];
+        for i in 0..W {
+            sums[i] = 0.5 * centre[a + i] * centre[a + i];
+        }
+    }
+    // The newest coefficients come last: the sum need not wait for them.
+    for (x, y) in left.iter().rev().zip(right) {
+        for i in 0..W {
+            sums[i] = mul_add(x[a + i], y[a + i], sums[i]);
+        }
+    }
+    sums
+}
+
+/// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond `degree`, of the series at two places of the rows.
+#[inline(always)]
+pub fn short<const P: usize>(
+    rows: &[[f64; P]; LENGTH],
+    a: usize,
+    b: usize,
+    k: usize,
+    degree: usize,
+) -> f64 {
+    let mut sum = rows[1][a] * rows[k - 1][b];
+    for j in 2..=degree {
+        if j <= k {
+            sum += rows[j][a] * rows[k - j][b];
+        }
+    }
+    sum
 }
 
 /// `sum a_j b_(k-j)` for `j` in `1..k`.
@@ -61,7 +146,7 @@ pub fn half(a: &[f64; LENGTH], k: usize) -> f64 {
 
 /// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond `degree`.
 #[inline(always)]
-pub fn short(a: &[f64; LENGTH], b: &[f64; LENGTH], k: usize, degree: usize) -> f64 {
+pub fn shared_short(a: &[f64; LENGTH], b: &[f64; LENGTH], k: usize, degree: usize) -> f64 {
     let mut sum = 0.0;
     for j in 1..=degree {
         if j <= k {
@@ -81,6 +166,10 @@ mod tests {
         for j in 0..LENGTH {
             (a[j], b[j]) = (1.0 + j as f64, 2.0 - (j * j) as f64);
         }
+        let mut rows = [[0.0; 4]; LENGTH];
+        for j in 0..LENGTH {
+            rows[j] = [b[j], a[j], b[j], a[j]];
+        }
         for k in 1..LENGTH {
             let sum = |x: &[f64], y: &[f64], from: usize, to: usize| -> f64 {
                 (from..to).map(|j| x[j] * y[k - j]).sum()
@@ -88,7 +177,15 @@ mod tests {
             assert_eq!(middle(&a, &b, k), sum(&a, &b, 1, k));
             assert_eq!(shared_middle(&a, &b, k), sum(&a, &b, 1, k));
             assert_eq!(2.0 * half(&a, k), sum(&a, &a, 1, k));
-            assert_eq!(short(&a, &b, k, 3), sum(&a, &b, 1, (k + 1).min(4)));
+            assert_eq!(shared_short(&a, &b, k, 3), sum(&a, &b, 1, (k + 1).min(4)));
+            assert_eq!(short(&rows, 1, 2, k, 3), sum(&a, &b, 1, (k + 1).min(4)));
+            let [of_a, of_b] = middles(&rows, 0, 2, k);
+            assert_eq!([of_a, of_b], [sum(&b, &b, 1, k), sum(&a, &a, 1, k)]);
+            let [of_a, of_b] = halves(&rows, 1, k);
+            assert_eq!(
+                [2.0 * of_a, 2.0 * of_b],
+                [sum(&a, &a, 1, k), sum(&b, &b, 1, k)]
+            );
         }
     }
 }

@@ -2,7 +2,8 @@
 //! Rust otherwise.
 //!
 //! Everything else in this crate is addition, multiplication, division and square root, which are correctly rounded by
-//! definition, in the order in which they are written: Rust never contracts them. So with `strict` a run has the same
+//! definition, in the order in which they are written: Rust never contracts them, and [`mul_add`] does
+//! so only without `strict`. So with `strict` a run has the same
 //! bits on every machine.
 
 macro_rules! elementary {
@@ -47,6 +48,19 @@ pub fn sqrt(x: f64) -> f64 {
     #[cfg(not(feature = "std"))]
     {
         libm::sqrt(x)
+    }
+}
+
+/// `a b + c`, rounded once where the machine does that at once and nobody asked for the same bits everywhere.
+#[inline(always)]
+pub fn mul_add(a: f64, b: f64, c: f64) -> f64 {
+    #[cfg(all(target_feature = "fma", feature = "std", not(feature = "strict")))]
+    {
+        a.mul_add(b, c)
+    }
+    #[cfg(not(all(target_feature = "fma", feature = "std", not(feature = "strict"))))]
+    {
+        a * b + c
     }
 }
 

@@ -32,6 +32,11 @@ impl Cost {
         cost
     }
 
+    /// About how many multiplications take as long.
+    pub fn multiplications_alike(&self) -> usize {
+        self.additions + self.multiplications + 4 * self.divisions + 16 * self.calls
+    }
+
     /// All operations together.
     pub fn total(&self) -> usize {
         self.additions + self.multiplications + self.divisions + self.calls

@@ -72,6 +72,22 @@ const TO_BERNSTEIN: [[f64; SAMPLES]; 4] = [
     ],
 ];
 
+/// From powers to Bernstein coefficients: `C(j, k) / C(8, k)` of power `k` in coefficient `j`. Row `k` is that of a power.
+pub(crate) const FROM_POWERS: [[f64; SAMPLES]; SAMPLES] = {
+    let mut table = [[0.0; SAMPLES]; SAMPLES];
+    let mut j = 0;
+    while j < SAMPLES {
+        let (mut k, mut ratio) = (0, 1.0);
+        while k <= j {
+            table[k][j] = ratio;
+            ratio *= (j - k) as f64 / (SAMPLES - 1 - k) as f64;
+            k += 1;
+        }
+        j += 1;
+    }
+    table
+};
+
 /// `cos(7 j pi / 8)`: the Chebyshev polynomial of degree 7 at the samples.
 const SEVENTH: [f64; SAMPLES] = [
     1.0,
@@ -106,17 +122,21 @@ pub(crate) enum Signs {
 
 /// Reads the signs of a function from its samples at [`NODES`].
 pub(crate) fn signs(samples: &[f64; SAMPLES]) -> Signs {
-    let doubt = doubt(samples);
+    read(&bernstein(samples), doubt(samples))
+}
+
+/// Reads signs from Bernstein coefficients; those within the doubt have none.
+pub(crate) fn read(coefficients: &[f64; SAMPLES], doubt: f64) -> Signs {
     let sign = |value: f64| match value {
         value if value > doubt => Some(true),
         value if value < -doubt => Some(false),
         _ => None,
     };
-    let (Some(first), Some(last)) = (sign(samples[0]), sign(samples[SAMPLES - 1])) else {
+    let (Some(first), Some(last)) = (sign(coefficients[0]), sign(coefficients[SAMPLES - 1])) else {
         return Signs::Unclear;
     };
     let (mut current, mut changes, mut skipped) = (first, 0, 0);
-    for coefficient in bernstein(samples) {
+    for &coefficient in coefficients {
         match sign(coefficient) {
             None => skipped += 1,
             // Uncertain coefficients between equal signs may hide two roots, two of them between opposite signs

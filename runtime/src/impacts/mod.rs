@@ -2,6 +2,7 @@
 
 mod accumulation;
 mod corner;
+mod fall;
 mod glance;
 mod growth;
 mod held;

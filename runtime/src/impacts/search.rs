@@ -1,14 +1,14 @@
 //! The search for hits along a step that the first look did not settle: falls of gaps through zero, which of them are
 //! impacts, and what a motion from rest on a surface does.
 
+use super::fall::{Known, first_fall};
 use super::glance::Glance;
-use super::series::GapSeries;
 use super::tangency::{crosses_at_rest, is_accelerated};
 use super::watch::Watch;
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::events::crossing::{NODES, SAMPLES};
-use crate::events::locate::{Bracket, Line, Search, Start};
+use crate::events::locate::{Bracket, Search, Start};
 use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
@@ -43,17 +43,15 @@ impl<Sys: Impacting> Watch<Sys> {
             if self.is_clear(surface, glance) {
                 continue;
             }
-            let samples = match &glance.series {
-                Some(series) => {
-                    let mut gaps = series.at_each(surface, NODES);
-                    gaps[SAMPLES - 1] = glance.gaps.as_slice()[surface];
-                    gaps
+            let known = match &glance.series {
+                Some(series) => Known::Series(series),
+                None => {
+                    let whole =
+                        whole.get_or_insert_with(|| samples(step, &self.gaps, &glance.gaps));
+                    Known::Samples(whole.map(|gaps| gaps.as_slice()[surface]))
                 }
-                None => whole
-                    .get_or_insert_with(|| samples(step, &self.gaps, &glance.gaps))
-                    .map(|gaps| gaps.as_slice()[surface]),
             };
-            let (part, rate) = match self.first_hit(surface, step, &samples, glance)? {
+            let (part, rate) = match self.first_hit(surface, step, &known, glance)? {
                 Found::Hit(part, rate) => (part, Some(rate)),
                 Found::Unfinished(part) => (part, None),
                 Found::Nothing if glance.is_due(surface) && is_active(surface, step, 1.0) => {
@@ -75,7 +73,7 @@ impl<Sys: Impacting> Watch<Sys> {
         &self,
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
-        samples: &[f64; SAMPLES],
+        known: &Known<'_, Sys::Gaps>,
         glance: &Glance<Sys::Gaps>,
     ) -> Result<Found, Outcome> {
         let gap = self.gaps.as_slice()[surface];
@@ -91,13 +89,14 @@ impl<Sys: Impacting> Watch<Sys> {
         };
         let mut tangential = None;
         for _ in 0..FALLS {
-            let found = first_fall(surface, step, &self.sizes, samples, start, &glance.series);
+            let found = first_fall(surface, step, &self.sizes, known, start);
             let (part, after, nearest) = match found {
                 Search::Clear => {
-                    let sunk = self.is_sunk(surface, step, glance);
-                    return match tangential.filter(|_| sunk) {
-                        Some(part) => Ok(Found::Hit(part, rate_at(surface, step, part)?)),
-                        None => Ok(Found::Nothing),
+                    return match tangential {
+                        Some(part) if self.is_sunk(surface, step, glance) => {
+                            Ok(Found::Hit(part, rate_at(surface, step, part)?))
+                        }
+                        _ => Ok(Found::Nothing),
                     };
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
@@ -315,57 +314,6 @@ fn rate_at<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<f64, Outcome> {
     let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
     Ok(rates.as_slice()[surface])
-}
-
-/// The first fall of a gap, with its time to the last bits. On a series it is looked for on the polynomial; what is
-/// not a plain fall there is left to the gap itself.
-fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &mut StepView<'_, Sys, Step>,
-    sizes: &Sys::State,
-    whole: &[f64; SAMPLES],
-    start: Start,
-    series: &Option<GapSeries<Sys::Gaps>>,
-) -> Search {
-    let (mut evaluations, mut more) = (0, 0);
-    let mut gap = |part: f64| {
-        evaluations += 1;
-        step.system
-            .gaps(step.time(part), &step.state(part))
-            .as_slice()[surface]
-    };
-    let mut rounding = || rounding_along(surface, step, sizes, &mut more);
-    let on_series = series.as_ref().and_then(|series| {
-        let line = Line {
-            // At the end the gap itself: it may be negative by rounding where the polynomial is not.
-            gap: |part: f64| match part >= 1.0 {
-                true => whole[SAMPLES - 1],
-                false => series.at(surface, part),
-            },
-            rounding: &mut rounding,
-            whole,
-            start,
-        };
-        match line.first_interval() {
-            Ok(ends) => {
-                let fall = series.fall(surface, start.slope.is_some(), ends, &mut gap);
-                fall.map(Search::Falls)
-            }
-            Err(Search::Clear) => Some(Search::Clear),
-            Err(_) => None,
-        }
-    });
-    let found = on_series.unwrap_or_else(|| {
-        let line = Line {
-            gap,
-            rounding,
-            whole,
-            start,
-        };
-        line.first_fall()
-    });
-    step.counters.event_evaluations += evaluations + more;
-    found
 }
 
 /// Gaps at the samples over a whole step; those at the ends are known.

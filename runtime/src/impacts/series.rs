@@ -8,19 +8,24 @@
 
 use crate::contract::Impacting;
 use crate::effects::StepView;
+use crate::events::crossing::{FROM_POWERS, NODES, SAMPLES, Signs, read};
 use crate::events::locate::Bracket;
 use crate::integrate::{Series, Stepper};
 use crate::jet::LENGTH;
+use crate::math;
 use crate::state::StateVector;
 
 /// Part of the sum of its terms that a polynomial may be wrong by and still be of use.
-const USEFUL: f64 = 1.0 / (1 << 20) as f64;
+const USEFUL: f64 = 1.0 / (1 << 7) as f64;
 
-/// Steps of Newton's method, which doubles the number of right digits in each.
-const NEWTON: u32 = 12;
+/// Steps of Halley's method, which triples the number of right digits in each.
+const HALLEY: u32 = 10;
 
-/// A step of it this small a part of the root is the last one: what is left of the error is its square.
-const SETTLED: f64 = 1.0 / (1 << 26) as f64;
+/// A step of it this small a part of the root is the last one: what is left of the error is its cube.
+const SETTLED: f64 = 1.0 / (1 << 18) as f64;
+
+/// Evaluations of the gap itself next to a root of its polynomial.
+const SECANTS: u32 = 6;
 
 /// A root is certain if what rounding leaves of doubt is this small a part of the interval it was found in.
 const CLOSE: f64 = 1.0 / (1 << 10) as f64;
@@ -37,7 +42,8 @@ pub(super) struct GapSeries<G> {
     tails: G,
     /// How wrong each polynomial may be: what it misses at the end of the step, and rounding.
     doubts: G,
-    /// The slopes at the end of the step, by the part of the step.
+    /// The gaps at the end of the step, and their slopes by the part of the step.
+    last: G,
     slopes: G,
 }
 
@@ -100,6 +106,7 @@ impl<G: StateVector> GapSeries<G> {
             sizes,
             tails,
             doubts,
+            last: *last,
             slopes,
         })
     }
@@ -111,14 +118,26 @@ impl<G: StateVector> GapSeries<G> {
         gap
     }
 
+    /// Samples of the gap of a surface; that at the end of the step is the gap itself.
+    pub(super) fn samples(&self, surface: usize) -> [f64; SAMPLES] {
+        let mut gaps = self.at_each(surface, NODES);
+        gaps[SAMPLES - 1] = self.last.as_slice()[surface];
+        gaps
+    }
+
+    /// Whether the gap of a surface is positive at a part of the step, beyond doubt.
+    pub(super) fn is_positive(&self, surface: usize, part: f64) -> bool {
+        self.at(surface, part) > self.doubts.as_slice()[surface]
+    }
+
     /// The gap of a surface at several parts of the step, which do not wait for each other.
     #[inline(always)]
-    pub(super) fn at_each<const N: usize>(&self, surface: usize, parts: [f64; N]) -> [f64; N] {
+    fn at_each<const N: usize>(&self, surface: usize, parts: [f64; N]) -> [f64; N] {
         let mut gaps = [0.0; N];
         for term in self.coefficients[..=self.order].iter().rev() {
             let term = term.as_slice()[surface];
             for (gap, part) in gaps.iter_mut().zip(parts) {
-                *gap = *gap * part + term;
+                *gap = math::mul_add(*gap, part, term);
             }
         }
         gaps
@@ -135,27 +154,55 @@ impl<G: StateVector> GapSeries<G> {
         rates
     }
 
-    /// The fall of the gap of a surface in an interval at whose ends the polynomial has different signs: Newton's method
-    /// on the polynomial, a root at the start divided out, and one step of it on the gap itself. `None` where that does
-    /// not end at once, or the gap is not what the polynomial says.
+    /// The signs of the polynomial of a surface over the step, a root at the start divided out.
+    pub(super) fn signs(&self, surface: usize, at_hand: bool) -> Signs {
+        let (coefficients, doubt) = self.bernstein(surface, at_hand);
+        read(&coefficients, doubt)
+    }
+
+    /// The Bernstein coefficients of the first terms of a polynomial, a root at the start divided out, and the sum of all
+    /// others.
+    #[inline(always)]
+    fn bernstein(&self, surface: usize, at_hand: bool) -> ([f64; SAMPLES], f64) {
+        let first = usize::from(at_hand);
+        let term = |k: usize| self.coefficients[first + k].as_slice()[surface];
+        let mut doubt = self.doubts.as_slice()[surface];
+        // NOTE: terms above the order are zero.
+        for k in SAMPLES..=self.order.max(SAMPLES) - first {
+            doubt += term(k).abs();
+        }
+        let mut coefficients = [term(0); SAMPLES];
+        for (k, weights) in FROM_POWERS.iter().enumerate().skip(1) {
+            let term = term(k);
+            for (entry, weight) in coefficients.iter_mut().zip(weights) {
+                *entry = math::mul_add(*weight, term, *entry);
+            }
+        }
+        (coefficients, doubt)
+    }
+
+    /// The fall of the gap of a surface in an interval at whose ends the polynomial has different signs: Halley's method
+    /// on the polynomial, a root at the start divided out, and a step or two on the gap itself. `None` where that
+    /// does not end soon, or the gap is not what the polynomial says.
     pub(super) fn fall(
         &self,
         surface: usize,
         at_hand: bool,
         [mut before, mut after]: [f64; 2],
-        gap: impl FnOnce(f64) -> f64,
+        gap: impl FnMut(f64) -> f64,
     ) -> Option<Bracket> {
         let width = after - before;
-        let mut part = 0.5 * (before + after);
-        let mut last = f64::INFINITY;
-        for _ in 0..NEWTON {
-            let [value, slope] = self.with_slope(surface, usize::from(at_hand), part);
+        let mut part = self.guess(surface, at_hand, [before, after]);
+        let (mut last, mut steepness) = (f64::INFINITY, 0.0);
+        for _ in 0..HALLEY {
+            let [value, slope, bend] = self.derivatives(surface, usize::from(at_hand), part);
             if value >= 0.0 {
                 before = part;
             } else {
                 after = part;
             }
-            let next = part - value / slope;
+            let newton = value / slope;
+            let next = part - newton / (1.0 - newton * bend / slope);
             // Not a comparison that NaN passes.
             let next = if next >= before && next <= after {
                 next
@@ -163,6 +210,7 @@ impl<G: StateVector> GapSeries<G> {
                 0.5 * (before + after)
             };
             last = (next - part).abs();
+            steepness = slope + 2.0 * bend * (next - part);
             part = next;
             if last <= SETTLED * part {
                 break;
@@ -171,56 +219,124 @@ impl<G: StateVector> GapSeries<G> {
         if last > SETTLED * part {
             return None;
         }
-        let [_, slope] = self.with_slope(surface, 0, part);
+        let slope = if at_hand { part * steepness } else { steepness };
         let (size, doubt) = (
             self.sizes.as_slice()[surface],
             self.doubts.as_slice()[surface],
         );
-        let missed = gap(part);
-        let root = part - missed / slope;
         // What neighbouring numbers and rounding cannot tell apart.
-        let margin = 8.0 * f64::EPSILON * (root + size / slope.abs());
-        let is_plain = missed.abs() <= doubt && slope < 0.0 && margin <= CLOSE * width;
-        (is_plain && root > margin && root + margin < 1.0).then_some(Bracket {
+        let margin = 8.0 * f64::EPSILON * (part + size / slope.abs());
+        let root = self.corrected([part, slope], doubt, margin, gap)?;
+        let is_plain = margin <= CLOSE * width && root > margin && root + margin < 1.0;
+        is_plain.then_some(Bracket {
             before: root - margin,
             after: root + margin,
             nearest: root,
         })
     }
 
-    /// The polynomial of a surface without its first terms, and its slope.
-    #[inline(always)]
-    fn with_slope(&self, surface: usize, first: usize, part: f64) -> [f64; 2] {
-        let (mut value, mut slope) = (0.0, 0.0);
-        for term in self.coefficients[first..=self.order].iter().rev() {
-            slope = slope * part + value;
-            value = value * part + term.as_slice()[surface];
+    /// The root of the gap itself, next to a root of its polynomial with this slope: Newton's step, then secants. One
+    /// evaluation is enough where the polynomial misses little; `None` where it misses more than it may.
+    fn corrected(
+        &self,
+        [mut part, mut slope]: [f64; 2],
+        doubt: f64,
+        margin: f64,
+        mut gap: impl FnMut(f64) -> f64,
+    ) -> Option<f64> {
+        let mut value = gap(part);
+        if !(value.abs() <= doubt && slope < 0.0) {
+            return None;
         }
-        [value, slope]
+        let degree = self.order as f64;
+        let mut before = None;
+        for _ in 0..SECANTS {
+            let next = part - value / slope;
+            let step = (next - part).abs();
+            // The slope is off by as much as the gap bends between here and the point before; at first, by what a last
+            // term that explains the miss would add to it.
+            let left = degree * step * before.unwrap_or(step);
+            if left <= margin * part {
+                return Some(next);
+            }
+            let (last, missed) = (part, value);
+            (part, value) = (next, gap(next));
+            slope = (value - missed) / (part - last);
+            if !(slope < 0.0 && value.abs() < missed.abs()) {
+                return None;
+            }
+            before = Some(step);
+        }
+        None
+    }
+
+    /// About where the polynomial of a surface falls in an interval: over the whole step, where the parabola falls that
+    /// has its start, its slope there and its end.
+    #[inline(always)]
+    fn guess(&self, surface: usize, at_hand: bool, [before, after]: [f64; 2]) -> f64 {
+        let middle = 0.5 * (before + after);
+        if before > 0.0 || after < 1.0 {
+            return middle;
+        }
+        let first = usize::from(at_hand);
+        let [a, b] = [0, 1].map(|k| self.coefficients[first + k].as_slice()[surface]);
+        let end = self.last.as_slice()[surface];
+        let root = math::sqrt((b * b - 4.0 * a * (end - a - b)).max(0.0));
+        // The quotient that does not cancel.
+        let part = match b <= 0.0 {
+            true => 2.0 * a / (root - b),
+            false => -0.5 * (b + root) / (end - a - b),
+        };
+        match part > 0.0 && part < 1.0 {
+            true => part,
+            false => middle,
+        }
+    }
+
+    /// The polynomial of a surface without its first terms, its slope, and half of its second derivative.
+    #[inline(always)]
+    fn derivatives(&self, surface: usize, first: usize, part: f64) -> [f64; 3] {
+        let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
+        for term in self.coefficients[first..=self.order].iter().rev() {
+            bend = math::mul_add(bend, part, slope);
+            slope = math::mul_add(slope, part, value);
+            value = math::mul_add(value, part, term.as_slice()[surface]);
+        }
+        [value, slope, bend]
     }
 
     /// Whether the gap of a surface keeps one sign over the step; apart from its start, where the surface is at hand
     /// there: the root is divided out. `false` means only that the coefficients do not show it.
     ///
     /// A step is a small part of the radius of convergence, so that a cubic is almost the whole gap: its Bernstein
-    /// coefficients must exceed the sum of all other terms.
+    /// coefficients must exceed the sum of all other terms, or else those of more terms the sum of the rest.
     #[inline(always)]
     pub(super) fn is_clear(&self, surface: usize, at_hand: bool) -> bool {
         let first = usize::from(at_hand);
         let at = |k: usize| self.coefficients[first + k].as_slice()[surface];
         let [a, b, c, d] = [at(0), at(1), at(2), at(3)];
         let hull = [a, a + b / 3.0, a + (2.0 * b + c) / 3.0, a + b + c + d];
-        let (mut least, mut largest) = (a, a);
-        for value in hull {
-            least = least.min(value);
-            largest = largest.max(value);
-        }
         let mut rest = self.doubts.as_slice()[surface] + self.tails.as_slice()[surface];
         if !at_hand {
             rest += at(4).abs();
         }
-        least > rest || largest < -rest
+        if exceed(&hull, rest) {
+            return true;
+        }
+        let (coefficients, rest) = self.bernstein(surface, at_hand);
+        exceed(&coefficients, rest)
     }
+}
+
+/// Whether all values are above a bound, or all below minus it.
+#[inline(always)]
+fn exceed(values: &[f64], bound: f64) -> bool {
+    let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in values {
+        least = least.min(*value);
+        largest = largest.max(*value);
+    }
+    least > bound || largest < -bound
 }
 
 #[cfg(test)]
@@ -244,6 +360,7 @@ mod tests {
             sizes: One::new(size),
             tails: One::zeros(),
             doubts: One::new(doubt),
+            last: One::new(terms.iter().sum()),
             slopes: One::zeros(),
         }
     }

@@ -1,12 +1,11 @@
-//! Taylor series of the motion, with the order and the steps of Jorba and Zou.
+//! Taylor series of the motion, with the steps of Jorba and Zou.
 //!
 //! ```text
-//! p = ceil(1 - ln(tol) / 2),   h_j = (tol e^-2.7 / |y_j|)^(1/j),   h = min(h_(p-1), h_p)
+//! h_j = (tol e^-2.7 / |y_j|)^(1/j),   h = min(h_(p-1), h_p)
 //! ```
 //!
 //! with `|y_j|` the largest of the coefficients `j` of the state's components, each over the size that its tolerance
-//! is relative to. `tol^(1/p)` is about `e^-2`: that much of the radius of convergence makes the least work per unit of
-//! time, whatever the tolerance. The step's polynomial is its dense output, so that states
+//! is relative to. The order `p` is the one of least work ([`order`]). The step's polynomial is its dense output, so that states
 //! between its ends are as accurate as those at them and cost no evaluation.
 //!
 //! Coefficients are computed in a unit of time that is a power of two near the step: they neither overflow nor vanish
@@ -23,24 +22,19 @@
 use core::fmt;
 
 use super::controller::{RETREAT, Weights, landing, least_step, not_finite};
+use super::order::{LEAST_ORDER, PART_OF_TOLERANCE, order};
+use super::rough::{self, power_of_two};
 use super::stats::Counters;
 use super::stepper::{Series, StepFailure, Stepper};
 use super::tolerance::Tolerance;
 use crate::contract::TaylorField;
 use crate::error::Fault;
-use crate::jet::{Jets, LENGTH};
+use crate::jet::{INVERSES, Jets, LENGTH};
 use crate::math;
 use crate::state::{StateVector, scaled};
 
 /// The name of [`Taylor`], known without a system.
 pub const TAYLOR: &str = "taylor";
-
-/// Lowest order: two coefficients are looked at for the step size, none of them that of the rate.
-const LEAST_ORDER: usize = 3;
-
-/// Logarithm of the part of the tolerance that is used: 2 make a step `e^-2` of the radius of convergence, 0.7 are the
-/// factor `e^(-0.7 / (p - 1))` by which Jorba and Zou shorten it.
-const SAFETY: f64 = -2.7;
 
 /// Largest step in units of time of its expansion: powers up to the highest stay far from overflow.
 const LONGEST: f64 = (1 << 20) as f64;
@@ -105,7 +99,7 @@ impl<F: TaylorField> Taylor<F> {
         let zeros = F::State::zeros();
         Self {
             tolerance,
-            order: order(tolerance.relative()),
+            order: order(tolerance.relative(), F::WORK),
             max_step: f64::INFINITY,
             first_step: None,
             weights: Weights::new(tolerance, &zeros),
@@ -207,12 +201,9 @@ impl<F: TaylorField> Taylor<F> {
             }
         }
         // The weights hold the tolerance already.
-        let order = self.order as f64;
-        let logarithm = |size: f64, power: f64| match size > 0.0 {
-            true => (SAFETY - math::ln(size)) / power,
-            false => f64::INFINITY,
-        };
-        math::exp(logarithm(sizes[0], order).min(logarithm(sizes[1], order - 1.0)))
+        let [last, before] = [(0, self.order), (1, self.order - 1)]
+            .map(|(j, order)| (PART_OF_TOLERANCE - rough::log2(sizes[j])) * INVERSES[order]);
+        rough::exp2(last.min(before))
     }
 
     /// Sets the end of the step at `theta` units of time, and gives the derivative of the polynomial there.
@@ -221,14 +212,14 @@ impl<F: TaylorField> Taylor<F> {
         let (mut change, mut slope) = (F::State::zeros(), F::State::zeros());
         for coefficient in self.coefficients[1..=self.order].iter().rev() {
             for i in 0..F::State::LEN {
-                let sum = change.as_slice()[i] + coefficient.as_slice()[i];
-                slope.as_mut_slice()[i] = slope.as_slice()[i] * theta + sum;
-                change.as_mut_slice()[i] = sum * theta;
+                let sum = math::mul_add(change.as_slice()[i], theta, coefficient.as_slice()[i]);
+                slope.as_mut_slice()[i] = math::mul_add(slope.as_slice()[i], theta, sum);
+                change.as_mut_slice()[i] = sum;
             }
         }
         for i in 0..F::State::LEN {
             let start = self.start.as_slice()[i];
-            let change = change.as_slice()[i] + self.rests[0].as_slice()[i];
+            let change = change.as_slice()[i] * theta + self.rests[0].as_slice()[i];
             let end = start + change;
             // The rounding error of the sum, exactly (Moller, Knuth).
             let moved = end - start;
@@ -269,19 +260,6 @@ impl<F: TaylorField> Taylor<F> {
         self.rests[1] = self.rests[0];
         self.rates[1] = self.rates[0];
     }
-}
-
-/// The order that belongs to a tolerance.
-fn order(tolerance: f64) -> usize {
-    let order = 1.0 - 0.5 * math::ln(tolerance);
-    // NOTE: the conversion saturates and drops the fraction, `+ 1` makes it round up.
-    (order as usize + 1).clamp(LEAST_ORDER, LENGTH - 1)
-}
-
-/// The largest power of two that is not above a positive number.
-fn power_of_two(x: f64) -> f64 {
-    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    f64::from_bits(x.clamp(f64::MIN_POSITIVE, f64::MAX).to_bits() & EXPONENT)
 }
 
 impl<F: TaylorField> Stepper<F> for Taylor<F> {
@@ -431,12 +409,12 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         let mut change = F::State::zeros();
         for coefficient in self.coefficients[1..=self.order].iter().rev() {
             for i in 0..F::State::LEN {
-                let sum = change.as_slice()[i] + coefficient.as_slice()[i];
-                change.as_mut_slice()[i] = sum * s;
+                let sum = change.as_slice()[i];
+                change.as_mut_slice()[i] = math::mul_add(sum, s, coefficient.as_slice()[i]);
             }
         }
         for i in 0..F::State::LEN {
-            let moved = change.as_slice()[i] + self.rests[0].as_slice()[i];
+            let moved = change.as_slice()[i] * s + self.rests[0].as_slice()[i];
             change.as_mut_slice()[i] = self.start.as_slice()[i] + moved;
         }
         change

@@ -187,6 +187,23 @@ impl Jet {
         uses
     }
 
+    /// Sums over products of coefficients of all orders below one: half of one for a square.
+    pub fn sums(&self) -> f64 {
+        let endless = |value: &Value| self.degrees[value.index()] == Degree::Endless;
+        let sums = |value: Value| match self.recurrences[value.index()] {
+            Recurrence::Square(_) | Recurrence::Root(_) => 0.5,
+            Recurrence::Product(a, b) => f64::from(u8::from(endless(&a) && endless(&b))),
+            Recurrence::Quotient(_, a) | Recurrence::Integral { of: a, .. } => {
+                f64::from(u8::from(endless(&a)))
+            }
+            Recurrence::IntegralQuotient { .. } => 1.0,
+            Recurrence::Power(..) => 2.0,
+            Recurrence::Angle { .. } => 3.0,
+            _ => 0.0,
+        };
+        self.varying().map(sums).sum()
+    }
+
     /// Values that have coefficients of order `k`, in an order in which they can be computed.
     pub fn varying(&self) -> impl Iterator<Item = Value> + '_ {
         let varies = |i: &usize| self.needed[*i] && self.recurrences[*i] != Recurrence::Constant;

@@ -1,0 +1,339 @@
+//! What is written of an expansion: order 0, and order `k` of all that varies.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use proc_macro2::{Delimiter, Group, Ident, Literal, TokenStream, TokenTree};
+use quote::{ToTokens, quote};
+
+use super::super::Context;
+use super::super::function::{Body, emit_body, joined, number};
+use super::layout::{Layout, local};
+use crate::program::jet::{History, Jet, Recurrence};
+use crate::program::{Function, Input, Op, Value};
+
+/// Series kept up to which values of order `k` are locals and sums are taken side by side. What is larger calls one
+/// shared sum and goes through memory: a compiler spends stack on every local of a function that is as long.
+const LARGE: usize = 128;
+
+/// How order 0 of values is read above it.
+pub(super) type Firsts = BTreeMap<Value, TokenStream>;
+
+pub(super) struct Writer<'a> {
+    pub(super) jet: &'a Jet,
+    parameters: &'a [TokenStream],
+    /// Number of components of the state.
+    components: usize,
+    /// How often coefficient `k` of each value is read.
+    uses: Vec<usize>,
+    pub(super) room: Room,
+    firsts: Firsts,
+    /// Values whose order 0 is read, and those whose reciprocal is.
+    read: BTreeSet<Value>,
+    inverses: BTreeSet<Value>,
+}
+
+/// The room for coefficients.
+#[derive(Debug, Clone)]
+pub(super) enum Room {
+    /// One order after the other.
+    Rows(Layout),
+    /// One history after the other, in these places: that of an expansion that is large.
+    Histories(BTreeMap<History, usize>),
+}
+
+impl Room {
+    fn of(jet: &Jet, uses: &[usize]) -> Self {
+        if jet.histories.len() <= LARGE {
+            return Self::Rows(Layout::default());
+        }
+        let mut histories: BTreeSet<History> = jet.histories.iter().copied().collect();
+        let bound = |value: &Value| uses[value.index()] > 1 || jet.is_kept(*value);
+        histories.extend(jet.varying().filter(bound).map(History::plain));
+        let places = histories.into_iter().enumerate();
+        Self::Histories(places.map(|(place, history)| (history, place)).collect())
+    }
+
+    /// The type of the room.
+    pub(super) fn type_tokens(&self) -> TokenStream {
+        match self {
+            Self::Rows(layout) => {
+                let width = layout.width();
+                quote!([[f64; #width]; ::dalembert::jet::LENGTH])
+            }
+            Self::Histories(places) => {
+                let kept = places.len();
+                quote!([[f64; ::dalembert::jet::LENGTH]; #kept])
+            }
+        }
+    }
+}
+
+impl<'a> Writer<'a> {
+    pub(super) fn of(jet: &'a Jet, context: &'a Context<'_>) -> Self {
+        let uses = jet.uses();
+        Self {
+            jet,
+            parameters: &context.names.parameters,
+            components: context.dimension() + context.motion_dimension(),
+            room: Room::of(jet, &uses),
+            uses,
+            firsts: Firsts::default(),
+            read: BTreeSet::new(),
+            inverses: BTreeSet::new(),
+        }
+    }
+
+    /// The same once more, when it is known where coefficients are kept and how order 0 is read.
+    pub(super) fn again(self, firsts: Firsts) -> Self {
+        Self {
+            firsts,
+            read: BTreeSet::new(),
+            inverses: BTreeSet::new(),
+            ..self
+        }
+    }
+
+    pub(super) fn is_large(&self) -> bool {
+        matches!(self.room, Room::Histories(_))
+    }
+
+    /// Order `k` of every value that varies, and of the results.
+    pub(super) fn orders(&mut self) -> (TokenStream, Vec<TokenStream>) {
+        let varying: Vec<Value> = self.jet.varying().collect();
+        let components = self.bind_components(&varying);
+        let values = varying.iter().map(|&value| self.advance(value));
+        let values: TokenStream = values.collect();
+        let outputs = self.jet.function.outputs.iter();
+        let next = outputs.map(|&output| match self.jet.recurrences[output.index()] {
+            Recurrence::Constant => quote!(0.0),
+            _ => self.next(output),
+        });
+        let next = next.collect();
+        let (mut sums, mut factors) = (TokenStream::new(), TokenStream::new());
+        if let Room::Rows(layout) = &self.room {
+            sums = layout.sums();
+            factors = layout.keep_factors(|history| {
+                let next = local("next", history.value);
+                match history.weighted {
+                    true => quote!(weight * #next),
+                    false => quote!(#next),
+                }
+            });
+        }
+        (joined([sums, components, values, factors]), next)
+    }
+
+    /// `let [next_0, _] = components(&coefficients[k]);`
+    fn bind_components(&self, varying: &[Value]) -> TokenStream {
+        let mut locals = vec![quote!(_); self.components];
+        let mut any = false;
+        for &value in varying {
+            if let Recurrence::Component(i) = self.jet.recurrences[value.index()] {
+                let next = local("next", value);
+                (locals[i], any) = (quote!(#next), true);
+            }
+        }
+        if !any {
+            return TokenStream::new();
+        }
+        quote!(let [#(#locals),*] = ::dalembert::__private::components(&coefficients[k]);)
+    }
+
+    /// The statements of order 0, the results, and how everything that is read of it is.
+    pub(super) fn begin(&self, context: &Context<'_>) -> (Body, Firsts) {
+        let function = &self.jet.function;
+        let results = function.outputs.len();
+        let read: Vec<Value> = self.read.union(&self.inverses).copied().collect();
+        let mut outputs = function.outputs.clone();
+        outputs.extend(&read);
+        let extended = Function {
+            ops: function.ops.clone(),
+            names: function.names.clone(),
+            outputs,
+            cost: function.cost,
+        };
+        let bindings = context.bind_state(&extended);
+        let Body {
+            statements,
+            mut outputs,
+        } = emit_body(&extended, &context.names);
+        let mut statements = joined([bindings, statements]);
+        let mut firsts = Firsts::new();
+        for (value, piece) in read.into_iter().zip(outputs.split_off(results)) {
+            let is_name = piece.clone().into_iter().count() == 1;
+            let first = match self.memory(value, &quote!(0)) {
+                Some(place) => {
+                    statements.extend(quote!(#place = #piece;));
+                    place
+                }
+                None if is_name && !self.is_large() => piece,
+                None => {
+                    let first = local("first", value);
+                    statements.extend(quote!(let #first = #piece;));
+                    quote!(#first)
+                }
+            };
+            firsts.insert(value, first);
+        }
+        let body = Body {
+            statements,
+            outputs,
+        };
+        (body, firsts)
+    }
+
+    /// Statements that compute reciprocals of order 0.
+    pub(super) fn begin_inverses(&mut self) -> TokenStream {
+        let inverses = self.inverses.clone().into_iter().map(|value| {
+            let (inverse, value) = (local("inverse", value), self.first(value));
+            quote!(let #inverse = 1.0 / #value;)
+        });
+        inverses.collect()
+    }
+
+    /// Statements that keep order 0 where that has not been done.
+    pub(super) fn begin_histories(&mut self) -> TokenStream {
+        let histories: Vec<(History, TokenStream)> = match &self.room {
+            Room::Rows(layout) => {
+                let place = |history| Some((history, layout.coefficient(history, &quote!(0))?));
+                layout.alone().filter_map(place).collect()
+            }
+            Room::Histories(places) => {
+                let weighted = places.iter().filter(|(history, _)| history.weighted);
+                let place = |(history, place): (&History, &usize)| {
+                    let place = Literal::usize_unsuffixed(*place);
+                    (*history, quote!(jets[#place][0]))
+                };
+                weighted.map(place).collect()
+            }
+        };
+        let entries = histories.into_iter().map(|(history, place)| {
+            let first = match history.weighted {
+                true => quote!(0.0),
+                false => self.first(history.value),
+            };
+            quote!(#place = #first;)
+        });
+        let entries: TokenStream = entries.collect();
+        let locals = match self.room.clone() {
+            Room::Rows(layout) => layout.begin(|value| self.first(value)),
+            Room::Histories(_) => TokenStream::new(),
+        };
+        joined([entries, locals])
+    }
+
+    /// Order 0 of a value.
+    pub(super) fn first(&mut self, value: Value) -> TokenStream {
+        match &self.jet.function.ops[value.index()] {
+            Op::Number(constant) => number(constant.to_f64()),
+            Op::Pi => quote!(::core::f64::consts::PI),
+            Op::Input(Input::Parameter(k)) => self.parameters[*k].clone(),
+            _ => {
+                self.read.insert(value);
+                let known = self.firsts.get(&value).cloned();
+                known
+                    .or_else(|| self.memory(value, &quote!(0)))
+                    .unwrap_or_else(|| local("first", value).into_token_stream())
+            }
+        }
+    }
+
+    /// The reciprocal of a value's order 0.
+    pub(super) fn inverse(&mut self, value: Value) -> Ident {
+        self.first(value);
+        self.inverses.insert(value);
+        local("inverse", value)
+    }
+
+    /// Coefficient `k` of a value.
+    pub(super) fn next(&mut self, value: Value) -> TokenStream {
+        let recurrence = &self.jet.recurrences[value.index()];
+        if self.is_bound(value) || matches!(recurrence, Recurrence::Component(_)) {
+            let memory = self.memory(value, &quote!(k));
+            return memory.unwrap_or_else(|| local("next", value).into_token_stream());
+        }
+        parenthesised(self.expression(value, &recurrence.clone()))
+    }
+
+    /// Whether coefficient `k` of a value is a statement of its own.
+    fn is_bound(&self, value: Value) -> bool {
+        self.uses[value.index()] > 1 || self.jet.is_kept(value)
+    }
+
+    /// The place of a coefficient that goes through memory.
+    fn memory(&self, value: Value, order: &TokenStream) -> Option<TokenStream> {
+        let Room::Histories(places) = &self.room else {
+            return None;
+        };
+        let place = Literal::usize_unsuffixed(*places.get(&History::plain(value))?);
+        Some(quote!(jets[#place][#order]))
+    }
+
+    /// Order `k` of a value, and where it is kept.
+    fn advance(&mut self, value: Value) -> TokenStream {
+        let recurrence = self.jet.recurrences[value.index()].clone();
+        let is_component = matches!(recurrence, Recurrence::Component(_));
+        if !self.is_bound(value) {
+            return TokenStream::new();
+        }
+        if self.keeps_first(value) {
+            self.first(value);
+        }
+        let name = local("next", value);
+        let expression = match is_component {
+            true => quote!(#name),
+            false => self.expression(value, &recurrence),
+        };
+        let binding = match self.memory(value, &quote!(k)) {
+            Some(place) => quote!(#place = #expression;),
+            None if is_component => TokenStream::new(),
+            None => quote!(let #name = #expression;),
+        };
+        let next = self.next(value);
+        let mut statements = binding;
+        if let Room::Rows(layout) = &self.room
+            && layout.is_steady(value)
+        {
+            let slope = local("slope", value);
+            statements.extend(quote!(if k == 1 { #slope = #next; }));
+        }
+        for history in [History::plain(value), History::weighted(value)] {
+            if let Some(place) = self.place(history) {
+                let coefficient = match history.weighted {
+                    true => quote!(weight * #next),
+                    false => next.clone(),
+                };
+                statements.extend(quote!(#place = #coefficient;));
+            }
+        }
+        statements
+    }
+
+    /// Whether order 0 of a value is kept with those above it.
+    fn keeps_first(&self, value: Value) -> bool {
+        let history = History::plain(value);
+        match &self.room {
+            Room::Rows(layout) => {
+                let alone = layout.alone().any(|kept| kept == history);
+                alone || layout.multiplied().any(|kept| kept == value)
+            }
+            Room::Histories(places) => places.contains_key(&history),
+        }
+    }
+
+    /// Where order `k` of a history is kept, unless it was put there at once or is kept with others.
+    fn place(&self, history: History) -> Option<TokenStream> {
+        match &self.room {
+            Room::Rows(layout) => layout.coefficient(history, &quote!(k)),
+            Room::Histories(places) if history.weighted => {
+                let place = Literal::usize_unsuffixed(*places.get(&history)?);
+                Some(quote!(jets[#place][k]))
+            }
+            _ => None,
+        }
+    }
+}
+
+pub(super) fn parenthesised(tokens: TokenStream) -> TokenStream {
+    TokenTree::from(Group::new(Delimiter::Parenthesis, tokens)).into()
+}
