@@ -77,6 +77,7 @@ const SIMULATE_EXAMPLES: &str =
 Examples:
   dalembert simulate rolling_disk
   dalembert simulate rolling_disk --until 40 --plot disk.svg
+  dalembert simulate rolling_disk --until 40 --plot momenta.svg --axes p_theta,p_phi
   dalembert simulate rolling_disk --set ta=0.3 --initial phi=pi/3,theta_dot=12
   dalembert simulate rolling_disk --impacts 50 --law leading_edge=newton:0.5 --json -
   dalembert simulate double_pendulum --integrator gauss6 --step 0.01 --until 1000
@@ -449,9 +450,16 @@ pub struct SimulateArgs {
     /// Write everything as one JSON document; `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Draw the run: the declared view, or all coordinates against time.
+    /// Draw the run: what --axes says; without it the declared view, or all coordinates against time.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
+    /// Draw these: `t` or another quantity along x, one or more along y. Quantities: t, coordinates, velocities `x_dot`,
+    /// momenta `p_x`, energy, energy_error, outputs; q, qdot, p and outputs stand for all of their kind.
+    #[arg(long, value_name = "X,Y[,Y..]", requires = "plot")]
+    pub axes: Option<String>,
+    /// Width of the picture, in pixels.
+    #[arg(long, value_name = "PIXELS", requires = "plot", value_parser = clap::value_parser!(u32).range(300..=4000), default_value_t = 900)]
+    pub plot_width: u32,
 }
 
 /// `accuracy`

@@ -141,6 +141,15 @@ impl CliError {
         }
     }
 
+    /// A picture of `--plot` that could not be drawn.
+    pub fn picture(plot: &Option<PathBuf>, reason: String) -> Self {
+        Self::Plot {
+            flag: "--plot",
+            path: plot.clone().unwrap_or_default(),
+            reason,
+        }
+    }
+
     /// Why a state was refused, in the model's names.
     pub fn state(place: &str, description: &Description, error: StateError) -> Self {
         if let StateError::Parameter(error) = error {

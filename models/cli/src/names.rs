@@ -48,6 +48,11 @@ pub fn velocity(coordinate: &str) -> String {
     }
 }
 
+/// The name of a coordinate's momentum: `p_x`, `p_theta.3`.
+pub fn momentum(coordinate: &str) -> String {
+    format!("p_{coordinate}")
+}
+
 /// The coordinates' names in order.
 pub fn coordinates(
     description: &Description,

@@ -1,7 +1,7 @@
 //! `simulate`: a run from a state to its end, kept as a summary, a table, a document and a picture.
 
 mod document;
-mod summary;
+pub mod summary;
 
 use crate::accuracy::Verified;
 use crate::args::SimulateArgs;
@@ -9,7 +9,8 @@ use crate::driver::{Ending, Settings};
 use crate::entry::{AnyModel, Entry, Origin};
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::plot::{self, Picture, trace::Trace};
+use crate::plot::trace::{Source, Trace};
+use crate::plot::{self, Drawn, Picture, quantity};
 use crate::progress::Progress;
 use crate::record::{Grid, Recorder, Wanted};
 use crate::sink::Sink;
@@ -20,11 +21,20 @@ use crate::{Streams, run_request, table};
 pub(crate) struct Finished<'a> {
     pub model: &'a dyn AnyModel,
     pub scene: &'a str,
-    pub settings: &'a Settings,
+    pub settings: Settings,
     pub record: Recorder,
     pub ending: Ending,
     /// Its measured error, if that was asked for.
     pub verified: Option<Verified>,
+}
+
+/// What a run needs to begin.
+#[derive(Clone)]
+pub struct Prepared {
+    pub settings: Settings,
+    pub origin: Origin,
+    /// What its picture shows, if there is to be one.
+    pub source: Option<Source>,
 }
 
 /// Carries out `simulate`.
@@ -39,26 +49,13 @@ pub fn run(
 ) -> Result<Exit, CliError> {
     run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
     let model = build_model(models, &args.run.model)?;
-    let settings = run_request::course(model.as_ref(), &args.run, &args.course)?;
-    let origin = initial_state(model.as_ref(), &args.run.state)?;
+    let prepared = prepare(model.as_ref(), args)?;
     // Opened before the run: a path that cannot be written is better known at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let plot = Sink::open_given("--plot", args.plot.as_deref())?;
 
-    let (record, ending) = carry_out(model.as_ref(), &origin, &settings, args, streams.terminal)?;
-    let verified = match args.verify {
-        true => Some(verify(model.as_ref(), &origin, &settings, &ending)?),
-        false => None,
-    };
-    let finished = Finished {
-        model: model.as_ref(),
-        scene: &args.run.model.scene,
-        settings: &settings,
-        record,
-        ending,
-        verified,
-    };
+    let finished = finish(model.as_ref(), prepared, args, streams.terminal)?;
 
     let description = model.description();
     if let Some(sink) = json {
@@ -71,11 +68,7 @@ pub fn run(
         })?;
     }
     if let Some(sink) = plot {
-        let svg = picture(&finished).map_err(|reason| CliError::Plot {
-            flag: "--plot",
-            path: sink.path(),
-            reason,
-        })?;
+        let svg = picture(&finished, args)?;
         sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
     }
     if !run_request::uses_stdout([&args.csv, &args.json]) {
@@ -85,6 +78,68 @@ pub fn run(
         Exit::Reached
     } else {
         Exit::Other
+    })
+}
+
+/// The picture that `simulate` would write with these flags.
+///
+/// # Errors
+/// As [`run`], but for files.
+pub fn draw(models: &[Entry], args: &SimulateArgs) -> Result<Drawn, CliError> {
+    let model = build_model(models, &args.run.model)?;
+    let prepared = prepare(model.as_ref(), args)?;
+    let finished = finish(model.as_ref(), prepared, args, false)?;
+    Ok(Drawn {
+        svg: picture(&finished, args)?,
+        outcome: summary::outcome(&finished.ending),
+    })
+}
+
+/// Everything that can be refused before the run.
+///
+/// # Errors
+/// Bad flags, a state that is refused.
+pub fn prepare(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Prepared, CliError> {
+    let description = model.description();
+    let source = match (&args.plot, &args.axes) {
+        (None, _) => None,
+        (Some(_), Some(axes)) => Some(Source::Quantities(quantity::parse(
+            "--axes",
+            axes,
+            &description,
+        )?)),
+        (Some(_), None) if description.view.is_some() => Some(Source::View),
+        (Some(_), None) => Some(Source::Coordinates),
+    };
+    Ok(Prepared {
+        settings: run_request::course(model, &args.run, &args.course)?,
+        origin: initial_state(model, &args.run.state)?,
+        source,
+    })
+}
+
+/// Makes the run, and measures its error if that is asked for.
+fn finish<'a>(
+    model: &'a dyn AnyModel,
+    prepared: Prepared,
+    args: &'a SimulateArgs,
+    terminal: bool,
+) -> Result<Finished<'a>, CliError> {
+    let (record, ending) = carry_out(model, &prepared, args, terminal)?;
+    let Prepared {
+        settings, origin, ..
+    } = prepared;
+    let verified = match args.verify {
+        true => Some(verify(model, &origin, &settings, &ending)?),
+        false => None,
+    };
+    Ok(Finished {
+        model,
+        scene: &args.run.model.scene,
+        settings,
+        record,
+        ending,
+        verified,
     })
 }
 
@@ -112,8 +167,11 @@ fn verify(
 /// and then to sample it: runs are deterministic, and nothing has to be kept that is not asked for.
 fn carry_out(
     model: &dyn AnyModel,
-    origin: &Origin,
-    settings: &Settings,
+    Prepared {
+        settings,
+        origin,
+        source,
+    }: &Prepared,
     args: &SimulateArgs,
     terminal: bool,
 ) -> Result<(Recorder, Ending), CliError> {
@@ -138,10 +196,7 @@ fn carry_out(
     if grid.end == 0.0 {
         grid.count = grid.count.min(1);
     }
-    let trace = args
-        .plot
-        .is_some()
-        .then(|| Trace::new(model.description().view.is_some()));
+    let trace = source.clone().map(Trace::of);
     let wanted = Wanted {
         grid,
         impacts: sampled || trace.is_some(),
@@ -156,17 +211,19 @@ fn carry_out(
 }
 
 /// The run's picture as SVG.
-fn picture(finished: &Finished<'_>) -> Result<String, String> {
+fn picture(finished: &Finished<'_>, args: &SimulateArgs) -> Result<String, CliError> {
     let Some(trace) = &finished.record.trace else {
         return Ok(String::new());
     };
-    plot::draw(&Picture {
+    let drawn = plot::draw(&Picture {
         model: finished.model,
         title: summary::title(finished),
         subtitle: summary::subtitle(finished),
+        width: f64::from(args.plot_width),
         trace,
         impacts: &finished.record.impacts,
         first: &finished.ending.first,
         last: (finished.ending.t, &finished.ending.last),
-    })
+    });
+    drawn.map_err(|reason| CliError::picture(&args.plot, reason))
 }

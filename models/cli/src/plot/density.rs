@@ -1,11 +1,11 @@
 //! A density as a map of colours with axes and a colour bar.
 
-use plotters::coord::types::RangedCoordf64;
 use plotters::element::{PathElement, Rectangle};
-use plotters::prelude::{Cartesian2d, ChartBuilder, ChartContext, SVGBackend};
+use plotters::prelude::ChartBuilder;
 use plotters::style::{Color, RGBColor};
 
 use super::canvas::{self, Area, TITLE_HEIGHT, message, px, stroke, text};
+use super::plane::{self, Chart};
 use super::style::{self, Axis};
 use crate::ensemble::density::Density;
 
@@ -41,8 +41,6 @@ const COLOURS: [[u8; 3]; 9] = [
     [170, 220, 50],
     [253, 231, 37],
 ];
-
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Draws the counts of all cells as a density, under a title and a subtitle. Cells without a count stay white.
 ///
@@ -145,25 +143,9 @@ fn axes<'a, 'b>(
         .margin_left(px(EDGE))
         .x_label_area_size(px(BELOW))
         .y_label_area_size(px(LEFT))
-        .build_cartesian_2d(x.range[0]..x.range[1], y.range[0]..y.range[1])
+        .build_cartesian_2d(Axis::new(x.range, 8), Axis::new(y.range, 8))
         .map_err(message)?;
-    let (across, up) = (Axis::new(x.range, 8), Axis::new(y.range, 8));
-    chart
-        .configure_mesh()
-        .x_desc(&x.name)
-        .y_desc(&y.name)
-        .x_labels(across.labels)
-        .y_labels(up.labels)
-        .x_label_formatter(&|value| across.label(*value))
-        .y_label_formatter(&|value| up.label(*value))
-        .max_light_lines(0)
-        .bold_line_style(style::GRID.stroke_width(stroke(0.8)))
-        .axis_style(style::INK.stroke_width(stroke(0.8)))
-        .set_all_tick_mark_size(px(4.0))
-        .label_style(text(11.0, style::INK))
-        .axis_desc_style(text(13.0, style::INK))
-        .draw()
-        .map_err(message)?;
+    plane::draw_axes(&mut chart, [&x.name, &y.name])?;
     Ok(chart)
 }
 

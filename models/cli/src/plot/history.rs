@@ -1,20 +1,23 @@
-//! Without a view: all coordinates against time, outputs in a second panel, impacts as vertical lines.
+//! Quantities against time, impacts as vertical lines. Without a choice these are all coordinates, and outputs in a second
+//! panel.
 
 use plotters::element::PathElement;
 use plotters::prelude::ChartBuilder;
 use plotters::style::Color;
 
 use super::Picture;
-use super::canvas::{self, Area, TITLE_HEIGHT, message, px, stroke, text};
+use super::canvas::{self, Area, TITLE_HEIGHT, message, px, stroke};
 use super::legend::{self, Item, Symbol};
+use super::plane;
+use super::quantity::Quantity;
 use super::style::{self, Axis};
+use super::thin::thinned;
+use super::trace::Source;
 use crate::names;
 
-/// Width of the picture, in pixels.
-const WIDTH: f64 = 960.0;
-
-/// Height of a panel's plot, in pixels.
-const HEIGHT: f64 = 300.0;
+/// Height of a panel's plot, as a part of the picture's width, and at least, in pixels.
+const HEIGHT: f64 = 0.32;
+const LEAST_HEIGHT: f64 = 240.0;
 
 /// Room for axis labels, left and below, and the margins around, in pixels.
 const LEFT: f64 = 66.0;
@@ -25,6 +28,9 @@ const ABOVE: f64 = 8.0;
 
 /// Up to this many impacts have a line each over the whole height.
 const FEW_IMPACTS: usize = 120;
+
+/// What lies nearer to a drawn line than this many pixels needs no point of its own.
+const NEAR: f64 = 0.12;
 
 /// Several curves over the same time.
 struct Panel {
@@ -48,9 +54,13 @@ impl Panel {
         }
     }
 
-    fn height(&self) -> f64 {
-        legend::height(&self.legend, WIDTH) + ABOVE + HEIGHT + BELOW + EDGE
+    fn height(&self, width: f64) -> f64 {
+        legend::height(&self.legend, width) + ABOVE + plot_height(width) + BELOW + EDGE
     }
+}
+
+fn plot_height(width: f64) -> f64 {
+    (HEIGHT * width).max(LEAST_HEIGHT).round()
 }
 
 /// Draws the histories.
@@ -58,12 +68,13 @@ impl Panel {
 /// # Errors
 /// What the drawing library says.
 pub fn draw(picture: &Picture<'_>) -> Result<String, String> {
-    let panels = panels(picture);
-    let height = TITLE_HEIGHT + panels.iter().map(Panel::height).sum::<f64>();
-    canvas::sheet((WIDTH, height), &picture.title, &picture.subtitle, |body| {
+    let (panels, width) = (panels(picture), picture.width);
+    let heights = panels.iter().map(|panel| panel.height(width));
+    let size = (width, TITLE_HEIGHT + heights.sum::<f64>());
+    canvas::sheet(size, &picture.title, &picture.subtitle, |body| {
         let mut rest = body;
         for panel in &panels {
-            let (area, below) = rest.split_vertically(px(panel.height()));
+            let (area, below) = rest.split_vertically(px(panel.height(width)));
             draw_panel(&area, picture, panel)?;
             rest = below;
         }
@@ -73,6 +84,12 @@ pub fn draw(picture: &Picture<'_>) -> Result<String, String> {
 
 fn panels(picture: &Picture<'_>) -> Vec<Panel> {
     let description = picture.model.description();
+    let impacts = impact_items(picture);
+    if let Source::Quantities(quantities) = picture.trace.source() {
+        let name = |quantity: &Quantity| quantity.name(&description);
+        let names = quantities.iter().skip(1).map(name).collect();
+        return vec![Panel::new(names, 1, &impacts)];
+    }
     let coordinates: Vec<String> = names::coordinates(&description)
         .map(str::to_owned)
         .collect();
@@ -82,7 +99,7 @@ fn panels(picture: &Picture<'_>) -> Vec<Panel> {
         .map(|&name| name.to_owned())
         .collect();
     let n = coordinates.len();
-    let mut panels = vec![Panel::new(coordinates, 0, &impact_items(picture))];
+    let mut panels = vec![Panel::new(coordinates, 0, &impacts)];
     if !outputs.is_empty() {
         panels.push(Panel::new(outputs, n, &[]));
     }
@@ -90,33 +107,22 @@ fn panels(picture: &Picture<'_>) -> Vec<Panel> {
 }
 
 fn impact_items(picture: &Picture<'_>) -> Vec<Item> {
-    let surfaces = picture.model.description().surfaces.iter().enumerate();
-    let counted = surfaces.map(|(index, surface)| {
-        (
-            index,
-            surface,
-            picture
-                .impacts
-                .iter()
-                .filter(|impact| impact.surface == index)
-                .count(),
-        )
-    });
+    let counted = picture.impacts_by_surface();
     counted
-        .filter(|(_, _, count)| *count > 0)
-        .map(|(index, surface, count)| {
+        .map(|(index, name, count)| {
             Item::new(
                 Symbol::Tick,
                 style::surface(index),
-                format!("impact: {} ({count})", surface.name),
+                format!("impact: {name} ({count})"),
             )
         })
         .collect()
 }
 
 fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(), String> {
-    let (strip, plot) = area.split_vertically(px(legend::height(&panel.legend, WIDTH)));
-    legend::draw(&strip, &panel.legend, WIDTH)?;
+    let width = picture.width;
+    let (strip, plot) = area.split_vertically(px(legend::height(&panel.legend, width)));
+    legend::draw(&strip, &panel.legend, width)?;
     let marks = picture.trace.points();
     let curves = panel.offset..panel.offset + panel.names.len();
     let values = marks
@@ -128,7 +134,8 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
     } else {
         1.0
     };
-    let t = Axis::new([0.0, end], 10);
+    let t = Axis::new([0.0, end], (width / 80.0) as usize);
+    let scale = [width / end, plot_height(width) / (y.range[1] - y.range[0])];
 
     let mut chart = ChartBuilder::on(&plot)
         .margin_top(px(ABOVE))
@@ -136,30 +143,23 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
         .margin_bottom(px(EDGE))
         .x_label_area_size(px(BELOW))
         .y_label_area_size(px(LEFT))
-        .build_cartesian_2d(t.range[0]..t.range[1], y.range[0]..y.range[1])
+        .build_cartesian_2d(t, y)
         .map_err(message)?;
-    chart
-        .configure_mesh()
-        .x_desc("t")
-        .x_labels(t.labels)
-        .y_labels(y.labels)
-        .x_label_formatter(&|value| t.label(*value))
-        .y_label_formatter(&|value| y.label(*value))
-        .max_light_lines(0)
-        .bold_line_style(style::GRID.stroke_width(stroke(0.8)))
-        .axis_style(style::INK.stroke_width(stroke(0.8)))
-        .set_all_tick_mark_size(px(4.0))
-        .label_style(text(11.0, style::INK))
-        .axis_desc_style(text(13.0, style::INK))
-        .draw()
-        .map_err(message)?;
+    plane::draw_axes(&mut chart, ["t", ""])?;
     chart
         .draw_series(impact_lines(picture, y.range))
         .map_err(message)?;
     for (index, curve) in curves.enumerate() {
-        let points: Vec<(f64, f64)> = marks
+        let pixels: Vec<[f64; 2]> = marks
             .iter()
-            .map(|mark| (mark.t, mark.values[curve]))
+            .map(|mark| {
+                let value = mark.values[curve] - y.range[0];
+                [mark.t * scale[0], value * scale[1]]
+            })
+            .collect();
+        let points: Vec<(f64, f64)> = thinned(&pixels, NEAR)
+            .into_iter()
+            .map(|kept| (marks[kept].t, marks[kept].values[curve]))
             .collect();
         let line = PathElement::new(points, style::curve(index).stroke_width(stroke(1.4)));
         chart.draw_series([line]).map_err(message)?;

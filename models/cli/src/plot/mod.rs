@@ -1,4 +1,5 @@
-//! Pictures of runs as SVG: the declared view as a path in its plane, or all coordinates against time.
+//! Pictures of runs as SVG: the declared view as a path in its plane, all coordinates against time, or chosen quantities
+//! against time or each other.
 
 mod canvas;
 pub mod contour;
@@ -6,15 +7,23 @@ pub mod density;
 mod history;
 mod legend;
 pub mod logarithmic;
+mod phase;
+mod plane;
 mod portrait;
+pub mod quantity;
 mod region;
 pub mod style;
+mod thin;
 pub mod trace;
 pub mod work;
 
+use plotters::style::RGBColor;
+
 use crate::driver::Impact;
 use crate::entry::{AnyModel, Point};
-use trace::Trace;
+use legend::{Item, Symbol};
+use quantity::Quantity;
+use trace::{Source, Trace};
 
 /// What a picture shows.
 pub struct Picture<'a> {
@@ -24,6 +33,8 @@ pub struct Picture<'a> {
     pub title: String,
     /// Second line of the title.
     pub subtitle: String,
+    /// Its width, in pixels.
+    pub width: f64,
     /// The curve.
     pub trace: &'a Trace,
     /// The impacts to mark on it.
@@ -32,6 +43,45 @@ pub struct Picture<'a> {
     pub first: &'a Point,
     /// The time at the end and the state there.
     pub last: (f64, &'a Point),
+}
+
+/// A picture that was made by a run.
+pub struct Drawn {
+    /// The picture.
+    pub svg: String,
+    /// How the run ended, in words.
+    pub outcome: String,
+}
+
+impl Picture<'_> {
+    /// The legend of a path in a plane.
+    fn legend(&self, path: &str, colour: RGBColor) -> Vec<Item> {
+        let mut items = vec![
+            Item::new(Symbol::Line, colour, path),
+            Item::new(Symbol::Ring, style::INK, "start"),
+            Item::new(Symbol::Square, style::INK, "end"),
+        ];
+        let counted = self.impacts_by_surface();
+        items.extend(counted.map(|(index, name, count)| {
+            Item::new(
+                Symbol::Dot,
+                style::surface(index),
+                format!("{name} ({count})"),
+            )
+        }));
+        items
+    }
+
+    /// The surfaces that were hit, each with its index, its name and its number of impacts.
+    fn impacts_by_surface(&self) -> impl Iterator<Item = (usize, &'static str, usize)> {
+        let surfaces = self.model.description().surfaces.iter().enumerate();
+        let counted = surfaces.map(|(index, surface)| {
+            let impacts = self.impacts.iter();
+            let count = impacts.filter(|impact| impact.surface == index).count();
+            (index, surface.name, count)
+        });
+        counted.filter(|(_, _, count)| *count > 0)
+    }
 }
 
 /// Greatest value that is drawn; the drawing library computes ranges and ticks in the same `f64`.
@@ -52,8 +102,11 @@ pub fn draw(picture: &Picture<'_>) -> Result<String, String> {
             "the run has values beyond {LARGEST:e}, which cannot be drawn"
         ));
     }
-    match picture.model.description().view {
-        Some(view) => portrait::draw(picture, &view),
-        None => history::draw(picture),
+    match (picture.trace.source(), picture.model.description().view) {
+        (Source::View, Some(view)) => portrait::draw(picture, &view),
+        (Source::Quantities(quantities), _) if quantities[0] != Quantity::Time => {
+            phase::draw(picture, quantities)
+        }
+        _ => history::draw(picture),
     }
 }

@@ -1,35 +1,16 @@
 //! The declared view: the path in its plane, with equal scales, the region behind it and impacts on it.
 
 use dalembert::describe::ViewInfo;
-use plotters::coord::types::RangedCoordf64;
-use plotters::element::{Circle, EmptyElement, PathElement, Polygon, Rectangle};
-use plotters::prelude::{Cartesian2d, ChartBuilder, ChartContext, SVGBackend, WHITE};
-use plotters::style::{Color, RGBColor};
+use plotters::element::{PathElement, Polygon};
+use plotters::prelude::WHITE;
+use plotters::style::Color;
 
 use super::Picture;
-use super::canvas::{self, Area, TITLE_HEIGHT, message, px, stroke, text};
+use super::canvas::{message, stroke};
 use super::contour::{Contour, Window};
-use super::legend::{self, Item, Symbol};
-use super::region::Region;
-use super::style::{self, Axis};
-
-/// Width of the picture, in pixels.
-const WIDTH: f64 = 900.0;
-
-/// Least and greatest height of the plot itself, in pixels.
-const HEIGHT: [f64; 2] = [260.0, 780.0];
-
-/// Room for axis labels, left and below, and the margins around, in pixels.
-const LEFT: f64 = 62.0;
-const BELOW: f64 = 40.0;
-const EDGE: f64 = 12.0;
-const RIGHT: f64 = 28.0;
-const ABOVE: f64 = 10.0;
-
-/// Points nearer to each other than this many pixels are drawn as one.
-const NEAR: f64 = 0.3;
-
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+use super::plane::{self, Chart, Plane, Words, around};
+use super::region::{FINE, Region};
+use super::style;
 
 /// Draws the view.
 ///
@@ -43,23 +24,35 @@ pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
         .map(|mark| [mark.values[0], mark.values[1]])
         .collect();
     let path = extent(&points);
-    let region = Region::of(picture, path);
+    let region = Region::of(picture.model, picture.first, picture.last, path);
     let window = region
         .as_ref()
         .map_or(path.grown(0.06), |region| region.window(path));
-    let (window, plot) = equal_scales(window);
-    let boundary = region.map_or_else(Vec::new, |region| region.contours(window));
-
-    let items = legend_items(picture);
-    let strip = legend::height(&items, WIDTH);
-    let size = (WIDTH, TITLE_HEIGHT + strip + ABOVE + plot.1 + BELOW + EDGE);
-    canvas::sheet(size, &picture.title, &picture.subtitle, |body| {
-        let (top, area) = body.split_vertically(px(strip));
-        legend::draw(&top, &items, WIDTH)?;
-        let mut chart = axes(&area, window, plot, view, &boundary)?;
-        draw_path(&mut chart, &points, plot.0 / (window.x[1] - window.x[0]))?;
-        draw_marks(&mut chart, picture, &points)
-    })
+    let plane = Plane::equal_scales(window, picture.width);
+    let boundary = region.map_or_else(Vec::new, |region| region.contours(plane.window, FINE));
+    let words = Words {
+        title: &picture.title,
+        subtitle: &picture.subtitle,
+        axes: view.labels,
+        head: &picture.legend("path", style::PATH),
+    };
+    plane.sheet(
+        &words,
+        |chart| fill_region(chart, &boundary),
+        |chart| {
+            draw_boundary(chart, &boundary)?;
+            plane.path(chart, points.iter().copied(), style::PATH)?;
+            let impacts = picture.impacts.iter().filter_map(|impact| {
+                let colour = style::surface(impact.surface);
+                impact.after.view.map(|at| (at, colour))
+            });
+            plane::dots(chart, impacts, 2.8)?;
+            match points.as_slice() {
+                [first, .., last] => plane::ends(chart, *first, *last),
+                _ => Ok(()),
+            }
+        },
+    )
 }
 
 /// The path's own rectangle; never without width or height.
@@ -82,92 +75,11 @@ fn extent(points: &[[f64; 2]]) -> Window {
     }
 }
 
-fn around(range: [f64; 2], half: f64) -> [f64; 2] {
-    let middle = 0.5 * (range[0] + range[1]);
-    [middle - half, middle + half]
-}
-
-/// Widens the window to the shape of a plot, whose size in pixels comes with it.
-fn equal_scales(window: Window) -> (Window, (f64, f64)) {
-    let (width, height) = (window.x[1] - window.x[0], window.y[1] - window.y[0]);
-    let plot_width = WIDTH - EDGE - LEFT - RIGHT;
-    let plot_height = (plot_width * height / width)
-        .clamp(HEIGHT[0], HEIGHT[1])
-        .round();
-    let scale = (plot_width / width).min(plot_height / height);
-    let x = around(window.x, 0.5 * plot_width / scale);
-    let y = around(window.y, 0.5 * plot_height / scale);
-    (Window { x, y }, (plot_width, plot_height))
-}
-
-fn legend_items(picture: &Picture<'_>) -> Vec<Item> {
-    let mut items = vec![
-        Item::new(Symbol::Line, style::PATH, "path"),
-        Item::new(Symbol::Ring, style::INK, "start"),
-        Item::new(Symbol::Square, style::INK, "end"),
-    ];
-    let surfaces = picture.model.description().surfaces;
-    for (index, surface) in surfaces.iter().enumerate() {
-        let count = picture
-            .impacts
-            .iter()
-            .filter(|impact| impact.surface == index)
-            .count();
-        if count > 0 {
-            items.push(Item::new(
-                Symbol::Dot,
-                style::surface(index),
-                format!("{} ({count})", surface.name),
-            ));
-        }
-    }
-    items
-}
-
-/// The region, then grid, axes and labels over it, then the region's boundary.
-fn axes<'a, 'b>(
-    area: &'a Area<'b>,
-    window: Window,
-    plot: (f64, f64),
-    view: &ViewInfo,
-    boundary: &[Contour],
-) -> Result<Chart<'a, 'b>, String> {
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(px(ABOVE))
-        .margin_right(px(RIGHT))
-        .margin_bottom(px(EDGE))
-        .margin_left(px(EDGE))
-        .x_label_area_size(px(BELOW))
-        .y_label_area_size(px(LEFT))
-        .build_cartesian_2d(window.x[0]..window.x[1], window.y[0]..window.y[1])
-        .map_err(message)?;
-    fill_region(&mut chart, boundary)?;
-    let x = Axis::new(window.x, (plot.0 / 90.0) as usize);
-    let y = Axis::new(window.y, (plot.1 / 60.0) as usize);
-    chart
-        .configure_mesh()
-        .x_desc(view.labels[0])
-        .y_desc(view.labels[1])
-        .x_labels(x.labels)
-        .y_labels(y.labels)
-        .x_label_formatter(&|value| x.label(*value))
-        .y_label_formatter(&|value| y.label(*value))
-        .max_light_lines(0)
-        .bold_line_style(style::GRID.stroke_width(stroke(0.8)))
-        .axis_style(style::INK.stroke_width(stroke(0.8)))
-        .set_all_tick_mark_size(px(4.0))
-        .label_style(text(11.0, style::INK))
-        .axis_desc_style(text(13.0, style::INK))
-        .draw()
-        .map_err(message)?;
-    for contour in boundary {
-        draw_boundary(&mut chart, contour)?;
-    }
-    Ok(chart)
-}
-
 /// Fills the contours from the largest to the smallest: what lies inside one is painted over it.
-fn fill_region(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<(), String> {
+///
+/// # Errors
+/// What the drawing library says.
+pub fn fill_region(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<(), String> {
     let mut sorted: Vec<_> = boundary
         .iter()
         .map(|contour| (contour.signed_area(), contour))
@@ -185,8 +97,22 @@ fn fill_region(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<(), St
     chart.draw_series(polygons).map_err(message).map(drop)
 }
 
-/// Strokes a contour where it runs inside the window.
-fn draw_boundary(chart: &mut Chart<'_, '_>, contour: &Contour) -> Result<(), String> {
+/// Strokes contours where they run inside the window.
+///
+/// # Errors
+/// What the drawing library says.
+pub fn draw_boundary(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<(), String> {
+    let style = style::BOUNDARY.stroke_width(stroke(1.6));
+    let elements = boundary
+        .iter()
+        .flat_map(strokes)
+        .filter(|stroke| stroke.len() > 1)
+        .map(|points| PathElement::new(points, style));
+    chart.draw_series(elements).map_err(message).map(drop)
+}
+
+/// The parts of a contour that run inside the window.
+fn strokes(contour: &Contour) -> Vec<Vec<(f64, f64)>> {
     let corner = |index: usize| {
         let point = contour.points[index % contour.points.len()];
         (point[0], point[1])
@@ -204,58 +130,5 @@ fn draw_boundary(chart: &mut Chart<'_, '_>, contour: &Contour) -> Result<(), Str
             stroke.push(corner(index + 1));
         }
     }
-    let style = style::BOUNDARY.stroke_width(stroke(1.6));
-    let elements = strokes
-        .into_iter()
-        .filter(|stroke| stroke.len() > 1)
-        .map(|points| PathElement::new(points, style));
-    chart.draw_series(elements).map_err(message).map(drop)
-}
-
-fn draw_path(chart: &mut Chart<'_, '_>, points: &[[f64; 2]], scale: f64) -> Result<(), String> {
-    let mut kept: Vec<(f64, f64)> = Vec::new();
-    for &[x, y] in points {
-        let far = kept
-            .last()
-            .is_none_or(|last| (x - last.0).hypot(y - last.1) * scale >= NEAR);
-        if far {
-            kept.push((x, y));
-        }
-    }
-    let style = style::PATH.stroke_width(stroke(1.2));
-    chart
-        .draw_series([PathElement::new(kept, style)])
-        .map_err(message)
-        .map(drop)
-}
-
-fn draw_marks(
-    chart: &mut Chart<'_, '_>,
-    picture: &Picture<'_>,
-    points: &[[f64; 2]],
-) -> Result<(), String> {
-    let impacts = picture
-        .impacts
-        .iter()
-        .filter_map(|impact| impact.after.view.map(|at| (impact.surface, at)));
-    let dots = impacts
-        .filter(|(_, at)| at.iter().all(|value| value.is_finite()))
-        .map(|(surface, at)| {
-            Circle::new((at[0], at[1]), px(2.8), style::surface(surface).filled())
-        });
-    chart.draw_series(dots).map_err(message)?;
-    let (Some(first), Some(last)) = (points.first(), points.last()) else {
-        return Ok(());
-    };
-    let ring = Circle::new(
-        (first[0], first[1]),
-        px(4.5),
-        style::INK.stroke_width(stroke(1.6)),
-    );
-    chart.draw_series([ring]).map_err(message)?;
-    let square = |colour: RGBColor| {
-        Rectangle::new([(px(-3.5), px(-3.5)), (px(3.5), px(3.5))], colour.filled())
-    };
-    let end = EmptyElement::at((last[0], last[1])) + square(style::INK);
-    chart.draw_series([end]).map_err(message).map(drop)
+    strokes
 }

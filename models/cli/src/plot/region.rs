@@ -1,13 +1,13 @@
 //! The declared region behind a path: which part of the plane to show, and the region's boundary in it.
 
-use super::Picture;
 use super::contour::{Contour, Window, contours};
+use crate::entry::{AnyModel, Point};
 
 /// Grid squares per side for the picture.
-const FINE: usize = 240;
+pub const FINE: usize = 240;
 
 /// Grid squares per side while the extent of the region is sought.
-const COARSE: usize = 48;
+pub const COARSE: usize = 48;
 
 /// Room around what is shown, as a part of its size.
 const ROOM: f64 = 0.06;
@@ -17,25 +17,40 @@ const GROWTHS: usize = 5;
 
 /// The region's function in the plane of two coordinates, positive where motion is allowed.
 pub struct Region<'a> {
-    picture: &'a Picture<'a>,
+    model: &'a dyn AnyModel,
+    /// The position that says what the other coordinates are.
+    q: &'a [f64],
     plane: [usize; 2],
 }
 
 impl<'a> Region<'a> {
-    /// The region of a picture, if there is one to draw: declared, in a plane of two coordinates, and the same
-    /// throughout the run.
-    pub fn of(picture: &'a Picture<'a>, path: Window) -> Option<Self> {
-        let view = picture.model.description().view?;
-        let region = Self {
-            picture,
-            plane: view.plane.filter(|_| view.region)?,
-        };
-        region.stands_still(path).then_some(region)
+    /// The region about a position, if one is declared in a plane of two coordinates.
+    pub fn about(model: &'a dyn AnyModel, q: &'a [f64]) -> Option<Self> {
+        let view = model.description().view?;
+        let plane = view.plane.filter(|_| view.region)?;
+        Some(Self { model, q, plane })
     }
 
-    /// The boundary of the region inside a window.
-    pub fn contours(&self, window: Window) -> Vec<Contour> {
-        contours(window, FINE, |point| self.value(point))
+    /// The region of a run from its first to its last state, if there is one to draw: declared, in a plane of two
+    /// coordinates, and the same throughout the run.
+    pub fn of(
+        model: &'a dyn AnyModel,
+        first: &'a Point,
+        last: (f64, &Point),
+        path: Window,
+    ) -> Option<Self> {
+        let region = Self::about(model, &first.q)?;
+        region.stands_still(last, path).then_some(region)
+    }
+
+    /// Where the position lies in the plane.
+    pub fn position(&self) -> [f64; 2] {
+        self.plane.map(|coordinate| self.q[coordinate])
+    }
+
+    /// The boundary of the region inside a window, on a grid of so many squares per side.
+    pub fn contours(&self, window: Window, cells: usize) -> Vec<Contour> {
+        contours(window, cells, |point| self.value(point))
     }
 
     /// The part of the plane to show: the path, and all of the region if it is bounded.
@@ -61,7 +76,7 @@ impl<'a> Region<'a> {
     }
 
     fn value(&self, point: [f64; 2]) -> f64 {
-        self.value_at(0.0, &self.picture.first.q, point)
+        self.value_at(0.0, self.q, point)
     }
 
     fn value_at(&self, t: f64, q: &[f64], point: [f64; 2]) -> f64 {
@@ -69,20 +84,19 @@ impl<'a> Region<'a> {
         for (&coordinate, value) in self.plane.iter().zip(point) {
             q[coordinate] = value;
         }
-        self.picture.model.region(t, &q).unwrap_or(f64::NAN)
+        self.model.region(t, &q).unwrap_or(f64::NAN)
     }
 
     /// Whether the region depends on nothing but the plane: compared at the first and the last instant, and
     /// between, with the other coordinates as they are at both ends.
-    fn stands_still(&self, path: Window) -> bool {
-        let (end, last) = self.picture.last;
+    fn stands_still(&self, (end, last): (f64, &Point), path: Window) -> bool {
         let points =
             [(0.1, 0.3), (0.5, 0.5), (0.8, 0.6), (0.3, 0.9)].map(|(x, y)| path.grown(0.2).at(x, y));
         let same = |t: f64, q: &[f64], point: [f64; 2]| {
             let (now, then) = (self.value(point), self.value_at(t, q, point));
             now == then || (now.is_nan() && then.is_nan())
         };
-        let first = &self.picture.first.q;
+        let first = self.q;
         points.into_iter().all(|point| {
             same(end, &last.q, point)
                 && same(0.37 * end, first, point)

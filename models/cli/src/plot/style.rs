@@ -1,6 +1,9 @@
 //! Colours, sizes and number formats shared by all pictures.
 
-use plotters::style::RGBColor;
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
+use plotters::style::{RGBColor, WHITE};
 
 /// Colours that colour-blind people can tell apart (Okabe and Ito), those that are readable on white, and a brown.
 pub const PALETTE: [RGBColor; 8] = [
@@ -32,6 +35,26 @@ pub const REGION: RGBColor = RGBColor(240, 244, 249);
 /// The region's boundary.
 pub const BOUNDARY: RGBColor = RGBColor(110, 120, 132);
 
+/// What stands for the colours of a picture where it is shown on a dark page.
+pub const DARK: [(RGBColor, RGBColor); 11] = [
+    (WHITE, RGBColor(22, 24, 27)),
+    (INK, RGBColor(220, 221, 224)),
+    (FAINT_INK, RGBColor(155, 159, 166)),
+    (GRID, RGBColor(51, 55, 61)),
+    (REGION, RGBColor(31, 36, 43)),
+    (BOUNDARY, RGBColor(138, 147, 158)),
+    (PALETTE[0], RGBColor(86, 170, 230)),
+    (PALETTE[1], RGBColor(240, 128, 48)),
+    (PALETTE[2], RGBColor(40, 190, 145)),
+    (PALETTE[6], RGBColor(200, 200, 200)),
+    (PALETTE[7], RGBColor(196, 146, 84)),
+];
+
+/// A colour as pictures write it.
+pub fn hex(colour: RGBColor) -> String {
+    format!("#{:02X}{:02X}{:02X}", colour.0, colour.1, colour.2)
+}
+
 /// The colour of a curve by its index; after the palette's last comes its first again, lighter.
 pub fn curve(index: usize) -> RGBColor {
     let RGBColor(r, g, b) = PALETTE[index % PALETTE.len()];
@@ -45,13 +68,11 @@ pub const fn surface(index: usize) -> RGBColor {
     PALETTE[1 + index % (PALETTE.len() - 1)]
 }
 
-/// An axis: its range, and how many labels plotters may place on it.
+/// An axis: its range, and where its labels are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axis {
     /// Least and greatest value.
     pub range: [f64; 2],
-    /// Number of labels.
-    pub labels: usize,
     /// Distance of the labels.
     step: f64,
 }
@@ -67,20 +88,16 @@ impl Axis {
             .into_iter()
             .find(|&step| step >= raw);
         let step = step.unwrap_or(10.0 * decade);
-        Self {
-            range,
-            labels: (length / step) as usize + 1,
-            step,
-        }
+        Self { range, step }
     }
 
-    /// The values that labels stand at.
-    pub fn ticks(&self) -> impl Iterator<Item = f64> + use<> {
-        let Self { range, step, .. } = *self;
-        let first = (range[0] / step).ceil();
-        (0..)
-            .map(move |k| (first + f64::from(k)) * step)
-            .take_while(move |tick| *tick <= range[1])
+    /// The values that have labels.
+    pub fn ticks(&self) -> Vec<f64> {
+        let [first, last] = self.range.map(|end| end / self.step);
+        let count = (last.floor() - first.ceil()) as usize + 1;
+        (0..count)
+            .map(|index| (first.ceil() + index as f64) * self.step)
+            .collect()
     }
 
     /// The label of a value: as many decimals as the step needs, or an exponent where there would be many.
@@ -98,6 +115,35 @@ impl Axis {
         } else {
             shortest_exponent(value)
         }
+    }
+}
+
+/// The drawing library's own axes choose other labels.
+impl Ranged for Axis {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (start, end): (i32, i32)) -> i32 {
+        let [low, high] = self.range;
+        let share = (value - low) / (high - low);
+        start + (share * f64::from(end - start)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        match hint.weight().allow_light_points() {
+            true => Vec::new(),
+            false => self.ticks(),
+        }
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.range[0]..self.range[1]
+    }
+}
+
+impl ValueFormatter<f64> for Axis {
+    fn format_ext(&self, value: &f64) -> String {
+        self.label(*value)
     }
 }
 
@@ -141,10 +187,11 @@ mod tests {
     }
 
     #[test]
-    fn ticks_lie_in_the_range() {
-        let ticks = |range| Axis::new(range, 4).ticks().collect::<Vec<_>>();
-        assert_eq!(ticks([0.0, 40.0]), [0.0, 10.0, 20.0, 30.0, 40.0]);
-        assert_eq!(ticks([-0.9, 3.1]), [0.0, 1.0, 2.0, 3.0]);
+    fn ticks_lie_at_multiples_of_the_step() {
+        assert_eq!(Axis::new([-0.5, 7.0], 4).ticks(), [0.0, 2.0, 4.0, 6.0]);
+        assert_eq!(Axis::new([-4.0, 2.0], 3).ticks(), [-4.0, -2.0, 0.0, 2.0]);
+        let small = Axis::new([1.0 - 1e-12, 1.0 + 1e-12], 4).ticks();
+        assert!((2..=5).contains(&small.len()), "{small:?}");
     }
 
     #[test]

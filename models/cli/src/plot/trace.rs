@@ -1,5 +1,6 @@
 //! The curve of a picture: points along a run, dense where it bends, with both sides of every impact.
 
+use super::quantity::Quantity;
 use crate::driver::Piece;
 use crate::entry::Point;
 
@@ -16,18 +17,54 @@ const MANY: usize = 100_000;
 const FLATNESS: f64 = 3e-4;
 
 /// What a point of the curve shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Source {
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Source {
     /// The declared view's point in the plane.
     View,
     /// All coordinates, then all outputs.
     Coordinates,
+    /// These: the abscissa, then the ordinates.
+    Quantities(Vec<Quantity>),
+}
+
+impl Source {
+    fn values(&self, t: f64, point: &Point, start: f64) -> Vec<f64> {
+        match self {
+            Self::View => point.view.map_or_else(Vec::new, |view| view.to_vec()),
+            Self::Coordinates => point.q.iter().chain(&point.outputs).copied().collect(),
+            Self::Quantities(quantities) => quantities
+                .iter()
+                .map(|quantity| quantity.value(t, point, start))
+                .collect(),
+        }
+    }
+
+    /// Whether there is more to see inside a step than at its ends: not of energies alone, of which only the errors of
+    /// dense output would be seen there.
+    fn looks_inside(&self) -> bool {
+        match self {
+            Self::View | Self::Coordinates => true,
+            Self::Quantities(quantities) => quantities
+                .iter()
+                .any(|quantity| *quantity != Quantity::Time && quantity.is_smooth()),
+        }
+    }
+
+    /// Whether more points make the curve of this value smoother.
+    fn is_smooth(&self, index: usize) -> bool {
+        match self {
+            Self::View | Self::Coordinates => true,
+            Self::Quantities(quantities) => quantities[index].is_smooth(),
+        }
+    }
 }
 
 /// A curve under construction.
 #[derive(Debug)]
 pub struct Trace {
     source: Source,
+    /// The energy at the start, once it is known.
+    start: Option<f64>,
     points: Vec<Mark>,
     /// Least and greatest value so far, per component.
     extent: Vec<[f64; 2]>,
@@ -45,18 +82,19 @@ pub struct Mark {
 }
 
 impl Trace {
-    /// An empty curve: of the declared view, or else of all coordinates and outputs.
-    pub fn new(view: bool) -> Self {
-        let source = if view {
-            Source::View
-        } else {
-            Source::Coordinates
-        };
+    /// An empty curve.
+    pub fn of(source: Source) -> Self {
         Self {
             source,
+            start: None,
             points: Vec::new(),
             extent: Vec::new(),
         }
+    }
+
+    /// What its points show.
+    pub fn source(&self) -> &Source {
+        &self.source
     }
 
     /// The points in order of time; none has an infinite or undefined value.
@@ -67,7 +105,7 @@ impl Trace {
     /// Adds a step without impacts inside.
     pub fn follow(&mut self, piece: &dyn Piece) {
         let (start, end) = piece.span();
-        let many = self.points.len() >= MANY;
+        let many = self.points.len() >= MANY || !self.source.looks_inside();
         let intervals = if many { 1 } else { INTERVALS };
         let depth = if many { 0 } else { DEPTH };
         let time = |index: usize| start + (end - start) * (index as f64 / intervals as f64);
@@ -96,14 +134,11 @@ impl Trace {
         self.push(mark);
     }
 
-    fn mark(&self, t: f64, point: &Point) -> Mark {
-        let values = match self.source {
-            Source::View => point.view.map_or_else(Vec::new, |view| view.to_vec()),
-            Source::Coordinates => point.q.iter().chain(&point.outputs).copied().collect(),
-        };
+    fn mark(&mut self, t: f64, point: &Point) -> Mark {
+        let start = *self.start.get_or_insert(point.energy);
         Mark {
             t,
-            values,
+            values: self.source.values(t, point, start),
             corner: false,
         }
     }
@@ -128,7 +163,9 @@ impl Trace {
         let ends = left.values.iter().zip(&right.values);
         ends.zip(&middle.values)
             .zip(&self.extent)
-            .all(|(((left, right), middle), [low, high])| {
+            .enumerate()
+            .filter(|(index, _)| self.source.is_smooth(*index))
+            .all(|(_, (((left, right), middle), [low, high]))| {
                 // Written so that an undefined value counts as flat: subdividing does not define it.
                 let deviation = (middle - 0.5 * (left + right)).abs();
                 let bent = deviation > FLATNESS * (high - low);
@@ -184,7 +221,7 @@ mod tests {
                 q: vec![t],
                 qdot: vec![1.0],
                 p: vec![1.0],
-                energy: 0.5,
+                energy: 0.5 + 1e-14 * (1e6 * t).sin(),
                 outputs: vec![],
                 view: Some([t.cos(), t.sin()]),
             }
@@ -193,7 +230,7 @@ mod tests {
 
     #[test]
     fn a_curve_that_turns_many_times_in_one_step_is_smooth() {
-        let mut trace = Trace::new(true);
+        let mut trace = Trace::of(Source::View);
         trace.follow(&Circle);
         let turns = trace.points().windows(2).map(|pair| pair[1].t - pair[0].t);
         assert!(turns.fold(0.0, f64::max) < 0.1);
@@ -201,8 +238,21 @@ mod tests {
     }
 
     #[test]
+    fn of_an_energy_only_the_ends_of_steps_are_shown() {
+        let count = |quantities: &[Quantity]| {
+            let mut trace = Trace::of(Source::Quantities(quantities.to_vec()));
+            trace.follow(&Circle);
+            trace.points().len()
+        };
+        assert_eq!(count(&[Quantity::Time, Quantity::EnergyError]), 2);
+        // Beside a straight curve, rounding errors ask for no more points than it does.
+        let beside = [Quantity::Time, Quantity::Position(0), Quantity::EnergyError];
+        assert_eq!(count(&beside), INTERVALS + 1);
+    }
+
+    #[test]
     fn a_straight_curve_needs_few_points() {
-        let mut trace = Trace::new(false);
+        let mut trace = Trace::of(Source::Coordinates);
         trace.follow(&Circle);
         assert_eq!(trace.points().len(), INTERVALS + 1);
     }

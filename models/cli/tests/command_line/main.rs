@@ -10,6 +10,7 @@ mod ensemble;
 mod eval;
 mod hostile;
 mod list;
+mod pictures;
 mod simulate;
 mod stability;
 mod systems;

@@ -14,13 +14,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         ending, settings, ..
     } = finished;
     writeln!(output, "{}", title(finished))?;
-    writeln!(
-        output,
-        "  outcome     {} at t = {}{}",
-        ending.kind,
-        ending.t,
-        details(ending)
-    )?;
+    writeln!(output, "  outcome     {}", outcome(ending))?;
     writeln!(output, "  impacts     {}", impacts(finished))?;
     writeln!(output, "  energy      {}", energy(ending))?;
     writeln!(output, "  integrator  {}", integrator(ending, settings))?;
@@ -33,6 +27,11 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         .map(|(name, count)| format!("{name} {count}"))
         .collect();
     writeln!(output, "  counters    {}", counters.join(", "))
+}
+
+/// The outcome, when, and what it says besides.
+pub fn outcome(ending: &Ending) -> String {
+    format!("{} at t = {}{}", ending.kind, ending.t, details(ending))
 }
 
 /// The measured error, and what it was measured by.

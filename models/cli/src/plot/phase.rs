@@ -1,0 +1,62 @@
+//! Quantities against each other: phase portraits, momenta in their plane.
+
+use super::Picture;
+use super::contour::Window;
+use super::legend::{Item, Symbol};
+use super::plane::{self, Plane, Words};
+use super::quantity::Quantity;
+use super::style;
+
+/// Draws the ordinates over the abscissa, the first of the quantities.
+///
+/// # Errors
+/// What the drawing library says.
+pub fn draw(picture: &Picture<'_>, quantities: &[Quantity]) -> Result<String, String> {
+    let description = picture.model.description();
+    let names: Vec<String> = quantities
+        .iter()
+        .map(|quantity| quantity.name(&description))
+        .collect();
+    let marks = picture.trace.points();
+    let values = |index: usize| marks.iter().map(move |mark| mark.values[index]);
+    let ordinates = 1..quantities.len();
+    let window = Window {
+        x: style::padded(values(0), 0.06),
+        y: style::padded(ordinates.clone().flat_map(values), 0.06),
+    };
+    let plane = Plane::free_scales(window, picture.width);
+
+    let mut legend = picture.legend(&names[1], style::curve(0));
+    let further = names.iter().enumerate().skip(2);
+    let further = further.map(|(k, name)| Item::new(Symbol::Line, style::curve(k - 1), name));
+    legend.splice(1..1, further);
+    let words = Words {
+        title: &picture.title,
+        subtitle: &picture.subtitle,
+        axes: [&names[0], if names.len() == 2 { &names[1] } else { "" }],
+        head: &legend,
+    };
+    let energy = picture.first.energy;
+    plane.sheet(
+        &words,
+        |_| Ok(()),
+        |chart| {
+            for index in ordinates {
+                let point = |values: &[f64]| [values[0], values[index]];
+                let path = marks.iter().map(|mark| point(&mark.values));
+                plane.path(chart, path, style::curve(index - 1))?;
+                let impacts = picture.impacts.iter().map(|impact| {
+                    let value =
+                        |quantity: Quantity| quantity.value(impact.t, &impact.after, energy);
+                    let at = [value(quantities[0]), value(quantities[index])];
+                    (at, style::surface(impact.surface))
+                });
+                plane::dots(chart, impacts, 2.8)?;
+                if let [first, .., last] = marks {
+                    plane::ends(chart, point(&first.values), point(&last.values))?;
+                }
+            }
+            Ok(())
+        },
+    )
+}

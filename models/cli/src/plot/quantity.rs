@@ -1,0 +1,124 @@
+//! What an axis can show: time, what a state consists of, energies and outputs, by the names that tables use.
+
+use dalembert::describe::Description;
+
+use crate::entry::Point;
+use crate::error::CliError;
+use crate::names;
+
+/// One number of a state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// `t`
+    Time,
+    /// `x`, by index.
+    Position(usize),
+    /// `x_dot`
+    Velocity(usize),
+    /// `p_x`
+    Momentum(usize),
+    /// `energy`
+    Energy,
+    /// `energy_error`: the change of the energy since the start, as a share of what it was there; the change itself if
+    /// that was 0.
+    EnergyError,
+    /// A declared output.
+    Output(usize),
+}
+
+/// Groups of quantities, which stand for all of their kind.
+const GROUPS: [&str; 4] = ["q", "qdot", "p", "outputs"];
+
+impl Quantity {
+    /// Its value, where the energy was `start` at the start of the run.
+    pub fn value(self, t: f64, point: &Point, start: f64) -> f64 {
+        let component = |values: &[f64], index: usize| values.get(index).copied();
+        let value = match self {
+            Self::Time => Some(t),
+            Self::Position(index) => component(&point.q, index),
+            Self::Velocity(index) => component(&point.qdot, index),
+            Self::Momentum(index) => component(&point.p, index),
+            Self::Energy => Some(point.energy),
+            Self::EnergyError if start == 0.0 => Some(point.energy),
+            Self::EnergyError => Some((point.energy - start) / start.abs()),
+            Self::Output(index) => component(&point.outputs, index),
+        };
+        value.unwrap_or(f64::NAN)
+    }
+
+    /// Its name.
+    pub fn name(self, description: &Description) -> String {
+        let coordinate = |index: usize| description.coordinates[index].name;
+        match self {
+            Self::Time => "t".to_owned(),
+            Self::Position(index) => coordinate(index).to_owned(),
+            Self::Velocity(index) => names::velocity(coordinate(index)),
+            Self::Momentum(index) => names::momentum(coordinate(index)),
+            Self::Energy => "energy".to_owned(),
+            Self::EnergyError => "energy_error".to_owned(),
+            Self::Output(index) => description.outputs[index].to_owned(),
+        }
+    }
+
+    /// Whether it is smooth along a motion. An energy that is kept is not: what is left of it is rounding.
+    pub const fn is_smooth(self) -> bool {
+        !matches!(self, Self::Energy | Self::EnergyError)
+    }
+}
+
+/// The quantities of `--axes`: the abscissa, and one or more ordinates, where `q`, `qdot`, `p` and `outputs` stand for
+/// all of their kind.
+///
+/// # Errors
+/// A name that is none of them, or fewer than two.
+pub fn parse(flag: &str, text: &str, description: &Description) -> Result<Vec<Quantity>, CliError> {
+    let everything = everything(description);
+    let mut accepted: Vec<String> = everything
+        .iter()
+        .map(|quantity| quantity.name(description))
+        .collect();
+    accepted.extend(GROUPS.map(str::to_owned));
+    let mut quantities = Vec::new();
+    for name in text.split(',').map(str::trim) {
+        let index = names::find(flag, "quantity", name, accepted.iter().map(String::as_str))?;
+        match everything.get(index) {
+            Some(&quantity) => quantities.push(quantity),
+            None if quantities.is_empty() => {
+                return Err(CliError::value(flag, name, "one quantity as the abscissa"));
+            }
+            None => quantities.extend(group(GROUPS[index - everything.len()], &everything)),
+        }
+    }
+    match quantities.len() {
+        0 | 1 => Err(CliError::value(
+            flag,
+            text,
+            "an abscissa and at least one ordinate, such as t,energy",
+        )),
+        _ => Ok(quantities),
+    }
+}
+
+/// All quantities of a model. A name that is taken twice means the first.
+fn everything(description: &Description) -> Vec<Quantity> {
+    let n = description.coordinates.len();
+    let outputs = description.outputs.len();
+    let mut everything = vec![Quantity::Time];
+    everything.extend((0..n).map(Quantity::Position));
+    everything.extend((0..n).map(Quantity::Velocity));
+    everything.extend((0..n).map(Quantity::Momentum));
+    everything.extend([Quantity::Energy, Quantity::EnergyError]);
+    everything.extend((0..outputs).map(Quantity::Output));
+    everything
+}
+
+fn group(name: &str, everything: &[Quantity]) -> Vec<Quantity> {
+    let belongs = |quantity: &&Quantity| match quantity {
+        Quantity::Position(_) => name == "q",
+        Quantity::Velocity(_) => name == "qdot",
+        Quantity::Momentum(_) => name == "p",
+        Quantity::Output(_) => name == "outputs",
+        Quantity::Time | Quantity::Energy | Quantity::EnergyError => false,
+    };
+    everything.iter().filter(belongs).copied().collect()
+}

@@ -1,0 +1,76 @@
+//! Polylines with as few points as their shape needs.
+
+/// The indices of the points of a polyline without those that lie nearer than `tolerance` to what is drawn without them
+/// (Douglas and Peucker). The first and the last point stay.
+pub fn thinned(points: &[[f64; 2]], tolerance: f64) -> Vec<usize> {
+    let mut keep = vec![false; points.len()];
+    let Some(last) = points.len().checked_sub(1) else {
+        return Vec::new();
+    };
+    (keep[0], keep[last]) = (true, true);
+    let mut open = vec![(0, last)];
+    while let Some((first, last)) = open.pop() {
+        let inside = first + 1..last;
+        let farthest = inside
+            .map(|index| (index, distance(points[index], points[first], points[last])))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((index, _)) = farthest.filter(|(_, far)| *far > tolerance) {
+            keep[index] = true;
+            open.extend([(first, index), (index, last)]);
+        }
+    }
+    let kept = keep.iter().enumerate().filter(|(_, keep)| **keep);
+    kept.map(|(index, _)| index).collect()
+}
+
+/// Distance of a point from the stretch between two others.
+fn distance(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let out = [point[0] - from[0], point[1] - from[1]];
+    let square = along[0] * along[0] + along[1] * along[1];
+    let share = if square > 0.0 {
+        ((out[0] * along[0] + out[1] * along[1]) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (out[0] - share * along[0]).hypot(out[1] - share * along[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_straight_line_keeps_its_ends_and_a_corner_stays() {
+        let line: Vec<[f64; 2]> = (0..100)
+            .map(|k| [f64::from(k), 2.0 * f64::from(k)])
+            .collect();
+        assert_eq!(thinned(&line, 1e-9), [0, 99]);
+        let corner = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 5.0]];
+        assert_eq!(thinned(&corner, 0.1), [0, 2, 3]);
+        assert!(thinned(&[], 1.0).is_empty());
+    }
+
+    #[test]
+    fn a_stretch_that_is_run_back_over_stays() {
+        let there_and_back = [[0.0, 0.0], [3.0, 0.0], [1.0, 0.0]];
+        assert_eq!(thinned(&there_and_back, 0.5), [0, 1, 2]);
+    }
+
+    #[test]
+    fn nothing_is_left_out_that_shows() {
+        let circle: Vec<[f64; 2]> = (0..=720)
+            .map(|k| f64::from(k) * std::f64::consts::PI / 360.0)
+            .map(|angle| [100.0 * angle.cos(), 100.0 * angle.sin()])
+            .collect();
+        let kept = thinned(&circle, 0.1);
+        assert!(kept.len() < 200, "{}", kept.len());
+        for point in &circle {
+            let near = kept
+                .windows(2)
+                .map(|pair| distance(*point, circle[pair[0]], circle[pair[1]]))
+                .fold(f64::INFINITY, f64::min);
+            assert!(near <= 0.1, "{near}");
+        }
+    }
+}
