@@ -1,13 +1,15 @@
 //! The systems of the source papers as dalembert models: one file each, with its source, what is known of it in
 //! closed form, and a test of such a fact.
 //!
-//! The binary of this package is the `dalembert` command over all of them, with the hard cases of [`stability`].
+//! The binary of this package is the `dalembert` command over all of them, with the hard cases of [`stability`] and the
+//! [`figures`] of the papers.
 
 pub mod ball_on_rotating_table;
 pub mod bouncing_ball;
 pub mod chain;
 pub mod chaplygin_sleigh;
 pub mod double_pendulum;
+pub mod figures;
 pub mod harmonic_oscillator;
 pub mod holonomic_bead_on_ellipses;
 pub mod point_billiard;
@@ -49,7 +51,9 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
     ]
 }
 
-/// What the `dalembert` command works on: every shipped model, and the hard cases.
+/// What the `dalembert` command works on: every shipped model, the hard cases, and the figures of the papers.
 pub fn catalogue() -> dalembert_cli::Catalogue {
-    dalembert_cli::Catalogue::of(all()).with_suite(stability::all())
+    dalembert_cli::Catalogue::of(all())
+        .with_suite(stability::all())
+        .with_figures(figures::all())
 }

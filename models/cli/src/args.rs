@@ -2,6 +2,7 @@
 //! because only there is it known which names the model has.
 
 mod ensemble;
+mod gallery;
 
 use std::path::PathBuf;
 
@@ -16,6 +17,7 @@ use dalembert::integrate::{
 
 use crate::scalar;
 pub use ensemble::EnsembleArgs;
+pub use gallery::GalleryArgs;
 
 /// Derive, evaluate and simulate mechanical systems declared with `dalembert::model!`.
 #[derive(Debug, Parser)]
@@ -54,6 +56,9 @@ pub enum Command {
     /// Evaluate everything that is derived at given states.
     #[command(after_help = EVAL_EXAMPLES)]
     Eval(EvalArgs),
+    /// Draw figures of the models, on one page.
+    #[command(after_help = gallery::EXAMPLES)]
+    Gallery(GalleryArgs),
     /// Run the hard cases, and say which keep their bounds.
     #[command(after_help = STABILITY_EXAMPLES)]
     Stability(StabilityArgs),

@@ -1,21 +1,24 @@
 //! What a command line works on.
 
 use crate::entry::Entry;
+use crate::gallery::Figure;
 use crate::suite::Case;
 
-/// The models of a command line, and the hard cases of its `stability` command.
+/// The models of a command line, the hard cases of its `stability` command, and the figures of its `gallery`.
 #[derive(Clone)]
 pub struct Catalogue {
     models: Vec<Entry>,
     suite: Vec<Case>,
+    figures: Vec<Figure>,
 }
 
 impl Catalogue {
-    /// Models, as made by [`models!`](crate::models), and no cases.
+    /// Models, as made by [`models!`](crate::models), no cases, and no figures but those that every model has.
     pub fn of(models: Vec<Entry>) -> Self {
         Self {
             models,
             suite: Vec::new(),
+            figures: Vec::new(),
         }
     }
 
@@ -23,6 +26,13 @@ impl Catalogue {
     #[must_use]
     pub fn with_suite(mut self, suite: Vec<Case>) -> Self {
         self.suite = suite;
+        self
+    }
+
+    /// With these figures, after those that every model has.
+    #[must_use]
+    pub fn with_figures(mut self, figures: Vec<Figure>) -> Self {
+        self.figures = figures;
         self
     }
 
@@ -34,5 +44,10 @@ impl Catalogue {
     /// The hard cases.
     pub fn suite(&self) -> &[Case] {
         &self.suite
+    }
+
+    /// The figures that were added.
+    pub fn figures(&self) -> &[Figure] {
+        &self.figures
     }
 }

@@ -34,6 +34,7 @@ mod ensemble;
 mod entry;
 mod error;
 mod exit;
+pub mod gallery;
 mod json;
 mod names;
 mod plot;
@@ -139,6 +140,7 @@ fn dispatch(
         Command::Ensemble(args) => command::ensemble::run(models, args, streams),
         Command::Accuracy(args) => command::accuracy::run(models, args, streams),
         Command::Eval(args) => command::eval::run(models, args, streams),
+        Command::Gallery(args) => command::gallery::run(catalogue, args, streams),
         Command::Stability(args) => command::stability::run(catalogue.suite(), args, streams),
     }
 }

@@ -1,6 +1,6 @@
 //! Files that commands write, or the standard output in their place.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -49,6 +49,21 @@ impl Sink {
     /// The file cannot be written.
     pub fn open_given(flag: &'static str, path: Option<&Path>) -> Result<Option<Self>, CliError> {
         path.map(|path| Self::open(flag, path)).transpose()
+    }
+
+    /// Opens a file of a folder, which is made if it does not exist, if the file is wanted.
+    ///
+    /// # Errors
+    /// The folder or the file cannot be written.
+    pub fn open_within(folder: &Path, name: &str, wanted: bool) -> Result<Option<Self>, CliError> {
+        let flag = "OUT";
+        fs::create_dir_all(folder).map_err(|source| CliError::File {
+            flag,
+            path: folder.to_owned(),
+            source,
+        })?;
+        let path = wanted.then(|| folder.join(name));
+        Self::open_given(flag, path.as_deref())
     }
 
     /// Its path.

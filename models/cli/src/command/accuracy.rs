@@ -9,10 +9,10 @@ use std::time::Duration;
 use crate::accuracy::{FINEST, NoChoice, Plan, Sample, Study};
 use crate::args::{AccuracyArgs, Integrator};
 use crate::driver::Settings;
-use crate::entry::{AnyModel, Entry};
+use crate::entry::{AnyModel, Entry, Origin};
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::plot::work;
+use crate::plot::{Drawn, work};
 use crate::progress::Steps;
 use crate::sink::Sink;
 use crate::state_input::{build_model, initial_state};
@@ -22,9 +22,22 @@ use crate::{Streams, run_request};
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     scene: &'a str,
-    settings: &'a Settings,
+    settings: Settings,
     study: Study,
     wanted: Option<f64>,
+}
+
+/// The picture that `accuracy` would write with these flags.
+///
+/// # Errors
+/// As [`run`], but for files.
+pub fn draw(models: &[Entry], args: &AccuracyArgs) -> Result<Drawn, CliError> {
+    let model = build_model(models, &args.run.model)?;
+    let finished = measure(model.as_ref(), prepare(model.as_ref(), args)?, args, false)?;
+    Ok(Drawn {
+        svg: finished.picture(args)?,
+        outcome: finished.study.outcome.kind().to_owned(),
+    })
 }
 
 /// Carries out `accuracy`.
@@ -39,30 +52,12 @@ pub fn run(
 ) -> Result<Exit, CliError> {
     run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
     let model = build_model(models, &args.run.model)?;
-    let finest = (Integrator::Taylor, FINEST[0]);
-    let settings = run_request::settings(model.as_ref(), &args.run, None, finest)?;
-    let origin = initial_state(model.as_ref(), &args.run.state)?;
+    let prepared = prepare(model.as_ref(), args)?;
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let plot = Sink::open_given("--plot", args.plot.as_deref())?;
 
-    let plan = plan(args, settings.until);
-    let cases = plan.integrators.len() * plan.tolerances.len();
-    let mut progress = Steps::new(cases + plan.rounds as usize + 1, streams.terminal);
-    let study = model
-        .study(&origin, &settings, &plan, &mut |what| {
-            progress.begin(what);
-            progress.aside(|| {});
-        })
-        .map_err(CliError::Start)?;
-    progress.finish();
-    let finished = Finished {
-        model: model.as_ref(),
-        scene: &args.run.model.scene,
-        settings: &settings,
-        study,
-        wanted: args.wanted,
-    };
+    let finished = measure(model.as_ref(), prepared, args, streams.terminal)?;
     if let Some(sink) = json {
         sink.write(streams, |output| document::write(output, &finished))?;
     }
@@ -72,12 +67,7 @@ pub fn run(
         })?;
     }
     if let Some(sink) = plot {
-        let svg = work::draw(&finished.title(), &finished.subtitle(), &finished.study);
-        let svg = svg.map_err(|reason| CliError::Plot {
-            flag: "--plot",
-            path: sink.path(),
-            reason,
-        })?;
+        let svg = finished.picture(args)?;
         sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
     }
     if !run_request::uses_stdout([&args.csv, &args.json]) {
@@ -86,6 +76,39 @@ pub fn run(
     Ok(match finished.choice() {
         Some(Err(_)) => Exit::Other,
         _ => Exit::Reached,
+    })
+}
+
+/// Everything that can be refused before the runs.
+fn prepare(model: &dyn AnyModel, args: &AccuracyArgs) -> Result<(Settings, Origin), CliError> {
+    let finest = (Integrator::Taylor, FINEST[0]);
+    let settings = run_request::settings(model, &args.run, None, finest)?;
+    Ok((settings, initial_state(model, &args.run.state)?))
+}
+
+/// Makes the runs.
+fn measure<'a>(
+    model: &'a dyn AnyModel,
+    (settings, origin): (Settings, Origin),
+    args: &'a AccuracyArgs,
+    terminal: bool,
+) -> Result<Finished<'a>, CliError> {
+    let plan = plan(args, settings.until);
+    let cases = plan.integrators.len() * plan.tolerances.len();
+    let mut progress = Steps::new(cases + plan.rounds as usize + 1, terminal);
+    let study = model
+        .study(&origin, &settings, &plan, &mut |what| {
+            progress.begin(what);
+            progress.aside(|| {});
+        })
+        .map_err(CliError::Start)?;
+    progress.finish();
+    Ok(Finished {
+        model,
+        scene: &args.run.model.scene,
+        settings,
+        study,
+        wanted: args.wanted,
     })
 }
 
@@ -117,6 +140,12 @@ impl Finished<'_> {
         format!(
             "{form} form, until t = {until}; reference known to {floor:.1e}; rings: the fastest of a decade"
         )
+    }
+
+    /// The diagram.
+    fn picture(&self, args: &AccuracyArgs) -> Result<String, CliError> {
+        work::draw(&self.title(), &self.subtitle(), &self.study)
+            .map_err(|reason| CliError::picture(&args.plot, reason))
     }
 
     /// The answer to what is wanted.

@@ -5,6 +5,7 @@ pub mod check;
 pub mod derive;
 pub mod ensemble;
 pub mod eval;
+pub mod gallery;
 pub mod list;
 pub mod simulate;
 pub mod stability;

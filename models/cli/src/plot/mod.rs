@@ -2,17 +2,21 @@
 //! against time or each other.
 
 mod canvas;
+pub mod cloud;
 pub mod contour;
 pub mod density;
+pub mod heat;
 mod history;
 mod legend;
 pub mod logarithmic;
 mod phase;
 mod plane;
+mod png;
 mod portrait;
 pub mod quantity;
 mod region;
 pub mod style;
+mod table;
 mod thin;
 pub mod trace;
 pub mod work;
@@ -23,6 +27,7 @@ use crate::driver::Impact;
 use crate::entry::{AnyModel, Point};
 use legend::{Item, Symbol};
 use quantity::Quantity;
+pub use table::Table;
 use trace::{Source, Trace};
 
 /// What a picture shows.

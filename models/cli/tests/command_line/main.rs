@@ -8,6 +8,7 @@ mod check;
 mod derive;
 mod ensemble;
 mod eval;
+mod gallery;
 mod hostile;
 mod list;
 mod pictures;

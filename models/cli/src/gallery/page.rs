@@ -1,0 +1,170 @@
+//! A gallery as one page that needs nothing else: pictures inside it, no scripts, light and dark.
+
+use std::fmt::Write as _;
+
+use super::{Figure, Plate, Print};
+use crate::entry::Entry;
+use crate::error::CliError;
+use crate::names;
+use crate::plot::style;
+
+const STYLE: &str = "\
+:root{color-scheme:light dark;--paper:#fff;--ink:#323232;--faint:#696969;--line:#e2e5e9;--code:#f5f6f8;--link:#0072b2}
+body{font:15px/1.5 sans-serif;background:var(--paper);color:var(--ink);max-width:1540px;margin:0 auto;padding:1.5em 1.2em 4em}
+h1{font-size:1.7em;margin:.2em 0}h2{font-size:1.35em;margin:2.4em 0 0;padding-top:.5em;border-top:1px solid var(--line)}
+h3{font-size:1.05em;margin:0}p{margin:.3em 0;max-width:75em}a{color:var(--link)}
+nav ul{columns:21em;padding-left:1.2em}nav ul ul{columns:auto}nav li{break-inside:avoid}
+figure{margin:1.6em 0 2.2em}figcaption{margin-bottom:.7em}.source{color:var(--faint)}
+.panels{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,430px),1fr));gap:1.4em 1.2em}
+.panel{min-width:0}.panel svg{display:block;width:100%;max-width:900px;height:auto}
+.panel p{font-size:.9em}.error{color:#d55e00}
+code{font:.88em monospace}.panel code{display:block;line-height:1.45;background:var(--code);border-radius:4px;padding:.4em .7em}
+.panel code span{white-space:nowrap}
+";
+
+/// The page of these pictures.
+pub fn page(models: &[Entry], plates: &[Plate<'_>], prints: &[Result<Print, CliError>]) -> String {
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\"><head><meta charset=\"utf-8\" />\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\
+         <title>dalembert gallery</title>\n<style>\n{STYLE}{}</style></head>\n<body>\n",
+        dark()
+    );
+    let drawn: Vec<_> = plates.iter().zip(prints).collect();
+    let sections = sections(&drawn);
+    page += "<h1>Gallery</h1>\n<p>Mechanical systems with constraints and impacts, declared with <b>dalembert</b>. \
+             Each picture is followed by the command that draws it alone.</p>\n";
+    page += &contents(&sections);
+    for (model, figures) in &sections {
+        let description = models
+            .iter()
+            .map(Entry::description)
+            .find(|description| description.name == *model);
+        let summary = description.map_or("", names::summary);
+        let _ = write!(
+            page,
+            "<section id=\"{model}\">\n<h2>{model}</h2>\n<p>{}</p>\n",
+            documented(summary)
+        );
+        for drawn in figures {
+            page += &figure(drawn);
+        }
+        page += "</section>\n";
+    }
+    page += "</body></html>\n";
+    page
+}
+
+/// A picture of a figure, made or not.
+type Drawn<'a> = (&'a Plate<'a>, &'a Result<Print, CliError>);
+
+/// Models in their order, each with its figures in theirs, each of these with its pictures.
+type Sections<'a> = Vec<(&'a str, Vec<&'a [Drawn<'a>]>)>;
+
+fn sections<'a>(drawn: &'a [Drawn<'a>]) -> Sections<'a> {
+    let same = |a: &Drawn<'_>, b: &Drawn<'_>| std::ptr::eq(a.0.figure, b.0.figure);
+    let mut sections = Sections::new();
+    for figure in drawn.chunk_by(same) {
+        let model = figure[0].0.figure.model;
+        match sections.last_mut().filter(|(last, _)| *last == model) {
+            Some((_, figures)) => figures.push(figure),
+            None => sections.push((model, vec![figure])),
+        }
+    }
+    sections
+}
+
+fn contents(sections: &Sections<'_>) -> String {
+    let mut list = "<nav><ul>\n".to_owned();
+    for (model, figures) in sections {
+        let _ = write!(list, "<li><a href=\"#{model}\">{model}</a><ul>");
+        for drawn in figures {
+            let Figure { title, source, .. } = drawn[0].0.figure;
+            let source = source.map_or(String::new(), |source| format!(" ({})", escaped(source)));
+            let _ = write!(
+                list,
+                "<li><a href=\"#{}\">{}</a>{source}</li>",
+                anchor(drawn),
+                escaped(title)
+            );
+        }
+        list += "</ul></li>\n";
+    }
+    list + "</ul></nav>\n"
+}
+
+fn anchor(drawn: &[Drawn<'_>]) -> String {
+    let Figure { model, name, .. } = drawn[0].0.figure;
+    format!("{model}-{name}")
+}
+
+fn figure(drawn: &[Drawn<'_>]) -> String {
+    let figure = drawn[0].0.figure;
+    let source = figure.source.map_or(String::new(), |source| {
+        format!(
+            " <span class=\"source\">Source: {}.</span>",
+            escaped(source)
+        )
+    });
+    let mut text = format!(
+        "<figure id=\"{}\"><figcaption><h3>{}</h3><p>{}{source}</p></figcaption>\n<div class=\"panels\">\n",
+        anchor(drawn),
+        escaped(figure.title),
+        escaped(&figure.caption)
+    );
+    for (plate, print) in drawn {
+        text += &panel(plate, print);
+    }
+    text + "</div></figure>\n"
+}
+
+fn panel(plate: &Plate<'_>, print: &Result<Print, CliError>) -> String {
+    let picture = match print {
+        Ok(print) => print.svg.clone(),
+        Err(error) => format!("<p class=\"error\">{}</p>\n", escaped(&error.to_string())),
+    };
+    format!(
+        "<div class=\"panel\">{picture}<p>{}</p><code>{}</code></div>\n",
+        escaped(&plate.panel.title),
+        words(&plate.command())
+    )
+}
+
+/// The same page where dark pages are preferred: its own colours, and those of the pictures.
+fn dark() -> String {
+    let mut rules = "@media (prefers-color-scheme:dark){\n\
+        :root{--paper:#16181b;--ink:#dcdde0;--faint:#9b9fa6;--line:#33373d;--code:#202327;--link:#6cb8ea}\n"
+        .to_owned();
+    for (light, dark) in style::DARK {
+        let (light, dark) = (style::hex(light), style::hex(dark));
+        let _ = writeln!(
+            rules,
+            "svg [fill=\"{light}\"]{{fill:{dark}}}svg [stroke=\"{light}\"]{{stroke:{dark}}}"
+        );
+    }
+    rules + "}\n"
+}
+
+/// A command whose words are not broken, at hyphens least of all.
+fn words(command: &str) -> String {
+    let words = command
+        .split(' ')
+        .map(|word| format!("<span>{}</span>", escaped(word)));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// Text of a documentation comment, with what stands in backticks as code.
+fn documented(text: &str) -> String {
+    let mut parts = text.split('`').map(escaped);
+    let mut page = parts.next().unwrap_or_default();
+    while let (Some(code), rest) = (parts.next(), parts.next()) {
+        let _ = write!(page, "<code>{code}</code>{}", rest.unwrap_or_default());
+    }
+    page
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}

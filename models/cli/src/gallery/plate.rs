@@ -1,0 +1,160 @@
+//! One picture to be made: its name, its command, and making it.
+
+use std::time::Instant;
+
+use clap::Parser;
+
+use super::{Figure, Panel, Picture, density, starts};
+use crate::args::{Command, CommandLine, SimulateArgs};
+use crate::command::{accuracy, simulate};
+use crate::entry::Entry;
+use crate::error::CliError;
+use crate::plot::Drawn;
+
+/// How much is spent on pictures of long runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// What the captions promise.
+    Full,
+    /// A fiftieth of the positions of densities, and nothing that has to be timed.
+    Quick,
+}
+
+/// A picture of a figure that is to be made.
+#[derive(Debug, Clone, Copy)]
+pub struct Plate<'a> {
+    /// Its figure.
+    pub figure: &'a Figure,
+    /// Its place there.
+    pub panel: &'a Panel,
+    /// How it is to be made.
+    pub effort: Effort,
+}
+
+/// A picture that was made.
+pub struct Print {
+    /// The picture.
+    pub svg: String,
+    /// How the run ended.
+    pub outcome: String,
+    /// Seconds it took.
+    pub seconds: f64,
+}
+
+impl<'a> Plate<'a> {
+    /// The pictures of figures. What has to be timed is no quick picture.
+    pub fn all(figures: &'a [Figure], effort: Effort) -> Vec<Self> {
+        let plates = figures.iter().flat_map(|figure| {
+            figure.panels.iter().map(move |panel| Plate {
+                figure,
+                panel,
+                effort,
+            })
+        });
+        plates
+            .filter(|plate| effort == Effort::Full || !plate.is_timed())
+            .collect()
+    }
+
+    /// Its name, that of its file without the ending.
+    pub fn name(&self) -> String {
+        let Figure { model, name, .. } = self.figure;
+        match self.panel.name.as_str() {
+            "" => format!("{model}-{name}"),
+            panel => format!("{model}-{name}-{panel}"),
+        }
+    }
+
+    /// The name of its file.
+    pub fn file(&self) -> String {
+        format!("{}.svg", self.name())
+    }
+
+    /// Whether it shows measured times, so that nothing else may run beside it.
+    pub fn is_timed(&self) -> bool {
+        matches!(self.panel.picture, Picture::Accuracy(_))
+    }
+
+    /// The command that draws it alone, into the folder one is in.
+    pub fn command(&self) -> String {
+        match &self.panel.picture {
+            Picture::Simulate(flags) => self.drawing("simulate", flags),
+            Picture::Accuracy(flags) => self.drawing("accuracy", flags),
+            Picture::Starts(_) | Picture::Density(_) => {
+                let quick = match self.effort {
+                    Effort::Quick => " --quick",
+                    Effort::Full => "",
+                };
+                format!("dalembert gallery . --picture {}{quick}", self.name())
+            }
+        }
+    }
+
+    fn drawing(&self, command: &str, flags: &str) -> String {
+        let words = ["dalembert", command, self.figure.model, flags, "--plot"];
+        let given = words.into_iter().filter(|word| !word.is_empty());
+        let mut words: Vec<&str> = given.collect();
+        let file = self.file();
+        words.push(&file);
+        words.join(" ")
+    }
+
+    /// Makes it.
+    ///
+    /// # Errors
+    /// Flags that are not accepted, a state that is refused, a picture that cannot be drawn.
+    pub fn make(&self, models: &[Entry]) -> Result<Print, CliError> {
+        let started = Instant::now();
+        let Drawn { svg, outcome } = self.draw(models)?;
+        Ok(Print {
+            svg,
+            outcome,
+            seconds: started.elapsed().as_secs_f64(),
+        })
+    }
+
+    fn draw(&self, models: &[Entry]) -> Result<Drawn, CliError> {
+        match &self.panel.picture {
+            Picture::Simulate(_) => simulate::draw(models, &*self.simulate(&self.command())?),
+            Picture::Accuracy(_) => match self.parse(&self.command())? {
+                Command::Accuracy(args) => accuracy::draw(models, &args),
+                _ => Err(self.refusal("no `accuracy`")),
+            },
+            Picture::Starts(it) => {
+                let args = self.simulate(&self.drawing("simulate", &it.flags))?;
+                starts::draw(models, &args, it, &self.panel.title)
+            }
+            Picture::Density(it) => {
+                let it = match self.effort {
+                    Effort::Full => it.clone(),
+                    Effort::Quick => it.quick(),
+                };
+                let flags = format!("{} --until {}", it.flags, it.until());
+                let args = self.simulate(&self.drawing("simulate", &flags))?;
+                density::draw(models, &args, &it, &self.panel.title)
+            }
+        }
+    }
+
+    fn simulate(&self, line: &str) -> Result<Box<SimulateArgs>, CliError> {
+        match self.parse(line)? {
+            Command::Simulate(args) => Ok(args),
+            _ => Err(self.refusal("no `simulate`")),
+        }
+    }
+
+    fn parse(&self, line: &str) -> Result<Command, CliError> {
+        let parsed = CommandLine::try_parse_from(line.split_whitespace());
+        match parsed {
+            Ok(line) => Ok(line.command),
+            Err(error) => Err(self.refusal(&error.to_string())),
+        }
+    }
+
+    fn refusal(&self, reason: &str) -> CliError {
+        CliError::Input {
+            place: format!("picture `{}`", self.name()),
+            reason: reason.to_owned(),
+        }
+    }
+}

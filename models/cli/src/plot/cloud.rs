@@ -1,0 +1,63 @@
+//! Points on a table.
+
+use super::Table;
+use super::canvas::message;
+use super::legend::{Item, Symbol};
+use super::plane::{self, Words};
+use super::portrait::{draw_boundary, fill_region};
+use super::style;
+
+/// Width of the picture, in pixels.
+const WIDTH: f64 = 480.0;
+
+/// Points to draw.
+pub struct Cloud<'a> {
+    /// Where they are.
+    pub table: &'a Table<'a>,
+    /// First line of the title.
+    pub title: &'a str,
+    /// Second line of the title.
+    pub subtitle: &'a str,
+    /// The points.
+    pub points: &'a [[f64; 2]],
+    /// The one they lie about.
+    pub middle: Option<[f64; 2]>,
+}
+
+/// Draws them.
+///
+/// # Errors
+/// What the drawing library says, or that the model has no region in a plane.
+pub fn draw(cloud: &Cloud<'_>) -> Result<String, String> {
+    let (plane, boundary) = cloud.table.plane(WIDTH)?;
+    let items = vec![
+        Item::new(
+            Symbol::Dot,
+            style::PATH,
+            format!("scattered starts ({})", cloud.points.len()),
+        ),
+        Item::new(Symbol::Ring, style::INK, "the start itself"),
+    ];
+    let words = Words {
+        title: cloud.title,
+        subtitle: cloud.subtitle,
+        axes: cloud.table.labels(),
+        head: &items,
+    };
+    plane.sheet(
+        &words,
+        |chart| fill_region(chart, &boundary),
+        |chart| {
+            draw_boundary(chart, &boundary)?;
+            let points = cloud.points.iter().map(|&at| (at, style::PATH));
+            plane::dots(chart, points, 2.4)?;
+            match cloud.middle {
+                Some(at) => chart
+                    .draw_series([plane::ring(at)])
+                    .map_err(message)
+                    .map(drop),
+                None => Ok(()),
+            }
+        },
+    )
+}

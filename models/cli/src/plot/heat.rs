@@ -1,0 +1,205 @@
+//! A density on a table: boxes in colours that stand for its values.
+
+use plotters::element::Rectangle;
+use plotters::style::{Color, RGBColor};
+
+use super::canvas::{Area, INDENT, message, px, text, text_width};
+use super::contour::Window;
+use super::plane::{Head, Words};
+use super::portrait::draw_boundary;
+use super::style::{self, Axis};
+use super::{Table, png};
+
+/// Width of the picture, in pixels.
+const WIDTH: f64 = 480.0;
+
+/// Height of the colour bar with its numbers, in pixels.
+const BAR: f64 = 40.0;
+
+/// Colours from low to high that are told apart in print and by the colour-blind (viridis, S. van der Walt and N. Smith).
+const COLOURS: [RGBColor; 9] = [
+    RGBColor(68, 1, 84),
+    RGBColor(71, 45, 123),
+    RGBColor(59, 82, 139),
+    RGBColor(44, 114, 142),
+    RGBColor(33, 145, 140),
+    RGBColor(40, 174, 128),
+    RGBColor(94, 201, 98),
+    RGBColor(173, 220, 48),
+    RGBColor(253, 231, 37),
+];
+
+/// How many colours a picture uses besides the transparent one.
+const SHADES: usize = 255;
+
+/// How many stripes the colour bar consists of.
+const STRIPES: usize = 64;
+
+/// The share of the boxes with something in them whose values have a colour of their own; what is above has the last.
+const SHOWN: f64 = 0.995;
+
+/// Marks the place of the boxes until they are put there; no picture has this colour.
+const PLACE: RGBColor = RGBColor(1, 2, 3);
+
+/// A density to draw.
+pub struct Map<'a> {
+    /// Where it is.
+    pub table: &'a Table<'a>,
+    /// First line of the title.
+    pub title: &'a str,
+    /// Second line of the title.
+    pub subtitle: &'a str,
+    /// What the boxes cover.
+    pub window: Window,
+    /// Boxes along each side.
+    pub boxes: usize,
+    /// Their values, row by row from below.
+    pub densities: &'a [f64],
+}
+
+/// Draws it.
+///
+/// # Errors
+/// What the drawing library says, or that the model has no region in a plane.
+pub fn draw(map: &Map<'_>) -> Result<String, String> {
+    let (plane, boundary) = map.table.plane(WIDTH)?;
+    let most = map.most();
+    let words = Words {
+        title: map.title,
+        subtitle: map.subtitle,
+        axes: map.table.labels(),
+        head: &Bar { most },
+    };
+    let Window { x, y } = map.window;
+    let svg = plane.sheet(
+        &words,
+        |_| Ok(()),
+        |chart| {
+            let place = Rectangle::new([(x[0], y[0]), (x[1], y[1])], PLACE.filled());
+            chart.draw_series([place]).map_err(message)?;
+            draw_boundary(chart, &boundary)
+        },
+    )?;
+    put_image(&svg, &map.image(most)).ok_or_else(|| "the boxes found no place".to_owned())
+}
+
+impl Map<'_> {
+    /// The value that has the last colour.
+    fn most(&self) -> f64 {
+        let positive = self.densities.iter().copied().filter(|value| *value > 0.0);
+        let mut values: Vec<f64> = positive.collect();
+        values.sort_by(f64::total_cmp);
+        let index = (SHOWN * values.len() as f64) as usize;
+        let most = values.get(index.min(values.len().saturating_sub(1)));
+        most.copied().unwrap_or(1.0)
+    }
+
+    /// The boxes as the address of an image.
+    fn image(&self, most: f64) -> String {
+        let shade = |value: f64| match value {
+            0.0 => 0,
+            _ => 1 + ((value / most * SHADES as f64) as usize).min(SHADES - 1) as u8,
+        };
+        let rows = self.densities.chunks(self.boxes).rev();
+        let pixels: Vec<u8> = rows.flatten().map(|&value| shade(value)).collect();
+        png::data_address(self.boxes, &palette(), &pixels)
+    }
+}
+
+/// The transparent colour, then all shades.
+fn palette() -> Vec<RGBColor> {
+    let shades = (0..SHADES).map(|index| colour(index as f64 / (SHADES - 1) as f64));
+    std::iter::once(RGBColor(255, 255, 255))
+        .chain(shades)
+        .collect()
+}
+
+/// The colour at a share from low to high.
+fn colour(share: f64) -> RGBColor {
+    let place = share * (COLOURS.len() - 1) as f64;
+    let index = (place as usize).min(COLOURS.len() - 2);
+    let (low, high) = (COLOURS[index], COLOURS[index + 1]);
+    let part = place - index as f64;
+    let mix = |low: u8, high: u8| {
+        (f64::from(low) + part * (f64::from(high) - f64::from(low))).round() as u8
+    };
+    RGBColor(mix(low.0, high.0), mix(low.1, high.1), mix(low.2, high.2))
+}
+
+/// Replaces the rectangle that keeps the place by the image. The drawing library can only draw boxes one by one.
+fn put_image(svg: &str, address: &str) -> Option<String> {
+    let mark = format!("fill=\"{}\"", style::hex(PLACE));
+    let middle = svg.find(&mark)?;
+    let start = svg[..middle].rfind('<')?;
+    let end = middle + svg[middle..].find("/>")? + 2;
+    let attributes = svg[start..middle].strip_prefix("<rect")?;
+    let image = format!(
+        "<image{attributes}preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{address}\"/>"
+    );
+    Some([&svg[..start], &image, &svg[end..]].concat())
+}
+
+/// What the colours stand for.
+struct Bar {
+    most: f64,
+}
+
+impl Head for Bar {
+    fn height(&self, _width: f64) -> f64 {
+        BAR
+    }
+
+    fn draw(&self, area: &Area<'_>, width: f64) -> Result<(), String> {
+        const NAME: &str = "density";
+        let left = INDENT + text_width(NAME, 12.0) + 12.0;
+        let right = width - 2.0 * INDENT;
+        let name = text(12.0, style::INK);
+        area.draw_text(NAME, &name, (px(INDENT), px(5.0)))
+            .map_err(message)?;
+        let at = |share: f64| left + share * (right - left);
+        for index in 0..STRIPES {
+            // Each reaches under those to its right, so that no seam shows between them.
+            let share = index as f64 / STRIPES as f64;
+            let corners = [(px(at(share)), px(4.0)), (px(right), px(18.0))];
+            let fill = colour(share).filled();
+            area.draw(&Rectangle::new(corners, fill)).map_err(message)?;
+        }
+        let axis = Axis::new([0.0, self.most], 4);
+        for value in axis.ticks() {
+            let label = axis.label(value);
+            let from = at(value / self.most) - 0.5 * text_width(&label, 11.0);
+            area.draw_text(&label, &text(11.0, style::INK), (px(from), px(22.0)))
+                .map_err(message)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_run_from_the_first_to_the_last() {
+        let palette = palette();
+        assert_eq!(palette.len(), 1 + SHADES);
+        assert_eq!(palette[1], COLOURS[0]);
+        assert_eq!(palette[SHADES], COLOURS[8]);
+        // More is brighter.
+        let light = |c: &RGBColor| 2 * u32::from(c.0) + 7 * u32::from(c.1) + u32::from(c.2);
+        assert!(
+            COLOURS
+                .windows(2)
+                .all(|pair| light(&pair[0]) < light(&pair[1]))
+        );
+    }
+
+    #[test]
+    fn an_image_takes_the_place_of_its_rectangle() {
+        let svg = "<svg><rect x=\"1\" width=\"2\" opacity=\"1\" fill=\"#010203\" stroke=\"none\"/><g/></svg>";
+        let image = put_image(svg, "data:").unwrap();
+        assert!(image.starts_with("<svg><image x=\"1\" width=\"2\" opacity=\"1\" preserve"));
+        assert!(image.ends_with("href=\"data:\"/><g/></svg>"));
+        assert_eq!(put_image("<svg/>", "data:"), None);
+    }
+}

@@ -1,0 +1,70 @@
+//! The region of a model's view as a table that something lies on, without a run.
+
+use super::contour::{Contour, Window};
+use super::plane::Plane;
+use super::region::{COARSE, FINE, Region};
+use crate::entry::AnyModel;
+
+/// Half the side of the square that the search for the rim begins with, and how often it may double.
+const LEAST: f64 = 1e-6;
+const DOUBLINGS: i32 = 60;
+
+/// Room around a table, as a part of its size.
+const ROOM: f64 = 0.06;
+
+/// A table.
+pub struct Table<'a> {
+    /// The model whose view it belongs to.
+    pub model: &'a dyn AnyModel,
+    /// A position on it.
+    pub q: &'a [f64],
+}
+
+impl Table<'_> {
+    /// The names of its axes.
+    pub fn labels(&self) -> [&'static str; 2] {
+        let view = self.model.description().view;
+        view.map_or([""; 2], |view| view.labels)
+    }
+
+    /// The smallest rectangle that contains it.
+    ///
+    /// # Errors
+    /// That there is none.
+    pub fn extent(&self) -> Result<Window, String> {
+        let region = self.region()?;
+        let [x, y] = region.position();
+        let square = |half: f64| Window {
+            x: [x - half, x + half],
+            y: [y - half, y + half],
+        };
+        let corners = |window, cells| {
+            let contours = region.contours(window, cells);
+            let inside = contours
+                .iter()
+                .all(|contour| contour.on_frame.iter().all(|on_frame| !on_frame));
+            let points = contours.into_iter().flat_map(|contour| contour.points);
+            Window::around(points).filter(|_| inside)
+        };
+        (0..DOUBLINGS)
+            .find_map(|power| corners(square(LEAST * 2f64.powi(power)), COARSE))
+            .and_then(|near| corners(near.grown(ROOM), FINE))
+            .ok_or_else(|| "the region of the view has no rim all around".to_owned())
+    }
+
+    /// The plane it is shown in, in a picture of this width, and its rim.
+    ///
+    /// # Errors
+    /// That there is none.
+    pub fn plane(&self, width: f64) -> Result<(Plane, Vec<Contour>), String> {
+        let plane = Plane::equal_scales(self.extent()?.grown(ROOM), width);
+        let rim = self.region()?.contours(plane.window, FINE);
+        Ok((plane, rim))
+    }
+
+    fn region(&self) -> Result<Region<'_>, String> {
+        Region::about(self.model, self.q).ok_or_else(|| {
+            "the model's view has no region in a plane of two coordinates".to_owned()
+        })
+    }
+}

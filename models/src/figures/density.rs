@@ -1,0 +1,74 @@
+//! Where billiards of rigid bodies are in the long run: W. Clark and A. Bloch, Figures 7 and 8.
+
+use dalembert_cli::gallery::{Density, Figure, Panel, Picture};
+
+/// The papers take a million positions after a thousand that are left out.
+const POSITIONS: u64 = 1_000_000;
+const DISCARDED: u64 = 1000;
+
+/// Their time-1 maps are quarters of a unit here: as many positions, in a quarter of the time.
+const EVERY: f64 = 0.25;
+
+fn panel(name: String, title: String, flags: &str, boxes: usize) -> Panel {
+    Panel {
+        name,
+        title,
+        picture: Picture::Density(Density {
+            flags: format!("{flags} --tol 1e-8"),
+            every: EVERY,
+            positions: POSITIONS,
+            discarded: DISCARDED,
+            boxes,
+        }),
+    }
+}
+
+pub fn of_the_sleigh() -> Figure {
+    let tables = ["1", "1.5", "2"];
+    let lengths = ["0.1", "0.25", "0.5"];
+    let panels = tables.iter().flat_map(|tb| {
+        lengths.map(|len| {
+            panel(
+                format!("{tb}-{len}").replace('.', "_"),
+                format!("Half axis tb = {tb}, length len = {len}"),
+                &format!("--set tb={tb} --set len={len}"),
+                100,
+            )
+        })
+    });
+    Figure {
+        model: "chaplygin_sleigh",
+        name: "density",
+        title: "Where the sleigh is in the long run",
+        caption: "The share of positions in each of 100 by 100 boxes, per unit of area; rows differ in the half axis of the table along y, \
+                  columns in the length of the sleigh. Positions are taken every 1/4, where the paper takes one every 1: as many, from a \
+                  shorter run. The first 1000 are left out. The total variation between the first and the second half is what chance \
+                  leaves. The paper does not state its parameters; those here are the model's own."
+            .to_owned(),
+        source: Some("W. Clark and A. Bloch, Fig. 7"),
+        panels: panels.collect(),
+    }
+}
+
+pub fn of_the_disk() -> Figure {
+    let panels = ["0.05", "0.1", "0.15", "0.2"].map(|ta| {
+        panel(
+            ta.replace('.', "_"),
+            format!("Half axis ta = {ta}"),
+            &format!("--set ta={ta}"),
+            200,
+        )
+    });
+    Figure {
+        model: "rolling_disk",
+        name: "density",
+        title: "Where the disk is in the long run",
+        caption: "The share of positions in each of 200 by 200 boxes, per unit of area, for several half axes of the table along x. \
+                  Positions are taken every 1/4, where the paper takes one every 1: as many, from a shorter run. The first 1000 are left \
+                  out. The total variation between the first and the second half is what chance leaves. The paper does not state its \
+                  half axes; on the circle of the last picture the motion is regular."
+            .to_owned(),
+        source: Some("W. Clark and A. Bloch, Fig. 8"),
+        panels: panels.into(),
+    }
+}

@@ -1,0 +1,118 @@
+//! The rolling disk on its table: W. Clark, thesis, Figures 6.2 to 6.4.
+
+use dalembert_cli::gallery::{Figure, Panel, Picture, Starts};
+
+use super::simulated;
+
+/// Half axes of the table along x, from the circle to the ellipse of the thesis.
+const CIRCLE: &str = "--set ta=0.2";
+const NEARLY: &str = "--set ta=0.199";
+const ELLIPSE: &str = "--set ta=0.15";
+
+pub fn figures() -> Vec<Figure> {
+    vec![paths(), starts(), momenta()]
+}
+
+fn paths() -> Figure {
+    let plastic = "--law nonholonomic_plastic";
+    Figure {
+        model: "rolling_disk",
+        name: "impacts",
+        title: "The first 20 impacts, elastic and plastic",
+        caption: "The path of the point of contact on a circular (half axis 0.2) and an elliptical table (0.15). Elastic impacts on \
+                  the circle keep an order that they lose on the ellipse. Plastic is the nonholonomic plastic law, the one that the \
+                  thesis derives for the disk. On the circle its impacts come to graze: after 14 the disk runs on a circle that \
+                  touches the rim and meets it no more within the tolerance; so that picture ends by time."
+            .to_owned(),
+        source: Some("W. Clark, thesis, Fig. 6.2"),
+        panels: vec![
+            simulated(
+                "a",
+                "(a) Elastic impacts on a circular table",
+                &format!("--impacts 20 {CIRCLE}"),
+            ),
+            simulated(
+                "b",
+                "(b) Plastic impacts on a circular table",
+                &format!("--until 60 {CIRCLE} {plastic}"),
+            ),
+            simulated(
+                "c",
+                "(c) Elastic impacts on an elliptical table",
+                &format!("--impacts 20 {ELLIPSE}"),
+            ),
+            simulated(
+                "d",
+                "(d) Plastic impacts on an elliptical table",
+                &format!("--impacts 20 {ELLIPSE} {plastic}"),
+            ),
+        ],
+    }
+}
+
+fn starts() -> Figure {
+    let panel = |name: &str, words: &str, table: &str, until: u32| Panel {
+        name: format!("{name}-{until}"),
+        title: format!("{words} table, t = {until}"),
+        picture: Picture::Starts(Starts {
+            flags: format!("{table} --until {until}"),
+            members: 100,
+            scatter: vec![("theta_dot", 10.0, 0.005), ("phi_dot", 0.2, 0.005)],
+            seed: 1,
+        }),
+    };
+    let times = [10, 20, 40, 80];
+    let circle = times.map(|until| panel("circle", "Circular", CIRCLE, until));
+    let ellipse = times.map(|until| panel("ellipse", "Elliptical", ELLIPSE, until));
+    Figure {
+        model: "rolling_disk",
+        name: "starts",
+        title: "100 starts near each other at various times",
+        caption: "Where the points of contact of 100 disks are that start as in Fig. 6.2 but for dot(theta) and dot(phi), which are \
+                  scattered evenly by at most 0.005 rad/s; elastic impacts. On the ellipse nearby motions are soon all over the table. \
+                  The thesis does not state its times."
+            .to_owned(),
+        source: Some("W. Clark, thesis, Fig. 6.3"),
+        panels: circle.into_iter().chain(ellipse).collect(),
+    }
+}
+
+fn momenta() -> Figure {
+    let tables = [
+        ("circle", "Circular table: two momenta take turns", CIRCLE),
+        (
+            "nearly",
+            "Slightly elliptical table, half axes 0.199 and 0.2",
+            NEARLY,
+        ),
+        (
+            "ellipse",
+            "Elliptical table, half axes 0.15 and 0.2",
+            ELLIPSE,
+        ),
+    ];
+    let plane = tables.map(|(name, title, table)| {
+        let flags = format!("--impacts 100 {table} --axes p_theta,p_phi");
+        simulated(name, title, &flags)
+    });
+    let time = tables.map(|(name, title, table)| {
+        let flags = format!("--impacts 100 {table} --axes t,p_phi");
+        simulated(
+            &format!("{name}-time"),
+            format!("{title}; over time"),
+            &flags,
+        )
+    });
+    Figure {
+        model: "rolling_disk",
+        name: "momentum",
+        title: "The nonholonomic momentum over 100 impacts",
+        caption: "The momenta are constant between impacts, and energy keeps them on an ellipse, here with a chord for every impact. On \
+                  the circular table they have period 2, on a slightly elliptical one nearly so, and on the elliptical one their order \
+                  is lost. The momenta are those of the declared coordinates on the constraints, p_theta = I dot(theta) and \
+                  p_phi = J dot(phi). The thesis does not state its slightly elliptical table."
+            .to_owned(),
+        source: Some("W. Clark, thesis, Fig. 6.4"),
+        panels: plane.into_iter().chain(time).collect(),
+    }
+}

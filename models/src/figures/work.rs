@@ -1,0 +1,30 @@
+//! What accuracy costs, measured where the gallery is made.
+
+use dalembert_cli::gallery::{Figure, Panel, Picture};
+
+/// Runs that are neither trivial nor chaotic within their time, with and without constraints and impacts.
+const RUNS: [(&str, &str); 3] = [
+    ("chaplygin_sleigh", "--until 5"),
+    ("double_pendulum", "--until 3"),
+    ("rolling_disk", "--until 5"),
+];
+
+pub fn figures() -> Vec<Figure> {
+    let figure = |(model, flags): (&'static str, &str)| {
+        Figure {
+        model,
+        name: "work",
+        title: "Work and precision of the integrators",
+        caption: "Time on this machine against the measured error of the positions, for every integrator over tolerances or steps; rings \
+                  mark the fastest of a decade. Times are measured: of all pictures only this kind differs from one gallery to the next."
+            .to_owned(),
+        source: None,
+        panels: vec![Panel {
+            name: String::new(),
+            title: format!("{model} {flags}").replace("--", ""),
+            picture: Picture::Accuracy(format!("{flags} --rounds 3 --patience 0.3")),
+        }],
+    }
+    };
+    RUNS.map(figure).into()
+}

@@ -1,0 +1,54 @@
+//! The gallery of the shipped models: every picture can be made, and runs end as captions say.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use dalembert_cli::{Exit, Streams};
+use serde_json::Value;
+
+/// Runs `gallery` over the shipped models, and gives what it wrote to the standard error.
+fn gallery(words: &[&str]) -> (Exit, String) {
+    let (mut output, mut errors) = (Vec::new(), Vec::new());
+    let mut streams = Streams {
+        input: &mut std::io::empty(),
+        output: &mut output,
+        errors: &mut errors,
+        terminal: false,
+    };
+    let line = ["dalembert", "gallery"].iter().chain(words);
+    let exit = dalembert_models::catalogue().run_with(line, &mut streams);
+    (exit, String::from_utf8(errors).unwrap())
+}
+
+#[test]
+fn every_picture_is_made_and_runs_end_as_captions_say() {
+    let folder = std::env::temp_dir().join(format!("dalembert-pictures-{}", std::process::id()));
+    let (exit, errors) = gallery(&[folder.to_str().unwrap(), "--quick"]);
+    assert_eq!(exit, Exit::Reached, "{errors}");
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    let manifest = fs::read_to_string(folder.join("manifest.json")).unwrap();
+    fs::remove_dir_all(&folder).unwrap();
+
+    assert!(page.len() < 3_000_000, "{}", page.len());
+    let manifest: Value = serde_json::from_str(&manifest).unwrap();
+    let rows = manifest["pictures"].as_array().unwrap();
+    let names: BTreeSet<&str> = rows
+        .iter()
+        .map(|row| row["picture"].as_str().unwrap())
+        .collect();
+    assert_eq!(names.len(), rows.len(), "two pictures have the same name");
+    for row in rows {
+        let (name, outcome) = (row["picture"].as_str().unwrap(), &row["outcome"]);
+        let outcome = outcome.as_str().unwrap();
+        let expected = match name {
+            _ if name.starts_with("bouncing_ball-zeno") => "zeno at t = 9.8994949366",
+            _ if name.contains("-starts-") => "100 of 100 runs at",
+            _ if row["command"].as_str().unwrap().contains("--impacts") => "impact_budget at",
+            _ => "done at",
+        };
+        assert!(outcome.starts_with(expected), "{name}: {outcome}");
+    }
+    for source in ["6.2", "6.3", "6.4"] {
+        assert!(page.contains(&format!("W. Clark, thesis, Fig. {source}")));
+    }
+}
