@@ -2,12 +2,10 @@
 
 use dalembert_cli::gallery::{Density, Figure, Panel, Picture};
 
-/// The papers take a million positions after a thousand that are left out.
+/// The paper takes a million positions, one in a unit of time, after a thousand that are left out.
+const EVERY: f64 = 1.0;
 const POSITIONS: u64 = 1_000_000;
 const DISCARDED: u64 = 1000;
-
-/// Their time-1 maps are quarters of a unit here: as many positions, in a quarter of the time.
-const EVERY: f64 = 0.25;
 
 fn panel(name: String, title: String, flags: &str, boxes: usize) -> Panel {
     Panel {
@@ -40,10 +38,11 @@ pub fn of_the_sleigh() -> Figure {
         model: "chaplygin_sleigh",
         name: "density",
         title: "Where the sleigh is in the long run",
-        caption: "The share of positions in each of 100 by 100 boxes, per unit of area; rows differ in the half axis of the table along y, \
-                  columns in the length of the sleigh. Positions are taken every 1/4, where the paper takes one every 1: as many, from a \
-                  shorter run. The first 1000 are left out. The total variation between the first and the second half is what chance \
-                  leaves. The paper does not state its parameters; those here are the model's own."
+        caption: "The share of 10^6 positions, one in a unit of time, in each of 100 by 100 boxes, per unit of area; \
+                  the first 1000 positions are left out. Rows differ in the half axis of the table along y, columns \
+                  in the length of the sleigh. The total variation between the first and the second half tells how \
+                  far a picture has settled: 0.07 is what chance leaves. The paper does not state its parameters; \
+                  those here are the model's own."
             .to_owned(),
         source: Some("W. Clark and A. Bloch, Fig. 7"),
         panels: panels.collect(),
@@ -63,10 +62,11 @@ pub fn of_the_disk() -> Figure {
         model: "rolling_disk",
         name: "density",
         title: "Where the disk is in the long run",
-        caption: "The share of positions in each of 200 by 200 boxes, per unit of area, for several half axes of the table along x. \
-                  Positions are taken every 1/4, where the paper takes one every 1: as many, from a shorter run. The first 1000 are left \
-                  out. The total variation between the first and the second half is what chance leaves. The paper does not state its \
-                  half axes; on the circle of the last picture the motion is regular."
+        caption: "The share of 10^6 positions, one in a unit of time, in each of 200 by 200 boxes, per unit of area, \
+                  for several half axes of the table along x; the first 1000 positions are left out. The total \
+                  variation between the first and the second half tells how far a picture has settled: 0.14 is what \
+                  chance leaves. The paper does not state its half axes; on the circle of the last picture the \
+                  motion is regular."
             .to_owned(),
         source: Some("W. Clark and A. Bloch, Fig. 8"),
         panels: panels.into(),

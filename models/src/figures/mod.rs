@@ -10,6 +10,10 @@ mod zeno;
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
+/// Widths of pictures of which three or four stand beside each other.
+const THIRD: &str = "--plot-width 480";
+const QUARTER: &str = "--plot-width 400";
+
 /// All of them, in the order of the models.
 pub fn all() -> Vec<Figure> {
     let mut figures = rolling_disk::figures();
@@ -22,11 +26,11 @@ pub fn all() -> Vec<Figure> {
     figures
 }
 
-/// A picture that `simulate` draws beside others.
+/// A picture that `simulate` draws from these flags.
 fn simulated(name: &str, title: impl Into<String>, flags: &str) -> Panel {
     Panel {
         name: name.to_owned(),
         title: title.into(),
-        picture: Picture::Simulate(format!("{flags} --plot-width 480")),
+        picture: Picture::Simulate(flags.to_owned()),
     }
 }

@@ -2,7 +2,7 @@
 
 use dalembert_cli::gallery::{Figure, Panel, Picture, Starts};
 
-use super::simulated;
+use super::{QUARTER, THIRD, simulated};
 
 /// Half axes of the table along x, from the circle to the ellipse of the thesis.
 const CIRCLE: &str = "--set ta=0.2";
@@ -19,32 +19,33 @@ fn paths() -> Figure {
         model: "rolling_disk",
         name: "impacts",
         title: "The first 20 impacts, elastic and plastic",
-        caption: "The path of the point of contact on a circular (half axis 0.2) and an elliptical table (0.15). Elastic impacts on \
-                  the circle keep an order that they lose on the ellipse. Plastic is the nonholonomic plastic law, the one that the \
-                  thesis derives for the disk. On the circle its impacts come to graze: after 14 the disk runs on a circle that \
-                  touches the rim and meets it no more within the tolerance; so that picture ends by time."
+        caption: "The path of the point of contact on a circular (half axis 0.2) and an elliptical table (0.15). \
+                  Elastic impacts on the circle keep an order that they lose on the ellipse. Plastic is the \
+                  nonholonomic plastic law, the one that the thesis derives for the disk. On the circle its impacts \
+                  come to graze: after 14 the disk runs on a circle that touches the rim and meets it no more within \
+                  the tolerance; so that picture ends by time."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 6.2"),
         panels: vec![
             simulated(
                 "a",
                 "(a) Elastic impacts on a circular table",
-                &format!("--impacts 20 {CIRCLE}"),
+                &format!("--impacts 20 {CIRCLE} {QUARTER}"),
             ),
             simulated(
                 "b",
                 "(b) Plastic impacts on a circular table",
-                &format!("--until 60 {CIRCLE} {plastic}"),
+                &format!("--until 60 {CIRCLE} {plastic} {QUARTER}"),
             ),
             simulated(
                 "c",
                 "(c) Elastic impacts on an elliptical table",
-                &format!("--impacts 20 {ELLIPSE}"),
+                &format!("--impacts 20 {ELLIPSE} {QUARTER}"),
             ),
             simulated(
                 "d",
                 "(d) Plastic impacts on an elliptical table",
-                &format!("--impacts 20 {ELLIPSE} {plastic}"),
+                &format!("--impacts 20 {ELLIPSE} {plastic} {QUARTER}"),
             ),
         ],
     }
@@ -68,9 +69,9 @@ fn starts() -> Figure {
         model: "rolling_disk",
         name: "starts",
         title: "100 starts near each other at various times",
-        caption: "Where the points of contact of 100 disks are that start as in Fig. 6.2 but for dot(theta) and dot(phi), which are \
-                  scattered evenly by at most 0.005 rad/s; elastic impacts. On the ellipse nearby motions are soon all over the table. \
-                  The thesis does not state its times."
+        caption: "Where the points of contact of 100 disks are that start as in Fig. 6.2 but for dot(theta) and \
+                  dot(phi), which are scattered evenly by at most 0.005 rad/s; elastic impacts. On the ellipse \
+                  nearby motions are soon all over the table. The thesis does not state its times."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 6.3"),
         panels: circle.into_iter().chain(ellipse).collect(),
@@ -79,7 +80,7 @@ fn starts() -> Figure {
 
 fn momenta() -> Figure {
     let tables = [
-        ("circle", "Circular table: two momenta take turns", CIRCLE),
+        ("circle", "Circular table, half axes 0.2 and 0.2", CIRCLE),
         (
             "nearly",
             "Slightly elliptical table, half axes 0.199 and 0.2",
@@ -92,11 +93,11 @@ fn momenta() -> Figure {
         ),
     ];
     let plane = tables.map(|(name, title, table)| {
-        let flags = format!("--impacts 100 {table} --axes p_theta,p_phi");
+        let flags = format!("--impacts 100 {table} --axes p_theta,p_phi {THIRD}");
         simulated(name, title, &flags)
     });
     let time = tables.map(|(name, title, table)| {
-        let flags = format!("--impacts 100 {table} --axes t,p_phi");
+        let flags = format!("--impacts 40 {table} --axes t,p_phi {THIRD}");
         simulated(
             &format!("{name}-time"),
             format!("{title}; over time"),
@@ -106,11 +107,12 @@ fn momenta() -> Figure {
     Figure {
         model: "rolling_disk",
         name: "momentum",
-        title: "The nonholonomic momentum over 100 impacts",
-        caption: "The momenta are constant between impacts, and energy keeps them on an ellipse, here with a chord for every impact. On \
-                  the circular table they have period 2, on a slightly elliptical one nearly so, and on the elliptical one their order \
-                  is lost. The momenta are those of the declared coordinates on the constraints, p_theta = I dot(theta) and \
-                  p_phi = J dot(phi). The thesis does not state its slightly elliptical table."
+        title: "The nonholonomic momentum from impact to impact",
+        caption: "The momenta are constant between impacts, and energy keeps them on an ellipse, here with a chord \
+                  for every impact. On the circular table they have period 2, on a slightly elliptical one nearly \
+                  so, and on the elliptical one their order is lost. The momenta are those of the declared \
+                  coordinates on the constraints, p_theta = I dot(theta) and p_phi = J dot(phi). The thesis does not \
+                  state its slightly elliptical table."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 6.4"),
         panels: plane.into_iter().chain(time).collect(),

@@ -15,8 +15,9 @@ pub fn figures() -> Vec<Figure> {
         model,
         name: "work",
         title: "Work and precision of the integrators",
-        caption: "Time on this machine against the measured error of the positions, for every integrator over tolerances or steps; rings \
-                  mark the fastest of a decade. Times are measured: of all pictures only this kind differs from one gallery to the next."
+        caption: "Time on this machine against the measured error of the positions, for every integrator over \
+                  tolerances or steps; rings mark the fastest of a decade. Times are measured: of all pictures only \
+                  this kind differs from one gallery to the next."
             .to_owned(),
         source: None,
         panels: vec![Panel {

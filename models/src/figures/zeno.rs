@@ -2,20 +2,20 @@
 
 use dalembert_cli::gallery::Figure;
 
-use super::simulated;
+use super::{THIRD, simulated};
 
 pub fn bouncing_ball() -> Figure {
     let panel = |name: &str, title: &str, axes: &str| {
-        let flags = format!("--law newton:0.75 --axes {axes}");
+        let flags = format!("--law newton:0.75 --axes {axes} {THIRD}");
         simulated(name, title, &flags)
     };
     Figure {
         model: "bouncing_ball",
         name: "zeno",
         title: "Impacts that accumulate",
-        caption: "A ball with m = g = 1 and restitution 3/4. From height 1 its impacts accumulate at t = 7 sqrt(2) = 9.899.., which ends \
-                  the run; position and energy go to 0. The paper's fourth picture, the infinitesimal volume over time, is a step of 9/16 \
-                  at each impact, as that of the energy."
+        caption: "A ball with m = g = 1 and restitution 3/4. From height 1 its impacts accumulate at t = 7 sqrt(2) = \
+                  9.899.., which ends the run; position and energy go to 0. The paper's fourth picture, the \
+                  infinitesimal volume over time, is a step of 9/16 at each impact, as that of the energy."
             .to_owned(),
         source: Some("W. Clark and A. Bloch, Fig. 1"),
         panels: vec![

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Figure, Plate, Print};
+use super::{Effort, Figure, Plate, Print};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::names;
@@ -16,10 +16,11 @@ h3{font-size:1.05em;margin:0}p{margin:.3em 0;max-width:75em}a{color:var(--link)}
 nav ul{columns:21em;padding-left:1.2em}nav ul ul{columns:auto}nav li{break-inside:avoid}
 figure{margin:1.6em 0 2.2em}figcaption{margin-bottom:.7em}.source{color:var(--faint)}
 .panels{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,430px),1fr));gap:1.4em 1.2em}
+.one{grid-template-columns:minmax(0,760px)}.fours{grid-template-columns:repeat(auto-fill,minmax(min(100%,340px),1fr))}
 .panel{min-width:0}.panel svg{display:block;width:100%;max-width:900px;height:auto}
 .panel p{font-size:.9em}.error{color:#d55e00}
 code{font:.88em monospace}.panel code{display:block;line-height:1.45;background:var(--code);border-radius:4px;padding:.4em .7em}
-.panel code span{white-space:nowrap}
+.panel code span{display:inline-block}
 ";
 
 /// The page of these pictures.
@@ -33,7 +34,12 @@ pub fn page(models: &[Entry], plates: &[Plate<'_>], prints: &[Result<Print, CliE
     let drawn: Vec<_> = plates.iter().zip(prints).collect();
     let sections = sections(&drawn);
     page += "<h1>Gallery</h1>\n<p>Mechanical systems with constraints and impacts, declared with <b>dalembert</b>. \
-             Each picture is followed by the command that draws it alone.</p>\n";
+             Each picture is followed by the command that draws it alone.";
+    if plates.iter().any(|plate| plate.effort == Effort::Quick) {
+        page +=
+            " A quick gallery: densities from a fiftieth of the positions, nothing that is timed.";
+    }
+    page += "</p>\n";
     page += &contents(&sections);
     for (model, figures) in &sections {
         let description = models
@@ -107,10 +113,15 @@ fn figure(drawn: &[Drawn<'_>]) -> String {
         )
     });
     let mut text = format!(
-        "<figure id=\"{}\"><figcaption><h3>{}</h3><p>{}{source}</p></figcaption>\n<div class=\"panels\">\n",
+        "<figure id=\"{}\"><figcaption><h3>{}</h3><p>{}{source}</p></figcaption>\n<div class=\"panels{}\">\n",
         anchor(drawn),
         escaped(figure.title),
-        escaped(&figure.caption)
+        escaped(&figure.caption),
+        match drawn.len() {
+            1 => " one",
+            count if count % 4 == 0 => " fours",
+            _ => "",
+        }
     );
     for (plate, print) in drawn {
         text += &panel(plate, print);
@@ -135,6 +146,7 @@ fn dark() -> String {
     let mut rules = "@media (prefers-color-scheme:dark){\n\
         :root{--paper:#16181b;--ink:#dcdde0;--faint:#9b9fa6;--line:#33373d;--code:#202327;--link:#6cb8ea}\n"
         .to_owned();
+    // Attributes of an SVG yield to rules of a page.
     for (light, dark) in style::DARK {
         let (light, dark) = (style::hex(light), style::hex(dark));
         let _ = writeln!(
@@ -145,12 +157,23 @@ fn dark() -> String {
     rules + "}\n"
 }
 
-/// A command whose words are not broken, at hyphens least of all.
+/// A command that is broken between its flags, not between a flag and its value or at hyphens.
 fn words(command: &str) -> String {
-    let words = command
-        .split(' ')
-        .map(|word| format!("<span>{}</span>", escaped(word)));
-    words.collect::<Vec<_>>().join(" ")
+    let mut groups: Vec<String> = Vec::new();
+    for word in command.split(' ') {
+        match groups.last_mut() {
+            Some(flag)
+                if flag.starts_with("--") && !flag.contains(' ') && !word.starts_with("--") =>
+            {
+                *flag = format!("{flag} {word}");
+            }
+            _ => groups.push(word.to_owned()),
+        }
+    }
+    let groups = groups
+        .iter()
+        .map(|group| format!("<span>{}</span>", escaped(group)));
+    groups.collect::<Vec<_>>().join(" ")
 }
 
 /// Text of a documentation comment, with what stands in backticks as code.
@@ -167,4 +190,40 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_stay_with_their_values() {
+        assert_eq!(
+            words("dalembert gallery . --quick --picture a<b"),
+            "<span>dalembert</span> <span>gallery</span> <span>.</span> <span>--quick</span> \
+             <span>--picture a&lt;b</span>"
+        );
+    }
+
+    #[test]
+    fn backticks_are_code() {
+        assert_eq!(
+            documented("the `rate`, a < b"),
+            "the <code>rate</code>, a &lt; b"
+        );
+        assert_eq!(documented("`a` `b`"), "<code>a</code> <code>b</code>");
+        assert_eq!(documented(""), "");
+    }
+
+    #[test]
+    fn every_colour_of_a_picture_has_one_for_dark_pages() {
+        let rules = dark();
+        for colour in [style::INK, style::GRID, style::REGION, style::PATH] {
+            let light = style::hex(colour);
+            assert!(
+                rules.contains(&format!("svg [fill=\"{light}\"]")),
+                "{light}"
+            );
+        }
+    }
 }

@@ -8,7 +8,7 @@ use super::portrait::{draw_boundary, fill_region};
 use super::style;
 
 /// Width of the picture, in pixels.
-const WIDTH: f64 = 480.0;
+const WIDTH: f64 = 400.0;
 
 /// Points to draw.
 pub struct Cloud<'a> {

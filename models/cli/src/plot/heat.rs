@@ -11,7 +11,7 @@ use super::style::{self, Axis};
 use super::{Table, png};
 
 /// Width of the picture, in pixels.
-const WIDTH: f64 = 480.0;
+const WIDTH: f64 = 440.0;
 
 /// Height of the colour bar with its numbers, in pixels.
 const BAR: f64 = 40.0;

@@ -55,24 +55,31 @@ impl<'a> Region<'a> {
 
     /// The part of the plane to show: the path, and all of the region if it is bounded.
     pub fn window(&self, path: Window) -> Window {
+        let with_path = |region: Window| {
+            let corners = [region, path].map(|window| [window.at(0.0, 0.0), window.at(1.0, 1.0)]);
+            Window::around(corners.into_iter().flatten()).unwrap_or(path)
+        };
         let mut window = path.grown(0.5);
         for _ in 0..GROWTHS {
-            let inside = |&(x, y): &(usize, usize)| self.value(node(window, x, y)) > 0.0;
-            let all = (0..=COARSE).flat_map(|x| (0..=COARSE).map(move |y| (x, y)));
-            let positive: Vec<_> = all.filter(inside).collect();
-            if !positive
-                .iter()
-                .any(|&(x, y)| [x, y].iter().any(|&index| index == 0 || index == COARSE))
-            {
-                // One square of room covers what the grid has missed.
-                let corners = positive
-                    .iter()
-                    .flat_map(|&(x, y)| [node(window, x, y), path.at(0.0, 0.0), path.at(1.0, 1.0)]);
-                return Window::around(corners).unwrap_or(path).grown(ROOM);
+            if let Some(rough) = self.extent(window, COARSE) {
+                // A second look from near sees more.
+                let near = with_path(rough).grown(ROOM);
+                return with_path(self.extent(near, COARSE).unwrap_or(rough)).grown(ROOM);
             }
             window = window.grown(0.5);
         }
         path.grown(ROOM)
+    }
+
+    /// The smallest rectangle around the region, as far as a grid in a window shows it; `None` where it reaches the rim of
+    /// the window, or lies outside.
+    pub fn extent(&self, window: Window, cells: usize) -> Option<Window> {
+        let contours = self.contours(window, cells);
+        let inside = contours
+            .iter()
+            .all(|contour| contour.on_frame.iter().all(|on_frame| !on_frame));
+        let points = contours.into_iter().flat_map(|contour| contour.points);
+        Window::around(points).filter(|_| inside)
     }
 
     fn value(&self, point: [f64; 2]) -> f64 {
@@ -103,8 +110,4 @@ impl<'a> Region<'a> {
                 && same(0.61 * end, &last.q, point)
         })
     }
-}
-
-fn node(window: Window, x: usize, y: usize) -> [f64; 2] {
-    window.at(x as f64 / COARSE as f64, y as f64 / COARSE as f64)
 }

@@ -38,17 +38,9 @@ impl Table<'_> {
             x: [x - half, x + half],
             y: [y - half, y + half],
         };
-        let corners = |window, cells| {
-            let contours = region.contours(window, cells);
-            let inside = contours
-                .iter()
-                .all(|contour| contour.on_frame.iter().all(|on_frame| !on_frame));
-            let points = contours.into_iter().flat_map(|contour| contour.points);
-            Window::around(points).filter(|_| inside)
-        };
         (0..DOUBLINGS)
-            .find_map(|power| corners(square(LEAST * 2f64.powi(power)), COARSE))
-            .and_then(|near| corners(near.grown(ROOM), FINE))
+            .find_map(|power| region.extent(square(LEAST * 2f64.powi(power)), COARSE))
+            .and_then(|near| region.extent(near.grown(ROOM), FINE))
             .ok_or_else(|| "the region of the view has no rim all around".to_owned())
     }
 
