@@ -1,13 +1,13 @@
 //! Where runs that start near each other are at one time, in the plane of the declared view.
 
 use super::Starts;
-use crate::args::{OffConstraint, SimulateArgs};
+use crate::args::{OffConstraint, SimulateArgs, StateArgs};
 use crate::command::simulate::{Prepared, prepare};
 use crate::driver::{Contact, Impact, Piece, Watch};
 use crate::entry::{AnyModel, Entry};
 use crate::error::CliError;
 use crate::plot::{self, Drawn, cloud};
-use crate::state_input::{build_model, named_state};
+use crate::state_input::{build_model, initial_state};
 
 /// Makes the runs and draws where they are.
 ///
@@ -24,10 +24,15 @@ pub fn draw(
     let middle = final_position(model.as_ref(), &prepared)?;
     let mut points = Vec::new();
     for member in 0..starts.members {
-        let changes = starts.changes(member);
-        let policy = OffConstraint::Error;
+        let state = StateArgs {
+            initial: starts.changes(member),
+            q: None,
+            qdot: None,
+            p: None,
+            off_constraint: OffConstraint::Error,
+        };
         let prepared = Prepared {
-            origin: named_state(model.as_ref(), &changes, policy)?,
+            origin: initial_state(model.as_ref(), &state)?,
             ..prepared.clone()
         };
         points.extend(final_position(model.as_ref(), &prepared)?);
