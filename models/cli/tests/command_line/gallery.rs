@@ -157,7 +157,8 @@ fn the_commands_of_a_page_draw_its_pictures() {
             continue;
         }
         assert_eq!(done.exit, Exit::Reached, "{command}: {}", done.errors);
-        assert_eq!(alone.read(&file), folder.read(&file), "{command}");
+        // Told without the pictures, which are long.
+        assert!(alone.read(&file) == folder.read(&file), "{command}");
         assert!(page.contains(&folder.read(&file)), "{command}");
         drawn += 1;
     }
@@ -173,7 +174,7 @@ fn two_galleries_are_the_same_to_the_byte_and_the_manifest_names_what_was_drawn(
         assert_eq!(gallery(&folder.0, "oscillator --quick").exit, Exit::Other);
     }
     let [first, second] = &folders;
-    assert_eq!(first.read("index.html"), second.read("index.html"));
+    assert!(first.read("index.html") == second.read("index.html"));
     let manifest: Value = serde_json::from_str(&first.read("manifest.json")).unwrap();
     let rows = manifest["pictures"].as_array().unwrap();
     let row = |picture: &str| {
