@@ -1,0 +1,68 @@
+//! This project's side of the comparison with other programs: works with known results, one line of JSON for each
+//! integrator and tolerance. `benches/peers/run.py` runs it beside the others and compares.
+//!
+//! `cargo run --release -- [WORK..] [--repetitions N]`
+
+mod chains;
+mod course;
+mod ensemble;
+mod models;
+mod right_hand_side;
+mod timing;
+mod works;
+
+/// The state of a system.
+type State<S> = <S as dalembert::VectorField>::State;
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan {
+    /// Relative and absolute, of one course.
+    tolerances: &'static [f64],
+    /// The same for the ensemble.
+    ensemble_tolerances: &'static [f64],
+    /// Times each case is timed; the least counts, as others use the machine.
+    repetitions: usize,
+}
+
+const PLAN: Plan = Plan {
+    tolerances: &[1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14],
+    ensemble_tolerances: &[1e-6, 1e-9, 1e-12],
+    repetitions: 5,
+};
+
+/// Names of works, and what measures them.
+const WORKS: [(&str, fn(&Plan)); 7] = [
+    ("W1", works::disk_billiard),
+    ("W2", works::sleigh),
+    ("W2b", works::sleigh_billiard),
+    ("W3", works::double_pendulum),
+    ("W3b", right_hand_side::chains),
+    ("W4", works::bouncing_ball),
+    ("W5", ensemble::disks),
+];
+
+/// The plan, with as many repetitions as `--repetitions` says, and the names of works.
+fn arguments() -> (Plan, Vec<String>) {
+    let mut plan = PLAN;
+    let mut names = Vec::new();
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        if argument == "--repetitions" {
+            let count = arguments.next().and_then(|count| count.parse().ok());
+            plan.repetitions = count.expect("`--repetitions` is followed by a number");
+        } else if !argument.starts_with('-') {
+            names.push(argument);
+        }
+    }
+    (plan, names)
+}
+
+fn main() {
+    let (plan, names) = arguments();
+    for (name, measure) in WORKS {
+        if names.is_empty() || names.iter().any(|wanted| wanted == name) {
+            measure(&plan);
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Time that something takes.
+
+use std::time::{Duration, Instant};
+
+/// The time, with what it gives.
+pub fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {
+    let start = Instant::now();
+    let result = work();
+    (start.elapsed(), result)
+}
