@@ -188,6 +188,11 @@ impl Builder {
         self.push(Op::Div(a, b))
     }
 
+    /// `a / b`, if it was computed before.
+    pub fn existing_quotient(&self, a: Value, b: Value) -> Option<Value> {
+        self.numbered.get(&Op::Div(a, b)).copied()
+    }
+
     /// `1 / a`
     pub fn reciprocal(&mut self, a: Value) -> Value {
         let one = self.integer(1);

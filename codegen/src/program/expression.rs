@@ -187,14 +187,25 @@ impl<'a> Expressions<'a> {
     fn lower_product(&self, builder: &mut Builder, factors: &[(ExprId, Rational)]) -> Value {
         let mut ordered: Vec<&(ExprId, Rational)> = factors.iter().collect();
         ordered.sort_by_key(|(base, _)| (self.moving.contains(base), *base));
-        let (mut numerator, mut denominator) = (builder.integer(1), builder.integer(1));
+        let (mut above, mut denominator) = (Vec::new(), builder.integer(1));
         for (base, exponent) in ordered {
             let power = positive_power(builder, self.values[base], &exponent.abs());
             match exponent.is_negative() {
                 true => denominator = builder.mul(denominator, power),
-                false => numerator = builder.mul(numerator, power),
+                false => above.push(power),
             }
         }
+        // A quotient that exists spares the division.
+        for factor in &mut above {
+            if let Some(quotient) = builder.existing_quotient(*factor, denominator) {
+                (*factor, denominator) = (quotient, builder.integer(1));
+                break;
+            }
+        }
+        let one = builder.integer(1);
+        let numerator = above
+            .into_iter()
+            .fold(one, |product, factor| builder.mul(product, factor));
         builder.div(numerator, denominator)
     }
 

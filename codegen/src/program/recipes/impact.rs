@@ -3,7 +3,8 @@
 //! With `y = L^{-1} dh` and `y'` what is left of it after the constraint columns are projected out,
 //! `dh(grad h) = <y, y>`, `dh(pi_D grad h) = <y', y'>` and `pi_D^* dh = L y'`: sums of squares, so nothing
 //! cancels when the surface is almost tangent to the constraints. On D, with `z = L_D^{-1} X^T dh` in the factors of
-//! `G_D`, `dh(pi_D grad h) = <z, z>`, and the impulse changes the quasi-velocities along `G_D^{-1} X^T dh`.
+//! `G_D`, `dh(pi_D grad h) = <z, z>`, and the impulse changes the quasi-velocities along `G_D^{-1} X^T dh`. The gap rate
+//! of a contact is taken from `dh`, which the rest of it needs anyway.
 
 use dalembert_expr::ExprId;
 
@@ -195,9 +196,10 @@ pub(super) const SCALARS: [&str; 5] = [
 pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues {
     let surface = &kernel.derivation.surfaces[s];
     let qdot = kernel.velocity();
-    let gap_rate = kernel.value(surface.gap_rate);
-    let surface_rate = kernel.value(surface.rate);
     let form = kernel.values(&surface.form);
+    let along = kernel.dot(&form, &qdot);
+    let surface_rate = kernel.value(surface.rate);
+    let gap_rate = kernel.builder.add(along, surface_rate);
     let free = kernel.forward(&form);
     let rest = match kernel.constraints() {
         0 => free.clone(),
@@ -219,11 +221,9 @@ pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues
 /// The contact of a surface on D.
 fn reduced_contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues {
     let surface = &kernel.derivation.surfaces[s];
-    let qdot = kernel.velocity();
-    let gap_rate = kernel.value(surface.gap_rate);
-    let surface_rate = kernel.value(surface.rate);
     let form = kernel.values(&surface.form);
     let restricted = kernel.restrict(&form);
+    let surface_rate = kernel.value(surface.rate);
     let (constrained, direction) = kernel.with_reduced_ldlt(|builder, ldlt| {
         let rest = ldlt.forward(builder, &restricted);
         let compliance = ldlt.inner(builder, &rest, &rest);
@@ -231,13 +231,17 @@ fn reduced_contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues {
     });
     let free = kernel.forward(&form);
     let free = kernel.with_ldlt(|builder, ldlt| ldlt.inner(builder, &free, &free));
-    let constrained_rate = if kernel.has_affine_constraints() {
+    let (along, constrained_rate) = if kernel.has_affine_constraints() {
+        let qdot = kernel.velocity();
         let momenta = kernel.lower_vector(&qdot);
         let momenta = kernel.restrict(&momenta);
-        kernel.dot(&direction, &momenta)
+        (kernel.dot(&form, &qdot), kernel.dot(&direction, &momenta))
     } else {
-        kernel.builder.sub(gap_rate, surface_rate)
+        let u = kernel.quasi_inputs();
+        let along = kernel.dot(&restricted, &u);
+        (along, along)
     };
+    let gap_rate = kernel.builder.add(along, surface_rate);
     let scalars = [gap_rate, constrained_rate, surface_rate, constrained, free];
     named(kernel, scalars, direction)
 }
