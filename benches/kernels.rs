@@ -11,14 +11,18 @@ use dalembert::{
     Counters, Described, Dop853, DormandPrince5, Effect, Impacts, Outcome, Scene, Simulation,
     Stepper, System, Tolerance,
 };
+use dalembert_benches::hand::number::numbers;
 use dalembert_benches::hand::{
-    chain, chaplygin_sleigh, double_pendulum, point_billiard, rolling_disk,
+    bead, bouncing_ball, chain, chaplygin_sleigh, double_pendulum, harmonic_oscillator,
+    point_billiard, rolling_ball, rolling_disk, two_wheels,
 };
 use dalembert_benches::{State, generated};
 use dalembert_models::chaplygin_sleigh::ChaplyginSleighGlobal as GlobalSleigh;
 use dalembert_models::rolling_disk::RollingDiskGlobal as GlobalDisk;
 use dalembert_models::{
-    Chain4, Chain16, ChaplyginSleigh, DoublePendulum, PointBilliard, RollingDisk,
+    BallOnRotatingTable, BouncingBall, Chain4, Chain16, ChaplyginSleigh, DoublePendulum,
+    HarmonicOscillator, HolonomicBeadOnEllipses, PointBilliard, RollingBallEuler, RollingDisk,
+    TwoWheelsRod,
 };
 use dalembert_tests::sampling;
 
@@ -57,28 +61,87 @@ impl<'c, S: Described> Kernels<'c, S> {
     }
 }
 
+/// Times a generated function of the state and one by hand, of the components of the same state.
+macro_rules! compare {
+    ($criterion:ident, $kind:expr, $model:ty, $generated:expr, $($by_hand:path)|+) => {
+        Kernels::<$model>::new($criterion, $kind)
+            .time("generated", $generated)
+            $(.time(stringify!($by_hand), |system, state| $by_hand(system, numbers(state))))+
+    };
+}
+
+/// The same for the global form of a model that is run in another.
+macro_rules! compare_global {
+    ($criterion:ident, $kind:expr, $model:ty, $generated:expr, $($by_hand:path)|+) => {
+        Kernels::<$model>::new($criterion, $kind)
+            .time("generated", $generated)
+            $(.time(stringify!($by_hand), |system, state| $by_hand(&system.0, numbers(state))))+
+    };
+}
+
 fn rates(criterion: &mut Criterion) {
     const KIND: &str = "rate";
-    Kernels::<PointBilliard>::new(criterion, KIND)
-        .time("generated", generated::rate)
-        .time("by hand", point_billiard::rate);
-    Kernels::<GlobalDisk>::new(criterion, KIND)
-        .time("generated", generated::rate)
-        .time("by hand", rolling_disk::rate)
-        .time("in closed form", rolling_disk::rate_in_closed_form);
-    Kernels::<RollingDisk>::new(criterion, "reduced rate")
-        .time("generated", generated::rate)
-        .time("by hand", rolling_disk::reduced_rate);
-    Kernels::<GlobalSleigh>::new(criterion, KIND)
-        .time("generated", generated::rate)
-        .time("by hand", chaplygin_sleigh::rate)
-        .time("in the frame", chaplygin_sleigh::rate_in_frame);
-    Kernels::<ChaplyginSleigh>::new(criterion, "reduced rate")
-        .time("generated", generated::rate)
-        .time("by hand", chaplygin_sleigh::reduced_rate);
-    Kernels::<DoublePendulum>::new(criterion, KIND)
-        .time("generated", generated::rate)
-        .time("by hand", double_pendulum::rate);
+    use generated::rate;
+    compare!(criterion, KIND, BouncingBall, rate, bouncing_ball::rate);
+    compare!(
+        criterion,
+        KIND,
+        HarmonicOscillator,
+        rate,
+        harmonic_oscillator::rate
+    );
+    compare!(criterion, KIND, PointBilliard, rate, point_billiard::rate);
+    compare!(criterion, KIND, DoublePendulum, rate, double_pendulum::rate);
+    compare!(criterion, KIND, HolonomicBeadOnEllipses, rate, bead::rate);
+    compare_global!(
+        criterion,
+        KIND,
+        GlobalDisk,
+        rate,
+        rolling_disk::rate | rolling_disk::rate_in_closed_form
+    );
+    compare!(
+        criterion,
+        REDUCED_RATE,
+        RollingDisk,
+        rate,
+        rolling_disk::reduced_rate
+    );
+    compare_global!(
+        criterion,
+        KIND,
+        GlobalSleigh,
+        rate,
+        chaplygin_sleigh::rate | chaplygin_sleigh::rate_in_frame
+    );
+    compare!(
+        criterion,
+        REDUCED_RATE,
+        ChaplyginSleigh,
+        rate,
+        chaplygin_sleigh::reduced_rate
+    );
+    compare!(
+        criterion,
+        REDUCED_RATE,
+        RollingBallEuler,
+        rate,
+        rolling_ball::rate
+    );
+    compare!(
+        criterion,
+        REDUCED_RATE,
+        BallOnRotatingTable,
+        rate,
+        rolling_ball::rate_on_table
+    );
+    compare!(
+        criterion,
+        REDUCED_RATE,
+        TwoWheelsRod,
+        rate,
+        two_wheels::rate
+    );
     Kernels::<Chain4>::new(criterion, KIND)
         .time("generated", generated::rate)
         .time("by hand", chain::rate)
@@ -89,20 +152,34 @@ fn rates(criterion: &mut Criterion) {
         .time("by links", chain::rate_by_links);
 }
 
+/// Rates on D.
+const REDUCED_RATE: &str = "reduced rate";
+
 fn energies(criterion: &mut Criterion) {
     const KIND: &str = "energy";
-    Kernels::<PointBilliard>::new(criterion, KIND)
-        .time("generated", generated::energy)
-        .time("by hand", point_billiard::energy);
-    Kernels::<GlobalDisk>::new(criterion, KIND)
-        .time("generated", generated::energy)
-        .time("by hand", rolling_disk::energy);
-    Kernels::<GlobalSleigh>::new(criterion, KIND)
-        .time("generated", generated::energy)
-        .time("by hand", chaplygin_sleigh::energy);
-    Kernels::<DoublePendulum>::new(criterion, KIND)
-        .time("generated", generated::energy)
-        .time("by hand", double_pendulum::energy);
+    use generated::energy;
+    compare!(
+        criterion,
+        KIND,
+        PointBilliard,
+        energy,
+        point_billiard::energy
+    );
+    compare!(
+        criterion,
+        KIND,
+        DoublePendulum,
+        energy,
+        double_pendulum::energy
+    );
+    compare_global!(criterion, KIND, GlobalDisk, energy, rolling_disk::energy);
+    compare_global!(
+        criterion,
+        KIND,
+        GlobalSleigh,
+        energy,
+        chaplygin_sleigh::energy
+    );
     Kernels::<Chain4>::new(criterion, KIND)
         .time("generated", generated::energy)
         .time("by hand", chain::energy)
@@ -117,25 +194,43 @@ fn energies(criterion: &mut Criterion) {
 fn impacts(criterion: &mut Criterion) {
     const KIND: &str = "impact";
     let surface = || black_box(0);
-    Kernels::<PointBilliard>::new(criterion, KIND)
-        .time("generated", |point, state| {
-            generated::impact(point, surface(), state)
-        })
-        .time("by hand", point_billiard::impact);
-    Kernels::<GlobalDisk>::new(criterion, KIND)
-        .time("generated", |disk, state| {
-            generated::impact(disk, surface(), state)
-        })
-        .time("by hand", |disk, state| {
-            rolling_disk::impact(disk, surface(), state)
-        });
-    Kernels::<GlobalSleigh>::new(criterion, KIND)
-        .time("generated", |sleigh, state| {
-            generated::impact(sleigh, surface(), state)
-        })
-        .time("by hand", |sleigh, state| {
-            chaplygin_sleigh::impact(sleigh, surface(), state)
-        });
+    macro_rules! compare {
+        ($kind:expr, $model:ty, $by_hand:expr) => {
+            Kernels::<$model>::new(criterion, $kind)
+                .time("generated", |system, state| {
+                    generated::impact(system, surface(), state)
+                })
+                .time("by hand", $by_hand)
+        };
+    }
+    compare!(KIND, BouncingBall, |ball, state| {
+        bouncing_ball::impact(ball, numbers(state))
+    });
+    compare!(KIND, PointBilliard, |point, state| {
+        point_billiard::impact(point, numbers(state))
+    });
+    compare!(KIND, HolonomicBeadOnEllipses, |bead, state| {
+        bead::impact(bead, numbers(state))
+    });
+    compare!(KIND, GlobalDisk, |disk, state| {
+        rolling_disk::impact(&disk.0, surface(), numbers(state))
+    });
+    compare!(KIND, GlobalSleigh, |sleigh, state| {
+        chaplygin_sleigh::impact(&sleigh.0, surface(), numbers(state))
+    });
+    const REDUCED: &str = "reduced impact";
+    compare!(REDUCED, RollingDisk, |disk, state| {
+        rolling_disk::reduced_impact(disk, surface(), numbers(state))
+    });
+    compare!(REDUCED, ChaplyginSleigh, |sleigh, state| {
+        chaplygin_sleigh::reduced_impact(sleigh, surface(), numbers(state))
+    });
+    compare!(REDUCED, RollingBallEuler, |ball, state| {
+        rolling_ball::impact(ball, numbers(state))
+    });
+    compare!(REDUCED, TwoWheelsRod, |wheels, state| {
+        two_wheels::impact(wheels, numbers(state))
+    });
 }
 
 /// Tolerance of the steps and runs that are timed.

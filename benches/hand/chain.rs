@@ -1,36 +1,38 @@
 //! The chain of N links, twice: with the metric as a matrix, and link by link in O(N).
 
 use dalembert::{StateVector, VectorField};
-use dalembert_models::{Chain4, Chain16};
+use dalembert_models::{Chain2, Chain3, Chain4, Chain8, Chain16};
 
+use super::number::{Number, parameters};
 use crate::State;
 
 /// A shipped chain of N links.
 pub trait Chain<const N: usize>: VectorField {
     /// Its parameters.
-    fn rods(&self) -> Rods;
+    fn rods<T: Number>(&self) -> Rods<T>;
 }
 
 /// The parameters of a chain: mass of a bob, length of a rod, gravity.
 #[derive(Debug, Clone, Copy)]
-pub struct Rods {
-    m: f64,
-    l: f64,
-    g: f64,
+pub struct Rods<T> {
+    m: T,
+    l: T,
+    g: T,
 }
 
 macro_rules! chains {
     ($($chain:ident $links:literal)*) => {$(
         impl Chain<$links> for $chain {
             #[inline(always)]
-            fn rods(&self) -> Rods {
-                Rods { m: self.m, l: self.l, g: self.g }
+            fn rods<T: Number>(&self) -> Rods<T> {
+                let [m, l, g] = parameters::<T, _>([self.m, self.l, self.g]);
+                Rods { m, l, g }
             }
         }
     )*};
 }
 
-chains! { Chain4 4 Chain16 16 }
+chains! { Chain2 2 Chain3 3 Chain4 4 Chain8 8 Chain16 16 }
 
 /// Angles and momenta of a state.
 #[inline(always)]
@@ -54,8 +56,8 @@ fn join<const N: usize, S: StateVector>(first: [f64; N], second: [f64; N]) -> S 
 
 /// Sines and cosines of the angles.
 #[inline(always)]
-fn directions<const N: usize>(theta: &[f64; N]) -> ([f64; N], [f64; N]) {
-    let (mut sin, mut cos) = ([0.0; N], [0.0; N]);
+fn directions<T: Number, const N: usize>(theta: &[T; N]) -> ([T; N], [T; N]) {
+    let (mut sin, mut cos) = (*theta, *theta);
     for i in 0..N {
         (sin[i], cos[i]) = theta[i].sin_cos();
     }
@@ -65,31 +67,36 @@ fn directions<const N: usize>(theta: &[f64; N]) -> ([f64; N], [f64; N]) {
 /// `g^{-1} p` by LDL^T of the metric `g_jk = (N - max(j, k)) m l^2 cos(theta_j - theta_k)`, counted from 0. Rows of the
 /// upper triangle, so that the inner loops run through memory in order.
 #[inline(always)]
-fn velocities<const N: usize>(rods: Rods, sin: &[f64; N], cos: &[f64; N], p: [f64; N]) -> [f64; N] {
+fn velocities<T: Number, const N: usize>(
+    rods: Rods<T>,
+    sin: &[T; N],
+    cos: &[T; N],
+    p: [T; N],
+) -> [T; N] {
     let unit = rods.m * rods.l * rods.l;
-    let mut g = [[0.0; N]; N];
+    let mut g = [[unit; N]; N];
     for j in 0..N {
         for k in j..N {
-            g[j][k] = (N - k) as f64 * unit * (cos[j] * cos[k] + sin[j] * sin[k]);
+            g[j][k] = unit.times((N - k) as f64) * (cos[j] * cos[k] + sin[j] * sin[k]);
         }
     }
     let mut omega = p;
-    let mut inverse_pivot = [0.0; N];
+    let mut inverse_pivot = p;
     for j in 0..N {
         let pivot_row = g[j];
-        inverse_pivot[j] = 1.0 / pivot_row[j];
+        inverse_pivot[j] = pivot_row[j].reciprocal();
         for i in j + 1..N {
             let factor = pivot_row[i] * inverse_pivot[j];
             for k in i..N {
-                g[i][k] -= factor * pivot_row[k];
+                g[i][k] = g[i][k] - factor * pivot_row[k];
             }
-            omega[i] -= factor * omega[j];
+            omega[i] = omega[i] - factor * omega[j];
         }
     }
     for i in (0..N).rev() {
         let mut rest = omega[i];
         for k in i + 1..N {
-            rest -= g[i][k] * omega[k];
+            rest = rest - g[i][k] * omega[k];
         }
         omega[i] = rest * inverse_pivot[i];
     }
@@ -97,32 +104,49 @@ fn velocities<const N: usize>(rods: Rods, sin: &[f64; N], cos: &[f64; N], p: [f6
 }
 
 /// `g^{-1} p`, then `dL/dtheta` as the double sum that it is.
-#[inline]
-pub fn rate<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> State<S> {
-    let rods = chain.rods();
-    let (theta, p) = halves::<N>(state);
+#[inline(always)]
+pub fn motion<T: Number, const N: usize>(
+    rods: Rods<T>,
+    theta: [T; N],
+    p: [T; N],
+) -> ([T; N], [T; N]) {
     let (sin, cos) = directions(&theta);
     let omega = velocities(rods, &sin, &cos, p);
     let unit = rods.m * rods.l * rods.l;
-    let mut force = [0.0; N];
+    let weight = rods.m * rods.g * rods.l;
+    let mut force = omega;
     for i in 0..N {
-        let weight = (N - i) as f64;
+        force[i] = -(weight.times((N - i) as f64) * sin[i]);
+    }
+    for i in 0..N {
         for j in 0..i {
             let sine = sin[i] * cos[j] - cos[i] * sin[j];
-            let turning = weight * unit * sine * omega[i] * omega[j];
-            force[i] -= turning;
-            force[j] += turning;
+            let turning = unit.times((N - i) as f64) * sine * omega[i] * omega[j];
+            force[i] = force[i] - turning;
+            force[j] = force[j] + turning;
         }
-        force[i] -= weight * rods.m * rods.g * rods.l * sin[i];
     }
+    (omega, force)
+}
+
+/// The rate by the metric's factors.
+#[inline]
+pub fn rate<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> State<S> {
+    let (theta, p) = halves::<N>(state);
+    let (omega, force) = motion(chain.rods(), theta, p);
     join(omega, force)
 }
 
 /// Kinetic and potential energy.
 #[inline]
 pub fn energy<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> f64 {
-    let rods = chain.rods();
     let (theta, p) = halves::<N>(state);
+    energy_of(chain.rods(), theta, p)
+}
+
+/// The energy of numbers.
+#[inline(always)]
+pub fn energy_of<T: Number, const N: usize>(rods: Rods<T>, theta: [T; N], p: [T; N]) -> T {
     let (sin, cos) = directions(&theta);
     let omega = velocities(rods, &sin, &cos, p);
     total(rods, &cos, &p, &omega)
@@ -130,13 +154,13 @@ pub fn energy<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> f64 {
 
 /// `p.omega/2 + V`.
 #[inline(always)]
-fn total<const N: usize>(rods: Rods, cos: &[f64; N], p: &[f64; N], omega: &[f64; N]) -> f64 {
-    let (mut kinetic, mut drop) = (0.0, 0.0);
-    for i in 0..N {
-        kinetic += 0.5 * p[i] * omega[i];
-        drop += (N - i) as f64 * cos[i];
+fn total<T: Number, const N: usize>(rods: Rods<T>, cos: &[T; N], p: &[T; N], omega: &[T; N]) -> T {
+    let (mut kinetic, mut drop) = (p[0] * omega[0], cos[0].times(N as f64));
+    for i in 1..N {
+        kinetic = kinetic + p[i] * omega[i];
+        drop = drop + cos[i].times((N - i) as f64);
     }
-    kinetic - rods.m * rods.g * rods.l * drop
+    kinetic.times(0.5) - rods.m * rods.g * rods.l * drop
 }
 
 /// Velocities and what the links below carry along, in two passes over the chain.
@@ -146,7 +170,7 @@ fn total<const N: usize>(rods: Rods, cos: &[f64; N], p: &[f64; N], omega: &[f64;
 /// the bob above feels. From the first link down, the velocities follow one by one.
 #[inline(always)]
 fn link_by_link<const N: usize>(
-    rods: Rods,
+    rods: Rods<f64>,
     sin: &[f64; N],
     cos: &[f64; N],
     p: &[f64; N],
@@ -219,7 +243,10 @@ mod tests {
     #[test]
     fn the_chain_by_hand_is_the_generated_one() {
         let (m, l, g) = (1.3, 0.7, 9.81);
+        compare(Chain2 { m, l, g });
+        compare(Chain3 { m, l, g });
         compare(Chain4 { m, l, g });
+        compare(Chain8 { m, l, g });
         compare(Chain16 { m, l, g });
     }
 }

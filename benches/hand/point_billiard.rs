@@ -2,32 +2,30 @@
 
 use dalembert_models::PointBilliard;
 
-use crate::State;
-
-type PointState = State<PointBilliard>;
+use super::number::{Number, parameters};
 
 /// Straight lines.
-#[inline]
-pub fn rate(point: &PointBilliard, state: &PointState) -> PointState {
-    let [_, _, p_x, p_y]: [f64; 4] = (*state).into();
-    let light = 1.0 / point.m;
-    [p_x * light, p_y * light, 0.0, 0.0].into()
+#[inline(always)]
+pub fn rate<T: Number>(point: &PointBilliard, [_, _, p_x, p_y]: [T; 4]) -> [T; 4] {
+    let [m] = parameters::<T, _>([point.m]);
+    let (light, none) = (m.reciprocal(), T::of(0.0));
+    [p_x * light, p_y * light, none, none]
 }
 
 /// Kinetic energy.
-#[inline]
-pub fn energy(point: &PointBilliard, state: &PointState) -> f64 {
-    let [_, _, p_x, p_y]: [f64; 4] = (*state).into();
-    0.5 * (p_x * p_x + p_y * p_y) / point.m
+#[inline(always)]
+pub fn energy<T: Number>(point: &PointBilliard, [_, _, p_x, p_y]: [T; 4]) -> T {
+    let [m] = parameters::<T, _>([point.m]);
+    ((p_x * p_x + p_y * p_y) / m).times(0.5)
 }
 
 /// Specular reflection at the normal `n` of the ellipse.
-#[inline]
-pub fn impact(point: &PointBilliard, state: &PointState) -> PointState {
-    let [x, y, p_x, p_y]: [f64; 4] = (*state).into();
-    let (n_x, n_y) = (x / (point.ta * point.ta), y / (point.tb * point.tb));
-    let eps = -2.0 * (p_x * n_x + p_y * n_y) / (n_x * n_x + n_y * n_y);
-    [x, y, p_x + eps * n_x, p_y + eps * n_y].into()
+#[inline(always)]
+pub fn impact<T: Number>(point: &PointBilliard, [x, y, p_x, p_y]: [T; 4]) -> [T; 4] {
+    let [a, b] = parameters::<T, _>([point.ta, point.tb]);
+    let (n_x, n_y) = (x / (a * a), y / (b * b));
+    let eps = (p_x * n_x + p_y * n_y).times(-2.0) / (n_x * n_x + n_y * n_y);
+    [x, y, p_x + eps * n_x, p_y + eps * n_y]
 }
 
 #[cfg(test)]
@@ -35,6 +33,7 @@ mod tests {
     use super::*;
     use crate::generated;
     use crate::hand::agreement::{assert_numbers_agree, assert_states_agree};
+    use crate::hand::number::numbers;
 
     const POINT: PointBilliard = PointBilliard {
         m: 1.3,
@@ -44,12 +43,16 @@ mod tests {
 
     #[test]
     fn the_point_by_hand_is_the_generated_one() {
-        assert_states_agree(&POINT, generated::rate, rate);
-        assert_numbers_agree(&POINT, generated::energy, energy);
+        assert_states_agree(&POINT, generated::rate, |point, state| {
+            rate(point, numbers(state)).into()
+        });
+        assert_numbers_agree(&POINT, generated::energy, |point, state| {
+            energy(point, numbers(state))
+        });
         assert_states_agree(
             &POINT,
             |point, state| generated::impact(point, 0, state),
-            impact,
+            |point, state| impact(point, numbers(state)).into(),
         );
     }
 }

@@ -9,7 +9,6 @@ from pathlib import Path
 from environment import HERE, say
 
 WORKS = ("W1", "W1r", "W2", "W2b", "W3", "W3b", "W4", "W5", "W5r")
-SMOOTH = ("W2", "W3")
 TIME_LIMIT = 600
 
 # Repetitions inside a process: short works are repeated until some repetition is undisturbed.
@@ -64,17 +63,16 @@ def chain(environment, python):
     return lambda work, count: [environment.python, python / "chain_peers.py", work, count, folder]
 
 
-def run(environment, works, count):
-    """All rounds: in each, every peer has its turn at every work."""
+def run(environment, work, count):
+    """All rounds of a work: in each, every peer has its turn."""
     measured = {}
-    for work in works:
-        for number in range(count):
-            for peer in peers(environment):
-                if peer.takes_part(work, number):
-                    for line in lines(environment, peer, work):
-                        key = (line["peer"], line["work"], line.get("tol", line.get("n")))
-                        measured.setdefault(key, []).append(line)
-        say(f"{work} is done")
+    for number in range(count):
+        for peer in peers(environment):
+            if peer.takes_part(work, number):
+                for line in lines(environment, peer, work):
+                    key = (line["peer"], line["work"], line.get("tol", line.get("n")))
+                    measured.setdefault(key, []).append(line)
+    say(f"{work} is done")
     return [combined(found) for found in measured.values()]
 
 

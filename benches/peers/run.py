@@ -38,14 +38,14 @@ def arguments():
 
 
 def measure(chosen, works):
-    """Runs, and writes the results beside those of other works that are kept."""
+    """Runs one work after the other; results are written after each, beside those of other works that are kept."""
     environment = Environment(chosen.folder)
     environment.prepare()
-    lines = rounds.run(environment, works, chosen.rounds)
     out = chosen.out or environment.folder / "results.json"
-    kept = json.loads(out.read_text())["lines"] if out.exists() else []
-    lines += [line for line in kept if line["work"] not in works]
-    out.write_text(json.dumps({"versions": environment.describe(), "lines": lines}, indent=1))
+    lines = json.loads(out.read_text())["lines"] if out.exists() else []
+    for work in works:
+        lines = [line for line in lines if line["work"] != work] + rounds.run(environment, work, chosen.rounds)
+        out.write_text(json.dumps({"versions": environment.describe(), "lines": lines}, indent=1))
     print(f"results: {out}", file=sys.stderr)
     return lines
 
