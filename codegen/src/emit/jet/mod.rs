@@ -24,6 +24,7 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
         results,
         advance,
         next,
+        keep,
         room,
     } = Expansion::of(&context.program.jet, context);
     let documentation = doc::lines(&[
@@ -58,6 +59,7 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
                     let step = unit * ::dalembert::jet::INVERSES[k + 1];
                     #advance
                     coefficients[k + 1] = ::dalembert::__private::vector([#(step * #next),*]);
+                    #keep
                 }
                 ::core::result::Result::Ok(())
             }
@@ -92,6 +94,7 @@ pub(super) fn emit_gap_series(context: &Context<'_>, jet: &Jet) -> TokenStream {
         results,
         advance,
         next,
+        keep,
         room,
     } = Expansion::of(jet, context);
     quote! {
@@ -112,6 +115,7 @@ pub(super) fn emit_gap_series(context: &Context<'_>, jet: &Jet) -> TokenStream {
                 let (weight, inverse) = (k as f64, ::dalembert::jet::INVERSES[k]);
                 #advance
                 gaps[k] = ::dalembert::__private::vector([#(#next),*]);
+                #keep
             }
             true
         }
@@ -128,6 +132,8 @@ struct Expansion {
     advance: TokenStream,
     /// The results at order `k`.
     next: Vec<TokenStream>,
+    /// What is kept for the next order, after the results: they take coefficients of the one before.
+    keep: TokenStream,
     /// The type of the room for coefficients.
     room: TokenStream,
 }
@@ -149,12 +155,13 @@ impl Expansion {
             orders = writer.orders();
             (histories, inverses) = (writer.begin_histories(), writer.begin_inverses());
         }
-        let (advance, next) = orders;
+        let (advance, next, keep) = orders;
         Self {
             start: joined([sum, body.statements, inverses, histories]),
             results: body.outputs,
             advance,
             next,
+            keep,
             room: writer.room.type_tokens(),
         }
     }

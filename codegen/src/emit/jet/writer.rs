@@ -97,8 +97,8 @@ impl<'a> Writer<'a> {
         matches!(self.room, Room::Histories(_))
     }
 
-    /// Order `k` of every value that varies, and of the results.
-    pub(super) fn orders(&mut self) -> (TokenStream, Vec<TokenStream>) {
+    /// Order `k` of every value that varies, and of the results; and what is kept of it once the results are taken.
+    pub(super) fn orders(&mut self) -> (TokenStream, Vec<TokenStream>, TokenStream) {
         let varying: Vec<Value> = self.jet.varying().collect();
         let components = self.bind_components(&varying);
         let values = varying.iter().map(|&value| self.advance(value));
@@ -120,7 +120,7 @@ impl<'a> Writer<'a> {
                 }
             });
         }
-        (joined([sums, components, values, factors]), next)
+        (joined([sums, components, values]), next, factors)
     }
 
     /// `let [next_0, _] = components(&coefficients[k]);`
