@@ -64,7 +64,8 @@ fn without_claims(source: &str) -> String {
     let mut entries = body.stream().into_iter();
     while let Some(token) = entries.next() {
         if matches!(&token, TokenTree::Ident(word) if word == "claims") {
-            entries.next();
+            // Of the model or of a scene, up to the braces.
+            entries.find(|token| matches!(token, TokenTree::Group(_)));
         } else {
             kept.push(token);
         }

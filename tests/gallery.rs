@@ -17,7 +17,7 @@ fn gallery(words: &[&str]) -> (Exit, String) {
     };
     let line = ["dalembert", "gallery"].iter().chain(words);
     let exit = dalembert_models::catalogue().run_with(line, &mut streams);
-    (exit, String::from_utf8(errors).unwrap())
+    (exit, String::from_utf8(errors).expect("text"))
 }
 
 #[test]

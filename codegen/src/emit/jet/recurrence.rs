@@ -108,6 +108,9 @@ impl Writer<'_> {
 
     /// `sum a_j b_(k-j)` for `j` in `1..=k`.
     fn upper_sum(&mut self, a: Value, b: Value) -> TokenStream {
+        if let Some(product) = self.product_with_constant(a, b) {
+            return product;
+        }
         let (rising, other) = (History::plain(a), History::plain(b));
         if let Some(short) = self.short(rising, other) {
             return short;
@@ -117,8 +120,25 @@ impl Writer<'_> {
         quote!((#middle + #next * #first))
     }
 
+    /// `a_k b_0`, all that is left of a sum where one of the two is constant.
+    fn product_with_constant(&mut self, a: Value, b: Value) -> Option<TokenStream> {
+        let is_constant =
+            |value: Value| self.jet.recurrences[value.index()] == Recurrence::Constant;
+        match (is_constant(a), is_constant(b)) {
+            (true, _) => Some(quote!(0.0)),
+            (false, true) => {
+                let (next, first) = (self.next(a), self.first(b));
+                Some(parenthesised(quote!(#next * #first)))
+            }
+            (false, false) => None,
+        }
+    }
+
     /// `sum j a_j b_(k-j)` for `j` in `1..=k`.
     fn weighted_sum(&mut self, a: Value, b: Value) -> TokenStream {
+        if let Some(product) = self.product_with_constant(a, b) {
+            return quote!(weight * #product);
+        }
         let (rising, other) = (History::weighted(a), History::plain(b));
         if let Some(short) = self.short(rising, other) {
             return short;
