@@ -11,7 +11,7 @@ use crate::numeric::Numeric;
 pub struct Declaration {
     before: TokenStream,
     body: Vec<TokenTree>,
-    /// The claims as written, without semicolons.
+    /// The claims about the model itself as written, without semicolons.
     pub claims: Vec<String>,
 }
 
@@ -35,8 +35,13 @@ impl Declaration {
         while let Some(token) = entries.next() {
             if !matches!(&token, TokenTree::Ident(word) if word == "claims") {
                 own.body.push(token);
-            } else if let Some(TokenTree::Group(claims)) = entries.next() {
-                own.claims.extend(entries_of(claims.stream()));
+                continue;
+            }
+            match entries.next() {
+                Some(TokenTree::Group(claims)) => own.claims.extend(entries_of(claims.stream())),
+                // Those about a scene stay where they are: `claims for free { .. }`.
+                Some(other) => own.body.extend([token, other]),
+                None => {}
             }
         }
         own
