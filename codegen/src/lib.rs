@@ -75,11 +75,10 @@ pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics>
 /// As [`compile`], with this budget for the algebra.
 fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
     let spec = spec::parse(input)?;
-    let mut model = model::check_within(&spec, steps)?;
+    let model = model::check_within(&spec, steps)?;
     let scenes: Vec<model::Model> = (0..model.scenes.len())
         .map(|scene| model.in_scene(scene))
         .collect();
-    model.claims = model.own_claims();
     let mut compiled = compile_checked(&spec, model, claims::examine)?;
     let mut mistakes = diagnostics::Diagnostics::new();
     for scene in scenes {

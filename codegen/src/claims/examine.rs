@@ -23,13 +23,13 @@ pub struct Examined {
     pub volume: Option<Volume>,
 }
 
-/// The verdicts on all claims of a model; without claims nothing is done.
+/// The verdicts on all claims about a model itself; without claims nothing is done.
 pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
-    if model.claims.is_empty() {
+    let claims = model.own_claims();
+    if claims.is_empty() {
         return Examined::default();
     }
     let mut examiner = Examiner::of(model, derivation);
-    let claims = examiner.model.claims.clone();
     let has_states = conserved::has_states(examiner.model, &examiner.dynamics);
     let mut findings: Vec<Finding> = claims
         .iter()

@@ -94,9 +94,11 @@ impl Model {
 }
 
 impl Claim {
-    /// The claim where only these surfaces are left; it names no other.
+    /// The claim about a scene as one about the model that the scene is, of whose surfaces only these are left; it names
+    /// no other.
     fn on_surfaces(&self, surfaces: &[usize]) -> Self {
         let mut claim = self.clone();
+        claim.scene = None;
         if let Statement::Conserved {
             under: Some(surface),
             ..
