@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import accuracy
 
-OURS = ("dalembert-taylor", "dalembert-dop853")
+OURS = ("dalembert-taylor", "dalembert-abreast", "dalembert-dop853")
 
 
 @dataclass

@@ -5,6 +5,7 @@
 use crate::error::{Fault, ParameterError, StateError};
 use crate::impacts::law::{Contact, Jump, Law};
 use crate::jet::{Jets, LENGTH, Work};
+use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
 /// A first-order system of ordinary differential equations on a state of fixed size.
@@ -32,34 +33,62 @@ pub trait VectorField {
 }
 
 /// A vector field with the power series of its motions: what [`Taylor`](crate::Taylor) integrates.
+///
+/// Series are written over [`Numbers`]: of one motion with `f64`, of several at once with lanes. What belongs to one moment
+/// is computed by [`TaylorField::begin`], everything above it by [`TaylorField::advance`].
 #[diagnostic::on_unimplemented(
     message = "the Taylor coefficients of `{Self}` are not known: declare it with `dalembert::model!`"
 )]
 pub trait TaylorField: VectorField {
+    /// The parameters of the system.
+    type Parameters<L: Numbers>: Row<L>;
+
+    /// As many numbers as a state has components, in their order.
+    type Row<L: Numbers>: Row<L>;
+
+    /// One number per surface, or none where a gap is not analytic, as `|x|` is not, or there are no surfaces.
+    type Gaps<L: Numbers>: Row<L>;
+
+    /// What is known at one moment: the rate, then the gaps, then whatever coefficients above order 0 take of it.
+    type Firsts<L: Numbers>: Row<L>;
+
     /// Room for the coefficients of intermediate values.
-    type Jets: Jets;
+    type Jets<L: Numbers>: Jets;
 
     /// What an expansion takes, if it is known: the order of series is chosen by it.
     const WORK: Option<Work> = None;
 
-    /// Writes the power series of the motion that is at `coefficients[0]` at time `t`:
+    /// The parameters.
+    fn parameters(&self) -> Self::Parameters<f64>;
+
+    /// Writes what is known at `(t, state)`.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the derivative does not exist, in whatever lane; `firsts` is unspecified then.
+    fn begin<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        t: L,
+        state: &Self::Row<L>,
+        firsts: &mut Self::Firsts<L>,
+    ) -> Result<(), Fault>;
+
+    /// Writes the power series of the motion that is at `coefficients[0]`, where `firsts` is known, and of the gaps along
+    /// it:
     ///
     /// ```text
     /// state(t + unit s) = coefficients[0] + coefficients[1] s + .. + coefficients[order] s^order + ..
     /// ```
     ///
     /// `order` is 1 or more; orders above 32 are not computed. What `jets` holds before does not matter.
-    ///
-    /// # Errors
-    /// A [`Fault`] where the derivative does not exist; the coefficients above 0 are unspecified then.
-    fn expand(
-        &self,
-        t: f64,
-        unit: f64,
+    fn advance<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        unit: L,
         order: usize,
-        coefficients: &mut [Self::State; LENGTH],
-        jets: &mut Self::Jets,
-    ) -> Result<(), Fault>;
+        firsts: &Self::Firsts<L>,
+        coefficients: &mut [Self::Row<L>; LENGTH],
+        gaps: &mut [Self::Gaps<L>; LENGTH],
+        jets: &mut Self::Jets<L>,
+    );
 }
 
 /// A mechanical system: a state with positions, velocities, momenta and an energy.
@@ -341,21 +370,6 @@ pub trait Impacting: System {
     /// # Errors
     /// [`Fault`].
     fn gap_rates(&self, t: f64, state: &Self::State) -> Result<Self::Gaps, Fault>;
-
-    /// Writes the power series of the gaps along a motion that has these coefficients, as
-    /// [`TaylorField::expand`] writes them, and says whether it did. It must not where a gap is not analytic, as `|x|`
-    /// is not. By default it does not, and gaps are sampled.
-    fn gap_series(
-        &self,
-        t: f64,
-        unit: f64,
-        order: usize,
-        coefficients: &[Self::State; LENGTH],
-        gaps: &mut [Self::Gaps; LENGTH],
-    ) -> bool {
-        let _ = (t, unit, order, coefficients, gaps);
-        false
-    }
 
     /// The second rates `d^2h_s/dt^2` where the motion's part of the state, momenta or quasi-velocities, changes at the
     /// rates `motion`. `None` for a system that does not know them: it cannot go on along a surface.

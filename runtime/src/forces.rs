@@ -142,8 +142,16 @@ where
         self.stepper.end_rates()
     }
 
-    fn series(&self) -> Option<Series<'_, Sys::State>> {
+    fn series(&self) -> Option<Series> {
         self.stepper.series()
+    }
+
+    fn gap_coefficient(&self, k: usize) -> &[f64] {
+        self.stepper.gap_coefficient(k)
+    }
+
+    fn end_gaps(&self) -> &[f64] {
+        self.stepper.end_gaps()
     }
 
     fn dense_ready(&self) -> bool {

@@ -222,10 +222,77 @@ pub mod arguments {
     pub fn order() {}
     pub fn coefficients() {}
     pub fn jets() {}
+    pub fn parameters() {}
+    pub fn firsts() {}
     pub fn gaps() {}
     pub fn k() {}
     pub fn weight() {}
     pub fn inverse() {}
     pub fn step() {}
     pub fn visitor() {}
+}
+
+/// Guards over several numbers at once: the fault of the first lane that has one.
+pub mod lanes {
+    use crate::error::Fault;
+    use crate::numbers::Numbers;
+
+    /// As [`positive_pivot`](super::positive_pivot), of every lane.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    #[inline(always)]
+    pub fn positive_pivot<L: Numbers>(pivot: usize, value: L) -> Result<(), Fault> {
+        (0..L::LANES).try_for_each(|lane| super::positive_pivot(pivot, value.lane(lane)))
+    }
+
+    /// As [`independent_constraint`](super::independent_constraint), of every lane.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    #[inline(always)]
+    pub fn independent_constraint<L: Numbers>(
+        constraint: usize,
+        squared: L,
+        reference: L,
+    ) -> Result<(), Fault> {
+        (0..L::LANES).try_for_each(|lane| {
+            super::independent_constraint(constraint, squared.lane(lane), reference.lane(lane))
+        })
+    }
+
+    /// As [`regular_mass`](super::regular_mass), of every lane.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    #[inline(always)]
+    pub fn regular_mass<L: Numbers>(constraint: usize, pivot: L, diagonal: L) -> Result<(), Fault> {
+        (0..L::LANES).try_for_each(|lane| {
+            super::regular_mass(constraint, pivot.lane(lane), diagonal.lane(lane))
+        })
+    }
+
+    /// As [`independent_form`](super::independent_form), of every lane.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    #[inline(always)]
+    pub fn independent_form<L: Numbers>(
+        quasi: usize,
+        squared: L,
+        reference: L,
+    ) -> Result<(), Fault> {
+        (0..L::LANES).try_for_each(|lane| {
+            super::independent_form(quasi, squared.lane(lane), reference.lane(lane))
+        })
+    }
+
+    /// As [`regular_surface`](super::regular_surface), of every lane.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    #[inline(always)]
+    pub fn regular_surface<L: Numbers>(surface: usize, squared: L) -> Result<(), Fault> {
+        (0..L::LANES).try_for_each(|lane| super::regular_surface(surface, squared.lane(lane)))
+    }
 }

@@ -1,6 +1,6 @@
 //! Sums over Taylor coefficients, as generated code calls them.
 
-use crate::math::mul_add;
+use crate::numbers::Numbers;
 
 /// Coefficients that a series may have: orders 0 to 32.
 pub const LENGTH: usize = 33;
@@ -20,8 +20,8 @@ pub trait Jets: Copy {
     const ZERO: Self;
 }
 
-impl<const W: usize, const H: usize> Jets for [[f64; W]; H] {
-    const ZERO: Self = [[0.0; W]; H];
+impl<L: Numbers, const W: usize, const H: usize> Jets for [[L; W]; H] {
+    const ZERO: Self = [[L::ZERO; W]; H];
 }
 
 /// `1 / k`; 0 at 0.
@@ -38,17 +38,17 @@ pub const INVERSES: [f64; LENGTH] = {
 /// `sum a_j b_(k-j)` for `j` in `1..k`, of `W` pairs of series side by side. Row `j` holds coefficient `j` of all
 /// series: the `a` from place `a` on, the `b` from place `b` on.
 #[inline(always)]
-pub fn middles<const W: usize, const P: usize>(
-    rows: &[[f64; P]; LENGTH],
+pub fn middles<L: Numbers, const W: usize, const P: usize>(
+    rows: &[[L; P]; LENGTH],
     a: usize,
     b: usize,
     k: usize,
-) -> [f64; W] {
+) -> [L; W] {
     let rows = &rows[1..k.clamp(1, LENGTH - 1)];
-    let mut sums = [0.0; W];
+    let mut sums = [L::ZERO; W];
     for (x, y) in rows.iter().zip(rows.iter().rev()) {
         for i in 0..W {
-            sums[i] = mul_add(x[a + i], y[b + i], sums[i]);
+            sums[i] = x[a + i].mul_add(y[b + i], sums[i]);
         }
     }
     sums
@@ -56,25 +56,25 @@ pub fn middles<const W: usize, const P: usize>(
 
 /// Half of `sum a_j a_(k-j)` for `j` in `1..k`, each product once, of `W` series side by side as in [`middles`].
 #[inline(always)]
-pub fn halves<const W: usize, const P: usize>(
-    rows: &[[f64; P]; LENGTH],
+pub fn halves<L: Numbers, const W: usize, const P: usize>(
+    rows: &[[L; P]; LENGTH],
     a: usize,
     k: usize,
-) -> [f64; W] {
+) -> [L; W] {
     let k = k.clamp(1, LENGTH - 1);
     let pairs = (k - 1) / 2;
     let (left, right) = (&rows[1..=pairs], &rows[k - pairs..k]);
-    let mut sums = [0.0; W];
+    let mut sums = [L::ZERO; W];
     if k.is_multiple_of(2) {
         let centre = &rows[k / 2];
         for i in 0..W {
-            sums[i] = 0.5 * centre[a + i] * centre[a + i];
+            sums[i] = L::of(0.5) * centre[a + i] * centre[a + i];
         }
     }
     // The newest coefficients come last: the sum need not wait for them.
     for (x, y) in left.iter().rev().zip(right) {
         for i in 0..W {
-            sums[i] = mul_add(x[a + i], y[a + i], sums[i]);
+            sums[i] = x[a + i].mul_add(y[a + i], sums[i]);
         }
     }
     sums
@@ -82,17 +82,17 @@ pub fn halves<const W: usize, const P: usize>(
 
 /// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond `degree`, of the series at two places of the rows.
 #[inline(always)]
-pub fn short<const P: usize>(
-    rows: &[[f64; P]; LENGTH],
+pub fn short<L: Numbers, const P: usize>(
+    rows: &[[L; P]; LENGTH],
     a: usize,
     b: usize,
     k: usize,
     degree: usize,
-) -> f64 {
+) -> L {
     let mut sum = rows[1][a] * rows[k - 1][b];
     for j in 2..=degree {
         if j <= k {
-            sum += rows[j][a] * rows[k - j][b];
+            sum = sum + rows[j][a] * rows[k - j][b];
         }
     }
     sum
@@ -102,55 +102,55 @@ pub fn short<const P: usize>(
 ///
 /// Two sums side by side halve the time that one addition waits for the last.
 #[inline(always)]
-pub fn middle(a: &[f64; LENGTH], b: &[f64; LENGTH], k: usize) -> f64 {
+pub fn middle<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize) -> L {
     let k = k.clamp(1, LENGTH - 1);
     let (a, b) = (&a[1..k], &b[1..k]);
-    let mut sums = [0.0; 4];
+    let mut sums = [L::ZERO; 4];
     let mut left = a.chunks_exact(4);
     let mut right = b.rchunks_exact(4);
     for (x, y) in (&mut left).zip(&mut right) {
         for i in 0..4 {
-            sums[i] += x[i] * y[3 - i];
+            sums[i] = sums[i] + x[i] * y[3 - i];
         }
     }
-    let mut rest = 0.0;
+    let mut rest = L::ZERO;
     for (x, y) in left.remainder().iter().zip(right.remainder().iter().rev()) {
-        rest += x * y;
+        rest = rest + *x * *y;
     }
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 /// As [`middle`], for functions with so many sums that writing each out would not pay.
 #[inline(never)]
-pub fn shared_middle(a: &[f64; LENGTH], b: &[f64; LENGTH], k: usize) -> f64 {
+pub fn shared_middle<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize) -> L {
     middle(a, b, k)
 }
 
 /// Half of `sum a_j a_(k-j)` for `j` in `1..k`: each product once.
 #[inline(always)]
-pub fn half(a: &[f64; LENGTH], k: usize) -> f64 {
+pub fn half<L: Numbers>(a: &[L; LENGTH], k: usize) -> L {
     let k = k.clamp(1, LENGTH - 1);
-    let (mut even, mut odd) = (0.0, 0.0);
+    let (mut even, mut odd) = (L::ZERO, L::ZERO);
     let pairs = (k - 1) / 2;
     let (left, right) = (&a[1..=pairs], &a[k - pairs..k]);
     for (x, y) in left.iter().zip(right.iter().rev()) {
-        (even, odd) = (odd, even + x * y);
+        (even, odd) = (odd, even + *x * *y);
     }
     let centre = if k.is_multiple_of(2) {
-        0.5 * a[k / 2] * a[k / 2]
+        L::of(0.5) * a[k / 2] * a[k / 2]
     } else {
-        0.0
+        L::ZERO
     };
     even + odd + centre
 }
 
 /// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond `degree`.
 #[inline(always)]
-pub fn shared_short(a: &[f64; LENGTH], b: &[f64; LENGTH], k: usize, degree: usize) -> f64 {
-    let mut sum = 0.0;
+pub fn shared_short<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize, degree: usize) -> L {
+    let mut sum = L::ZERO;
     for j in 1..=degree {
         if j <= k {
-            sum += a[j] * b[k - j];
+            sum = sum + a[j] * b[k - j];
         }
     }
     sum

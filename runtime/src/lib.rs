@@ -117,9 +117,12 @@ pub mod impacts;
 pub mod initial;
 pub mod integrate;
 pub mod jet;
+#[cfg(feature = "lanes")]
+pub mod lanes;
 mod linalg;
 #[doc(hidden)]
 pub mod math;
+pub mod numbers;
 pub mod outcome;
 pub mod projection;
 mod quadrature;

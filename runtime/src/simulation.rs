@@ -66,73 +66,88 @@ impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, S
         t_end: f64,
         observer: &mut O,
     ) -> Result<Run<Sys::State>, StartError> {
-        if !(t0.is_finite() && t_end.is_finite() && t0 <= t_end) {
-            return Err(StartError::Times { t0, t_end });
-        }
-        self.system.check_parameters()?;
+        check_start(self.system, t0, t_end)?;
+        let mut progress = Progress::new(t0, state);
         let mut course = Course {
             system: self.system,
             stepper: &mut self.stepper,
             effects: &mut self.effects,
             budget: self.step_budget,
-            is_begun: false,
-            t: t0,
-            late: 0.0,
-            flight: 0.0,
-            state,
-            counters: Counters::default(),
+            progress: &mut progress,
         };
         let outcome = match course.follow(t_end, observer) {
             Ok(()) => Outcome::Done,
             Err(outcome) => outcome,
         };
-        Ok(Run {
-            outcome,
-            t: course.t,
-            state: course.state,
-            counters: course.counters,
-        })
+        Ok(progress.ended(outcome))
     }
 }
 
-/// A run on its way.
-struct Course<'a, Sys: System, Step, Effects> {
-    system: &'a Sys,
-    stepper: &'a mut Step,
-    effects: &'a mut Effects,
-    budget: u64,
+/// Whether a run may begin.
+pub(crate) fn check_start(system: &impl System, t0: f64, t_end: f64) -> Result<(), StartError> {
+    if !(t0.is_finite() && t_end.is_finite() && t0 <= t_end) {
+        return Err(StartError::Times { t0, t_end });
+    }
+    Ok(system.check_parameters()?)
+}
+
+/// How far a run has come.
+pub(crate) struct Progress<S> {
     /// Whether the integrator has made steps before.
     is_begun: bool,
-    t: f64,
+    pub(crate) t: f64,
     /// The part of the time that `t` cannot hold: lengths of flights add up without losing it.
     late: f64,
     /// Time since the last cut, in full precision however short it is.
     flight: f64,
-    state: Sys::State,
-    counters: Counters,
+    pub(crate) state: S,
+    pub(crate) counters: Counters,
+}
+
+impl<S> Progress<S> {
+    pub(crate) fn new(t: f64, state: S) -> Self {
+        Self {
+            is_begun: false,
+            t,
+            late: 0.0,
+            flight: 0.0,
+            state,
+            counters: Counters::default(),
+        }
+    }
+
+    pub(crate) fn ended(self, outcome: Outcome) -> Run<S> {
+        Run {
+            outcome,
+            t: self.t,
+            state: self.state,
+            counters: self.counters,
+        }
+    }
+}
+
+/// A run on its way.
+pub(crate) struct Course<'a, Sys: System, Step, Effects> {
+    pub(crate) system: &'a Sys,
+    pub(crate) stepper: &'a mut Step,
+    pub(crate) effects: &'a mut Effects,
+    pub(crate) budget: u64,
+    pub(crate) progress: &'a mut Progress<Sys::State>,
+}
+
+/// What comes after a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Next {
+    /// Another.
+    Step,
+    /// Forces of effects begin or end: the integrator must be begun anew.
+    Forces,
 }
 
 impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step, Effects> {
     fn follow<O: Observer<Sys>>(&mut self, t_end: f64, observer: &mut O) -> Result<(), Outcome> {
-        if let Some(component) = self
-            .state
-            .as_slice()
-            .iter()
-            .position(|value| !value.is_finite())
-        {
-            return Err(Outcome::NonFinite { component });
-        }
-        if let Some(coordinate) = self.system.outside_chart(&self.state) {
-            return Err(Outcome::LeftChart { coordinate });
-        }
-        let mut now = Moment {
-            system: self.system,
-            t: self.t,
-            state: &mut self.state,
-            counters: &mut self.counters,
-        };
-        self.effects.begin(&mut now, observer)?;
-        while self.t < t_end {
+        self.begin(observer)?;
+        while self.progress.t < t_end {
             match self.effects.forces() {
                 None => self.drive(t_end, observer)?,
                 Some(forces) => self.drive_under(forces, t_end, observer)?,
@@ -141,49 +156,100 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         Ok(())
     }
 
+    /// What comes before the first step.
+    pub(crate) fn begin<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
+        let Progress {
+            t, state, counters, ..
+        } = &mut *self.progress;
+        if let Some(component) = state.as_slice().iter().position(|value| !value.is_finite()) {
+            return Err(Outcome::NonFinite { component });
+        }
+        if let Some(coordinate) = self.system.outside_chart(state) {
+            return Err(Outcome::LeftChart { coordinate });
+        }
+        let mut now = Moment {
+            system: self.system,
+            t: *t,
+            state,
+            counters,
+        };
+        self.effects.begin(&mut now, observer)
+    }
+
     /// Steps to the end, or to where the forces of the effects change.
     fn drive<O: Observer<Sys>>(&mut self, t_end: f64, observer: &mut O) -> Result<(), Outcome> {
-        let (system, t, counters) = (self.system, self.t, &mut self.counters);
-        match self.is_begun {
-            false => self
-                .stepper
-                .start(system, t, &self.state, t_end, counters)?,
-            true => self
-                .stepper
-                .restart(system, t, &self.state, f64::INFINITY, counters)?,
-        }
-        self.is_begun = true;
+        self.set_off(t_end)?;
         let forces = self.effects.forces();
-        while self.t < t_end {
-            if self.counters.accepted >= self.budget {
-                return Err(Outcome::StepBudget);
-            }
-            self.stepper.step(self.system, t_end, &mut self.counters)?;
-            let mut view = StepView {
-                system: self.system,
-                counters: &mut self.counters,
-                stepper: &mut *self.stepper,
-            };
-            match self.effects.propose(&mut view)? {
-                None => self.pass(observer)?,
-                Some(theta) => {
-                    let limit = self.cut(theta, observer)?;
-                    if self.effects.forces() != forces {
-                        return Ok(());
-                    }
-                    let (t, counters) = (self.t, &mut self.counters);
-                    self.stepper
-                        .restart(self.system, t, &self.state, limit, counters)?;
-                }
+        while self.progress.t < t_end {
+            self.check_budget()?;
+            self.stepper
+                .step(self.system, t_end, &mut self.progress.counters)?;
+            if self.go_on(&forces, observer)? == Next::Forces {
+                return Ok(());
             }
         }
         Ok(())
     }
 
+    /// The integrator begins where the run is.
+    pub(crate) fn set_off(&mut self, t_end: f64) -> Result<(), Outcome> {
+        let Progress {
+            is_begun,
+            t,
+            state,
+            counters,
+            ..
+        } = &mut *self.progress;
+        match *is_begun {
+            false => self
+                .stepper
+                .start(self.system, *t, state, t_end, counters)?,
+            true => self
+                .stepper
+                .restart(self.system, *t, state, f64::INFINITY, counters)?,
+        }
+        *is_begun = true;
+        Ok(())
+    }
+
+    pub(crate) fn check_budget(&self) -> Result<(), Outcome> {
+        match self.progress.counters.accepted >= self.budget {
+            true => Err(Outcome::StepBudget),
+            false => Ok(()),
+        }
+    }
+
+    /// What effects make of the step that was made, of which some have these forces.
+    pub(crate) fn go_on<O: Observer<Sys>>(
+        &mut self,
+        forces: &Option<Effects::Forces>,
+        observer: &mut O,
+    ) -> Result<Next, Outcome> {
+        let mut view = StepView {
+            system: self.system,
+            counters: &mut self.progress.counters,
+            stepper: &mut *self.stepper,
+        };
+        let Some(theta) = self.effects.propose(&mut view)? else {
+            self.pass(observer)?;
+            return Ok(Next::Step);
+        };
+        let limit = self.cut(theta, observer)?;
+        if self.effects.forces() != *forces {
+            return Ok(Next::Forces);
+        }
+        let Progress {
+            t, state, counters, ..
+        } = &mut *self.progress;
+        self.stepper
+            .restart(self.system, *t, state, limit, counters)?;
+        Ok(Next::Step)
+    }
+
     /// Steps to the end, or to where the forces change. Whatever integrator was chosen, with [`Dop853`] at its
     /// tolerance: not every integrator takes forces that a system does not know.
     #[inline(never)]
-    fn drive_under<O: Observer<Sys>>(
+    pub(crate) fn drive_under<O: Observer<Sys>>(
         &mut self,
         forces: Effects::Forces,
         t_end: f64,
@@ -197,29 +263,17 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             field: &field,
             stepper: Dop853::new(self.stepper.tolerance()),
         };
+        // The integrator of this stretch has made no step before.
+        let was_begun = core::mem::replace(&mut self.progress.is_begun, false);
         let mut course = Course {
             system: self.system,
             stepper: &mut stepper,
             effects: &mut *self.effects,
             budget: self.budget,
-            is_begun: false,
-            t: self.t,
-            late: self.late,
-            flight: self.flight,
-            state: self.state,
-            counters: self.counters,
+            progress: &mut *self.progress,
         };
         let end = course.drive(t_end, observer);
-        let Course {
-            t,
-            late,
-            flight,
-            state,
-            counters,
-            ..
-        } = course;
-        (self.t, self.late, self.flight) = (t, late, flight);
-        (self.state, self.counters) = (state, counters);
+        self.progress.is_begun = was_begun;
         end
     }
 
@@ -229,18 +283,21 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         if let Some(coordinate) = self.system.outside_chart(self.stepper.end_state()) {
             return Err(self.leave_chart(1.0, coordinate, observer));
         }
-        self.t = self.stepper.t_end();
-        self.flight += self.t - self.stepper.t_start();
-        self.state = *self.stepper.end_state();
+        self.progress.t = self.stepper.t_end();
+        self.progress.flight += self.progress.t - self.stepper.t_start();
+        self.progress.state = *self.stepper.end_state();
         let mut now = Moment {
             system: self.system,
-            t: self.t,
-            state: &mut self.state,
-            counters: &mut self.counters,
+            t: self.progress.t,
+            state: &mut self.progress.state,
+            counters: &mut self.progress.counters,
         };
         if self.effects.settle(&mut now, false)? == Change::Changed {
-            self.stepper
-                .replace_end(self.system, &self.state, &mut self.counters)?;
+            self.stepper.replace_end(
+                self.system,
+                &self.progress.state,
+                &mut self.progress.counters,
+            )?;
         }
         self.show(observer)
     }
@@ -251,33 +308,33 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         if theta <= 0.0 {
             let mut now = Moment {
                 system: self.system,
-                t: self.t,
-                state: &mut self.state,
-                counters: &mut self.counters,
+                t: self.progress.t,
+                state: &mut self.progress.state,
+                counters: &mut self.progress.counters,
             };
             self.effects.act(theta, &mut now, observer)?;
             return Ok(f64::INFINITY);
         }
-        let limit =
-            FLIGHTS * (self.flight + theta * (self.stepper.t_end() - self.stepper.t_start()));
-        self.flight = 0.0;
+        let limit = FLIGHTS
+            * (self.progress.flight + theta * (self.stepper.t_end() - self.stepper.t_start()));
+        self.progress.flight = 0.0;
         self.arrive(theta)?;
-        if let Some(coordinate) = self.system.outside_chart(&self.state) {
+        if let Some(coordinate) = self.system.outside_chart(&self.progress.state) {
             return Err(self.leave_chart(theta, coordinate, observer));
         }
         let mut now = Moment {
             system: self.system,
-            t: self.t,
-            state: &mut self.state,
-            counters: &mut self.counters,
+            t: self.progress.t,
+            state: &mut self.progress.state,
+            counters: &mut self.progress.counters,
         };
         self.effects.settle(&mut now, true)?;
         self.show(observer)?;
         let mut now = Moment {
             system: self.system,
-            t: self.t,
-            state: &mut self.state,
-            counters: &mut self.counters,
+            t: self.progress.t,
+            state: &mut self.progress.state,
+            counters: &mut self.progress.counters,
         };
         self.effects.act(theta, &mut now, observer)?;
         Ok(limit)
@@ -287,32 +344,32 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     fn arrive(&mut self, theta: f64) -> Result<(), Outcome> {
         let (start, end) = (self.stepper.t_start(), self.stepper.t_end());
         if theta >= 1.0 {
-            self.t = end;
-            self.state = *self.stepper.end_state();
+            self.progress.t = end;
+            self.progress.state = *self.stepper.end_state();
             return Ok(());
         }
         self.stepper
-            .prepare_dense(self.system, &mut self.counters)?;
-        let length = theta * (end - start) + self.late;
-        self.t = (start + length).min(end);
-        self.late = length - (self.t - start);
-        self.state = self.stepper.interpolate(theta);
+            .prepare_dense(self.system, &mut self.progress.counters)?;
+        let length = theta * (end - start) + self.progress.late;
+        self.progress.t = (start + length).min(end);
+        self.progress.late = length - (self.progress.t - start);
+        self.progress.state = self.stepper.interpolate(theta);
         Ok(())
     }
 
     /// Shows the motion from the start of the step to the present.
     #[inline(always)]
     fn show<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
-        let t = [self.stepper.t_start(), self.t];
+        let t = [self.stepper.t_start(), self.progress.t];
         let step = self.stepper.t_end() - t[0];
         let mut source = StepView {
             system: self.system,
-            counters: &mut self.counters,
+            counters: &mut self.progress.counters,
             stepper: &mut *self.stepper,
         };
         match observer.step(&mut Segment {
             t,
-            end: &self.state,
+            end: &self.progress.state,
             step,
             source: &mut source,
         }) {
@@ -343,7 +400,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         observer: &mut O,
     ) -> Result<usize, Outcome> {
         self.stepper
-            .prepare_dense(self.system, &mut self.counters)?;
+            .prepare_dense(self.system, &mut self.progress.counters)?;
         let (mut inside, mut outside, mut left) = (0.0, theta, coordinate);
         loop {
             let middle = 0.5 * (inside + outside);

@@ -38,6 +38,20 @@ impl Context<'_> {
 
     /// `let [x, _, p_x, p_y] = components(state);` with what the function uses.
     pub(super) fn bind_state(&self, function: &Function) -> TokenStream {
+        bind(&self.state_patterns(function), &quote!(state))
+    }
+
+    /// `let [x, _, p_x, p_y] = *state;` with what the function uses.
+    pub(super) fn bind_row(&self, function: &Function) -> TokenStream {
+        let patterns = self.state_patterns(function);
+        if !patterns.iter().any(|(_, any)| *any) {
+            return TokenStream::new();
+        }
+        let parts = patterns.iter().map(|(tokens, _)| tokens);
+        quote!(let [#(#parts),*] = *state;)
+    }
+
+    fn state_patterns(&self, function: &Function) -> [(TokenStream, bool); 2] {
         let coordinates = pattern(&self.names.coordinates, |i| {
             uses(function, |input| input == Input::Coordinate(i))
         });
@@ -47,7 +61,7 @@ impl Context<'_> {
                 uses(function, |input| input == Input::Quasi(i))
             }),
         };
-        bind(&[coordinates, motion], &quote!(state))
+        [coordinates, motion]
     }
 
     fn momentum_pattern(&self, function: &Function) -> (TokenStream, bool) {

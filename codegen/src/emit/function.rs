@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::quote;
 
-use super::names::{Names, claim};
+use super::names::{Names, Numbers, claim};
 use crate::program::{Function, Guard, Input, Op, Value};
 use dalembert_expr::{Function as Elementary, Rational};
 
@@ -154,9 +154,9 @@ impl<'a> Writer<'a> {
             (&second, &first)
         };
         let argument = &self.pieces[argument.index()].tokens;
-        self.statements.extend(
-            quote!(let (#sine, #cosine) = ::dalembert::__private::math::sin_cos(#argument);),
-        );
+        let functions = self.names.numbers.functions();
+        self.statements
+            .extend(quote!(let (#sine, #cosine) = #functions::sin_cos(#argument);));
         self.pieces.push(atom(quote!(#first)));
         self.paired[other] = Some(second);
         true
@@ -179,10 +179,13 @@ impl<'a> Writer<'a> {
 
     fn write_guard(&mut self, guard: &Guard) {
         let at = |value: &Value| self.pieces[value.index()].tokens.clone();
+        let numbers = self.names.numbers;
+        let guards = numbers.guards();
+        let zero = || numbers.constant(quote!(0.0));
         let statement = match guard {
             Guard::Pivot { pivot, value } => {
                 let value = at(value);
-                quote!(::dalembert::__private::positive_pivot(#pivot, #value)?;)
+                quote!(#guards::positive_pivot(#pivot, #value)?;)
             }
             Guard::Constraint {
                 constraint,
@@ -192,9 +195,9 @@ impl<'a> Writer<'a> {
                 let squared = at(squared);
                 let reference = match reference {
                     Some(reference) => at(reference),
-                    None => quote!(0.0),
+                    None => zero(),
                 };
-                quote!(::dalembert::__private::independent_constraint(#constraint, #squared, #reference)?;)
+                quote!(#guards::independent_constraint(#constraint, #squared, #reference)?;)
             }
             Guard::Mass {
                 constraint,
@@ -202,7 +205,7 @@ impl<'a> Writer<'a> {
                 diagonal,
             } => {
                 let (pivot, diagonal) = (at(pivot), at(diagonal));
-                quote!(::dalembert::__private::regular_mass(#constraint, #pivot, #diagonal)?;)
+                quote!(#guards::regular_mass(#constraint, #pivot, #diagonal)?;)
             }
             Guard::Frame {
                 quasi,
@@ -212,13 +215,13 @@ impl<'a> Writer<'a> {
                 let squared = at(squared);
                 let reference = match reference {
                     Some(reference) => at(reference),
-                    None => quote!(0.0),
+                    None => zero(),
                 };
-                quote!(::dalembert::__private::independent_form(#quasi, #squared, #reference)?;)
+                quote!(#guards::independent_form(#quasi, #squared, #reference)?;)
             }
             Guard::Surface { surface, squared } => {
                 let squared = at(squared);
-                quote!(::dalembert::__private::regular_surface(#surface, #squared)?;)
+                quote!(#guards::regular_surface(#surface, #squared)?;)
             }
         };
         self.statements.extend(statement);
@@ -262,15 +265,16 @@ impl<'a> Writer<'a> {
 
     fn call(&mut self, name: &str, arguments: &[Value]) -> Piece {
         let name = Ident::new(name, Span::call_site());
+        let functions = self.names.numbers.functions();
         let arguments = arguments.iter().map(|&value| self.tokens_of(value));
-        atom(quote!(::dalembert::__private::math::#name(#(#arguments),*)))
+        atom(quote!(#functions::#name(#(#arguments),*)))
     }
 
     fn piece(&mut self, op: &Op) -> Piece {
         match op {
             Op::Input(input) => atom(self.input(*input)),
-            Op::Number(number) => literal(number.to_f64()),
-            Op::Pi => atom(quote!(::core::f64::consts::PI)),
+            Op::Number(number) => self.constant(literal(number.to_f64())),
+            Op::Pi => self.constant(atom(quote!(::core::f64::consts::PI))),
             Op::Neg(a) => {
                 let (tokens, size) = self.operand(*a, Binding::Product);
                 Piece {
@@ -294,7 +298,15 @@ impl<'a> Writer<'a> {
     fn power(&mut self, base: Value, exponent: &Rational) -> Piece {
         let base = self.tokens_of(base);
         let exponent = literal(exponent.to_f64()).tokens;
-        atom(quote!(::dalembert::__private::math::powf(#base, #exponent)))
+        let functions = self.names.numbers.functions();
+        atom(quote!(#functions::powf(#base, #exponent)))
+    }
+
+    fn constant(&self, piece: Piece) -> Piece {
+        match self.names.numbers {
+            Numbers::One => piece,
+            Numbers::SideBySide => atom(self.names.numbers.constant(piece.tokens)),
+        }
     }
 
     fn input(&self, input: Input) -> TokenStream {

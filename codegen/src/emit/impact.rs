@@ -21,14 +21,12 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
     let laws = emit_laws(context, functions);
     let contacts = emit_contacts(context, functions);
     let resets = emit_resets(context, functions);
-    let series = super::jet::emit_gap_series(context, &functions.gap_jet);
     let attributes = super::attributes();
     quote! {
         #attributes
         impl ::dalembert::Impacting for #type_name {
             type Gaps = ::dalembert::__private::SVector<f64, #s>;
             #gaps
-            #series
             #responses
             #conditions
             #laws

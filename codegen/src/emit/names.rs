@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use proc_macro2::{Ident, Span, TokenStream};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
 use crate::mechanics::Frame;
@@ -30,10 +30,47 @@ pub(super) struct Names {
     pub quasi: Vec<Ident>,
     /// Places of parameters: `self.m`, `self.m[2]`.
     pub parameters: Vec<TokenStream>,
+    /// What functions compute in.
+    pub numbers: Numbers,
+}
+
+/// What a generated function computes in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Numbers {
+    /// `f64`
+    One,
+    /// `L`, one number or several side by side.
+    SideBySide,
+}
+
+impl Numbers {
+    /// A constant.
+    pub(super) fn constant(self, constant: TokenStream) -> TokenStream {
+        match self {
+            Self::One => constant,
+            Self::SideBySide => quote!(L::of(#constant)),
+        }
+    }
+
+    /// Where elementary functions are.
+    pub(super) fn functions(self) -> TokenStream {
+        match self {
+            Self::One => quote!(::dalembert::__private::math),
+            Self::SideBySide => quote!(L),
+        }
+    }
+
+    /// Where guards are.
+    pub(super) fn guards(self) -> TokenStream {
+        match self {
+            Self::One => quote!(::dalembert::__private),
+            Self::SideBySide => quote!(::dalembert::__private::lanes),
+        }
+    }
 }
 
 /// Names that generated functions use for their own arguments and locals; `dalembert::__private::arguments` has each of them.
-const ARGUMENTS: [&str; 25] = [
+const ARGUMENTS: [&str; 27] = [
     "t",
     "state",
     "rate",
@@ -53,6 +90,8 @@ const ARGUMENTS: [&str; 25] = [
     "order",
     "coefficients",
     "jets",
+    "parameters",
+    "firsts",
     "gaps",
     "k",
     "weight",
@@ -101,6 +140,17 @@ impl Names {
             velocities,
             quasi,
             parameters: places(model, &quote!(self)),
+            numbers: Numbers::One,
+        }
+    }
+
+    /// Those inside functions of numbers side by side, which are given the parameters as an array.
+    pub fn side_by_side(&self) -> Self {
+        let places = (0..self.parameters.len()).map(Literal::usize_unsuffixed);
+        Self {
+            parameters: places.map(|place| quote!(parameters[#place])).collect(),
+            numbers: Numbers::SideBySide,
+            ..self.clone()
         }
     }
 
@@ -184,7 +234,7 @@ fn place(holder: &TokenStream, name: &Name) -> TokenStream {
     let field = Ident::new(&name.field, Span::call_site());
     match name.member {
         Some(member) => {
-            let index = proc_macro2::Literal::usize_unsuffixed(member - 1);
+            let index = Literal::usize_unsuffixed(member - 1);
             quote!(#holder.#field[#index])
         }
         None => quote!(#holder.#field),

@@ -244,13 +244,19 @@ impl Builder {
         }
     }
 
-    /// Puts the operations of a finished function into an empty one, as they are; its results.
+    /// Adds the operations of a finished function, as they are but for those that are there already; its results.
     pub fn replay(&mut self, function: &Function) -> Vec<Value> {
+        let mut values: Vec<Value> = Vec::with_capacity(function.ops.len());
         for (op, name) in function.ops.iter().zip(&function.names) {
-            let value = self.push(op.clone());
-            self.names[value.index()].clone_from(name);
+            let value = self.push(op.clone().with_operands(|value| values[value.index()]));
+            let own = &mut self.names[value.index()];
+            if own.is_none() {
+                own.clone_from(name);
+            }
+            values.push(value);
         }
-        function.outputs.clone()
+        let outputs = function.outputs.iter();
+        outputs.map(|output| values[output.index()]).collect()
     }
 
     /// The finished function with every operation, needed or not.

@@ -2,7 +2,7 @@
 
 use super::jet::{Jet, degree};
 use super::recipes::{constrained, declared, geometry, impact, motion, reduced, volume};
-use super::{Density, Form, Input, Program};
+use super::{Density, Form, Function, Input, Program};
 use crate::claims::Volume;
 use crate::mechanics::Derivation;
 use crate::model::Model;
@@ -52,9 +52,14 @@ fn lower_form(
     let rate = motion::rate(model, derivation, form);
     let component = |input: Input| input.component(model.coordinates.len());
     let components = degree::of_components(&rate, component);
+    let impacting = impact::impacting(model, derivation, form);
+    // Gaps that are not analytic have no series that would tell where they vanish.
+    let gaps = impacting.iter().map(|functions| &functions.gaps);
+    let gaps = gaps.filter(|gaps| Jet::of(&[gaps], &components, component).is_analytic());
+    let functions: Vec<&Function> = core::iter::once(&rate).chain(gaps).collect();
     Program {
         form,
-        jet: Jet::of(&rate, &components, component),
+        jet: Jet::of(&functions, &components, component),
         rate,
         scale: motion::scale(model, derivation, form),
         velocity: motion::velocity(model, derivation, form),
@@ -70,9 +75,7 @@ fn lower_form(
             Form::Reduced => geometry::reduced_geometry(model, derivation),
         },
         constrained: constrained::constrained(model, derivation, form),
-        impacting: impact::impacting(model, derivation, form, |gaps| {
-            Jet::of(gaps, &components, component)
-        }),
+        impacting,
         density: model.extras.volume.then(|| Density {
             divergence: geometry::divergence(model, derivation, form),
             form: geometry::density_form(model, derivation),

@@ -244,7 +244,7 @@ pub struct Program {
     pub form: Form,
     /// `(t, s) -> (qdot, pdot)` or `(qdot, udot)`
     pub rate: Function,
-    /// Its Taylor coefficients along the motion.
+    /// Taylor coefficients along the motion, of the rate and, where they are analytic, of the gaps.
     pub jet: jet::Jet,
     /// `(t, q) ->` the unit of each component of the state.
     pub scale: Function,
@@ -463,8 +463,6 @@ impl InvariantVolume {
 pub struct Impacting {
     /// `(t, q) -> h_s`
     pub gaps: Function,
-    /// Their Taylor coefficients along the motion.
-    pub gap_jet: jet::Jet,
     /// `(t, s) -> dh_s(qdot) + d_t h_s`
     pub gap_rates: Function,
     /// `(t, s, w) -> d^2h_s/dt^2` where the motion's part of the state changes at the rates `w`
@@ -486,7 +484,6 @@ impl Impacting {
     fn functions(&self) -> Vec<&Function> {
         let Self {
             gaps,
-            gap_jet,
             gap_rates,
             gap_accelerations,
             gap_responses,
@@ -501,8 +498,7 @@ impl Impacting {
             .chain(resets)
             .flatten();
         let moving = [gap_rates, gap_accelerations, gap_responses];
-        [gaps, &gap_jet.function]
-            .into_iter()
+        core::iter::once(gaps)
             .chain(moving)
             .chain(contacts)
             .chain(declared)

@@ -27,7 +27,7 @@ pub(super) fn prune(
     for (index, (op, name)) in ops.into_iter().zip(names).enumerate() {
         if needed[index] {
             renumbered[index] = Value::new(kept.len());
-            kept.push(map_operands(op, |value| renumbered[value.index()]));
+            kept.push(op.with_operands(|value| renumbered[value.index()]));
             kept_names.push(name);
         }
     }
@@ -38,19 +38,28 @@ pub(super) fn prune(
     (kept, kept_names, outputs)
 }
 
-fn map_operands(op: Op, map: impl Fn(Value) -> Value) -> Op {
-    match op {
-        Op::Input(_) | Op::Number(_) | Op::Pi => op,
-        Op::Neg(a) => Op::Neg(map(a)),
-        Op::Add(a, b) => Op::Add(map(a), map(b)),
-        Op::Sub(a, b) => Op::Sub(map(a), map(b)),
-        Op::Mul(a, b) => Op::Mul(map(a), map(b)),
-        Op::Div(a, b) => Op::Div(map(a), map(b)),
-        Op::Sqrt(a) => Op::Sqrt(map(a)),
-        Op::Power(a, exponent) => Op::Power(map(a), exponent),
-        Op::Call(function, a) => Op::Call(function, map(a)),
-        Op::Atan2(y, x) => Op::Atan2(map(y), map(x)),
-        Op::Guard(guard) => Op::Guard(map_guard(guard, map)),
+impl Op {
+    /// The operation with other operands; those of a sum or product in the order of values.
+    pub(super) fn with_operands(self, map: impl Fn(Value) -> Value) -> Self {
+        match self {
+            Self::Input(_) | Self::Number(_) | Self::Pi => self,
+            Self::Neg(a) => Self::Neg(map(a)),
+            Self::Add(a, b) => {
+                let (a, b) = (map(a), map(b));
+                Self::Add(a.min(b), a.max(b))
+            }
+            Self::Sub(a, b) => Self::Sub(map(a), map(b)),
+            Self::Mul(a, b) => {
+                let (a, b) = (map(a), map(b));
+                Self::Mul(a.min(b), a.max(b))
+            }
+            Self::Div(a, b) => Self::Div(map(a), map(b)),
+            Self::Sqrt(a) => Self::Sqrt(map(a)),
+            Self::Power(a, exponent) => Self::Power(map(a), exponent),
+            Self::Call(function, a) => Self::Call(function, map(a)),
+            Self::Atan2(y, x) => Self::Atan2(map(y), map(x)),
+            Self::Guard(guard) => Self::Guard(map_guard(guard, map)),
+        }
     }
 }
 

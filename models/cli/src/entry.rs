@@ -12,7 +12,7 @@ use dalembert::{
 
 use crate::accuracy::{self, Plan, Study, Verified};
 use crate::args::{Form, OffConstraint};
-use crate::driver::{self, Ending, Settings, Watch};
+use crate::driver::{self, Abreast, Ending, Settings, Watch};
 use crate::error::state_text;
 
 /// One model of the list handed to [`run`](crate::run), with its scenes.
@@ -157,6 +157,14 @@ pub(crate) trait AnyModel {
         settings: &Settings,
         watch: &mut dyn Watch,
     ) -> Result<Ending, String>;
+    /// As [`AnyModel::simulate`], with Taylor series, of several runs at once; `looks_inside` where watches look at
+    /// states inside steps.
+    fn simulate_abreast(
+        &self,
+        runs: Vec<Together<'_>>,
+        settings: &Settings,
+        looks_inside: bool,
+    ) -> Vec<Result<Ending, String>>;
     /// What accuracy costs from this state on; `tell` hears what is about to be measured.
     fn study(
         &self,
@@ -167,6 +175,14 @@ pub(crate) trait AnyModel {
     ) -> Result<Study, String>;
     /// The measured error of a run.
     fn verify(&self, origin: &Origin, settings: &Settings) -> Result<Verified, String>;
+}
+
+/// One of several runs that are made at once.
+pub(crate) struct Together<'w> {
+    /// The values of all parameters.
+    pub parameters: Vec<f64>,
+    pub origin: Origin,
+    pub watch: &'w mut dyn Watch,
 }
 
 /// The data of a contact as `inspect` reports them.
@@ -355,6 +371,18 @@ impl<M: Model> AnyModel for Typed<M> {
         ))
     }
 
+    fn simulate_abreast(
+        &self,
+        runs: Vec<Together<'_>>,
+        settings: &Settings,
+        looks_inside: bool,
+    ) -> Vec<Result<Ending, String>> {
+        match settings.form {
+            Form::Reduced => abreast(runs, settings, looks_inside, |typed: Self| typed.0),
+            Form::Global => abreast(runs, settings, looks_inside, |typed: Self| typed.0.global()),
+        }
+    }
+
     fn study(
         &self,
         origin: &Origin,
@@ -372,6 +400,40 @@ impl<M: Model> AnyModel for Typed<M> {
             model, &state, settings
         ))
     }
+}
+
+/// Makes several runs at once, in a form of the model. Runs that have no state to begin with are told why.
+fn abreast<M: Model, S: Model<Vector = M::Vector>>(
+    runs: Vec<Together<'_>>,
+    settings: &Settings,
+    looks_inside: bool,
+    form: impl Fn(Typed<M>) -> S,
+) -> Vec<Result<Ending, String>> {
+    let mut refused = Vec::new();
+    let mut begun = Vec::new();
+    for (index, run) in runs.into_iter().enumerate() {
+        let with_parameters = || {
+            let mut model = M::with_defaults();
+            for (index, value) in run.parameters.iter().enumerate() {
+                model.set_parameter(index, *value);
+            }
+            Typed(model)
+        };
+        let (typed, model) = (with_parameters(), form(with_parameters()));
+        match typed.prepare(&model, 0.0, &run.origin) {
+            Ok(state) => begun.push(Abreast {
+                model,
+                state,
+                watch: run.watch,
+            }),
+            Err(error) => refused.push((index, state_text(&M::DESCRIPTION, &error))),
+        }
+    }
+    let mut endings = driver::simulate_abreast(begun, settings, looks_inside);
+    for (index, reason) in refused {
+        endings.insert(index, Err(reason));
+    }
+    endings
 }
 
 /// What tables and pictures show of a state.

@@ -2,6 +2,7 @@
 
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::jet::LENGTH;
+use dalembert::numbers::Numbers;
 use dalembert::{
     Fault, Impacting, Impacts, ParameterError, Scene, System, TaylorField, VectorField,
 };
@@ -36,24 +37,42 @@ impl<const S: usize> VectorField for Point<S> {
 }
 
 impl<const S: usize> TaylorField for Point<S> {
-    type Jets = [[f64; LENGTH]; 0];
+    type Parameters<L: Numbers> = [L; 2];
+    type Row<L: Numbers> = [L; 4];
+    type Gaps<L: Numbers> = [L; 0];
+    type Firsts<L: Numbers> = [L; 4];
+    type Jets<L: Numbers> = [[L; LENGTH]; 0];
 
-    fn expand(
-        &self,
-        _t: f64,
-        unit: f64,
-        order: usize,
-        coefficients: &mut [State; LENGTH],
-        _jets: &mut Self::Jets,
+    fn parameters(&self) -> [f64; 2] {
+        self.acceleration
+    }
+
+    fn begin<L: Numbers>(
+        [ax, ay]: &[L; 2],
+        _t: L,
+        [_, _, vx, vy]: &[L; 4],
+        firsts: &mut [L; 4],
     ) -> Result<(), Fault> {
-        let [[_, _, vx, vy]] = coefficients[0].data.0;
-        let [ax, ay] = self.acceleration.map(|own| unit * own);
-        coefficients[1..=order].fill(State::zeros());
-        coefficients[1] = State::new(unit * vx, unit * vy, ax, ay);
-        if order > 1 {
-            coefficients[2] = State::new(0.5 * unit * ax, 0.5 * unit * ay, 0.0, 0.0);
-        }
+        *firsts = [*vx, *vy, *ax, *ay];
         Ok(())
+    }
+
+    fn advance<L: Numbers>(
+        _parameters: &[L; 2],
+        unit: L,
+        order: usize,
+        firsts: &[L; 4],
+        coefficients: &mut [[L; 4]; LENGTH],
+        _gaps: &mut [[L; 0]; LENGTH],
+        _jets: &mut Self::Jets<L>,
+    ) {
+        let [vx, vy, ax, ay] = firsts.map(|rate| unit * rate);
+        let half = L::of(0.5) * unit;
+        coefficients[1..=order].fill([L::ZERO; 4]);
+        coefficients[1] = [vx, vy, ax, ay];
+        if order > 1 {
+            coefficients[2] = [half * ax, half * ay, L::ZERO, L::ZERO];
+        }
     }
 }
 

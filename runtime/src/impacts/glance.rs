@@ -53,9 +53,21 @@ pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
 ) -> Result<Glance<Sys::Gaps>, Outcome> {
     let (t, length) = (step.t_end(), step.length());
-    let gaps = finite::<Sys>(step.system.gaps(t, step.end()))?;
-    step.counters.event_evaluations += 1;
-    let series = GapSeries::of(step, &gaps);
+    let known = step.stepper.end_gaps();
+    let has_series = known.len() == Sys::Gaps::LEN;
+    let gaps = match has_series {
+        true => {
+            let mut gaps = Sys::Gaps::zeros();
+            gaps.as_mut_slice().copy_from_slice(known);
+            gaps
+        }
+        false => {
+            step.counters.event_evaluations += 1;
+            step.system.gaps(t, step.end())
+        }
+    };
+    let gaps = finite::<Sys>(gaps)?;
+    let series = has_series.then(|| GapSeries::of(step, &gaps)).flatten();
     let (rates, probe) = match &series {
         Some(series) => (series.last_rates(length), gaps),
         None => (step.system.gap_rates(t, step.end())?, probe(step)),

@@ -48,25 +48,18 @@ pub(super) struct GapSeries<G> {
 }
 
 impl<G: StateVector> GapSeries<G> {
-    /// The polynomials of a step at whose end the gaps are `last`, if they are of use.
+    /// The polynomials of a step that is a series, at whose end the gaps are `last`, if they are of use.
     #[inline(always)]
     pub(super) fn of<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         step: &StepView<'_, Sys, Step>,
         last: &G,
     ) -> Option<Self> {
-        let Series {
-            unit,
-            order,
-            coefficients,
-        } = step.stepper.series()?;
+        let Series { unit, order } = step.stepper.series()?;
         // NOTE: terms above the order stay zero.
         let mut gaps = [G::zeros(); LENGTH];
-        let t = step.t_start();
-        if !step
-            .system
-            .gap_series(t, unit, order, coefficients, &mut gaps)
-        {
-            return None;
+        for (k, gap) in gaps[..=order].iter_mut().enumerate() {
+            gap.as_mut_slice()
+                .copy_from_slice(step.stepper.gap_coefficient(k));
         }
         let theta = step.length() / unit;
         let mut power = 1.0;

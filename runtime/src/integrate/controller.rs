@@ -131,8 +131,8 @@ pub(super) fn landing(t: f64, h: f64, t_end: f64) -> f64 {
 }
 
 /// The first component that is not finite.
-pub(super) fn not_finite<S: StateVector>(state: &S) -> Option<usize> {
-    state.as_slice().iter().position(|value| !value.is_finite())
+pub(super) fn not_finite(components: &[f64]) -> Option<usize> {
+    components.iter().position(|value| !value.is_finite())
 }
 
 /// Size of the first step, by comparing an explicit Euler step with the rate at its end (Hairer, Norsett, Wanner

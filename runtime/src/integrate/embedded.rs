@@ -167,7 +167,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         self.weights = Weights::new(self.tolerance, &field.field.scale(t, state));
         let rate = &mut self.stages.as_mut()[M::LAST];
         field.rate(t, state, rate)?;
-        match not_finite(state).or(not_finite(rate)) {
+        match not_finite(state.as_slice()).or(not_finite(rate.as_slice())) {
             Some(component) => Err(StepFailure::NonFinite { component }),
             None => Ok(()),
         }
@@ -205,7 +205,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         if !M::ERROR_TAKES_LAST {
             field.rate(t + h, &self.end, &mut stages[M::LAST])?;
         }
-        match not_finite(&self.end).or(not_finite(&stages[M::LAST])) {
+        match not_finite(self.end.as_slice()).or(not_finite(stages[M::LAST].as_slice())) {
             Some(component) => Err(StepFailure::NonFinite { component }),
             None if error.is_nan() => Err(StepFailure::NonFinite { component: 0 }),
             None => Ok(error),

@@ -278,7 +278,7 @@ pub(super) fn evaluate<F: VectorField>(
 }
 
 fn check_finite<S: StateVector>(state: &S, rate: &S) -> Result<(), StepFailure> {
-    match not_finite(state).or(not_finite(rate)) {
+    match not_finite(state.as_slice()).or(not_finite(rate.as_slice())) {
         Some(component) => Err(StepFailure::NonFinite { component }),
         None => Ok(()),
     }

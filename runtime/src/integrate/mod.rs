@@ -36,5 +36,7 @@ pub use lagrange_d_alembert::{ComposedPrinciple, Dla2, Dla4, MidpointPrinciple};
 pub use rk4::{ClassicalRungeKutta, Rk4};
 pub use stats::Counters;
 pub use stepper::{Series, StepFailure, Stepper};
+#[cfg(feature = "lanes")]
+pub(crate) use taylor::lanes;
 pub use taylor::{TAYLOR, Taylor};
 pub use tolerance::{Tolerance, ToleranceError};

@@ -6,7 +6,6 @@ use super::stats::Counters;
 use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
-use crate::jet::LENGTH;
 
 /// A one-step integrator with dense output, whether it chooses its steps by an error estimate or keeps a size.
 ///
@@ -86,8 +85,19 @@ pub trait Stepper<F: VectorField> {
     fn end_rates(&self) -> [&F::State; 2];
 
     /// The power series that the last step is made of, where it is.
-    fn series(&self) -> Option<Series<'_, F::State>> {
+    fn series(&self) -> Option<Series> {
         None
+    }
+
+    /// Coefficient `k` of the power series of all gaps along the last step; nothing where there are none.
+    fn gap_coefficient(&self, k: usize) -> &[f64] {
+        let _ = k;
+        &[]
+    }
+
+    /// The gaps at the end of the last step, where they have power series.
+    fn end_gaps(&self) -> &[f64] {
+        &[]
     }
 
     /// Whether the last step's dense output is ready.
@@ -105,15 +115,13 @@ pub trait Stepper<F: VectorField> {
     fn interpolate(&self, theta: f64) -> F::State;
 }
 
-/// The motion of a step as a power series: `coefficients[0] + coefficients[1] s + ..` at time `t_start + unit s`.
+/// That a step is a power series in `s`, at time `t_start + unit s`.
 #[derive(Debug, Clone, Copy)]
-pub struct Series<'a, S> {
+pub struct Series {
     /// Unit of time.
     pub unit: f64,
     /// Number of the last coefficient.
     pub order: usize,
-    /// The coefficients; those above the order mean nothing.
-    pub coefficients: &'a [S; LENGTH],
 }
 
 /// Why no step could be made.

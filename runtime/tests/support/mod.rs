@@ -3,6 +3,7 @@
 
 pub mod line;
 
+use dalembert::numbers::Numbers;
 use dalembert::{
     Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Gauss4, Gauss6, Impacting, Impacts,
     Jump, Law, Outcome, ParameterError, Rk4, Run, Simulation, Stepper, System, Taylor, TaylorField,
@@ -66,22 +67,40 @@ impl<const S: usize> VectorField for Particle<S> {
 }
 
 impl<const S: usize> TaylorField for Particle<S> {
-    type Jets = [[f64; LENGTH]; 0];
+    type Parameters<L: Numbers> = [L; 2];
+    type Row<L: Numbers> = [L; 4];
+    type Gaps<L: Numbers> = [L; 0];
+    type Firsts<L: Numbers> = [L; 4];
+    type Jets<L: Numbers> = [[L; LENGTH]; 0];
 
-    fn expand(
-        &self,
-        _: f64,
-        unit: f64,
-        order: usize,
-        coefficients: &mut [State; LENGTH],
-        _: &mut Self::Jets,
+    fn parameters(&self) -> [f64; 2] {
+        self.force
+    }
+
+    fn begin<L: Numbers>(
+        [fx, fy]: &[L; 2],
+        _: L,
+        [_, _, vx, vy]: &[L; 4],
+        firsts: &mut [L; 4],
     ) -> Result<(), Fault> {
-        let [[_, _, vx, vy]] = coefficients[0].data.0;
-        let [fx, fy] = self.force.map(|force| unit * force);
-        coefficients[1..=order].fill(State::zeros());
-        coefficients[1] = State::new(unit * vx, unit * vy, fx, fy);
-        coefficients[2] = State::new(0.5 * unit * fx, 0.5 * unit * fy, 0.0, 0.0);
+        *firsts = [*vx, *vy, *fx, *fy];
         Ok(())
+    }
+
+    fn advance<L: Numbers>(
+        _: &[L; 2],
+        unit: L,
+        order: usize,
+        firsts: &[L; 4],
+        coefficients: &mut [[L; 4]; LENGTH],
+        _: &mut [[L; 0]; LENGTH],
+        _: &mut Self::Jets<L>,
+    ) {
+        let [vx, vy, fx, fy] = firsts.map(|rate| unit * rate);
+        let half = L::of(0.5) * unit;
+        coefficients[1..=order].fill([L::ZERO; 4]);
+        coefficients[1] = [vx, vy, fx, fy];
+        coefficients[2] = [half * fx, half * fy, L::ZERO, L::ZERO];
     }
 }
 

@@ -1,5 +1,6 @@
 //! W5: many disks that differ in their rate of rolling, on one core.
 
+use dalembert::lanes::{Member, run_abreast};
 use dalembert::{Dop853, Scene, Simulation, Stepper, Taylor, Tolerance};
 use serde_json::json;
 
@@ -15,25 +16,39 @@ const TRAJECTORIES: usize = 10_000;
 const SAMPLES: usize = 10;
 
 /// Trajectories that are timed together: a stretch so short that some repetition is undisturbed.
-const PART: usize = 80;
+const PART: usize = 400;
 
 /// W5, and W5r.
 pub fn disks(plan: &Plan) {
     for &value in plan.ensemble_tolerances {
         let tolerance = Tolerance::new(value).expect("a tolerance");
-        report(value, "dalembert-taylor", Taylor::new(tolerance), plan);
-        report(value, "dalembert-dop853", Dop853::new(tolerance), plan);
+        report(value, "dalembert-taylor", plan, |first, ends| {
+            alone(Taylor::new(tolerance), first, ends)
+        });
+        report(value, "dalembert-abreast", plan, |first, ends| {
+            abreast(Taylor::new(tolerance), first, ends)
+        });
+        report(value, "dalembert-dop853", plan, |first, ends| {
+            alone(Dop853::new(tolerance), first, ends)
+        });
     }
 }
 
-fn report<T: Stepper<Disk> + Copy>(tolerance: f64, peer: &str, stepper: T, plan: &Plan) {
+/// `run` runs trajectories from the first on for 10 seconds, sets the places where they end along x, and gives the number of
+/// impacts.
+fn report(
+    tolerance: f64,
+    peer: &str,
+    plan: &Plan,
+    run: impl Fn(usize, &mut [f64]) -> u64,
+) {
     let mut ends = vec![0.0; TRAJECTORIES];
     let mut times = vec![f64::INFINITY; TRAJECTORIES / PART];
     let mut impacts = 0;
     for _ in 0..plan.repetitions {
         impacts = 0;
         for (part, (ends, least)) in ends.chunks_mut(PART).zip(&mut times).enumerate() {
-            let (time, count) = timed(|| run(stepper, part * PART, ends));
+            let (time, count) = timed(|| run(part * PART, ends));
             impacts += count;
             *least = least.min(time.as_secs_f64());
         }
@@ -49,17 +64,35 @@ fn report<T: Stepper<Disk> + Copy>(tolerance: f64, peer: &str, stepper: T, plan:
     );
 }
 
-/// Runs trajectories for 10 seconds; the places where they end along x, and the number of impacts.
-fn run<T: Stepper<Disk> + Copy>(stepper: T, first: usize, ends: &mut [f64]) -> u64 {
+/// How fast a trajectory rolls.
+fn roll(index: usize) -> f64 {
+    10.0 + 0.005 * (2.0 * index as f64 / (TRAJECTORIES - 1) as f64 - 1.0)
+}
+
+fn alone<T: Stepper<Disk> + Copy>(stepper: T, first: usize, ends: &mut [f64]) -> u64 {
     let disk = Disk::default();
     let mut impacts = 0;
     for (k, end) in ends.iter_mut().enumerate() {
-        let roll = 10.0 + 0.005 * (2.0 * (first + k) as f64 / (TRAJECTORIES - 1) as f64 - 1.0);
         let run = Simulation::new(&disk, stepper, disk.effects())
-            .run(0.0, rolling(&disk, roll), 10.0, &mut ())
+            .run(0.0, rolling(&disk, roll(first + k)), 10.0, &mut ())
             .expect("a start");
         impacts += run.counters.impacts;
         *end = run.state[0];
     }
+    impacts
+}
+
+fn abreast(stepper: Taylor<Disk>, first: usize, ends: &mut [f64]) -> u64 {
+    let disk = Disk::default();
+    let mut impacts = 0;
+    let members = (0..ends.len()).map(|k| {
+        let start = (0.0, rolling(&disk, roll(first + k)));
+        Member::new(k, &disk, stepper, disk.effects(), (), start, 10.0)
+    });
+    run_abreast(members, |k, run| {
+        let run = run.expect("a start");
+        impacts += run.counters.impacts;
+        ends[k] = run.state[0];
+    });
     impacts
 }

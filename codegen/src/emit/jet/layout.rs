@@ -82,7 +82,7 @@ impl Layout {
     pub(super) fn begin(&self, mut first: impl FnMut(Value) -> TokenStream) -> TokenStream {
         let slopes = self.steady.iter().map(|&value| {
             let slope = local("slope", value);
-            quote!(let mut #slope = 0.0;)
+            quote!(let mut #slope = L::ZERO;)
         });
         let lasts = self.multiplied.iter().map(|&value| {
             let (last, first) = (local("last", value), first(value));

@@ -1,7 +1,8 @@
-//! `TaylorField`: coefficients of the motion's power series, order after order.
+//! `TaylorField`: coefficients of the motion's power series, order after order, and of the gaps along it.
 //!
 //! Order 0 is straight-line code like every other function. Above it one loop over the orders holds a statement for
-//! each value that varies; sums over products of kept coefficients are calls ([`layout`]).
+//! each value that varies; sums over products of kept coefficients are calls ([`layout`]). Both are written over
+//! `L: Numbers`: of one motion or of several side by side.
 
 mod layout;
 mod recurrence;
@@ -10,159 +11,185 @@ mod writer;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::function::joined;
+use super::function::{Body, emit_body, joined};
 use super::{Context, doc};
-use crate::program::Program;
 use crate::program::jet::Jet;
+use crate::program::{Function, Value};
 use writer::Writer;
 
 /// `impl TaylorField`
 pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
+    let jet = &context.program.jet;
+    let components = context.dimension() + context.motion_dimension();
+    let gaps = jet.function.outputs.len() - components;
+    let places = &context.names.parameters;
+    let parameters = places.len();
     let Expansion {
-        start,
-        results,
+        begin,
+        known,
         advance,
-        next,
-        keep,
         room,
-    } = Expansion::of(&context.program.jet, context);
+    } = Expansion::of(jet, context);
     let documentation = doc::lines(&[
         "The power series of the motion from `coefficients[0]`: coefficient `k + 1` of the state is coefficient `k` of \
-         its rate over `k + 1`, in units of time."
+         its rate over `k + 1`, in units of time. Those of the gaps follow from it."
             .to_string(),
     ]);
     let attributes = super::attributes();
-    let work = work(context.program);
+    let work = work(jet);
     quote! {
         #attributes
         impl ::dalembert::TaylorField for #type_name {
-            type Jets = #room;
+            type Parameters<L: ::dalembert::numbers::Numbers> = [L; #parameters];
+            type Row<L: ::dalembert::numbers::Numbers> = [L; #components];
+            type Gaps<L: ::dalembert::numbers::Numbers> = [L; #gaps];
+            type Firsts<L: ::dalembert::numbers::Numbers> = [L; #known];
+            type Jets<L: ::dalembert::numbers::Numbers> = #room;
 
             const WORK: ::core::option::Option<::dalembert::jet::Work> = #work;
 
-            #documentation
             #[inline]
-            fn expand(
-                &self,
-                t: f64,
-                unit: f64,
-                order: usize,
-                coefficients: &mut [Self::State; ::dalembert::jet::LENGTH],
-                jets: &mut Self::Jets,
+            fn parameters(&self) -> [f64; #parameters] {
+                [#(#places),*]
+            }
+
+            #[inline]
+            fn begin<L: ::dalembert::numbers::Numbers>(
+                parameters: &[L; #parameters],
+                t: L,
+                state: &[L; #components],
+                firsts: &mut [L; #known],
             ) -> ::core::result::Result<(), ::dalembert::Fault> {
-                let state = &coefficients[0];
-                #start
-                coefficients[1] = ::dalembert::__private::vector([#(unit * (#results)),*]);
-                for k in 1..::core::cmp::Ord::min(order, ::dalembert::jet::LENGTH - 1) {
-                    let (weight, inverse) = (k as f64, ::dalembert::jet::INVERSES[k]);
-                    let step = unit * ::dalembert::jet::INVERSES[k + 1];
-                    #advance
-                    coefficients[k + 1] = ::dalembert::__private::vector([#(step * #next),*]);
-                    #keep
-                }
+                #begin
                 ::core::result::Result::Ok(())
             }
+
+            #documentation
+            #[inline]
+            fn advance<L: ::dalembert::numbers::Numbers>(
+                parameters: &[L; #parameters],
+                unit: L,
+                order: usize,
+                firsts: &[L; #known],
+                coefficients: &mut [[L; #components]; ::dalembert::jet::LENGTH],
+                gaps: &mut [[L; #gaps]; ::dalembert::jet::LENGTH],
+                jets: &mut #room,
+            ) {
+                #advance
+            }
         }
     }
 }
 
-/// The work of expansions, those of gaps included.
-fn work(program: &Program) -> TokenStream {
-    let gaps = program
-        .impacting
-        .as_ref()
-        .map(|functions| &functions.gap_jet);
-    let jets = || core::iter::once(&program.jet).chain(gaps);
-    let values: usize = jets()
-        .map(|jet| jet.function.cost.multiplications_alike())
-        .sum();
-    let sums: f64 = jets().map(Jet::sums).sum();
+/// The work of expansions.
+fn work(jet: &Jet) -> TokenStream {
+    let values = jet.function.cost.multiplications_alike();
     let values = Literal::u32_unsuffixed(u32::try_from(values).unwrap_or(u32::MAX));
     // NOTE: the conversion saturates.
-    let sums = Literal::u32_unsuffixed(sums.ceil() as u32);
+    let sums = Literal::u32_unsuffixed(jet.sums().ceil() as u32);
     quote!(::core::option::Option::Some(::dalembert::jet::Work { values: #values, sums: #sums }))
-}
-
-/// `gap_series` of `Impacting`, if it tells where gaps vanish.
-pub(super) fn emit_gap_series(context: &Context<'_>, jet: &Jet) -> TokenStream {
-    if !jet.is_analytic() {
-        return TokenStream::new();
-    }
-    let Expansion {
-        start,
-        results,
-        advance,
-        next,
-        keep,
-        room,
-    } = Expansion::of(jet, context);
-    quote! {
-        #[inline]
-        fn gap_series(
-            &self,
-            t: f64,
-            unit: f64,
-            order: usize,
-            coefficients: &[Self::State; ::dalembert::jet::LENGTH],
-            gaps: &mut [Self::Gaps; ::dalembert::jet::LENGTH],
-        ) -> bool {
-            let state = &coefficients[0];
-            let jets: &mut #room = &mut ::dalembert::jet::Jets::ZERO;
-            #start
-            gaps[0] = ::dalembert::__private::vector([#(#results),*]);
-            for k in 1..=::core::cmp::Ord::min(order, ::dalembert::jet::LENGTH - 1) {
-                let (weight, inverse) = (k as f64, ::dalembert::jet::INVERSES[k]);
-                #advance
-                gaps[k] = ::dalembert::__private::vector([#(#next),*]);
-                #keep
-            }
-            true
-        }
-    }
 }
 
 /// The parts of an expansion.
 struct Expansion {
-    /// Order 0, with the first entries of all histories.
-    start: TokenStream,
-    /// The results at order 0.
-    results: Vec<TokenStream>,
-    /// Order `k` of every value that varies.
+    /// Order 0.
+    begin: TokenStream,
+    /// How many numbers are known of it.
+    known: usize,
+    /// The orders above.
     advance: TokenStream,
-    /// The results at order `k`.
-    next: Vec<TokenStream>,
-    /// What is kept for the next order, after the results: they take coefficients of the one before.
-    keep: TokenStream,
     /// The type of the room for coefficients.
     room: TokenStream,
 }
 
 impl Expansion {
     fn of(jet: &Jet, context: &Context<'_>) -> Self {
-        // What is kept, and what is read of order 0, is known once the orders above it are written; how it is read, once
-        // order 0 is. Where values go through memory it is known beforehand.
+        // What is kept is known once the orders are written, and how it is kept shows in what is written.
         let mut writer = Writer::of(jet, context);
         let mut orders = writer.orders();
-        let mut histories = writer.begin_histories();
-        let mut inverses = writer.begin_inverses();
-        let (body, firsts) = writer.begin(context);
-        let mut sum = TokenStream::new();
-        if writer.is_large() {
-            sum = quote!(let sum = ::dalembert::jet::shared_middle;);
-        } else {
-            writer = writer.again(firsts);
+        if !writer.is_large() {
             orders = writer.orders();
-            (histories, inverses) = (writer.begin_histories(), writer.begin_inverses());
         }
-        let (advance, next, keep) = orders;
+        let (orders, next, keep) = orders;
+        let histories = writer.begin_histories();
+        let inverses = writer.begin_inverses();
+        let (outputs, firsts) = writer.read_firsts();
+        let known = outputs.len();
+        let sum = match writer.is_large() {
+            true => quote!(let sum = ::dalembert::jet::shared_middle;),
+            false => TokenStream::new(),
+        };
+        let start = joined([sum, firsts, inverses, histories]);
         Self {
-            start: joined([sum, body.statements, inverses, histories]),
-            results: body.outputs,
-            advance,
-            next,
-            keep,
+            begin: begin(jet, outputs, context),
+            known,
+            advance: advance(&start, &orders, &next, &keep, context),
             room: writer.room.type_tokens(),
+        }
+    }
+}
+
+/// The statements of order 0.
+fn begin(jet: &Jet, outputs: Vec<Value>, context: &Context<'_>) -> TokenStream {
+    let function = &jet.function;
+    let extended = Function {
+        ops: function.ops.clone(),
+        names: function.names.clone(),
+        outputs,
+        cost: function.cost,
+    };
+    let bindings = context.bind_row(&extended);
+    let Body {
+        statements,
+        outputs,
+    } = emit_body(&extended, &context.names.side_by_side());
+    joined([bindings, statements, quote!(*firsts = [#(#outputs),*];)])
+}
+
+/// The first coefficients, and the loop over the others.
+fn advance(
+    start: &TokenStream,
+    orders: &TokenStream,
+    next: &[TokenStream],
+    keep: &TokenStream,
+    context: &Context<'_>,
+) -> TokenStream {
+    let components = context.dimension() + context.motion_dimension();
+    let (rates, gaps) = next.split_at(components);
+    let places = |from: usize, to: usize| (from..to).map(Literal::usize_unsuffixed);
+    let first_rates = places(0, components);
+    let coefficient = quote! {
+        let step = unit * L::of(::dalembert::jet::INVERSES[k + 1]);
+        coefficients[k + 1] = [#(step * #rates),*];
+    };
+    let (first_gaps, gaps, coefficient, last) = match gaps.is_empty() {
+        true => (
+            TokenStream::new(),
+            TokenStream::new(),
+            coefficient,
+            quote!(1..),
+        ),
+        false => {
+            let firsts = places(components, next.len());
+            (
+                quote!(gaps[0] = [#(firsts[#firsts]),*];),
+                quote!(gaps[k] = [#(#gaps),*];),
+                quote!(if k < order { #coefficient }),
+                quote!(1..=),
+            )
+        }
+    };
+    quote! {
+        #start
+        coefficients[1] = [#(unit * firsts[#first_rates]),*];
+        #first_gaps
+        for k in #last ::core::cmp::Ord::min(order, ::dalembert::jet::LENGTH - 1) {
+            let (weight, inverse) = (L::of(k as f64), L::of(::dalembert::jet::INVERSES[k]));
+            #orders
+            #gaps
+            #coefficient
+            #keep
         }
     }
 }

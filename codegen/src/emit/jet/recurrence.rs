@@ -4,6 +4,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::super::function::{joined, number};
+use super::super::names::Numbers;
 use super::layout::Sum;
 use super::writer::{Room, Writer, parenthesised};
 use crate::program::Value;
@@ -13,8 +14,8 @@ use crate::program::jet::{History, Recurrence};
 impl Writer<'_> {
     pub(super) fn expression(&mut self, value: Value, recurrence: &Recurrence) -> TokenStream {
         match recurrence {
-            Recurrence::Constant | Recurrence::Component(_) => quote!(0.0),
-            Recurrence::Time => quote!(if k == 1 { unit } else { 0.0 }),
+            Recurrence::Constant | Recurrence::Component(_) => quote!(L::ZERO),
+            Recurrence::Time => quote!(if k == 1 { unit } else { L::ZERO }),
             Recurrence::Same(a) => {
                 let a = self.next(*a);
                 quote!(#a)
@@ -42,15 +43,15 @@ impl Writer<'_> {
             Recurrence::Product(a, b) => self.product(*a, *b),
             Recurrence::Square(a) => {
                 let (half, first, next) = (self.half(*a), self.first(*a), self.next(*a));
-                quote!(2.0 * (#half + #first * #next))
+                quote!(L::of(2.0) * (#half + #first * #next))
             }
             Recurrence::Quotient(a, b) => self.quotient(value, *a, *b),
             Recurrence::Root(a) => {
                 let (half, a, inverse) = (self.half(value), self.next(*a), self.inverse(value));
-                quote!((0.5 * #a - #half) * #inverse)
+                quote!((L::of(0.5) * #a - #half) * #inverse)
             }
             Recurrence::Power(a, exponent) => {
-                let exponent = number(exponent.to_f64());
+                let exponent = Numbers::SideBySide.constant(number(exponent.to_f64()));
                 let rising = self.weighted_sum(*a, value);
                 let known = self.middle(History::weighted(value), History::plain(*a));
                 let inverse = self.inverse(*a);
@@ -70,7 +71,7 @@ impl Writer<'_> {
             Recurrence::Angle { y, x, squared } => self.angle(value, [*y, *x, *squared]),
             Recurrence::Absolute(a) => {
                 let (first, next) = (self.first(*a), self.next(*a));
-                quote!(if #first < 0.0 { -#next } else { #next })
+                quote!(L::turned(#next, #first))
             }
         }
     }
@@ -125,7 +126,7 @@ impl Writer<'_> {
         let is_constant =
             |value: Value| self.jet.recurrences[value.index()] == Recurrence::Constant;
         match (is_constant(a), is_constant(b)) {
-            (true, _) => Some(quote!(0.0)),
+            (true, _) => Some(quote!(L::ZERO)),
             (false, true) => {
                 let (next, first) = (self.next(a), self.first(b));
                 Some(parenthesised(quote!(#next * #first)))

@@ -6,27 +6,23 @@ use proc_macro2::{Delimiter, Group, Ident, Literal, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
 
 use super::super::Context;
-use super::super::function::{Body, emit_body, joined, number};
+use super::super::function::{joined, number};
+use super::super::names::Numbers;
 use super::layout::{Layout, local};
 use crate::program::jet::{History, Jet, Recurrence};
-use crate::program::{Function, Input, Op, Value};
+use crate::program::{Input, Op, Value};
 
 /// Series kept up to which values of order `k` are locals and sums are taken side by side. What is larger calls one
 /// shared sum and goes through memory: a compiler spends stack on every local of a function that is as long.
 const LARGE: usize = 128;
 
-/// How order 0 of values is read above it.
-pub(super) type Firsts = BTreeMap<Value, TokenStream>;
-
 pub(super) struct Writer<'a> {
     pub(super) jet: &'a Jet,
-    parameters: &'a [TokenStream],
     /// Number of components of the state.
     components: usize,
     /// How often coefficient `k` of each value is read.
     uses: Vec<usize>,
     pub(super) room: Room,
-    firsts: Firsts,
     /// Values whose order 0 is read, and those whose reciprocal is.
     read: BTreeSet<Value>,
     inverses: BTreeSet<Value>,
@@ -58,38 +54,26 @@ impl Room {
         match self {
             Self::Rows(layout) => {
                 let width = layout.width();
-                quote!([[f64; #width]; ::dalembert::jet::LENGTH])
+                quote!([[L; #width]; ::dalembert::jet::LENGTH])
             }
             Self::Histories(places) => {
                 let kept = places.len();
-                quote!([[f64; ::dalembert::jet::LENGTH]; #kept])
+                quote!([[L; ::dalembert::jet::LENGTH]; #kept])
             }
         }
     }
 }
 
 impl<'a> Writer<'a> {
-    pub(super) fn of(jet: &'a Jet, context: &'a Context<'_>) -> Self {
+    pub(super) fn of(jet: &'a Jet, context: &Context<'_>) -> Self {
         let uses = jet.uses();
         Self {
             jet,
-            parameters: &context.names.parameters,
             components: context.dimension() + context.motion_dimension(),
             room: Room::of(jet, &uses),
             uses,
-            firsts: Firsts::default(),
             read: BTreeSet::new(),
             inverses: BTreeSet::new(),
-        }
-    }
-
-    /// The same once more, when it is known where coefficients are kept and how order 0 is read.
-    pub(super) fn again(self, firsts: Firsts) -> Self {
-        Self {
-            firsts,
-            read: BTreeSet::new(),
-            inverses: BTreeSet::new(),
-            ..self
         }
     }
 
@@ -105,7 +89,7 @@ impl<'a> Writer<'a> {
         let values: TokenStream = values.collect();
         let outputs = self.jet.function.outputs.iter();
         let next = outputs.map(|&output| match self.jet.recurrences[output.index()] {
-            Recurrence::Constant => quote!(0.0),
+            Recurrence::Constant => quote!(L::ZERO),
             _ => self.next(output),
         });
         let next = next.collect();
@@ -123,7 +107,7 @@ impl<'a> Writer<'a> {
         (joined([sums, components, values]), next, factors)
     }
 
-    /// `let [next_0, _] = components(&coefficients[k]);`
+    /// `let [next_0, _] = coefficients[k];`
     fn bind_components(&self, varying: &[Value]) -> TokenStream {
         let mut locals = vec![quote!(_); self.components];
         let mut any = false;
@@ -136,57 +120,37 @@ impl<'a> Writer<'a> {
         if !any {
             return TokenStream::new();
         }
-        quote!(let [#(#locals),*] = ::dalembert::__private::components(&coefficients[k]);)
+        quote!(let [#(#locals),*] = coefficients[k];)
     }
 
-    /// The statements of order 0, the results, and how everything that is read of it is.
-    pub(super) fn begin(&self, context: &Context<'_>) -> (Body, Firsts) {
-        let function = &self.jet.function;
-        let results = function.outputs.len();
-        let read: Vec<Value> = self.read.union(&self.inverses).copied().collect();
-        let mut outputs = function.outputs.clone();
-        outputs.extend(&read);
-        let extended = Function {
-            ops: function.ops.clone(),
-            names: function.names.clone(),
-            outputs,
-            cost: function.cost,
-        };
-        let bindings = context.bind_state(&extended);
-        let Body {
-            statements,
-            mut outputs,
-        } = emit_body(&extended, &context.names);
-        let mut statements = joined([bindings, statements]);
-        let mut firsts = Firsts::new();
-        for (value, piece) in read.into_iter().zip(outputs.split_off(results)) {
-            let is_name = piece.clone().into_iter().count() == 1;
-            let first = match self.memory(value, &quote!(0)) {
-                Some(place) => {
-                    statements.extend(quote!(#place = #piece;));
-                    place
-                }
-                None if is_name && !self.is_large() => piece,
+    /// The values of order 0 that are known, the results first, and statements that read those that are read.
+    pub(super) fn read_firsts(&self) -> (Vec<Value>, TokenStream) {
+        let mut known = self.jet.function.outputs.clone();
+        let mut statements = TokenStream::new();
+        for &value in self.read.union(&self.inverses) {
+            let place = known.iter().position(|other| *other == value);
+            let place = place.unwrap_or_else(|| {
+                known.push(value);
+                known.len() - 1
+            });
+            let place = Literal::usize_unsuffixed(place);
+            let first = self.memory(value, &quote!(0));
+            statements.extend(match first {
+                Some(first) => quote!(#first = firsts[#place];),
                 None => {
                     let first = local("first", value);
-                    statements.extend(quote!(let #first = #piece;));
-                    quote!(#first)
+                    quote!(let #first = firsts[#place];)
                 }
-            };
-            firsts.insert(value, first);
+            });
         }
-        let body = Body {
-            statements,
-            outputs,
-        };
-        (body, firsts)
+        (known, statements)
     }
 
     /// Statements that compute reciprocals of order 0.
     pub(super) fn begin_inverses(&mut self) -> TokenStream {
         let inverses = self.inverses.clone().into_iter().map(|value| {
             let (inverse, value) = (local("inverse", value), self.first(value));
-            quote!(let #inverse = 1.0 / #value;)
+            quote!(let #inverse = L::of(1.0) / #value;)
         });
         inverses.collect()
     }
@@ -209,7 +173,7 @@ impl<'a> Writer<'a> {
         };
         let entries = histories.into_iter().map(|(history, place)| {
             let first = match history.weighted {
-                true => quote!(0.0),
+                true => quote!(L::ZERO),
                 false => self.first(history.value),
             };
             quote!(#place = #first;)
@@ -224,16 +188,18 @@ impl<'a> Writer<'a> {
 
     /// Order 0 of a value.
     pub(super) fn first(&mut self, value: Value) -> TokenStream {
+        let constant = |constant| Numbers::SideBySide.constant(constant);
         match &self.jet.function.ops[value.index()] {
-            Op::Number(constant) => number(constant.to_f64()),
-            Op::Pi => quote!(::core::f64::consts::PI),
-            Op::Input(Input::Parameter(k)) => self.parameters[*k].clone(),
+            Op::Number(own) => constant(number(own.to_f64())),
+            Op::Pi => constant(quote!(::core::f64::consts::PI)),
+            Op::Input(Input::Parameter(k)) => {
+                let place = Literal::usize_unsuffixed(*k);
+                quote!(parameters[#place])
+            }
             _ => {
                 self.read.insert(value);
-                let known = self.firsts.get(&value).cloned();
-                known
-                    .or_else(|| self.memory(value, &quote!(0)))
-                    .unwrap_or_else(|| local("first", value).into_token_stream())
+                let memory = self.memory(value, &quote!(0));
+                memory.unwrap_or_else(|| local("first", value).into_token_stream())
             }
         }
     }

@@ -22,7 +22,8 @@ pub fn along(
     Ok(series.results(&jet.function))
 }
 
-/// Coefficients `0..=order` of the components of the motion from `state`, whose rate the jet is, in time `unit * s`.
+/// Coefficients `0..=order` of the components of the motion from `state`, in time `unit * s`, and of what the jet has
+/// besides their rates: the gaps.
 ///
 /// # Errors
 /// The guard that does not hold at `state`.
@@ -42,6 +43,10 @@ pub fn motion(
             component.push(unit * series.at(*output)[k] / (k + 1) as f64);
         }
     }
+    series.advance(jet, order, unit, &|i| components[i][order]);
+    let gaps = &jet.function.outputs[components.len()..];
+    let gaps: Vec<Vec<f64>> = gaps.iter().map(|gap| series.at(*gap).to_vec()).collect();
+    components.extend(gaps);
     Ok(components)
 }
 

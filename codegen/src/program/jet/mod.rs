@@ -114,7 +114,7 @@ impl History {
 /// A function with the Taylor coefficients of its values.
 #[derive(Debug)]
 pub struct Jet {
-    /// Order 0: the operations of the function it was made from, then the companions. The same results.
+    /// Order 0: the operations of the functions it was made from, then the companions. The same results.
     pub function: Function,
     /// By value.
     pub recurrences: Vec<Recurrence>,
@@ -127,15 +127,18 @@ pub struct Jet {
 }
 
 impl Jet {
-    /// The jet of a function along motions whose components have these degrees. `component` says which component
-    /// of the state an input is.
+    /// The jet of functions, whose results follow each other, along motions whose components have these degrees.
+    /// `component` says which component of the state an input is.
     pub fn of(
-        function: &Function,
+        functions: &[&Function],
         components: &[Degree],
         component: impl Fn(Input) -> Option<usize>,
     ) -> Self {
         let mut builder = Builder::new();
-        let outputs = builder.replay(function);
+        let outputs = functions.iter();
+        let outputs = outputs
+            .flat_map(|function| builder.replay(function))
+            .collect();
         let (mut recurrences, mut degrees) = (Vec::new(), Vec::new());
         // Companions are added behind, and come up in turn.
         while recurrences.len() < builder.len() {

@@ -10,18 +10,12 @@ use dalembert_expr::ExprId;
 
 use crate::mechanics::Derivation;
 use crate::model::Model;
-use crate::program::jet::Jet;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::recipes::declared::position_function;
 use crate::program::{Form, Function, Guard, Impacting, Input, Value};
 
-/// All of them; `None` without surfaces. `expand` makes the jet of a function along the motion.
-pub fn impacting(
-    model: &Model,
-    derivation: &Derivation,
-    form: Form,
-    expand: impl Fn(&Function) -> Jet,
-) -> Option<Impacting> {
+/// All of them; `None` without surfaces.
+pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<Impacting> {
     if derivation.surfaces.is_empty() {
         return None;
     }
@@ -30,7 +24,6 @@ pub fn impacting(
         vec![surface.gap]
     });
     Some(Impacting {
-        gap_jet: expand(&gaps),
         gaps,
         gap_rates: evaluate(model, derivation, form.state(), |surface| {
             vec![surface.gap_rate]

@@ -114,9 +114,12 @@ pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summar
         left.clone(),
         Division::new(left.end - left.start, plan.threads, block(shared.density)),
         || Runner::new(*shared),
-        |runner, member| match runner {
-            Ok(runner) => Ok(runner.run(member)),
-            Err(error) => Err(CliError::Start(error.to_string())),
+        |runner, members| match runner {
+            Ok(runner) => runner.run(members).into_iter().map(Ok).collect(),
+            Err(error) => {
+                let refuse = |_| Err(CliError::Start(error.to_string()));
+                members.map(refuse).collect()
+            }
         },
         |first, block| {
             let mut lines = Vec::new();

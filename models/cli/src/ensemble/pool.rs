@@ -12,6 +12,9 @@ use std::thread;
 /// Blocks that each thread may be ahead.
 const AHEAD: u64 = 8;
 
+/// Items that go well together, where every thread gets as many: runs abreast fill the lanes of a vector.
+const TOGETHER: u64 = 8;
+
 /// How the work is divided.
 #[derive(Debug, Clone, Copy)]
 pub struct Division {
@@ -22,16 +25,17 @@ pub struct Division {
 }
 
 impl Division {
-    /// Blocks of at most `largest` items, of which every thread gets many.
+    /// Blocks of at most `largest` items, of which every thread gets many if there are enough.
     pub fn new(items: u64, threads: u64, largest: u64) -> Self {
         let threads = threads.clamp(1, items.max(1));
-        let block = (items / (threads * 16)).clamp(1, largest.max(1));
+        let least = items.div_ceil(threads).min(TOGETHER);
+        let block = (items / (threads * 16)).max(least).clamp(1, largest.max(1));
         Self { threads, block }
     }
 }
 
-/// Works on all items. `prepare` is called once on every thread, `work` for every item, `take` on the calling thread with
-/// the first item of every block and the results of the block, in the order of the items.
+/// Works on all items. `prepare` is called once on every thread, `work` for every block, `take` on the calling thread with
+/// the first item of every block and the results of the block, one for every item, in the order of the items.
 ///
 /// # Errors
 /// The first error of `take`, which ends the work.
@@ -39,7 +43,7 @@ pub fn in_order<W, T: Send, E>(
     items: Range<u64>,
     division: Division,
     prepare: impl Fn() -> W + Sync,
-    work: impl Fn(&mut W, u64) -> T + Sync,
+    work: impl Fn(&mut W, Range<u64>) -> Vec<T> + Sync,
     mut take: impl FnMut(u64, Vec<T>) -> Result<(), E>,
 ) -> Result<(), E> {
     let gate = Gate::new(items.clone(), division);
@@ -55,7 +59,7 @@ pub fn in_order<W, T: Send, E>(
                 let mut worker = prepare();
                 while let Some(block) = gate.next() {
                     let start = block.start;
-                    let results = block.map(|item| work(&mut worker, item)).collect();
+                    let results = work(&mut worker, block);
                     if sender.send((start, results)).is_err() {
                         return;
                     }
@@ -181,7 +185,13 @@ mod tests {
             }
             Ok::<(), ()>(())
         };
-        let done = in_order(items, division, || (), |(), item| item * item, take);
+        let done = in_order(
+            items,
+            division,
+            || (),
+            |(), block| block.map(|item| item * item).collect(),
+            take,
+        );
         assert_eq!(done, Ok(()));
         taken
     }
@@ -204,12 +214,13 @@ mod tests {
             block: 1,
         };
         let furthest = AtomicU64::new(0);
-        let work = |(): &mut (), item| {
-            if item == 0 {
+        let work = |(): &mut (), block: Range<u64>| {
+            if block.start == 0 {
                 thread::sleep(Duration::from_millis(50));
                 assert!(furthest.load(Ordering::SeqCst) < 2 * AHEAD);
             }
-            furthest.fetch_max(item, Ordering::SeqCst);
+            furthest.fetch_max(block.start, Ordering::SeqCst);
+            vec![()]
         };
         let done = in_order(0..1000, division, || (), work, |_, _| Ok::<(), ()>(()));
         assert_eq!((done, furthest.into_inner()), (Ok(()), 999));
@@ -218,7 +229,10 @@ mod tests {
     #[test]
     fn an_error_ends_the_work() {
         let worked = AtomicU64::new(0);
-        let work = |(): &mut (), _| worked.fetch_add(1, Ordering::SeqCst);
+        let work = |(): &mut (), block: Range<u64>| {
+            let count = |_| worked.fetch_add(1, Ordering::SeqCst);
+            block.map(count).collect()
+        };
         let division = Division {
             threads: 3,
             block: 2,

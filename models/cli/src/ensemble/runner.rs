@@ -1,7 +1,8 @@
-//! Runs members, one at a time: whatever happens to one of them is a row of its own.
+//! Runs members: whatever happens to one of them is a row of its own.
 
 use std::any::Any;
 use std::borrow::Cow;
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use dalembert::integrate::Counters;
@@ -10,9 +11,9 @@ use super::density::{Density, Sampler, Visits};
 use super::members::Members;
 use super::row::{Field, Row};
 use super::vary::Quantity;
-use crate::args::RunArgs;
+use crate::args::{Integrator, RunArgs};
 use crate::driver::{self, Contact, Ending, Impact, Piece, Settings, Watch};
-use crate::entry::{AnyModel, Entry, Origin, Point};
+use crate::entry::{AnyModel, Entry, Origin, Point, Together};
 use crate::error::{CliError, state_text};
 use crate::record::Tally;
 use crate::state_input::{Beginning, build_model};
@@ -56,14 +57,70 @@ impl<'a> Runner<'a> {
         Ok(Self { shared, model })
     }
 
+    /// Runs members, abreast where the integrator can: every row is what it is alone. Should the program fail in one of
+    /// them, all are run one after the other.
+    pub fn run(&mut self, members: Range<u64>) -> Vec<Done> {
+        let is_taylor = self.shared.settings.integrator == Integrator::Taylor;
+        if is_taylor && members.end - members.start > 1 {
+            let abreast = || self.abreast(members.clone());
+            if let Ok(done) = catch_unwind(AssertUnwindSafe(abreast)) {
+                return done;
+            }
+            self.renew();
+        }
+        members.map(|member| self.alone(member)).collect()
+    }
+
+    /// Runs members abreast.
+    fn abreast(&mut self, members: Range<u64>) -> Vec<Done> {
+        let mut seen: Vec<Seen<'_>> = members.clone().map(|_| self.unseen()).collect();
+        let (mut runs, mut refused) = (Vec::new(), Vec::new());
+        for (member, seen) in members.clone().zip(&mut seen) {
+            match self.origin(member) {
+                Ok(origin) => runs.push(Together {
+                    parameters: self.parameters(),
+                    origin,
+                    watch: seen,
+                }),
+                Err(reason) => refused.push((member, reason)),
+            }
+        }
+        let looks_inside = self.shared.density.is_some();
+        let mut endings = self
+            .model
+            .simulate_abreast(runs, self.shared.settings, looks_inside);
+        for (member, reason) in refused {
+            endings.insert((member - members.start) as usize, Err(reason));
+        }
+        let endings = members.zip(endings).zip(seen);
+        let endings = endings.map(|((member, ending), seen)| {
+            let ended = ending.map_err(|reason| (REFUSED, reason));
+            self.done(member, &ended, seen)
+        });
+        endings.collect()
+    }
+
     /// Runs a member.
-    pub fn run(&mut self, member: u64) -> Done {
-        let mut seen = Seen {
+    fn alone(&mut self, member: u64) -> Done {
+        let mut seen = self.unseen();
+        let ended = self.watched(member, &mut seen);
+        self.done(member, &ended, seen)
+    }
+
+    fn unseen(&self) -> Seen<'a> {
+        Seen {
             tally: Tally::default(),
             sampler: self.shared.density.map(Sampler::new),
-        };
-        let ended = self.watched(member, &mut seen);
-        let visits = seen.sampler.map(|sampler| match &ended {
+        }
+    }
+
+    fn done(
+        &self,
+        member: u64,
+        ended: &Result<Ending, (&'static str, String)>,
+        seen: Seen<'_>,
+    ) -> Done {
+        let visits = seen.sampler.map(|sampler| match ended {
             Ok(ending) => sampler.finish(ending.t, &ending.last),
             Err(_) => sampler.finish(
                 f64::NEG_INFINITY,
@@ -71,8 +128,23 @@ impl<'a> Runner<'a> {
             ),
         });
         Done {
-            row: self.row(member, &ended, &seen.tally),
+            row: self.row(member, ended, &seen.tally),
             visits,
+        }
+    }
+
+    /// The values of all parameters of the model.
+    fn parameters(&self) -> Vec<f64> {
+        let count = self.model.description().parameters.len();
+        (0..count)
+            .map(|index| self.model.parameter(index))
+            .collect()
+    }
+
+    /// What a panic leaves behind is not used again; a model that was built once can be built again.
+    fn renew(&mut self) {
+        if let Ok(model) = build_model(self.shared.models, &self.shared.run.model) {
+            self.model = model;
         }
     }
 
@@ -87,10 +159,7 @@ impl<'a> Runner<'a> {
             Ok(Ok(ending)) => Ok(ending),
             Ok(Err(reason)) => Err((REFUSED, reason)),
             Err(panic) => {
-                // What a panic leaves behind is not used again; a model that was built once can be built again.
-                if let Ok(model) = build_model(self.shared.models, &self.shared.run.model) {
-                    self.model = model;
-                }
+                self.renew();
                 Err((PANICKED, message(panic.as_ref())))
             }
         }

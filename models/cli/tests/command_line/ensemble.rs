@@ -61,12 +61,18 @@ fn numbers_of(table: &str, name: &str) -> Vec<f64> {
     column.iter().map(|text| text.parse().unwrap()).collect()
 }
 
+/// One that makes its runs one after the other, and the one that makes them abreast.
+const INTEGRATORS: [&str; 2] = ["dop853", "taylor"];
+
 #[test]
 fn rows_do_not_depend_on_threads() {
-    let one = rows(&format!("{BALLS} --threads 1"));
-    assert_eq!(one.lines().count(), 1 + 9 * 14);
-    for threads in [2, 5] {
-        assert_eq!(rows(&format!("{BALLS} --threads {threads}")), one);
+    for integrator in INTEGRATORS {
+        let line = format!("{BALLS} --integrator {integrator}");
+        let one = rows(&format!("{line} --threads 1"));
+        assert_eq!(one.lines().count(), 1 + 9 * 14);
+        for threads in [2, 5] {
+            assert_eq!(rows(&format!("{line} --threads {threads}")), one);
+        }
     }
 }
 
@@ -92,7 +98,16 @@ fn shards_one_after_the_other_are_the_whole() {
 
 #[test]
 fn a_row_is_what_simulate_says() {
-    let table = rows("ensemble bouncing_ball --vary x=0.5..2:4 --vary m=1,2 --until 10");
+    for integrator in INTEGRATORS {
+        assert_row_is_what_simulate_says(integrator);
+    }
+}
+
+fn assert_row_is_what_simulate_says(integrator: &str) {
+    let flags = format!("--until 10 --integrator {integrator}");
+    let table = rows(&format!(
+        "ensemble bouncing_ball --vary x=0.5..2:4 --vary m=1,2 {flags}"
+    ));
     assert_eq!(
         numbers_of(&table, "in.x"),
         [0.5, 0.5, 1.0, 1.0, 1.5, 1.5, 2.0, 2.0]
@@ -101,9 +116,10 @@ fn a_row_is_what_simulate_says() {
         numbers_of(&table, "in.m"),
         [1.0, 2.0, 1.0, 2.0, 1.0, 2.0, 1.0, 2.0]
     );
-    let single =
-        run("simulate bouncing_ball --initial x=1.5 --set m=2 --until 10 --samples 1 --json -")
-            .json();
+    let single = run(&format!(
+        "simulate bouncing_ball --initial x=1.5 --set m=2 {flags} --samples 1 --json -"
+    ))
+    .json();
     let member = 5;
     assert_eq!(
         numbers(&single["outcome"]["q"]),
@@ -124,6 +140,13 @@ fn a_row_is_what_simulate_says() {
 
 #[test]
 fn a_bad_member_is_a_row_and_harms_no_other() {
+    for integrator in INTEGRATORS {
+        assert_bad_members_are_rows(integrator);
+    }
+}
+
+fn assert_bad_members_are_rows(integrator: &str) {
+    let run = |line: &str| run(&format!("{line} --integrator {integrator}"));
     let done = run(&format!("{BALLS} --csv -"));
     assert_eq!(done.exit, Exit::Other);
     let outcomes = column(&done.output, "outcome");
@@ -135,7 +158,8 @@ fn a_bad_member_is_a_row_and_harms_no_other() {
     assert!(outcomes[14..].iter().all(|outcome| outcome == "done"));
     assert!(column(&done.output, "reason")[0].contains("surface floor, gap -0.5"));
     // The others are as without it.
-    let good = rows("ensemble bouncing_ball --vary x=0..3.5:8 --vary x_dot=-1..1:14 --until 6");
+    let good = "ensemble bouncing_ball --vary x=0..3.5:8 --vary x_dot=-1..1:14 --until 6 --csv -";
+    let good = run(good).output;
     assert_eq!(column(&good, "end.x"), column(&done.output, "end.x")[14..]);
 
     let done = run("ensemble bouncing_ball --vary m=-1,1,0 --until 2 --csv -");
@@ -160,7 +184,14 @@ fn a_bad_member_is_a_row_and_harms_no_other() {
 
 #[test]
 fn a_member_in_whose_run_the_program_fails_is_a_row() {
-    let line = "ensemble oscillator --set k=1 --vary k=1,13,2 --until 2 --threads 1 --csv -";
+    for integrator in INTEGRATORS {
+        assert_failure_is_a_row(integrator);
+    }
+}
+
+fn assert_failure_is_a_row(integrator: &str) {
+    let members = "ensemble oscillator --set k=1 --vary k=1,13,2 --until 2 --threads 1";
+    let line = &format!("{members} --csv - --integrator {integrator}");
     let done = run(line);
     assert_eq!(done.exit, Exit::Other);
     assert_eq!(

@@ -10,6 +10,7 @@ use dalembert::describe::{
 use dalembert::error::ParameterError;
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::jet::LENGTH;
+use dalembert::numbers::Numbers;
 use dalembert::{
     Fault, Impacting, Impacts, Lagrangian, Scene, StateError, System, TaylorField, VectorField,
 };
@@ -38,29 +39,56 @@ macro_rules! particle {
             }
         }
 
-        // The forces are linear in q but for a constant: so are their series.
+        // The forces are those of springs along the axes and a constant: so are their series.
         impl TaylorField for $type {
-            type Jets = [[f64; LENGTH]; 0];
+            type Parameters<L: Numbers> = [L; 1 + $dim];
+            type Row<L: Numbers> = [L; $dim];
+            type Gaps<L: Numbers> = [L; 0];
+            type Firsts<L: Numbers> = [L; $dim];
+            type Jets<L: Numbers> = [[L; LENGTH]; 0];
 
-            fn expand(
-                &self,
-                _t: f64,
-                unit: f64,
-                order: usize,
-                coefficients: &mut [Self::State; LENGTH],
-                _jets: &mut Self::Jets,
-            ) -> Result<(), Fault> {
+            fn parameters(&self) -> Self::Parameters<f64> {
                 let constant = Particle::force(self, &[0.0; $n]);
-                for k in 0..order {
-                    let force = Particle::force(self, &std::array::from_fn(|i| coefficients[k][i]));
-                    let scale = unit / (k + 1) as f64;
-                    for i in 0..$n {
-                        let own = if k == 0 { force[i] } else { force[i] - constant[i] };
-                        coefficients[k + 1][i] = scale * coefficients[k][$n + i] / self.mass();
-                        coefficients[k + 1][$n + i] = scale * own;
-                    }
+                let mut parameters = [self.mass(); 1 + $dim];
+                for i in 0..$n {
+                    let mut q = [0.0; $n];
+                    q[i] = 1.0;
+                    parameters[1 + i] = Particle::force(self, &q)[i] - constant[i];
+                    parameters[1 + $n + i] = constant[i];
+                }
+                parameters
+            }
+
+            fn begin<L: Numbers>(
+                parameters: &Self::Parameters<L>,
+                _t: L,
+                state: &Self::Row<L>,
+                firsts: &mut Self::Firsts<L>,
+            ) -> Result<(), Fault> {
+                for i in 0..$n {
+                    firsts[i] = state[$n + i] / parameters[0];
+                    firsts[$n + i] = parameters[1 + i] * state[i] + parameters[1 + $n + i];
                 }
                 Ok(())
+            }
+
+            fn advance<L: Numbers>(
+                parameters: &Self::Parameters<L>,
+                unit: L,
+                order: usize,
+                firsts: &Self::Firsts<L>,
+                coefficients: &mut [Self::Row<L>; LENGTH],
+                _gaps: &mut [Self::Gaps<L>; LENGTH],
+                _jets: &mut Self::Jets<L>,
+            ) {
+                coefficients[1] = firsts.map(|rate| unit * rate);
+                for k in 1..order {
+                    let scale = unit / L::of((k + 1) as f64);
+                    for i in 0..$n {
+                        coefficients[k + 1][i] = scale * coefficients[k][$n + i] / parameters[0];
+                        coefficients[k + 1][$n + i] = scale * parameters[1 + i] * coefficients[k][i];
+                    }
+                }
             }
         }
 

@@ -1,5 +1,7 @@
 //! Drives one model through one run, and shows the run to a [`Watch`] that knows nothing of the model's type.
 
+mod abreast;
+
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
@@ -18,6 +20,7 @@ use serde_json::Value;
 use crate::args::{Form, Integrator};
 use crate::entry::{Model, Point, point};
 use crate::{json, names};
+pub(crate) use abreast::{Abreast, simulate_abreast};
 
 /// How a run is to be made.
 #[derive(Debug, Clone)]
@@ -124,8 +127,19 @@ pub(crate) fn simulate<M: Model>(
 ) -> Result<Ending, String> {
     let first = point(model, 0.0, &state);
     let mut bridge = Bridge { model, watch };
-    let Solved { run, step, laws } = solve(model, &state, settings, &mut bridge)?;
-    Ok(Ending {
+    let solved = solve(model, &state, settings, &mut bridge)?;
+    Ok(ending(model, first, solved, settings))
+}
+
+/// What is told of a run that has ended.
+fn ending<M: Model>(
+    model: &M,
+    first: Point,
+    solved: Solved<M::State>,
+    settings: &Settings,
+) -> Ending {
+    let Solved { run, step, laws } = solved;
+    Ending {
         kind: run.outcome.kind(),
         details: details(&M::DESCRIPTION, &run.outcome),
         t: run.t,
@@ -136,7 +150,7 @@ pub(crate) fn simulate<M: Model>(
         laws,
         reached: run.outcome.is_done()
             || (settings.impacts.is_some() && run.outcome == Outcome::ImpactBudget),
-    })
+    }
 }
 
 /// Runs a model from `t = 0`.
@@ -187,6 +201,21 @@ fn run<M: Model, S: Stepper<M>>(
     settings: &Settings,
     mut observer: &mut dyn Observer<M>,
 ) -> Result<Solved<M::State>, String> {
+    let (effects, laws) = effects(model, settings);
+    let budget = settings.steps.unwrap_or(STEP_BUDGET);
+    let mut simulation = Simulation::new(model, stepper, effects).with_step_budget(budget);
+    let run = simulation
+        .run(0.0, *state, settings.until, &mut observer)
+        .map_err(|error| error.to_string())?;
+    Ok(Solved {
+        run,
+        step: simulation.fixed_step(),
+        laws,
+    })
+}
+
+/// The effects of a scene as the settings want them, and the law in force on each surface.
+fn effects<M: Model>(model: &M, settings: &Settings) -> (M::Effects, Vec<Option<Law>>) {
     let mut effects = model.effects();
     for &(surface, law) in &settings.laws {
         effects.set_law(surface, law);
@@ -201,16 +230,7 @@ fn run<M: Model, S: Stepper<M>>(
     let laws = (0..M::DESCRIPTION.surfaces.len())
         .map(|surface| effects.law(model, surface))
         .collect();
-    let budget = settings.steps.unwrap_or(STEP_BUDGET);
-    let mut simulation = Simulation::new(model, stepper, effects).with_step_budget(budget);
-    let run = simulation
-        .run(0.0, *state, settings.until, &mut observer)
-        .map_err(|error| error.to_string())?;
-    Ok(Solved {
-        run,
-        step: simulation.fixed_step(),
-        laws,
-    })
+    (effects, laws)
 }
 
 /// Shows the runtime's segments and events to a [`Watch`].

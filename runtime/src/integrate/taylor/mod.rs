@@ -19,7 +19,13 @@
 //! Taylor methods*, Experimental Mathematics 14 (2005), sections 3.1 to 3.3; E. Hairer, C. Lubich, G. Wanner, *Geometric
 //! Numerical Integration* (2006), VIII.5, for the carried rest.
 
+mod expansion;
+#[cfg(feature = "lanes")]
+pub(crate) mod lanes;
+
 use core::fmt;
+
+use expansion::{Expansion, row, state, sum};
 
 use super::controller::{RETREAT, Weights, landing, least_step, not_finite};
 use super::order::{LEAST_ORDER, PART_OF_TOLERANCE, order};
@@ -29,9 +35,10 @@ use super::stepper::{Series, StepFailure, Stepper};
 use super::tolerance::Tolerance;
 use crate::contract::TaylorField;
 use crate::error::Fault;
-use crate::jet::{INVERSES, Jets, LENGTH};
+use crate::jet::{INVERSES, LENGTH};
 use crate::math;
-use crate::state::{StateVector, scaled};
+use crate::numbers::Row;
+use crate::state::StateVector;
 
 /// The name of [`Taylor`], known without a system.
 pub const TAYLOR: &str = "taylor";
@@ -70,8 +77,9 @@ pub struct Taylor<F: TaylorField> {
     /// What the states at both ends lack, since they are rounded.
     rests: [F::State; 2],
     rates: [F::State; 2],
-    coefficients: [F::State; LENGTH],
-    jets: F::Jets,
+    expansion: Expansion<F, f64>,
+    /// Whether the coefficients of the last step are at hand: they are not where it was made abreast of others.
+    is_expanded: bool,
 }
 
 impl<F: TaylorField> Clone for Taylor<F> {
@@ -111,8 +119,8 @@ impl<F: TaylorField> Taylor<F> {
             end: zeros,
             rests: [zeros; 2],
             rates: [zeros; 2],
-            coefficients: [zeros; LENGTH],
-            jets: F::Jets::ZERO,
+            expansion: Expansion::new(),
+            is_expanded: true,
         }
     }
 
@@ -146,15 +154,26 @@ impl<F: TaylorField> Taylor<F> {
         self.order
     }
 
-    /// Takes `(t, state)` for the end of a step, as a start does. The rate there is the first coefficient of the series to
-    /// come.
+    /// Takes `(t, state)` for the end of a step, as a start does.
     fn place(&mut self, field: &F, t: f64, state: &F::State) -> Result<(), StepFailure> {
         self.t = [t; 2];
         self.start = *state;
         self.end = *state;
         self.rests = [F::State::zeros(); 2];
         self.weights = Weights::new(self.tolerance, &field.scale(t, state));
-        match not_finite(state) {
+        if let Some(component) = not_finite(state.as_slice()) {
+            return Err(StepFailure::NonFinite { component });
+        }
+        self.begin(field)
+    }
+
+    /// What is known at the end of the step, the rate among it.
+    #[inline(always)]
+    fn begin(&mut self, field: &F) -> Result<(), StepFailure> {
+        self.expansion
+            .begin(&field.parameters(), self.t[1], &row::<F>(&self.end))?;
+        self.rates[1] = state::<F>(self.expansion.rate());
+        match not_finite(self.rates[1].as_slice()) {
             Some(component) => Err(StepFailure::NonFinite { component }),
             None => Ok(()),
         }
@@ -162,28 +181,19 @@ impl<F: TaylorField> Taylor<F> {
 
     /// The coefficients at the start of the step; the step they allow, in units of time.
     fn expand(&mut self, field: &F, counters: &mut Counters) -> Result<f64, StepFailure> {
-        let t = self.t[0];
-        self.coefficients[0] = self.start;
-        self.unit = self.next_unit;
         loop {
             counters.expansions += 1;
             counters.coefficients += self.order as u64;
-            field.expand(
-                t,
-                self.unit,
-                self.order,
-                &mut self.coefficients,
-                &mut self.jets,
-            )?;
-            let last = &self.coefficients[self.order];
-            let Some(component) =
-                not_finite(last).or(not_finite(&self.coefficients[self.order - 1]))
-            else {
+            let start = row::<F>(&self.start);
+            self.expansion
+                .advance(&field.parameters(), self.unit, self.order, &start);
+            let last = |j: usize| self.expansion.coefficients[self.order - j].as_slice();
+            let Some(component) = not_finite(last(0)).or(not_finite(last(1))) else {
                 return Ok(self.reach());
             };
             counters.rejected += 1;
             self.unit *= SHRINK;
-            if self.unit < least_step(t) {
+            if self.unit < least_step(self.t[0]) {
                 return Err(StepFailure::NonFinite { component });
             }
         }
@@ -192,39 +202,61 @@ impl<F: TaylorField> Taylor<F> {
     /// The step that the last two coefficients allow, in units of time.
     #[inline(always)]
     fn reach(&self) -> f64 {
-        let mut sizes = [0.0_f64; 2];
-        for i in 0..F::State::LEN {
-            let inverse = 1.0 / self.weights.allowed(i, &self.start, &self.start);
-            for (j, size) in sizes.iter_mut().enumerate() {
-                let coefficient = self.coefficients[self.order - j].as_slice()[i];
-                *size = size.max(coefficient.abs() * inverse);
-            }
+        let mut factors = F::Row::<f64>::ZERO;
+        for (i, factor) in factors.as_mut_slice().iter_mut().enumerate() {
+            *factor = 1.0 / self.weights.allowed(i, &self.start, &self.start);
         }
-        // The weights hold the tolerance already.
+        self.reach_of(self.expansion.sizes(self.order, &factors))
+    }
+
+    /// The step that the sizes of the last two coefficients allow, in units of time. The sizes hold the tolerance already.
+    #[inline(always)]
+    fn reach_of(&self, sizes: [f64; 2]) -> f64 {
         let [last, before] = [(0, self.order), (1, self.order - 1)]
             .map(|(j, order)| (PART_OF_TOLERANCE - rough::log2(sizes[j])) * INVERSES[order]);
         rough::exp2(last.min(before))
     }
 
+    /// The end of the last step is the start of the next.
+    #[inline(always)]
+    fn set_out(&mut self) {
+        self.t[0] = self.t[1];
+        self.start = self.end;
+        self.rests[0] = self.rests[1];
+        self.rates[0] = self.rates[1];
+        self.unit = self.next_unit;
+    }
+
+    /// The length of the step that the coefficients reach, as far as it is wanted.
+    #[inline(always)]
+    fn length(&self, reach: f64) -> f64 {
+        let least = least_step(self.t[0]);
+        reach.min(self.max_step).min(self.limit).max(least)
+    }
+
+    /// What is left to do when a step of this length was made.
+    #[inline(always)]
+    fn accept(&mut self, made: f64, reach: f64, counters: &mut Counters) {
+        counters.accepted += 1;
+        self.limit = if made < reach {
+            GROW * made.max(self.limit.min(reach))
+        } else {
+            f64::INFINITY
+        };
+    }
+
     /// Sets the end of the step at `theta` units of time, and gives the derivative of the polynomial there.
     #[inline(always)]
-    fn arrive(&mut self, theta: f64) -> F::State {
-        let (mut change, mut slope) = (F::State::zeros(), F::State::zeros());
-        for coefficient in self.coefficients[1..=self.order].iter().rev() {
-            for i in 0..F::State::LEN {
-                let sum = math::mul_add(change.as_slice()[i], theta, coefficient.as_slice()[i]);
-                slope.as_mut_slice()[i] = math::mul_add(slope.as_slice()[i], theta, sum);
-                change.as_mut_slice()[i] = sum;
-            }
-        }
-        for i in 0..F::State::LEN {
-            let start = self.start.as_slice()[i];
-            let change = change.as_slice()[i] * theta + self.rests[0].as_slice()[i];
-            let end = start + change;
-            // The rounding error of the sum, exactly (Moller, Knuth).
-            let moved = end - start;
-            self.rests[1].as_mut_slice()[i] = (start - (end - moved)) + (change - moved);
+    fn arrive(&mut self, theta: f64) -> F::Row<f64> {
+        let [change, slope] = self.expansion.change(self.order, theta);
+        for (i, change) in change.as_slice().iter().enumerate() {
+            let [end, rest] = sum(
+                self.start.as_slice()[i],
+                *change,
+                self.rests[0].as_slice()[i],
+            );
             self.end.as_mut_slice()[i] = end;
+            self.rests[1].as_mut_slice()[i] = rest;
         }
         slope
     }
@@ -239,26 +271,45 @@ impl<F: TaylorField> Taylor<F> {
         counters: &mut Counters,
     ) -> Result<bool, StepFailure> {
         let slope = self.arrive(theta);
+        self.t[1] = arrival;
         counters.rate_evaluations += 1;
-        field.rate(arrival, &self.end, &mut self.rates[1])?;
-        if let Some(component) = not_finite(&self.end).or(not_finite(&self.rates[1])) {
+        self.begin(field)?;
+        if let Some(component) = not_finite(self.end.as_slice()) {
             return Err(StepFailure::NonFinite { component });
         }
+        Ok(self.is_motion(theta, &slope))
+    }
+
+    /// Whether the derivative of the polynomial at the end of a step is the rate there.
+    #[inline(always)]
+    fn is_motion(&self, theta: f64, slope: &F::Row<f64>) -> bool {
         let length = theta * self.unit;
-        Ok((0..F::State::LEN).all(|i| {
+        (0..F::State::LEN).all(|i| {
             let rate = self.rates[1].as_slice()[i];
             let defect = (rate - slope.as_slice()[i] / self.unit).abs() * length;
             let size = self.end.as_slice()[i].abs() + rate.abs() * length;
             defect <= DEFECT * (self.weights.allowed(i, &self.start, &self.end) + NOISE * size)
-        }))
+        })
+    }
+
+    /// The coefficients of the last step, which was made abreast of others.
+    fn expand_again(&mut self, field: &F) -> Result<(), Fault> {
+        let (parameters, start) = (field.parameters(), row::<F>(&self.start));
+        let end = self.expansion.firsts;
+        self.expansion.begin(&parameters, self.t[0], &start)?;
+        self.expansion
+            .advance(&parameters, self.unit, self.order, &start);
+        self.expansion.firsts = end;
+        self.is_expanded = true;
+        Ok(())
     }
 
     /// Puts the last good state back in place after a failure.
-    fn retract(&mut self) {
+    fn retract(&mut self, field: &F) -> Result<(), StepFailure> {
         self.t[1] = self.t[0];
         self.end = self.start;
         self.rests[1] = self.rests[0];
-        self.rates[1] = self.rates[0];
+        self.begin(field)
     }
 }
 
@@ -277,12 +328,8 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         t_end: f64,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
-        self.place(field, t, state)?;
         counters.rate_evaluations += 1;
-        field.rate(t, state, &mut self.rates[1])?;
-        if let Some(component) = not_finite(&self.rates[1]) {
-            return Err(StepFailure::NonFinite { component });
-        }
+        self.place(field, t, state)?;
         self.limit = self.first_step.unwrap_or(f64::INFINITY);
         let size = self.weights.norm(state, |i| state.as_slice()[i]);
         let speed = self.weights.norm(state, |i| self.rates[1].as_slice()[i]);
@@ -308,14 +355,11 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
 
     #[inline]
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
-        self.t[0] = self.t[1];
-        self.start = self.end;
-        self.rests[0] = self.rests[1];
+        self.set_out();
+        self.is_expanded = true;
         let t = self.t[0];
-        let least = least_step(t);
         let reach = self.expand(field, counters)?.min(LONGEST) * self.unit;
-        self.rates[0] = scaled(&self.coefficients[1], 1.0 / self.unit);
-        let mut h = reach.min(self.max_step).min(self.limit).max(least);
+        let mut h = self.length(reach);
         self.next_unit = power_of_two(h);
         loop {
             let arrival = landing(t, h, t_end);
@@ -323,19 +367,13 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
             let made = arrival - t;
             let attempt = self.attempt(field, made / self.unit, arrival, counters);
             if let Ok(true) = attempt {
-                counters.accepted += 1;
-                self.t[1] = arrival;
-                self.limit = if made < reach {
-                    GROW * made.max(self.limit.min(reach))
-                } else {
-                    f64::INFINITY
-                };
+                self.accept(made, reach, counters);
                 return Ok(());
             }
             counters.rejected += 1;
             h = made * if attempt.is_ok() { 0.5 } else { RETREAT };
-            if h < least {
-                self.retract();
+            if h < least_step(t) {
+                self.retract(field)?;
                 return Err(attempt.err().unwrap_or(StepFailure::StepUnderflow { t }));
             }
         }
@@ -354,8 +392,7 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         }
         self.end = *state;
         counters.rate_evaluations += 1;
-        field.rate(self.t[1], state, &mut self.rates[1])?;
-        Ok(())
+        self.begin(field)
     }
 
     #[inline(always)]
@@ -385,38 +422,50 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
     }
 
     #[inline(always)]
-    fn series(&self) -> Option<Series<'_, F::State>> {
+    fn series(&self) -> Option<Series> {
         Some(Series {
             unit: self.unit,
             order: self.order,
-            coefficients: &self.coefficients,
         })
     }
 
     #[inline(always)]
-    fn dense_ready(&self) -> bool {
-        true
+    fn gap_coefficient(&self, k: usize) -> &[f64] {
+        self.expansion.gaps[k].as_slice()
     }
 
     #[inline(always)]
-    fn prepare_dense(&mut self, _: &F, _: &mut Counters) -> Result<(), Fault> {
-        Ok(())
+    fn end_gaps(&self) -> &[f64] {
+        self.expansion.begun_gaps()
+    }
+
+    #[inline(always)]
+    fn dense_ready(&self) -> bool {
+        self.is_expanded
+    }
+
+    #[inline(always)]
+    fn prepare_dense(&mut self, field: &F, _: &mut Counters) -> Result<(), Fault> {
+        match self.is_expanded {
+            true => Ok(()),
+            false => self.expand_again(field),
+        }
     }
 
     #[inline(always)]
     fn interpolate(&self, theta: f64) -> F::State {
         let s = theta * ((self.t[1] - self.t[0]) / self.unit);
-        let mut change = F::State::zeros();
-        for coefficient in self.coefficients[1..=self.order].iter().rev() {
-            for i in 0..F::State::LEN {
-                let sum = change.as_slice()[i];
-                change.as_mut_slice()[i] = math::mul_add(sum, s, coefficient.as_slice()[i]);
+        let mut state = F::State::zeros();
+        for coefficient in self.expansion.coefficients[1..=self.order].iter().rev() {
+            for (i, entry) in coefficient.as_slice().iter().enumerate() {
+                let sum = &mut state.as_mut_slice()[i];
+                *sum = math::mul_add(*sum, s, *entry);
             }
         }
         for i in 0..F::State::LEN {
-            let moved = change.as_slice()[i] * s + self.rests[0].as_slice()[i];
-            change.as_mut_slice()[i] = self.start.as_slice()[i] + moved;
+            let moved = state.as_slice()[i] * s + self.rests[0].as_slice()[i];
+            state.as_mut_slice()[i] = self.start.as_slice()[i] + moved;
         }
-        change
+        state
     }
 }

@@ -1,0 +1,77 @@
+//! Many runs of one model abreast.
+
+use dalembert::lanes::{Member, run_abreast};
+use dalembert::simulation::STEP_BUDGET;
+use dalembert::{Observer, Taylor, Tolerance};
+
+use super::{Bridge, Ending, Settings, Solved, Watch, effects, ending};
+use crate::entry::{Model, point};
+
+/// One of many runs: the model with its parameters, the state it begins with, and who watches it.
+pub(crate) struct Abreast<'w, M: Model> {
+    pub model: M,
+    pub state: M::State,
+    pub watch: &'w mut dyn Watch,
+}
+
+/// As [`simulate`](super::simulate), with Taylor series, of several at once; the results in the order of the runs.
+pub(crate) fn simulate_abreast<M: Model>(
+    runs: Vec<Abreast<'_, M>>,
+    settings: &Settings,
+    looks_inside: bool,
+) -> Vec<Result<Ending, String>> {
+    let tolerance = match Tolerance::new(settings.tol) {
+        Ok(tolerance) => tolerance,
+        Err(error) => return runs.iter().map(|_| Err(error.to_string())).collect(),
+    };
+    let (models, watched): (Vec<M>, Vec<_>) = runs
+        .into_iter()
+        .map(
+            |Abreast {
+                 model,
+                 state,
+                 watch,
+             }| (model, (state, watch)),
+        )
+        .unzip();
+    let mut states = Vec::with_capacity(models.len());
+    let mut bridges = Vec::with_capacity(models.len());
+    for (model, (state, watch)) in models.iter().zip(watched) {
+        states.push(state);
+        bridges.push(Bridge { model, watch });
+    }
+    let mut endings: Vec<Result<Ending, String>> = Vec::new();
+    endings.resize_with(models.len(), || Err(String::new()));
+    let members = bridges.iter_mut().enumerate().map(|(index, bridge)| {
+        let model = bridge.model;
+        let (effects, _) = effects(model, settings);
+        let start = (0.0, states[index]);
+        let stepper = Taylor::new(tolerance);
+        let observer: &mut dyn Observer<M> = bridge;
+        Member::new(
+            index,
+            model,
+            stepper,
+            effects,
+            observer,
+            start,
+            settings.until,
+        )
+        .with_step_budget(settings.steps.unwrap_or(STEP_BUDGET))
+        .with_look_inside(looks_inside)
+    });
+    run_abreast(members, |index, run| {
+        let model = &models[index];
+        endings[index] = run.map_err(|error| error.to_string()).map(|run| {
+            let (_, laws) = effects(model, settings);
+            let first = point(model, 0.0, &states[index]);
+            let solved = Solved {
+                run,
+                step: None,
+                laws,
+            };
+            ending(model, first, solved, settings)
+        });
+    });
+    endings
+}

@@ -1,0 +1,135 @@
+//! A power series of the motion, of one state or of several at once, and the polynomials that are made of it.
+
+use crate::contract::TaylorField;
+use crate::error::Fault;
+use crate::jet::{Jets, LENGTH};
+use crate::numbers::{Numbers, Row};
+use crate::state::StateVector;
+
+/// What is known at one moment, and the coefficients above it.
+pub(super) struct Expansion<F: TaylorField, L: Numbers> {
+    pub(super) coefficients: [F::Row<L>; LENGTH],
+    pub(super) gaps: [F::Gaps<L>; LENGTH],
+    pub(super) firsts: F::Firsts<L>,
+    jets: F::Jets<L>,
+}
+
+impl<F: TaylorField, L: Numbers> Clone for Expansion<F, L> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<F: TaylorField, L: Numbers> Copy for Expansion<F, L> {}
+
+impl<F: TaylorField, L: Numbers> Expansion<F, L> {
+    pub(super) fn new() -> Self {
+        Self {
+            coefficients: [F::Row::ZERO; LENGTH],
+            gaps: [F::Gaps::ZERO; LENGTH],
+            firsts: F::Firsts::ZERO,
+            jets: F::Jets::ZERO,
+        }
+    }
+
+    /// Takes a state for the one that the next series begins at, and the one that the last ends at.
+    #[inline(always)]
+    pub(super) fn begin(
+        &mut self,
+        parameters: &F::Parameters<L>,
+        t: L,
+        state: &F::Row<L>,
+    ) -> Result<(), Fault> {
+        F::begin(parameters, t, state, &mut self.firsts)
+    }
+
+    /// The coefficients from the state that was begun with.
+    #[inline(always)]
+    pub(super) fn advance(
+        &mut self,
+        parameters: &F::Parameters<L>,
+        unit: L,
+        order: usize,
+        start: &F::Row<L>,
+    ) {
+        self.coefficients[0] = *start;
+        F::advance(
+            parameters,
+            unit,
+            order,
+            &self.firsts,
+            &mut self.coefficients,
+            &mut self.gaps,
+            &mut self.jets,
+        );
+    }
+
+    /// The rate of the state that was begun with.
+    #[inline(always)]
+    pub(super) fn rate(&self) -> &[L] {
+        &self.firsts.as_slice()[..F::Row::<L>::LEN]
+    }
+
+    /// The gaps of the state that was begun with.
+    #[inline(always)]
+    pub(super) fn begun_gaps(&self) -> &[L] {
+        &self.firsts.as_slice()[F::Row::<L>::LEN..][..F::Gaps::<L>::LEN]
+    }
+
+    /// The largest entries of the last coefficient and the one before it, each times its factor.
+    #[inline(always)]
+    pub(super) fn sizes(&self, order: usize, factors: &F::Row<L>) -> [L; 2] {
+        let mut sizes = [L::ZERO; 2];
+        for (j, size) in sizes.iter_mut().enumerate() {
+            let coefficient = self.coefficients[order - j].as_slice();
+            for (entry, factor) in coefficient.iter().zip(factors.as_slice()) {
+                *size = size.max(entry.abs() * *factor);
+            }
+        }
+        sizes
+    }
+
+    /// What the polynomial adds to the start after `theta` units of time, and its derivative there.
+    #[inline(always)]
+    pub(super) fn change(&self, order: usize, theta: L) -> [F::Row<L>; 2] {
+        let (mut change, mut slope) = (F::Row::<L>::ZERO, F::Row::<L>::ZERO);
+        for coefficient in self.coefficients[1..=order].iter().rev() {
+            let sums = change.as_mut_slice().iter_mut().zip(slope.as_mut_slice());
+            for ((sum, slope), entry) in sums.zip(coefficient.as_slice()) {
+                let next = sum.mul_add(theta, *entry);
+                *slope = slope.mul_add(theta, next);
+                *sum = next;
+            }
+        }
+        for sum in change.as_mut_slice() {
+            *sum = *sum * theta;
+        }
+        [change, slope]
+    }
+}
+
+/// The end of a step from a start that lacks `rest` since it is rounded, and what the end lacks: the rounding error of the
+/// sum, exactly (Moller, Knuth).
+#[inline(always)]
+pub(super) fn sum<L: Numbers>(start: L, change: L, rest: L) -> [L; 2] {
+    let change = change + rest;
+    let end = start + change;
+    let moved = end - start;
+    [end, (start - (end - moved)) + (change - moved)]
+}
+
+/// A state as a row.
+#[inline(always)]
+pub(super) fn row<F: TaylorField>(state: &F::State) -> F::Row<f64> {
+    let mut row = F::Row::<f64>::ZERO;
+    row.as_mut_slice().copy_from_slice(state.as_slice());
+    row
+}
+
+/// The state with these components.
+#[inline(always)]
+pub(super) fn state<F: TaylorField>(components: &[f64]) -> F::State {
+    let mut state = F::State::zeros();
+    state.as_mut_slice().copy_from_slice(components);
+    state
+}

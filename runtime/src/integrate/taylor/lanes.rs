@@ -1,0 +1,255 @@
+//! Steps of several motions at once, each with the bits that it has alone.
+//!
+//! What takes the time of a step, the series and the sums over it, is computed in lanes; what decides about it (its
+//! length, whether it is accepted) for one motion after the other. A motion that needs something else, as a shorter step,
+//! makes its step alone, from the same start.
+
+use super::expansion::{Expansion, sum};
+use super::{LONGEST, Taylor, not_finite};
+use crate::contract::TaylorField;
+use crate::error::Fault;
+use crate::integrate::controller::landing;
+use crate::integrate::rough::power_of_two;
+use crate::integrate::stats::Counters;
+use crate::numbers::{Numbers, Row};
+use crate::state::StateVector;
+
+/// Room for the steps of as many motions as `L` has lanes.
+pub(crate) struct Abreast<F: TaylorField, L: Numbers> {
+    parameters: F::Parameters<L>,
+    expansion: Expansion<F, L>,
+    end: F::Row<L>,
+    rests: F::Row<L>,
+    slope: F::Row<L>,
+}
+
+/// A motion on its way, in a lane.
+pub(crate) trait Walker<F: TaylorField> {
+    /// Its integrator.
+    fn taylor(&self) -> &Taylor<F>;
+
+    /// Its integrator, and the work done so far.
+    fn at_work(&mut self) -> (&mut Taylor<F>, &mut Counters);
+
+    /// Where it is heading.
+    fn t_end(&self) -> f64;
+
+    /// Whether states inside its steps are asked for anyway.
+    fn looks_inside(&self) -> bool;
+}
+
+/// The step of a lane, before it is made.
+#[derive(Clone, Copy, Default)]
+struct Plan {
+    reach: f64,
+    arrival: f64,
+    made: f64,
+}
+
+impl<F: TaylorField, L: Numbers> Abreast<F, L> {
+    pub(crate) fn new() -> Self {
+        Self {
+            parameters: F::Parameters::ZERO,
+            expansion: Expansion::new(),
+            end: F::Row::ZERO,
+            rests: F::Row::ZERO,
+            slope: F::Row::ZERO,
+        }
+    }
+
+    /// The parameters of the system in each lane.
+    pub(crate) fn set_parameters(&mut self, fields: &[&F]) {
+        let mut of_lanes = [F::Parameters::<f64>::ZERO; MOST];
+        for (lane, own) in of_lanes.iter_mut().enumerate() {
+            *own = fields[lane.min(fields.len() - 1)].parameters();
+        }
+        gather(&mut self.parameters, |lane, i| of_lanes[lane].as_slice()[i]);
+    }
+
+    /// Makes the next step of every motion; which of them it made. The integrators are all of one order. The others must
+    /// make theirs alone.
+    pub(crate) fn step(&mut self, walkers: &mut [impl Walker<F>]) -> [bool; MOST] {
+        let order = walkers[0].taylor().order;
+        for walker in walkers.iter_mut() {
+            walker.at_work().0.set_out();
+        }
+        self.expand(walkers, order);
+        let plans = self.plan(walkers, order);
+        if self.arrive(walkers, &plans, order).is_err() {
+            return [false; MOST];
+        }
+        let theta = theta(walkers, &plans);
+        let clearance = self.expansion.clearance(order, theta);
+        let mut made = [false; MOST];
+        for (lane, walker) in walkers.iter_mut().enumerate() {
+            made[lane] = self.hand_over(lane, walker, plans[lane], order);
+            if made[lane] {
+                let is_wanted = walker.looks_inside() || clearance.lane(lane) <= 0.0;
+                let (taylor, _) = walker.at_work();
+                taylor.is_expanded = is_wanted;
+                if taylor.is_expanded {
+                    self.hand_over_coefficients(lane, taylor);
+                }
+            }
+        }
+        made
+    }
+
+    fn expand(&mut self, walkers: &[impl Walker<F>], order: usize) {
+        let mut start = F::Row::<L>::ZERO;
+        gather(&mut start, |lane, i| of(walkers, lane).start.as_slice()[i]);
+        gather(&mut self.rests, |lane, i| {
+            of(walkers, lane).rests[0].as_slice()[i]
+        });
+        gather(&mut self.expansion.firsts, |lane, i| {
+            of(walkers, lane).expansion.firsts.as_slice()[i]
+        });
+        let unit = L::gathered(|lane| of(walkers, lane).unit);
+        self.expansion
+            .advance(&self.parameters, unit, order, &start);
+    }
+
+    fn plan(&self, walkers: &[impl Walker<F>], order: usize) -> [Plan; MOST] {
+        let mut factors = F::Row::<L>::ZERO;
+        gather(&mut factors, |lane, i| {
+            let taylor = of(walkers, lane);
+            taylor.weights.allowed(i, &taylor.start, &taylor.start)
+        });
+        for factor in factors.as_mut_slice() {
+            *factor = L::of(1.0) / *factor;
+        }
+        let sizes = self.expansion.sizes(order, &factors);
+        let mut plans = [Plan::default(); MOST];
+        for (lane, (plan, walker)) in plans.iter_mut().zip(walkers).enumerate() {
+            let taylor = walker.taylor();
+            let reach = taylor.reach_of(sizes.map(|size| size.lane(lane)));
+            let reach = reach.min(LONGEST) * taylor.unit;
+            let arrival = landing(taylor.t[0], taylor.length(reach), walker.t_end());
+            *plan = Plan {
+                reach,
+                arrival,
+                made: arrival - taylor.t[0],
+            };
+        }
+        plans
+    }
+
+    /// The ends of all steps, and what is known there.
+    fn arrive(
+        &mut self,
+        walkers: &[impl Walker<F>],
+        plans: &[Plan; MOST],
+        order: usize,
+    ) -> Result<(), Fault> {
+        let [change, slope] = self.expansion.change(order, theta(walkers, plans));
+        self.slope = slope;
+        for (i, change) in change.as_slice().iter().enumerate() {
+            let start = self.expansion.coefficients[0].as_slice()[i];
+            let rest = &mut self.rests.as_mut_slice()[i];
+            [self.end.as_mut_slice()[i], *rest] = sum(start, *change, *rest);
+        }
+        let arrival = L::gathered(|lane| plans[lane.min(walkers.len() - 1)].arrival);
+        self.expansion.begin(&self.parameters, arrival, &self.end)
+    }
+
+    /// Gives an integrator the end of its step, if that is accepted.
+    fn hand_over(
+        &self,
+        lane: usize,
+        walker: &mut impl Walker<F>,
+        plan: Plan,
+        order: usize,
+    ) -> bool {
+        let is_whole = |row: &F::Row<L>| row.as_slice().iter().all(|x| x.lane(lane).is_finite());
+        let [last, before] = [order, order - 1].map(|k| &self.expansion.coefficients[k]);
+        if !(is_whole(last) && is_whole(before) && is_whole(&self.end)) {
+            return false;
+        }
+        let (taylor, counters) = walker.at_work();
+        let mut slope = F::Row::<f64>::ZERO;
+        scatter(&mut slope, &self.slope, lane);
+        let firsts = self.expansion.firsts.as_slice();
+        for i in 0..F::Row::<L>::LEN {
+            taylor.end.as_mut_slice()[i] = self.end.as_slice()[i].lane(lane);
+            taylor.rests[1].as_mut_slice()[i] = self.rests.as_slice()[i].lane(lane);
+            taylor.rates[1].as_mut_slice()[i] = firsts[i].lane(lane);
+        }
+        let is_finite = not_finite(taylor.rates[1].as_slice()).is_none();
+        if !(is_finite && taylor.is_motion(plan.made / taylor.unit, &slope)) {
+            taylor.end = taylor.start;
+            taylor.rests[1] = taylor.rests[0];
+            taylor.rates[1] = taylor.rates[0];
+            return false;
+        }
+        taylor.t[1] = plan.arrival;
+        taylor.next_unit = power_of_two(taylor.length(plan.reach));
+        scatter(&mut taylor.expansion.firsts, &self.expansion.firsts, lane);
+        let rows = taylor.expansion.gaps.iter_mut().zip(&self.expansion.gaps);
+        for (own, row) in rows.take(order + 1) {
+            scatter(own, row, lane);
+        }
+        counters.expansions += 1;
+        counters.coefficients += order as u64;
+        counters.rate_evaluations += 1;
+        taylor.accept(plan.made, plan.reach, counters);
+        true
+    }
+
+    fn hand_over_coefficients(&self, lane: usize, taylor: &mut Taylor<F>) {
+        let rows = taylor.expansion.coefficients.iter_mut();
+        let rows = rows.zip(&self.expansion.coefficients);
+        for (own, row) in rows.take(taylor.order + 1) {
+            scatter(own, row, lane);
+        }
+    }
+}
+
+impl<F: TaylorField, L: Numbers> Expansion<F, L> {
+    /// By how much each gap stays positive along `theta` units of time at least, as the sizes of its terms tell; the least
+    /// of all. Infinite where there are no gaps.
+    #[inline(always)]
+    fn clearance(&self, order: usize, theta: L) -> L {
+        let mut rest = F::Gaps::<L>::ZERO;
+        for coefficient in self.gaps[1..=order].iter().rev() {
+            for (sum, entry) in rest.as_mut_slice().iter_mut().zip(coefficient.as_slice()) {
+                *sum = (*sum + entry.abs()) * theta;
+            }
+        }
+        let gaps = self.gaps[0].as_slice().iter().zip(rest.as_slice());
+        gaps.fold(L::of(f64::INFINITY), |least, (gap, rest)| {
+            -(-least).max(*rest - *gap)
+        })
+    }
+}
+
+/// Most lanes that numbers may have.
+pub(crate) const MOST: usize = 8;
+
+/// The integrator of a lane; lanes that nobody walks in have that of the last.
+#[inline(always)]
+fn of<F: TaylorField>(walkers: &[impl Walker<F>], lane: usize) -> &Taylor<F> {
+    walkers[lane.min(walkers.len() - 1)].taylor()
+}
+
+/// The parts of time that steps take, in units.
+#[inline(always)]
+fn theta<F: TaylorField, L: Numbers>(walkers: &[impl Walker<F>], plans: &[Plan; MOST]) -> L {
+    L::gathered(|lane| {
+        let lane = lane.min(walkers.len() - 1);
+        plans[lane].made / walkers[lane].taylor().unit
+    })
+}
+
+#[inline(always)]
+fn gather<L: Numbers>(row: &mut impl Row<L>, of_lane: impl Fn(usize, usize) -> f64) {
+    for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
+        *entry = L::gathered(|lane| of_lane(lane, i));
+    }
+}
+
+#[inline(always)]
+fn scatter<L: Numbers>(own: &mut impl Row<f64>, row: &impl Row<L>, lane: usize) {
+    for (entry, lanes) in own.as_mut_slice().iter_mut().zip(row.as_slice()) {
+        *entry = lanes.lane(lane);
+    }
+}

@@ -1,0 +1,345 @@
+//! Many runs of one scene with Taylor series, several abreast.
+//!
+//! The series of eight motions are computed at once, one in every lane of a vector; what happens at impacts, and whatever else
+//! effects do, happens to one motion after the other. A lane whose run has ended takes the next one. Every run has
+//! the bits that it has alone, whatever goes on beside it.
+
+use arrayvec::ArrayVec;
+use wide::f64x8;
+
+use crate::contract::{System, TaylorField};
+use crate::effects::Effect;
+use crate::integrate::lanes::{Abreast, MOST, Walker};
+use crate::integrate::{Counters, Stepper, Taylor};
+use crate::numbers::Numbers;
+use crate::outcome::{Outcome, Run, StartError};
+use crate::record::Observer;
+use crate::simulation::{Course, Next, Progress, STEP_BUDGET, Simulation, check_start};
+
+/// Lanes that are worth a vector: fewer motions make their steps alone.
+const FEW: usize = 2;
+
+/// Largest room, in bytes, for the series of all lanes: it lies on the stack, and what no cache holds is not fast.
+const LARGEST: usize = 1 << 18;
+
+impl Numbers for f64x8 {
+    const LANES: usize = 8;
+    const ZERO: Self = Self::ZERO;
+
+    #[inline(always)]
+    fn of(number: f64) -> Self {
+        Self::splat(number)
+    }
+
+    #[inline(always)]
+    fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
+        Self::new(core::array::from_fn(of_lane))
+    }
+
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        self.to_array()[lane]
+    }
+
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        #[cfg(all(target_feature = "fma", feature = "std", not(feature = "strict")))]
+        {
+            Self::mul_add(self, b, c)
+        }
+        #[cfg(not(all(target_feature = "fma", feature = "std", not(feature = "strict"))))]
+        {
+            self * b + c
+        }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self::abs(self)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::fast_max(self, other)
+    }
+}
+
+/// A run to be made.
+pub struct Member<'a, Sys: TaylorField, Effects, O> {
+    tag: usize,
+    system: &'a Sys,
+    stepper: Taylor<Sys>,
+    effects: Effects,
+    observer: O,
+    t: f64,
+    state: Sys::State,
+    t_end: f64,
+    step_budget: u64,
+    looks_inside: bool,
+}
+
+impl<'a, Sys: TaylorField, Effects, O> Member<'a, Sys, Effects, O> {
+    /// A run of a system from `state` at `t` to `t_end`, as [`Simulation::run`](crate::Simulation::run) makes it, under a
+    /// tag of the caller's. All integrators that go abreast have one order.
+    pub fn new(
+        tag: usize,
+        system: &'a Sys,
+        stepper: Taylor<Sys>,
+        effects: Effects,
+        observer: O,
+        (t, state): (f64, Sys::State),
+        t_end: f64,
+    ) -> Self {
+        Self {
+            tag,
+            system,
+            stepper,
+            effects,
+            observer,
+            t,
+            state,
+            t_end,
+            step_budget: STEP_BUDGET,
+            looks_inside: false,
+        }
+    }
+
+    /// Ends the run after this many accepted steps instead of [`STEP_BUDGET`].
+    #[must_use]
+    pub fn with_step_budget(mut self, budget: u64) -> Self {
+        self.step_budget = budget;
+        self
+    }
+
+    /// Says that the observer looks at states inside steps. It may do so anyway, at the price of the series of that step.
+    #[must_use]
+    pub fn with_look_inside(mut self, looks_inside: bool) -> Self {
+        self.looks_inside = looks_inside;
+        self
+    }
+}
+
+/// Makes all runs; `finished` is given each tag with what came of the run, in the order in which they end. Systems whose
+/// series take more than 256 KiB in eight lanes make their runs one after the other.
+pub fn run_abreast<'a, Sys, Effects, O>(
+    members: impl IntoIterator<Item = Member<'a, Sys, Effects, O>>,
+    mut finished: impl FnMut(usize, Result<Run<Sys::State>, StartError>),
+) where
+    Sys: System + TaylorField + 'a,
+    Effects: Effect<Sys>,
+    O: Observer<Sys>,
+{
+    let members = members.into_iter();
+    match size_of::<Abreast<Sys, f64x8>>() <= LARGEST {
+        true => run_in_lanes(members, &mut finished),
+        false => run_in_turn(members, &mut finished),
+    }
+}
+
+#[inline(never)]
+fn run_in_turn<'a, Sys, Effects, O>(
+    members: impl Iterator<Item = Member<'a, Sys, Effects, O>>,
+    finished: &mut impl FnMut(usize, Result<Run<Sys::State>, StartError>),
+) where
+    Sys: System + TaylorField + 'a,
+    Effects: Effect<Sys>,
+    O: Observer<Sys>,
+{
+    for member in members {
+        let Member {
+            tag,
+            system,
+            stepper,
+            effects,
+            mut observer,
+            t,
+            state,
+            t_end,
+            step_budget,
+            looks_inside: _,
+        } = member;
+        let mut simulation =
+            Simulation::new(system, stepper, effects).with_step_budget(step_budget);
+        finished(tag, simulation.run(t, state, t_end, &mut observer));
+    }
+}
+
+#[inline(never)]
+fn run_in_lanes<'a, Sys, Effects, O>(
+    mut members: impl Iterator<Item = Member<'a, Sys, Effects, O>>,
+    finished: &mut impl FnMut(usize, Result<Run<Sys::State>, StartError>),
+) where
+    Sys: System + TaylorField + 'a,
+    Effects: Effect<Sys>,
+    O: Observer<Sys>,
+{
+    let mut lanes: ArrayVec<Lane<'a, Sys, Effects, O>, MOST> = ArrayVec::new();
+    let mut abreast = Abreast::<Sys, f64x8>::new();
+    loop {
+        let mut is_new = false;
+        let mut place = 0;
+        while place < MOST {
+            let Some(lane) = lanes.get_mut(place) else {
+                let Some(member) = members.next() else { break };
+                match Lane::begin(member) {
+                    Ok(lane) => lanes.push(lane),
+                    Err((tag, error)) => finished(tag, Err(error)),
+                }
+                continue;
+            };
+            match lane.reach_step() {
+                Ok(was_ready) => {
+                    is_new |= !was_ready;
+                    place += 1;
+                }
+                Err(outcome) => {
+                    let Lane {
+                        member, progress, ..
+                    } = lanes.swap_remove(place);
+                    finished(member.tag, Ok(progress.ended(outcome)));
+                    is_new = true;
+                }
+            }
+        }
+        if lanes.is_empty() {
+            return;
+        }
+        let mut made = [false; MOST];
+        if lanes.len() > FEW {
+            if is_new {
+                let systems: ArrayVec<&Sys, MOST> =
+                    lanes.iter().map(|lane| lane.member.system).collect();
+                abreast.set_parameters(&systems);
+            }
+            made = abreast.step(&mut lanes);
+        }
+        for (lane, made) in lanes.iter_mut().zip(made) {
+            lane.stage = lane.after_step(made);
+        }
+    }
+}
+
+/// A run in a lane.
+struct Lane<'a, Sys: System + TaylorField, Effects, O> {
+    member: Member<'a, Sys, Effects, O>,
+    progress: Progress<Sys::State>,
+    stage: Stage,
+}
+
+/// What comes next in a run.
+enum Stage {
+    /// Everything before the first step.
+    Begin,
+    /// The integrator must be begun anew.
+    SetOff,
+    /// A step.
+    Step,
+    /// Nothing more.
+    Over(Outcome),
+}
+
+impl<'a, Sys, Effects, O> Lane<'a, Sys, Effects, O>
+where
+    Sys: System + TaylorField,
+    Effects: Effect<Sys>,
+    O: Observer<Sys>,
+{
+    fn begin(member: Member<'a, Sys, Effects, O>) -> Result<Self, (usize, StartError)> {
+        match check_start(member.system, member.t, member.t_end) {
+            Ok(()) => Ok(Self {
+                progress: Progress::new(member.t, member.state),
+                member,
+                stage: Stage::Begin,
+            }),
+            Err(error) => Err((member.tag, error)),
+        }
+    }
+
+    /// Goes on until a step is to be made; whether there was nothing to do before it. The end of the run is an error.
+    fn reach_step(&mut self) -> Result<bool, Outcome> {
+        let was_ready = matches!(self.stage, Stage::Step);
+        let Self {
+            member,
+            progress,
+            stage,
+        } = self;
+        let (t_end, observer) = (member.t_end, &mut member.observer);
+        let mut course = Course {
+            system: member.system,
+            stepper: &mut member.stepper,
+            effects: &mut member.effects,
+            budget: member.step_budget,
+            progress,
+        };
+        loop {
+            match stage {
+                Stage::Over(outcome) => return Err(*outcome),
+                Stage::Begin => course.begin(observer)?,
+                Stage::SetOff | Stage::Step => {}
+            }
+            if course.progress.t >= t_end {
+                return Err(Outcome::Done);
+            }
+            if let Some(forces) = course.effects.forces() {
+                course.drive_under(forces, t_end, observer)?;
+                *stage = Stage::SetOff;
+                continue;
+            }
+            if !matches!(stage, Stage::Step) {
+                course.set_off(t_end)?;
+                *stage = Stage::Step;
+            }
+            course.check_budget()?;
+            return Ok(was_ready);
+        }
+    }
+
+    /// What follows a step, which is made here if it was not made with others.
+    fn after_step(&mut self, was_made: bool) -> Stage {
+        let Self {
+            member, progress, ..
+        } = self;
+        let mut course = Course {
+            system: member.system,
+            stepper: &mut member.stepper,
+            effects: &mut member.effects,
+            budget: member.step_budget,
+            progress,
+        };
+        if !was_made {
+            let counters = &mut course.progress.counters;
+            let step = course.stepper.step(member.system, member.t_end, counters);
+            if let Err(failure) = step {
+                return Stage::Over(failure.into());
+            }
+        }
+        match course.go_on(&None, &mut member.observer) {
+            Ok(Next::Step) => Stage::Step,
+            Ok(Next::Forces) => Stage::SetOff,
+            Err(outcome) => Stage::Over(outcome),
+        }
+    }
+}
+
+impl<Sys: System + TaylorField, Effects, O> Walker<Sys> for Lane<'_, Sys, Effects, O> {
+    fn taylor(&self) -> &Taylor<Sys> {
+        &self.member.stepper
+    }
+
+    fn at_work(&mut self) -> (&mut Taylor<Sys>, &mut Counters) {
+        (&mut self.member.stepper, &mut self.progress.counters)
+    }
+
+    fn t_end(&self) -> f64 {
+        self.member.t_end
+    }
+
+    fn looks_inside(&self) -> bool {
+        self.member.looks_inside
+    }
+}
