@@ -12,6 +12,8 @@ pub struct Work {
     pub values: u32,
     /// Sums over products of coefficients: each takes a multiplication for every pair of coefficients.
     pub sums: u32,
+    /// The order after which the series of motion and gaps end, if they do whatever the numbers are.
+    pub degree: Option<u32>,
 }
 
 /// Room for the coefficients of several series.

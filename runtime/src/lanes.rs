@@ -37,8 +37,8 @@ impl Numbers for f64x8 {
     }
 
     #[inline(always)]
-    fn lane(self, lane: usize) -> f64 {
-        self.to_array()[lane]
+    fn lane(&self, lane: usize) -> f64 {
+        self.as_array()[lane]
     }
 
     #[inline(always)]

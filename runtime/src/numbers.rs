@@ -35,7 +35,7 @@ pub trait Numbers:
     fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self;
 
     /// The number of a lane.
-    fn lane(self, lane: usize) -> f64;
+    fn lane(&self, lane: usize) -> f64;
 
     /// `self b + c`, rounded as [`math::mul_add`] does.
     #[must_use]
@@ -183,8 +183,8 @@ impl Numbers for f64 {
     }
 
     #[inline(always)]
-    fn lane(self, _: usize) -> f64 {
-        self
+    fn lane(&self, _: usize) -> f64 {
+        *self
     }
 
     #[inline(always)]

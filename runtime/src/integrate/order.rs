@@ -8,7 +8,8 @@
 //! ```
 //!
 //! Where nothing is known of `a`, or it is small, that is the order of Jorba and Zou, `p = 1 - ln(tol) / 2` but for
-//! constants, and the step `e^-2` of the radius. What a step takes at any order makes higher orders worth while.
+//! constants, and the step `e^-2` of the radius. What a step takes at any order makes higher orders worth while. Series that end
+//! are computed to their ends.
 //!
 //! Reference: A. Jorba and M. Zou, Experimental Mathematics 14 (2005), sections 3.1 and 3.2.
 
@@ -38,7 +39,12 @@ pub(super) fn order(tolerance: f64, work: Option<Work>) -> usize {
         order += 1.0;
     }
     // NOTE: the conversion saturates and drops the fraction, `+ 1` makes it round up.
-    (order as usize + 1).clamp(LEAST_ORDER, LENGTH - 1)
+    let order = (order as usize + 1).clamp(LEAST_ORDER, LENGTH - 1);
+    match work.and_then(|work| work.degree) {
+        // The two coefficients that decide on the step are those that vanish.
+        Some(degree) => order.min((degree as usize + 2).max(LEAST_ORDER)),
+        None => order,
+    }
 }
 
 #[cfg(test)]
@@ -53,10 +59,12 @@ mod tests {
         let simple = orders(Some(Work {
             values: 100,
             sums: 1,
+            degree: None,
         }));
         let rich = orders(Some(Work {
             values: 400,
             sums: 100,
+            degree: None,
         }));
         for i in 0..4 {
             assert!(
@@ -65,5 +73,11 @@ mod tests {
             );
         }
         assert!(simple[3] < LENGTH);
+        let ends = orders(Some(Work {
+            values: 100,
+            sums: 0,
+            degree: Some(2),
+        }));
+        assert_eq!(ends, [4; 4]);
     }
 }

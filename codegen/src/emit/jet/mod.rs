@@ -14,6 +14,7 @@ use quote::quote;
 use super::function::{Body, emit_body, joined};
 use super::{Context, doc};
 use crate::program::jet::Jet;
+use crate::program::jet::degree::Degree;
 use crate::program::{Function, Value};
 use writer::Writer;
 
@@ -37,7 +38,7 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
             .to_string(),
     ]);
     let attributes = super::attributes();
-    let work = work(jet);
+    let work = work(jet, components);
     quote! {
         #attributes
         impl ::dalembert::TaylorField for #type_name {
@@ -82,13 +83,26 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// The work of expansions.
-fn work(jet: &Jet) -> TokenStream {
+/// The work of expansions of a motion with so many components.
+fn work(jet: &Jet, components: usize) -> TokenStream {
     let values = jet.function.cost.multiplications_alike();
     let values = Literal::u32_unsuffixed(u32::try_from(values).unwrap_or(u32::MAX));
     // NOTE: the conversion saturates.
     let sums = Literal::u32_unsuffixed(jet.sums().ceil() as u32);
-    quote!(::core::option::Option::Some(::dalembert::jet::Work { values: #values, sums: #sums }))
+    let degree = match jet.degree(components) {
+        Degree::AtMost(degree) => {
+            let degree = Literal::u32_unsuffixed(degree);
+            quote!(::core::option::Option::Some(#degree))
+        }
+        Degree::Endless => quote!(::core::option::Option::None),
+    };
+    quote! {
+        ::core::option::Option::Some(::dalembert::jet::Work {
+            values: #values,
+            sums: #sums,
+            degree: #degree,
+        })
+    }
 }
 
 /// The parts of an expansion.

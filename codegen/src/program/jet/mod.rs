@@ -207,6 +207,19 @@ impl Jet {
         self.varying().map(sums).sum()
     }
 
+    /// The degree of the motion, whose rate the first results are, and of all others.
+    pub fn degree(&self, components: usize) -> Degree {
+        let degrees = self.function.outputs.iter().enumerate();
+        let degrees = degrees.map(|(i, output)| {
+            let own = self.degrees[output.index()];
+            match (i < components, own) {
+                (true, Degree::AtMost(degree)) => Degree::AtMost(degree + 1),
+                _ => own,
+            }
+        });
+        degrees.max().unwrap_or(Degree::AtMost(0))
+    }
+
     /// Values that have coefficients of order `k`, in an order in which they can be computed.
     pub fn varying(&self) -> impl Iterator<Item = Value> + '_ {
         let varies = |i: &usize| self.needed[*i] && self.recurrences[*i] != Recurrence::Constant;
