@@ -5,6 +5,7 @@ use plotters::prelude::ChartBuilder;
 use plotters::style::{Color, RGBColor};
 
 use super::canvas::{self, Area, TITLE_HEIGHT, message, px, stroke, text};
+use super::colours;
 use super::plane::{self, Chart};
 use super::style::{self, Axis};
 use crate::ensemble::density::Density;
@@ -27,20 +28,6 @@ const BAR_WIDTH: f64 = 16.0;
 
 /// Colours that are told apart.
 const LEVELS: usize = 64;
-
-/// Colours from few to many, dark to light, of the map `viridis` (public domain) at equal distances; colour-blind people
-/// can tell them apart, and they keep their order in grey.
-const COLOURS: [[u8; 3]; 9] = [
-    [68, 1, 84],
-    [71, 44, 122],
-    [59, 81, 139],
-    [44, 113, 142],
-    [33, 144, 141],
-    [39, 173, 129],
-    [92, 200, 99],
-    [170, 220, 50],
-    [253, 231, 37],
-];
 
 /// Draws the counts of all cells as a density, under a title and a subtitle. Cells without a count stay white.
 ///
@@ -118,16 +105,9 @@ impl Scale {
     }
 }
 
-/// The colour of a level, between those of the table.
+/// The colour of a level.
 fn colour(level: usize) -> RGBColor {
-    let place = level as f64 / (LEVELS - 1) as f64 * (COLOURS.len() - 1) as f64;
-    let first = (place as usize).min(COLOURS.len() - 2);
-    let part = place - first as f64;
-    let mix = |i: usize| {
-        let [low, high] = [COLOURS[first][i], COLOURS[first + 1][i]].map(f64::from);
-        (low + part * (high - low)).round() as u8
-    };
-    RGBColor(mix(0), mix(1), mix(2))
+    colours::colour(level as f64 / (LEVELS - 1) as f64)
 }
 
 fn axes<'a, 'b>(

@@ -4,30 +4,18 @@ use plotters::element::Rectangle;
 use plotters::style::{Color, RGBColor};
 
 use super::canvas::{Area, INDENT, message, px, text, text_width};
+use super::colours::colour;
 use super::contour::Window;
 use super::plane::{Head, Words};
 use super::portrait::draw_boundary;
 use super::style::{self, Axis};
-use super::{Table, png};
+use super::{Table, image};
 
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 440.0;
 
 /// Height of the colour bar with its numbers, in pixels.
 const BAR: f64 = 40.0;
-
-/// Colours from low to high that are told apart in print and by the colour-blind (viridis, S. van der Walt and N. Smith).
-const COLOURS: [RGBColor; 9] = [
-    RGBColor(68, 1, 84),
-    RGBColor(71, 45, 123),
-    RGBColor(59, 82, 139),
-    RGBColor(44, 114, 142),
-    RGBColor(33, 145, 140),
-    RGBColor(40, 174, 128),
-    RGBColor(94, 201, 98),
-    RGBColor(173, 220, 48),
-    RGBColor(253, 231, 37),
-];
 
 /// How many colours a picture uses besides the transparent one.
 const SHADES: usize = 255;
@@ -80,7 +68,7 @@ pub fn draw(map: &Map<'_>) -> Result<String, String> {
             draw_boundary(chart, &boundary)
         },
     )?;
-    put_image(&svg, &map.image(most)).ok_or_else(|| "the boxes found no place".to_owned())
+    put_image(&svg, &map.image(most)?).ok_or_else(|| "the boxes found no place".to_owned())
 }
 
 impl Map<'_> {
@@ -95,14 +83,14 @@ impl Map<'_> {
     }
 
     /// The boxes as the address of an image.
-    fn image(&self, most: f64) -> String {
+    fn image(&self, most: f64) -> Result<String, String> {
         let shade = |value: f64| match value {
             0.0 => 0,
             _ => 1 + ((value / most * SHADES as f64) as usize).min(SHADES - 1) as u8,
         };
         let rows = self.densities.chunks(self.boxes).rev();
         let pixels: Vec<u8> = rows.flatten().map(|&value| shade(value)).collect();
-        png::data_address(self.boxes, &palette(), &pixels)
+        image::data_address(self.boxes, &palette(), &pixels)
     }
 }
 
@@ -112,18 +100,6 @@ fn palette() -> Vec<RGBColor> {
     std::iter::once(RGBColor(255, 255, 255))
         .chain(shades)
         .collect()
-}
-
-/// The colour at a share from low to high.
-fn colour(share: f64) -> RGBColor {
-    let place = share * (COLOURS.len() - 1) as f64;
-    let index = (place as usize).min(COLOURS.len() - 2);
-    let (low, high) = (COLOURS[index], COLOURS[index + 1]);
-    let part = place - index as f64;
-    let mix = |low: u8, high: u8| {
-        (f64::from(low) + part * (f64::from(high) - f64::from(low))).round() as u8
-    };
-    RGBColor(mix(low.0, high.0), mix(low.1, high.1), mix(low.2, high.2))
 }
 
 /// Replaces the rectangle that keeps the place by the image. The drawing library can only draw boxes one by one.
@@ -178,21 +154,6 @@ impl Head for Bar {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn colours_run_from_the_first_to_the_last() {
-        let palette = palette();
-        assert_eq!(palette.len(), 1 + SHADES);
-        assert_eq!(palette[1], COLOURS[0]);
-        assert_eq!(palette[SHADES], COLOURS[8]);
-        // More is brighter.
-        let light = |c: &RGBColor| 2 * u32::from(c.0) + 7 * u32::from(c.1) + u32::from(c.2);
-        assert!(
-            COLOURS
-                .windows(2)
-                .all(|pair| light(&pair[0]) < light(&pair[1]))
-        );
-    }
 
     #[test]
     fn an_image_takes_the_place_of_its_rectangle() {

@@ -3,15 +3,16 @@
 
 mod canvas;
 pub mod cloud;
+mod colours;
 pub mod contour;
 pub mod density;
 pub mod heat;
 mod history;
+mod image;
 mod legend;
 pub mod logarithmic;
 mod phase;
 mod plane;
-mod png;
 mod portrait;
 pub mod quantity;
 mod region;
