@@ -72,14 +72,15 @@ const TO_BERNSTEIN: [[f64; SAMPLES]; 4] = [
     ],
 ];
 
-/// From powers to Bernstein coefficients: `C(j, k) / C(8, k)` of power `k` in coefficient `j`. Row `k` is that of a power.
-pub(crate) const FROM_POWERS: [[f64; SAMPLES]; SAMPLES] = {
-    let mut table = [[0.0; SAMPLES]; SAMPLES];
-    let mut j = 0;
+/// From powers to Bernstein coefficients: `C(j, k) / C(8, k)` of power `k` in coefficient `j`. Row `k` is that of a power,
+/// and begins with coefficient 1: coefficient 0 is power 0.
+pub(crate) const FROM_POWERS: [[f64; SAMPLES - 1]; SAMPLES] = {
+    let mut table = [[0.0; SAMPLES - 1]; SAMPLES];
+    let mut j = 1;
     while j < SAMPLES {
         let (mut k, mut ratio) = (0, 1.0);
         while k <= j {
-            table[k][j] = ratio;
+            table[k][j - 1] = ratio;
             ratio *= (j - k) as f64 / (SAMPLES - 1 - k) as f64;
             k += 1;
         }
@@ -125,39 +126,28 @@ pub(crate) fn signs(samples: &[f64; SAMPLES]) -> Signs {
     read(&bernstein(samples), doubt(samples))
 }
 
-/// Reads signs from Bernstein coefficients; those within the doubt have none.
-pub(crate) fn read(coefficients: &[f64; SAMPLES], doubt: f64) -> Signs {
-    let sign = |value: f64| match value {
-        value if value > doubt => Some(true),
-        value if value < -doubt => Some(false),
-        _ => None,
-    };
-    let (Some(first), Some(last)) = (sign(coefficients[0]), sign(coefficients[SAMPLES - 1])) else {
-        return Signs::Unclear;
-    };
-    let (mut current, mut changes, mut skipped) = (first, 0, 0);
-    for &coefficient in coefficients {
-        match sign(coefficient) {
-            None => skipped += 1,
-            // Uncertain coefficients between equal signs may hide two roots, two of them between opposite signs
-            // two more.
-            Some(positive) if positive == current && skipped > 0 => return Signs::Unclear,
-            Some(positive) => {
-                if positive != current {
-                    changes += 1;
-                    if skipped > 1 {
-                        return Signs::Unclear;
-                    }
-                }
-                (current, skipped) = (positive, 0);
-            }
-        }
+/// Reads signs from Bernstein coefficients, at most 32; those within the doubt have none.
+///
+/// One uncertain coefficient where the sign changes hides no root; any other may hide two.
+#[inline(always)]
+pub(crate) fn read(coefficients: &[f64], doubt: f64) -> Signs {
+    // One bit per coefficient, the first one lowest.
+    let (mut above, mut below) = (0_u32, 0_u32);
+    for (place, &coefficient) in coefficients.iter().enumerate() {
+        above |= u32::from(coefficient > doubt) << place;
+        below |= u32::from(coefficient < -doubt) << place;
     }
-    match (changes, first, last) {
-        (0, true, _) => Signs::Positive,
-        (0, false, _) => Signs::Negative,
-        (1, true, false) => Signs::Falls,
-        (1, false, true) => Signs::Rises,
+    let count = coefficients.len() as u32;
+    let changes_once = |first: u32, last: u32| {
+        let ahead = first.trailing_ones();
+        let behind = (last << (u32::BITS - count)).leading_ones();
+        ahead > 0 && behind > 0 && ahead + behind + 1 >= count
+    };
+    match (above, below) {
+        (_, 0) if above.trailing_ones() == count => Signs::Positive,
+        (0, _) if below.trailing_ones() == count => Signs::Negative,
+        _ if changes_once(above, below) => Signs::Falls,
+        _ if changes_once(below, above) => Signs::Rises,
         _ => Signs::Unclear,
     }
 }
@@ -270,6 +260,27 @@ mod tests {
         assert_eq!(read(|x| (x - 0.4) * (x - 0.5)), Signs::Unclear);
         assert_eq!(read(|x| 1.0 + (40.0 * x).sin()), Signs::Unclear);
         assert_eq!(read(|_| f64::NAN), Signs::Unclear);
+    }
+
+    #[test]
+    fn uncertain_coefficients_are_passed_over_only_where_they_hide_no_root() {
+        let read = |coefficients: &[f64]| super::read(coefficients, 0.5);
+        assert_eq!(read(&[1.0, 2.0, 1.0]), Signs::Positive);
+        assert_eq!(read(&[-1.0, -2.0]), Signs::Negative);
+        assert_eq!(read(&[1.0, 0.1, -1.0, -1.0]), Signs::Falls);
+        assert_eq!(read(&[-1.0, -1.0, 0.0, 1.0]), Signs::Rises);
+        let unclear: [&[f64]; 7] = [
+            &[1.0, 0.1, 1.0],
+            &[1.0, 0.1, -0.1, -1.0],
+            &[1.0, 0.1, 1.0, -1.0],
+            &[1.0, -1.0, 1.0],
+            &[0.1, -1.0],
+            &[1.0, 0.1],
+            &[1.0, f64::NAN, 1.0],
+        ];
+        for coefficients in unclear {
+            assert_eq!(read(coefficients), Signs::Unclear, "{coefficients:?}");
+        }
     }
 
     #[test]

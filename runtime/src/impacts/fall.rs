@@ -1,6 +1,7 @@
 //! The first fall of one gap along a step: on its polynomial where there is one, on the gap itself where that does not
 //! tell.
 
+use super::root::Polynomial;
 use super::search::rounding_along;
 use super::series::GapSeries;
 use crate::contract::Impacting;
@@ -12,8 +13,8 @@ use crate::state::StateVector;
 
 /// What is known of the gap of a surface along a step.
 pub(super) enum Known<'a, G> {
-    /// The polynomials of all gaps.
-    Series(&'a GapSeries<G>),
+    /// The polynomials of all gaps, and the signs of its own over the whole step.
+    Series(&'a GapSeries<G>, Signs),
     /// Samples.
     Samples([f64; SAMPLES]),
 }
@@ -43,8 +44,8 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
             start,
         }
         .first_fall(),
-        Known::Series(series) => {
-            let plain = plain_fall(surface, series, start, &mut gap);
+        Known::Series(series, signs) => {
+            let plain = plain_fall(surface, series, *signs, start, &mut gap);
             plain.unwrap_or_else(|| {
                 let whole = &series.samples(surface);
                 let found = first_on_series(surface, series, whole, start, &mut rounding, &mut gap);
@@ -64,23 +65,27 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     found
 }
 
-/// The fall of a polynomial that has one root in the whole step, corrected on the gap.
+/// The fall of a polynomial that has one root in the whole step, or in its beginning, corrected on the gap.
 fn plain_fall<G: StateVector>(
     surface: usize,
     series: &GapSeries<G>,
+    signs: Signs,
     start: Start,
     gap: impl FnMut(f64) -> f64,
 ) -> Option<Search> {
-    let at_hand = start.slope.is_some();
     let is_plain = start.from == 0.0 && start.above;
-    if !(is_plain && series.signs(surface, at_hand) == Signs::Falls) {
+    if !(is_plain && matches!(signs, Signs::Falls | Signs::Unclear)) {
         return None;
     }
-    if start.until < 1.0 && series.is_positive(surface, start.until) {
+    let polynomial = Polynomial::new(series, surface, start.slope.is_some());
+    let end = match signs {
+        Signs::Falls => 1.0,
+        _ => polynomial.first_fall()?,
+    };
+    if start.until < end && series.is_positive(surface, start.until) {
         return Some(Search::Clear);
     }
-    let fall = series.fall(surface, at_hand, [0.0, 1.0], gap);
-    fall.map(Search::Falls)
+    polynomial.fall([0.0, end], gap).map(Search::Falls)
 }
 
 /// The first fall of the polynomial of a gap with these samples, corrected on the gap.
@@ -104,7 +109,7 @@ fn first_on_series<G: StateVector>(
     };
     match line.first_interval() {
         Ok(ends) => {
-            let fall = series.fall(surface, start.slope.is_some(), ends, gap);
+            let fall = Polynomial::new(series, surface, start.slope.is_some()).fall(ends, gap);
             fall.map(Search::Falls)
         }
         Err(Search::Clear) => Some(Search::Clear),

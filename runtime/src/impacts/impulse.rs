@@ -140,7 +140,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
-        let mut rates = now.system.gap_rates(now.t, now.state)?;
+        let mut rates = self.watch.rates_here(now)?;
         let mut several = hits.approached(&rates) > 1;
         if several
             && self.policies.corner == Corner::Stop
@@ -417,10 +417,15 @@ impl<Sys: Impacting> SceneEffects<Sys> for Impacts<Sys> {
 }
 
 /// The state half way between two.
+///
+/// NOTE: components that an impulse does not change are seen to be the same, so that what is made of them is computed once.
+#[inline(always)]
 fn between<S: StateVector>(one: &S, other: &S) -> S {
     let mut middle = *one;
     for (middle, other) in middle.as_mut_slice().iter_mut().zip(other.as_slice()) {
-        *middle = 0.5 * *middle + 0.5 * other;
+        if middle.to_bits() != other.to_bits() {
+            *middle = 0.5 * *middle + 0.5 * other;
+        }
     }
     middle
 }

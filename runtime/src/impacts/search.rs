@@ -3,11 +3,12 @@
 
 use super::fall::{Known, first_fall};
 use super::glance::Glance;
+use super::place::Place;
 use super::tangency::{crosses_at_rest, is_accelerated};
 use super::watch::Watch;
 use crate::contract::Impacting;
 use crate::effects::StepView;
-use crate::events::crossing::{NODES, SAMPLES};
+use crate::events::crossing::{NODES, SAMPLES, Signs};
 use crate::events::locate::{Bracket, Search, Start};
 use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
@@ -29,22 +30,28 @@ enum Found {
 }
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Looks for the earliest hit along the dense output.
+    /// Looks for the earliest hit along the dense output. `first` is the first surface that the look did not clear, with
+    /// the signs of its gap.
     pub(super) fn search<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
+        first: (usize, Signs),
     ) -> Result<(), Outcome> {
         step.prepare()?;
         self.length = glance.length;
+        self.parts.as_mut_slice().fill(f64::INFINITY);
         let mut whole = None;
-        for surface in 0..Sys::Gaps::LEN {
-            self.parts.as_mut_slice()[surface] = f64::INFINITY;
-            if self.is_clear(surface, glance) {
+        for surface in first.0..Sys::Gaps::LEN {
+            let signs = match surface == first.0 {
+                true => Some(first.1),
+                false => self.unclear(surface, glance),
+            };
+            let Some(signs) = signs else {
                 continue;
-            }
+            };
             let known = match &glance.series {
-                Some(series) => Known::Series(series),
+                Some(series) => Known::Series(series, signs),
                 None => {
                     let whole =
                         whole.get_or_insert_with(|| samples(step, &self.gaps, &glance.gaps));
@@ -70,7 +77,7 @@ impl<Sys: Impacting> Watch<Sys> {
 
     /// The first fall of this gap that is an impact: the surface counts there, and is approached.
     fn first_hit<Step: Stepper<Sys>>(
-        &self,
+        &mut self,
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
         known: &Known<'_, Sys::Gaps>,
@@ -132,7 +139,7 @@ impl<Sys: Impacting> Watch<Sys> {
                     after,
                     nearest,
                 };
-                if let Some((there, rate)) = approach(surface, step, places)? {
+                if let Some((there, rate)) = self.approach(surface, step, places)? {
                     return Ok(Found::Hit(there, rate));
                 }
                 tangential = tangential.or(Some(after));
@@ -148,6 +155,38 @@ impl<Sys: Impacting> Watch<Sys> {
             }
         }
         Ok(Found::Unfinished(start.from))
+    }
+
+    /// Where an impact is placed and the gap rate there, unless the surface is not approached.
+    ///
+    /// NOTE: that is where the gap is closest to 0, on whichever side; but never where there is no motion behind the surface.
+    /// Were it always the allowed side, positions would be rounded away from the surface, and times and angular momenta
+    /// drift like the number of impacts.
+    fn approach<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        step: &mut StepView<'_, Sys, Step>,
+        places: Bracket,
+    ) -> Result<Option<(f64, f64)>, Outcome> {
+        let Bracket {
+            before,
+            after,
+            nearest,
+        } = places;
+        self.place = match nearest > 0.0 && nearest != before {
+            true => regular_place(step, nearest),
+            false => None,
+        };
+        let (there, rate) = match &self.place {
+            Some(place) => (nearest, place.rates.as_slice()[surface]),
+            None => {
+                let there = if before > 0.0 { before } else { after };
+                (there, rate_at(surface, step, there)?)
+            }
+        };
+        let falls = |part| Ok::<_, Outcome>(rate_at(surface, step, part)? < 0.0);
+        let is_approached = rate < 0.0 || falls(before)? || falls(after)?;
+        Ok(is_approached.then_some((there, rate)))
     }
 
     /// Behind a pole the surface must not count: the motion is on the side that is not allowed, and met no wall.
@@ -263,47 +302,16 @@ pub(super) fn is_active<Sys: Impacting, Step: Stepper<Sys>>(
         .surface_active(surface, step.time(part), &step.state(part))
 }
 
-/// Where an impact is placed and the gap rate there, unless the surface is not approached.
-///
-/// NOTE: that is where the gap is closest to 0, on whichever side; but never where there is no motion behind the surface.
-/// Were it always the allowed side, positions would be rounded away from the surface, and times and angular momenta
-/// drift like the number of impacts.
-fn approach<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &StepView<'_, Sys, Step>,
-    places: Bracket,
-) -> Result<Option<(f64, f64)>, Outcome> {
-    let Bracket {
-        before,
-        after,
-        nearest,
-    } = places;
-    let regular = match nearest > 0.0 && nearest != before {
-        true => regular_rate(surface, step, nearest),
-        false => None,
-    };
-    let (there, rate) = match regular {
-        Some(rate) => (nearest, rate),
-        None => {
-            let there = if before > 0.0 { before } else { after };
-            (there, rate_at(surface, step, there)?)
-        }
-    };
-    let falls = |part| Ok::<_, Outcome>(rate_at(surface, step, part)? < 0.0);
-    let is_approached = rate < 0.0 || falls(before)? || falls(after)?;
-    Ok(is_approached.then_some((there, rate)))
-}
-
-/// The gap rate at a part of a step, if the motion exists there.
-fn regular_rate<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &StepView<'_, Sys, Step>,
+/// What is known at a part of a step, if the motion exists there.
+fn regular_place<Sys: Impacting, Step: Stepper<Sys>>(
+    step: &mut StepView<'_, Sys, Step>,
     part: f64,
-) -> Option<f64> {
-    let state = step.state(part);
-    let rates = step.system.gap_rates(step.time(part), &state).ok()?;
-    let exists = rates.is_finite() && step.system.outside_chart(&state).is_none();
-    exists.then_some(rates.as_slice()[surface])
+) -> Option<Place<Sys>> {
+    let (t, state) = (step.time(part), step.state(part));
+    let evaluations = &mut step.counters.event_evaluations;
+    let place = Place::new(step.system, t, state, evaluations).ok()?;
+    let exists = place.rates.is_finite() && step.system.outside_chart(&state).is_none();
+    exists.then_some(place)
 }
 
 /// The gap rate at a part of a step.

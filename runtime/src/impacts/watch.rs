@@ -9,9 +9,10 @@
 use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::Held;
 use super::hits::Hits;
+use super::place::Place;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
-use crate::events::crossing::clear;
+use crate::events::crossing::{Signs, clear};
 use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
@@ -39,6 +40,10 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) bends: Sys::Gaps,
     /// Length of the last step.
     pub(super) length: f64,
+    /// What was evaluated where a hit was placed, perhaps the earliest.
+    pub(super) place: Option<Place<Sys>>,
+    /// Gaps at the position that impacts happen at, once they are known.
+    here: Option<Sys::Gaps>,
     /// Largest absolute values of the state's components since the last impact: their rounding errors stay with it.
     pub(super) sizes: Sys::State,
     /// Steps since then: each has rounded the state.
@@ -59,6 +64,8 @@ impl<Sys: Impacting> Watch<Sys> {
             grazes: zeros,
             bends: zeros,
             length: 0.0,
+            place: None,
+            here: None,
             sizes: Sys::State::zeros(),
             steps: 0,
             held: Held::none(),
@@ -81,7 +88,7 @@ impl<Sys: Impacting> Watch<Sys> {
 
     /// The surfaces at hand at the first instant of a run.
     pub(super) fn begin(&mut self, now: &mut Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
-        self.proposed = None;
+        (self.proposed, self.place) = (None, None);
         self.held = Held::none();
         let rates = now.system.gap_rates(now.t, now.state)?;
         let mut hits = Hits::<Sys::Gaps>::none();
@@ -100,6 +107,7 @@ impl<Sys: Impacting> Watch<Sys> {
         self.bends = Sys::Gaps::zeros();
         (self.sizes, self.steps) = (*now.state, 0);
         let gaps = measured(now)?;
+        self.here = Some(gaps);
         let mut at_hand = Sys::Gaps::zeros();
         for (surface, &gap) in gaps.as_slice().iter().enumerate() {
             if now.system.surface_active(surface, now.t, now.state) {
@@ -122,12 +130,20 @@ impl<Sys: Impacting> Watch<Sys> {
         rates: Sys::Gaps,
     ) -> Result<(), Outcome> {
         self.rates = rates;
-        self.gaps = measured(now)?;
         (self.sizes, self.steps) = (*now.state, 0);
-        for surface in 0..Sys::Gaps::LEN {
-            if hits.at_hand.as_slice()[surface] == 1.0 || self.held.is_held(surface) {
-                self.gaps.as_mut_slice()[surface] = 0.0;
-            }
+        let (held, here) = (self.held, self.here.take());
+        let is_at_hand =
+            |surface: usize| hits.at_hand.as_slice()[surface] == 1.0 || held.is_held(surface);
+        self.gaps = Sys::Gaps::zeros();
+        if (0..Sys::Gaps::LEN).all(is_at_hand) {
+            return Ok(());
+        }
+        let gaps = match here {
+            Some(gaps) => gaps,
+            None => measured(now)?,
+        };
+        for surface in (0..Sys::Gaps::LEN).filter(|&surface| !is_at_hand(surface)) {
+            self.gaps.as_mut_slice()[surface] = gaps.as_slice()[surface];
         }
         self.check_negative(now)
     }
@@ -139,6 +155,7 @@ impl<Sys: Impacting> Watch<Sys> {
         now: &mut Moment<'_, Sys>,
     ) -> Result<Hits<Sys::Gaps>, Outcome> {
         let mut hits = Hits::<Sys::Gaps>::none();
+        self.here = None;
         if self.proposed.is_none() {
             return Ok(hits);
         }
@@ -159,12 +176,17 @@ impl<Sys: Impacting> Watch<Sys> {
     /// Adds the surfaces hit so soon after others that rounding decides which is first. In the direction of a flight the
     /// rounding of its steps adds up.
     fn add_beside(
-        &self,
+        &mut self,
         hits: &mut Hits<Sys::Gaps>,
         now: &mut Moment<'_, Sys>,
     ) -> Result<(), Outcome> {
-        let gaps = measured(now)?;
-        let rates = now.system.gap_rates(now.t, now.state)?;
+        let rates = self.rates_here(now)?;
+        let known = self.known_here(now).and_then(|place| place.gaps);
+        let gaps = match known {
+            Some(gaps) => finite::<Sys>(gaps)?,
+            None => measured(now)?,
+        };
+        self.here = Some(gaps);
         let roundings = 2.0 + f64::from(self.steps) / 16.0;
         for surface in 0..Sys::Gaps::LEN {
             if hits.at_hand.as_slice()[surface] == 1.0 {
@@ -183,6 +205,20 @@ impl<Sys: Impacting> Watch<Sys> {
             }
         }
         Ok(())
+    }
+
+    /// What was evaluated at this moment when the hit was found.
+    fn known_here(&self, now: &Moment<'_, Sys>) -> Option<&Place<Sys>> {
+        let place = self.place.as_ref();
+        place.filter(|place| place.is(now.t, now.state))
+    }
+
+    /// The gap rates where the step was cut.
+    pub(super) fn rates_here(&self, now: &Moment<'_, Sys>) -> Result<Sys::Gaps, Outcome> {
+        match self.known_here(now) {
+            Some(place) => Ok(place.rates),
+            None => Ok(now.system.gap_rates(now.t, now.state)?),
+        }
     }
 
     /// Whether the hit on this surface is a graze.
@@ -228,8 +264,10 @@ impl<Sys: Impacting> Watch<Sys> {
         {
             *size = size.abs().max(value.abs());
         }
-        if !(0..Sys::Gaps::LEN).all(|surface| self.is_clear(surface, &glance)) {
-            self.search(step, &glance)?;
+        let mut surfaces = 0..Sys::Gaps::LEN;
+        let unclear = surfaces.find_map(|surface| Some((surface, self.unclear(surface, &glance)?)));
+        if let Some(first) = unclear {
+            self.search(step, &glance, first)?;
         }
         if self.proposed.is_none() {
             self.pass(step, &glance)?;
@@ -292,11 +330,11 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Whether the step can pass this surface, told cheaply.
+    /// `None` if the step can pass this surface, told cheaply; else what that told of the signs of its gap.
     #[inline(always)]
-    pub(super) fn is_clear(&self, surface: usize, glance: &Glance<Sys::Gaps>) -> bool {
+    pub(super) fn unclear(&self, surface: usize, glance: &Glance<Sys::Gaps>) -> Option<Signs> {
         if self.held.is_held(surface) {
-            return true;
+            return None;
         }
         let at = |values: &Sys::Gaps| values.as_slice()[surface];
         let slopes = [
@@ -306,16 +344,18 @@ impl<Sys: Impacting> Watch<Sys> {
         // NOTE: negative throughout, a surface at hand is not clear but pressed, unless it is passed.
         let is_passed = self.is_passable(surface) && slopes[0] <= 0.0;
         let is_sunk = at(&self.gaps) == 0.0 && at(&glance.gaps) < 0.0 && !is_passed;
-        !glance.is_due(surface)
-            && !is_sunk
-            && match &glance.series {
-                Some(series) => series.is_clear(surface, at(&self.gaps) == 0.0),
-                None => clear(
-                    [at(&self.gaps), at(&glance.gaps)],
-                    slopes,
-                    at(&glance.probe),
-                ),
+        let (signs, is_clear) = match &glance.series {
+            Some(series) => {
+                let signs = series.signs(surface, at(&self.gaps) == 0.0);
+                (signs, matches!(signs, Signs::Positive | Signs::Negative))
             }
+            None => {
+                let gaps = [at(&self.gaps), at(&glance.gaps)];
+                (Signs::Unclear, clear(gaps, slopes, at(&glance.probe)))
+            }
+        };
+        let passes = is_clear && !is_sunk && !glance.is_due(surface);
+        (!passes).then_some(signs)
     }
 
     /// Surfaces that count have a gap that is not negative beyond rounding; within rounding they are at hand.

@@ -1,0 +1,342 @@
+//! The fall of one gap on its polynomial along a step, corrected by an evaluation or two of the gap of the dense output.
+
+use super::series::GapSeries;
+use crate::events::crossing::Signs;
+use crate::events::locate::Bracket;
+use crate::math;
+use crate::state::StateVector;
+
+/// Steps of Chebyshev's method, which triples the number of right digits in each.
+const STEPS: u32 = 10;
+
+/// A step of it this small a part of the root is the last one, or the last but one: what it leaves of the error is about
+/// its cube.
+const SETTLED: f64 = 1.0 / (1 << 18) as f64;
+
+/// Steps of it on the first terms of a polynomial, and how many these are.
+const GUESSES: u32 = 2;
+const FIRST_TERMS: usize = 8;
+
+/// Behind the first root of a polynomial, this many times as far as the root, it is looked at apart from the rest of the step.
+const BEHIND: f64 = 1.25;
+
+/// Evaluations of the gap itself next to a root of its polynomial.
+const SECANTS: u32 = 6;
+
+/// A root is certain if what rounding leaves of doubt is this small a part of the interval it was found in.
+const CLOSE: f64 = 1.0 / (1 << 10) as f64;
+
+/// The polynomial of a surface's gap, a root at the start of the step divided out.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Polynomial<'a, G> {
+    series: &'a GapSeries<G>,
+    surface: usize,
+    /// Whether there is a root at the start.
+    at_hand: bool,
+    /// Its terms, of which those at the end that are 0 are not counted.
+    terms: &'a [G],
+}
+
+impl<'a, G: StateVector> Polynomial<'a, G> {
+    /// That of this surface, which is at hand at the start of the step or not.
+    pub(super) fn new(series: &'a GapSeries<G>, surface: usize, at_hand: bool) -> Self {
+        let first = usize::from(at_hand);
+        let terms = &series.coefficients[first..=series.order.max(first)];
+        let is_zero = |term: &G| term.as_slice()[surface] == 0.0;
+        let vanishing = terms.iter().rev().take_while(|term| is_zero(term)).count();
+        Self {
+            series,
+            surface,
+            at_hand,
+            terms: &terms[..terms.len() - vanishing],
+        }
+    }
+
+    /// A part of the step up to which the polynomial falls once and does nothing else, if one is found.
+    pub(super) fn first_fall(&self) -> Option<f64> {
+        let end = (BEHIND * self.guess([0.0, 1.0])).min(1.0);
+        let signs = self.series.signs_by_more(self.surface, self.at_hand, end);
+        (signs == Signs::Falls).then_some(end)
+    }
+
+    /// The fall of the gap in an interval at whose ends the polynomial has different signs: Chebyshev's method on the
+    /// polynomial, with the gap itself in the last step. `None` where that does not end soon, or the gap is not what the
+    /// polynomial says.
+    pub(super) fn fall(
+        &self,
+        [mut before, mut after]: [f64; 2],
+        gap: impl FnMut(f64) -> f64,
+    ) -> Option<Bracket> {
+        let width = after - before;
+        let mut near = self.near(self.terms, self.guess([before, after]));
+        let mut steps = 0..STEPS;
+        let mut root = loop {
+            steps.next()?;
+            if near.value >= 0.0 {
+                before = near.part;
+            } else {
+                after = near.part;
+            }
+            let root = near.root(near.value);
+            // Not a comparison that NaN passes.
+            let is_inside = root >= before && root <= after;
+            if is_inside && (root - near.part).abs() <= SETTLED * root {
+                break root;
+            }
+            let middle = 0.5 * (before + after);
+            near = self.near(self.terms, if is_inside { root } else { middle });
+        };
+        if !self.is_next(&near, root) {
+            near = self.near(self.terms, root);
+            root = near.root(near.value);
+        }
+        let size = self.series.sizes.as_slice()[self.surface];
+        // What neighbouring numbers and rounding cannot tell apart.
+        let margin = 8.0 * f64::EPSILON * (root + size / self.slope(&near, root).abs());
+        let root = self.corrected(&near, root, margin, gap)?;
+        let is_plain = margin <= CLOSE * width && root > margin && root + margin < 1.0;
+        is_plain.then_some(Bracket {
+            before: root - margin,
+            after: root + margin,
+            nearest: root,
+        })
+    }
+
+    /// Whether a root is so near that rounding is more than what a step to it leaves: of its own error, about twice the
+    /// step times the square of the share that the bend has in it; and of the gap, whose slope is off by what a last term
+    /// would add to it that explains all doubt.
+    #[inline(always)]
+    fn is_next(&self, near: &Near, root: f64) -> bool {
+        let step = (root - near.part).abs();
+        let share = step * near.bend;
+        let [size, doubt] =
+            [&self.series.sizes, &self.series.doubts].map(|values| values.as_slice()[self.surface]);
+        let degree = self.series.order as f64;
+        2.0 * step * share * share <= f64::EPSILON * root * near.slope * near.slope
+            && degree * doubt * step <= f64::EPSILON * root * size
+    }
+
+    /// The root of the gap itself, where that of its polynomial is `root` and `near` it: the same step with the gap in
+    /// place of the polynomial, then secants. One evaluation is enough where the polynomial misses little; `None`
+    /// where it misses more than it may.
+    fn corrected(
+        &self,
+        near: &Near,
+        root: f64,
+        margin: f64,
+        mut gap: impl FnMut(f64) -> f64,
+    ) -> Option<f64> {
+        let mut part = near.part;
+        let mut value = gap(part);
+        let divisor = if self.at_hand { part } else { 1.0 };
+        let missed = (value - divisor * near.value).abs();
+        let is_said = missed <= self.series.doubts.as_slice()[self.surface];
+        if !(is_said && self.slope(near, root) < 0.0) {
+            return None;
+        }
+        let mut next = near.root(value / divisor);
+        let degree = self.series.order as f64;
+        // The slope is off by as much as the gap bends between here and the point before; at first, by what a last term
+        // that explains how far the root of the polynomial is off would add to it.
+        let mut apart = (next - root).abs();
+        let mut step = apart.max((next - part).abs());
+        for _ in 0..SECANTS {
+            if degree * apart * step <= 0.25 * margin * part {
+                return Some(next);
+            }
+            let (last, missed) = (part, value);
+            (part, value) = (next, gap(next));
+            let slope = (value - missed) / (part - last);
+            if !(slope < 0.0 && value.abs() < missed.abs()) {
+                return None;
+            }
+            apart = (part - last).abs();
+            next = part - value / slope;
+            step = (next - part).abs();
+        }
+        None
+    }
+
+    /// About where the polynomial falls in an interval: where its first terms do, looked for from where the parabola falls
+    /// that has its start, its slope there and its end.
+    #[inline(always)]
+    fn guess(&self, [before, after]: [f64; 2]) -> f64 {
+        let middle = 0.5 * (before + after);
+        let inside = |part: f64| match part > before && part < after {
+            true => part,
+            false => middle,
+        };
+        let first = usize::from(self.at_hand);
+        let [a, b] = [0, 1].map(|k| self.series.coefficients[first + k].as_slice()[self.surface]);
+        let end = self.series.last.as_slice()[self.surface];
+        let root = math::sqrt((b * b - 4.0 * a * (end - a - b)).max(0.0));
+        // The quotient that does not cancel.
+        let mut part = inside(match b <= 0.0 {
+            true => 2.0 * a / (root - b),
+            false => -0.5 * (b + root) / (end - a - b),
+        });
+        if let Some(terms) = self.terms.get(..FIRST_TERMS) {
+            for _ in 0..GUESSES {
+                let near = self.near(terms, part);
+                part = inside(near.root(near.value));
+            }
+        }
+        part
+    }
+
+    /// These first terms next to a part of the step.
+    ///
+    /// Even and odd powers are summed side by side, as each addition waits for the last.
+    #[inline(always)]
+    fn near(&self, terms: &[G], part: f64) -> Near {
+        let square = part * part;
+        let (mut values, mut slopes, mut bends) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+        let (pairs, rest) = terms.as_chunks::<2>();
+        if let Some(last) = rest.first() {
+            values[0] = last.as_slice()[self.surface];
+        }
+        for pair in pairs.iter().rev() {
+            for i in 0..2 {
+                let term = pair[i].as_slice()[self.surface];
+                bends[i] = math::mul_add(bends[i], square, slopes[i]);
+                slopes[i] = math::mul_add(slopes[i], square, values[i]);
+                values[i] = math::mul_add(values[i], square, term);
+            }
+        }
+        // By the part, of `E(part^2) + part O(part^2)`.
+        let [even, odd] = slopes;
+        Near {
+            part,
+            value: math::mul_add(part, values[1], values[0]),
+            slope: values[1] + 2.0 * part * math::mul_add(part, odd, even),
+            bend: even + 3.0 * part * odd + 4.0 * square * math::mul_add(part, bends[1], bends[0]),
+        }
+    }
+
+    /// The slope of the gap at a root near by.
+    #[inline(always)]
+    fn slope(&self, near: &Near, root: f64) -> f64 {
+        let slope = near.slope + 2.0 * near.bend * (root - near.part);
+        if self.at_hand { root * slope } else { slope }
+    }
+}
+
+/// A function next to a part of a step: its value there, its slope, and half of its second derivative.
+#[derive(Debug, Clone, Copy)]
+struct Near {
+    part: f64,
+    value: f64,
+    slope: f64,
+    bend: f64,
+}
+
+impl Near {
+    /// Where Chebyshev's step goes if the value is this one.
+    #[inline(always)]
+    fn root(&self, value: f64) -> f64 {
+        let inverse = 1.0 / self.slope;
+        let newton = value * inverse;
+        self.part - newton * (1.0 + newton * self.bend * inverse)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::SVector;
+
+    use super::*;
+    use crate::jet::LENGTH;
+
+    type One = SVector<f64, 1>;
+
+    /// The series of a polynomial that may be wrong by `doubt`.
+    fn series(terms: &[f64], doubt: f64) -> GapSeries<One> {
+        let mut coefficients = [One::zeros(); LENGTH];
+        for (entry, term) in coefficients.iter_mut().zip(terms) {
+            entry[0] = *term;
+        }
+        let size: f64 = terms.iter().map(|term| term.abs()).sum();
+        GapSeries {
+            coefficients,
+            order: terms.len() - 1,
+            sizes: One::new(size),
+            tails: One::zeros(),
+            doubts: One::new(doubt),
+            last: One::new(terms.iter().sum()),
+            slopes: One::zeros(),
+        }
+    }
+
+    /// The fall of a gap between these ends, by a polynomial that may be wrong by `doubt`.
+    fn fall(
+        polynomial: &GapSeries<One>,
+        at_hand: bool,
+        ends: [f64; 2],
+        gap: impl FnMut(f64) -> f64,
+    ) -> Option<Bracket> {
+        Polynomial::new(polynomial, 0, at_hand).fall(ends, gap)
+    }
+
+    #[test]
+    fn a_fall_is_that_of_the_gap_and_not_of_the_polynomial() {
+        // The gap is a little larger than the polynomial, 0.3 - x^2.
+        let more = 1e-12;
+        let gap = |x: f64| 0.3 + more - x * x;
+        let found = fall(&series(&[0.3, 0.0, -1.0], 1e-11), false, [0.4, 0.7], gap);
+        let Some(Bracket {
+            before,
+            after,
+            nearest,
+        }) = found
+        else {
+            panic!("{found:?}")
+        };
+        let root = (0.3 + more).sqrt();
+        assert!(
+            (nearest - root).abs() <= 4.0 * f64::EPSILON,
+            "{nearest} for {root}"
+        );
+        assert!(before < nearest && nearest < after && gap(before) > 0.0 && gap(after) < 0.0);
+        assert!(after - before < 1e-13, "{before} to {after}");
+    }
+
+    #[test]
+    fn the_root_at_the_start_is_divided_out() {
+        for root in [0.9, 1e-3] {
+            let gap = |x: f64| x * (root - x);
+            let found = fall(&series(&[0.0, root, -1.0], 1e-15), true, [0.0, 1.0], gap);
+            let nearest = found.map_or(f64::NAN, |fall| fall.nearest);
+            assert!(
+                (nearest - root).abs() <= 4.0 * f64::EPSILON * root,
+                "{found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_fall_is_told_from_the_rise_behind_it() {
+        let gap = |x: f64| (x - 0.25) * (x - 0.75);
+        let dip = series(&[0.1875, -1.0, 1.0], 1e-15);
+        let polynomial = Polynomial::new(&dip, 0, false);
+        let end = polynomial.first_fall().expect("one fall");
+        assert!(end > 0.25 && end < 0.75, "{end}");
+        let found = polynomial.fall([0.0, end], gap).map(|fall| fall.nearest);
+        assert!(
+            found.is_some_and(|root| (root - 0.25).abs() <= 1e-15),
+            "{found:?}"
+        );
+        let touching = series(&[0.25, -1.0, 1.0], 1e-15);
+        assert_eq!(Polynomial::new(&touching, 0, false).first_fall(), None);
+    }
+
+    #[test]
+    fn doubtful_falls_are_left_to_the_gap_itself() {
+        // It is not what the polynomial says; it touches; it rises.
+        let falling = series(&[0.5, -1.0], 1e-12);
+        assert_eq!(fall(&falling, false, [0.0, 1.0], |_| 1e-11), None);
+        let touching = series(&[0.25, -1.0, 1.0], 1e-12);
+        assert_eq!(fall(&touching, false, [0.0, 1.0], |_| 0.0), None);
+        let rising = series(&[-0.5, 1.0], 1e-12);
+        assert_eq!(fall(&rising, false, [0.0, 1.0], |_| 0.0), None);
+    }
+}
