@@ -2,7 +2,7 @@
 //!
 //! All panic on a fault; at the states that are compared and timed there is none.
 
-use dalembert::{Impacting, Law, StateVector, System, VectorField};
+use dalembert::{Impacting, StateVector, System, VectorField};
 
 use crate::State;
 
@@ -22,14 +22,13 @@ pub fn energy<S: System>(system: &S, state: &State<S>) -> f64 {
     system.energy(0.0, state).expect("no fault at this state")
 }
 
-/// The state after an elastic impact on a surface.
+/// The state after an impact on a surface by its declared law.
 #[inline(always)]
 pub fn impact<S: Impacting>(system: &S, surface: usize, state: &State<S>) -> State<S> {
-    let contact = system
-        .contact(surface, 0.0, state)
+    let blow = system
+        .blow(surface, 0.0, state)
         .expect("no fault at this state");
     let mut after = *state;
-    let size = contact.impulse(Law::Elastic);
-    system.kick(&mut after, size, &contact.direction);
+    system.kick(&mut after, blow.size, &blow.direction);
     after
 }

@@ -1,10 +1,11 @@
 //! The form reduced to D against values computed independently with 50 digits, and against the global form.
 
 use dalembert::{
-    Constrained, Described, Dop853, Event, Impacting, Observer, Scene, SceneEffects, Simulation,
-    StateVector, System, Tolerance,
+    Constrained, Described, Dop853, Event, Fault, Impacting, Observer, Scene, SceneEffects,
+    Simulation, StateVector, System, Tolerance, VectorField,
 };
 use dalembert_cli::Exit;
+use dalembert_models::RollingBallEuler;
 use dalembert_tests::command::dalembert;
 use dalembert_tests::numeric::Reported;
 use dalembert_tests::reference::{compare, read};
@@ -21,6 +22,23 @@ const QUANTITIES: [&str; 7] = [
     "multipliers",
     "mu_C_density_frame",
 ];
+
+/// Where Euler's angles are singular, so is the frame of the angular velocity in space: the angles' rates do not exist,
+/// the energy does.
+#[test]
+fn a_frame_ends_where_its_angles_do() {
+    let ball = RollingBallEuler::default();
+    for theta in [0.0, core::f64::consts::PI] {
+        let state = [0.1, 0.2, 0.3, theta, 0.4, 1.0, -0.5, 0.25].into();
+        let mut rate = state;
+        let fault = Err(Fault::SingularFrame { quasi: 1 });
+        assert_eq!(ball.rate(0.0, &state, &mut rate), fault);
+        let energy = ball.energy(0.0, &state).expect("an energy");
+        let square = ball.k * ball.k;
+        let expected = 0.5 * ((square + ball.r * ball.r) * 1.25 + square * 0.0625);
+        assert!((energy - expected).abs() < 1e-15 * expected.abs() * 4.0);
+    }
+}
 
 #[test]
 fn the_reduced_form_has_the_reference_values() {

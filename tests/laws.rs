@@ -1,9 +1,13 @@
 //! Properties of the impact laws at random states on random surfaces.
 
-use dalembert::impacts::law::Law;
+use dalembert::impacts::law::{Blow, Law};
 use dalembert::{Constrained, Described, Impacting, StateVector, System};
+use dalembert_models::chaplygin_sleigh::ChaplyginSleighGlobal;
+use dalembert_models::rolling_ball_euler::RollingBallEulerGlobal;
+use dalembert_models::rolling_disk::RollingDiskGlobal;
 use dalembert_models::{
-    ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk, TwoWheelsRod,
+    BouncingBall, ChaplyginSleigh, HolonomicBeadOnEllipses, PointBilliard, RollingBallEuler,
+    RollingDisk, TwoWheelsRod,
 };
 use dalembert_tests::sampling::states;
 use dalembert_tests::systems::{AffineSleigh, DampedSleigh, MagneticDisk, TableWall};
@@ -67,6 +71,58 @@ fn gap_rate_and_energy_change_as_each_law_says() {
     check_linear(&PointBilliard::default());
     check_linear(&DampedSleigh::default());
     check_linear(&MagneticDisk::default());
+}
+
+/// The declared law has a function of its own, in which most of a contact is left out.
+fn check_blows<S: Described + Impacting>(system: &S) {
+    for state in states(system, 20, 14) {
+        for surface in 0..S::DESCRIPTION.surfaces.len() {
+            let contact = system.contact(surface, 0.0, &state).expect("a contact");
+            let expected = contact.blow(system.law(surface));
+            let actual = system.blow(surface, 0.0, &state).expect("a blow");
+            let whole = |blow: &Blow<S::Impulse>| -> Vec<f64> {
+                let direction = blow.direction.as_slice().iter();
+                direction.map(|own| blow.size * own).collect()
+            };
+            let (expected_impulse, impulse) = (whole(&expected), whole(&actual));
+            let size = expected_impulse
+                .iter()
+                .fold(0.0, |size: f64, own| size.max(own.abs()));
+            for (actual, expected) in impulse.iter().zip(&expected_impulse) {
+                assert!(
+                    (actual - expected).abs() < 1e-12 * size,
+                    "{}: {actual} for {expected}",
+                    S::DESCRIPTION.name
+                );
+            }
+            let taken = (actual.share - expected.share) * contact.gap_rate;
+            assert!(
+                taken.abs() < 1e-12 * (contact.gap_rate.abs() + contact.surface_rate.abs() + 1e-3),
+                "{}: {} for {}",
+                S::DESCRIPTION.name,
+                actual.share,
+                expected.share
+            );
+        }
+    }
+}
+
+#[test]
+fn blows_are_those_of_the_contact_by_the_declared_law() {
+    check_blows(&RollingDisk::default());
+    check_blows(&RollingDiskGlobal(RollingDisk::default()));
+    check_blows(&ChaplyginSleigh::default());
+    check_blows(&ChaplyginSleighGlobal(ChaplyginSleigh::default()));
+    check_blows(&RollingBallEuler::default());
+    check_blows(&RollingBallEulerGlobal(RollingBallEuler::default()));
+    check_blows(&TwoWheelsRod::default());
+    check_blows(&PointBilliard::default());
+    check_blows(&HolonomicBeadOnEllipses::default());
+    check_blows(&BouncingBall::default());
+    check_blows(&AffineSleigh::default());
+    check_blows(&DampedSleigh::default());
+    check_blows(&MagneticDisk::default());
+    check_blows(&TableWall::default());
 }
 
 /// No law leaves the constraints, affine ones included.

@@ -3,7 +3,7 @@
 //! Only [`VectorField`] is known to integrators. Time is an argument everywhere; autonomous systems ignore it.
 
 use crate::error::{Fault, ParameterError, StateError};
-use crate::impacts::law::{Contact, Jump, Law};
+use crate::impacts::law::{Blow, Contact, Jump, Law};
 use crate::jet::{Jets, LENGTH, Work};
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
@@ -423,7 +423,20 @@ pub trait Impacting: System {
         Ok(None)
     }
 
-    /// What an impact on this surface needs.
+    /// The impulse of the declared law of a surface, where that is one.
+    ///
+    /// # Errors
+    /// As [`Impacting::contact`].
+    fn blow(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Blow<Self::Impulse>, Fault> {
+        Ok(self.contact(surface, t, state)?.blow(self.law(surface)))
+    }
+
+    /// What an impact on this surface by any law needs, and motion along it.
     ///
     /// # Errors
     /// [`Fault`]; [`Fault::SingularSurface`] where `dh(pi_D grad h)` is not positive.

@@ -139,7 +139,7 @@ pub use effects::{Effect, Scene, SceneEffects};
 pub use error::{Fault, ParameterError, StateError};
 pub use forces::{Forces, NoForces};
 pub use impacts::Impacts;
-pub use impacts::law::{Contact, Jump, Law};
+pub use impacts::law::{Blow, Contact, Jump, Law};
 pub use impacts::policy::{Corner, Penetration, Policies, Rest};
 pub use initial::complete_velocities;
 pub use integrate::{

@@ -5,6 +5,7 @@ use dalembert_codegen::program::{Function, Input, Program, interpret::interpret,
 use dalembert_tests::numeric::{moved, slope, slopes};
 use proptest::prelude::*;
 
+use super::blows::check_blows;
 use super::config;
 use super::declaration::Declaration;
 use super::dense::{Dense, Evaluated, Point, dot, times, unit};
@@ -50,8 +51,8 @@ pub fn compiled(declaration: &Declaration) -> Result<Compiled, TestCaseError> {
 }
 
 /// What is compared, with the size of the errors that are allowed.
-struct Comparison<'a> {
-    compiled: &'a Compiled,
+pub struct Comparison<'a> {
+    pub compiled: &'a Compiled,
     dense: Dense<'a>,
     at: Point,
     evaluated: Evaluated,
@@ -61,7 +62,7 @@ struct Comparison<'a> {
     /// Rates of the motion's part of the state, or an impulse on it.
     motion: Vec<f64>,
     /// What rounding may do, relative to the numbers that occur.
-    tolerance: f64,
+    pub tolerance: f64,
 }
 
 impl<'a> Comparison<'a> {
@@ -81,7 +82,7 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    fn run(&self, function: &Function) -> Vec<f64> {
+    pub fn run(&self, function: &Function) -> Vec<f64> {
         let input = |input| match input {
             Input::Time => self.at.t,
             Input::Coordinate(i) => self.at.q[i],
@@ -239,6 +240,9 @@ fn check_reduced(own: &Comparison<'_>) -> Result<(), TestCaseError> {
         &on.evaluated.p,
     )?;
     on.same("quasi-velocities", &on.run(&reduced.quasi), &on.quasi)?;
+    for program in [&on.compiled.programs.main, on.compiled.programs.global()] {
+        check_blows(&on, program)?;
+    }
     own.same("nearest", &own.run(&reduced.nearest_velocities), &on.quasi)?;
     own.same("nearest", &own.run(&reduced.nearest_momenta), &on.quasi)?;
     match &program.constrained {
@@ -428,6 +432,9 @@ fn check(declaration: &Declaration, at: Point, excess: Vec<f64>) -> Result<(), T
     check_constraints(&own)?;
     check_reduced(&own)?;
     check_contacts(&own)?;
+    if compiled.derivation.constraints.is_empty() {
+        check_blows(&own, programs.global())?;
+    }
     check_derivatives(&own)?;
     check_divergence(&own)
 }

@@ -3,6 +3,7 @@
 //! The quick tests draw from a fixed seed. `PROPTEST_CASES` and `PROPTEST_RNG_SEED` ask for more cases and for other
 //! ones; a failure shrinks and prints the declaration that shows it.
 
+mod blows;
 mod broken;
 mod declaration;
 mod dense;

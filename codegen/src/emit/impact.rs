@@ -19,6 +19,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
     let responses = emit_responses(context, functions);
     let conditions = emit_conditions(context, functions);
     let laws = emit_laws(context, functions);
+    let blows = emit_blows(context, functions);
     let contacts = emit_contacts(context, functions);
     let resets = emit_resets(context, functions);
     let attributes = super::attributes();
@@ -30,6 +31,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
             #responses
             #conditions
             #laws
+            #blows
             #contacts
             #resets
         }
@@ -187,6 +189,59 @@ pub(super) fn emit_coefficient_checks(context: &Context<'_>) -> TokenStream {
         Some(quote!({ #statements ::dalembert::__private::check_coefficient(#name, #(#outputs)*)?; }))
     });
     quote!(#(#checks)*)
+}
+
+/// What the declared law does, and nothing that other laws would need.
+fn emit_blows(context: &Context<'_>, functions: &Impacting) -> TokenStream {
+    let arms = functions
+        .blows
+        .iter()
+        .enumerate()
+        .filter_map(|(s, function)| {
+            let Body {
+                statements,
+                outputs,
+            } = context.state_body(function.as_ref()?);
+            let [size, share, direction @ ..] = outputs.as_slice() else {
+                return None;
+            };
+            Some(quote! {
+                #s => {
+                    #statements
+                    ::core::result::Result::Ok(::dalembert::impacts::law::Blow {
+                        size: #size,
+                        share: #share,
+                        direction: ::dalembert::__private::vector([#(#direction),*]),
+                    })
+                }
+            })
+        });
+    let mut lines = vec!["The impulse by the declared law.".to_owned(), String::new()];
+    for (s, function) in functions.blows.iter().enumerate() {
+        if let Some(function) = function {
+            let (name, law) = (
+                &context.model.surfaces[s].name.display,
+                context.model.law_text(s),
+            );
+            lines.push(format!("* `{name}`: `{law}`, {}.", function.cost));
+        }
+    }
+    let documentation = doc::lines(&lines);
+    quote! {
+        #documentation
+        #[inline]
+        fn blow(
+            &self,
+            surface: usize,
+            t: f64,
+            state: &Self::State,
+        ) -> ::core::result::Result<::dalembert::impacts::law::Blow<Self::Impulse>, ::dalembert::Fault> {
+            match surface {
+                #(#arms)*
+                _ => ::core::result::Result::Err(::dalembert::Fault::SingularSurface { surface }),
+            }
+        }
+    }
 }
 
 fn emit_contacts(context: &Context<'_>, functions: &Impacting) -> TokenStream {

@@ -1,6 +1,6 @@
 //! Constraint forms and the terms of `d/dt (eta(qdot) + eta_0)` that do not hold the acceleration.
 
-use dalembert_expr::{ExprId, Function, Node, Pool, Sign};
+use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign};
 
 use super::{Coordinates, Entry, gradient};
 use crate::model::Model;
@@ -19,6 +19,8 @@ pub struct ConstraintForm {
     pub scale: ExprId,
     /// `(d_i eta_j) qdot^i qdot^j + (d_i eta_0) qdot^i + (d_t eta_j) qdot^j + d_t eta_0`.
     pub curvature: ExprId,
+    /// `eta_j` and `curvature` without a number that all components have in common: what moves does not depend on it.
+    pub primitive: (Vec<ExprId>, ExprId),
     /// `d_k eta_j`, index `[j, k]`.
     pub form_gradient: Vec<Entry<2>>,
     /// `d_k eta_0`, index `[k]`.
@@ -40,9 +42,11 @@ pub(super) fn derive_constraints(
             let form = model.constraints[a].form.clone();
             let affine = model.constraints[a].affine;
             let residual = derive_residual(model, coordinates, &form, affine);
+            let curvature = model.pool.derivative_along(residual, &motion);
             ConstraintForm {
                 scale: amplitude(&mut model.pool, residual),
-                curvature: model.pool.derivative_along(residual, &motion),
+                primitive: primitive(&mut model.pool, &form, curvature),
+                curvature,
                 form_gradient: derive_form_gradient(model, coordinates, &form),
                 affine_gradient: gradient(model, affine, &coordinates.q),
                 form_rate: derive_form_rate(model, coordinates, &form),
@@ -53,6 +57,22 @@ pub(super) fn derive_constraints(
             }
         })
         .collect()
+}
+
+fn primitive(pool: &mut Pool, form: &[ExprId], curvature: ExprId) -> (Vec<ExprId>, ExprId) {
+    let entries = form.iter().filter(|&&entry| !pool.is_syntactic_zero(entry));
+    let mut sizes = entries.map(|&entry| pool.as_multiple(entry).0.abs());
+    let common = sizes
+        .next()
+        .filter(|first| sizes.all(|size| size == *first));
+    let scale = common
+        .and_then(|size| size.recip())
+        .unwrap_or(Rational::ONE);
+    let form = form
+        .iter()
+        .map(|&entry| pool.scale(&scale, entry))
+        .collect();
+    (form, pool.scale(&scale, curvature))
 }
 
 /// `eta(qdot) + eta_0`.

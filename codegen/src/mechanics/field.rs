@@ -1,6 +1,6 @@
 //! Terms of the global field: `p_k = dL/dqdot^k`, `f_k = d_k L + F_k`, `drift_k = (gdot qdot + Adot)_k`.
 
-use dalembert_expr::ExprId;
+use dalembert_expr::{ExprId, Pool, Rational, Verdict};
 
 use super::Coordinates;
 use crate::model::Model;
@@ -12,25 +12,94 @@ pub struct FieldTerms {
     pub force: Vec<ExprId>,
     /// `d/dt` of `dL/dqdot^k` at fixed velocity: `gdot qdot + Adot`.
     pub drift: Vec<ExprId>,
+    /// Where force and drift were shown to be the same.
+    pub cancels: Vec<bool>,
 }
 
+/// Distinct parts beyond which force and drift are not compared.
+const PARTS: usize = 400;
+
+/// Coordinates up to which the expanded metric is differentiated too.
+const COORDINATES: usize = 4;
+
 /// Derives forces and drift. Differentiating `L` itself instead of its expanded metric keeps the
-/// structure that the author wrote, so that an N-link chain costs O(N^2) operations and not O(N^3).
+/// structure that the author wrote, so that an N-link chain costs O(N^2) operations and not O(N^3). Of few coordinates
+/// both are tried: terms that cancel in the metric do not come up again in its derivatives.
 pub(super) fn derive_field(model: &mut Model, coordinates: &Coordinates) -> FieldTerms {
     let motion = coordinates.motion(model);
     let whole = model.lagrangian.whole;
     let mut terms = FieldTerms {
         force: Vec::new(),
         drift: Vec::new(),
+        cancels: Vec::new(),
     };
-    for k in 0..coordinates.q.len() {
-        let mut force = vec![model.pool.diff(whole, coordinates.q[k])];
+    let gradient = gradient_of_whole(model, coordinates);
+    for (k, &gradient) in gradient.iter().enumerate() {
+        let mut force = vec![gradient];
         force.extend(model.forces.iter().map(|named| named.form[k]));
         terms.force.push(model.pool.sum(&force));
         let momentum = model.pool.diff(whole, coordinates.qdot[k]);
         terms
             .drift
             .push(model.pool.derivative_along(momentum, &motion));
+        let cancels = cancel(&mut model.pool, terms.force[k], terms.drift[k]);
+        terms.cancels.push(cancels);
     }
     terms
+}
+
+/// Whether two expressions that are finite everywhere are the same.
+fn cancel(pool: &mut Pool, a: ExprId, b: ExprId) -> bool {
+    if !pool.is_finite(a) || !pool.is_finite(b) || pool.reachable(&[a, b]).len() > PARTS {
+        return false;
+    }
+    let difference = pool.sub(a, b);
+    pool.zero_test(difference) == Verdict::Proved
+}
+
+/// `d_k L`, in the form with fewer parts.
+fn gradient_of_whole(model: &mut Model, coordinates: &Coordinates) -> Vec<ExprId> {
+    let whole = model.lagrangian.whole;
+    let of = |model: &mut Model, expression: ExprId| -> Vec<ExprId> {
+        let symbols = coordinates.q.iter();
+        symbols.map(|&q| model.pool.diff(expression, q)).collect()
+    };
+    let written = of(model, whole);
+    if coordinates.q.len() > COORDINATES {
+        return written;
+    }
+    let parts = expanded(model, coordinates);
+    let expanded = of(model, parts);
+    let size = |gradient: &[ExprId]| model.pool.reachable(gradient).len();
+    match size(&expanded) < size(&written) {
+        true => expanded,
+        false => written,
+    }
+}
+
+/// `1/2 qdot^T g qdot + A.qdot - V`
+fn expanded(model: &mut Model, coordinates: &Coordinates) -> ExprId {
+    let (metric, linear) = (
+        model.lagrangian.metric.clone(),
+        model.lagrangian.linear.clone(),
+    );
+    let qdot: Vec<ExprId> = coordinates
+        .qdot
+        .iter()
+        .map(|&own| model.pool.variable(own))
+        .collect();
+    let pool = &mut model.pool;
+    let mut terms = vec![(Rational::MINUS_ONE, model.lagrangian.potential)];
+    for i in 0..qdot.len() {
+        terms.push((Rational::ONE, pool.mul(linear[i], qdot[i])));
+        for j in 0..=i {
+            let weight = if i == j {
+                Rational::HALF
+            } else {
+                Rational::ONE
+            };
+            terms.push((weight, pool.product(&[metric[i][j], qdot[i], qdot[j]])));
+        }
+    }
+    pool.combine(&terms)
 }

@@ -1,12 +1,16 @@
 //! Differentials of the impact surfaces: `dh`, `d_t h` and the gap rate `dh(qdot) + d_t h`.
 //!
-//! Every law is an impulse along `pi_D^* dh`; its size is the runtime's affair, so that a caller may choose
-//! another law without new code.
+//! Every law but `reset` is an impulse along `pi_D^* dh`. What it does to the state is the same for every multiple of
+//! `dh`, so that of a wall that stands still the direction alone matters: its *ray*, without factors that are never zero.
 
-use dalembert_expr::ExprId;
+use dalembert_expr::{ExprId, Pool};
 
-use super::Coordinates;
+use super::common_factor::{factored, without_regular_factor};
+use super::{Coordinates, Frame};
 use crate::model::Model;
+
+/// Distinct parts beyond which a ray on D is not written out.
+const PARTS: usize = 400;
 
 /// One surface, differentiated.
 #[derive(Debug)]
@@ -23,27 +27,66 @@ pub struct SurfaceForm {
     pub curvature: ExprId,
     /// The functions that must be positive for the surface to count.
     pub conditions: Vec<ExprId>,
+    /// Of a wall that stands still, `dh` without what is never zero in all its entries.
+    pub ray: Option<Vec<ExprId>>,
+    /// The same of `X^T dh`, where it can be written out.
+    pub ray_on_d: Option<Vec<ExprId>>,
 }
 
 /// Differentiates every surface.
-pub(super) fn derive_surfaces(model: &mut Model, coordinates: &Coordinates) -> Vec<SurfaceForm> {
+pub(super) fn derive_surfaces(
+    model: &mut Model,
+    coordinates: &Coordinates,
+    frame: Option<&Frame>,
+) -> Vec<SurfaceForm> {
     let motion = coordinates.motion(model);
     (0..model.surfaces.len())
         .map(|s| {
             let gap = model.surfaces[s].gap;
             let gap_rate = model.pool.derivative_along(gap, &motion);
+            let differentials = coordinates.q.iter();
+            let form: Vec<ExprId> = differentials.map(|&q| model.pool.diff(gap, q)).collect();
+            let rate = model.pool.diff(gap, coordinates.time);
+            let stands = model.pool.is_syntactic_zero(rate);
+            let on_d = frame.and_then(|frame| restricted(&mut model.pool, frame, &form));
             SurfaceForm {
+                ray: stands.then(|| ray(&mut model.pool, &form)),
+                ray_on_d: on_d
+                    .filter(|_| stands)
+                    .map(|own| ray(&mut model.pool, &own)),
                 gap,
-                form: coordinates
-                    .q
-                    .iter()
-                    .map(|&q| model.pool.diff(gap, q))
-                    .collect(),
-                rate: model.pool.diff(gap, coordinates.time),
+                form,
+                rate,
                 curvature: model.pool.derivative_along(gap_rate, &motion),
                 gap_rate,
                 conditions: model.surfaces[s].conditions.clone(),
             }
         })
         .collect()
+}
+
+/// `X^T dh`; `None` where a component of `X` that it takes is not written out.
+fn restricted(pool: &mut Pool, frame: &Frame, form: &[ExprId]) -> Option<Vec<ExprId>> {
+    let fields = &frame.invariant.as_ref()?.written;
+    let mut entries = Vec::with_capacity(fields.len());
+    for field in fields {
+        let mut terms = Vec::new();
+        for (&entry, component) in form.iter().zip(field) {
+            if !pool.is_syntactic_zero(entry) {
+                terms.push(pool.mul(entry, (*component)?));
+            }
+        }
+        let sum = pool.sum(&terms);
+        entries.push(pool.simplify(sum));
+    }
+    (pool.reachable(&entries).len() <= PARTS).then_some(entries)
+}
+
+/// A covector without what is never zero in all its entries.
+fn ray(pool: &mut Pool, covector: &[ExprId]) -> Vec<ExprId> {
+    let entries: Vec<ExprId> = covector
+        .iter()
+        .map(|&entry| factored(pool, entry))
+        .collect();
+    without_regular_factor(pool, &entries)
 }

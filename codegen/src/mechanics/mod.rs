@@ -10,10 +10,12 @@
 //! ```
 //!
 //! Only derivatives are taken here. `g^{-1}` and `m_ab` are never formed: the program stage factorises (see
-//! [`crate::program::linear`]). Sources: W. Clark, thesis, chapters III and V, with signs as in docs/conventions.md.
+//! [`crate::program::linear`]), but for what is known of the factors before ([`factors`], [`frame::Invariant`]). Sources: W. Clark, thesis, chapters III and V, with signs as in docs/conventions.md.
 
+mod common_factor;
 pub mod constraint;
 pub mod density;
+pub mod factors;
 pub mod field;
 pub mod frame;
 pub mod impact;
@@ -25,6 +27,7 @@ use crate::model::Model;
 
 pub use constraint::ConstraintForm;
 pub use density::DensityTerms;
+pub use factors::FactorRow;
 pub use field::FieldTerms;
 pub use frame::{Frame, Unreduced};
 pub use impact::SurfaceForm;
@@ -33,6 +36,8 @@ pub use metric::MetricDerivatives;
 /// The expressions that every emitted function is made of, in the pool of the model they were derived from.
 #[derive(Debug)]
 pub struct Derivation {
+    /// Rows of the factors of the metric that are known in simple terms.
+    pub factors: Vec<Option<FactorRow>>,
     /// Momenta, forces and drift.
     pub field: FieldTerms,
     /// Constraint forms with their curvature terms.
@@ -73,10 +78,13 @@ pub fn derive(model: &mut Model) -> Derivation {
     let density = density::derive_density(model, &coordinates, metric);
     let field = field::derive_field(model, &coordinates);
     let frame = frame::derive_frame(model, &coordinates, &constraints, &field);
+    let surfaces = impact::derive_surfaces(model, &coordinates, frame.as_ref().ok());
+    let metric_rows = model.lagrangian.metric.clone();
     Derivation {
+        factors: factors::derive_factors(&mut model.pool, &metric_rows),
         field,
         constraints,
-        surfaces: impact::derive_surfaces(model, &coordinates),
+        surfaces,
         density,
         frame,
     }

@@ -1,7 +1,8 @@
 //! Builds a function: value numbering, exact folding of constants, structural zeros.
 //!
 //! Rewrites made here are those of arithmetic on structural zeros and ones (`0 + a`, `1 * a`, `0 * a` where the
-//! zero is a zero of the sparsity pattern, not of a measured number) and commutativity. Nothing is reassociated.
+//! zero is a zero of the sparsity pattern, not of a measured number), of signs, and commutativity. Nothing is
+//! reassociated.
 
 use std::collections::HashMap;
 
@@ -101,7 +102,20 @@ impl Builder {
             Op::Number(number) => self.number(-number),
             Op::Neg(inner) => inner,
             Op::Sub(x, y) => self.sub(y, x),
+            Op::Mul(x, y) => match (self.existing_opposite(x), self.existing_opposite(y)) {
+                (Some(x), _) => self.mul(x, y),
+                (None, Some(y)) => self.mul(x, y),
+                (None, None) => self.push(Op::Neg(a)),
+            },
             _ => self.push(Op::Neg(a)),
+        }
+    }
+
+    /// `y - x`, if the value is `x - y` and both were computed before.
+    fn existing_opposite(&self, value: Value) -> Option<Value> {
+        match *self.op(value) {
+            Op::Sub(x, y) => self.numbered.get(&Op::Sub(y, x)).copied(),
+            _ => None,
         }
     }
 

@@ -183,16 +183,21 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Parameters are multiplied first: what depends on them alone is then shared between products.
+    /// Parameters are multiplied, and divided, first: what depends on them alone is then shared between products.
     fn lower_product(&self, builder: &mut Builder, factors: &[(ExprId, Rational)]) -> Value {
         let mut ordered: Vec<&(ExprId, Rational)> = factors.iter().collect();
-        ordered.sort_by_key(|(base, _)| (self.moving.contains(base), *base));
+        let is_symbol = |base| matches!(self.pool.node(base), Node::Symbol(_));
+        ordered.sort_by_key(|&&(base, _)| (self.moving.contains(&base), !is_symbol(base), base));
         let (mut above, mut denominator) = (Vec::new(), builder.integer(1));
+        let mut steady = 0;
         for (base, exponent) in ordered {
             let power = positive_power(builder, self.values[base], &exponent.abs());
             match exponent.is_negative() {
                 true => denominator = builder.mul(denominator, power),
                 false => above.push(power),
+            }
+            if !self.moving.contains(base) {
+                steady = above.len();
             }
         }
         // A quotient that exists spares the division.
@@ -202,10 +207,18 @@ impl<'a> Expressions<'a> {
                 break;
             }
         }
+        let is_steady = |(base, exponent): &(ExprId, Rational)| {
+            !exponent.is_negative() || !self.moving.contains(base)
+        };
         let one = builder.integer(1);
-        let numerator = above
-            .into_iter()
-            .fold(one, |product, factor| builder.mul(product, factor));
+        let mut numerator = one;
+        for (position, factor) in above.into_iter().enumerate() {
+            if position == steady && position > 0 && factors.iter().all(is_steady) {
+                numerator = builder.div(numerator, denominator);
+                denominator = one;
+            }
+            numerator = builder.mul(numerator, factor);
+        }
         builder.div(numerator, denominator)
     }
 

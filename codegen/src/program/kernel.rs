@@ -5,11 +5,10 @@ use dalembert_expr::{ExprId, Sign, SymbolId};
 
 use super::builder::Builder;
 use super::expression::Expressions;
-use super::linear::Ldlt;
+use super::linear::{KnownRow, Ldlt};
 use super::mass::ConstraintFactors;
-use super::{Form, Function, Input, Value};
+use super::{Form, Function, Guard, Input, Value};
 use crate::mechanics::Derivation;
-use crate::mechanics::constraint::regular_minor;
 use crate::model::Model;
 
 /// What the second half of a function's arguments is.
@@ -53,10 +52,14 @@ pub struct Kernel<'a> {
     pub(super) builder: Builder,
     expressions: Expressions<'a>,
     arguments: Arguments,
+    /// Whether constraint forms are taken without common numbers, so that multipliers are not those of the declaration.
+    pub(super) primitive: bool,
+    /// Whether velocities are taken from what is written out, rather than solved for one after the other.
+    pub(super) written: bool,
     ldlt: Option<Ldlt>,
-    constraint_factors: Option<ConstraintFactors>,
+    pub(super) constraint_factors: Option<ConstraintFactors>,
     qdot: Option<Vec<Value>>,
-    multipliers: Option<Vec<Value>>,
+    pub(super) multipliers: Option<Vec<Value>>,
     /// `X_i`
     pub(super) frame_fields: Option<Vec<Vec<Value>>>,
     /// The factors of `G_D`.
@@ -72,6 +75,8 @@ impl<'a> Kernel<'a> {
             builder: Builder::new(),
             expressions: Expressions::new(&model.pool),
             arguments,
+            primitive: false,
+            written: false,
             ldlt: None,
             constraint_factors: None,
             qdot: None,
@@ -93,6 +98,24 @@ impl<'a> Kernel<'a> {
             kernel.bind_velocity(inputs);
         }
         kernel
+    }
+
+    /// The same for a function in which multipliers do not show.
+    #[must_use]
+    pub fn without_multipliers(self) -> Self {
+        Self {
+            primitive: true,
+            ..self
+        }
+    }
+
+    /// The same with velocities as they are written out in quasi-velocities.
+    #[must_use]
+    pub fn written_out(self) -> Self {
+        Self {
+            written: true,
+            ..self
+        }
     }
 
     fn bind(&mut self, symbol: SymbolId, input: Input) {
@@ -177,7 +200,30 @@ impl<'a> Kernel<'a> {
             positive.push(self.model.pool.sign(row[i]) == Sign::Positive);
             metric.push(self.values(&row));
         }
-        Ldlt::factor(&mut self.builder, &metric, &positive)
+        let rows = &self.derivation.factors;
+        let known: Vec<Option<KnownRow>> = rows
+            .iter()
+            .map(|row| {
+                row.as_ref().map(|row| KnownRow {
+                    below: self.values(&row.below),
+                    pivot: self.value(row.pivot),
+                })
+            })
+            .collect();
+        for (positive, row) in positive.iter_mut().zip(rows) {
+            if let Some(row) = row {
+                *positive = self.model.pool.sign(row.pivot) == Sign::Positive;
+            }
+        }
+        let is_safe = |i: usize, value: Value| match &known[i] {
+            Some(_) => positive[i],
+            None => positive[i] && value == metric[i][i],
+        };
+        Ldlt::factor_guarded(&mut self.builder, &metric, &known, |builder, i, value| {
+            if !is_safe(i, value) {
+                builder.guard(Guard::Pivot { pivot: i, value });
+            }
+        })
     }
 
     /// `L^{-1} b`
@@ -270,116 +316,25 @@ impl<'a> Kernel<'a> {
         total
     }
 
-    /// `eta^a`, M rows of N.
-    pub fn forms(&mut self) -> Vec<Vec<Value>> {
-        (0..self.constraints())
-            .map(|a| {
-                let form = self.derivation.constraints[a].form.clone();
-                self.values(&form)
-            })
-            .collect()
-    }
-
-    /// Pairs of constraint and coordinate whose velocity follows from it, in an order to solve for them.
-    pub fn regular_minor(&self) -> Option<Vec<(usize, usize)>> {
-        regular_minor(&self.model.pool, &self.derivation.constraints)
-    }
-
-    fn factor_constraints(&mut self, which: &[usize]) -> ConstraintFactors {
-        let mut columns = Vec::new();
-        for &a in which {
-            let form = self.derivation.constraints[a].form.clone();
-            let form = self.values(&form);
-            columns.push(self.forward(&form));
-        }
-        let independent = self.regular_minor().is_some();
-        self.with_ldlt(|builder, ldlt| {
-            ConstraintFactors::factor(builder, ldlt, columns, which, independent)
-        })
-    }
-
-    /// Runs `work` with the factors of all constraint forms.
-    pub fn with_constraints<T>(
-        &mut self,
-        work: impl FnOnce(&mut Builder, &Ldlt, &ConstraintFactors) -> T,
-    ) -> T {
-        let factors = match self.constraint_factors.take() {
-            Some(factors) => factors,
-            None => self.factor_constraints(&(0..self.constraints()).collect::<Vec<_>>()),
-        };
-        let result = self.with_ldlt(|builder, ldlt| work(builder, ldlt, &factors));
-        self.constraint_factors = Some(factors);
-        result
-    }
-
-    /// The `lambda` with `m lambda = -(eta g^{-1} b + s)`.
-    pub fn constraint_solve(&mut self, b: &[Value], s: &[Value]) -> Vec<Value> {
-        let y = self.forward(b);
-        self.with_constraints(|builder, ldlt, factors| factors.solve(builder, ldlt, y, s))
-    }
-
-    /// As [`Kernel::constraint_solve`] with `b = 0`, for some of the constraints only.
-    pub fn partial_solve(&mut self, which: &[usize], s: &[Value]) -> Vec<Value> {
-        let factors = self.factor_constraints(which);
-        let zero = self.builder.zero();
-        let y = vec![zero; self.dimension()];
-        self.with_ldlt(|builder, ldlt| factors.solve(builder, ldlt, y, s))
-    }
-
     /// `f = dL/dq + F`
     pub fn force(&mut self) -> Vec<Value> {
         let force = self.derivation.field.force.clone();
         self.values(&force)
     }
 
-    /// `lambda_a`
-    pub fn multipliers(&mut self) -> Vec<Value> {
-        if let Some(multipliers) = &self.multipliers {
-            return multipliers.clone();
-        }
-        let free = self.force_without_drift();
-        let curvature: Vec<ExprId> = self
-            .derivation
-            .constraints
-            .iter()
-            .map(|c| c.curvature)
-            .collect();
-        let curvature = self.values(&curvature);
-        let multipliers = self.constraint_solve(&free, &curvature);
-        for (constraint, &value) in self.model.constraints.iter().zip(&multipliers) {
-            self.builder
-                .name(value, format!("lambda_{}", constraint.name.display));
-        }
-        self.multipliers = Some(multipliers.clone());
-        multipliers
-    }
-
     /// `f - gdot qdot - Adot`
     pub fn force_without_drift(&mut self) -> Vec<Value> {
-        let force = self.force();
-        let drift = self.derivation.field.drift.clone();
-        let drift = self.values(&drift);
-        force
-            .iter()
-            .zip(drift)
-            .map(|(&f, d)| self.builder.sub(f, d))
+        let field = &self.derivation.field;
+        let zero = self.builder.zero();
+        (0..field.force.len())
+            .map(|k| {
+                if field.cancels[k] {
+                    return zero;
+                }
+                let (force, drift) = (self.value(field.force[k]), self.value(field.drift[k]));
+                self.builder.sub(force, drift)
+            })
             .collect()
-    }
-
-    /// `covector + lambda_a eta^a`
-    pub fn add_constraint_force(
-        &mut self,
-        covector: &[Value],
-        multipliers: &[Value],
-    ) -> Vec<Value> {
-        let forms = self.forms();
-        let mut total = covector.to_vec();
-        for (form, &multiplier) in forms.iter().zip(multipliers) {
-            for (entry, &component) in total.iter_mut().zip(form) {
-                *entry = self.builder.add_product(*entry, multiplier, component);
-            }
-        }
-        total
     }
 
     /// The finished function.

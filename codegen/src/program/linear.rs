@@ -27,17 +27,18 @@ pub struct Ldlt {
 impl Ldlt {
     /// Factorises; `metric[i][j]` for `j <= i`. `positive[i]`: whether `metric[i][i]` is known to be positive.
     pub fn factor(builder: &mut Builder, metric: &[Vec<Value>], positive: &[bool]) -> Self {
-        Self::factor_guarded(builder, metric, |builder, i, value| {
+        Self::factor_guarded(builder, metric, &[], |builder, i, value| {
             if !(positive[i] && value == metric[i][i]) {
                 builder.guard(Guard::Pivot { pivot: i, value });
             }
         })
     }
 
-    /// Factorises; `guard` is told each pivot before it is divided by.
+    /// Factorises but for the rows that are known; `guard` is told each pivot before it is divided by.
     pub fn factor_guarded(
         builder: &mut Builder,
         metric: &[Vec<Value>],
+        known: &[Option<KnownRow>],
         guard: impl Fn(&mut Builder, usize, Value),
     ) -> Self {
         let n = metric.len();
@@ -45,22 +46,10 @@ impl Ldlt {
         let mut pivots: Vec<Value> = Vec::with_capacity(n);
         let mut inverse_pivots: Vec<Value> = Vec::with_capacity(n);
         for i in 0..n {
-            // Row i of the unscaled factor: scaled[j] = L_ij D_j.
-            let mut scaled: Vec<Value> = Vec::with_capacity(i);
-            for j in 0..i {
-                let mut entry = metric[i][j];
-                for k in 0..j {
-                    entry = builder.sub_product(entry, scaled[k], below[j][k]);
-                }
-                scaled.push(entry);
-            }
-            let row: Vec<Value> = (0..i)
-                .map(|j| builder.mul(scaled[j], inverse_pivots[j]))
-                .collect();
-            let mut pivot = metric[i][i];
-            for j in 0..i {
-                pivot = builder.sub_product(pivot, scaled[j], row[j]);
-            }
+            let (row, pivot) = match known.get(i) {
+                Some(Some(known)) => (known.below.clone(), known.pivot),
+                _ => eliminate(builder, &metric[i], &below, &inverse_pivots),
+            };
             guard(builder, i, pivot);
             inverse_pivots.push(builder.reciprocal(pivot));
             pivots.push(pivot);
@@ -71,6 +60,24 @@ impl Ldlt {
             pivots,
             inverse_pivots,
         }
+    }
+
+    /// `y^T D^{-1} y`, with one division for each pivot that is different.
+    pub fn weighted_square(&self, builder: &mut Builder, y: &[Value]) -> Value {
+        let mut sums: Vec<(Value, Value)> = Vec::new();
+        for (&component, &pivot) in y.iter().zip(&self.pivots) {
+            let square = builder.mul(component, component);
+            match sums.iter_mut().find(|(own, _)| *own == pivot) {
+                Some((_, sum)) => *sum = builder.add(*sum, square),
+                None => sums.push((pivot, square)),
+            }
+        }
+        let mut total = builder.zero();
+        for (pivot, sum) in sums {
+            let quotient = builder.div(sum, pivot);
+            total = builder.add(total, quotient);
+        }
+        total
     }
 
     /// The factors of the identity: `<u, v>` is the ordinary product of rows.
@@ -140,6 +147,42 @@ impl Ldlt {
         }
         total
     }
+}
+
+/// A row of the factors that is known before.
+#[derive(Debug)]
+pub struct KnownRow {
+    /// `L_ij`, `j < i`.
+    pub below: Vec<Value>,
+    /// `D_i`
+    pub pivot: Value,
+}
+
+/// The row of `L` and the pivot that a row of the metric leaves.
+fn eliminate(
+    builder: &mut Builder,
+    metric: &[Value],
+    below: &[Vec<Value>],
+    inverse_pivots: &[Value],
+) -> (Vec<Value>, Value) {
+    let i = below.len();
+    // Row i of the unscaled factor: scaled[j] = L_ij D_j.
+    let mut scaled: Vec<Value> = Vec::with_capacity(i);
+    for j in 0..i {
+        let mut entry = metric[j];
+        for k in 0..j {
+            entry = builder.sub_product(entry, scaled[k], below[j][k]);
+        }
+        scaled.push(entry);
+    }
+    let row: Vec<Value> = (0..i)
+        .map(|j| builder.mul(scaled[j], inverse_pivots[j]))
+        .collect();
+    let mut pivot = metric[i];
+    for j in 0..i {
+        pivot = builder.sub_product(pivot, scaled[j], row[j]);
+    }
+    (row, pivot)
 }
 
 /// `L^{-1} eta^T = Q U` with `<Q_a, Q_b> = n_a delta_ab`.

@@ -127,7 +127,7 @@ impl SparseMass {
                 diagonal: mass[place][place],
             });
         };
-        let factors = Ldlt::factor_guarded(builder, &mass, guard);
+        let factors = Ldlt::factor_guarded(builder, &mass, &[], guard);
         Self {
             columns,
             order,

@@ -6,6 +6,8 @@
 //! [`interpret`] executes it without a compiler.
 
 pub mod builder;
+pub mod coframe;
+pub mod constraints;
 pub mod cost;
 pub mod expression;
 pub mod interpret;
@@ -471,6 +473,8 @@ pub struct Impacting {
     pub gap_responses: Function,
     /// Per surface `(t, q) -> conditions`; `None` where there are none.
     pub conditions: Vec<Option<Function>>,
+    /// Per surface `(t, s) -> size, share, direction` of the blow by its law; `None` for a reset.
+    pub blows: Vec<Option<Function>>,
     /// Per surface `(t, s) -> gap_rate, constrained_rate, surface_rate, constrained_compliance,
     /// free_compliance, direction`.
     pub contacts: Vec<Function>,
@@ -488,12 +492,14 @@ impl Impacting {
             gap_accelerations,
             gap_responses,
             conditions,
+            blows,
             contacts,
             coefficients,
             resets,
         } = self;
         let declared = conditions
             .iter()
+            .chain(blows)
             .chain(coefficients)
             .chain(resets)
             .flatten();

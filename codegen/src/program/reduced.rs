@@ -1,18 +1,19 @@
 //! The motion reduced to D as operations: velocities from quasi-velocities, the metric on D, the rates of the
 //! quasi-velocities. Formulas: [`crate::mechanics::frame`].
 
-use dalembert_expr::{ExprId, Function as Elementary, Sign};
+use dalembert_expr::{ExprId, Sign};
 
 use super::builder::Builder;
+use super::coframe::Asked;
 use super::kernel::Kernel;
-use super::linear::{Ldlt, Orthogonal};
-use super::{Guard, Input, Value};
+use super::linear::Ldlt;
+use super::{Input, Value};
 use crate::mechanics::Frame;
-use crate::mechanics::frame::{Block, Invariant, Row, Solve};
+use crate::mechanics::frame::{Invariant, Row};
 
 impl<'a> Kernel<'a> {
     /// The frame. A function in reduced form is made only where there is one.
-    fn frame(&self) -> Option<&'a Frame> {
+    pub(super) fn frame(&self) -> Option<&'a Frame> {
         self.derivation.frame.as_ref().ok()
     }
 
@@ -32,23 +33,34 @@ impl<'a> Kernel<'a> {
     /// `X_0 + X_i u^i` at the given quasi-velocities.
     pub(super) fn velocity_from_quasi(&mut self) -> Vec<Value> {
         let u = self.quasi_inputs();
+        self.bind_quasi(&u);
+        let known = self
+            .invariant()
+            .map_or(&[][..], |invariant| match self.written {
+                true => &invariant.written_velocity,
+                false => &invariant.velocity,
+            });
         let affine = self.minus_affine();
-        let mut velocity = self.solve_frame(|_, row| match row {
+        let asked = self.all_velocities(known);
+        self.solve_frame(&asked, |_, row| match row {
             Row::Quasi(i) => u[i],
             Row::Constraint(a) => affine[a],
-        });
-        let Some(invariant) = self.invariant() else {
-            return velocity;
-        };
-        for (&symbol, &value) in invariant.u.iter().zip(&u) {
+        })
+    }
+
+    /// Says what the symbols of the quasi-velocities are.
+    fn bind_quasi(&mut self, u: &[Value]) {
+        let symbols = self.invariant().map_or(&[][..], |invariant| &invariant.u);
+        for (&symbol, &value) in symbols.iter().zip(u) {
             self.bind_value(symbol, value);
         }
-        for (entry, &fixed) in velocity.iter_mut().zip(&invariant.velocity) {
-            if let Some(fixed) = fixed {
-                *entry = self.value(fixed);
-            }
+    }
+
+    fn all_velocities<'e>(&self, known: &'e [Option<ExprId>]) -> Asked<'e> {
+        Asked {
+            velocities: vec![true; self.dimension()],
+            known,
         }
-        velocity
     }
 
     /// What does not depend on the configuration.
@@ -67,142 +79,37 @@ impl<'a> Kernel<'a> {
             .collect()
     }
 
-    /// The velocities `x` with `alpha^i(x)` and `eta^a(x)` as given.
-    fn solve_frame(&mut self, mut right: impl FnMut(&mut Builder, Row) -> Value) -> Vec<Value> {
-        let zero = self.builder.zero();
-        let mut x = vec![zero; self.dimension()];
-        let Some(frame) = self.frame() else { return x };
-        for block in &frame.blocks {
-            let rest: Vec<Value> = block
-                .rows
-                .iter()
-                .map(|&row| {
-                    let wanted = right(&mut self.builder, row);
-                    self.without_known(row, wanted, &x)
-                })
-                .collect();
-            let solved = self.solve_block(block, rest);
-            for (&column, value) in block.columns.iter().zip(solved) {
-                x[column] = value;
-            }
-        }
-        x
-    }
-
-    /// What is left of a right-hand side without the columns known so far; those that are not are 0.
-    fn without_known(&mut self, row: Row, wanted: Value, known: &[Value]) -> Value {
-        let form = self.coframe_row(row);
-        let mut rest = wanted;
-        for (&entry, &value) in form.iter().zip(known) {
-            if !self.builder.is_zero(value) && !self.model.pool.is_syntactic_zero(entry) {
-                let entry = self.value(entry);
-                rest = self.builder.sub_product(rest, entry, value);
-            }
-        }
-        rest
-    }
-
-    fn coframe_row(&self, row: Row) -> &'a [ExprId] {
-        match (row, self.frame()) {
-            (Row::Quasi(i), Some(frame)) => &frame.quasi[i].form,
-            (Row::Quasi(_), None) => &[],
-            (Row::Constraint(a), _) => &self.derivation.constraints[a].form,
-        }
-    }
-
-    /// The entries of a block, row after row.
-    fn block_entries(&mut self, block: &Block) -> Vec<Vec<Value>> {
-        let rows = block.rows.iter();
-        rows.map(|&row| {
-            let form = self.coframe_row(row);
-            let entries: Vec<ExprId> = block.columns.iter().map(|&j| form[j]).collect();
-            self.values(&entries)
-        })
-        .collect()
-    }
-
-    fn solve_block(&mut self, block: &Block, right: Vec<Value>) -> Vec<Value> {
-        if right.iter().all(|&value| self.builder.is_zero(value)) {
-            return right;
-        }
-        let entries = self.block_entries(block);
-        match &block.solve {
-            Solve::Entry => vec![self.builder.div(right[0], entries[0][0])],
-            Solve::Rows(squares) => {
-                let squares = self.values(squares);
-                let weights: Vec<Value> = right
-                    .iter()
-                    .zip(squares)
-                    .map(|(&value, square)| self.builder.div(value, square))
-                    .collect();
-                self.combine(&entries, &weights)
-            }
-            Solve::Columns(squares) => {
-                let sums = self.combine(&entries, &right);
-                let squares = self.values(squares);
-                sums.iter()
-                    .zip(squares)
-                    .map(|(&sum, square)| self.builder.div(sum, square))
-                    .collect()
-            }
-            Solve::General => self
-                .orthogonal_block(block, entries)
-                .least_norm(&mut self.builder, &right),
-        }
-    }
-
-    /// `weights` times the rows.
-    fn combine(&mut self, rows: &[Vec<Value>], weights: &[Value]) -> Vec<Value> {
-        let columns = rows.first().map_or(0, Vec::len);
-        let mut total = vec![self.builder.zero(); columns];
-        for (row, &weight) in rows.iter().zip(weights) {
-            for (entry, &component) in total.iter_mut().zip(row) {
-                *entry = self.builder.add_product(*entry, weight, component);
-            }
-        }
-        total
-    }
-
-    /// The rows of a block orthogonalised, with guards: a declared frame may be singular somewhere.
-    fn orthogonal_block(&mut self, block: &Block, entries: Vec<Vec<Value>>) -> Orthogonal {
-        let flat = Ldlt::identity(&mut self.builder, block.columns.len());
-        Orthogonal::factor(
-            &mut self.builder,
-            &flat,
-            entries,
-            |index, squared, reference| match block.rows[index] {
-                Row::Quasi(quasi) => Guard::Frame {
-                    quasi,
-                    squared,
-                    reference,
-                },
-                Row::Constraint(constraint) => Guard::Constraint {
-                    constraint,
-                    squared,
-                    reference,
-                },
-            },
-        )
-    }
-
     /// `X_i`, N - M rows of N.
     pub fn frame_fields(&mut self) -> Vec<Vec<Value>> {
         if let Some(fields) = &self.frame_fields {
             return fields.clone();
         }
-        let fields: Vec<Vec<Value>> = (0..self.quasi_velocities())
-            .map(|i| {
-                self.solve_frame(|builder, row| builder.integer(i64::from(row == Row::Quasi(i))))
-            })
-            .collect();
+        let fields = self.frame_fields_along(&vec![true; self.dimension()]);
         self.frame_fields = Some(fields.clone());
         fields
+    }
+
+    /// The components of `X_i` along some coordinates.
+    fn frame_fields_along(&mut self, coordinates: &[bool]) -> Vec<Vec<Value>> {
+        let invariant = self.invariant();
+        (0..self.quasi_velocities())
+            .map(|i| {
+                let asked = Asked {
+                    velocities: coordinates.to_vec(),
+                    known: invariant.map_or(&[][..], |invariant| &invariant.fields[i]),
+                };
+                let unit =
+                    |builder: &mut Builder, row| builder.integer(i64::from(row == Row::Quasi(i)));
+                self.solve_frame(&asked, unit)
+            })
+            .collect()
     }
 
     /// `X_0`
     pub fn affine_field(&mut self) -> Vec<Value> {
         let affine = self.minus_affine();
-        self.solve_frame(|builder, row| match row {
+        let asked = self.all_velocities(&[]);
+        self.solve_frame(&asked, |builder, row| match row {
             Row::Quasi(_) => builder.zero(),
             Row::Constraint(a) => affine[a],
         })
@@ -228,27 +135,48 @@ impl<'a> Kernel<'a> {
 
     /// `X^T b`
     pub fn restrict(&mut self, b: &[Value]) -> Vec<Value> {
-        let fields = self.frame_fields();
+        let met: Vec<bool> = b
+            .iter()
+            .map(|&entry| !self.builder.is_zero(entry))
+            .collect();
+        let fields = self.frame_fields_along(&met);
         fields.iter().map(|field| self.dot(field, b)).collect()
     }
 
     /// `G_D = X^T g X`, the lower triangle.
     pub fn reduced_metric(&mut self) -> Vec<Vec<Value>> {
+        let known = self.known_metric();
+        let is_known = |row: &Vec<Option<ExprId>>| row.iter().all(Option::is_some);
+        if let Some(known) = known.filter(|known| known.iter().all(is_known)) {
+            let rows = known.iter();
+            return rows
+                .map(|row| {
+                    row.iter()
+                        .flatten()
+                        .map(|&entry| self.value(entry))
+                        .collect()
+                })
+                .collect();
+        }
         let fields = self.frame_fields();
         let lowered: Vec<Vec<Value>> = fields
             .iter()
             .map(|field| self.lower_vector(field))
             .collect();
-        let fixed = self.invariant().map(|invariant| &invariant.metric);
         (0..fields.len())
             .map(|i| {
-                let entry = |j: usize| match fixed.and_then(|metric| metric[i][j]) {
-                    Some(fixed) => self.value(fixed),
+                let entry = |j: usize| match known.and_then(|metric| metric[i][j]) {
+                    Some(known) => self.value(known),
                     None => self.dot(&fields[i], &lowered[j]),
                 };
                 (0..=i).map(entry).collect()
             })
             .collect()
+    }
+
+    /// The entries of `G_D` that are known in simpler terms, the lower triangle.
+    pub(super) fn known_metric(&self) -> Option<&'a Vec<Vec<Option<ExprId>>>> {
+        self.invariant().map(|invariant| &invariant.metric)
     }
 
     /// Runs `work` with the factors of `G_D`.
@@ -299,7 +227,8 @@ impl<'a> Kernel<'a> {
         let constraints = self.derivation.constraints.iter();
         let constraints: Vec<ExprId> = constraints.map(|own| own.curvature).collect();
         let (quasi, constraints) = (self.values(&quasi), self.values(&constraints));
-        self.solve_frame(|builder, row| match row {
+        let asked = self.all_velocities(&[]);
+        self.solve_frame(&asked, |builder, row| match row {
             Row::Quasi(i) => builder.neg(quasi[i]),
             Row::Constraint(a) => builder.neg(constraints[a]),
         })
@@ -320,6 +249,40 @@ impl<'a> Kernel<'a> {
     /// `udot`
     pub fn quasi_rate(&mut self) -> Vec<Value> {
         self.velocity();
+        let right = self.quasi_force();
+        let known = self
+            .invariant()
+            .map_or(&[][..], |invariant| &invariant.rate);
+        let is_known = known.iter().any(Option::is_some) && known.iter().all(Option::is_some);
+        let mut rate = match is_known {
+            true => right,
+            false => self.raise_reduced(&right),
+        };
+        for (entry, &known) in rate.iter_mut().zip(known) {
+            if let Some(known) = known {
+                *entry = self.value(known);
+            }
+        }
+        if let Some(frame) = self.frame() {
+            for (quasi, &value) in frame.quasi.iter().zip(&rate) {
+                self.builder.name(value, format!("{}_rate", quasi.name));
+            }
+        }
+        rate
+    }
+
+    /// `X^T (f - gdot qdot - Adot - g a)`
+    fn quasi_force(&mut self) -> Vec<Value> {
+        let known = self
+            .invariant()
+            .map_or(&[][..], |invariant| &invariant.right);
+        if known.len() == self.quasi_velocities() && known.iter().all(Option::is_some) {
+            return known
+                .iter()
+                .flatten()
+                .map(|&entry| self.value(entry))
+                .collect();
+        }
         let free = self.force_without_drift();
         let acceleration = self.frame_acceleration();
         let inertial = self.lower_vector(&acceleration);
@@ -329,19 +292,20 @@ impl<'a> Kernel<'a> {
             .map(|(&f, &b)| self.builder.sub(f, b))
             .collect();
         let mut right = self.restrict(&rest);
-        let fixed = self.invariant().map(|invariant| &invariant.right);
-        for (entry, fixed) in right.iter_mut().zip(fixed.into_iter().flatten()) {
-            if let &Some(fixed) = fixed {
-                *entry = self.value(fixed);
+        for (entry, &known) in right.iter_mut().zip(known) {
+            if let Some(known) = known {
+                *entry = self.value(known);
             }
         }
-        let rate = self.raise_reduced(&right);
-        if let Some(frame) = self.frame() {
-            for (quasi, &value) in frame.quasi.iter().zip(&rate) {
-                self.builder.name(value, format!("{}_rate", quasi.name));
-            }
-        }
-        rate
+        right
+    }
+
+    /// `g(qdot, qdot)`, where it is known in simpler terms.
+    pub fn known_doubled_kinetic(&mut self) -> Option<Value> {
+        let known = self.invariant()?.doubled_kinetic?;
+        let u = self.quasi_inputs();
+        self.bind_quasi(&u);
+        Some(self.value(known))
     }
 
     /// `det g / |det (alpha, eta)|`, the density of `mu_C` in positions and quasi-velocities.
@@ -357,33 +321,6 @@ impl<'a> Kernel<'a> {
             density = self.builder.div(density, size);
         }
         density
-    }
-
-    /// `|det|` of a block: the entry, or the root of the product of squared norms.
-    fn block_determinant(&mut self, block: &Block) -> Value {
-        let squares = match &block.solve {
-            Solve::Entry => {
-                let entry = self.coframe_row(block.rows[0])[block.columns[0]];
-                let value = self.value(entry);
-                return match self.model.pool.sign(entry) {
-                    Sign::Positive => value,
-                    _ => self.builder.call(Elementary::Abs, value),
-                };
-            }
-            Solve::Rows(squares) | Solve::Columns(squares) => self.values(squares),
-            Solve::General => {
-                let entries = self.block_entries(block);
-                self.orthogonal_block(block, entries).squares
-            }
-        };
-        let mut product = self.builder.integer(1);
-        for square in squares {
-            product = self.builder.mul(product, square);
-        }
-        match self.builder.as_number(product) {
-            Some(number) if number.is_one() => product,
-            _ => self.builder.sqrt(product),
-        }
     }
 
     /// The quasi-velocities with `G_D u = X^T (b - g X_0)`: those of the allowed velocity nearest to `g^{-1} b`.

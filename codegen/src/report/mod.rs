@@ -208,11 +208,11 @@ fn work(model: &Model, program: &Program) -> Section {
     }
     if let Some(impacting) = &program.impacting {
         items.push(line("all gaps", &impacting.gaps.cost));
-        for (surface, contact) in model.surfaces.iter().zip(&impacting.contacts) {
-            items.push(line(
-                &format!("impact on {}", surface.name.display),
-                &contact.cost,
-            ));
+        for (surface, blow) in model.surfaces.iter().zip(&impacting.blows) {
+            if let Some(blow) = blow {
+                let name = format!("impact on {}", surface.name.display);
+                items.push(line(&name, &blow.cost));
+            }
         }
     }
     if let Some(volume) = &program.volume {

@@ -72,8 +72,9 @@ impl<Sys: Impacting> Impacts<Sys> {
             let Some(surface) = next(&hits, &rates) else {
                 return Ok(Some(state));
             };
-            hits.set_still(surface, STILL * rates.as_slice()[surface].abs());
-            let struck = self.struck(now.system, surface, now.t, &state)?;
+            let rate = rates.as_slice()[surface];
+            hits.set_still(surface, STILL * rate.abs());
+            let struck = self.struck(now.system, surface, rate, now.t, &state)?;
             if now.system.position(&struck.after) != now.system.position(&state) {
                 // A reset has left the corner.
                 return Ok(Some(struck.after));

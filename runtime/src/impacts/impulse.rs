@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 use super::accumulation::{Accumulation, Ends};
 use super::held::Held;
 use super::hits::Hits;
-use super::law::{Contact, Law};
+use super::law::{Blow, Law};
 use super::override_table::Overrides;
 use super::policy::{Corner, Penetration, Policies, Rest};
 use super::reset::after_reset;
@@ -50,8 +50,8 @@ pub(super) struct Struck<Sys: Impacting> {
     pub(super) after: Sys::State,
     /// Gap rates after it.
     pub(super) rates: Sys::Gaps,
-    /// Of an impulse; a reset has none.
-    contact: Option<Contact<Sys::Impulse>>,
+    /// Whether by an impulse; else by a reset.
+    by_impulse: bool,
 }
 
 impl<Sys: Impacting> Impacts<Sys> {
@@ -176,11 +176,26 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.watch.leave(&hits, now, rates)
     }
 
-    /// What the law in force makes of a state that approaches a surface.
+    /// The impulse of the law in force.
+    fn blow(
+        &self,
+        system: &Sys,
+        surface: usize,
+        t: f64,
+        state: &Sys::State,
+    ) -> Result<Blow<Sys::Impulse>, Fault> {
+        match self.overrides.get(surface) {
+            Some(law) => Ok(system.contact(surface, t, state)?.blow(law)),
+            None => system.blow(surface, t, state),
+        }
+    }
+
+    /// What the law in force makes of a state that approaches a surface at gap rate `rate`.
     pub(super) fn struck(
         &self,
         system: &Sys,
         surface: usize,
+        rate: f64,
         t: f64,
         before: &Sys::State,
     ) -> Result<Struck<Sys>, Outcome> {
@@ -191,21 +206,22 @@ impl<Sys: Impacting> Impacts<Sys> {
             return Ok(Struck {
                 after,
                 rates,
-                contact: None,
+                by_impulse: false,
             });
         }
-        let contact = system.contact(surface, t, before)?;
+        let blow = self.blow(system, surface, t, before)?;
         let mut after = *before;
-        system.kick(&mut after, contact.impulse(law), &contact.direction);
+        system.kick(&mut after, blow.size, &blow.direction);
         // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction; without this the
         // energy would drift like the number of impacts instead of its root. The rate half way is small where the law is
         // elastic: rates before and after would be rounded to a grid that is coarse beside their difference.
-        let half = contact.gap_rate - 0.5 * contact.rate_taken(law);
+        let taken = blow.share * rate;
+        let half = rate - 0.5 * taken;
         let middle = system.gap_rates(t, &between(before, &after))?.as_slice()[surface];
         let missed = 2.0 * (half - middle);
-        let correction = missed / contact.constrained_compliance;
+        let correction = -missed / taken * blow.size;
         if correction.is_finite() {
-            system.kick(&mut after, correction, &contact.direction);
+            system.kick(&mut after, correction, &blow.direction);
         }
         let rates = system.gap_rates(t, &after)?;
         match after.as_slice().iter().position(|value| !value.is_finite()) {
@@ -213,7 +229,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             None => Ok(Struck {
                 after,
                 rates,
-                contact: Some(contact),
+                by_impulse: true,
             }),
         }
     }
@@ -228,9 +244,9 @@ impl<Sys: Impacting> Impacts<Sys> {
         observer: &mut O,
     ) -> Result<Sys::Gaps, Outcome> {
         let (t, before) = (now.t, *now.state);
-        let mut struck = self.struck(now.system, surface, t, &before)?;
+        let mut struck = self.struck(now.system, surface, rate, t, &before)?;
         let penetrates = self.penetrates(surface, rate, struck.rates.as_slice()[surface], now);
-        let repeats = struck.contact.is_some() && self.policies.penetration == Penetration::Repeat;
+        let repeats = struck.by_impulse && self.policies.penetration == Penetration::Repeat;
         if penetrates && repeats {
             struck.take_rate(now.system, surface, t)?;
         }
@@ -248,21 +264,16 @@ impl<Sys: Impacting> Impacts<Sys> {
         if let ControlFlow::Break(()) = observer.event(&event) {
             return Err(Outcome::Stopped);
         }
-        if let Some(contact) = struck.contact
-            && penetrates
-            && self.policies.penetration == Penetration::Stop
-        {
-            return Err(Outcome::StillPenetrating {
-                surface,
-                rho: contact.rho(),
-            });
+        if struck.by_impulse && penetrates && self.policies.penetration == Penetration::Stop {
+            let rho = now.system.contact(surface, t, &before)?.rho();
+            return Err(Outcome::StillPenetrating { surface, rho });
         }
         if now.counters.impacts >= self.budget {
             return Err(Outcome::ImpactBudget);
         }
-        match struck.contact {
+        match struck.by_impulse {
             // It goes on through the surface.
-            None if penetrates => match self.accumulation.pass(surface, t) {
+            false if penetrates => match self.accumulation.pass(surface, t) {
                 Some(_) => Err(Outcome::Zeno { t, surface }),
                 None => Ok(struck.rates),
             },
@@ -295,9 +306,9 @@ impl<Sys: Impacting> Impacts<Sys> {
         let (system, t) = (now.system, now.t);
         let rate_after = struck.rates.as_slice()[surface];
         // A reset sets the rate to its last digit; an impulse leaves rounding errors of the rate it takes.
-        let still = match struck.contact {
-            Some(_) => STILL * rate.abs(),
-            None => 0.0,
+        let still = match struck.by_impulse {
+            true => STILL * rate.abs(),
+            false => 0.0,
         };
         let bounce = if rate_after > still { rate_after } else { 0.0 };
         let may_rest = self.may_rest(surface);

@@ -48,7 +48,18 @@ pub struct Jump<V> {
     pub velocity: V,
 }
 
-/// What an impact at a state needs, derived and emitted for each surface.
+/// What a law that is an impulse does to a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Blow<V> {
+    /// The impulse is `size * direction`.
+    pub size: f64,
+    /// What it takes of the gap rate: 2 turns it round, 1 ends it.
+    pub share: f64,
+    /// As [`System::kick`](crate::System::kick) takes it; a multiple of [`Contact::direction`].
+    pub direction: V,
+}
+
+/// What the laws need of an impact at a state, derived and emitted for each surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact<V> {
     /// `dh(qdot) + d_t h` before the impact; an impact has it negative.
@@ -70,6 +81,15 @@ impl<V: StateVector> Contact<V> {
     /// `rho = dh(pi_D grad h) / dh(grad h)`, in \[0, 1\]; 1 without constraints.
     pub fn rho(&self) -> f64 {
         self.constrained_compliance / self.free_compliance
+    }
+
+    /// What a law does; NaN for [`Law::Reset`].
+    pub fn blow(&self, law: Law) -> Blow<V> {
+        Blow {
+            size: self.impulse(law),
+            share: self.rate_taken(law) / self.gap_rate,
+            direction: self.direction,
+        }
     }
 
     /// The impulse's size `eps`: `p+ = p + eps pi_D^* dh`. NaN for [`Law::Reset`], which is no impulse.

@@ -1,27 +1,40 @@
 //! What in the frame does not depend on the configuration.
 //!
 //! On groups and the like the velocities along some coordinates, the metric on D and the forces of inertia are functions of
-//! the quasi-velocities and parameters alone, as for balls and disks that roll on a plane. Solved for in the frame they
-//! would be sums that cancel, to rounding and with lost digits near the poles of Euler angles. Where a zero test proves
-//! that an expression is the one at a single configuration, that one is emitted.
+//! the quasi-velocities and parameters alone, as for balls and disks that roll on a plane; on a plane that turns, of the
+//! place on it too. Solved for in the frame they would be sums that cancel, to rounding and with lost digits near the
+//! poles of Euler angles. Where a zero test proves that an expression is the one with some coordinates at a single value,
+//! that one is emitted.
 
-use dalembert_expr::{Assumption, ExprId, Rational, SymbolId, Verdict};
+use dalembert_expr::{Assumption, ExprId, Pool, Rational, Sign, SymbolId, Verdict};
 
-use super::{Block, QuasiVelocity, Row, Solve};
+use super::{Axis, Block, QuasiVelocity, Row, Solve};
+use crate::mechanics::common_factor::factored;
 use crate::mechanics::{ConstraintForm, Coordinates, FieldTerms};
 use crate::model::{Model, Topology};
 
-/// Expressions of quasi-velocities, parameters and time; `None` where the configuration matters, or was not shown not to.
+/// Expressions in which no coordinate occurs that does not matter; `None` where all that occur matter, or were not shown
+/// not to.
 #[derive(Debug)]
 pub struct Invariant {
     /// The symbols of the quasi-velocities.
     pub u: Vec<SymbolId>,
+    /// `X_i`, N - M rows of N.
+    pub fields: Vec<Vec<Option<ExprId>>>,
+    /// `X_i` written out, where no guard is needed to.
+    pub written: Vec<Vec<Option<ExprId>>>,
     /// `qdot`, N entries.
     pub velocity: Vec<Option<ExprId>>,
+    /// The same written out, where no guard is needed to.
+    pub written_velocity: Vec<Option<ExprId>>,
     /// `G_D`, the lower triangle.
     pub metric: Vec<Vec<Option<ExprId>>>,
     /// `X^T (f - gdot qdot - Adot - g a)`
     pub right: Vec<Option<ExprId>>,
+    /// `udot`, where `G_D` has nothing in a row but a positive entry on the diagonal.
+    pub rate: Vec<Option<ExprId>>,
+    /// `g(qdot, qdot)`
+    pub doubled_kinetic: Option<ExprId>,
 }
 
 /// Coordinates beyond which nothing is looked for: the expressions are written out.
@@ -32,6 +45,9 @@ const PARTS: usize = 4000;
 
 /// What is not zero at a real point by more than this part of its terms is not zero.
 const CLEAR: f64 = 1e-9;
+
+/// Points at which an expression is looked at before a zero test.
+const SAMPLES: u32 = 3;
 
 /// Looks for what does not depend on the configuration. `None` where the frame is not solved by formulas.
 pub(super) fn invariant(
@@ -76,18 +92,60 @@ pub(super) fn invariant(
         .iter()
         .map(|field| search.product(field, &forces))
         .collect();
+    let lowered = search.lowered(&velocity);
+    let doubled_kinetic = search.product(&velocity, &lowered);
+    let doubled_kinetic = search.fixed(doubled_kinetic);
     let mut fixed = |values: Vec<ExprId>| -> Vec<Option<ExprId>> {
         values
             .into_iter()
             .map(|value| search.fixed(value))
             .collect()
     };
+    let metric: Vec<Vec<Option<ExprId>>> = metric.into_iter().map(&mut fixed).collect();
+    let right = fixed(right);
+    let known: Vec<Vec<Option<ExprId>>> = fields.iter().cloned().map(&mut fixed).collect();
+    let raw_velocity = velocity.clone();
+    let velocity = fixed(velocity);
+    let is_regular = blocks.iter().all(Block::is_regular);
+    let written = |known: &[Option<ExprId>], raw: Vec<ExprId>| -> Vec<Option<ExprId>> {
+        let pairs = known.iter().zip(raw);
+        pairs
+            .map(|(known, raw)| known.or(is_regular.then_some(raw)))
+            .collect()
+    };
+    let pairs = known.iter().zip(fields);
     Some(Invariant {
-        velocity: fixed(velocity),
-        metric: metric.into_iter().map(&mut fixed).collect(),
-        right: fixed(right),
+        written: pairs.map(|(known, raw)| written(known, raw)).collect(),
+        fields: known,
+        written_velocity: written(&velocity, raw_velocity),
+        velocity,
+        rate: rates(&mut model.pool, &metric, &right),
+        metric,
+        right,
+        doubled_kinetic,
         u,
     })
+}
+
+/// The rates that follow from the right-hand side by a division.
+fn rates(
+    pool: &mut Pool,
+    metric: &[Vec<Option<ExprId>>],
+    right: &[Option<ExprId>],
+) -> Vec<Option<ExprId>> {
+    let entry = |i: usize, j: usize| metric[i.max(j)][i.min(j)];
+    (0..right.len())
+        .map(|i| {
+            let (right, diagonal) = (right[i]?, entry(i, i)?);
+            let is_zero = |j| entry(i, j).is_some_and(|entry| pool.is_syntactic_zero(entry));
+            let is_alone = (0..metric.len()).all(|j| j == i || is_zero(j));
+            let is_solved = is_alone && pool.sign(diagonal) == Sign::Positive;
+            is_solved.then(|| {
+                let right = factored(pool, right);
+                pool.div(right, diagonal)
+            })
+        })
+        .collect()
 }
 
 /// A configuration at which expressions are written out: 0, or the middle of an interval.
@@ -144,26 +202,31 @@ impl<'a> Search<'a> {
 
     /// Column `k` of a block.
     fn solved(&mut self, block: &Block, rest: &[ExprId], k: usize) -> Option<ExprId> {
-        let column = block
-            .rows
-            .iter()
-            .map(|&row| self.form(row)[block.columns[k]]);
-        let column: Vec<ExprId> = column.collect();
         Some(match &block.solve {
-            Solve::Entry => self.model.pool.div(rest[0], column[0]),
-            Solve::Rows(squares) => {
-                let weights = rest.iter().zip(squares);
-                let weights: Vec<ExprId> = weights
-                    .map(|(&rest, &square)| self.model.pool.div(rest, square))
-                    .collect();
+            Solve::Entry => {
+                let entry = self.form(block.rows[0])[block.columns[0]];
+                self.model.pool.div(rest[0], entry)
+            }
+            Solve::Rows(axes) => {
+                let column: Vec<ExprId> = axes.iter().map(|axis| axis.entries[k]).collect();
+                let weights = rest.iter().zip(axes);
+                let weights: Vec<ExprId> =
+                    weights.map(|(&rest, axis)| self.over(rest, axis)).collect();
                 self.product(&column, &weights)
             }
-            Solve::Columns(squares) => {
-                let sum = self.product(&column, rest);
-                self.model.pool.div(sum, squares[k])
+            Solve::Columns(axes) => {
+                let sum = self.product(&axes[k].entries, rest);
+                self.over(sum, &axes[k])
             }
             Solve::General => return None,
         })
+    }
+
+    /// A sum of products with the entries of an axis over its factor and their square.
+    fn over(&mut self, sum: ExprId, axis: &Axis) -> ExprId {
+        let powers = [(sum, 1), (axis.factor, -1), (axis.squared, -1)];
+        let powers = powers.map(|(base, exponent)| (base, Rational::from(exponent)));
+        self.model.pool.power_product(&powers)
     }
 
     /// `X_i`
@@ -216,17 +279,25 @@ impl<'a> Search<'a> {
         pool.sum(&terms)
     }
 
-    /// The expression at the base configuration, if it is the same everywhere.
+    /// The expression with the coordinates that do not matter at the base configuration; `None` where all that occur
+    /// matter, or were not shown not to.
     fn fixed(&mut self, expression: ExprId) -> Option<ExprId> {
-        let pool = &mut self.model.pool;
-        let positions: Vec<SymbolId> = self.base.iter().map(|(symbol, _)| *symbol).collect();
-        if !pool.depends_on_any(expression, &positions) {
+        let pool = &self.model.pool;
+        let occurs = |(symbol, _): &&(SymbolId, ExprId)| pool.depends_on(expression, *symbol);
+        if !self.base.iter().any(|pair| occurs(&pair)) {
             return Some(expression);
         }
         if pool.reachable(&[expression]).len() > PARTS {
             return None;
         }
-        let fixed = pool.substitute(expression, &self.base);
+        let occurring = self.base.iter().filter(occurs);
+        let idle = occurring.filter(|(symbol, _)| self.may_be_idle(expression, *symbol));
+        let idle: Vec<(SymbolId, ExprId)> = idle.copied().collect();
+        if idle.is_empty() {
+            return None;
+        }
+        let pool = &mut self.model.pool;
+        let fixed = pool.substitute(expression, &idle);
         let fixed = pool.simplify(fixed);
         let difference = pool.sub(expression, fixed);
         let may_vanish = !pool.is_undefined_constant(fixed) && self.may_vanish(difference);
@@ -236,13 +307,28 @@ impl<'a> Search<'a> {
 
     /// Whether the expression is about 0 at some points, which tells most of those that are not at little cost.
     fn may_vanish(&self, expression: ExprId) -> bool {
-        (0..3).all(|sample| {
-            let (value, size) = self
-                .model
-                .pool
-                .eval_magnitude(expression, &|symbol| self.sample(symbol, sample));
+        (0..SAMPLES).all(|sample| {
+            let (value, size) = self.at(expression, |symbol| self.sample(symbol, sample));
             value.abs() <= CLEAR * size || !size.is_finite()
         })
+    }
+
+    /// Whether the expression is about the same at some points where one coordinate has two values.
+    fn may_be_idle(&self, expression: ExprId, coordinate: SymbolId) -> bool {
+        (0..SAMPLES).all(|sample| {
+            let moved = |symbol| match symbol == coordinate {
+                true => self.sample(symbol, sample + SAMPLES),
+                false => self.sample(symbol, sample),
+            };
+            let (here, size) = self.at(expression, |symbol| self.sample(symbol, sample));
+            let (there, other) = self.at(expression, moved);
+            let size = size.max(other);
+            (here - there).abs() <= CLEAR * size || !size.is_finite()
+        })
+    }
+
+    fn at(&self, expression: ExprId, symbol: impl Fn(SymbolId) -> f64) -> (f64, f64) {
+        self.model.pool.eval_magnitude(expression, &symbol)
     }
 
     /// A value of a symbol, within its interval.

@@ -13,6 +13,7 @@
 //! one does: affine constraints, time, forces, velocity-linear terms. The system of `alpha` and `eta` is never inverted
 //! symbolically: [`plan`] says in which order it can be solved.
 
+mod axis;
 mod choice;
 pub mod invariant;
 pub mod plan;
@@ -23,6 +24,7 @@ use dalembert_expr::ExprId;
 use super::{ConstraintForm, Coordinates, FieldTerms};
 use crate::model::Model;
 
+pub use axis::Axis;
 pub use invariant::Invariant;
 pub use plan::{Block, Row, Solve};
 

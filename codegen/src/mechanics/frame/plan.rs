@@ -4,10 +4,10 @@
 //! into connected blocks: one whose rows, or columns, are orthogonal is solved by products, any other by
 //! orthogonalisation in the emitted code.
 
-use dalembert_expr::{ExprId, Pool, Verdict};
+use dalembert_expr::{ExprId, Pool};
 
 use super::QuasiVelocity;
-use super::choice::squared_norm;
+use super::axis::{Axis, orthogonal};
 use crate::mechanics::ConstraintForm;
 
 /// A row of the coframe.
@@ -30,15 +30,28 @@ pub struct Block {
     pub solve: Solve,
 }
 
+impl Block {
+    /// Whether it can be solved everywhere.
+    pub(super) fn is_regular(&self) -> bool {
+        match &self.solve {
+            Solve::Entry => true,
+            Solve::Rows(axes) | Solve::Columns(axes) => {
+                axes.iter().all(|axis| axis.bound.is_none())
+            }
+            Solve::General => false,
+        }
+    }
+}
+
 /// How a block is solved.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Solve {
     /// By a division: one row, one column, an entry that is never zero.
     Entry,
-    /// The rows are orthogonal, with these squared norms, never zero.
-    Rows(Vec<ExprId>),
-    /// The columns are orthogonal, with these squared norms, never zero.
-    Columns(Vec<ExprId>),
+    /// The rows are orthogonal. Guarded where a factor may vanish.
+    Rows(Vec<Axis>),
+    /// The columns are orthogonal. Guarded where a factor may vanish.
+    Columns(Vec<Axis>),
     /// By orthogonalisation, guarded.
     General,
 }
@@ -171,38 +184,15 @@ impl<'a> Matrix<'a> {
                     .collect()
             })
             .collect();
-        if let Some(squares) = orthogonal(pool, &entries) {
-            return Solve::Rows(squares);
+        if let Some(axes) = orthogonal(pool, &entries) {
+            return Solve::Rows(axes);
         }
         let transposed: Vec<Vec<ExprId>> = (0..columns.len())
             .map(|column| entries.iter().map(|row| row[column]).collect())
             .collect();
         match orthogonal(pool, &transposed) {
-            Some(squares) => Solve::Columns(squares),
+            Some(axes) => Solve::Columns(axes),
             None => Solve::General,
         }
     }
-}
-
-/// The squared norms of vectors that are orthogonal and never zero.
-fn orthogonal(pool: &mut Pool, vectors: &[Vec<ExprId>]) -> Option<Vec<ExprId>> {
-    for (index, vector) in vectors.iter().enumerate() {
-        for other in &vectors[index + 1..] {
-            let products: Vec<ExprId> = vector
-                .iter()
-                .zip(other)
-                .map(|(&a, &b)| pool.mul(a, b))
-                .collect();
-            let product = pool.sum(&products);
-            if pool.zero_test(product) != Verdict::Proved {
-                return None;
-            }
-        }
-    }
-    let squares: Vec<ExprId> = vectors
-        .iter()
-        .map(|vector| squared_norm(pool, vector))
-        .collect();
-    let regular = squares.iter().all(|&square| pool.sign(square).is_nonzero());
-    regular.then_some(squares)
 }

@@ -11,6 +11,7 @@ use dalembert_expr::ExprId;
 use crate::mechanics::Derivation;
 use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
+use crate::program::recipes::blow::blow;
 use crate::program::recipes::declared::position_function;
 use crate::program::{Form, Function, Guard, Impacting, Input, Value};
 
@@ -35,8 +36,10 @@ pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<I
             .map(|s| conditions(model, derivation, s))
             .collect(),
         contacts: surfaces
+            .clone()
             .map(|s| contact(model, derivation, form, s))
             .collect(),
+        blows: surfaces.map(|s| blow(model, derivation, form, s)).collect(),
         coefficients: model
             .surfaces
             .iter()
@@ -212,7 +215,7 @@ pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues
 }
 
 /// The contact of a surface on D.
-fn reduced_contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues {
+pub(super) fn reduced_contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues {
     let surface = &kernel.derivation.surfaces[s];
     let form = kernel.values(&surface.form);
     let restricted = kernel.restrict(&form);

@@ -1,5 +1,6 @@
 //! What each emitted function consists of. One recipe per function; shared pieces come from the kernel.
 
+pub mod blow;
 pub mod constrained;
 pub mod declared;
 pub mod geometry;

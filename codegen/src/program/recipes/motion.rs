@@ -1,21 +1,37 @@
 //! The motion: rate, velocity, momentum, energy.
 
-use dalembert_expr::ExprId;
+use dalembert_expr::{ExprId, Rational};
 
 use crate::mechanics::Derivation;
 use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
-use crate::program::{Form, Function, Value};
+use crate::program::{Form, Function, Op, Value};
 
 /// `(t, q, p) -> (qdot, pdot)`: `qdot = g^{-1}(p - A)`, `pdot = f + lambda_a eta^a`; or `(t, q, u) -> (qdot, udot)`.
 pub fn rate(model: &Model, derivation: &Derivation, form: Form) -> Function {
-    let mut kernel = Kernel::new(model, derivation, form.state());
+    let kernel = || Kernel::new(model, derivation, form.state()).without_multipliers();
+    let solved = rate_of(kernel(), form);
+    match form {
+        Form::Global => solved,
+        Form::Reduced => shorter(solved, rate_of(kernel().written_out(), form)),
+    }
+}
+
+fn rate_of(mut kernel: Kernel<'_>, form: Form) -> Function {
     let mut outputs = kernel.velocity();
     outputs.extend(match form {
         Form::Global => momentum_rate(&mut kernel),
         Form::Reduced => kernel.quasi_rate(),
     });
     kernel.finish(outputs)
+}
+
+/// The function that takes fewer operations.
+fn shorter(first: Function, second: Function) -> Function {
+    match second.cost.total() < first.cost.total() {
+        true => second,
+        false => first,
+    }
 }
 
 /// `pdot`
@@ -52,9 +68,18 @@ pub fn scale(model: &Model, derivation: &Derivation, form: Form) -> Function {
 
 /// `(t, q, p) -> qdot`, or `(t, q, u) -> qdot`
 pub fn velocity(model: &Model, derivation: &Derivation, form: Form) -> Function {
-    let mut kernel = Kernel::new(model, derivation, form.state());
-    let outputs = kernel.velocity();
-    kernel.finish(outputs)
+    let of = |mut kernel: Kernel<'_>| {
+        let outputs = kernel.velocity();
+        kernel.finish(outputs)
+    };
+    let solved = of(Kernel::new(model, derivation, form.state()));
+    match form {
+        Form::Global => solved,
+        Form::Reduced => {
+            let kernel = Kernel::new(model, derivation, form.state());
+            shorter(solved, of(kernel.written_out()))
+        }
+    }
 }
 
 /// `(t, q, qdot) -> p = g qdot + A`
@@ -71,27 +96,51 @@ pub fn force(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// `(t, q, p) -> 1/2 (p - A).qdot + V`, or `(t, q, u) -> 1/2 g(qdot, qdot) + V`
+/// Operations up to which a function repeats what the one for the velocities does rather than calling it.
+const REPEATED: usize = 100;
+
+/// `(t, q, p) -> 1/2 (p - A).qdot + V`, or `(t, q, u) -> 1/2 g(qdot, qdot) + V`: of the ways to it the one that takes the
+/// fewest operations. Often `G_D` depends on less than the velocities do.
 pub fn energy(model: &Model, derivation: &Derivation, form: Form) -> Function {
     let mut kernel = Kernel::new(model, derivation, form.state_with_velocity());
-    let is_metric_enough = form == Form::Reduced && !kernel.has_affine_constraints();
     let energy = energy_value(&mut kernel);
     let whole = kernel.finish(vec![energy]);
-    if !is_metric_enough {
-        return whole;
-    }
-    // Of the two ways the one that takes fewer operations: often `G_D` depends on less than the velocities do.
-    let mut kernel = Kernel::new(model, derivation, Arguments::Quasi);
-    let energy = energy_on_d(&mut kernel);
-    let reduced = kernel.finish(vec![energy]);
-    match reduced.cost.total() < whole.cost.total() {
-        true => reduced,
-        false => whole,
+    let own = |way: fn(&mut Kernel<'_>) -> Option<Value>| {
+        let mut kernel = Kernel::new(model, derivation, form.state());
+        let doubled = way(&mut kernel)?;
+        let energy = total_energy(&mut kernel, doubled);
+        Some(kernel.finish(vec![energy]))
+    };
+    let (called, others) = match form {
+        Form::Global => {
+            let short = own(from_momenta).filter(|own| own.cost.total() < REPEATED);
+            let called = velocity(model, derivation, form).cost.total();
+            (called, [short, None])
+        }
+        Form::Reduced => (0, [own(|kernel| kernel.known_doubled_kinetic()), own(on_d)]),
+    };
+    let fewest = others
+        .into_iter()
+        .flatten()
+        .min_by_key(|own| own.cost.total());
+    match fewest {
+        Some(own) if own.cost.total() < whole.cost.total() + called => own,
+        _ => whole,
     }
 }
 
-/// `u^T G_D u/2 + V`, where no constraint has an affine part.
-fn energy_on_d(kernel: &mut Kernel<'_>) -> Value {
+/// `y^T D^{-1} y` with `y = L^{-1} (p - A)`
+fn from_momenta(kernel: &mut Kernel<'_>) -> Option<Value> {
+    let momenta = kernel.lowered_velocity();
+    let y = kernel.forward(&momenta);
+    Some(kernel.with_ldlt(|builder, ldlt| ldlt.weighted_square(builder, &y)))
+}
+
+/// `u^T G_D u`, where no constraint has an affine part.
+fn on_d(kernel: &mut Kernel<'_>) -> Option<Value> {
+    if kernel.has_affine_constraints() {
+        return None;
+    }
     let u = kernel.quasi_inputs();
     let metric = kernel.reduced_metric();
     let builder = &mut kernel.builder;
@@ -106,22 +155,34 @@ fn energy_on_d(kernel: &mut Kernel<'_>) -> Value {
         let row_sum = builder.add_product(beside, row[i], u[i]);
         doubled = builder.add_product(doubled, row_sum, u[i]);
     }
-    total_energy(kernel, doubled)
+    Some(doubled)
 }
 
-/// Half of this plus the potential energy.
+/// Half of this plus the potential energy. A half that the potential energy has too is taken once.
 fn total_energy(kernel: &mut Kernel<'_>, doubled: Value) -> Value {
-    let half = kernel.builder.number(dalembert_expr::Rational::new(1, 2));
+    let potential = kernel.value(kernel.model.lagrangian.potential);
+    let half = kernel.builder.number(Rational::HALF);
+    if let Op::Mul(a, b) = *kernel.builder.op(potential)
+        && (a == half || b == half)
+    {
+        let rest = if a == half { b } else { a };
+        let sum = kernel.builder.add(doubled, rest);
+        return kernel.builder.mul(half, sum);
+    }
     let kinetic = kernel.builder.mul(half, doubled);
     kernel.builder.name(kinetic, "kinetic");
-    let potential = kernel.value(kernel.model.lagrangian.potential);
     kernel.builder.add(kinetic, potential)
 }
 
 /// Kinetic plus potential energy.
 pub(super) fn energy_value(kernel: &mut Kernel<'_>) -> Value {
+    let doubled = doubled_kinetic(kernel);
+    total_energy(kernel, doubled)
+}
+
+/// `(p - A).qdot`
+fn doubled_kinetic(kernel: &mut Kernel<'_>) -> Value {
     let qdot = kernel.velocity();
     let momenta = kernel.lowered_velocity();
-    let doubled = kernel.dot(&momenta, &qdot);
-    total_energy(kernel, doubled)
+    kernel.dot(&momenta, &qdot)
 }

@@ -1,0 +1,57 @@
+//! Rows or columns of a block that are orthogonal to each other.
+//!
+//! With `c = f d` for each column, `f` what its entries have as a common factor, `c . r / (c . c)` is
+//! `d . r / (f d . d)`: the block is singular where a factor is 0, and nowhere else, and nothing is divided by its square.
+
+use dalembert_expr::{ExprId, Pool, Verdict};
+
+use super::choice::squared_norm;
+use crate::mechanics::common_factor::without_common_factor;
+use crate::mechanics::constraint::amplitude;
+
+/// A row or a column of a block, `factor * entries`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Axis {
+    /// What all entries have as a factor.
+    pub factor: ExprId,
+    /// The entries without it.
+    pub entries: Vec<ExprId>,
+    /// Their squared norm, never zero.
+    pub squared: ExprId,
+    /// What `|factor|` is at most, sines and cosines counted as 1, where it may vanish.
+    pub bound: Option<ExprId>,
+}
+
+/// The vectors, if they are orthogonal to each other and vanish with their common factors at most.
+pub(super) fn orthogonal(pool: &mut Pool, vectors: &[Vec<ExprId>]) -> Option<Vec<Axis>> {
+    let axes: Option<Vec<Axis>> = vectors.iter().map(|vector| axis(pool, vector)).collect();
+    let axes = axes?;
+    for (index, axis) in axes.iter().enumerate() {
+        for other in &axes[index + 1..] {
+            let pairs = axis.entries.iter().zip(&other.entries);
+            let products: Vec<ExprId> = pairs.map(|(&a, &b)| pool.mul(a, b)).collect();
+            let product = pool.sum(&products);
+            if pool.zero_test(product) != Verdict::Proved {
+                return None;
+            }
+        }
+    }
+    Some(axes)
+}
+
+/// A vector as a multiple of one that is known to vanish nowhere.
+fn axis(pool: &mut Pool, vector: &[ExprId]) -> Option<Axis> {
+    let (factor, entries) = without_common_factor(pool, vector);
+    let squared = squared_norm(pool, &entries);
+    let bound = match pool.sign(factor).is_nonzero() {
+        true => None,
+        false => Some(amplitude(pool, factor)),
+    };
+    let is_regular = pool.sign(squared).is_nonzero();
+    is_regular.then_some(Axis {
+        factor,
+        entries,
+        squared,
+        bound,
+    })
+}
