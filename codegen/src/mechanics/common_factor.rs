@@ -52,9 +52,9 @@ pub(super) fn without_regular_factor(pool: &mut Pool, vector: &[ExprId]) -> Vec<
     let first = entries
         .iter()
         .find(|&&entry| !pool.is_syntactic_zero(entry));
-    let number = first.map_or(Rational::ONE, |&entry| pool.as_multiple(entry).0);
+    let number = first.map_or(Rational::ONE, |&entry| factors(pool, entry).0);
     let alike = |&entry: &ExprId| {
-        pool.is_syntactic_zero(entry) || pool.as_multiple(entry).0.abs() == number.abs()
+        pool.is_syntactic_zero(entry) || factors(pool, entry).0.abs() == number.abs()
     };
     let scale = match entries.iter().all(alike) {
         true => number.recip().unwrap_or(Rational::ONE),
@@ -74,10 +74,12 @@ type Factors = Vec<(ExprId, Rational)>;
 
 /// Coefficient and factors.
 fn factors(pool: &Pool, entry: ExprId) -> (Rational, Factors) {
+    if let Some(number) = pool.as_number(entry) {
+        return (number.clone(), Vec::new());
+    }
     let (coefficient, term) = pool.as_multiple(entry);
     let factors = match pool.node(term) {
         Node::Product(factors) => factors.to_vec(),
-        Node::Number(_) => Vec::new(),
         _ => vec![(term, Rational::ONE)],
     };
     (coefficient, factors)
@@ -147,6 +149,16 @@ mod tests {
         let regular = without_regular_factor(&mut pool, &vector);
         let texts: Vec<String> = regular.iter().map(|&own| pool.text(own)).collect();
         assert_eq!(texts, ["r*x^2", "0", "x*y"]);
+        // Numbers are entries like any others.
+        let (minus, half) = (pool.int(-1), pool.scale(&Rational::HALF, y));
+        assert_eq!(
+            without_common_factor(&mut pool, &[minus, half]).1,
+            [minus, half]
+        );
+        assert_eq!(
+            without_regular_factor(&mut pool, &[minus, half]),
+            [minus, half]
+        );
         let (first, second) = (pool.mul(r, x), pool.mul(r, y));
         let sum = pool.add(first, second);
         let product = factored(&mut pool, sum);

@@ -61,7 +61,11 @@ pub(super) fn derive_constraints(
 
 fn primitive(pool: &mut Pool, form: &[ExprId], curvature: ExprId) -> (Vec<ExprId>, ExprId) {
     let entries = form.iter().filter(|&&entry| !pool.is_syntactic_zero(entry));
-    let mut sizes = entries.map(|&entry| pool.as_multiple(entry).0.abs());
+    let size = |&entry: &ExprId| match pool.as_number(entry) {
+        Some(number) => number.abs(),
+        None => pool.as_multiple(entry).0.abs(),
+    };
+    let mut sizes = entries.map(size);
     let common = sizes
         .next()
         .filter(|first| sizes.all(|size| size == *first));
