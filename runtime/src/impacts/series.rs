@@ -44,10 +44,6 @@ impl<G: StateVector> GapSeries<G> {
         let Series { unit, order } = step.stepper.series()?;
         // NOTE: terms above the order stay zero.
         let mut gaps = [G::zeros(); LENGTH];
-        for (k, gap) in gaps[..=order].iter_mut().enumerate() {
-            gap.as_mut_slice()
-                .copy_from_slice(step.stepper.gap_coefficient(k));
-        }
         let theta = step.length() / unit;
         let mut power = 1.0;
         let (mut sums, mut sizes, mut tails) = (G::zeros(), G::zeros(), G::zeros());
@@ -56,8 +52,9 @@ impl<G: StateVector> GapSeries<G> {
             if k == 5 {
                 tails = sizes;
             }
+            let coefficient = step.stepper.gap_coefficient(k);
             for i in 0..G::LEN {
-                let term = gap.as_slice()[i] * power;
+                let term = coefficient[i] * power;
                 gap.as_mut_slice()[i] = term;
                 sums.as_mut_slice()[i] += term;
                 sizes.as_mut_slice()[i] += term.abs();
