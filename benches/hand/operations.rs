@@ -1,7 +1,7 @@
 //! Counts the operations of generated functions beside those written by hand.
 
 use dalembert::Described;
-use dalembert_codegen::program::{Form, Function, Program};
+use dalembert_codegen::program::{Form, Function, Input, Op, Program};
 use dalembert_codegen::{mechanics, model, program, spec};
 use dalembert_models::{
     BallOnRotatingTable, BouncingBall, Chain2, Chain3, Chain4, Chain8, Chain16, ChaplyginSleigh,
@@ -78,11 +78,12 @@ impl Generated {
         self.pair("rate", self.program.rate.cost.total(), by_hand)
     }
 
-    /// In `(q, p)` a generated energy begins with the velocity, which is a function of its own.
+    /// A generated energy that takes velocities begins with the function that gives them.
     fn energy(&self, by_hand: usize) -> Pair {
-        let velocity = match self.program.form {
-            Form::Global => self.program.velocity.cost.total(),
-            Form::Reduced => 0,
+        let mut inputs = self.program.energy.ops.iter();
+        let velocity = match inputs.any(|op| matches!(op, Op::Input(Input::Velocity(_)))) {
+            true => self.program.velocity.cost.total(),
+            false => 0,
         };
         self.pair(
             "energy",

@@ -64,9 +64,6 @@ pub const CASES: &[Case] = &[
         title: "a rolling ball whose Euler angle passes its pole at 1e-6 and 1e-12",
         right: "a straight line at constant velocity",
         bound: "1e-8",
-        pending: Some(
-            "rates of the frame are differences of terms of size 1/theta^2, whose rounding stops the step control: no second chart",
-        ),
         run: Run::Integrators(|setting, report| {
             past_the_pole(setting, report, 1e-6);
             past_the_pole(setting, report, 1e-12);

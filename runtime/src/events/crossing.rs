@@ -217,8 +217,9 @@ pub(crate) fn clear(values: [f64; 2], slopes: [f64; 2], probe: f64) -> bool {
         least = least.min(v0);
         largest = largest.max(v0);
     }
-    // A quartic theta^2 (1 - theta)^2 is at most 1/16.
-    let doubt = quartic.abs() / 16.0 + ROUNDING * least.abs().max(largest.abs());
+    // A quartic theta^2 (1 - theta)^2 is at most 1/16; four times as much is left to what is no quartic: loose steps may hold
+    // most of a turn, of which one probe shows little.
+    let doubt = quartic.abs() / 4.0 + ROUNDING * least.abs().max(largest.abs());
     least > doubt || largest < -doubt
 }
 
