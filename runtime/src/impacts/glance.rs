@@ -25,6 +25,11 @@ pub(super) struct Glance<G> {
 }
 
 impl<G: StateVector> Glance<G> {
+    /// Whether both ends of the step are one moment as far as times can tell.
+    pub(super) fn is_moment(&self) -> bool {
+        self.length <= SAME_TIME * self.latest
+    }
+
     /// The gap vanishes at the end of the step as far as times can tell.
     #[inline(always)]
     pub(super) fn is_due(&self, surface: usize) -> bool {

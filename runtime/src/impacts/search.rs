@@ -107,6 +107,10 @@ impl<Sys: Impacting> Watch<Sys> {
                     };
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
+                // Between times that are the same a surface at hand is left, whatever rounding says of its gap.
+                Search::Pole(_) if slope >= Some(0.0) && glance.is_moment() => {
+                    return Ok(Found::Nothing);
+                }
                 Search::Pole(after) => {
                     self.check_behind_pole(surface, after, step)?;
                     start = Start {
