@@ -22,21 +22,21 @@
 mod expansion;
 #[cfg(feature = "lanes")]
 pub(crate) mod lanes;
+mod step;
 
 use core::fmt;
 
 use expansion::{Expansion, row, state, sum};
 
-use super::controller::{RETREAT, Weights, landing, least_step, not_finite};
+use super::controller::{Weights, least_step, not_finite};
 use super::order::{LEAST_ORDER, PART_OF_TOLERANCE, order};
-use super::rough::{self, power_of_two};
+use super::rough;
 use super::stats::Counters;
-use super::stepper::{Series, StepFailure, Stepper};
+use super::stepper::StepFailure;
 use super::tolerance::Tolerance;
 use crate::contract::TaylorField;
 use crate::error::Fault;
 use crate::jet::{INVERSES, LENGTH};
-use crate::math;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
@@ -310,162 +310,5 @@ impl<F: TaylorField> Taylor<F> {
         self.end = self.start;
         self.rests[1] = self.rests[0];
         self.begin(field)
-    }
-}
-
-impl<F: TaylorField> Stepper<F> for Taylor<F> {
-    const NAME: &'static str = TAYLOR;
-
-    fn tolerance(&self) -> Tolerance {
-        self.tolerance
-    }
-
-    fn start(
-        &mut self,
-        field: &F,
-        t: f64,
-        state: &F::State,
-        t_end: f64,
-        counters: &mut Counters,
-    ) -> Result<(), StepFailure> {
-        counters.rate_evaluations += 1;
-        self.place(field, t, state)?;
-        self.limit = self.first_step.unwrap_or(f64::INFINITY);
-        let size = self.weights.norm(state, |i| state.as_slice()[i]);
-        let speed = self.weights.norm(state, |i| self.rates[1].as_slice()[i]);
-        let time = size / speed;
-        let known = time > 0.0 && time.is_finite();
-        let time = if known { time } else { t_end - t };
-        self.next_unit = power_of_two(time.min(t_end - t));
-        Ok(())
-    }
-
-    #[inline]
-    fn restart(
-        &mut self,
-        field: &F,
-        t: f64,
-        state: &F::State,
-        limit: f64,
-        _: &mut Counters,
-    ) -> Result<(), StepFailure> {
-        self.limit = limit;
-        self.place(field, t, state)
-    }
-
-    #[inline]
-    fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
-        self.set_out();
-        self.is_expanded = true;
-        let t = self.t[0];
-        let reach = self.expand(field, counters)?.min(LONGEST) * self.unit;
-        let mut h = self.length(reach);
-        self.next_unit = power_of_two(h);
-        loop {
-            let arrival = landing(t, h, t_end);
-            // NOTE: the step that is made is the difference of the two times, not the one asked for.
-            let made = arrival - t;
-            let attempt = self.attempt(field, made / self.unit, arrival, counters);
-            if let Ok(true) = attempt {
-                self.accept(made, reach, counters);
-                return Ok(());
-            }
-            counters.rejected += 1;
-            h = made * if attempt.is_ok() { 0.5 } else { RETREAT };
-            if h < least_step(t) {
-                self.retract(field)?;
-                return Err(attempt.err().unwrap_or(StepFailure::StepUnderflow { t }));
-            }
-        }
-    }
-
-    fn replace_end(
-        &mut self,
-        field: &F,
-        state: &F::State,
-        counters: &mut Counters,
-    ) -> Result<(), StepFailure> {
-        for i in 0..F::State::LEN {
-            if state.as_slice()[i] != self.end.as_slice()[i] {
-                self.rests[1].as_mut_slice()[i] = 0.0;
-            }
-        }
-        self.end = *state;
-        counters.rate_evaluations += 1;
-        self.begin(field)
-    }
-
-    #[inline(always)]
-    fn t_start(&self) -> f64 {
-        self.t[0]
-    }
-
-    #[inline(always)]
-    fn t_end(&self) -> f64 {
-        self.t[1]
-    }
-
-    #[inline(always)]
-    fn start_state(&self) -> &F::State {
-        &self.start
-    }
-
-    #[inline(always)]
-    fn end_state(&self) -> &F::State {
-        &self.end
-    }
-
-    #[inline(always)]
-    fn end_rates(&self) -> [&F::State; 2] {
-        let [start, end] = &self.rates;
-        [start, end]
-    }
-
-    #[inline(always)]
-    fn series(&self) -> Option<Series> {
-        Some(Series {
-            unit: self.unit,
-            order: self.order,
-        })
-    }
-
-    #[inline(always)]
-    fn gap_coefficient(&self, k: usize) -> &[f64] {
-        self.expansion.gaps[k].as_slice()
-    }
-
-    #[inline(always)]
-    fn end_gaps(&self) -> &[f64] {
-        self.expansion.begun_gaps()
-    }
-
-    #[inline(always)]
-    fn dense_ready(&self) -> bool {
-        self.is_expanded
-    }
-
-    #[inline(always)]
-    fn prepare_dense(&mut self, field: &F, _: &mut Counters) -> Result<(), Fault> {
-        match self.is_expanded {
-            true => Ok(()),
-            false => self.expand_again(field),
-        }
-    }
-
-    #[inline(always)]
-    fn interpolate(&self, theta: f64) -> F::State {
-        let s = theta * ((self.t[1] - self.t[0]) / self.unit);
-        let mut state = F::State::zeros();
-        for coefficient in self.expansion.coefficients[1..=self.order].iter().rev() {
-            for (i, entry) in coefficient.as_slice().iter().enumerate() {
-                let sum = &mut state.as_mut_slice()[i];
-                *sum = math::mul_add(*sum, s, *entry);
-            }
-        }
-        for i in 0..F::State::LEN {
-            let moved = state.as_slice()[i] * s + self.rests[0].as_slice()[i];
-            state.as_mut_slice()[i] = self.start.as_slice()[i] + moved;
-        }
-        state
     }
 }

@@ -1,0 +1,68 @@
+//! Systems with constraints.
+
+use super::System;
+use crate::error::Fault;
+use crate::state::StateVector;
+
+/// A system with constraints `eta^a(qdot) + eta^a_0 = 0`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no constraints: declare `constraints {{ .. }}` in its `model!`"
+)]
+pub trait Constrained: System {
+    /// M numbers, one per constraint, in the order of declaration.
+    type Multipliers: StateVector;
+
+    /// One number per constraint that is integrable with a known function (see
+    /// [`ConstraintInfo::level`](crate::describe::ConstraintInfo::level)).
+    type Levels: StateVector;
+
+    /// The multipliers `lambda_a`; the constraint force is `lambda_a eta^a`.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn multipliers(&self, t: f64, state: &Self::State) -> Result<Self::Multipliers, Fault>;
+
+    /// `eta^a(qdot) + eta^a_0`, and the sum of the absolute values of its terms, sines and cosines counted as 1: its
+    /// natural scale.
+    fn residuals(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> (Self::Multipliers, Self::Multipliers);
+
+    /// The forms `eta^a` (M rows of N, row after row) and their affine parts `eta^a_0` (M) at a position.
+    fn constraint_forms(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        forms: &mut [f64],
+        affine: &mut Self::Multipliers,
+    );
+
+    /// Whether every state satisfies the constraints by its construction: the form reduced to D.
+    const IS_REDUCED: bool;
+
+    /// Brings the velocity back to the constraints after a step. Unlike [`System::state_nearest`] it need not move it
+    /// as little as possible: where some velocities follow from the others at every state, those are recomputed
+    /// and the others kept to the last digit. Does nothing where [`Constrained::IS_REDUCED`].
+    ///
+    /// # Errors
+    /// [`Fault`]; the state is unchanged then.
+    fn restore(&self, t: f64, state: &mut Self::State) -> Result<(), Fault>;
+
+    /// The position-level values `f^k(t, q)` of the integrable constraints; the motion keeps them.
+    fn levels(&self, t: f64, q: &Self::Vector) -> Self::Levels;
+
+    /// One Newton step on position level, orthogonal in the metric: the change of q that moves the levels by
+    /// `-excess` to first order.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn level_correction(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        excess: &Self::Levels,
+    ) -> Result<Self::Vector, Fault>;
+}

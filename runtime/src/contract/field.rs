@@ -1,0 +1,89 @@
+//! Motions as differential equations of first order: their rates and their power series.
+
+use crate::error::Fault;
+use crate::jet::{Jets, LENGTH, Work};
+use crate::numbers::{Numbers, Row};
+use crate::state::StateVector;
+
+/// A first-order system of ordinary differential equations on a state of fixed size.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no vector field: declare it with `dalembert::model!`"
+)]
+pub trait VectorField {
+    /// The state; its components mean what the system says.
+    type State: StateVector;
+
+    /// Writes the time derivative of `state` at time `t`.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the derivative does not exist; `rate` is unspecified then.
+    fn rate(&self, t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault>;
+
+    /// The size of one unit of each component: absolute tolerances are multiplied by it, so that they mean
+    /// the same for a momentum as for the velocity it belongs to. Ones unless overridden.
+    fn scale(&self, t: f64, state: &Self::State) -> Self::State {
+        let _ = (t, state);
+        let mut ones = Self::State::zeros();
+        ones.as_mut_slice().fill(1.0);
+        ones
+    }
+}
+
+/// A vector field with the power series of its motions: what [`Taylor`](crate::Taylor) integrates.
+///
+/// Series are written over [`Numbers`]: of one motion with `f64`, of several at once with lanes. What belongs to one moment
+/// is computed by [`TaylorField::begin`], everything above it by [`TaylorField::advance`].
+#[diagnostic::on_unimplemented(
+    message = "the Taylor coefficients of `{Self}` are not known: declare it with `dalembert::model!`"
+)]
+pub trait TaylorField: VectorField {
+    /// The parameters of the system.
+    type Parameters<L: Numbers>: Row<L>;
+
+    /// As many numbers as a state has components, in their order.
+    type Row<L: Numbers>: Row<L>;
+
+    /// One number per surface, or none where a gap is not analytic, as `|x|` is not, or there are no surfaces.
+    type Gaps<L: Numbers>: Row<L>;
+
+    /// What is known at one moment: the rate, then the gaps, then whatever coefficients above order 0 take of it.
+    type Firsts<L: Numbers>: Row<L>;
+
+    /// Room for the coefficients of intermediate values.
+    type Jets<L: Numbers>: Jets;
+
+    /// What an expansion takes, if it is known: the order of series is chosen by it.
+    const WORK: Option<Work> = None;
+
+    /// The parameters.
+    fn parameters(&self) -> Self::Parameters<f64>;
+
+    /// Writes what is known at `(t, state)`.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the derivative does not exist, in whatever lane; `firsts` is unspecified then.
+    fn begin<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        t: L,
+        state: &Self::Row<L>,
+        firsts: &mut Self::Firsts<L>,
+    ) -> Result<(), Fault>;
+
+    /// Writes the power series of the motion that is at `coefficients[0]`, where `firsts` is known, and of the gaps along
+    /// it:
+    ///
+    /// ```text
+    /// state(t + unit s) = coefficients[0] + coefficients[1] s + .. + coefficients[order] s^order + ..
+    /// ```
+    ///
+    /// `order` is 1 or more; orders above 32 are not computed. What `jets` holds before does not matter.
+    fn advance<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        unit: L,
+        order: usize,
+        firsts: &Self::Firsts<L>,
+        coefficients: &mut [Self::Row<L>; LENGTH],
+        gaps: &mut [Self::Gaps<L>; LENGTH],
+        jets: &mut Self::Jets<L>,
+    );
+}

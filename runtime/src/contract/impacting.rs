@@ -1,0 +1,100 @@
+//! Systems with surfaces.
+
+use super::System;
+use crate::error::Fault;
+use crate::impacts::law::{Blow, Contact, Jump, Law};
+use crate::state::StateVector;
+
+/// A system with impact surfaces `h_s >= 0`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no impact surfaces: declare `impacts {{ .. }}` in its `model!`"
+)]
+pub trait Impacting: System {
+    /// S numbers, one per surface, in the order of declaration.
+    type Gaps: StateVector;
+
+    /// The gaps `h_s`; motion is allowed where they are not negative, and everywhere at a surface with a reset.
+    fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps;
+
+    /// The gap rates `dh_s(qdot) + d_t h_s`.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn gap_rates(&self, t: f64, state: &Self::State) -> Result<Self::Gaps, Fault>;
+
+    /// The second rates `d^2h_s/dt^2` where the motion's part of the state, momenta or quasi-velocities, changes at the
+    /// rates `motion`. `None` for a system that does not know them: it cannot go on along a surface.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn gap_accelerations(
+        &self,
+        t: f64,
+        state: &Self::State,
+        motion: &Self::Impulse,
+    ) -> Result<Option<Self::Gaps>, Fault> {
+        let _ = (t, state, motion);
+        Ok(None)
+    }
+
+    /// What the impulse `motion` changes the gap rates by. `None` as for [`Impacting::gap_accelerations`].
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn gap_responses(
+        &self,
+        t: f64,
+        state: &Self::State,
+        motion: &Self::Impulse,
+    ) -> Result<Option<Self::Gaps>, Fault> {
+        let _ = (t, state, motion);
+        Ok(None)
+    }
+
+    /// Whether the surface counts here: all its `when` conditions are positive.
+    fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
+        let _ = (surface, t, state);
+        true
+    }
+
+    /// The declared law of a surface, at this system's parameters.
+    fn law(&self, surface: usize) -> Law;
+
+    /// Positions and velocities after the declared reset of a surface; `None` where its law is no reset.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn reset(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Option<Jump<Self::Vector>>, Fault> {
+        let _ = (surface, t, state);
+        Ok(None)
+    }
+
+    /// The impulse of the declared law of a surface, where that is one.
+    ///
+    /// # Errors
+    /// As [`Impacting::contact`].
+    fn blow(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Blow<Self::Impulse>, Fault> {
+        Ok(self.contact(surface, t, state)?.blow(self.law(surface)))
+    }
+
+    /// What an impact on this surface by any law needs, and motion along it.
+    ///
+    /// # Errors
+    /// [`Fault`]; [`Fault::SingularSurface`] where `dh(pi_D grad h)` is not positive.
+    fn contact(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Contact<Self::Impulse>, Fault>;
+}

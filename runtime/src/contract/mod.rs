@@ -1,0 +1,15 @@
+//! The traits between generated code and runtime: one per effect, so that a scene pays for what it declares.
+//!
+//! Only [`VectorField`] is known to integrators. Time is an argument everywhere; autonomous systems ignore it.
+
+mod constrained;
+mod field;
+mod impacting;
+mod system;
+mod volume;
+
+pub use constrained::Constrained;
+pub use field::{TaylorField, VectorField};
+pub use impacting::Impacting;
+pub use system::{Lagrangian, System};
+pub use volume::{Divergence, InvariantVolume};

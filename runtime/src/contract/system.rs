@@ -1,0 +1,205 @@
+//! Mechanical systems, and the principle that their motions come from.
+
+use super::VectorField;
+use crate::error::{Fault, ParameterError, StateError};
+use crate::state::StateVector;
+
+/// A mechanical system: a state with positions, velocities, momenta and an energy.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a mechanical system: declare a `lagrangian` in its `model!`"
+)]
+pub trait System: VectorField {
+    /// N numbers, one per coordinate, in the order of declaration: q, qdot or p.
+    type Vector: StateVector;
+
+    /// A change of what the state holds of the motion: of the N momenta in the global form, of the N - M
+    /// quasi-velocities in the form reduced to D.
+    type Impulse: StateVector;
+
+    /// Positions q.
+    fn position(&self, state: &Self::State) -> Self::Vector;
+
+    /// Velocities `qdot = g^{-1}(p - A)`.
+    ///
+    /// # Errors
+    /// [`Fault::MetricNotPositive`].
+    fn velocity(&self, t: f64, state: &Self::State) -> Result<Self::Vector, Fault>;
+
+    /// Momenta `p = g qdot + A`.
+    ///
+    /// # Errors
+    /// [`Fault`], for states that do not hold momenta themselves.
+    fn momentum(&self, t: f64, state: &Self::State) -> Result<Self::Vector, Fault>;
+
+    /// The state with these positions and velocities, taken as they are. A state reduced to D holds only velocities
+    /// that satisfy the constraints: there the quasi-velocities of `qdot` are taken, whatever it is off.
+    ///
+    /// # Errors
+    /// [`Fault`] where the state cannot be formed.
+    fn state_unchecked(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, Fault>;
+
+    /// The state with these positions and momenta: taken as they are where the state holds momenta, else those
+    /// nearest to them in the metric that the constraints allow.
+    ///
+    /// # Errors
+    /// [`Fault`] where the state cannot be formed.
+    fn state_from_momenta(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        p: &Self::Vector,
+    ) -> Result<Self::State, Fault>;
+
+    /// Kinetic plus potential energy `1/2 g(qdot, qdot) + V`.
+    ///
+    /// # Errors
+    /// [`Fault::MetricNotPositive`].
+    fn energy(&self, t: f64, state: &Self::State) -> Result<f64, Fault>;
+
+    /// Adds `size * direction` to what the state holds of the motion: an impulse.
+    fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse);
+
+    /// Checks every parameter against its declaration.
+    ///
+    /// # Errors
+    /// The first [`ParameterError`], in order of declaration.
+    fn check_parameters(&self) -> Result<(), ParameterError>;
+
+    /// The first coordinate outside the open interval of its chart. None by default.
+    fn outside_chart(&self, state: &Self::State) -> Option<usize> {
+        let _ = state;
+        None
+    }
+
+    /// Refuses velocities off the constraints by more than 1e-9 of the sum of absolute terms. Systems without
+    /// constraints accept all.
+    ///
+    /// # Errors
+    /// [`StateError::OffConstraint`].
+    fn admit(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<(), StateError> {
+        let _ = (t, q, qdot);
+        Ok(())
+    }
+
+    /// The state with these positions, and with the velocities nearest to these in the metric that satisfy the
+    /// constraints.
+    ///
+    /// # Errors
+    /// A [`Fault`] met on the way.
+    fn state_nearest(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, Fault> {
+        self.state_unchecked(t, q, qdot)
+    }
+
+    /// The velocities with those whose `named` is not 1 replaced by what the constraints make of the named
+    /// ones. Without constraints there is nothing to choose, and `qdot` is returned as it is.
+    ///
+    /// # Errors
+    /// [`StateError::OffConstraint`] where the named velocities contradict the constraints; a [`Fault`] met on
+    /// the way.
+    fn complete_velocity(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+        named: &Self::Vector,
+    ) -> Result<Self::Vector, StateError> {
+        let _ = (t, q, named);
+        Ok(*qdot)
+    }
+
+    /// The state with these positions and velocities, if they satisfy every constraint and declaration.
+    ///
+    /// # Errors
+    /// [`StateError`]: a parameter against its declaration, a number that is not finite, a coordinate
+    /// outside its chart, a constraint violated by more than 1e-9 of the sum of its absolute terms.
+    fn state(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, StateError> {
+        let state = self.checked(t, q, qdot)?;
+        self.admit(t, q, qdot)?;
+        Ok(state)
+    }
+
+    /// As [`System::state`], but moves an off-constraint velocity to the nearest allowed one in the metric.
+    ///
+    /// # Errors
+    /// As [`System::state`], without `OffConstraint`.
+    fn state_projected(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, StateError> {
+        self.checked(t, q, qdot)?;
+        Ok(self.state_nearest(t, q, qdot)?)
+    }
+
+    /// The state after every check but that of the constraints.
+    ///
+    /// # Errors
+    /// As [`System::state`], without `OffConstraint`.
+    fn checked(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, StateError> {
+        self.check_parameters()?;
+        let components = q.as_slice().iter().chain(qdot.as_slice());
+        if let Some(component) = components.clone().position(|value| !value.is_finite()) {
+            return Err(StateError::NotFinite { component });
+        }
+        let state = self.state_unchecked(t, q, qdot)?;
+        if let Some(coordinate) = self.outside_chart(&state) {
+            return Err(StateError::OutsideChart { coordinate });
+        }
+        Ok(state)
+    }
+}
+
+/// The parts of Lagrange and d'Alembert's principle
+///
+/// ```text
+/// d/dt dL/dqdot = f + lambda_a eta^a,   eta^a(qdot) + eta^a_0 = 0,   f = dL/dq + F
+/// ```
+///
+/// that a discrete principle puts together anew: what the rate of the state has already put together cannot be
+/// taken apart. Positions, velocities and momenta are N numbers each, whatever the state holds.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not give the parts of its equations: declare it with `dalembert::model!`"
+)]
+pub trait Lagrangian: System {
+    /// M numbers, one per constraint, in the order of declaration; none without constraints.
+    type Reactions: StateVector;
+
+    /// `f = dL/dq + F`: the force besides that of the constraints.
+    fn force(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Self::Vector;
+
+    /// `lambda_a eta^a`: the force of the constraints for given multipliers.
+    fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions)
+    -> Self::Vector;
+
+    /// The velocity at the momenta `p + mu_a eta^a`, with the `mu` that make it satisfy the constraints; and `mu`.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn constrained_velocity(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        p: &Self::Vector,
+    ) -> Result<(Self::Vector, Self::Reactions), Fault>;
+}

@@ -1,0 +1,76 @@
+//! Volumes that motions keep or change.
+
+use super::System;
+use crate::error::Fault;
+
+/// A system whose divergence with respect to the invariant-volume candidate `mu_C` was derived.
+#[diagnostic::on_unimplemented(message = "the divergence of `{Self}` was not derived")]
+pub trait Divergence: System {
+    /// Divergence of the motion on D* with respect to `mu_C` (the Leray quotient of the Liouville volume).
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn divergence(&self, t: f64, state: &Self::State) -> Result<f64, Fault>;
+
+    /// The density form `theta = m_ab L_{W^a} eta^b` at a position: N components.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn density_form(&self, t: f64, q: &Self::Vector) -> Result<Self::Vector, Fault>;
+}
+
+/// A system whose motion keeps a volume `exp(G) mu_C`, with `G` a function of the configuration (and of `t`, where the
+/// system depends on it).
+///
+/// ```text
+/// mu_C = det g / |det A_dep|  dq dv_ind
+/// ```
+///
+/// is the natural volume on the states that satisfy the constraints, the quotient of the Liouville volume by the
+/// constraint momenta. `v_ind` are the velocities of [`InvariantVolume::INDEPENDENT`]; the other ones follow from them,
+/// and `A_dep` are their columns of the constraint forms. Without constraints it is the Liouville volume
+/// `det g dq dv = dq dp`. Impacts by the law `elastic` keep `exp(G) mu_C` as well where the constraints are linear.
+///
+/// Implemented for models with a proved claim `density: exact`, `density: locally_exact`, or `density = EXPR` where
+/// `EXPR` does not depend on velocities; then `G = ln |EXPR|`. Where `G` has no closed form, it is an integral; where it is
+/// not determined up to a constant either, the trait is not implemented, and the notes in the model's documentation say
+/// so.
+///
+/// At given parameters both logarithms are determined up to a constant: only their differences between configurations
+/// have a meaning. `G` depends on how the constraint forms were written, the volume does not.
+///
+/// # References
+/// W. Clark and A. Bloch, *Invariant forms in hybrid and impact systems and a taming of Zeno*, Theorem 2.8: with linear
+/// constraints that do not depend on time and without forces that depend on velocities, `exp(G) mu_C` is invariant iff
+/// `dG = theta` on all velocities that the constraints allow, `theta` being [`Divergence::density_form`].
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no invariant volume: declare `claims {{ density: exact; }}` in its `model!`, \
+               or state the density where none is found"
+)]
+pub trait InvariantVolume: System {
+    /// Indices of the coordinates whose velocities, with the positions, are the coordinates of the volume. In
+    /// increasing order, one for each dimension that the constraints leave.
+    const INDEPENDENT: &'static [usize];
+
+    /// Whether `G` is a function of the configuration; else it grows by a constant with each turn of some angle, which
+    /// is stored unwrapped.
+    const IS_SINGLE_VALUED: bool;
+
+    /// Whether `G` is numeric: without a closed form, it is the integral of `dG` along the line from a regular
+    /// configuration, to rounding, and a [`Fault::SingularConstraint`] where a singularity lies on that line.
+    const IS_INTEGRAL: bool;
+
+    /// `G`, the logarithm of the density with respect to `mu_C`.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the metric or the constraints that `G` is made of are singular.
+    fn log_density(&self, t: f64, q: &Self::Vector) -> Result<f64, Fault>;
+
+    /// `G + ln det g - ln |det A_dep|`, the logarithm of the density of the volume in positions and independent
+    /// velocities.
+    ///
+    /// # Errors
+    /// As [`InvariantVolume::log_density`], and [`Fault::SingularConstraint`] where the other velocities do not follow
+    /// from the independent ones.
+    fn log_volume(&self, t: f64, q: &Self::Vector) -> Result<f64, Fault>;
+}
