@@ -32,8 +32,14 @@ fn emit_type(model: &Model, scene: &Scene, context: &Context<'_>) -> TokenStream
     lines.insert(scene.documentation.len(), String::new());
     let documentation = doc::lines(&lines);
     let global = parameters::emit_global(context, &scene.type_name, "scene", &quote!(pub));
-    let surfaces = indices::emit_surfaces(&context.model.surfaces);
-    let title = format!(" Indices of what the scene `{}` uses.", scene.name);
+    let indices = (!context.model.surfaces.is_empty()).then(|| {
+        let surfaces = indices::emit_surfaces(&context.model.surfaces);
+        let title = format!(" Indices of what the scene `{}` uses.", scene.name);
+        quote! {
+            #[doc = #title]
+            pub mod #module { #surfaces }
+        }
+    });
     let default = parameters::have_defaults(model).then(|| {
         quote! {
             impl ::core::default::Default for #type_name {
@@ -52,8 +58,7 @@ fn emit_type(model: &Model, scene: &Scene, context: &Context<'_>) -> TokenStream
         );
         #default
         #global
-        #[doc = #title]
-        pub mod #module { #surfaces }
+        #indices
     }
 }
 
