@@ -65,11 +65,20 @@ impl<S: Described + Scene + TaylorField> Members<S> {
         if index == WITHOUT_STEPS { 3 } else { 1000 }
     }
 
+    /// Some of another order than most.
+    fn stepper(&self, index: usize) -> Taylor<S> {
+        let stepper = Taylor::new(self.tolerance);
+        match index % 7 {
+            3 => stepper.with_order(11),
+            _ => stepper,
+        }
+    }
+
     fn alone(&self) -> Results<S> {
         let indices = 0..self.states.len();
         let runs = indices.map(|index| {
             let system = self.system(index);
-            Simulation::new(system, Taylor::new(self.tolerance), system.effects())
+            Simulation::new(system, self.stepper(index), system.effects())
                 .with_step_budget(Self::budget(index))
                 .run(0.0, self.states[index], Self::until(index), &mut ())
         });
@@ -82,7 +91,7 @@ impl<S: Described + Scene + TaylorField> Members<S> {
         let members = (0..self.states.len()).map(|index| {
             let system = self.system(index);
             let start = (0.0, self.states[index]);
-            let (stepper, until) = (Taylor::new(self.tolerance), Self::until(index));
+            let (stepper, until) = (self.stepper(index), Self::until(index));
             Member::new(index, system, stepper, system.effects(), (), start, until)
                 .with_step_budget(Self::budget(index))
                 .with_look_inside(looks_inside)

@@ -85,7 +85,7 @@ pub struct Member<'a, Sys: TaylorField, Effects, O> {
 
 impl<'a, Sys: TaylorField, Effects, O> Member<'a, Sys, Effects, O> {
     /// A run of a system from `state` at `t` to `t_end`, as [`Simulation::run`](crate::Simulation::run) makes it, under a
-    /// tag of the caller's. All integrators that go abreast have one order.
+    /// tag of the caller's. An integrator of another order than that in the first lane makes its steps alone.
     pub fn new(
         tag: usize,
         system: &'a Sys,

@@ -6,7 +6,7 @@ use quote::quote;
 use super::function::{Body, emit_body};
 use super::{Context, doc};
 use crate::model::Law;
-use crate::program::Impacting;
+use crate::program::{Function, Impacting};
 
 /// `impl Impacting`, if there are surfaces.
 pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
@@ -216,17 +216,11 @@ fn emit_blows(context: &Context<'_>, functions: &Impacting) -> TokenStream {
                 }
             })
         });
-    let mut lines = vec!["The impulse by the declared law.".to_owned(), String::new()];
-    for (s, function) in functions.blows.iter().enumerate() {
-        if let Some(function) = function {
-            let (name, law) = (
-                &context.model.surfaces[s].name.display,
-                context.model.law_text(s),
-            );
-            lines.push(format!("* `{name}`: `{law}`, {}.", function.cost));
-        }
-    }
-    let documentation = doc::lines(&lines);
+    let documentation = laws(
+        context,
+        "The impulse by the declared law.",
+        &functions.blows,
+    );
     quote! {
         #documentation
         #[inline]
@@ -242,6 +236,21 @@ fn emit_blows(context: &Context<'_>, functions: &Impacting) -> TokenStream {
             }
         }
     }
+}
+
+/// What a function does, and by which law on each surface that it is made for.
+fn laws(context: &Context<'_>, title: &str, functions: &[Option<Function>]) -> TokenStream {
+    let mut lines = vec![title.to_owned(), String::new()];
+    for (s, function) in functions.iter().enumerate() {
+        if let Some(function) = function {
+            let (name, law) = (
+                &context.model.surfaces[s].name.display,
+                context.model.law_text(s),
+            );
+            lines.push(format!("* `{name}`: `{law}`, {}.", function.cost));
+        }
+    }
+    doc::lines(&lines)
 }
 
 fn emit_contacts(context: &Context<'_>, functions: &Impacting) -> TokenStream {
@@ -326,21 +335,11 @@ fn emit_resets(context: &Context<'_>, functions: &Impacting) -> TokenStream {
                 }
             })
         });
-    let mut lines = vec![
-        "Positions and velocities after the declared reset, as functions of those before it."
-            .to_owned(),
-        String::new(),
-    ];
-    for (s, function) in functions.resets.iter().enumerate() {
-        if let Some(function) = function {
-            let (name, law) = (
-                &context.model.surfaces[s].name.display,
-                context.model.law_text(s),
-            );
-            lines.push(format!("* `{name}`: `{law}`, {}.", function.cost));
-        }
-    }
-    let documentation = doc::lines(&lines);
+    let documentation = laws(
+        context,
+        "Positions and velocities after the declared reset, as functions of those before it.",
+        &functions.resets,
+    );
     quote! {
         #documentation
         #[inline]

@@ -27,6 +27,18 @@ pub(crate) struct Start {
     pub until: f64,
 }
 
+impl Start {
+    /// Behind a fall or a pole, with the function negative there.
+    pub(crate) fn behind(from: f64, until: f64) -> Self {
+        Self {
+            from,
+            above: false,
+            slope: None,
+            until,
+        }
+    }
+}
+
 /// Two parts of a step between which the gap falls: not negative at `before`, negative at `after`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Bracket {

@@ -113,12 +113,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
                 Search::Pole(after) => {
                     self.check_behind_pole(surface, after, step)?;
-                    start = Start {
-                        from: after,
-                        above: false,
-                        slope: None,
-                        until,
-                    };
+                    start = Start::behind(after, until);
                     continue;
                 }
                 Search::Sinks(part) => (part, part, part),
@@ -148,12 +143,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
                 tangential = tangential.or(Some(after));
             }
-            start = Start {
-                from: after,
-                above: false,
-                slope: None,
-                until,
-            };
+            start = Start::behind(after, until);
             if after >= 1.0 {
                 return Ok(Found::Nothing);
             }

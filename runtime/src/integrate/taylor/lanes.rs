@@ -66,7 +66,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         gather(&mut self.parameters, |lane, i| of_lanes[lane].as_slice()[i]);
     }
 
-    /// Makes the next step of every motion; which of them it made. The integrators are all of one order. The others must
+    /// Makes the next step of every motion whose integrator has the order of the first; which of them it made. The others must
     /// make theirs alone.
     pub(crate) fn step(&mut self, walkers: &mut [impl Walker<F>]) -> [bool; MOST] {
         let order = walkers[0].taylor().order;
@@ -82,7 +82,8 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         let clearance = self.expansion.clearance(order, theta);
         let mut made = [false; MOST];
         for (lane, walker) in walkers.iter_mut().enumerate() {
-            made[lane] = self.hand_over(lane, walker, plans[lane], order);
+            made[lane] =
+                walker.taylor().order == order && self.hand_over(lane, walker, plans[lane], order);
             if made[lane] {
                 let is_wanted = walker.looks_inside() || clearance.lane(lane) <= 0.0;
                 let (taylor, _) = walker.at_work();
