@@ -38,19 +38,34 @@ pub const INVERSES: [f64; LENGTH] = {
 };
 
 /// `sum a_j b_(k-j)` for `j` in `1..k`, of `W` pairs of series side by side. Row `j` holds coefficient `j` of all
-/// series: the `a` from place `a` on, the `b` from place `b` on.
+/// series: the `a` from place `a` on, the `b` from place `b` on. Row `k - 1`, the newest, is given besides: it need not
+/// be read back from where it has just been written.
 #[inline(always)]
 pub fn middles<L: Numbers, const W: usize, const P: usize>(
     rows: &[[L; P]; LENGTH],
-    a: usize,
-    b: usize,
+    (a, newest_a): (usize, &[L; W]),
+    (b, newest_b): (usize, &[L; W]),
     k: usize,
 ) -> [L; W] {
-    let rows = &rows[1..k.clamp(1, LENGTH - 1)];
+    let k = k.clamp(1, LENGTH - 1);
     let mut sums = [L::ZERO; W];
-    for (x, y) in rows.iter().zip(rows.iter().rev()) {
+    if k < 2 {
+        return sums;
+    }
+    let between = &rows[2..k.max(3) - 1];
+    for (x, y) in between.iter().zip(between.iter().rev()) {
         for i in 0..W {
             sums[i] = x[a + i].mul_add(y[b + i], sums[i]);
+        }
+    }
+    // The newest coefficients come last: the sum need not wait for them.
+    let first = &rows[1];
+    for i in 0..W {
+        sums[i] = first[a + i].mul_add(newest_b[i], sums[i]);
+    }
+    if k > 2 {
+        for i in 0..W {
+            sums[i] = newest_a[i].mul_add(first[b + i], sums[i]);
         }
     }
     sums
@@ -60,26 +75,44 @@ pub fn middles<L: Numbers, const W: usize, const P: usize>(
 #[inline(always)]
 pub fn halves<L: Numbers, const W: usize, const P: usize>(
     rows: &[[L; P]; LENGTH],
-    a: usize,
+    (a, newest): (usize, &[L; W]),
     k: usize,
 ) -> [L; W] {
     let k = k.clamp(1, LENGTH - 1);
-    let pairs = (k - 1) / 2;
-    let (left, right) = (&rows[1..=pairs], &rows[k - pairs..k]);
     let mut sums = [L::ZERO; W];
+    if k < 2 {
+        return sums;
+    }
+    let pairs = (k - 1) / 2;
     if k.is_multiple_of(2) {
         let centre = &rows[k / 2];
         for i in 0..W {
             sums[i] = L::of(0.5) * centre[a + i] * centre[a + i];
         }
     }
-    // The newest coefficients come last: the sum need not wait for them.
-    for (x, y) in left.iter().rev().zip(right) {
+    if k > 2 {
+        let (left, right) = (&rows[2..=pairs.max(1)], &rows[k - pairs..k - 1]);
+        for (x, y) in left.iter().rev().zip(right) {
+            for i in 0..W {
+                sums[i] = x[a + i].mul_add(y[a + i], sums[i]);
+            }
+        }
+        let first = &rows[1];
         for i in 0..W {
-            sums[i] = x[a + i].mul_add(y[a + i], sums[i]);
+            sums[i] = first[a + i].mul_add(newest[i], sums[i]);
         }
     }
     sums
+}
+
+/// Keeps coefficients of one order, from a place on.
+#[inline(always)]
+pub fn keep<L: Numbers, const W: usize, const P: usize>(
+    row: &mut [L; P],
+    place: usize,
+    newest: &[L; W],
+) {
+    row[place..place + W].copy_from_slice(newest);
 }
 
 /// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond `degree`, of the series at two places of the rows.
@@ -181,9 +214,10 @@ mod tests {
             assert_eq!(2.0 * half(&a, k), sum(&a, &a, 1, k));
             assert_eq!(shared_short(&a, &b, k, 3), sum(&a, &b, 1, (k + 1).min(4)));
             assert_eq!(short(&rows, 1, 2, k, 3), sum(&a, &b, 1, (k + 1).min(4)));
-            let [of_a, of_b] = middles(&rows, 0, 2, k);
-            assert_eq!([of_a, of_b], [sum(&b, &b, 1, k), sum(&a, &a, 1, k)]);
-            let [of_a, of_b] = halves(&rows, 1, k);
+            let newest = |place: usize| [rows[k - 1][place], rows[k - 1][place + 1]];
+            let both = middles(&rows, (0, &newest(0)), (2, &newest(2)), k);
+            assert_eq!(both, [sum(&b, &b, 1, k), sum(&a, &a, 1, k)]);
+            let [of_a, of_b] = halves(&rows, (1, &newest(1)), k);
             assert_eq!(
                 [2.0 * of_a, 2.0 * of_b],
                 [sum(&a, &a, 1, k), sum(&b, &b, 1, k)]

@@ -258,11 +258,16 @@ impl Builder {
         }
     }
 
+    /// Adds an operation of a finished function, whose values became these; its value.
+    pub fn replay_one(&mut self, op: &Op, values: &[Value]) -> Value {
+        self.push(op.clone().with_operands(|value| values[value.index()]))
+    }
+
     /// Adds the operations of a finished function, as they are but for those that are there already; its results.
     pub fn replay(&mut self, function: &Function) -> Vec<Value> {
         let mut values: Vec<Value> = Vec::with_capacity(function.ops.len());
         for (op, name) in function.ops.iter().zip(&function.names) {
-            let value = self.push(op.clone().with_operands(|value| values[value.index()]));
+            let value = self.replay_one(op, &values);
             let own = &mut self.names[value.index()];
             if own.is_none() {
                 own.clone_from(name);

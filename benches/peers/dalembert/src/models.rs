@@ -33,6 +33,10 @@ dalembert::model! {
             front_tip: table(x + len*cos(theta), y + len*sin(theta)) >= 0;
             back_tip: table(x - len*cos(theta), y - len*sin(theta)) >= 0;
         }
+        scenes {
+            /// No table.
+            free;
+        }
     }
 }
 

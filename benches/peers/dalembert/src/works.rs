@@ -1,10 +1,10 @@
 //! The works that are one course each. `README.md` beside this file defines them.
 
-use dalembert::{Projection, Scene, System, VectorField};
+use dalembert::{Scene, System, VectorField};
 
 use crate::Plan;
 use crate::course::Course;
-use crate::models::{Ball, Disk, Pendulum, Sleigh};
+use crate::models::{Ball, Disk, Pendulum, Sleigh, sleigh};
 
 /// The state from which the disk starts with this rate of rolling.
 pub fn rolling(disk: &Disk, roll: f64) -> <Disk as VectorField>::State {
@@ -31,12 +31,12 @@ pub fn disk_billiard(plan: &Plan) {
 
 /// W2.
 pub fn sleigh(plan: &Plan) {
-    let sleigh = Sleigh::default();
+    let sleigh = sleigh::Free(Sleigh::default());
     let start = sleigh.state(0.0, &[0.0; 3].into(), &[-1.0, 0.0, 0.2].into());
     Course {
         work: "W2",
         system: &sleigh,
-        effects: Projection::new(),
+        effects: sleigh.effects(),
         start: start.expect("an admissible state"),
         until: 1000.0,
         probes: &[1.0, 10.0, 100.0],

@@ -37,19 +37,32 @@ pub(super) struct Layout {
     middles: Vec<(History, History)>,
 }
 
-/// Sums taken together: which of their kind, where the coefficients of their factors lie in a row, and how many places each
-/// factor has.
+/// Sums taken together, as the sums of their kind from `first` on.
 struct Block {
     first: usize,
-    count: usize,
+    /// Where the coefficients of its factors lie in a row, and how many places each factor has.
     place: usize,
     width: usize,
+    /// What the sums have for each factor.
+    factors: Vec<Vec<History>>,
 }
 
 impl Block {
-    /// The places of the factors in a row: how many, for sums with this many factors.
-    fn end(&self, factors: usize) -> usize {
-        self.place + factors * self.width
+    fn count(&self) -> usize {
+        self.factors[0].len()
+    }
+
+    /// Where the coefficients of each factor lie in a row, and the local with the newest of them.
+    fn places(&self) -> impl Iterator<Item = (Literal, Ident)> + '_ {
+        (0..self.factors.len()).map(|i| {
+            let place = self.place + i * self.width;
+            (Literal::usize_unsuffixed(place), name("newest", place))
+        })
+    }
+
+    /// The first place behind it.
+    fn end(&self) -> usize {
+        self.place + self.factors.len() * self.width
     }
 }
 
@@ -88,7 +101,13 @@ impl Layout {
             let (last, first) = (local("last", value), first(value));
             quote!(let mut #last = #first;)
         });
-        slopes.chain(lasts).collect()
+        let blocks = self.blocks();
+        let newest = blocks.iter().flat_map(|block| {
+            let width = block.width;
+            let of = move |(_, newest)| quote!(let mut #newest = [L::ZERO; #width];);
+            block.places().map(of)
+        });
+        slopes.chain(lasts).chain(newest).collect()
     }
 
     /// Coefficient `order` of a history, if it is kept alone.
@@ -112,24 +131,24 @@ impl Layout {
 
     /// Statements that take all sums of order `k`.
     pub(super) fn sums(&self) -> TokenStream {
-        let of = |blocks: Vec<Block>, prefix: &'static str, function: TokenStream, factors| {
-            let statements = blocks.into_iter().map(move |block| {
-                let names = (0..block.width).map(|i| match i < block.count {
-                    true => {
-                        let name = name(prefix, block.first + i);
-                        quote!(#name)
-                    }
-                    false => quote!(_),
-                });
-                let places =
-                    (0..factors).map(|i| Literal::usize_unsuffixed(block.place + i * block.width));
-                quote!(let [#(#names),*] = ::dalembert::jet::#function(jets, #(#places,)* k);)
+        let statements = self.blocks().into_iter().map(|block| {
+            let (prefix, function) = match block.factors.len() {
+                1 => ("half", quote!(halves)),
+                _ => ("sum", quote!(middles)),
+            };
+            let names = (0..block.width).map(|i| match i < block.count() {
+                true => {
+                    let name = name(prefix, block.first + i);
+                    quote!(#name)
+                }
+                false => quote!(_),
             });
-            statements.collect::<TokenStream>()
-        };
-        let halves = of(self.half_blocks(), "half", quote!(halves), 1);
-        let middles = of(self.middle_blocks(), "sum", quote!(middles), 2);
-        quote!(#halves #middles)
+            let factors = block
+                .places()
+                .map(|(place, newest)| quote!((#place, &#newest)));
+            quote!(let [#(#names),*] = ::dalembert::jet::#function(jets, #(#factors,)* k);)
+        });
+        statements.collect()
     }
 
     /// Statements that keep coefficient `k` of what the next orders take; `coefficient` gives it.
@@ -139,25 +158,14 @@ impl Layout {
             quote!(#last = #next;)
         });
         let mut statements: TokenStream = lasts.collect();
-        let mut keep = |place: usize, history| {
-            let (place, coefficient) = (Literal::usize_unsuffixed(place), coefficient(history));
-            statements.extend(quote!(jets[k][#place] = #coefficient;));
-        };
-        for block in self.half_blocks() {
-            for i in 0..block.count {
-                keep(
-                    block.place + i,
-                    History::plain(self.halves[block.first + i]),
-                );
-            }
-        }
-        for block in self.middle_blocks() {
-            let pairs = &self.middles[block.first..][..block.count];
-            for (i, (a, _)) in pairs.iter().enumerate() {
-                keep(block.place + i, *a);
-            }
-            for (i, (_, b)) in pairs.iter().enumerate() {
-                keep(block.place + block.width + i, *b);
+        for block in self.blocks() {
+            let zeros = vec![quote!(L::ZERO); block.width - block.count()];
+            for ((place, newest), factor) in block.places().zip(&block.factors) {
+                let coefficients = factor.iter().map(|&history| coefficient(history));
+                statements.extend(quote! {
+                    #newest = [#(#coefficients,)* #(#zeros),*];
+                    ::dalembert::jet::keep(&mut jets[k], #place, &#newest);
+                });
             }
         }
         statements
@@ -165,39 +173,33 @@ impl Layout {
 
     /// Places of a row.
     pub(super) fn width(&self) -> usize {
-        let halves = self.half_blocks();
-        let middles = self.middle_blocks();
-        let ends = halves.last().map(|block| block.end(1));
-        let ends = middles.last().map(|block| block.end(2)).or(ends);
-        ends.unwrap_or(self.alone.len())
+        let blocks = self.blocks();
+        blocks.last().map_or(self.alone.len(), Block::end)
     }
 
-    fn half_blocks(&self) -> Vec<Block> {
-        blocks(self.halves.len(), 1, self.alone.len())
+    /// The halves, then the sums of two series, as many together as are taken side by side.
+    fn blocks(&self) -> Vec<Block> {
+        let halves = self.halves.iter().map(|&value| History::plain(value));
+        let (left, right) = self.middles.iter().copied().unzip();
+        let mut blocks = Vec::new();
+        let mut place = self.alone.len();
+        for factors in [vec![halves.collect()], vec![left, right]] {
+            let count = factors.first().map_or(0, Vec::len);
+            for first in (0..count).step_by(SIDE_BY_SIDE) {
+                let own = SIDE_BY_SIDE.min(count - first);
+                let part = |all: &Vec<History>| all[first..][..own].to_vec();
+                let block = Block {
+                    first,
+                    place,
+                    width: own.next_power_of_two(),
+                    factors: factors.iter().map(part).collect(),
+                };
+                place = block.end();
+                blocks.push(block);
+            }
+        }
+        blocks
     }
-
-    fn middle_blocks(&self) -> Vec<Block> {
-        let halves = self.half_blocks();
-        let place = halves.last().map_or(self.alone.len(), |block| block.end(1));
-        blocks(self.middles.len(), 2, place)
-    }
-}
-
-/// This many sums with this many factors each, from a place of the row on.
-fn blocks(count: usize, factors: usize, mut place: usize) -> Vec<Block> {
-    let firsts = (0..count).step_by(SIDE_BY_SIDE);
-    let block = firsts.map(|first| {
-        let count = SIDE_BY_SIDE.min(count - first);
-        let block = Block {
-            first,
-            count,
-            place,
-            width: count.next_power_of_two(),
-        };
-        place = block.end(factors);
-        block
-    });
-    block.collect()
 }
 
 pub(super) fn local(prefix: &str, value: Value) -> Ident {

@@ -43,7 +43,7 @@ impl Writer<'_> {
             Recurrence::Product(a, b) => self.product(*a, *b),
             Recurrence::Square(a) => {
                 let (half, first, next) = (self.half(*a), self.first(*a), self.next(*a));
-                quote!(L::of(2.0) * (#half + #first * #next))
+                quote!(L::of(2.0) * L::mul_add(#first, #next, #half))
             }
             Recurrence::Quotient(a, b) => self.quotient(value, *a, *b),
             Recurrence::Root(a) => {
@@ -58,15 +58,15 @@ impl Writer<'_> {
                 quote!((#exponent * #rising - #known) * inverse * #inverse)
             }
             Recurrence::Integral { of, by, negative } => {
-                let rate = self.weighted_sum(*of, *by);
                 let sign = negative.then(|| quote!(-));
-                quote!(#sign inverse * #rate)
+                let integral = self.integral(*of, *by);
+                quote!(#sign #integral)
             }
             Recurrence::IntegralQuotient { of, by, negative } => {
                 let known = self.middle(History::weighted(value), History::plain(*by));
                 let (of, inverse) = (self.next(*of), self.inverse(*by));
                 let sign = negative.then(|| quote!(-));
-                quote!((#sign weight * #of - #known) * inverse * #inverse)
+                quote!((#sign #of - inverse * #known) * #inverse)
             }
             Recurrence::Angle { y, x, squared } => self.angle(value, [*y, *x, *squared]),
             Recurrence::Absolute(a) => {
@@ -79,14 +79,29 @@ impl Writer<'_> {
     /// `sum a_j b_(k-j)` for `j` in `0..=k`.
     fn product(&mut self, a: Value, b: Value) -> TokenStream {
         let degree = |value: Value| self.jet.degrees[value.index()];
-        let (a, b) = if degree(b) < degree(a) {
-            (b, a)
-        } else {
-            (a, b)
+        // The value that is known last comes into the sum last.
+        let (a, b) = match (degree(a), a.index()) > (degree(b), b.index()) {
+            true => (b, a),
+            false => (a, b),
         };
         let (first, next) = (self.first(a), self.next(b));
+        if degree(a) == Degree::Endless && self.is_early(a) && self.is_early(b) {
+            let middle = self.middle(History::plain(a), History::plain(b));
+            let (other_next, other_first) = (self.next(a), self.first(b));
+            return parenthesised(quote! {
+                L::mul_add(#first, #next, #other_next * #other_first) + #middle
+            });
+        }
         let rest = self.upper_sum(a, b);
-        parenthesised(joined([first, quote!(*), next, quote!(+), rest]))
+        quote!(L::mul_add(#first, #next, #rest))
+    }
+
+    /// Whether coefficient `k` of a value is known when order `k` begins, before the sums over lower orders are.
+    fn is_early(&self, value: Value) -> bool {
+        matches!(
+            self.jet.recurrences[value.index()],
+            Recurrence::Component(_) | Recurrence::Time
+        )
     }
 
     fn quotient(&mut self, value: Value, a: Option<Value>, b: Value) -> TokenStream {
@@ -118,7 +133,7 @@ impl Writer<'_> {
         }
         let middle = self.middle(rising, other);
         let (next, first) = (self.next(a), self.first(b));
-        quote!((#middle + #next * #first))
+        quote!(L::mul_add(#next, #first, #middle))
     }
 
     /// `a_k b_0`, all that is left of a sum where one of the two is constant.
@@ -146,7 +161,21 @@ impl Writer<'_> {
         }
         let middle = self.middle(rising, other);
         let (next, first) = (self.next(a), self.first(b));
-        quote!((#middle + weight * #next * #first))
+        quote!(L::mul_add(weight * #next, #first, #middle))
+    }
+
+    /// `sum j/k a_j b_(k-j)` for `j` in `1..=k`.
+    fn integral(&mut self, a: Value, b: Value) -> TokenStream {
+        if let Some(product) = self.product_with_constant(a, b) {
+            return product;
+        }
+        let (rising, other) = (History::weighted(a), History::plain(b));
+        if let Some(short) = self.short(rising, other) {
+            return quote!(inverse * #short);
+        }
+        let middle = self.middle(rising, other);
+        let (next, first) = (self.next(a), self.first(b));
+        quote!(L::mul_add(inverse, #middle, #next * #first))
     }
 
     /// `sum a_j b_(k-j)` for `j` in `1..k`.

@@ -14,6 +14,7 @@
 //! Derivatives* (2008), section 13.2, tables 13.1 and 13.2.
 
 pub mod degree;
+mod factors;
 pub mod interpret;
 
 use dalembert_expr::{Function as Elementary, Rational};
@@ -134,18 +135,16 @@ impl Jet {
         components: &[Degree],
         component: impl Fn(Input) -> Option<usize>,
     ) -> Self {
+        let degree_at = |input| component(input).map(|i| components[i]);
+        let function = factors::take_out(&together(functions), degree_at);
         let mut builder = Builder::new();
-        let outputs = functions.iter();
-        let outputs = outputs
-            .flat_map(|function| builder.replay(function))
-            .collect();
+        let outputs = builder.replay(&function);
         let (mut recurrences, mut degrees) = (Vec::new(), Vec::new());
         // Companions are added behind, and come up in turn.
         while recurrences.len() < builder.len() {
             let value = Value::new(recurrences.len());
             let op = builder.op(value).clone();
-            let at = |input| component(input).map(|i| components[i]);
-            let degree = degree::of(&op, &degrees, at);
+            let degree = degree::of(&op, &degrees, degree_at);
             recurrences.push(match degree {
                 Degree::AtMost(0) => Recurrence::Constant,
                 _ => recurrence(&mut builder, value, &op, &degrees, &component),
@@ -225,6 +224,15 @@ impl Jet {
         let varies = |i: &usize| self.needed[*i] && self.recurrences[*i] != Recurrence::Constant;
         (0..self.recurrences.len()).filter(varies).map(Value::new)
     }
+}
+
+/// Functions as one, whose results follow each other.
+fn together(functions: &[&Function]) -> Function {
+    let mut builder = Builder::new();
+    let outputs = functions.iter();
+    let outputs = outputs.flat_map(|function| builder.replay(function));
+    let outputs = outputs.collect();
+    builder.finish_whole(outputs)
 }
 
 /// The recurrence of an operation that is not constant. Asks for companions where it takes them.
