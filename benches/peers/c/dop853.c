@@ -221,7 +221,7 @@ static void measure(const char *work, int n, Run run, void (*init)(double *), do
 static void measure_ensemble(const char *work, Run run, void (*start)(double *, double), int repetitions) {
     static Course course;
     static double ends[TRAJECTORIES];
-    for (int q = 0; q < 3; q++) {
+    for (int q = 0; q < ENSEMBLE_COUNT; q++) {
         double times[PARTS];
         Course sum = {0};
         for (int part = 0; part < PARTS; part++) times[part] = INFINITY;

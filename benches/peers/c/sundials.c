@@ -149,7 +149,7 @@ static void measure(const Problem *problem, int is_erk, int repetitions, SUNCont
 static void measure_ensemble(const char *work, int is_erk, int repetitions, SUNContext context) {
     static double ends[TRAJECTORIES];
     const int is_reduced = !strcmp(work, "W5r");
-    for (int q = 0; q < 3; q++) {
+    for (int q = 0; q < ENSEMBLE_COUNT; q++) {
         double times[PARTS];
         Course sum = {0};
         for (int part = 0; part < PARTS; part++) times[part] = INFINITY;

@@ -5,8 +5,8 @@ import math
 import numba
 import numpy as np
 
-TOLERANCES = (1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
-ENSEMBLE_TOLERANCES = (1e-6, 1e-9, 1e-12)
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
+ENSEMBLE_TOLERANCES = (1e-3, 1e-4, 1e-6, 1e-9, 1e-12)
 TRAJECTORIES = 10_000
 SAMPLES = 10
 PART = 80  # Trajectories of the ensemble that are timed together: some repetition is undisturbed.

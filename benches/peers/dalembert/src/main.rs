@@ -26,8 +26,8 @@ pub struct Plan {
 }
 
 const PLAN: Plan = Plan {
-    tolerances: &[1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14],
-    ensemble_tolerances: &[1e-6, 1e-9, 1e-12],
+    tolerances: &[1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14],
+    ensemble_tolerances: &[1e-3, 1e-4, 1e-6, 1e-9, 1e-12],
     repetitions: 5,
 };
 
