@@ -53,7 +53,7 @@ fn model(declarations: &str) -> String {
         let body = format!("{common} {}", lagrangian(""));
         return declarations.replace("..", &body);
     }
-    let lagrangian = if declarations.contains("lagrangian =") {
+    let lagrangian = if declarations.contains("lagrangian =") || declarations.contains("field {") {
         String::new()
     } else {
         lagrangian(declarations)

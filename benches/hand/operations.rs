@@ -66,6 +66,7 @@ impl Generated {
         let form = match self.program.form {
             Form::Global => "q, p",
             Form::Reduced => "q, u",
+            Form::FirstOrder => "q",
         };
         Pair {
             name: format!("{} ({form}) {function}", self.name),

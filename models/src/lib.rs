@@ -8,6 +8,7 @@ pub mod ball_on_rotating_table;
 pub mod bouncing_ball;
 pub mod chain;
 pub mod chaplygin_sleigh;
+pub mod dimensionless_walker;
 pub mod double_pendulum;
 pub mod figures;
 pub mod harmonic_oscillator;
@@ -22,6 +23,7 @@ pub use ball_on_rotating_table::BallOnRotatingTable;
 pub use bouncing_ball::BouncingBall;
 pub use chain::{Chain2, Chain3, Chain4, Chain8, Chain16};
 pub use chaplygin_sleigh::ChaplyginSleigh;
+pub use dimensionless_walker::DimensionlessWalker;
 pub use double_pendulum::DoublePendulum;
 pub use harmonic_oscillator::HarmonicOscillator;
 pub use holonomic_bead_on_ellipses::HolonomicBeadOnEllipses;
@@ -41,6 +43,7 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         Chain8,
         Chain16,
         ChaplyginSleigh,
+        DimensionlessWalker,
         DoublePendulum,
         HarmonicOscillator,
         HolonomicBeadOnEllipses,

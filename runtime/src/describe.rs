@@ -85,6 +85,9 @@ pub struct Description {
     pub documentation: &'static str,
     /// The declaration, as given to the macro.
     pub source: &'static str,
+    /// Whether a `field` was declared in place of a Lagrangian: the state is the position, and there are no momenta and
+    /// no energy.
+    pub is_first_order: bool,
     /// The coordinates.
     pub coordinates: &'static [CoordinateInfo],
     /// The parameters; a family takes one entry per member.

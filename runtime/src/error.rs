@@ -34,6 +34,8 @@ pub enum Fault {
         /// Index of the surface.
         surface: usize,
     },
+    /// Momenta, an energy or an impulse were asked of a first-order system, which has none.
+    FirstOrder,
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
         /// Index of the offending component of the state, in its own order.
@@ -65,6 +67,12 @@ impl fmt::Display for Fault {
                 f,
                 "surface {surface}: no impulse within the constraints changes its gap rate here"
             ),
+            Self::FirstOrder => {
+                write!(
+                    f,
+                    "a first-order system has no momenta, no energy and no impulses"
+                )
+            }
             Self::NonFinite { component } => {
                 write!(f, "component {component} of the state is not finite")
             }

@@ -95,6 +95,8 @@ pub enum Outcome {
         /// Index of the surface.
         surface: usize,
     },
+    /// See [`Fault::FirstOrder`].
+    FirstOrder,
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
         /// Index of the component of the state; gaps are counted after its components.
@@ -142,6 +144,7 @@ impl Outcome {
             Self::SingularConstraint { .. } => "singular_constraint",
             Self::SingularFrame { .. } => "singular_frame",
             Self::SingularSurface { .. } => "singular_surface",
+            Self::FirstOrder => "first_order",
             Self::NonFinite { .. } => "non_finite",
             Self::StepUnderflow { .. } => "step_underflow",
             Self::NotConverged { .. } => "not_converged",
@@ -215,6 +218,7 @@ impl fmt::Display for Outcome {
             .fmt(f),
             Self::SingularFrame { quasi } => Fault::SingularFrame { quasi }.fmt(f),
             Self::SingularSurface { surface } => Fault::SingularSurface { surface }.fmt(f),
+            Self::FirstOrder => Fault::FirstOrder.fmt(f),
             Self::NonFinite { component } => Fault::NonFinite { component }.fmt(f),
             Self::StepUnderflow { t } => StepFailure::StepUnderflow { t }.fmt(f),
             Self::NotConverged { t } => StepFailure::NotConverged { t }.fmt(f),
@@ -241,6 +245,7 @@ impl From<Fault> for Outcome {
             },
             Fault::SingularFrame { quasi } => Self::SingularFrame { quasi },
             Fault::SingularSurface { surface } => Self::SingularSurface { surface },
+            Fault::FirstOrder => Self::FirstOrder,
             Fault::NonFinite { component } => Self::NonFinite { component },
         }
     }

@@ -13,7 +13,7 @@ use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Pool, S
 
 use super::frame::{choose_dependent, column};
 use super::linear::{Matrix, dot, solve, transpose};
-use crate::mechanics::Derivation;
+use crate::mechanics::{ConstraintForm, Derivation};
 use crate::model::Model;
 
 /// A number of a point.
@@ -63,22 +63,50 @@ impl Rows {
     }
 }
 
+/// A first-order system as one whose velocities are all prescribed: `dq^i - f^i dt = 0`, with `-(d_j f^i) qdot^j - d_t f^i`
+/// for curvatures.
+fn prescribed(model: &mut Model, rates: &[ExprId]) -> (Vec<Vec<ExprId>>, Vec<ExprId>) {
+    let mut motion: Vec<(SymbolId, ExprId)> = Vec::new();
+    for coordinate in &model.coordinates {
+        let qdot = model.pool.variable(coordinate.qdot);
+        motion.push((coordinate.q, qdot));
+    }
+    motion.push((model.time, model.pool.one()));
+    let (zero, one) = (model.pool.zero(), model.pool.one());
+    let rows = rates.iter().enumerate().map(|(i, &rate)| {
+        let mut row = vec![zero; rates.len()];
+        row[i] = one;
+        row.push(model.pool.neg(rate));
+        row
+    });
+    let rows = rows.collect();
+    let curvatures = rates.iter().map(|&rate| {
+        let along = model.pool.derivative_along(rate, &motion);
+        model.pool.neg(along)
+    });
+    (rows, curvatures.collect())
+}
+
 impl Dynamics {
     /// The equations of a model.
     pub fn of(model: &mut Model, derivation: &Derivation) -> Self {
+        let curvature = |own: &ConstraintForm| own.curvature;
         let mut forms = Vec::new();
         for constraint in &derivation.constraints {
             let mut row = constraint.form.clone();
             row.push(constraint.affine);
             forms.push(row);
         }
+        let mut curvatures: Vec<ExprId> = derivation.constraints.iter().map(curvature).collect();
+        if let Some(rates) = model.field.clone() {
+            (forms, curvatures) = prescribed(model, &rates);
+        }
         let field = &derivation.field;
         let mut motion = model.lagrangian.metric.clone();
         for ((row, force), drift) in motion.iter_mut().zip(&field.force).zip(&field.drift) {
             row.push(model.pool.sub(*force, *drift));
         }
-        let curvature = |own: &crate::mechanics::ConstraintForm| own.curvature;
-        motion.push(derivation.constraints.iter().map(curvature).collect());
+        motion.push(curvatures);
         Self {
             forms: Rows::new(&model.pool, forms),
             motion: Rows::new(&model.pool, motion),

@@ -22,7 +22,7 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
         None => parameters::with_defaults(context.model),
     };
     let (global_type, global) = match context.program.form {
-        Form::Global => (quote!(Self), quote!(*self)),
+        Form::Global | Form::FirstOrder => (quote!(Self), quote!(*self)),
         Form::Reduced => (quote!(#global_name), quote!(#global_name(*self))),
     };
     let access = emit_parameter_access(context);
@@ -57,13 +57,14 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
     let (type_name, name) = (&model.name, &model.snake_name);
     let documentation = doc::text(&model.documentation);
     let source = &model.source;
+    let is_first_order = model.is_first_order();
     let coordinates = emit_coordinate_infos(context);
     let parameters = emit_parameter_infos(context);
     let constraints = emit_constraint_infos(context);
     let forces = model.forces.iter().map(|force| &force.name.display);
     let surfaces = emit_surface_infos(context);
     let quasi = match context.program.form {
-        Form::Global => Vec::new(),
+        Form::Global | Form::FirstOrder => Vec::new(),
         Form::Reduced => context.quasi_names(),
     };
     let outputs = model.outputs.iter().map(|output| &output.name.display);
@@ -75,6 +76,7 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
             name: #name,
             documentation: #documentation,
             source: #source,
+            is_first_order: #is_first_order,
             coordinates: &[#coordinates],
             parameters: &[#parameters],
             constraints: &[#constraints],
@@ -338,6 +340,7 @@ fn emit_inspect(context: &Context<'_>) -> TokenStream {
     });
     let end = Literal::usize_unsuffixed(n);
     let p = Ident::new("p", Span::mixed_site());
+    let momenta = (!context.is_first_order()).then(|| quote!(report.vector("p", #p);));
     quote! {
         fn inspect(
             &self,
@@ -347,7 +350,7 @@ fn emit_inspect(context: &Context<'_>) -> TokenStream {
         ) -> ::core::result::Result<(), ::dalembert::Fault> {
             let (q, #p) = ::dalembert::StateVector::as_slice(state).split_at(#end);
             report.vector("q", q);
-            report.vector("p", #p);
+            #momenta
             #statements
             #(#reports)*
             #integral

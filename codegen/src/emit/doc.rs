@@ -42,6 +42,7 @@ pub(super) fn state_order(context: &Context<'_>) -> String {
     let motion = match context.program.form {
         Form::Global => names("p_"),
         Form::Reduced => context.quasi_names(),
+        Form::FirstOrder => Vec::new(),
     };
     [names(""), motion].concat().join(", ")
 }

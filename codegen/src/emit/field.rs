@@ -19,6 +19,7 @@ impl Context<'_> {
         match self.program.form {
             Form::Global => self.dimension(),
             Form::Reduced => self.names.quasi.len(),
+            Form::FirstOrder => 0,
         }
     }
 
@@ -60,6 +61,7 @@ impl Context<'_> {
             Form::Reduced => pattern(&self.names.quasi, |i| {
                 uses(function, |input| input == Input::Quasi(i))
             }),
+            Form::FirstOrder => (TokenStream::new(), false),
         };
         [coordinates, motion]
     }
@@ -153,6 +155,7 @@ pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
         (Form::Reduced, _) => {
             "qdot = X_0 + X u, G_D udot = X^T (f - gdot qdot - Adot - g (Xdot u + Xdot_0))"
         }
+        (Form::FirstOrder, _) => "qdot = f(t, q)",
         (_, Some(_)) => "qdot = g^-1 (p - A), pdot = dL/dq + F + lambda_a eta^a",
         (_, None) => "qdot = g^-1 (p - A), pdot = dL/dq + F",
     };
@@ -170,6 +173,7 @@ pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
         Form::Global => {
             "1 for a coordinate, `g_ii` for its momentum: what a unit of velocity makes of it."
         }
+        Form::FirstOrder => "1.",
         Form::Reduced => {
             "The norm of its form for a quasi-velocity; for a coordinate what unit quasi-velocities make of its velocity, 1 \
              where that depends on the configuration."
@@ -213,6 +217,7 @@ pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
     let (type_name, n) = (&context.names.type_name, context.dimension());
     let k = context.motion_dimension();
     let states = match &context.program.reduced {
+        _ if context.is_first_order() => super::first_order::emit_state_functions(),
         Some(functions) => super::reduced::emit_state_functions(context, functions),
         None => emit_momentum_functions(context),
     };
@@ -312,12 +317,14 @@ fn emit_derived_functions(context: &Context<'_>) -> TokenStream {
     let formula = match program.form {
         Form::Global => "qdot = g^-1 (p - A)",
         Form::Reduced => "qdot = X_0 + X u",
+        Form::FirstOrder => "qdot = f(t, q)",
     };
     let velocity_doc = doc::formula(formula, &program.velocity.cost);
     let (velocity_statements, qdot) = (velocity.statements, velocity.outputs);
-    let energy = context.state_body(&program.energy);
-    let energy_doc = doc::formula("H = g(qdot, qdot)/2 + V", &program.energy.cost);
-    let (energy_statements, value) = (energy.statements, &energy.outputs[0]);
+    let energy = match context.is_first_order() {
+        true => super::first_order::emit_energy(),
+        false => emit_energy(context),
+    };
     quote! {
         #velocity_doc
         #[inline]
@@ -330,10 +337,23 @@ fn emit_derived_functions(context: &Context<'_>) -> TokenStream {
             ::core::result::Result::Ok(::dalembert::__private::vector([#(#qdot),*]))
         }
 
-        #energy_doc
+        #energy
+    }
+}
+
+fn emit_energy(context: &Context<'_>) -> TokenStream {
+    let function = &context.program.energy;
+    let documentation = doc::formula("H = g(qdot, qdot)/2 + V", &function.cost);
+    let Body {
+        statements,
+        outputs,
+    } = context.state_body(function);
+    let value = &outputs[0];
+    quote! {
+        #documentation
         #[inline]
         fn energy(&self, t: f64, state: &Self::State) -> ::core::result::Result<f64, ::dalembert::Fault> {
-            #energy_statements
+            #statements
             ::core::result::Result::Ok(#value)
         }
     }

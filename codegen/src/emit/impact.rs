@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::function::{Body, emit_body};
+use super::function::{Body, emit_body, joined};
 use super::{Context, doc};
 use crate::model::Law;
 use crate::program::{Function, Impacting};
@@ -16,11 +16,19 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let s = context.model.surfaces.len();
     let gaps = emit_gaps(context, functions);
-    let responses = emit_responses(context, functions);
+    let responses = match context.is_first_order() {
+        true => TokenStream::new(),
+        false => emit_responses(context, functions),
+    };
     let conditions = emit_conditions(context, functions);
     let laws = emit_laws(context, functions);
-    let blows = emit_blows(context, functions);
-    let contacts = emit_contacts(context, functions);
+    let contacts = match context.is_first_order() {
+        true => super::first_order::emit_contacts(),
+        false => joined([
+            emit_blows(context, functions),
+            emit_contacts(context, functions),
+        ]),
+    };
     let resets = emit_resets(context, functions);
     let attributes = super::attributes();
     quote! {
@@ -31,7 +39,6 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
             #responses
             #conditions
             #laws
-            #blows
             #contacts
             #resets
         }

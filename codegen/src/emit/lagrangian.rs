@@ -11,6 +11,9 @@ use crate::program::Constrained;
 pub(super) fn emit_lagrangian(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let m = context.model.constraints.len();
+    if context.is_first_order() {
+        return super::first_order::emit_lagrangian(context);
+    }
     if context.is_wrapped() {
         return emit_delegated(context);
     }

@@ -6,6 +6,7 @@ mod constraint;
 mod describe;
 mod doc;
 mod field;
+mod first_order;
 mod function;
 mod impact;
 mod indices;
@@ -42,6 +43,10 @@ impl Context<'_> {
     /// Whether the type is that of the global form of a model or a scene whose own is reduced.
     fn is_wrapped(&self) -> bool {
         self.frame.is_some() && self.program.form == Form::Global
+    }
+
+    fn is_first_order(&self) -> bool {
+        self.program.form == Form::FirstOrder
     }
 }
 

@@ -35,7 +35,7 @@ pub(super) fn emit_global(
     noun: &str,
     visibility: &TokenStream,
 ) -> TokenStream {
-    if context.program.form == Form::Global {
+    if context.program.form != Form::Reduced {
         return TokenStream::new();
     }
     let own = Ident::new(type_name, Span::call_site());

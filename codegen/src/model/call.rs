@@ -207,6 +207,9 @@ impl<'s> Resolver<'s> {
         arguments: &[Scalar],
         scope: &mut Scope,
     ) -> Option<Value> {
+        if self.spec.field.is_some() {
+            return self.refuse_without_mechanics(name.at, &name.text);
+        }
         let is_momentum = name.text == "momentum";
         let help = match self.derived_names {
             DerivedNames::Nowhere if is_momentum => "it may be used in `outputs` and `claims`",

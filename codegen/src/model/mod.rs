@@ -60,6 +60,8 @@ pub struct Model {
     pub parameters: Vec<Parameter>,
     /// The Lagrangian and its parts.
     pub lagrangian: Lagrangian,
+    /// The rates of the coordinates of a first-order system, functions of `(t, q)`; its Lagrangian stands for none.
+    pub field: Option<Vec<ExprId>>,
     /// Constraints, families expanded.
     pub constraints: Vec<Constraint>,
     /// Named forces.
@@ -84,6 +86,13 @@ pub struct Model {
     pub derived: DerivedSymbols,
     /// Remarks a person should see: velocity-linear terms, integrable constraints, unused parameters.
     pub notes: Vec<String>,
+}
+
+impl Model {
+    /// Whether the rates of the coordinates were declared, in place of a Lagrangian.
+    pub fn is_first_order(&self) -> bool {
+        self.field.is_some()
+    }
 }
 
 /// A name as the user knows it, and as Rust and formulas write it.

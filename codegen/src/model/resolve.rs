@@ -400,6 +400,9 @@ impl<'s> Resolver<'s> {
     }
 
     fn energy(&mut self, at: Location) -> Option<Value> {
+        if self.spec.field.is_some() {
+            return self.refuse_without_mechanics(at, "energy");
+        }
         if self.derived_names == DerivedNames::Nowhere {
             return self.refuse(
                 at,

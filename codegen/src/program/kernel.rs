@@ -33,6 +33,7 @@ impl Form {
         match self {
             Self::Global => Arguments::Momenta,
             Self::Reduced => Arguments::Quasi,
+            Self::FirstOrder => Arguments::Position,
         }
     }
 
@@ -41,6 +42,7 @@ impl Form {
         match self {
             Self::Global => Arguments::Both,
             Self::Reduced => Arguments::Quasi,
+            Self::FirstOrder => Arguments::Position,
         }
     }
 }
@@ -261,14 +263,15 @@ impl<'a> Kernel<'a> {
             .collect()
     }
 
-    /// `qdot = g^{-1}(p - A)`, `X_0 + X u`, or the arguments themselves.
+    /// `qdot = g^{-1}(p - A)`, `X_0 + X u`, the declared rates, or the arguments themselves.
     pub fn velocity(&mut self) -> Vec<Value> {
         if let Some(qdot) = &self.qdot {
             return qdot.clone();
         }
-        let qdot = match self.arguments {
-            Arguments::Quasi => self.velocity_from_quasi(),
-            _ => {
+        let qdot = match (&self.model.field, self.arguments) {
+            (Some(rates), _) => self.values(rates),
+            (None, Arguments::Quasi) => self.velocity_from_quasi(),
+            (None, _) => {
                 let momenta = self.kinetic_momenta();
                 self.raise(&momenta)
             }

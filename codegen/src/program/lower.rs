@@ -10,7 +10,8 @@ use crate::model::Model;
 /// The programs of a model.
 #[derive(Debug)]
 pub struct Lowered {
-    /// In the form in which it is run: reduced to D where a frame was found or declared, else global.
+    /// In the form in which it is run: reduced to D where a frame was found or declared, first-order where a field was
+    /// declared, else global.
     pub main: Program,
     /// In global form, where `main` is reduced.
     pub global: Option<Program>,
@@ -30,6 +31,12 @@ impl Lowered {
 
 /// Lowers everything that a model declares, and the invariant volume that was found for it.
 pub fn lower(model: &Model, derivation: &Derivation, found: Option<&Volume>) -> Lowered {
+    if model.is_first_order() {
+        return Lowered {
+            main: lower_form(model, derivation, None, Form::FirstOrder),
+            global: None,
+        };
+    }
     let global = lower_form(model, derivation, found, Form::Global);
     match derivation.frame {
         Ok(_) => Lowered {
@@ -67,12 +74,13 @@ fn lower_form(
         energy: motion::energy(model, derivation, form),
         force: motion::force(model, derivation),
         reduced: match form {
-            Form::Global => None,
+            Form::Global | Form::FirstOrder => None,
             Form::Reduced => reduced::reduced(model, derivation),
         },
         geometry: match form {
             Form::Global => geometry::geometry(model, derivation, found),
             Form::Reduced => geometry::reduced_geometry(model, derivation),
+            Form::FirstOrder => geometry::first_order_geometry(model, derivation),
         },
         constrained: constrained::constrained(model, derivation, form),
         impacting,

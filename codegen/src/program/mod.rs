@@ -236,15 +236,18 @@ pub enum Form {
     Global,
     /// Positions and quasi-velocities, `(q, u)` on D: N + (N - M) numbers.
     Reduced,
+    /// Positions alone, of a first-order system: N numbers.
+    FirstOrder,
 }
 
-/// Every function of a model in one form. What is absent was not declared. `s` stands for the state: `(q, p)` or
-/// `(q, u)`.
+/// Every function of a model in one form. What is absent was not declared. `s` stands for the state: `(q, p)`,
+/// `(q, u)` or `q`. Of a first-order system functions of momenta and impulses are those of no mechanics, or empty, and are
+/// not emitted.
 #[derive(Debug)]
 pub struct Program {
     /// The form.
     pub form: Form,
-    /// `(t, s) -> (qdot, pdot)` or `(qdot, udot)`
+    /// `(t, s) -> (qdot, pdot)`, `(qdot, udot)` or `qdot`
     pub rate: Function,
     /// Taylor coefficients along the motion, of the rate and, where they are analytic, of the gaps.
     pub jet: jet::Jet,

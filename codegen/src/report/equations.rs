@@ -109,6 +109,20 @@ impl Writer<'_> {
         }
     }
 
+    /// The declared rates of a first-order system.
+    pub(super) fn rates(&mut self, rates: &[ExprId]) -> Section {
+        let mut items = Vec::new();
+        for (i, &rate) in rates.iter().enumerate() {
+            let [name, latex] = self.coordinate(i);
+            items.push(self.formula(format!("dot({name})"), format!("\\dot{{{latex}}}"), rate));
+        }
+        Section {
+            title: "Field",
+            equation: ["qdot = f(t, q)", r"\dot q = f(t, q)"],
+            items,
+        }
+    }
+
     pub(super) fn motion(&mut self) -> Section {
         let mut items = Vec::new();
         for i in 0..self.model.coordinates.len() {
@@ -226,6 +240,9 @@ impl Writer<'_> {
                 ));
             }
             items.extend(self.reset(s, &name, &subscript));
+        }
+        if self.model.is_first_order() {
+            return Section::plain("Impacts", items);
         }
         Section {
             title: "Impacts",

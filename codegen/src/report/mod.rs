@@ -155,15 +155,17 @@ fn report_of(compiled: Compiled, name: String) -> Report {
         model: &mut model,
         derivation: &derivation,
     };
-    let mut sections = vec![
-        writer.declared(),
-        writer.lagrangian(),
-        writer.motion(),
-        writer.constraints(),
-        writer.frame(),
-        writer.surfaces(),
-        writer.declared_outputs(),
-    ];
+    let mut sections = vec![writer.declared()];
+    match writer.model.field.clone() {
+        Some(rates) => sections.push(writer.rates(&rates)),
+        None => sections.extend([
+            writer.lagrangian(),
+            writer.motion(),
+            writer.constraints(),
+            writer.frame(),
+        ]),
+    }
+    sections.extend([writer.surfaces(), writer.declared_outputs()]);
     if writer.model.extras.volume {
         sections.push(writer.volume());
     }
@@ -193,10 +195,10 @@ fn scenes(model: &Model) -> Section {
 /// Operation counts of the emitted functions.
 fn work(model: &Model, program: &Program) -> Section {
     let line = |name: &str, cost: &Cost| Item::Words(format!("{name}: {cost}"));
-    let mut items = vec![
-        line("rate", &program.rate.cost),
-        line("energy", &program.energy.cost),
-    ];
+    let mut items = vec![line("rate", &program.rate.cost)];
+    if !model.is_first_order() {
+        items.push(line("energy", &program.energy.cost));
+    }
     if let Some(constrained) = &program.constrained {
         items.push(line("multipliers", &constrained.multipliers.cost));
         if let Some(back) = &constrained.return_to_constraints {

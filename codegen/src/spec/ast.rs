@@ -32,6 +32,8 @@ pub struct Spec {
     pub definitions: Vec<Definition>,
     /// `lagrangian = ..;`
     pub lagrangian: Option<Lagrangian>,
+    /// `field { .. }`
+    pub field: Option<Field>,
     /// `constraints { .. }`
     pub constraints: Vec<Equation>,
     /// `forces { .. }`
@@ -67,6 +69,7 @@ impl Spec {
             parameters: Vec::new(),
             definitions: Vec::new(),
             lagrangian: None,
+            field: None,
             constraints: Vec::new(),
             forces: Vec::new(),
             frame: Vec::new(),
@@ -272,6 +275,24 @@ pub struct Lagrangian {
     pub value: Scalar,
     /// The declaration.
     pub item: ItemId,
+}
+
+/// `field { dot(x) = e; .. }`
+#[derive(Debug)]
+pub struct Field {
+    /// The rates.
+    pub rates: Vec<Rate>,
+    /// The declaration.
+    pub item: ItemId,
+}
+
+/// `dot(theta[i in 1..=N]) = e;`
+#[derive(Debug)]
+pub struct Rate {
+    /// The coordinate with its index.
+    pub declared: Declared,
+    /// Its rate.
+    pub value: Scalar,
 }
 
 /// `name: left = right;`

@@ -3,12 +3,13 @@
 use dalembert_expr::Function;
 
 /// The section keywords of this version, as they may begin a declaration of a model.
-pub const SECTIONS: [&str; 14] = [
+pub const SECTIONS: [&str; 15] = [
     "const",
     "coordinates",
     "parameters",
     "let",
     "lagrangian",
+    "field",
     "constraints",
     "forces",
     "frame",
@@ -21,10 +22,9 @@ pub const SECTIONS: [&str; 14] = [
 ];
 
 /// Words of the language that this version does not implement, each with what can be written instead.
-pub const NOT_IMPLEMENTED: [(&str, &str); 6] = [
+pub const NOT_IMPLEMENTED: [(&str, &str); 5] = [
     ("modes", "declare one model for each mode"),
     ("transitions", "declare one model for each mode"),
-    ("field", "give a `lagrangian`"),
     ("inputs", "declare a parameter and set it between runs"),
     (
         "variations",

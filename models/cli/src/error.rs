@@ -254,6 +254,7 @@ pub const fn fault_kind(fault: &Fault) -> &'static str {
         Fault::SingularConstraint { .. } => "singular_constraint",
         Fault::SingularFrame { .. } => "singular_frame",
         Fault::SingularSurface { .. } => "singular_surface",
+        Fault::FirstOrder => "first_order",
         Fault::NonFinite { .. } => "non_finite",
         _ => "fault",
     }

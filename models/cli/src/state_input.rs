@@ -101,6 +101,9 @@ impl Beginning {
     /// Anything about the flags.
     pub fn of(model: &dyn AnyModel, args: &StateArgs) -> Result<Self, CliError> {
         let vector = |flag: &str, text: &str| numbers(model, flag, text);
+        if model.description().is_first_order {
+            return Self::of_first_order(model, args);
+        }
         let (q, rates) = match (&args.q, &args.qdot, &args.p) {
             (Some(q), Some(qdot), None) => {
                 let q = vector("--q", q)?;
@@ -112,6 +115,22 @@ impl Beginning {
             (None, ..) => return Err(CliError::Usage("--qdot and --p need --q")),
         };
         Ok(Self::Given { q, rates })
+    }
+
+    /// Of a first-order system: its rates follow from the positions.
+    fn of_first_order(model: &dyn AnyModel, args: &StateArgs) -> Result<Self, CliError> {
+        if args.qdot.is_some() || args.p.is_some() {
+            let text = "--qdot and --p: a first-order system has rates that follow from --q alone";
+            return Err(CliError::Usage(text));
+        }
+        match &args.q {
+            None => Self::named(model, &args.initial),
+            Some(q) => {
+                let q = numbers(model, "--q", q)?;
+                let rates = Rates::Velocities(vec![0.0; q.len()]);
+                Ok(Self::Given { q, rates })
+            }
+        }
     }
 
     /// The model's `initial` with some changes `name=value`.
@@ -202,9 +221,11 @@ fn apply_change(model: &dyn AnyModel, start: &mut Start, change: &str) -> Result
     let coordinates: Vec<String> = names::coordinates(&model.description())
         .map(str::to_owned)
         .collect();
-    let velocities = coordinates
-        .iter()
-        .map(|coordinate| names::velocity(coordinate));
+    let given = match model.description().is_first_order {
+        true => &[],
+        false => coordinates.as_slice(),
+    };
+    let velocities = given.iter().map(|coordinate| names::velocity(coordinate));
     let accepted: Vec<String> = coordinates.iter().cloned().chain(velocities).collect();
     let index = names::find(
         "--initial",

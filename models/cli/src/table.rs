@@ -1,4 +1,5 @@
-//! Tables as CSV; that of a run has samples and impacts: `t`, coordinates, velocities, `energy`, outputs, `event`.
+//! Tables as CSV; that of a run has samples and impacts: `t`, coordinates, velocities, `energy` (but of first-order systems),
+//! outputs, `event`.
 
 use std::io::{self, Write};
 
@@ -50,12 +51,22 @@ fn write_run(
     let mut impacts = impacts.iter().peekable();
     for (t, point) in samples {
         while let Some(impact) = impacts.next_if(|impact| impact.t <= *t) {
-            writer.write_record(row(impact.t, &impact.after, surface(description, impact)))?;
+            writer.write_record(row(
+                description,
+                impact.t,
+                &impact.after,
+                surface(description, impact),
+            ))?;
         }
-        writer.write_record(row(*t, point, ""))?;
+        writer.write_record(row(description, *t, point, ""))?;
     }
     for impact in impacts {
-        writer.write_record(row(impact.t, &impact.after, surface(description, impact)))?;
+        writer.write_record(row(
+            description,
+            impact.t,
+            &impact.after,
+            surface(description, impact),
+        ))?;
     }
     Ok(())
 }
@@ -64,18 +75,23 @@ fn header(description: &Description) -> Vec<String> {
     let mut header = vec!["t".to_owned()];
     header.extend(names::coordinates(description).map(str::to_owned));
     header.extend(names::coordinates(description).map(names::velocity));
-    header.push("energy".to_owned());
+    header.extend(energy(description).map(|()| "energy".to_owned()));
     header.extend(description.outputs.iter().map(|&output| output.to_owned()));
     header.push("event".to_owned());
     header
 }
 
-fn row(t: f64, point: &Point, event: &str) -> Vec<String> {
+/// Something where there is an energy.
+fn energy(description: &Description) -> Option<()> {
+    (!description.is_first_order).then_some(())
+}
+
+fn row(description: &Description, t: f64, point: &Point, event: &str) -> Vec<String> {
     let numbers = [t]
         .into_iter()
         .chain(point.q.iter().chain(&point.qdot).copied());
     let numbers = numbers
-        .chain([point.energy])
+        .chain(energy(description).map(|()| point.energy))
         .chain(point.outputs.iter().copied());
     // `Debug` writes the shortest decimal that reads back to the same number, with an exponent where that is short.
     numbers

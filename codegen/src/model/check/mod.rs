@@ -7,6 +7,7 @@ mod cancellation;
 mod claims;
 mod constraints;
 mod coordinates;
+mod field;
 mod frame;
 mod initial;
 mod integrable;
@@ -37,6 +38,7 @@ use names::Names;
 /// What was declared of the motion, resolved.
 struct Parts {
     lagrangian: Option<Lagrangian>,
+    field: Option<Vec<ExprId>>,
     constraints: Vec<Constraint>,
     forces: Vec<Force>,
     frame: Vec<QuasiForm>,
@@ -66,6 +68,7 @@ pub(crate) fn check_within(spec: &Spec, steps: u64) -> Result<Model, Diagnostics
     resolver.all_definitions();
     let mut parts = Parts {
         lagrangian: lagrangian(&mut resolver),
+        field: field::resolve(&mut resolver),
         constraints: constraints::resolve(&mut resolver),
         forces: forces(&mut resolver),
         frame: frame::resolve(&mut resolver),
@@ -94,11 +97,17 @@ pub(crate) fn check_within(spec: &Spec, steps: u64) -> Result<Model, Diagnostics
 
 /// The rules that concern several declarations.
 fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
-    if let (Some(lagrangian), Some(written)) = (&parts.lagrangian, &resolver.spec.lagrangian) {
+    if let (Some(lagrangian), Some(written), None) = (
+        &parts.lagrangian,
+        &resolver.spec.lagrangian,
+        &resolver.spec.field,
+    ) {
         natural::check_metric(resolver, &written.value, lagrangian);
         resolver.within_budget(written.value.at);
     }
     // Rules broken by some of the constraints are broken by all of them: those that were refused may be missing.
+    field::check_alone(resolver);
+    field::check_surfaces(resolver);
     constraints::check_independent(resolver, &parts.constraints);
     frame::check_coframe(resolver, &parts.frame, &parts.constraints);
     surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
@@ -114,6 +123,10 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
         symbols,
         ..
     } = resolver;
+    let extras = match parts.field {
+        Some(_) => Extras::default(),
+        None => Extras::ALL,
+    };
     Model {
         pool,
         name: spec.name.text.clone(),
@@ -125,6 +138,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
         coordinates: symbols.coordinates,
         parameters: symbols.parameters,
         lagrangian,
+        field: parts.field,
         constraints: parts.constraints,
         forces: parts.forces,
         frame: parts.frame,
@@ -133,7 +147,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
         view: parts.view,
         outputs: parts.outputs,
         scenes: parts.scenes,
-        extras: Extras::ALL,
+        extras,
         claims: parts.claims,
         derived: symbols.derived,
         notes,
@@ -158,6 +172,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
     // NOTE: every part is named, so that a declaration that is added is not forgotten here.
     let Parts {
         lagrangian: _,
+        field,
         constraints,
         forces,
         frame,
@@ -169,6 +184,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
         claims,
     } = parts;
     let mut used: Vec<ExprId> = vec![lagrangian.whole];
+    used.extend(field.iter().flatten());
     for constraint in constraints {
         used.extend(constraint.form.iter().chain([&constraint.affine]));
     }
@@ -211,11 +227,15 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
 
 fn lagrangian(resolver: &mut Resolver<'_>) -> Option<Lagrangian> {
     let spec = resolver.spec;
+    if let Some(field) = &spec.field {
+        let size = resolver.symbols.coordinates.len();
+        return Some(field::euclidean(&mut resolver.pool, size, field.item));
+    }
     let Some(declared) = &spec.lagrangian else {
         return resolver.refuse(
             spec.name.at,
             "a model needs a `lagrangian`",
-            "write `lagrangian = m/2*dot(x)^2;`",
+            "write `lagrangian = m/2*dot(x)^2;`, or `field { dot(x) = ..; }` for a first-order system",
         );
     };
     let scope = Scope::default();

@@ -12,6 +12,8 @@ pub(super) enum Section {
     Initial,
     /// In a law `reset`.
     Reset,
+    /// In `field`.
+    Field,
 }
 
 impl Resolver<'_> {
@@ -45,6 +47,7 @@ impl Resolver<'_> {
                 let help = match section {
                     Section::Initial => "parameters take their values from `parameters`",
                     Section::Reset => "an impact changes coordinates and velocities only",
+                    Section::Field => "parameters do not change along a motion",
                 };
                 self.no_target(name.at, text, help.to_owned())
             }
@@ -133,6 +136,8 @@ impl Section {
                 "initial values are given for coordinates, `dot(..)` of coordinates, and `until`"
             }
             (Self::Reset, "t") => "an impact takes no time",
+            (Self::Field, "t") => "time runs by itself",
+            (Self::Field, _) => "rates are given for coordinates: `dot(x) = ..;`",
             (Self::Reset, _) => {
                 "what is reset is a coordinate or its velocity: `x = ..;`, `dot(x) = ..;`"
             }

@@ -57,6 +57,14 @@ fn a_metric_that_is_not_positive_is_refused() {
 #[test]
 fn a_model_has_one_lagrangian_and_a_coordinate() {
     refused("«P» { coordinates { x; } }", "a model needs a `lagrangian`");
+    refused(
+        "P { coordinates { x; y; } «field» { dot(x) = 1; } }",
+        "the rate of `y` is not given",
+    );
+    refused(
+        "P { coordinates { x; } «field» { dot(x) = 1; } lagrangian = dot(x)^2; }",
+        "a model has a `lagrangian` or a `field`, not both",
+    );
     let errors = diagnostics("P { lagrangian = 0; }");
     assert!(errors.iter().any(|error| {
         error

@@ -86,6 +86,7 @@ fn along_ray(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
         }
         (Form::Global, _) => return None,
         (Form::Reduced, _) => on_d(kernel, surface.ray_on_d.as_deref()?),
+        (Form::FirstOrder, _) => return None,
     };
     let given = kernel.builder.neg(share);
     let taken = kernel.builder.mul(given, rate);
@@ -163,6 +164,7 @@ fn from_contact(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
     let ContactValues { scalars, direction } = match form {
         Form::Global => contact_values(kernel, s),
         Form::Reduced => reduced_contact_values(kernel, s),
+        Form::FirstOrder => return None,
     };
     let [gap_rate, constrained_rate, surface_rate, constrained, free] = scalars;
     let constant = constant_share(kernel, law);
@@ -222,6 +224,7 @@ impl Kernel<'_> {
     fn name_direction(&mut self, form: Form, direction: &[Value]) {
         match form {
             Form::Global => self.name_by_coordinate(direction, "direction_", ""),
+            Form::FirstOrder => {}
             Form::Reduced => {
                 let Some(frame) = self.frame() else { return };
                 for (quasi, &value) in frame.quasi.iter().zip(direction) {

@@ -99,6 +99,32 @@ pub fn geometry(model: &Model, derivation: &Derivation, found: Option<&Volume>) 
     }
 }
 
+/// `(t, q)` to the rates of a first-order system, and what surfaces do.
+pub fn first_order_geometry(model: &Model, derivation: &Derivation) -> Geometry {
+    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let mut results = Results {
+        groups: Vec::new(),
+        values: Vec::new(),
+    };
+    let rates = kernel.velocity();
+    results.vector("qdot", rates);
+    for s in 0..derivation.surfaces.len() {
+        let name = &model.surfaces[s].name.display;
+        let surface = &derivation.surfaces[s];
+        let [gap, rate] = [surface.gap, surface.gap_rate].map(|own| kernel.value(own));
+        results.scalar(format!("impacts.{name}.gap"), gap);
+        results.scalar(format!("impacts.{name}.gap_rate"), rate);
+        if let Some([q, qdot]) = impact::reset_values(&mut kernel, s) {
+            results.vector(format!("impacts.{name}.reset_q"), q);
+            results.vector(format!("impacts.{name}.reset_qdot"), qdot);
+        }
+    }
+    Geometry {
+        function: kernel.finish(results.values),
+        groups: results.groups,
+    }
+}
+
 /// `(t, q, u)` to what is derived on D.
 pub fn reduced_geometry(model: &Model, derivation: &Derivation) -> Geometry {
     let mut kernel = Kernel::new(model, derivation, Arguments::Quasi);

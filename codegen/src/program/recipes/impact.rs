@@ -35,10 +35,14 @@ pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<I
             .clone()
             .map(|s| conditions(model, derivation, s))
             .collect(),
-        contacts: surfaces
-            .clone()
-            .map(|s| contact(model, derivation, form, s))
-            .collect(),
+        contacts: match form {
+            Form::FirstOrder => Vec::new(),
+            _ => {
+                let contacts = surfaces.clone();
+                let contacts = contacts.map(|s| contact(model, derivation, form, s));
+                contacts.collect()
+            }
+        },
         blows: surfaces.map(|s| blow(model, derivation, form, s)).collect(),
         coefficients: model
             .surfaces
@@ -92,6 +96,9 @@ fn evaluate(
 /// `d^2h/dt^2 = dh(qddot) + curvature`, with `qddot = X w + Xdot u + Xdot_0`, or `g^{-1}(w - drift)`.
 fn accelerations(model: &Model, derivation: &Derivation, form: Form) -> Function {
     let mut kernel = Kernel::new(model, derivation, form.state());
+    if form == Form::FirstOrder {
+        return kernel.finish(Vec::new());
+    }
     let motion = motion_rates(&mut kernel, form);
     let acceleration = match form {
         Form::Global => {
@@ -103,7 +110,7 @@ fn accelerations(model: &Model, derivation: &Derivation, form: Form) -> Function
                 .collect();
             kernel.raise(&inertial)
         }
-        Form::Reduced => {
+        Form::Reduced | Form::FirstOrder => {
             let steady = kernel.frame_acceleration();
             let changing = kernel.along_frame(&motion);
             let pairs = steady.iter().zip(changing);
@@ -126,10 +133,13 @@ fn accelerations(model: &Model, derivation: &Derivation, form: Form) -> Function
 /// `dh(X w)`, or `dh(g^{-1} w)`
 fn responses(model: &Model, derivation: &Derivation, form: Form) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    if form == Form::FirstOrder {
+        return kernel.finish(Vec::new());
+    }
     let motion = motion_rates(&mut kernel, form);
     let velocity = match form {
         Form::Global => kernel.raise(&motion),
-        Form::Reduced => kernel.along_frame(&motion),
+        Form::Reduced | Form::FirstOrder => kernel.along_frame(&motion),
     };
     let outputs = derivation
         .surfaces
@@ -146,6 +156,7 @@ fn motion_rates(kernel: &mut Kernel<'_>, form: Form) -> Vec<Value> {
     let count = match form {
         Form::Global => kernel.dimension(),
         Form::Reduced => kernel.quasi_velocities(),
+        Form::FirstOrder => 0,
     };
     (0..count)
         .map(|i| kernel.builder.input(Input::MotionRate(i)))
@@ -161,7 +172,7 @@ fn contact(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Func
     let mut kernel = Kernel::new(model, derivation, form.state());
     let contact = match form {
         Form::Global => contact_values(&mut kernel, s),
-        Form::Reduced => reduced_contact_values(&mut kernel, s),
+        Form::Reduced | Form::FirstOrder => reduced_contact_values(&mut kernel, s),
     };
     let [_, _, _, squared, _] = contact.scalars;
     kernel.builder.guard(Guard::Surface {

@@ -7,12 +7,13 @@ use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::{Form, Function, Op, Value};
 
-/// `(t, q, p) -> (qdot, pdot)`: `qdot = g^{-1}(p - A)`, `pdot = f + lambda_a eta^a`; or `(t, q, u) -> (qdot, udot)`.
+/// `(t, q, p) -> (qdot, pdot)`: `qdot = g^{-1}(p - A)`, `pdot = f + lambda_a eta^a`; or `(t, q, u) -> (qdot, udot)`; or
+/// `(t, q) -> qdot`.
 pub fn rate(model: &Model, derivation: &Derivation, form: Form) -> Function {
     let kernel = || Kernel::new(model, derivation, form.state()).without_multipliers();
     let solved = rate_of(kernel(), form);
     match form {
-        Form::Global => solved,
+        Form::Global | Form::FirstOrder => solved,
         Form::Reduced => shorter(solved, rate_of(kernel().written_out(), form)),
     }
 }
@@ -22,6 +23,7 @@ fn rate_of(mut kernel: Kernel<'_>, form: Form) -> Function {
     outputs.extend(match form {
         Form::Global => momentum_rate(&mut kernel),
         Form::Reduced => kernel.quasi_rate(),
+        Form::FirstOrder => Vec::new(),
     });
     kernel.finish(outputs)
 }
@@ -56,6 +58,7 @@ pub fn scale(model: &Model, derivation: &Derivation, form: Form) -> Function {
             let norms = frame.quasi.iter().map(|quasi| quasi.norm);
             frame.position_units.iter().copied().chain(norms).collect()
         }
+        (Form::FirstOrder, _) => vec![model.pool.one(); n],
         _ => {
             let one = model.pool.one();
             let diagonal = (0..n).map(|i| model.lagrangian.metric[i][i]);
@@ -74,7 +77,7 @@ pub fn velocity(model: &Model, derivation: &Derivation, form: Form) -> Function 
     };
     let solved = of(Kernel::new(model, derivation, form.state()));
     match form {
-        Form::Global => solved,
+        Form::Global | Form::FirstOrder => solved,
         Form::Reduced => {
             let kernel = Kernel::new(model, derivation, form.state());
             shorter(solved, of(kernel.written_out()))
@@ -117,6 +120,7 @@ pub fn energy(model: &Model, derivation: &Derivation, form: Form) -> Function {
             let called = velocity(model, derivation, form).cost.total();
             (called, [short, None])
         }
+        Form::FirstOrder => (0, [None, None]),
         Form::Reduced => (0, [own(|kernel| kernel.known_doubled_kinetic()), own(on_d)]),
     };
     let fewest = others

@@ -4,6 +4,7 @@ mod claims;
 mod constraints;
 mod coordinates;
 mod definitions;
+mod field;
 mod header;
 mod impacts;
 mod initial;
@@ -11,6 +12,7 @@ mod parameters;
 mod reset;
 mod scenes;
 mod source;
+mod target;
 mod view;
 
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
@@ -153,6 +155,10 @@ fn declare(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         "lagrangian" => lagrangian(&word, cursor, spec),
         "coordinates" => coordinates::section(&word, cursor, spec),
         "parameters" => section(&word, cursor, spec, parameters::parameter),
+        "field" => {
+            field::begin(&word, spec);
+            section(&word, cursor, spec, field::rate)
+        }
         "constraints" => section(&word, cursor, spec, constraints::constraint),
         "forces" => section(&word, cursor, spec, constraints::force),
         "frame" => section(&word, cursor, spec, constraints::quasi_velocity),

@@ -4,6 +4,7 @@ use proc_macro2::{Delimiter, TokenTree};
 
 use super::super::ast::{Assignment, AssignmentTarget, Declared};
 use super::super::cursor::{Cursor, Read, tokens_of};
+use super::target::{equals, inside_dot, is_call};
 use super::{entry_length, index};
 
 const FORM: &str = "reset { x = ..; dot(x) = ..; }";
@@ -36,13 +37,7 @@ pub(super) fn assignments(cursor: &mut Cursor<'_>) -> Read<Vec<Assignment>> {
 
 fn assignment(cursor: &mut Cursor<'_>) -> Read<Assignment> {
     let (target, declared) = target(cursor)?;
-    if cursor.is_operator(".") {
-        return Err(cursor.point());
-    }
-    if cursor.is_operator("==") {
-        return Err(cursor.refuse_operator("==", "expected `=`, found `==`", "write `x = ..;`"));
-    }
-    cursor.expect_operator("=", "x = ..;")?;
+    equals(cursor, "x = ..;")?;
     let value = cursor.scalar()?;
     Ok(Assignment {
         target,
@@ -53,7 +48,7 @@ fn assignment(cursor: &mut Cursor<'_>) -> Read<Assignment> {
 
 fn target(cursor: &mut Cursor<'_>) -> Read<(AssignmentTarget, Declared)> {
     const HELP: &str = "what is reset is a coordinate or its velocity: `x = ..;`, `dot(x) = ..;`";
-    let is_call = matches!(cursor.peek_second(), Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis);
+    let is_call = is_call(cursor);
     if !matches!(cursor.peek(), Some(TokenTree::Ident(_))) {
         return Err(cursor.unexpected("expected a coordinate or `dot(..)` of one", HELP));
     }
@@ -66,15 +61,6 @@ fn target(cursor: &mut Cursor<'_>) -> Read<(AssignmentTarget, Declared)> {
         let text = format!("`{}(..)` cannot be reset", name.text);
         return Err(cursor.refuse(name.at, text, HELP));
     }
-    let Some(group) = cursor.eat_group(Delimiter::Parenthesis) else {
-        return Err(cursor.unexpected("expected a coordinate", HELP));
-    };
-    let tokens = tokens_of(group.stream());
-    let mut inside = cursor.inside(&tokens, group);
-    let name = inside.name("a coordinate")?;
-    let index = index(&mut inside)?;
-    if !inside.is_at_end() {
-        return Err(inside.unexpected("expected one coordinate", "write `dot(x) = ..;`"));
-    }
-    Ok((AssignmentTarget::Velocity, Declared { name, index }))
+    let declared = inside_dot(cursor, "dot(x) = ..;")?;
+    Ok((AssignmentTarget::Velocity, declared))
 }

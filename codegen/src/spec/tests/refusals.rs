@@ -131,7 +131,7 @@ fn declarations_are_known() {
 
 #[test]
 fn declarations_to_come_are_refused_by_name() {
-    for word in ["modes", "transitions", "field", "inputs"] {
+    for word in ["modes", "transitions", "inputs"] {
         let message = format!("`{word}` is not implemented in this version\nhelp: ");
         refused_in(&format!("«{word}» {{ a: b; }}"), &message);
     }
@@ -139,6 +139,13 @@ fn declarations_to_come_are_refused_by_name() {
         "impacts { w: x >= 0 => elastic, «instantaneous» { }; }",
         "`instantaneous` is not implemented",
     );
+}
+
+#[test]
+fn rates_are_written_with_dot() {
+    refused_in("field { «x» = 1; }", "`x` is not a rate");
+    refused_in("field { dot(x «+» y) = 1; }", "expected one coordinate");
+    refused_in("field { dot(x) «==» 1; }", "expected `=`, found `==`");
 }
 
 #[test]

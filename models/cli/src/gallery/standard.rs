@@ -20,8 +20,10 @@ pub fn figure(description: &Description) -> Figure {
         let (title, velocity) = (format!("Phase portrait of {first}"), names::velocity(first));
         add("phase", &title, format!("--axes {first},{velocity} "));
     }
-    let title = "Change of the energy, as a share of it";
-    add("energy", title, "--axes t,energy_error ".to_owned());
+    if !description.is_first_order {
+        let title = "Change of the energy, as a share of it";
+        add("energy", title, "--axes t,energy_error ".to_owned());
+    }
 
     // Three stand beside each other on a page, or four that are smaller.
     let width = if flags.len() > 3 { 400 } else { 480 };

@@ -106,8 +106,10 @@ fn everything(description: &Description) -> Vec<Quantity> {
     let mut everything = vec![Quantity::Time];
     everything.extend((0..n).map(Quantity::Position));
     everything.extend((0..n).map(Quantity::Velocity));
-    everything.extend((0..n).map(Quantity::Momentum));
-    everything.extend([Quantity::Energy, Quantity::EnergyError]);
+    if !description.is_first_order {
+        everything.extend((0..n).map(Quantity::Momentum));
+        everything.extend([Quantity::Energy, Quantity::EnergyError]);
+    }
     everything.extend((0..outputs).map(Quantity::Output));
     everything
 }

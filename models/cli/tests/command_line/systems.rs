@@ -193,6 +193,7 @@ const NOTHING: Description = Description {
     name: "",
     documentation: "",
     source: "",
+    is_first_order: false,
     coordinates: &[],
     parameters: &[],
     constraints: &[],

@@ -37,11 +37,13 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         writeln!(output, "              and {} more", tally.strayed - told)?;
     }
     writeln!(output, "  impacts     {}", impacts(finished))?;
-    writeln!(
-        output,
-        "  energy      largest change {:.1e}, relative {:.1e}",
-        tally.energy_change, tally.relative_change
-    )?;
+    if !finished.model.description().is_first_order {
+        writeln!(
+            output,
+            "  energy      largest change {:.1e}, relative {:.1e}",
+            tally.energy_change, tally.relative_change
+        )?;
+    }
     writeln!(
         output,
         "  integrator  {}, {} form, tol {:e}",

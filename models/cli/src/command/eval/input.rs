@@ -1,5 +1,5 @@
 //! Reads states: a JSON array of `{"q": [..], "qdot": [..], "t": 0}`, with `p` for `qdot` if one likes, and
-//! numbers as numbers or as decimal strings.
+//! numbers as numbers or as decimal strings. A first-order system takes `q` alone.
 
 use std::fs;
 use std::io::Read;
@@ -72,9 +72,12 @@ fn parse(description: &Description, place: &str, state: &Value) -> Result<Given,
             "expected an object with \"q\" and \"qdot\" or \"p\"",
         ));
     };
-    let accepted = ["q", "qdot", "p", "t"];
+    let accepted: &[&str] = match description.is_first_order {
+        true => &["q", "t"],
+        false => &["q", "qdot", "p", "t"],
+    };
     for key in state.keys() {
-        names::find(place, "key", key, accepted.into_iter())?;
+        names::find(place, "key", key, accepted.iter().copied())?;
     }
     let vector = |key: &str| {
         state
@@ -87,6 +90,9 @@ fn parse(description: &Description, place: &str, state: &Value) -> Result<Given,
     let rates = match (vector("qdot"), vector("p")) {
         (Some(qdot), None) => Rates::Velocities(qdot?),
         (None, Some(p)) => Rates::Momenta(p?),
+        (None, None) if description.is_first_order => {
+            Rates::Velocities(vec![0.0; description.coordinates.len()])
+        }
         _ => return Err(invalid(place, "expected one of \"qdot\" and \"p\"")),
     };
     Ok(Given {

@@ -16,7 +16,9 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     writeln!(output, "{}", title(finished))?;
     writeln!(output, "  outcome     {}", outcome(ending))?;
     writeln!(output, "  impacts     {}", impacts(finished))?;
-    writeln!(output, "  energy      {}", energy(ending))?;
+    if !finished.model.description().is_first_order {
+        writeln!(output, "  energy      {}", energy(ending))?;
+    }
     writeln!(output, "  integrator  {}", integrator(ending, settings))?;
     if let Some(verified) = &finished.verified {
         writeln!(output, "  error       {}", error(verified))?;

@@ -1,0 +1,121 @@
+//! The dimensionless walker against orbits and transients computed with 30 digits.
+
+use core::ops::ControlFlow;
+
+use dalembert::{
+    Dop853, Event, Observer, Outcome, Scene, Simulation, Stepper, System, Taylor, Tolerance,
+    VectorField,
+};
+use dalembert_models::DimensionlessWalker;
+use dalembert_tests::reference::{number, numbers, read};
+use serde_json::Value;
+
+type State = <DimensionlessWalker as VectorField>::State;
+
+/// Times of steps with the states before and after.
+#[derive(Default)]
+struct Steps(Vec<(f64, State, State)>);
+
+impl Observer<DimensionlessWalker> for Steps {
+    fn event(&mut self, event: &Event<State>) -> ControlFlow<()> {
+        self.0.push((event.t, event.before, event.after));
+        ControlFlow::Continue(())
+    }
+}
+
+fn walk<Step: Stepper<DimensionlessWalker>>(
+    walker: &DimensionlessWalker,
+    stepper: Step,
+    [xi, eta]: [f64; 2],
+    until: f64,
+) -> Steps {
+    let mut steps = Steps::default();
+    let start = [walker.delta, xi, eta].into();
+    let start = walker.state(0.0, &start, &State::zeros()).expect("a state");
+    let mut simulation = Simulation::new(walker, stepper, walker.effects());
+    let run = simulation
+        .run(0.0, start, until, &mut steps)
+        .expect("a start");
+    assert_eq!(run.outcome, Outcome::Done);
+    steps
+}
+
+fn walker(set: &Value) -> DimensionlessWalker {
+    let parameter = |name: &str| number(&set[name]);
+    DimensionlessWalker {
+        mu: parameter("mu"),
+        eps: parameter("eps"),
+        alpha: parameter("alpha"),
+        delta: parameter("delta"),
+    }
+}
+
+fn pair(value: &Value) -> [f64; 2] {
+    let values = numbers(value);
+    [values[0], values[1]]
+}
+
+/// The largest difference from the stored steps of a walk.
+fn error(steps: &Steps, stored: &[Value]) -> f64 {
+    assert_eq!(steps.0.len(), stored.len());
+    let mut largest = 0.0_f64;
+    for ((t, before, after), stored) in steps.0.iter().zip(stored) {
+        let mut compare = |own: f64, stored: f64| largest = largest.max((own - stored).abs());
+        compare(*t, number(&stored["t"]));
+        for (own, stored) in before.as_slice().iter().zip(numbers(&stored["before"])) {
+            compare(*own, stored);
+        }
+        for (own, stored) in after.as_slice()[1..]
+            .iter()
+            .zip(numbers(&stored["after(xi,eta)"]))
+        {
+            compare(*own, stored);
+        }
+    }
+    largest
+}
+
+#[test]
+fn transients_are_the_stored_ones() {
+    let file = read("walker_orbits");
+    let sets = file["sets"].as_array().expect("sets");
+    assert!(!sets.is_empty());
+    let tolerance = Tolerance::new(1e-13).expect("a tolerance");
+    for set in sets {
+        let (walker, transient) = (walker(set), &set["transient"]);
+        let start = pair(&transient["initial(xi,eta)"]);
+        let stored = transient["steps"].as_array().expect("steps");
+        let until = number(&stored[stored.len() - 1]["t"]) + 0.1;
+        let of_taylor = error(&walk(&walker, Taylor::new(tolerance), start, until), stored);
+        let of_dop853 = error(&walk(&walker, Dop853::new(tolerance), start, until), stored);
+        assert!(
+            of_taylor <= 1e-11 && of_dop853 <= 1e-11,
+            "{of_taylor:e}, {of_dop853:e}"
+        );
+    }
+}
+
+#[test]
+fn the_fixed_point_comes_back_after_a_period() {
+    let file = read("walker_orbits");
+    let tolerance = Tolerance::new(1e-13).expect("a tolerance");
+    for set in file["sets"].as_array().expect("sets") {
+        let (walker, period) = (walker(set), number(&set["period"]));
+        let fixed = pair(&set["fixed_point_post_impact(xi,eta)"]);
+        let steps = walk(&walker, Taylor::new(tolerance), fixed, 1.5 * period);
+        let [(t, before, after)] = steps.0.as_slice() else {
+            panic!("{} steps", steps.0.len());
+        };
+        assert!((t - period).abs() <= 1e-11, "{t} for {period}");
+        for (own, stored) in before
+            .as_slice()
+            .iter()
+            .zip(numbers(&set["state_before_impact"]))
+        {
+            assert!((own - stored).abs() <= 1e-11, "{own} for {stored}");
+        }
+        for (own, stored) in after.as_slice()[1..].iter().zip(fixed) {
+            assert!((own - stored).abs() <= 1e-11, "{own} for {stored}");
+        }
+    }
+}
