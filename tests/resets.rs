@@ -7,6 +7,7 @@ use dalembert::{
     Tolerance,
 };
 use dalembert_cli::{Exit, Streams, models};
+use dalembert_codegen::claims::Verdict;
 use dalembert_codegen::program::{Program, interpret::interpret};
 use dalembert_codegen::{compile, try_expand};
 use dalembert_tests::claim::Declaration;
@@ -375,4 +376,30 @@ fn derive_prints_the_map() {
         output.contains("y+[elsewhere] = 1 + y") || output.contains("y+[elsewhere] = y + 1"),
         "{output}"
     );
+}
+
+/// On a surface a coordinate follows from others, and with it what functions make of it.
+#[test]
+fn what_a_surface_ties_is_not_taken_for_independent() {
+    let verdict = |surface: &str, reset: &str, claim: &str| {
+        let source = format!(
+            "P {{
+                coordinates {{ x; y; }}
+                parameters {{ w > 0 = 1/3; }}
+                lagrangian = (dot(x)^2 + dot(y)^2)/2;
+                impacts {{ wall: {surface} => reset {{ {reset}; }}; }}
+            }}"
+        );
+        Declaration::of(&source).verdict(claim).verdict
+    };
+    let claim = "conserved under wall: y*cos(x)";
+    let linear = |reset| verdict("x >= -w", reset, claim);
+    assert!(matches!(linear("x = x + 2*w"), Verdict::Proved(_)));
+    assert!(matches!(linear("x = x + w"), Verdict::Refuted(_)));
+    // Of `x^2 = w^2` no coordinate is solved for in one way; real points see no change.
+    let quadratic = |reset| verdict("x^2 >= w^2", reset, claim);
+    let open = quadratic("x = 2*x; y = y*cos(w)/cos(2*w)");
+    assert!(matches!(open, Verdict::Undecided(_)), "{open:?}");
+    assert!(matches!(quadratic("x = 2*x"), Verdict::Refuted(_)));
+    assert!(matches!(quadratic("x = -x"), Verdict::Proved(_)));
 }

@@ -18,6 +18,7 @@ pub mod rolling_ball_euler;
 pub mod rolling_disk;
 pub mod stability;
 pub mod two_wheels_rod;
+pub mod walker_foot_slip;
 
 pub use ball_on_rotating_table::BallOnRotatingTable;
 pub use bouncing_ball::BouncingBall;
@@ -31,6 +32,7 @@ pub use point_billiard::PointBilliard;
 pub use rolling_ball_euler::RollingBallEuler;
 pub use rolling_disk::RollingDisk;
 pub use two_wheels_rod::TwoWheelsRod;
+pub use walker_foot_slip::WalkerFootSlip;
 
 /// Every shipped model, for the command line.
 pub fn all() -> Vec<dalembert_cli::Entry> {
@@ -51,6 +53,7 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         RollingBallEuler,
         RollingDisk,
         TwoWheelsRod,
+        WalkerFootSlip,
     ]
 }
 

@@ -71,11 +71,12 @@ pub fn visit_all(visitor: &mut impl Visitor) {
         dalembert_models:
         BallOnRotatingTable BouncingBall Chain2 Chain3 Chain4 Chain8 Chain16 ChaplyginSleigh DoublePendulum
         HarmonicOscillator HolonomicBeadOnEllipses PointBilliard RollingBallEuler RollingDisk TwoWheelsRod
+        WalkerFootSlip
     }
     visit! {
         systems:
         AffineSleigh TableWall MagneticDisk DampedSleigh IntegrableBead MovingWallDisk Rheonomic
-        WalkerWithMultiplier WalkerFootSlip FallingDisk MixedDisk NonholonomicParticle HelicalCircle
+        WalkerWithMultiplier FallingDisk MixedDisk NonholonomicParticle HelicalCircle
         CurvedDual RouthSphere OnePole
     }
 }

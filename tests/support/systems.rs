@@ -184,20 +184,6 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Walker with the constraint eliminated.
-    pub WalkerFootSlip {
-        coordinates { x_c; theta; }
-        parameters { m > 0 = 1; I > 0 = 1/4; lf > 0 = 1/2; b >= 0 = 1; g = 1; alpha = 1/10; delta > 0 = 3/10; }
-        lagrangian = m/2*(lf^2*dot(theta)^2*sin(theta)^2 + dot(x_c)^2) + I/2*dot(theta)^2
-            - g*m*(lf*cos(alpha)*cos(theta) - x_c*sin(alpha));
-        forces {
-            slip: -b*(dot(x_c) + lf*dot(theta)*cos(theta))*d(x_c)
-                - b*lf*cos(theta)*(dot(x_c) + lf*dot(theta)*cos(theta))*d(theta);
-        }
-    }
-}
-
-dalembert::model! {
     /// Rolling disk that may fall, in Euler angles.
     pub FallingDisk {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
@@ -260,7 +246,6 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         MovingWallDisk,
         Rheonomic,
         WalkerWithMultiplier,
-        WalkerFootSlip,
         FallingDisk,
         MixedDisk,
         NonholonomicParticle,

@@ -104,6 +104,10 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
         roots
     }
 
+    fn hides_relations(&self, model: &Model) -> bool {
+        self.place != Place::Anywhere && self.wall.hides(&model.pool, &self.roots())
+    }
+
     fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
         self.wall.settle(model, point, self.place)?;
         self.dynamics.motion(&model.pool, point, None).map(|_| ())

@@ -23,6 +23,13 @@ pub(super) trait Vanishing {
     /// Everything that is evaluated.
     fn roots(&self) -> Vec<ExprId>;
 
+    /// Whether the states relate what residues take for independent, so that a sum may vanish at all of them though its
+    /// residues do not.
+    fn hides_relations(&self, model: &Model) -> bool {
+        let _ = model;
+        false
+    }
+
     /// Moves a random point to a state; `None` if that fails there.
     fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()>;
 
@@ -160,7 +167,7 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
     }
     primes.sort_unstable();
     primes.dedup();
-    let is_exact = profile.is_exact();
+    let is_exact = profile.is_exact() && !question.hides_relations(model);
     let threshold = match (is_exact, vanishes) {
         (true, Some(true)) => f64::INFINITY,
         (true, Some(false)) => VISIBLE,

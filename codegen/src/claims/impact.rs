@@ -23,6 +23,17 @@ pub(super) fn check_conserved_under(
 ) -> Verdict {
     let name = model.surfaces[surface].name.display.clone();
     let wall = Wall::of(model, derivation, surface);
+    let after = model.surfaces[surface].reset.clone().map(|reset| {
+        let replacements = reset.replacements(&model.coordinates);
+        model.pool.substitute(value, &replacements)
+    });
+    // On the surface, where one of its coordinates follows from the others.
+    let solution = wall.solution();
+    let mut on_surface = |id| match solution {
+        Some(solution) => model.pool.substitute(id, &[solution]),
+        None => id,
+    };
+    let (value, after) = (on_surface(value), after.map(on_surface));
     let jump = Jump {
         slopes: model
             .coordinates
@@ -34,10 +45,7 @@ pub(super) fn check_conserved_under(
             .iter()
             .map(|own| (own.q, model.pool.diff(value, own.q)))
             .collect(),
-        after: model.surfaces[surface].reset.clone().map(|reset| {
-            let replacements = reset.replacements(&model.coordinates);
-            model.pool.substitute(value, &replacements)
-        }),
+        after,
         value,
         written,
     };

@@ -16,8 +16,8 @@
 //! `elastic` and `restitution e` where constraints are affine: there it is e.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Pool, Rational, RealPoint,
-    SymbolId, Verdict as Zero,
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Node, Pool, Rational,
+    RealPoint, SymbolId, Verdict as Zero,
 };
 
 use super::conserved::with_velocities;
@@ -230,6 +230,26 @@ impl Wall {
         counts.then_some((sample, point))
     }
 
+    /// A coordinate that follows from the others on the surface, and how.
+    pub(super) fn solution(&self) -> Option<(SymbolId, ExprId)> {
+        let solved = |own: &Polynomial| Some((own.symbol, own.solution?));
+        self.polynomials.iter().find_map(solved)
+    }
+
+    /// Whether a coordinate that is solved for stands in the argument of a function: residues of the function are drawn
+    /// for an argument that is not on the surface. What vanishes for any argument does so there too; of what does not,
+    /// they say nothing.
+    pub(super) fn hides(&self, pool: &Pool, roots: &[ExprId]) -> bool {
+        let solved: Vec<SymbolId> = self.polynomials.iter().map(|own| own.symbol).collect();
+        let ties = |id: ExprId| pool.depends_on_any(id, &solved);
+        let nodes = pool.reachable(roots).into_iter();
+        nodes.map(|id| pool.node(id)).any(|node| match node {
+            Node::Call(_, argument) => ties(*argument),
+            Node::Atan2(y, x) => ties(*y) || ties(*x),
+            _ => false,
+        })
+    }
+
     /// Whether there is a coordinate in which every component of the surface is reached.
     pub(super) fn is_solved(&self) -> bool {
         !self.polynomials.is_empty()
@@ -306,6 +326,8 @@ impl Wall {
 struct Polynomial {
     symbol: SymbolId,
     coefficients: [ExprId; 3],
+    /// `-c/b`, where a is 0.
+    solution: Option<ExprId>,
 }
 
 /// The coordinates in which a gap is a polynomial of degree 1 or 2 whose first coefficient is 0 nowhere.
@@ -322,15 +344,23 @@ fn polynomials(model: &mut Model, gap: ExprId, coordinates: &[SymbolId]) -> Vec<
         let second = pool.diff(first, *symbol);
         let third = pool.diff(second, *symbol);
         let is_zero = |id: ExprId, pool: &Pool| pool.zero_test(id) == Zero::Proved;
-        let leading = if is_zero(second, pool) { first } else { second };
+        let is_linear = is_zero(second, pool);
+        let leading = if is_linear { first } else { second };
         // A function of the parameters alone is no factor that could vanish on a component.
         let is_unit = !pool.depends_on_any(leading, &moving)
             || (pool.sign(leading).is_nonzero() && pool.is_finite(leading));
         if is_zero(third, pool) && !is_zero(leading, pool) && is_unit {
             let half = pool.scale(&Rational::new(1, 2), second);
+            let solution = is_linear.then(|| {
+                let zero = pool.zero();
+                let constant = pool.substitute(gap, &[(*symbol, zero)]);
+                let quotient = pool.div(constant, first);
+                pool.neg(quotient)
+            });
             found.push(Polynomial {
                 symbol: *symbol,
                 coefficients: [gap, first, half],
+                solution,
             });
         }
     }
