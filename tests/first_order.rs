@@ -1,11 +1,14 @@
 //! First-order systems: `field` in place of a Lagrangian.
 
 use dalembert::{
-    Dla2, Dop853, DormandPrince5, Fault, Gauss4, Gauss6, Outcome, Rk4, Scene, Simulation, Stepper,
-    System, Taylor, Tolerance, VectorField,
+    Described, Dla2, Dop853, DormandPrince5, Fault, Gauss4, Gauss6, Impacting, Outcome, Rk4, Scene,
+    Simulation, StateVector, Stepper, System, Taylor, Tolerance, VectorField,
 };
 
 use dalembert_cli::{Exit, Streams, models};
+use dalembert_codegen::compile;
+use dalembert_codegen::program::{Form, Function, Input, interpret::interpret};
+use dalembert_models::DimensionlessWalker;
 use serde_json::Value;
 
 dalembert::model! {
@@ -118,6 +121,50 @@ fn the_state_is_the_position() {
         assert!((own - expected).abs() <= 4.0 * f64::EPSILON);
     }
     assert_eq!(system.velocity(0.5, &state), Ok(rate));
+}
+
+/// Emitted rates, gaps and resets are what the interpreter computes, to the bit.
+fn assert_emitted_is_interpreted<S>(system: &S, state: S::State)
+where
+    S: Described + Impacting,
+{
+    let compiled = compile(S::DESCRIPTION.source.parse().expect("tokens")).expect("a model");
+    let program = &compiled.programs.main;
+    assert_eq!(program.form, Form::FirstOrder);
+    let t = 0.75;
+    let input = |input: Input| match input {
+        Input::Time => t,
+        Input::Coordinate(i) => state.as_slice()[i],
+        Input::Parameter(k) => system.parameter(k),
+        other => panic!("{other:?} of a first-order system"),
+    };
+    let interpreted = |function: &Function| interpret(function, &input).expect("values");
+    let mut rate = state;
+    system.rate(t, &state, &mut rate).expect("a rate");
+    assert_eq!(interpreted(&program.rate), rate.as_slice());
+    let functions = program.impacting.as_ref().expect("surfaces");
+    assert_eq!(
+        interpreted(&functions.gaps),
+        system.gaps(t, &state).as_slice()
+    );
+    let rates = system.gap_rates(t, &state).expect("gap rates");
+    assert_eq!(interpreted(&functions.gap_rates), rates.as_slice());
+    for (s, reset) in functions.resets.iter().enumerate() {
+        let after = interpreted(reset.as_ref().expect("a reset"));
+        let jump = system
+            .reset(s, t, &state)
+            .expect("values")
+            .expect("a reset");
+        let own = [jump.position.as_slice(), jump.velocity.as_slice()].concat();
+        assert_eq!(after, own);
+    }
+}
+
+#[test]
+fn what_is_emitted_is_what_was_lowered() {
+    assert_emitted_is_interpreted(&Sawtooth::default(), [0.3, 0.2, 4.0].into());
+    let walker = DimensionlessWalker::default();
+    assert_emitted_is_interpreted(&walker, [0.3, -0.7, 1.1].into());
 }
 
 #[test]

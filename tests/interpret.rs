@@ -23,9 +23,12 @@ impl Visitor for Names {
 fn every_model_of_the_command_line_is_visited() {
     let mut visited = Names(Vec::new());
     visit_all(&mut visited);
+    // First-order systems have no mechanics to visit, and tests of their own.
     let known: Vec<_> = models()
         .iter()
-        .map(|entry| entry.description().name)
+        .map(|entry| entry.description())
+        .filter(|description| !description.is_first_order)
+        .map(|description| description.name)
         .collect();
     assert_eq!(visited.0, known);
 }

@@ -46,7 +46,10 @@ dalembert::model! {
         initial { theta = delta; dot(theta) = -2; dot(x_c) = 1; until = 5; }
         outputs { foot: slip; }
         view { path: (theta, x_c); }
-        claims { conserved under step: slip; not conserved: energy; }
+        claims {
+            conserved under step: dot(x_c) + lf*dot(theta)*cos(theta);
+            not conserved: energy;
+        }
     }
 }
 
