@@ -10,6 +10,7 @@ use dalembert_cli::{Exit, Streams, models};
 use dalembert_codegen::claims::Verdict;
 use dalembert_codegen::program::{Program, interpret::interpret};
 use dalembert_codegen::{compile, try_expand};
+use dalembert_models::WalkerFootSlip;
 use dalembert_tests::claim::Declaration;
 use dalembert_tests::interpreted::{compare_report, input};
 use dalembert_tests::sampling::states;
@@ -402,4 +403,8 @@ fn what_a_surface_ties_is_not_taken_for_independent() {
     assert!(matches!(open, Verdict::Undecided(_)), "{open:?}");
     assert!(matches!(quadratic("x = 2*x"), Verdict::Refuted(_)));
     assert!(matches!(quadratic("x = -x"), Verdict::Proved(_)));
+    // The velocity of the foot, at whose surface the angle of the leg is known.
+    let walker = Declaration::of(WalkerFootSlip::DESCRIPTION.source);
+    let foot = "conserved under step: dot(x_c) + lf*dot(theta)*cos(theta)";
+    assert!(matches!(walker.verdict(foot).verdict, Verdict::Proved(_)));
 }
