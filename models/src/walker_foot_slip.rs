@@ -56,7 +56,6 @@ mod tests {
     use crate::DimensionlessWalker;
     use dalembert::{Dop853, Scene, Simulation, System, Tolerance};
 
-    /// With `t0 = m/b`, `mu = m lf^2/I`, `eps = t0^2 g/lf`.. the velocities of both agree after several steps.
     #[test]
     fn is_the_dimensionless_walker_in_other_units() {
         // Units of time `t0 = m/b`, of velocity `v0 = m g/b` and of the rate `v0/lf`: `eps = v0 t0/lf`.

@@ -48,25 +48,19 @@ fn write_run(
     impacts: &[Impact],
 ) -> csv::Result<()> {
     writer.write_record(header(description))?;
+    let struck = |impact: &Impact| {
+        let event = surface(description, impact);
+        row(description, impact.t, &impact.after, event)
+    };
     let mut impacts = impacts.iter().peekable();
     for (t, point) in samples {
         while let Some(impact) = impacts.next_if(|impact| impact.t <= *t) {
-            writer.write_record(row(
-                description,
-                impact.t,
-                &impact.after,
-                surface(description, impact),
-            ))?;
+            writer.write_record(struck(impact))?;
         }
         writer.write_record(row(description, *t, point, ""))?;
     }
     for impact in impacts {
-        writer.write_record(row(
-            description,
-            impact.t,
-            &impact.after,
-            surface(description, impact),
-        ))?;
+        writer.write_record(struck(impact))?;
     }
     Ok(())
 }
