@@ -104,6 +104,18 @@ impl Diagnostics {
         self.errors.extend(others.errors);
     }
 
+    /// Takes over the errors of another collection that are not among these: what several modes share is read for each of
+    /// them, and what is wrong with it is told once.
+    pub fn extend_once(&mut self, others: Self) {
+        for error in others.errors {
+            let text = error.message().to_owned();
+            let is_new = !self.errors.iter().any(|own| own.message() == text);
+            if is_new {
+                self.errors.push(error);
+            }
+        }
+    }
+
     /// `value` if there were no errors.
     ///
     /// # Errors

@@ -35,10 +35,45 @@ pub fn expand(input: TokenStream) -> TokenStream {
 /// # Errors
 /// Every mistake of the first stage that found any.
 pub fn try_expand(input: TokenStream) -> Result<TokenStream, diagnostics::Diagnostics> {
-    let mut compiled = compile(input)?;
-    compiled.note_findings();
-    compiled.scenes.iter_mut().for_each(Compiled::note_findings);
-    Ok(emit::tokens(&compiled))
+    match spec::read(input)? {
+        spec::Declaration::Model(spec) => {
+            let mut compiled = compile_spec(&spec, spec::STEPS)?;
+            compiled.note_findings();
+            compiled.scenes.iter_mut().for_each(Compiled::note_findings);
+            Ok(emit::tokens(&compiled))
+        }
+        spec::Declaration::Modes(declared) => {
+            let mut compiled = compile_modes(&declared)?;
+            compiled.modes.iter_mut().for_each(Compiled::note_findings);
+            Ok(emit::modes::tokens(&compiled))
+        }
+    }
+}
+
+/// A model with modes after all stages but the last.
+#[derive(Debug)]
+pub struct CompiledModes {
+    /// What was declared.
+    pub graph: model::ModeGraph,
+    /// Each mode as a model of its own, in order.
+    pub modes: Vec<Compiled>,
+}
+
+/// All stages but the last, of a model with modes.
+///
+/// # Errors
+/// As [`try_expand`].
+pub fn compile_modes(declared: &spec::Modes) -> Result<CompiledModes, diagnostics::Diagnostics> {
+    let graph = model::check_modes(declared)?;
+    let mut mistakes = diagnostics::Diagnostics::new();
+    let mut modes = Vec::new();
+    for (written, mode) in declared.modes.iter().zip(&graph.modes) {
+        match compile_checked(&written.spec, mode.model.clone(), claims::examine) {
+            Ok(compiled) => modes.push(compiled),
+            Err(others) => mistakes.extend_once(others),
+        }
+    }
+    mistakes.finish(CompiledModes { graph, modes })
 }
 
 /// A model after all stages but the last.
@@ -64,7 +99,7 @@ impl Compiled {
     }
 }
 
-/// All stages but the last.
+/// All stages but the last, of a model in one piece.
 ///
 /// # Errors
 /// As [`try_expand`].
@@ -74,15 +109,18 @@ pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics>
 
 /// As [`compile`], with this budget for the algebra.
 fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
-    let spec = spec::parse(input)?;
-    let model = model::check_within(&spec, steps)?;
+    compile_spec(&spec::parse(input)?, steps)
+}
+
+fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
+    let model = model::check_within(spec, steps)?;
     let scenes: Vec<model::Model> = (0..model.scenes.len())
         .map(|scene| model.in_scene(scene))
         .collect();
-    let mut compiled = compile_checked(&spec, model, claims::examine)?;
+    let mut compiled = compile_checked(spec, model, claims::examine)?;
     let mut mistakes = diagnostics::Diagnostics::new();
     for scene in scenes {
-        match compile_checked(&spec, scene, claims::examine_scene) {
+        match compile_checked(spec, scene, claims::examine_scene) {
             Ok(scene) => compiled.scenes.push(scene),
             Err(others) => mistakes.extend(others),
         }

@@ -5,6 +5,7 @@
 //! [`figures`] of the papers.
 
 pub mod ball_on_rotating_table;
+pub mod ball_on_switching_table;
 pub mod bouncing_ball;
 pub mod chain;
 pub mod chaplygin_sleigh;
@@ -14,13 +15,21 @@ pub mod figures;
 pub mod harmonic_oscillator;
 pub mod holonomic_bead_on_ellipses;
 pub mod point_billiard;
+pub mod refracted_particle;
+pub mod rimless_wheel_five;
+pub mod rimless_wheel_ten;
 pub mod rolling_ball_euler;
 pub mod rolling_disk;
+pub mod smooth_and_rough_plane;
+pub mod sphere_in_plane;
 pub mod stability;
+pub mod tent_map;
+pub mod two_wheels_arrested;
 pub mod two_wheels_rod;
 pub mod walker_foot_slip;
 
 pub use ball_on_rotating_table::BallOnRotatingTable;
+pub use ball_on_switching_table::BallOnSwitchingTable;
 pub use bouncing_ball::BouncingBall;
 pub use chain::{Chain2, Chain3, Chain4, Chain8, Chain16};
 pub use chaplygin_sleigh::ChaplyginSleigh;
@@ -29,8 +38,15 @@ pub use double_pendulum::DoublePendulum;
 pub use harmonic_oscillator::HarmonicOscillator;
 pub use holonomic_bead_on_ellipses::HolonomicBeadOnEllipses;
 pub use point_billiard::PointBilliard;
+pub use refracted_particle::RefractedParticle;
+pub use rimless_wheel_five::RimlessWheelFive;
+pub use rimless_wheel_ten::RimlessWheelTen;
 pub use rolling_ball_euler::RollingBallEuler;
 pub use rolling_disk::RollingDisk;
+pub use smooth_and_rough_plane::SmoothAndRoughPlane;
+pub use sphere_in_plane::SphereInPlane;
+pub use tent_map::TentMap;
+pub use two_wheels_arrested::TwoWheelsArrested;
 pub use two_wheels_rod::TwoWheelsRod;
 pub use walker_foot_slip::WalkerFootSlip;
 
@@ -38,6 +54,7 @@ pub use walker_foot_slip::WalkerFootSlip;
 pub fn all() -> Vec<dalembert_cli::Entry> {
     dalembert_cli::models![
         BallOnRotatingTable,
+        BallOnSwitchingTable,
         BouncingBall,
         Chain2,
         Chain3,
@@ -50,8 +67,15 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         HarmonicOscillator,
         HolonomicBeadOnEllipses,
         PointBilliard,
+        RefractedParticle,
+        RimlessWheelFive,
+        RimlessWheelTen,
         RollingBallEuler,
         RollingDisk,
+        SmoothAndRoughPlane,
+        SphereInPlane,
+        TentMap,
+        TwoWheelsArrested,
         TwoWheelsRod,
         WalkerFootSlip,
     ]

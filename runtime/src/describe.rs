@@ -54,6 +54,15 @@ pub struct ConstraintInfo {
     pub level: Option<usize>,
 }
 
+/// One mode of a model with modes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModeInfo {
+    /// Declared name.
+    pub name: &'static str,
+    /// Indices of its coordinates among those of the model, in its own order.
+    pub coordinates: &'static [usize],
+}
+
 /// One impact surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceInfo {
@@ -103,8 +112,10 @@ pub struct Description {
     pub surfaces: &'static [SurfaceInfo],
     /// The declared outputs.
     pub outputs: &'static [&'static str],
-    /// The scenes; `all`, the model itself, comes first.
+    /// The scenes; `all`, the model itself, comes first. Of a model with modes each mode by itself is one.
     pub scenes: &'static [&'static str],
+    /// The modes; none of a model in one piece.
+    pub modes: &'static [ModeInfo],
     /// The view, if declared.
     pub view: Option<ViewInfo>,
 }
@@ -137,6 +148,12 @@ pub trait Described: System + Clone {
 
     /// Sets a parameter by index; an index past the end changes nothing.
     fn set_parameter(&mut self, index: usize, value: f64);
+
+    /// Chooses the mode, by number, in which states are made and that a run begins in; a number past the end changes
+    /// nothing, and so does any where there are no modes.
+    fn set_mode(&mut self, mode: usize) {
+        let _ = mode;
+    }
 
     /// The declared `initial` at this system's parameters.
     fn initial(&self) -> Initial<Self::Vector>;

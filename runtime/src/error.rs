@@ -36,6 +36,8 @@ pub enum Fault {
     },
     /// Momenta, an energy or an impulse were asked of a first-order system, which has none.
     FirstOrder,
+    /// The parts of Lagrange and d'Alembert's principle were asked of a system with modes: they belong to one mode.
+    SeveralModes,
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
         /// Index of the offending component of the state, in its own order.
@@ -66,6 +68,10 @@ impl fmt::Display for Fault {
             Self::SingularSurface { surface } => write!(
                 f,
                 "surface {surface}: no impulse within the constraints changes its gap rate here"
+            ),
+            Self::SeveralModes => write!(
+                f,
+                "a discrete principle belongs to one mode, and the system has several"
             ),
             Self::FirstOrder => {
                 write!(

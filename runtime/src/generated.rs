@@ -230,6 +230,8 @@ pub mod arguments {
     pub fn inverse() {}
     pub fn step() {}
     pub fn visitor() {}
+    pub fn after_q() {}
+    pub fn after_qdot() {}
 }
 
 /// Guards over several numbers at once: the fault of the first lane that has one.

@@ -22,6 +22,15 @@ pub trait Jets: Copy {
     const ZERO: Self;
 }
 
+impl Jets for () {
+    const ZERO: Self = ();
+}
+
+/// Room for the series of several modes, of which one is used.
+impl<A: Jets, B: Jets> Jets for (A, B) {
+    const ZERO: Self = (A::ZERO, B::ZERO);
+}
+
 impl<L: Numbers, const W: usize, const H: usize> Jets for [[L; W]; H] {
     const ZERO: Self = [[L::ZERO; W]; H];
 }

@@ -122,6 +122,7 @@ pub mod lanes;
 mod linalg;
 #[doc(hidden)]
 pub mod math;
+pub mod modes;
 pub mod numbers;
 pub mod outcome;
 pub mod projection;
@@ -139,13 +140,14 @@ pub use effects::{Effect, Scene, SceneEffects};
 pub use error::{Fault, ParameterError, StateError};
 pub use forces::{Forces, NoForces};
 pub use impacts::Impacts;
-pub use impacts::law::{Blow, Contact, Jump, Law};
+pub use impacts::law::{Blow, Contact, Jump, Landing, Law};
 pub use impacts::policy::{Corner, Penetration, Policies, Rest};
 pub use initial::complete_velocities;
 pub use integrate::{
     Counters, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Stepper, Taylor, Tolerance,
     ToleranceError,
 };
+pub use modes::Mode;
 pub use outcome::{Outcome, Run, StartError};
 pub use projection::Projection;
 pub use record::{Event, EventLog, Hold, Observer, Segment};
@@ -161,6 +163,7 @@ pub mod __private {
     pub use crate::generated::*;
     pub use crate::initial::complete_velocities;
     pub use crate::math;
+    pub use crate::modes;
     pub use crate::quadrature::line_integral;
     pub use nalgebra::SVector;
 }

@@ -49,6 +49,16 @@ pub enum Outcome {
         /// The surface.
         surface: usize,
     },
+    /// A surface that leads to another mode was reached by a mode that is run by itself.
+    LeftMode {
+        /// The surface.
+        surface: usize,
+    },
+    /// Modes lead to each other at one time, and no state goes on into one of them.
+    Trapped {
+        /// The surface reached last.
+        surface: usize,
+    },
     /// The state rests on a surface and the motion presses it in: going on needs a contact force.
     Contact {
         /// The surface.
@@ -97,6 +107,8 @@ pub enum Outcome {
     },
     /// See [`Fault::FirstOrder`].
     FirstOrder,
+    /// See [`Fault::SeveralModes`].
+    SeveralModes,
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
         /// Index of the component of the state; gaps are counted after its components.
@@ -136,6 +148,8 @@ impl Outcome {
             Self::StillPenetrating { .. } => "still_penetrating",
             Self::ResetOffConstraint { .. } => "reset_off_constraint",
             Self::NoReset { .. } => "no_reset",
+            Self::LeftMode { .. } => "left_mode",
+            Self::Trapped { .. } => "trapped",
             Self::Contact { .. } => "contact",
             Self::TangentialCrossing { .. } => "tangential_crossing",
             Self::StartsInside { .. } => "starts_inside",
@@ -145,6 +159,7 @@ impl Outcome {
             Self::SingularFrame { .. } => "singular_frame",
             Self::SingularSurface { .. } => "singular_surface",
             Self::FirstOrder => "first_order",
+            Self::SeveralModes => "several_modes",
             Self::NonFinite { .. } => "non_finite",
             Self::StepUnderflow { .. } => "step_underflow",
             Self::NotConverged { .. } => "not_converged",
@@ -192,6 +207,14 @@ impl fmt::Display for Outcome {
                 "the reset of surface {surface} leaves the state off constraint {constraint}"
             ),
             Self::NoReset { surface } => write!(f, "surface {surface} declares no reset"),
+            Self::LeftMode { surface } => write!(
+                f,
+                "surface {surface} leads to another mode, and this one is run by itself"
+            ),
+            Self::Trapped { surface } => write!(
+                f,
+                "at surface {surface} modes lead to each other, and none of them goes on"
+            ),
             Self::Contact { surface } => write!(
                 f,
                 "the state rests on surface {surface} and is pressed into it"
@@ -219,6 +242,7 @@ impl fmt::Display for Outcome {
             Self::SingularFrame { quasi } => Fault::SingularFrame { quasi }.fmt(f),
             Self::SingularSurface { surface } => Fault::SingularSurface { surface }.fmt(f),
             Self::FirstOrder => Fault::FirstOrder.fmt(f),
+            Self::SeveralModes => Fault::SeveralModes.fmt(f),
             Self::NonFinite { component } => Fault::NonFinite { component }.fmt(f),
             Self::StepUnderflow { t } => StepFailure::StepUnderflow { t }.fmt(f),
             Self::NotConverged { t } => StepFailure::NotConverged { t }.fmt(f),
@@ -246,6 +270,7 @@ impl From<Fault> for Outcome {
             Fault::SingularFrame { quasi } => Self::SingularFrame { quasi },
             Fault::SingularSurface { surface } => Self::SingularSurface { surface },
             Fault::FirstOrder => Self::FirstOrder,
+            Fault::SeveralModes => Self::SeveralModes,
             Fault::NonFinite { component } => Self::NonFinite { component },
         }
     }

@@ -23,6 +23,16 @@ pub(super) fn volume_remarks(
 ) -> Vec<String> {
     let mut remarks = Vec::new();
     for surface in 0..model.surfaces.len() {
+        if model.surfaces[surface].law == Law::Transition {
+            let (name, law) = (
+                &model.surfaces[surface].name.display,
+                model.law_text(surface),
+            );
+            remarks.push(format!(
+                "{name} ({law}) leaves this mode, and what it does to a volume is not looked at"
+            ));
+            continue;
+        }
         let wall = Wall::of(model, derivation, surface);
         if let Some(reason) = wall.reset.as_ref().and_then(ResetMap::open) {
             let name = &model.surfaces[surface].name.display;
@@ -81,6 +91,7 @@ fn factor(model: &Model, surface: usize, wall: &Wall) -> String {
         Law::NonholonomicPlastic => format!("multiplies it by (1 - 2*rho)^2, {RHO}"),
         Law::ImpactPlastic => "maps it to 0".to_owned(),
         Law::TotallyPlastic => format!("multiplies it by (1 - rho)^2, {RHO}"),
+        Law::Transition => "leaves this mode".to_owned(),
         Law::Reset => match wall
             .reset
             .as_ref()

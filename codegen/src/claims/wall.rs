@@ -171,7 +171,7 @@ impl Wall {
             Law::NonholonomicPlastic => field.mul(field.mul(field.integer(2), ratio()?), gap_rate),
             Law::ImpactPlastic => gap_rate,
             Law::TotallyPlastic => field.mul(ratio()?, gap_rate),
-            Law::Reset => return None,
+            Law::Reset | Law::Transition => return None,
         };
         let impulse = field.neg(field.mul(factor, field.inv(steep)?));
         let after = |(own, along): (&Vec<Number<P>>, &Vec<Number<P>>)| {

@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::function::{Body, emit_body, number};
 use super::{Context, doc, parameters, scene};
-use crate::model::{Assumption, Topology};
+use crate::model::{Assumption, Constraint, Coordinate, Model, Topology};
 use crate::program::Form;
 use crate::program::recipes::geometry::Shape;
 
@@ -58,17 +58,21 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
     let documentation = doc::text(&model.documentation);
     let source = &model.source;
     let is_first_order = model.is_first_order();
-    let coordinates = emit_coordinate_infos(context);
-    let parameters = emit_parameter_infos(context);
-    let constraints = emit_constraint_infos(context);
+    let coordinates = model
+        .coordinates
+        .iter()
+        .map(|own| emit_coordinate_info(model, own));
+    let parameters = emit_parameter_infos(model);
+    let constraints = emit_constraint_infos(model);
     let forces = model.forces.iter().map(|force| &force.name.display);
-    let surfaces = emit_surface_infos(context);
+    let surfaces = (0..model.surfaces.len()).map(|s| emit_surface_info(model, s));
     let quasi = match context.program.form {
         Form::Global | Form::FirstOrder => Vec::new(),
         Form::Reduced => context.quasi_names(),
     };
     let outputs = model.outputs.iter().map(|output| &output.name.display);
-    let view = emit_view_info(context);
+    let places: Vec<usize> = (0..model.coordinates.len()).collect();
+    let view = emit_view_info(model, &places);
     let scenes = scene::emit_infos(context);
     quote! {
         ::dalembert::describe::Description {
@@ -77,43 +81,43 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
             documentation: #documentation,
             source: #source,
             is_first_order: #is_first_order,
-            coordinates: &[#coordinates],
+            coordinates: &[#(#coordinates)*],
             parameters: &[#parameters],
             constraints: &[#constraints],
             forces: &[#(#forces),*],
             quasi_velocities: &[#(#quasi),*],
-            surfaces: &[#surfaces],
+            surfaces: &[#(#surfaces)*],
             outputs: &[#(#outputs),*],
             scenes: &[#scenes],
+            modes: &[],
             view: #view,
         }
     }
 }
 
-fn emit_coordinate_infos(context: &Context<'_>) -> TokenStream {
-    let infos = context.model.coordinates.iter().map(|coordinate| {
-        let name = &coordinate.name.display;
-        let topology = match coordinate.topology {
-            Topology::Line => quote!(Line),
-            Topology::Angle => quote!(Circle),
-            Topology::Interval { low, high } => {
-                let ends = context.model.pool.eval(&[low, high], &|_| f64::NAN);
-                let (low, high) = (number(ends[0]), number(ends[1]));
-                quote!(Interval { low: #low, high: #high })
-            }
-        };
-        quote! {
-            ::dalembert::describe::CoordinateInfo {
-                name: #name,
-                topology: ::dalembert::describe::Topology::#topology,
-            },
+/// What is said of a coordinate, and a comma.
+pub(super) fn emit_coordinate_info(model: &Model, coordinate: &Coordinate) -> TokenStream {
+    let name = &coordinate.name.display;
+    let topology = match coordinate.topology {
+        Topology::Line => quote!(Line),
+        Topology::Angle => quote!(Circle),
+        Topology::Interval { low, high } => {
+            let ends = model.pool.eval(&[low, high], &|_| f64::NAN);
+            let (low, high) = (number(ends[0]), number(ends[1]));
+            quote!(Interval { low: #low, high: #high })
         }
-    });
-    quote!(#(#infos)*)
+    };
+    quote! {
+        ::dalembert::describe::CoordinateInfo {
+            name: #name,
+            topology: ::dalembert::describe::Topology::#topology,
+        },
+    }
 }
 
-fn emit_parameter_infos(context: &Context<'_>) -> TokenStream {
-    let infos = context.model.parameters.iter().map(|parameter| {
+/// What is said of all parameters.
+pub(super) fn emit_parameter_infos(model: &Model) -> TokenStream {
+    let infos = model.parameters.iter().map(|parameter| {
         let name = &parameter.name.display;
         let assumption = match &parameter.assumption {
             Assumption::Finite => quote!(Finite),
@@ -125,7 +129,7 @@ fn emit_parameter_infos(context: &Context<'_>) -> TokenStream {
                 quote!(Within { low: #low, high: #high })
             }
         };
-        let default = match parameters::default_value(context.model, parameter) {
+        let default = match parameters::default_value(model, parameter) {
             Some(value) => {
                 let value = number(value);
                 quote!(::core::option::Option::Some(#value))
@@ -143,40 +147,51 @@ fn emit_parameter_infos(context: &Context<'_>) -> TokenStream {
     quote!(#(#infos)*)
 }
 
-fn emit_constraint_infos(context: &Context<'_>) -> TokenStream {
+fn emit_constraint_infos(model: &Model) -> TokenStream {
     let mut levels = 0_usize;
-    let infos = context.model.constraints.iter().map(|constraint| {
-        let name = &constraint.name.display;
-        let affine = !context.model.pool.is_syntactic_zero(constraint.affine);
-        let level = match constraint.level {
-            Some(_) => {
-                let index = levels;
-                levels += 1;
-                quote!(::core::option::Option::Some(#index))
-            }
-            None => quote!(::core::option::Option::None),
-        };
-        quote!(::dalembert::describe::ConstraintInfo { name: #name, affine: #affine, level: #level },)
+    let infos = model.constraints.iter().map(|constraint| {
+        let level = constraint.level.map(|_| levels);
+        levels += usize::from(level.is_some());
+        emit_constraint_info(model, constraint, level)
     });
     quote!(#(#infos)*)
 }
 
-fn emit_surface_infos(context: &Context<'_>) -> TokenStream {
-    let surfaces = context.model.surfaces.iter().enumerate();
-    let infos = surfaces.map(|(s, surface)| {
-        let (name, law) = (&surface.name.display, context.model.law_text(s));
-        quote!(::dalembert::describe::SurfaceInfo { name: #name, law: #law },)
-    });
-    quote!(#(#infos)*)
+/// What is said of a constraint, with the index of its level, and a comma.
+pub(super) fn emit_constraint_info(
+    model: &Model,
+    constraint: &Constraint,
+    level: Option<usize>,
+) -> TokenStream {
+    let name = &constraint.name.display;
+    let affine = !model.pool.is_syntactic_zero(constraint.affine);
+    let level = match level {
+        Some(index) => quote!(::core::option::Option::Some(#index)),
+        None => quote!(::core::option::Option::None),
+    };
+    quote!(::dalembert::describe::ConstraintInfo { name: #name, affine: #affine, level: #level },)
 }
 
-fn emit_view_info(context: &Context<'_>) -> TokenStream {
-    let Some(view) = &context.model.view else {
+/// What is said of a surface, and a comma.
+pub(super) fn emit_surface_info(model: &Model, surface: usize) -> TokenStream {
+    let (name, law) = (
+        &model.surfaces[surface].name.display,
+        model.law_text(surface),
+    );
+    quote!(::dalembert::describe::SurfaceInfo { name: #name, law: #law },)
+}
+
+/// What is said of the view; `places` are those of the coordinates.
+pub(super) fn emit_view_info(model: &Model, places: &[usize]) -> TokenStream {
+    let Some(view) = &model.view else {
         return quote!(::core::option::Option::None);
     };
     let labels = &view.labels;
     let plane = match view.plane {
-        Some([i, j]) => quote!(::core::option::Option::Some([#i, #j])),
+        Some(plane) => {
+            let [i, j] = plane.map(|own| places[own]);
+            quote!(::core::option::Option::Some([#i, #j]))
+        }
         None => quote!(::core::option::Option::None),
     };
     let region = view.region.is_some();
@@ -191,7 +206,11 @@ fn emit_view_info(context: &Context<'_>) -> TokenStream {
 
 /// `parameter` and `set_parameter`.
 fn emit_parameter_access(context: &Context<'_>) -> TokenStream {
-    let places: Vec<_> = context.names.parameters.iter().collect();
+    emit_access(&context.names.parameters)
+}
+
+/// `parameter` and `set_parameter`, of parameters at these places.
+pub(super) fn emit_access(places: &[TokenStream]) -> TokenStream {
     let get = places
         .iter()
         .enumerate()
@@ -385,16 +404,20 @@ fn emit_reduced_inspect(statements: &TokenStream, reports: &[TokenStream]) -> To
     }
 }
 
+/// Whether states drift off constraints that they are to be brought back to. A state reduced to D has nothing to be
+/// brought back to but the positions of integrable constraints.
+pub(super) fn drifts(context: &Context<'_>) -> bool {
+    let constrained = context.program.constrained.as_ref();
+    let drifts = constrained
+        .is_some_and(|own| context.program.form == Form::Global || !own.levels.outputs.is_empty());
+    drifts && context.model.extras.projection
+}
+
 /// `impl Scene`: the effects of everything that is used.
 pub(super) fn emit_scene(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let (mut types, mut values) = (Vec::new(), Vec::new());
-    // A state reduced to D has nothing to be brought back to but the positions of integrable constraints.
-    let drifts =
-        context.program.constrained.as_ref().is_some_and(|own| {
-            context.program.form == Form::Global || !own.levels.outputs.is_empty()
-        });
-    if drifts && context.model.extras.projection {
+    if drifts(context) {
         types.push(quote!(::dalembert::Projection<Self>));
         values.push(quote!(::dalembert::Projection::new()));
     }

@@ -161,6 +161,7 @@ fn emit_laws(context: &Context<'_>, functions: &Impacting) -> TokenStream {
                 Law::ImpactPlastic => quote!(ImpactPlastic),
                 Law::TotallyPlastic => quote!(TotallyPlastic),
                 Law::Reset => quote!(Reset),
+                Law::Transition => quote!(Transition),
             };
             match coefficient {
                 Some(function) => {

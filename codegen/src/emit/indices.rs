@@ -4,20 +4,31 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use super::{Context, doc, scene};
-use crate::model::{Name, Surface};
+use crate::model::{Model, Name, Surface};
 
 /// A declared name with its doc comment.
-type Entry<'a> = (&'a Name, &'a [String]);
+pub(super) type Entry<'a> = (&'a Name, &'a [String]);
 
 /// The module, with a module inside for each kind of names that there are, and the types of the scenes.
 pub(super) fn emit_indices(context: &Context<'_>, scenes: &[Vec<Context<'_>>]) -> TokenStream {
     let model = context.model;
+    let lists = emit_lists(model);
     let visibility: TokenStream = match model.visibility.as_str() {
         "" => quote!(pub(crate)),
         written => written.parse().unwrap_or_default(),
     };
     let module = Ident::new(&model.snake_name, Span::call_site());
     let title = format!(" Indices of the names declared in [`{}`].", model.name);
+    let scenes = scene::emit_types(model, scenes);
+    quote! {
+        #[doc = #title]
+        #[allow(dead_code, non_upper_case_globals)]
+        #visibility mod #module { #lists #(#scenes)* }
+    }
+}
+
+/// A module for each kind of names that a model declares.
+pub(super) fn emit_lists(model: &Model) -> TokenStream {
     let coordinates = model.coordinates.iter();
     let constraints = model.constraints.iter();
     let quasi = model
@@ -26,47 +37,43 @@ pub(super) fn emit_indices(context: &Context<'_>, scenes: &[Vec<Context<'_>>]) -
         .map(|item| (&item.name, item.documentation.as_slice()));
     let outputs = model.outputs.iter();
     let parts = [
-        emit_module(
+        emit_entries(
             "coordinate",
             "coordinates",
             coordinates.map(|item| (&item.name, item.documentation.as_slice())),
         ),
-        emit_module(
+        emit_entries(
             "constraint",
             "constraints",
             constraints.map(|item| (&item.name, item.documentation.as_slice())),
         ),
-        emit_module(
+        emit_entries(
             "quasi_velocity",
             "quasi-velocities, counted after the coordinates of a state",
             quasi,
         ),
         emit_surfaces(&model.surfaces),
-        emit_module(
+        emit_entries(
             "output",
             "outputs",
             outputs.map(|item| (&item.name, item.documentation.as_slice())),
         ),
     ];
-    let scenes = scene::emit_types(model, scenes);
-    quote! {
-        #[doc = #title]
-        #[allow(dead_code, non_upper_case_globals)]
-        #visibility mod #module { #(#parts)* #(#scenes)* }
-    }
+    quote!(#(#parts)*)
 }
 
 /// The module of the indices of impact surfaces.
 pub(super) fn emit_surfaces(surfaces: &[Surface]) -> TokenStream {
     let surfaces = surfaces.iter();
-    emit_module(
+    emit_entries(
         "surface",
         "impact surfaces",
         surfaces.map(|item| (&item.name, item.documentation.as_slice())),
     )
 }
 
-fn emit_module<'a>(
+/// A module with the index of each entry; nothing without entries.
+pub(super) fn emit_entries<'a>(
     module: &str,
     plural: &str,
     entries: impl Iterator<Item = Entry<'a>>,

@@ -12,6 +12,7 @@ mod impact;
 mod indices;
 mod jet;
 mod lagrangian;
+pub mod modes;
 mod names;
 mod parameters;
 mod reduced;
@@ -65,7 +66,7 @@ pub fn tokens(compiled: &Compiled) -> TokenStream {
         parameters::emit_parameters(&contexts[0]),
         indices::emit_indices(&contexts[0], &scenes),
     ];
-    let shadows = names::emit_shadows(model);
+    let shadows = names::emit_shadows(core::iter::once(model));
     let contexts = contexts.iter().chain(scenes.iter().flatten());
     let items = contexts.flat_map(implementations);
     quote! {

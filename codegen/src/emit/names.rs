@@ -70,7 +70,7 @@ impl Numbers {
 }
 
 /// Names that generated functions use for their own arguments and locals; `dalembert::__private::arguments` has each of them.
-const ARGUMENTS: [&str; 27] = [
+const ARGUMENTS: [&str; 29] = [
     "t",
     "state",
     "rate",
@@ -98,6 +98,8 @@ const ARGUMENTS: [&str; 27] = [
     "inverse",
     "step",
     "visitor",
+    "after_q",
+    "after_qdot",
 ];
 
 /// The identifier of the type of the global form.
@@ -204,12 +206,16 @@ fn arguments() -> BTreeSet<String> {
 /// Functions that hide constants of the surroundings. Rust takes a pattern that is the name of a constant in scope for
 /// that constant, and after `use disk::coordinate::phi` there is one for each index that a caller has imported; a
 /// function of the same name gives way to a local.
-pub(super) fn emit_shadows(model: &Model) -> TokenStream {
-    let names: BTreeSet<&str> = (model.coordinates.iter().map(|item| &item.name))
-        .chain(model.constraints.iter().map(|item| &item.name))
-        .chain(model.frame.iter().map(|item| &item.name))
-        .chain(model.surfaces.iter().map(|item| &item.name))
-        .chain(model.outputs.iter().map(|item| &item.name))
+pub(super) fn emit_shadows<'m>(models: impl Iterator<Item = &'m Model>) -> TokenStream {
+    let names_of = |model: &'m Model| {
+        (model.coordinates.iter().map(|item| &item.name))
+            .chain(model.constraints.iter().map(|item| &item.name))
+            .chain(model.frame.iter().map(|item| &item.name))
+            .chain(model.surfaces.iter().map(|item| &item.name))
+            .chain(model.outputs.iter().map(|item| &item.name))
+    };
+    let names: BTreeSet<&str> = models
+        .flat_map(names_of)
         .map(|name| name.field.as_str())
         .collect();
     let names = names
@@ -223,7 +229,7 @@ pub(super) fn emit_shadows(model: &Model) -> TokenStream {
 }
 
 /// The places of all parameters in the struct.
-fn places(model: &Model, holder: &TokenStream) -> Vec<TokenStream> {
+pub(super) fn places(model: &Model, holder: &TokenStream) -> Vec<TokenStream> {
     let parameters = model.parameters.iter();
     parameters
         .map(|parameter| place(holder, &parameter.name))

@@ -13,19 +13,25 @@ pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.own;
     let visibility: TokenStream = model.visibility.parse().unwrap_or_default();
     let documentation = doc::lines(&documentation(context));
-    let fields = families(&model.parameters)
-        .into_iter()
-        .map(|family| emit_field_of(model, family));
+    let fields = emit_fields(model);
     let default = emit_default(context);
     let global = emit_global(context, &model.name, "model", &visibility);
     quote! {
         #documentation
         #[allow(non_snake_case, clippy::all, clippy::pedantic, clippy::nursery)]
         #[derive(Debug, Clone, Copy, PartialEq)]
-        #visibility struct #type_name { #(#fields)* }
+        #visibility struct #type_name { #fields }
         #default
         #global
     }
+}
+
+/// A field for each parameter or family of them.
+pub(super) fn emit_fields(model: &Model) -> TokenStream {
+    let families = families(&model.parameters).into_iter();
+    families
+        .map(|family| emit_field_of(model, family))
+        .collect()
 }
 
 /// The type of the global form, where the form of the model's or the scene's own type is reduced.
@@ -109,6 +115,12 @@ pub(super) fn default_value(model: &Model, parameter: &Parameter) -> Option<f64>
 
 /// The struct with declared defaults, NaN where there is none.
 pub(super) fn with_defaults(model: &Model) -> TokenStream {
+    let fields = default_fields(model);
+    quote!(Self { #fields })
+}
+
+/// The fields with declared defaults, each with a comma behind it.
+pub(super) fn default_fields(model: &Model) -> TokenStream {
     let fields = families(&model.parameters).into_iter().map(|family| {
         let field = Ident::new(&family[0].name.field, Span::call_site());
         let values = family
@@ -119,7 +131,7 @@ pub(super) fn with_defaults(model: &Model) -> TokenStream {
             None => quote!(#field: #(#values)*),
         }
     });
-    quote!(Self { #(#fields),* })
+    quote!(#(#fields,)*)
 }
 
 /// Whether every parameter has a default.

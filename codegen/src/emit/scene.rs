@@ -40,14 +40,7 @@ fn emit_type(model: &Model, scene: &Scene, context: &Context<'_>) -> TokenStream
             pub mod #module { #surfaces }
         }
     });
-    let default = parameters::have_defaults(model).then(|| {
-        quote! {
-            impl ::core::default::Default for #type_name {
-                /// The scene with the declared defaults.
-                fn default() -> Self { Self(<super::#holder as ::core::default::Default>::default()) }
-            }
-        }
-    });
+    let default = emit_default(model, &holder, &type_name, "scene");
     quote! {
         #documentation
         #[allow(private_interfaces)]
@@ -59,6 +52,25 @@ fn emit_type(model: &Model, scene: &Scene, context: &Context<'_>) -> TokenStream
         #default
         #global
         #indices
+    }
+}
+
+/// `Default` of a type that holds the model, when every parameter has one.
+pub(super) fn emit_default(
+    model: &Model,
+    holder: &Ident,
+    type_name: &Ident,
+    noun: &str,
+) -> TokenStream {
+    if !parameters::have_defaults(model) {
+        return TokenStream::new();
+    }
+    let documentation = format!(" The {noun} with the declared defaults.");
+    quote! {
+        impl ::core::default::Default for #type_name {
+            #[doc = #documentation]
+            fn default() -> Self { Self(<super::#holder as ::core::default::Default>::default()) }
+        }
     }
 }
 

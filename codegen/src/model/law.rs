@@ -22,6 +22,9 @@ pub enum Law {
     TotallyPlastic,
     /// `reset { .. }`: the map is [`Surface::reset`](super::Surface::reset).
     Reset,
+    /// Not a law that can be written: the surface leads to another mode, see
+    /// [`Surface::transition`](super::Surface::transition).
+    Transition,
 }
 
 impl Law {
@@ -49,6 +52,7 @@ impl Law {
             Self::ImpactPlastic => "impact_plastic",
             Self::TotallyPlastic => "totally_plastic",
             Self::Reset => RESET,
+            Self::Transition => "transition",
         }
     }
 
@@ -60,7 +64,8 @@ impl Law {
             | Self::NonholonomicPlastic
             | Self::ImpactPlastic
             | Self::TotallyPlastic
-            | Self::Reset => None,
+            | Self::Reset
+            | Self::Transition => None,
         }
     }
 }
@@ -119,7 +124,15 @@ impl Reset {
 impl Model {
     /// The law of a surface as it was declared: `newton(e)`.
     pub fn law_text(&self, surface: usize) -> String {
-        let Surface { law, reset, .. } = &self.surfaces[surface];
+        let Surface {
+            law,
+            reset,
+            transition,
+            ..
+        } = &self.surfaces[surface];
+        if let Some(transition) = transition {
+            return transition.text(&self.pool);
+        }
         match (law.coefficient(), reset) {
             (Some(e), _) => format!("{}({})", law.name(), self.pool.text(e)),
             (None, Some(reset)) => reset.text(&self.pool, &self.coordinates),

@@ -10,6 +10,7 @@ mod culprit;
 mod definitions;
 mod degree;
 mod form;
+mod graph;
 mod index;
 mod latex;
 mod law;
@@ -25,6 +26,7 @@ mod scene;
 mod symbols;
 #[cfg(test)]
 mod tests;
+mod transition;
 mod unknown;
 
 use dalembert_expr::{ExprId, Pool, Rational, SymbolId};
@@ -34,8 +36,10 @@ use crate::spec::ItemId;
 pub use crate::spec::Existence;
 pub use check::check;
 pub(crate) use check::check_within;
+pub use graph::{Entry, Mode, ModeGraph, Places, check_modes};
 pub use law::{Law, Reset};
 pub use scene::{Extras, Parts, Scene};
+pub use transition::{Map, Transition};
 
 /// A checked model: all expressions live in `pool`.
 #[derive(Debug, Clone)]
@@ -247,6 +251,8 @@ pub struct Surface {
     pub law: Law,
     /// The map of the law `reset`.
     pub reset: Option<Reset>,
+    /// The mode that is entered here.
+    pub transition: Option<Transition>,
     /// Where it was declared.
     pub item: ItemId,
 }

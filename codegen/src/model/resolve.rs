@@ -10,6 +10,7 @@ use dalembert_expr::{ExprId, Node, Pool, Rational, SymbolId};
 
 use super::definitions::Definition;
 use super::symbols::{Meaning, Symbols};
+use super::transition::Peer;
 use crate::diagnostics::{Diagnostics, Location};
 use crate::spec::{
     Binder, EXPONENT, EXPRESSIONS, NUMBER_BITS, Operator, RESOLVED_DEPTH, RESOLVED_PARTS, Scalar,
@@ -78,6 +79,8 @@ pub(super) enum DerivedNames {
 /// so that every independent mistake is found.
 pub(super) struct Resolver<'s> {
     pub(super) spec: &'s Spec,
+    /// The modes of the model that this one is a mode of.
+    pub(super) modes: &'s [Peer],
     pub(super) pool: Pool,
     pub(super) symbols: Symbols,
     pub(super) diagnostics: Diagnostics,
@@ -117,6 +120,7 @@ impl<'s> Resolver<'s> {
         let symbols = Symbols::new(&mut pool);
         Self {
             spec,
+            modes: &[],
             pool,
             symbols,
             diagnostics: Diagnostics::new(),

@@ -485,6 +485,8 @@ pub struct Impacting {
     pub coefficients: Vec<Option<Function>>,
     /// Per surface with the law `reset`: `(t, s) -> q, qdot` after it.
     pub resets: Vec<Option<Function>>,
+    /// Per surface that leads to another mode with a declared state: `(t, s) -> q, qdot` in that mode.
+    pub entries: Vec<Option<Function>>,
 }
 
 impl Impacting {
@@ -499,12 +501,14 @@ impl Impacting {
             contacts,
             coefficients,
             resets,
+            entries,
         } = self;
         let declared = conditions
             .iter()
             .chain(blows)
             .chain(coefficients)
             .chain(resets)
+            .chain(entries)
             .flatten();
         let moving = [gap_rates, gap_accelerations, gap_responses];
         core::iter::once(gaps)

@@ -83,6 +83,16 @@ impl Spec {
         }
     }
 
+    /// A model with the name of this one and nothing else declared.
+    pub(super) fn beginning(&self) -> Self {
+        Self {
+            visibility: self.visibility.clone(),
+            documentation: self.documentation.clone(),
+            source: self.source.clone(),
+            ..Self::new(self.name.clone(), self.snake_name.clone())
+        }
+    }
+
     /// A new declaration at this place.
     pub(super) fn item(&mut self, at: Location) -> ItemId {
         self.items.push(at);
@@ -347,8 +357,51 @@ pub struct Surface {
     pub conditions: Vec<Comparison>,
     /// Its law; elastic if there is none.
     pub law: Option<Law>,
+    /// The mode that is entered here, of a transition.
+    pub enters: Option<Word>,
     /// The declaration.
     pub item: ItemId,
+}
+
+/// What one `model!` declares.
+#[derive(Debug)]
+pub enum Declaration {
+    /// A model, in one piece.
+    Model(Box<Spec>),
+    /// A model with modes.
+    Modes(Modes),
+}
+
+/// A model with modes: what stands outside of `modes` belongs to each of them.
+#[derive(Debug)]
+pub struct Modes {
+    /// The modes, in order; the first is where a run begins.
+    pub modes: Vec<Mode>,
+    /// The transitions, in order.
+    pub transitions: Vec<Transition>,
+}
+
+/// A mode as a model of its own: what it shares with the others, its own declarations, and as surfaces the transitions
+/// that leave it.
+#[derive(Debug)]
+pub struct Mode {
+    /// Its name.
+    pub name: Word,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
+    /// The model.
+    pub spec: Spec,
+}
+
+/// Which modes a transition connects.
+#[derive(Debug)]
+pub struct Transition {
+    /// Its name.
+    pub name: Word,
+    /// The mode that is left.
+    pub from: Word,
+    /// The mode that is entered.
+    pub to: Word,
 }
 
 /// `newton(0.8)`

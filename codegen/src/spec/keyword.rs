@@ -3,7 +3,7 @@
 use dalembert_expr::Function;
 
 /// The section keywords of this version, as they may begin a declaration of a model.
-pub const SECTIONS: [&str; 15] = [
+pub const SECTIONS: [&str; 17] = [
     "const",
     "coordinates",
     "parameters",
@@ -14,6 +14,8 @@ pub const SECTIONS: [&str; 15] = [
     "forces",
     "frame",
     "impacts",
+    "modes",
+    "transitions",
     "initial",
     "view",
     "outputs",
@@ -22,9 +24,7 @@ pub const SECTIONS: [&str; 15] = [
 ];
 
 /// Words of the language that this version does not implement, each with what can be written instead.
-pub const NOT_IMPLEMENTED: [(&str, &str); 5] = [
-    ("modes", "declare one model for each mode"),
-    ("transitions", "declare one model for each mode"),
+pub const NOT_IMPLEMENTED: [(&str, &str); 3] = [
     ("inputs", "declare a parameter and set it between runs"),
     (
         "variations",

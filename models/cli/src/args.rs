@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use clap::builder::ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use dalembert::impacts::law::Law;
-use dalembert::impacts::policy::{Corner, Penetration, Policies, Rest};
+use dalembert::impacts::policy::{Corner, Penetration, Policies, Rest, Split};
 use dalembert::integrate::{
     ClassicalRungeKutta, ComposedPrinciple, Dop853Scheme, DormandPrince5Scheme, Gauss, Method,
     MidpointPrinciple, Scheme, TAYLOR,
@@ -339,6 +339,16 @@ pub enum CornerPolicy {
     Descending,
 }
 
+/// What to do at a transition that the motion can go on from in more than one way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum SplitPolicy {
+    /// Go on refracted, where that is possible.
+    #[default]
+    First,
+    /// End the run, as `ambiguous`.
+    Stop,
+}
+
 /// What impacts do where a law alone does not tell how to go on.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct PolicyArgs {
@@ -351,6 +361,9 @@ pub struct PolicyArgs {
     /// At several surfaces at one time whose order matters.
     #[arg(long, value_enum, default_value_t)]
     pub corner: CornerPolicy,
+    /// At a transition that the motion can go on from refracted or reflected.
+    #[arg(long, value_enum, default_value_t)]
+    pub split: SplitPolicy,
 }
 
 impl PolicyArgs {
@@ -368,6 +381,10 @@ impl PolicyArgs {
                 CornerPolicy::Stop => Corner::Stop,
                 CornerPolicy::Ascending => Corner::Ascending,
                 CornerPolicy::Descending => Corner::Descending,
+            },
+            split: match self.split {
+                SplitPolicy::First => Split::First,
+                SplitPolicy::Stop => Split::Stop,
             },
         }
     }

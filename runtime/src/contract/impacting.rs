@@ -2,7 +2,9 @@
 
 use super::System;
 use crate::error::Fault;
-use crate::impacts::law::{Blow, Contact, Jump, Law};
+use crate::impacts::after_reset;
+use crate::impacts::law::{Blow, Contact, Jump, Landing, Law};
+use crate::outcome::Outcome;
 use crate::state::StateVector;
 
 /// A system with impact surfaces `h_s >= 0`.
@@ -72,6 +74,25 @@ pub trait Impacting: System {
     ) -> Result<Option<Jump<Self::Vector>>, Fault> {
         let _ = (surface, t, state);
         Ok(None)
+    }
+
+    /// Whether motion is allowed on both sides of a surface, so that its gap may be negative: of surfaces with a reset, and of
+    /// transitions that are counted from both sides.
+    fn is_passable(&self, surface: usize) -> bool {
+        self.law(surface) == Law::Reset
+    }
+
+    /// The state after the declared reset of a surface, or in the mode that it leads to.
+    ///
+    /// # Errors
+    /// The [`Outcome`] that ends the run: a [`Fault`], a state that is not finite, outside the chart or off the constraints.
+    fn landing(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Landing<Self::State>, Outcome> {
+        after_reset(self, surface, t, state).map(Landing::from)
     }
 
     /// The impulse of the declared law of a surface, where that is one.

@@ -70,6 +70,12 @@ pub trait System: VectorField {
     /// The first [`ParameterError`], in order of declaration.
     fn check_parameters(&self) -> Result<(), ParameterError>;
 
+    /// The mode that a state is of (see [`modes`](crate::modes)); 0 for systems without modes.
+    fn mode(&self, state: &Self::State) -> usize {
+        let _ = state;
+        0
+    }
+
     /// The first coordinate outside the open interval of its chart. None by default.
     fn outside_chart(&self, state: &Self::State) -> Option<usize> {
         let _ = state;

@@ -40,7 +40,8 @@ impl<Sys: Impacting> Impacts<Sys> {
         let (Some(ascending), Some(descending)) = (ascending, descending) else {
             return Ok(None);
         };
-        if now.system.position(&ascending) != now.system.position(&descending) {
+        let place = |state: &Sys::State| (now.system.mode(state), now.system.position(state));
+        if place(&ascending) != place(&descending) {
             return Ok(Some([first, last]));
         }
         let energy = |a: &Sys::State, b: &Sys::State| -> Result<f64, Outcome> {
@@ -75,8 +76,9 @@ impl<Sys: Impacting> Impacts<Sys> {
             let rate = rates.as_slice()[surface];
             hits.set_still(surface, STILL * rate.abs());
             let struck = self.struck(now.system, surface, rate, now.t, &state)?;
-            if now.system.position(&struck.after) != now.system.position(&state) {
-                // A reset has left the corner.
+            let place = |state: &Sys::State| (now.system.mode(state), now.system.position(state));
+            if place(&struck.after) != place(&state) {
+                // A reset has left the corner, or a transition the mode.
                 return Ok(Some(struck.after));
             }
             (state, rates) = (struck.after, struck.rates);

@@ -7,8 +7,7 @@ use super::held::Held;
 use super::hits::Hits;
 use super::law::{Blow, Law};
 use super::override_table::Overrides;
-use super::policy::{Corner, Penetration, Policies, Rest};
-use super::reset::after_reset;
+use super::policy::{Corner, Penetration, Policies, Rest, Split};
 use super::resting::Resting;
 use super::watch::Watch;
 use crate::contract::Impacting;
@@ -50,8 +49,26 @@ pub(super) struct Struck<Sys: Impacting> {
     pub(super) after: Sys::State,
     /// Gap rates after it.
     pub(super) rates: Sys::Gaps,
-    /// Whether by an impulse; else by a reset.
+    /// Whether by an impulse; else by a reset or a transition.
     by_impulse: bool,
+    /// Whether rounding may have decided between two ways to go on.
+    is_graze: bool,
+}
+
+/// Transitions at one moment. There are few where they end: each loses energy (Cortes and Vinogradov, Remark 5.8).
+struct Passages(u32);
+
+impl Passages {
+    /// Transitions at one moment before the motion counts as trapped between modes.
+    const MOST: u32 = 64;
+
+    fn count(&mut self, surface: usize) -> Result<(), Outcome> {
+        self.0 += 1;
+        match self.0 > Self::MOST {
+            true => Err(Outcome::Trapped { surface }),
+            false => Ok(()),
+        }
+    }
 }
 
 impl<Sys: Impacting> Impacts<Sys> {
@@ -148,19 +165,27 @@ impl<Sys: Impacting> Impacts<Sys> {
         {
             return Err(Outcome::Ambiguous { surfaces });
         }
+        let mut passages = Passages(0);
         while let Some(surface) = self.next(&hits, &rates) {
             if now.counters.impacts >= self.budget {
                 return Err(Outcome::ImpactBudget);
             }
             let before = rates.as_slice()[surface];
-            if self.law_of(now.system, surface) == Law::Reset {
-                let position = now.system.position(now.state);
+            if self.law_of(now.system, surface).is_map() {
+                let place = (now.system.mode(now.state), now.system.position(now.state));
                 rates = self.impact(surface, several, before, now, observer)?;
-                hits.set_done(surface);
-                if now.system.position(now.state) != position {
+                let changes = now.system.mode(now.state) != place.0;
+                match changes {
+                    true => passages.count(surface)?,
+                    false => hits.set_done(surface),
+                }
+                if changes || now.system.position(now.state) != place.1 {
                     self.watch.relocate(&mut hits, &rates, now)?;
                     self.resting.keep(&hits.at_hand, now, observer)?;
                     self.watch.hold(self.resting.held());
+                }
+                if changes {
+                    self.watch.pass_by(&mut hits);
                 }
             } else {
                 if self.watch.is_tangential_crossing(surface) {
@@ -200,13 +225,19 @@ impl<Sys: Impacting> Impacts<Sys> {
         before: &Sys::State,
     ) -> Result<Struck<Sys>, Outcome> {
         let law = self.law_of(system, surface);
-        if law == Law::Reset {
-            let after = after_reset(system, surface, t, before)?;
-            let rates = system.gap_rates(t, &after)?;
+        if law.is_map() {
+            let landing = system.landing(surface, t, before)?;
+            if landing.is_one_of_several && self.policies.split == Split::Stop {
+                return Err(Outcome::Ambiguous {
+                    surfaces: [surface; 2],
+                });
+            }
+            let rates = system.gap_rates(t, &landing.state)?;
             return Ok(Struck {
-                after,
+                after: landing.state,
                 rates,
                 by_impulse: false,
+                is_graze: landing.is_graze,
             });
         }
         let blow = self.blow(system, surface, t, before)?;
@@ -230,6 +261,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                 after,
                 rates,
                 by_impulse: true,
+                is_graze: false,
             }),
         }
     }
@@ -259,7 +291,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             before,
             after: struck.after,
             simultaneous,
-            graze: self.watch.is_graze(surface),
+            graze: self.watch.is_graze(surface) || struck.is_graze,
         };
         if let ControlFlow::Break(()) = observer.event(&event) {
             return Err(Outcome::Stopped);
@@ -271,9 +303,10 @@ impl<Sys: Impacting> Impacts<Sys> {
         if now.counters.impacts >= self.budget {
             return Err(Outcome::ImpactBudget);
         }
+        let leads_on = now.system.mode(&before) != now.system.mode(&struck.after);
         match struck.by_impulse {
-            // It goes on through the surface.
-            false if penetrates => match self.accumulation.pass(surface, t) {
+            // It goes on through the surface, or in another mode.
+            false if penetrates || leads_on => match self.accumulation.pass(surface, t) {
                 Some(_) => Err(Outcome::Zeno { t, surface }),
                 None => Ok(struck.rates),
             },
@@ -357,11 +390,12 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         self.accumulation = Accumulation::none();
         self.resting = Resting::none();
         for surface in 0..Sys::Gaps::LEN {
-            let resets = self.law_of(now.system, surface) == Law::Reset;
-            if resets && now.system.law(surface) != Law::Reset {
+            let (law, declared) = (self.law_of(now.system, surface), now.system.law(surface));
+            if law.is_map() && law != declared {
                 return Err(Outcome::NoReset { surface });
             }
-            self.watch.set_passable(surface, resets);
+            let is_passable = law.is_map() && now.system.is_passable(surface);
+            self.watch.set_passable(surface, is_passable);
         }
         let hits = self.watch.begin(now)?;
         self.strike(hits, now, observer)

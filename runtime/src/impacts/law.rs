@@ -37,6 +37,29 @@ pub enum Law {
     /// The declared map of positions and velocities, [`Impacting::reset`](crate::Impacting::reset). The surface has no
     /// side that is not allowed: where the map leaves the gap falling, it is crossed.
     Reset,
+    /// The surface leads to another mode (see [`modes`](crate::modes)): the state becomes one of that. Not to be chosen.
+    Transition,
+}
+
+/// The state after a reset or a transition.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Landing<S> {
+    /// The state.
+    pub state: S,
+    /// Whether rounding may have decided between two ways to go on.
+    pub is_graze: bool,
+    /// Whether there are other states that the motion could go on from.
+    pub is_one_of_several: bool,
+}
+
+impl<S> From<S> for Landing<S> {
+    fn from(state: S) -> Self {
+        Self {
+            state,
+            is_graze: false,
+            is_one_of_several: false,
+        }
+    }
 }
 
 /// Positions and velocities after a reset.
@@ -107,7 +130,7 @@ impl<V: StateVector> Contact<V> {
             Law::NonholonomicPlastic => 2.0 * self.rho() * self.gap_rate,
             Law::ImpactPlastic => self.gap_rate,
             Law::TotallyPlastic => self.rho() * self.gap_rate,
-            Law::Reset => f64::NAN,
+            Law::Reset | Law::Transition => f64::NAN,
         }
     }
 
@@ -118,6 +141,11 @@ impl<V: StateVector> Contact<V> {
 }
 
 impl Law {
+    /// Whether it is a map of the state and not an impulse.
+    pub const fn is_map(&self) -> bool {
+        matches!(self, Self::Reset | Self::Transition)
+    }
+
     /// The laws by the names the language and the command line use, with whether they take a coefficient.
     pub const NAMES: [(&'static str, bool); 7] = [
         ("elastic", false),
@@ -139,6 +167,7 @@ impl Law {
             Self::ImpactPlastic => "impact_plastic",
             Self::TotallyPlastic => "totally_plastic",
             Self::Reset => "reset",
+            Self::Transition => "transition",
         }
     }
 
@@ -150,7 +179,8 @@ impl Law {
             | Self::NonholonomicPlastic
             | Self::ImpactPlastic
             | Self::TotallyPlastic
-            | Self::Reset => None,
+            | Self::Reset
+            | Self::Transition => None,
         }
     }
 
@@ -191,7 +221,7 @@ mod tests {
             Law::NonholonomicPlastic => Some(Law::ImpactPlastic),
             Law::ImpactPlastic => Some(Law::TotallyPlastic),
             Law::TotallyPlastic => Some(Law::Reset),
-            Law::Reset => None,
+            Law::Reset | Law::Transition => None,
         }
     }
 

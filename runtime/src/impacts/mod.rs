@@ -23,3 +23,4 @@ mod watch;
 
 pub use held::Held;
 pub use impulse::{IMPACT_BUDGET, Impacts};
+pub(crate) use reset::after_reset;

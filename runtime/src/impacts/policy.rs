@@ -9,6 +9,19 @@ pub struct Policies {
     pub penetration: Penetration,
     /// At several surfaces at one time.
     pub corner: Corner,
+    /// At a transition that the motion can go on from in more than one way.
+    pub split: Split,
+}
+
+/// What to do at a transition that the motion can go on from in more than one way: refracted into the other mode, or
+/// reflected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Split {
+    /// Go on with the first of the decisive points: the refracted one.
+    #[default]
+    First,
+    /// End with [`Outcome::Ambiguous`](crate::Outcome::Ambiguous).
+    Stop,
 }
 
 /// What to do where the state rests on a surface and the motion presses it in: after impacts that accumulate, after a

@@ -2,16 +2,20 @@
 
 use crate::contract::Impacting;
 use crate::error::StateError;
+use crate::impacts::law::Law;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
 /// The state after the reset of a surface: in its chart, and on the constraints.
-pub(super) fn after_reset<Sys: Impacting>(
+pub(crate) fn after_reset<Sys: Impacting + ?Sized>(
     system: &Sys,
     surface: usize,
     t: f64,
     before: &Sys::State,
 ) -> Result<Sys::State, Outcome> {
+    if system.law(surface) == Law::Transition {
+        return Err(Outcome::LeftMode { surface });
+    }
     let Some(jump) = system.reset(surface, t, before)? else {
         return Err(Outcome::NoReset { surface });
     };

@@ -122,6 +122,15 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
+    /// In a mode that was just entered, a surface at hand that motion may pass has been dealt with: it was entered there.
+    pub(super) fn pass_by(&self, hits: &mut Hits<Sys::Gaps>) {
+        for surface in 0..Sys::Gaps::LEN {
+            if self.is_passable(surface) && hits.at_hand.as_slice()[surface] == 1.0 {
+                hits.set_done(surface);
+            }
+        }
+    }
+
     /// Takes in the state that motion goes on from, after impacts on the surfaces at hand.
     pub(super) fn leave(
         &mut self,

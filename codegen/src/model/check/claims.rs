@@ -3,7 +3,7 @@
 use dalembert_expr::{Assumption as Known, ExprId, Node};
 
 use super::super::resolve::{DerivedNames, Resolver, Scope};
-use super::super::{Claim, Name, Scene, Statement, Surface};
+use super::super::{Claim, Law, Name, Scene, Statement, Surface};
 use crate::diagnostics::listed;
 use crate::spec;
 
@@ -90,6 +90,11 @@ impl Resolver<'_> {
                     Some(declared) => {
                         let surface = self.surface(declared, surfaces)?;
                         let name = &surfaces[surface].name.display;
+                        if surfaces[surface].law == Law::Transition {
+                            let text =
+                                format!("`{name}` leads to another mode, and claims are about one");
+                            return self.refuse(declared.name.at, text, "leave the claim out");
+                        }
                         (Some(surface), format!(" under {name}"))
                     }
                     None => (None, String::new()),

@@ -129,7 +129,12 @@ fn plastic_note(surface: &Surface) -> Option<String> {
     let (factor, approaches) = match surface.law {
         Law::NonholonomicPlastic => ("1 - 2 rho", "rho < 1/2"),
         Law::TotallyPlastic => ("1 - rho", "rho < 1"),
-        Law::Elastic | Law::Restitution(_) | Law::Newton(_) | Law::ImpactPlastic | Law::Reset => {
+        Law::Elastic
+        | Law::Restitution(_)
+        | Law::Newton(_)
+        | Law::ImpactPlastic
+        | Law::Reset
+        | Law::Transition => {
             return None;
         }
     };

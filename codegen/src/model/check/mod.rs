@@ -20,6 +20,7 @@ mod resets;
 mod scenes;
 mod surfaces;
 mod targets;
+mod transitions;
 
 use std::collections::BTreeSet;
 
@@ -27,9 +28,10 @@ use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 
 use super::natural;
 use super::resolve::{Resolver, Scope};
+use super::transition::Peer;
 use super::{
     Claim, Constraint, Extras, Force, Initial, Lagrangian, Model, Output, QuasiForm, Reset, Scene,
-    Surface, View,
+    Surface, Transition, View,
 };
 use crate::diagnostics::{self, Diagnostics};
 use crate::spec::{PIECEWISE, STEPS, Scalar, Spec};
@@ -60,7 +62,17 @@ pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
 
 /// As [`check()`], with this budget for the algebra of this and the later stages.
 pub(crate) fn check_within(spec: &Spec, steps: u64) -> Result<Model, Diagnostics> {
+    check_mode(spec, &[], steps)
+}
+
+/// As [`check()`], of one of these modes.
+pub(in crate::model) fn check_mode(
+    spec: &Spec,
+    modes: &[Peer],
+    steps: u64,
+) -> Result<Model, Diagnostics> {
     let mut resolver = Resolver::new(spec, steps);
+    resolver.modes = modes;
     resolver.constants();
     resolver.all_coordinates();
     resolver.all_parameters();
@@ -82,6 +94,7 @@ pub(crate) fn check_within(spec: &Spec, steps: u64) -> Result<Model, Diagnostics
     parts.scenes = scenes::resolve(&mut resolver, &parts.forces, &parts.surfaces);
     parts.claims = claims::resolve(&mut resolver, &parts.surfaces, &parts.scenes);
     together(&mut resolver, &parts);
+    transitions::mark_sides(&mut resolver, &mut parts.surfaces);
     if let Some(at) = resolver.exhausted {
         return Err(diagnostics::too_many_steps(at));
     }
@@ -93,6 +106,21 @@ pub(crate) fn check_within(spec: &Spec, steps: u64) -> Result<Model, Diagnostics
         ..parts
     };
     Ok(model(resolver, lagrangian, parts))
+}
+
+/// What other modes need to know of a mode; what is wrong with it is told when it is checked.
+pub(in crate::model) fn peer(name: &str, spec: &Spec) -> Peer {
+    let mut resolver = Resolver::new(spec, STEPS);
+    resolver.constants();
+    resolver.all_coordinates();
+    let coordinates = resolver.symbols.coordinates.iter();
+    Peer {
+        name: name.to_owned(),
+        coordinates: coordinates
+            .map(|own| (own.name.clone(), own.topology))
+            .collect(),
+        is_first_order: spec.field.is_some(),
+    }
 }
 
 /// The rules that concern several declarations.
@@ -198,7 +226,8 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
                 .chain([&surface.gap])
                 .copied()
                 .chain(surface.law.coefficient())
-                .chain(surface.reset.iter().flat_map(Reset::expressions)),
+                .chain(surface.reset.iter().flat_map(Reset::expressions))
+                .chain(surface.transition.iter().flat_map(Transition::expressions)),
         );
     }
     used.extend(

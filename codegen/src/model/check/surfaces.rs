@@ -30,12 +30,22 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
                 .iter()
                 .map(|condition| resolver.difference(condition, &mut scope, "conditions"))
                 .collect();
-            let law = resolver.law(surface.law.as_ref(), &mut scope);
-            let reset = resolver.reset(surface.law.as_ref(), &scope);
+            let (law, reset, transition) = match surface.enters {
+                Some(_) => (
+                    Some(Law::Transition),
+                    Some(None),
+                    resolver.transition(surface, &scope),
+                ),
+                None => (
+                    resolver.law(surface.law.as_ref(), &mut scope),
+                    resolver.reset(surface.law.as_ref(), &scope),
+                    Some(None),
+                ),
+            };
             resolver.within_budget(surface.gap.at);
             let conditions: Option<Vec<ExprId>> = conditions.into_iter().collect();
-            let (Some(gap), Some(conditions), Some(law), Some(reset)) =
-                (gap, conditions, law, reset)
+            let (Some(gap), Some(conditions), Some(law), Some(reset), Some(transition)) =
+                (gap, conditions, law, reset, transition)
             else {
                 break;
             };
@@ -46,6 +56,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
                 conditions,
                 law,
                 reset,
+                transition,
                 item: surface.item,
             });
         }
@@ -164,10 +175,18 @@ pub(super) fn check_distinct(resolver: &mut Resolver<'_>, surfaces: &[Surface]) 
     }
 }
 
-/// Whether two surfaces with resets, the same up to a constant factor, lie opposite: one counts what falls, the other
-/// what rises.
+/// Whether a transition has the opposite gap of another, under the same conditions.
+pub(super) fn are_opposite(resolver: &mut Resolver<'_>, first: &Surface, second: &Surface) -> bool {
+    first.conditions == second.conditions
+        && is_proportional(resolver, first.gap, second.gap)
+        && count_both_ways(&resolver.pool, first, second)
+}
+
+/// Whether two surfaces with resets or transitions, the same up to a constant factor, lie opposite: one counts what falls,
+/// the other what rises.
 fn count_both_ways(pool: &Pool, first: &Surface, second: &Surface) -> bool {
-    let are_resets = [first, second].iter().all(|own| own.law == Law::Reset);
+    let passes = |own: &Surface| matches!(own.law, Law::Reset | Law::Transition);
+    let are_resets = passes(first) && passes(second);
     let point = |symbol: SymbolId| 0.3 + (symbol.index() as f64 * 0.618_033_988_749_894_9).fract();
     let gaps = pool.eval(&[first.gap, second.gap], &point);
     are_resets && gaps[0] * gaps[1] < 0.0

@@ -55,7 +55,20 @@ pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<I
         resets: (0..model.surfaces.len())
             .map(|s| reset(model, derivation, form, s))
             .collect(),
+        entries: (0..model.surfaces.len())
+            .map(|s| entry(model, derivation, form, s))
+            .collect(),
     })
+}
+
+/// The state that another mode is entered with, where it is declared.
+fn entry(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Option<Function> {
+    let map = model.surfaces[s].transition.as_ref()?.map.as_ref()?;
+    let mut kernel = Kernel::new(model, derivation, form.state());
+    kernel.velocity();
+    let expressions: Vec<ExprId> = map.expressions().collect();
+    let outputs = kernel.values(&expressions);
+    Some(kernel.finish(outputs))
 }
 
 fn reset(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Option<Function> {

@@ -14,14 +14,8 @@ const FORM: &str = "name: h >= 0 when g > 0 => LAW;";
 pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let (documentation, declared) = labelled(cursor, "a surface", FORM)?;
     let gap = comparison(cursor, Strictness::Weak, FORM)?;
-    let mut conditions = Vec::new();
-    while cursor.eat_word("when") {
-        conditions.push(comparison(cursor, Strictness::Strict, FORM)?);
-        if cursor.is_operator("&&") || cursor.is_operator(",") {
-            return Err(cursor.unexpected("expected `when`", "write `when a > 0 when b > 0`"));
-        }
-    }
-    let law = law(cursor, spec)?;
+    let conditions = conditions(cursor, FORM)?;
+    let law = law(cursor, spec, FORM)?;
     let item = spec.item(gap.at);
     spec.surfaces.push(Surface {
         declared,
@@ -29,9 +23,22 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         gap,
         conditions,
         law,
+        enters: None,
         item,
     });
     Ok(())
+}
+
+/// Reads `when a > 0 when b > 0`, if it is there.
+pub(super) fn conditions(cursor: &mut Cursor<'_>, form: &str) -> Read<Vec<Comparison>> {
+    let mut conditions = Vec::new();
+    while cursor.eat_word("when") {
+        conditions.push(comparison(cursor, Strictness::Strict, form)?);
+        if cursor.is_operator("&&") || cursor.is_operator(",") {
+            return Err(cursor.unexpected("expected `when`", "write `when a > 0 when b > 0`"));
+        }
+    }
+    Ok(conditions)
 }
 
 /// Whether equality is allowed.
@@ -123,14 +130,14 @@ fn oriented(left: Scalar, right: Scalar, turned: bool) -> Comparison {
     Comparison { greater, less, at }
 }
 
-/// Reads `=> LAW`, if it is there.
-fn law(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<Option<Law>> {
+/// Reads `=> LAW`, if it is there. `form` is how the whole entry is written.
+pub(super) fn law(cursor: &mut Cursor<'_>, spec: &mut Spec, form: &str) -> Read<Option<Law>> {
     if let Some(sign) = ["->", ",", ":"]
         .into_iter()
         .find(|sign| cursor.is_operator(sign))
     {
         let text = format!("expected `=>`, found `{sign}`");
-        return Err(cursor.refuse_operator(sign, text, &format!("write `{FORM}`")));
+        return Err(cursor.refuse_operator(sign, text, &format!("write `{form}`")));
     }
     if cursor.eat_operator("=>").is_none() {
         return Ok(None);
@@ -146,12 +153,12 @@ fn law(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<Option<Law>> {
     };
     if cursor.eat_operator(",").is_some() {
         refused_word(cursor, &["instantaneous"])?;
-        return Err(cursor.unexpected("expected `;`", FORM));
+        return Err(cursor.unexpected("expected `;`", form));
     }
     if cursor.is_word("when") {
         return Err(cursor.unexpected(
             "expected `;`",
-            &format!("conditions stand before the law: `{FORM}`"),
+            &format!("conditions stand before the law: `{form}`"),
         ));
     }
     let item = spec.item(name.at);

@@ -8,6 +8,7 @@ mod field;
 mod header;
 mod impacts;
 mod initial;
+mod modes;
 mod parameters;
 mod reset;
 mod scenes;
@@ -17,7 +18,7 @@ mod view;
 
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 
-use super::ast::{Declared, Index, Lagrangian, Spec, Word};
+use super::ast::{Declaration, Declared, Index, Lagrangian, Spec, Word};
 use super::cursor::{Cursor, Read, tokens_of};
 use super::keyword::{self, SECTIONS, not_implemented};
 use super::limits::check_nesting;
@@ -25,11 +26,11 @@ use crate::diagnostics::{Diagnostics, Location, listed, nearest};
 
 pub use header::camel_case;
 
-/// Reads the declaration of a model.
+/// Reads a declaration: a model, or a model with modes.
 ///
 /// # Errors
 /// Every mistake of syntax, each at its token.
-pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
+pub fn read(tokens: TokenStream) -> Result<Declaration, Diagnostics> {
     check_nesting(&tokens)?;
     let tokens = source::flatten_header(tokens);
     let mut diagnostics = Diagnostics::new();
@@ -37,13 +38,31 @@ pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
         .first()
         .map_or_else(|| Location::from(Span::call_site()), Location::of);
     let mut cursor = Cursor::new(&tokens, start, &mut diagnostics);
-    match header::read(&mut cursor) {
-        Ok((mut spec, body)) => {
-            let tokens = tokens_of(body.stream());
-            declarations(&tokens, &body, &mut spec, &mut diagnostics);
-            diagnostics.finish(spec)
+    let Ok((mut spec, body)) = header::read(&mut cursor) else {
+        return Err(diagnostics);
+    };
+    let tokens = tokens_of(body.stream());
+    if modes::are_declared(&tokens) && diagnostics.is_empty() {
+        return modes::read(&spec, &tokens, &body).map(Declaration::Modes);
+    }
+    declarations(&tokens, &body, &mut spec, &mut diagnostics);
+    diagnostics.finish(Declaration::Model(Box::new(spec)))
+}
+
+/// Reads the declaration of a model in one piece.
+///
+/// # Errors
+/// As [`read`]; modes are refused.
+pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
+    match read(tokens)? {
+        Declaration::Model(spec) => Ok(*spec),
+        Declaration::Modes(declared) => {
+            let mut diagnostics = Diagnostics::new();
+            let name = &declared.modes[0].spec.name;
+            let text = format!("`{}` has modes: it is no model in one piece", name.text);
+            diagnostics.error(name.at, text);
+            Err(diagnostics)
         }
-        Err(_) => Err(diagnostics),
     }
 }
 
@@ -166,6 +185,7 @@ fn declare(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         "impacts" => section(&word, cursor, spec, impacts::surface),
         "initial" => section(&word, cursor, spec, initial::value),
         "view" => section(&word, cursor, spec, view::entry),
+        "modes" | "transitions" => Err(modes::refuse_nested(&word, cursor)),
         "scenes" => section(&word, cursor, spec, scenes::scene),
         "claims" => claims_section(&word, cursor, spec),
         _ => Err(unknown_declaration(&word, cursor)),

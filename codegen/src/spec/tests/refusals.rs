@@ -131,14 +131,55 @@ fn declarations_are_known() {
 
 #[test]
 fn declarations_to_come_are_refused_by_name() {
-    for word in ["modes", "transitions", "inputs"] {
-        let message = format!("`{word}` is not implemented in this version\nhelp: ");
-        refused_in(&format!("«{word}» {{ a: b; }}"), &message);
-    }
+    refused_in(
+        "«inputs» { a: b; }",
+        "`inputs` is not implemented in this version",
+    );
     refused_in(
         "impacts { w: x >= 0 => elastic, «instantaneous» { }; }",
         "`instantaneous` is not implemented",
     );
+}
+
+#[test]
+fn modes_and_transitions_keep_their_forms() {
+    refused_in("«modes» { }", "`modes` without a mode");
+    refused_in(
+        "«transitions» { a: b -> c when x >= 0; }",
+        "`transitions` without a mode",
+    );
+    refused_in("modes { «a» }", "expected `{ .. }` after the mode `a`");
+    refused_in("modes { a { } «a» { } }", "mode `a` declared again");
+    refused_in("modes { «sin» { } }", "`sin` is reserved");
+    refused_in(
+        "modes { a { «parameters» { k = 1; } } }",
+        "`parameters` stands outside of `modes`",
+    );
+    refused_in(
+        "modes { a { «const» N = 1; } }",
+        "`const` stands outside of `modes`",
+    );
+    refused_in(
+        "modes { a { } } «scenes» { s; }",
+        "a model with modes has no `scenes`",
+    );
+    refused_in(
+        "modes { a { «modes» { b { } } } }",
+        "`modes` stands inside of a mode",
+    );
+    let transition = |text: &str, message: &str| {
+        refused_in(
+            &format!("modes {{ a {{ }} b {{ }} }} transitions {{ {text} }}"),
+            message,
+        );
+    };
+    transition("go: a «=>» b when x >= 0;", "expected `->`, found `=>`");
+    transition("go: a -> b «x» >= 0;", "expected `when`");
+    transition(
+        "go: a -> b when x «>» 0;",
+        "expected `>=` or `<=`, found `>`",
+    );
+    transition("«a» -> b when x >= 0;", "a transition begins with its name");
 }
 
 #[test]

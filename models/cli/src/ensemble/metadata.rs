@@ -69,6 +69,7 @@ pub fn metadata(
         "rest": word(run.policies.rest),
         "penetration": word(run.policies.penetration),
         "corner": word(run.policies.corner),
+        "split": word(run.policies.split),
         "projection": settings.projection,
         "density": density.map(|density| density.metadata()),
     });

@@ -202,6 +202,7 @@ const NOTHING: Description = Description {
     surfaces: &[],
     outputs: &[],
     scenes: &["all"],
+    modes: &[],
     view: None,
 };
 

@@ -1,0 +1,106 @@
+//! A model with modes: a type for each mode, as for scenes, and one for the whole, which asks the present mode.
+
+mod contract;
+mod describe;
+mod types;
+
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::quote;
+
+use super::{Context, contexts_of_scene, implementations, names};
+use crate::CompiledModes;
+use crate::model::{Mode, ModeGraph, Model};
+
+/// What every emitter of the whole reads.
+struct Whole<'a> {
+    graph: &'a ModeGraph,
+    /// Of each mode what is emitted: its own form, then the global one if that is another.
+    contexts: Vec<Vec<Context<'a>>>,
+}
+
+/// The generated items of a model with modes.
+pub fn tokens(compiled: &CompiledModes) -> TokenStream {
+    let CompiledModes { graph, modes } = compiled;
+    let model = &graph.modes[0].model;
+    let contexts = graph
+        .modes
+        .iter()
+        .zip(modes)
+        .map(|(mode, own)| contexts_of_scene(model, &mode.scene, own));
+    let whole = Whole {
+        graph,
+        contexts: contexts.collect(),
+    };
+    let own = [types::emit_struct(&whole), types::emit_module(&whole)];
+    let shadows = names::emit_shadows(graph.modes.iter().map(|mode| &mode.model));
+    let of_modes = whole.contexts.iter().flatten().flat_map(implementations);
+    let of_whole = [
+        contract::emit_sizes(&whole),
+        contract::emit_modes(&whole),
+        contract::emit_field(&whole),
+        contract::emit_taylor(&whole),
+        contract::emit_system(&whole),
+        contract::emit_impacting(&whole),
+        describe::emit_described(&whole),
+        describe::emit_scene(&whole),
+    ];
+    quote! {
+        #(#own)*
+        const _: () = {
+            #shadows
+            #(#of_modes)*
+            #(#of_whole)*
+        };
+    }
+}
+
+impl Whole<'_> {
+    /// The model that the first mode is: names and parameters of the whole are its own.
+    fn model(&self) -> &Model {
+        &self.graph.modes[0].model
+    }
+
+    /// The type of the whole.
+    fn type_name(&self) -> Ident {
+        Ident::new(&self.model().name, Span::call_site())
+    }
+
+    /// The types of the modes, in order.
+    fn types(&self) -> Vec<&TokenStream> {
+        self.own().map(|context| &context.names.type_name).collect()
+    }
+
+    /// The contexts of the modes' own forms, in order.
+    fn own(&self) -> impl Iterator<Item = &Context<'_>> {
+        self.contexts.iter().map(|contexts| &contexts[0])
+    }
+
+    /// What the mode of a number answers: `arm` gives it for each mode.
+    fn of_number(
+        &self,
+        number: &TokenStream,
+        arm: impl Fn(&Mode, &TokenStream) -> TokenStream,
+    ) -> TokenStream {
+        let last = self.graph.modes.len() - 1;
+        let arms = self.graph.modes.iter().zip(self.types()).enumerate();
+        let arms = arms.map(|(index, (mode, own))| {
+            let answer = arm(mode, own);
+            let number = Literal::usize_unsuffixed(index);
+            match index == last {
+                true => quote!(_ => { #answer }),
+                false => quote!(#number => { #answer }),
+            }
+        });
+        quote!(match #number { #(#arms)* })
+    }
+
+    /// What the mode of `state` answers.
+    fn of_state(&self, arm: impl Fn(&Mode, &TokenStream) -> TokenStream) -> TokenStream {
+        self.of_number(&quote!(::dalembert::__private::modes::index(state)), arm)
+    }
+
+    /// What the mode answers in which states are made.
+    fn of_start(&self, arm: impl Fn(&Mode, &TokenStream) -> TokenStream) -> TokenStream {
+        self.of_number(&quote!(self.mode as usize), arm)
+    }
+}

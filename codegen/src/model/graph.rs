@@ -1,0 +1,398 @@
+//! A model with modes: each mode a model of its own, and how they hang together.
+//!
+//! Coordinates, constraints, surfaces, forces and outputs of the whole are those of all modes, one for each name; what a mode
+//! calls its coordinate `i` is the coordinate `places.coordinates[i]` of the whole.
+
+use dalembert_expr::Pool;
+
+use super::check::{check_mode, peer};
+use super::scene::{Extras, Parts, Scene};
+use super::transition::Peer;
+use super::{Coordinate, Model, Name, Topology};
+use crate::diagnostics::{Diagnostics, listed, nearest};
+use crate::spec::{self, SCENES, STEPS};
+
+/// A checked model with modes.
+#[derive(Debug)]
+pub struct ModeGraph {
+    /// The modes, in order; the first is where a run begins.
+    pub modes: Vec<Mode>,
+    /// The coordinates of all modes.
+    pub coordinates: Vec<Entry>,
+    /// Their constraints.
+    pub constraints: Vec<Entry>,
+    /// Their quasi-velocities.
+    pub frame: Vec<Entry>,
+    /// Their surfaces, transitions among them.
+    pub surfaces: Vec<Entry>,
+    /// Their outputs.
+    pub outputs: Vec<Entry>,
+    /// The names of their forces.
+    pub forces: Vec<Entry>,
+}
+
+/// A mode.
+#[derive(Debug)]
+pub struct Mode {
+    /// Its names, as those of a scene.
+    pub scene: Scene,
+    /// The mode as a model of its own.
+    pub model: Model,
+    /// Where what it declares stands in the whole.
+    pub places: Places,
+}
+
+/// Places in the whole, in the order of the mode.
+#[derive(Debug, Clone, Default)]
+pub struct Places {
+    /// Of its coordinates.
+    pub coordinates: Vec<usize>,
+    /// Of its constraints.
+    pub constraints: Vec<usize>,
+    /// Of its surfaces.
+    pub surfaces: Vec<usize>,
+    /// Of its outputs.
+    pub outputs: Vec<usize>,
+}
+
+/// Something that was declared, with the first mode that has it and its place there.
+#[derive(Debug, Clone)]
+pub struct Entry {
+    /// Its name.
+    pub name: Name,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
+    /// The first mode that has it.
+    pub mode: usize,
+    /// Its place there.
+    pub place: usize,
+}
+
+impl ModeGraph {
+    /// Whether the modes are first-order systems: then all of them are.
+    pub fn is_first_order(&self) -> bool {
+        self.modes.iter().all(|mode| mode.model.is_first_order())
+    }
+}
+
+/// Checks every mode and what they say of each other.
+///
+/// # Errors
+/// Every mistake, each at the smallest part of the declaration that is wrong.
+pub fn check_modes(declared: &spec::Modes) -> Result<ModeGraph, Diagnostics> {
+    let mut diagnostics = Diagnostics::new();
+    check_names(declared, &mut diagnostics);
+    check_reached(declared, &mut diagnostics);
+    check_kind(declared, &mut diagnostics);
+    let peers: Vec<Peer> = (declared.modes.iter())
+        .map(|mode| peer(&mode.name.text, &mode.spec))
+        .collect();
+    let mut models = Vec::new();
+    for mode in &declared.modes {
+        match check_mode(&mode.spec, &peers, STEPS) {
+            Ok(model) => models.push(model),
+            Err(others) => diagnostics.extend_once(others),
+        }
+    }
+    let mut models = diagnostics.finish(models)?;
+    compare_lagrangians(&mut models);
+    keep_common_notes(&mut models);
+    let graph = joined(declared, models);
+    check_topologies(declared, &graph)?;
+    check_surfaces(declared, &graph)?;
+    Ok(graph)
+}
+
+/// Refuses names that no type and module can go by.
+fn check_names(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
+    const MODULES: [&str; 7] = [
+        "coordinate",
+        "constraint",
+        "quasi_velocity",
+        "surface",
+        "output",
+        "mode",
+        spec::WHOLE,
+    ];
+    let parameters = declared.modes[0].spec.parameters.iter();
+    for parameter in parameters.filter(|own| own.declared.name.text == "mode") {
+        let text = "`mode` is the field that says where a run begins";
+        let help = "choose another name";
+        diagnostics
+            .error(parameter.declared.name.at, text)
+            .help(help);
+    }
+    if let Some(mode) = declared.modes.get(SCENES) {
+        let text = format!("more than {SCENES} modes");
+        diagnostics
+            .error(mode.name.at, text)
+            .help("split the model");
+    }
+    for (index, mode) in declared.modes.iter().enumerate() {
+        let (name, at) = (mode.name.text.as_str(), mode.name.at);
+        let own = spec::camel_case(name);
+        let is_word = own.starts_with(char::is_alphabetic) && !spec::is_rust_keyword(&own);
+        if MODULES.contains(&name) {
+            let text = format!("`{name}` cannot be the name of a mode");
+            diagnostics.error(at, text).help("choose another name");
+        } else if own == name || !is_word {
+            let text = format!("`{name}` does not name a type and its module");
+            let help =
+                "write a mode in snake case, like `double_support`; its type is `DoubleSupport`";
+            diagnostics.error(at, text).help(help);
+        } else if let Some(other) = declared.modes[..index].iter().find(|other| {
+            let other = spec::camel_case(&other.name.text);
+            other == own || other == format!("{own}Global") || own == format!("{other}Global")
+        }) {
+            let text = format!(
+                "modes `{}` and `{name}` name the same type",
+                other.name.text
+            );
+            diagnostics.error(at, text).help("choose another name");
+        }
+    }
+}
+
+/// Refuses modes that no transition leads to, and transitions between modes that there are not.
+fn check_reached(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
+    let names: Vec<&str> = (declared.modes.iter())
+        .map(|mode| mode.name.text.as_str())
+        .collect();
+    for (index, transition) in declared.transitions.iter().enumerate() {
+        for word in [&transition.from, &transition.to] {
+            if !names.contains(&word.text.as_str()) {
+                let help = match nearest(&word.text, names.iter().copied()) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => format!("the modes are {}", listed(names.iter().copied())),
+                };
+                let text = format!("unknown mode `{}`", word.text);
+                diagnostics.error(word.at, text).help(help);
+            }
+        }
+        if transition.from.text == transition.to.text {
+            let text = format!(
+                "`{}` leads back into the mode that it leaves",
+                transition.name.text
+            );
+            let help = "write an impact of this mode: `impacts { name: h >= 0 => reset { .. }; }`";
+            diagnostics.error(transition.to.at, text).help(help);
+        }
+        // Those of one mode are told apart with its other surfaces.
+        let is_same = |own: &spec::Transition| {
+            own.name.text == transition.name.text && own.from.text != transition.from.text
+        };
+        let is_first = !declared.transitions[..index].iter().any(is_same);
+        if !is_first {
+            let text = format!("transition `{}` declared again", transition.name.text);
+            diagnostics
+                .error(transition.name.at, text)
+                .help("choose another name");
+        }
+    }
+    if !diagnostics.is_empty() {
+        return;
+    }
+    let mut reached = vec![names.first().copied().unwrap_or_default()];
+    let mut next = 0;
+    while next < reached.len() {
+        for transition in &declared.transitions {
+            let to = transition.to.text.as_str();
+            if transition.from.text == reached[next] && !reached.contains(&to) {
+                reached.push(to);
+            }
+        }
+        next += 1;
+    }
+    for mode in &declared.modes {
+        if !reached.contains(&mode.name.text.as_str()) {
+            let text = format!("mode `{}` is never entered", mode.name.text);
+            let help = format!(
+                "write a transition that leads to it, as `name: {} -> {} when x >= 0;`, or leave it out",
+                names[0], mode.name.text
+            );
+            diagnostics.error(mode.name.at, text).help(help);
+        }
+    }
+}
+
+/// Refuses mechanical modes beside first-order ones: a run has an energy throughout or not at all.
+fn check_kind(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
+    let is_first_order = |mode: &&spec::Mode| mode.spec.field.is_some();
+    let first = declared.modes.iter().find(is_first_order);
+    let other = declared.modes.iter().find(|mode| !is_first_order(mode));
+    if let (Some(first), Some(other)) = (first, other) {
+        let text = format!(
+            "`{}` is a first-order system and `{}` is not",
+            first.name.text, other.name.text
+        );
+        let help = "declare a `lagrangian` in all modes, or a `field` in all of them";
+        diagnostics.error(first.name.at, text).help(help);
+    }
+}
+
+/// Finds the transitions between modes of the same Lagrangian.
+fn compare_lagrangians(models: &mut [Model]) {
+    let texts: Vec<Vec<String>> = models.iter().map(lagrangian_text).collect();
+    for (index, model) in models.iter_mut().enumerate() {
+        for surface in &mut model.surfaces {
+            if let Some(transition) = &mut surface.transition {
+                transition.keeps_lagrangian = texts[index] == texts[transition.enters];
+            }
+        }
+    }
+}
+
+/// Metric, velocity-linear terms and potential as text. Expressions are kept in one order, so that equal texts are equal
+/// functions; two ways of writing one function may count as different.
+fn lagrangian_text(model: &Model) -> Vec<String> {
+    let own = &model.lagrangian;
+    let parts = own.metric.iter().flatten().chain(&own.linear);
+    let text = |pool: &Pool, expr| pool.text(expr);
+    parts
+        .chain([&own.potential])
+        .map(|expr| text(&model.pool, *expr))
+        .collect()
+}
+
+/// What is noted of all modes is noted once, of the first; a parameter that one mode does not use another may.
+fn keep_common_notes(models: &mut [Model]) {
+    let unused = |note: &String| note.ends_with("is not used");
+    let lists: Vec<Vec<String>> = models.iter().map(|model| model.notes.clone()).collect();
+    for model in models {
+        model
+            .notes
+            .retain(|note| !unused(note) || lists.iter().all(|notes| notes.contains(note)));
+    }
+}
+
+/// The lists of all modes.
+fn joined(declared: &spec::Modes, models: Vec<Model>) -> ModeGraph {
+    let mut graph = ModeGraph {
+        modes: Vec::new(),
+        coordinates: Vec::new(),
+        constraints: Vec::new(),
+        frame: Vec::new(),
+        surfaces: Vec::new(),
+        outputs: Vec::new(),
+        forces: Vec::new(),
+    };
+    for (index, (written, model)) in declared.modes.iter().zip(models).enumerate() {
+        macro_rules! placed {
+            ($list:ident) => {{
+                let entries = model
+                    .$list
+                    .iter()
+                    .map(|own| (&own.name, own.documentation.as_slice()));
+                place(&mut graph.$list, index, entries)
+            }};
+        }
+        let places = Places {
+            coordinates: placed!(coordinates),
+            constraints: placed!(constraints),
+            surfaces: placed!(surfaces),
+            outputs: placed!(outputs),
+        };
+        placed!(frame);
+        let forces = model.forces.iter().map(|own| (&own.name, [].as_slice()));
+        place(&mut graph.forces, index, forces);
+        let scene = Scene {
+            name: written.name.text.clone(),
+            type_name: spec::camel_case(&written.name.text),
+            documentation: written.documentation.clone(),
+            parts: Parts {
+                extras: Extras::ALL,
+                ..Parts::default()
+            },
+            item: model.lagrangian.item,
+        };
+        graph.modes.push(Mode {
+            scene,
+            model,
+            places,
+        });
+    }
+    graph
+}
+
+/// Adds what is new of a mode's entries; returns the places of all of them.
+fn place<'e>(
+    list: &mut Vec<Entry>,
+    mode: usize,
+    entries: impl Iterator<Item = (&'e Name, &'e [String])>,
+) -> Vec<usize> {
+    let mut places = Vec::new();
+    for (place, (name, documentation)) in entries.enumerate() {
+        let known = list.iter().position(|own| own.name == *name);
+        places.push(known.unwrap_or_else(|| {
+            list.push(Entry {
+                name: name.clone(),
+                documentation: documentation.to_vec(),
+                mode,
+                place,
+            });
+            list.len() - 1
+        }));
+    }
+    places
+}
+
+/// Refuses a coordinate that is a line in one mode and an angle in another.
+fn check_topologies(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagnostics> {
+    let mut diagnostics = Diagnostics::new();
+    let kind = |model: &Model, coordinate: &Coordinate| match coordinate.topology {
+        Topology::Line => "a line".to_owned(),
+        Topology::Angle => "an angle".to_owned(),
+        Topology::Interval { low, high } => {
+            format!("in ({}, {})", model.pool.text(low), model.pool.text(high))
+        }
+    };
+    for (mode, written) in graph.modes.iter().zip(&declared.modes) {
+        for (own, place) in mode.model.coordinates.iter().zip(&mode.places.coordinates) {
+            let entry = &graph.coordinates[*place];
+            let other = &graph.modes[entry.mode];
+            let first = kind(&other.model, &other.model.coordinates[entry.place]);
+            let second = kind(&mode.model, own);
+            if first != second {
+                let text = format!(
+                    "`{}` is {second} here and {first} in `{}`",
+                    own.name.display, other.scene.name
+                );
+                let at = written.spec.location(own.item);
+                diagnostics.error(at, text).help("choose another name");
+            }
+        }
+    }
+    diagnostics.finish(())
+}
+
+/// Refuses surfaces of one name that are not the same in all modes that have them: events and laws go by their names.
+fn check_surfaces(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagnostics> {
+    let mut diagnostics = Diagnostics::new();
+    let text = |model: &Model, surface: usize| {
+        let own = &model.surfaces[surface];
+        let conditions = own.conditions.iter().map(|own| model.pool.text(*own));
+        let conditions: Vec<String> = conditions.collect();
+        (
+            model.pool.text(own.gap),
+            conditions,
+            model.law_text(surface),
+        )
+    };
+    for (mode, written) in graph.modes.iter().zip(&declared.modes) {
+        for (surface, place) in mode.places.surfaces.iter().enumerate() {
+            let entry = &graph.surfaces[*place];
+            let other = &graph.modes[entry.mode];
+            if text(&mode.model, surface) != text(&other.model, entry.place) {
+                let own = &mode.model.surfaces[surface];
+                let name = &own.name.display;
+                let text = format!(
+                    "the surface `{name}` is another one in `{}`",
+                    other.scene.name
+                );
+                let at = written.spec.location(own.item);
+                diagnostics.error(at, text).help("choose another name");
+            }
+        }
+    }
+    diagnostics.finish(())
+}

@@ -1,0 +1,75 @@
+//! Transitions: surfaces at which one mode gives way to another.
+
+use dalembert_expr::{ExprId, Pool};
+
+use super::{Name, Topology};
+
+/// What happens at a surface that leads to another mode.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Transition {
+    /// The index of the mode that is entered.
+    pub enters: usize,
+    /// Its name.
+    pub mode: String,
+    /// The state that it is entered with; where none was declared, what mechanics makes of the state.
+    pub map: Option<Map>,
+    /// Whether the surface counts from both sides: the opposite of its gap belongs to a transition of the same mode.
+    pub has_no_side: bool,
+    /// Whether both modes have the same Lagrangian, so that only constraints and forces change.
+    pub keeps_lagrangian: bool,
+}
+
+/// The state that a mode is entered with: expressions of the state that is left, of parameters and of time, in the order of
+/// the coordinates of the mode that is entered.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Map {
+    /// Names of these coordinates.
+    pub names: Vec<String>,
+    /// Positions.
+    pub q: Vec<ExprId>,
+    /// Velocities; none where the mode is a first-order system.
+    pub qdot: Vec<ExprId>,
+}
+
+impl Map {
+    /// Everything that is given.
+    pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
+        self.q.iter().chain(&self.qdot).copied()
+    }
+}
+
+impl Transition {
+    /// Everything that is given.
+    pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
+        self.map.iter().flat_map(Map::expressions)
+    }
+
+    /// What happens, as text: `-> rough`, `-> rough, reset { x = -x; }`.
+    pub(super) fn text(&self, pool: &Pool) -> String {
+        let mut text = format!("-> {}", self.mode);
+        let Some(map) = &self.map else {
+            return text;
+        };
+        let velocities = map.names.iter().map(|name| format!("dot({name})"));
+        let names = map.names.iter().cloned().chain(velocities);
+        let entries = names.zip(map.expressions());
+        let entries: String = entries
+            .map(|(name, value)| (name, pool.text(value)))
+            .filter(|(name, value)| name != value)
+            .map(|(name, value)| format!("{name} = {value}; "))
+            .collect();
+        text.push_str(&format!(", reset {{ {entries}}}"));
+        text
+    }
+}
+
+/// What other modes need to know of a mode before it is checked.
+#[derive(Debug, Clone)]
+pub(super) struct Peer {
+    /// Its name.
+    pub(super) name: String,
+    /// Its coordinates.
+    pub(super) coordinates: Vec<(Name, Topology)>,
+    /// Whether it is a first-order system.
+    pub(super) is_first_order: bool,
+}

@@ -1,0 +1,60 @@
+//! A rimless wheel of five spokes of different lengths that rolls down a slope: a mode for each spoke that stands.
+//!
+//! Facts: on one spoke the wheel is a pendulum upside down; where the next one lands speed is lost, and the square of the rate is
+//! mapped affinely from turn to turn, so that there is one limit cycle and every motion that goes on tends to it.
+//! Source: W. Clark, thesis, section 4.3 and Table 4.1, with the angles of the triangles between feet and hub by the law of
+//! cosines.
+
+dalembert::model! {
+    /// Rimless wheel with five spokes (W. Clark, thesis, Table 4.1).
+    pub RimlessWheelFive {
+        const N = 5;
+        /// Angle of the spoke that stands, from the vertical.
+        coordinates { x; }
+        parameters {
+            /// Slope.
+            alpha = 0.5062;
+            /// Half the angle between a spoke and the next.
+            delta[N] > 0 = [0.6516, 0.7124, 0.6410, 0.5639, 0.5728];
+            /// Lengths of the spokes.
+            l[N] > 0 = [1.7184, 1.8985, 1.6416, 1.5872, 1.6217];
+            /// Acceleration of gravity.
+            g > 0 = 1;
+        }
+        // Distance of the feet of two spokes, and the angle at the second of them.
+        let s[i in 1..=N] = sqrt(l[i]^2 + l[i%N + 1]^2 - 2*l[i]*l[i%N + 1]*cos(2*delta[i]));
+        let xi[i in 1..=N] = acos((l[i%N + 1]^2 + s[i]^2 - l[i]^2)/(2*l[i%N + 1]*s[i]));
+        let landing(angle, half) = pi/2 - angle - 2*half - alpha;
+        let pendulum(r) = r^2*dot(x)^2/2 - g*r*cos(x);
+        modes {
+            spoke1 { lagrangian = pendulum(l[1]); initial { x = 0.1; dot(x) = -0.4; until = 40; } }
+            spoke2 { lagrangian = pendulum(l[2]); }
+            spoke3 { lagrangian = pendulum(l[3]); }
+            spoke4 { lagrangian = pendulum(l[4]); }
+            spoke5 { lagrangian = pendulum(l[5]); }
+        }
+        transitions {
+            step1: spoke1 -> spoke2 when x <= landing(xi[1], delta[1]) => reset {
+                x = x + 2*delta[1];
+                dot(x) = l[1]/l[2]*cos(2*delta[1])*dot(x);
+            };
+            step2: spoke2 -> spoke3 when x <= landing(xi[2], delta[2]) => reset {
+                x = x + 2*delta[2];
+                dot(x) = l[2]/l[3]*cos(2*delta[2])*dot(x);
+            };
+            step3: spoke3 -> spoke4 when x <= landing(xi[3], delta[3]) => reset {
+                x = x + 2*delta[3];
+                dot(x) = l[3]/l[4]*cos(2*delta[3])*dot(x);
+            };
+            step4: spoke4 -> spoke5 when x <= landing(xi[4], delta[4]) => reset {
+                x = x + 2*delta[4];
+                dot(x) = l[4]/l[5]*cos(2*delta[4])*dot(x);
+            };
+            step5: spoke5 -> spoke1 when x <= landing(xi[5], delta[5]) => reset {
+                x = x + 2*delta[5];
+                dot(x) = l[5]/l[1]*cos(2*delta[5])*dot(x);
+            };
+        }
+        claims { conserved: energy; }
+    }
+}

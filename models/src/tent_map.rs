@@ -1,0 +1,52 @@
+//! Three squares that are crossed from left to right, and whose first return map is the tent map: a system of three modes
+//! whose every motion is trivial, and chaos.
+//!
+//! Fact: the square `first` is entered at heights `y, T(y), T(T(y)), ..`, `T` the tent map. Source: W. Clark, thesis, Example IV.28.
+
+dalembert::model! {
+    /// Three squares with the tent map for a return map (W. Clark, thesis, Example IV.28).
+    pub TentMap {
+        coordinates { x; y; }
+        field { dot(x) = 1; dot(y) = 0; }
+        modes {
+            first { initial { y = 2/7; until = 12; } }
+            /// Where heights up to 1/2 lead.
+            lower { }
+            /// Where heights above 1/2 lead.
+            upper { }
+        }
+        transitions {
+            down: first -> lower when x >= 1 when y < 1/2 => reset { x = 0; y = 2*y; };
+            up: first -> upper when x >= 1 when y > 1/2 => reset { x = 0; y = 2*(1 - y); };
+            from_lower: lower -> first when x >= 1 => reset { x = 0; };
+            from_upper: upper -> first when x >= 1 => reset { x = 0; };
+        }
+        view { path: (x, y); }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dalembert::{Dop853, EventLog, Outcome, Scene, Simulation, System, Tolerance};
+
+    #[test]
+    fn the_return_map_is_the_tent_map() {
+        let squares = TentMap::default();
+        let stepper = Dop853::new(Tolerance::new(1e-10).unwrap());
+        let mut y = 0.34;
+        let state = squares
+            .state(0.0, &[0.0, y].into(), &[0.0; 2].into())
+            .unwrap();
+        let mut log = EventLog::<_, 40>::new();
+        let run = Simulation::new(&squares, stepper, squares.effects())
+            .run(0.0, state, 40.5, &mut log)
+            .unwrap();
+        assert_eq!(run.outcome, Outcome::Done);
+        for pair in log.iter().collect::<Vec<_>>().chunks(2) {
+            y = if y < 0.5 { 2.0 * y } else { 2.0 * (1.0 - y) };
+            assert_eq!(pair[1].after[1], y);
+            assert_eq!(squares.mode(&pair[1].after), tent_map::Mode::First as usize);
+        }
+    }
+}

@@ -1,0 +1,339 @@
+//! Models with modes against reference values: changes of constraints, refraction, wheels of many spokes.
+
+use core::ops::ControlFlow;
+
+use dalembert::describe::Described;
+use dalembert::{
+    Dop853, Event, Impacting, Observer, Outcome, Scene, Simulation, System, Taylor, TaylorField,
+    Tolerance, VectorField,
+};
+use dalembert_models::{
+    BallOnSwitchingTable, RefractedParticle, RimlessWheelFive, RimlessWheelTen,
+    SmoothAndRoughPlane, SphereInPlane, TwoWheelsArrested,
+    smooth_and_rough_plane::smooth_and_rough_plane,
+};
+use dalembert_tests::reference::{number, numbers, read};
+use serde_json::Value;
+
+/// Events of a run.
+struct Events<S>(Vec<Event<S>>);
+
+impl<Sys: System> Observer<Sys> for Events<Sys::State> {
+    fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
+        self.0.push(*event);
+        ControlFlow::Continue(())
+    }
+}
+
+/// Runs with both kinds of integrators, which agree; returns the events and the end.
+fn run<S>(system: &S, q: &[f64], qdot: &[f64], until: f64) -> (Vec<Event<S::State>>, S::State)
+where
+    S: Scene + TaylorField + Impacting,
+{
+    let vector = |values: &[f64]| {
+        let mut vector = <S::Vector as dalembert::StateVector>::zeros();
+        dalembert::StateVector::as_mut_slice(&mut vector).copy_from_slice(values);
+        vector
+    };
+    let state = system
+        .state(0.0, &vector(q), &vector(qdot))
+        .expect("a state");
+    let tolerance = Tolerance::new(1e-13).expect("a tolerance");
+    let mut events = Events(Vec::new());
+    let end = Simulation::new(system, Dop853::new(tolerance), system.effects())
+        .run(0.0, state, until, &mut events)
+        .expect("a start");
+    assert_eq!(end.outcome, Outcome::Done);
+    let mut again = Events(Vec::new());
+    let other = Simulation::new(system, Taylor::new(tolerance), system.effects())
+        .run(0.0, state, until, &mut again)
+        .expect("a start");
+    assert_eq!(other.outcome, Outcome::Done);
+    assert_eq!(events.0.len(), again.0.len());
+    for (one, other) in events.0.iter().zip(&again.0) {
+        assert_eq!(one.surface, other.surface);
+        assert!((one.t - other.t).abs() < 1e-10 * (1.0 + one.t));
+    }
+    (events.0, end.state)
+}
+
+fn close(own: f64, stored: f64, bound: f64, what: &str) {
+    let error = (own - stored).abs() / (1.0 + stored.abs());
+    assert!(
+        error <= bound,
+        "{what}: {own} is not {stored}, by {error:e}"
+    );
+}
+
+/// Rates of the Euler angles (phi, theta, psi) of a ball with these angular velocities, at psi = 0.
+fn euler_rates(theta: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    let phi = -y / theta.sin();
+    [phi, x, z - theta.cos() * phi]
+}
+
+/// Velocities of the centre and angular velocities.
+fn speeds<S: Described>(system: &S, t: f64, state: &S::State) -> [f64; 5] {
+    let qdot = system.velocity(t, state).expect("a velocity");
+    let qdot = dalembert::StateVector::as_slice(&qdot);
+    let mut spin = [0.0; 3];
+    system.outputs(t, state, &mut spin).expect("outputs");
+    [qdot[0], qdot[1], spin[0], spin[1], spin[2]]
+}
+
+#[test]
+fn a_ball_comes_onto_a_rough_plane() {
+    let file = read("cortes_vinogradov");
+    let cases = file["cv61_smooth_rough"].as_array().expect("cases");
+    let ball = SmoothAndRoughPlane::default();
+    let mut reflected = 0;
+    for case in cases {
+        let velocity = numbers(&case["velocity_smooth"]);
+        // Its own axis lies along the angular velocity and stands still, away from where the angles are singular.
+        let spin = [velocity[2], velocity[3], velocity[4]];
+        let size = spin.iter().map(|own| own * own).sum::<f64>().sqrt();
+        let (theta, psi) = ((spin[2] / size).acos(), spin[0].atan2(-spin[1]));
+        let q = [number(&case["x0"]), number(&case["y0"]), 0.3, theta, psi];
+        let qdot = [velocity[0], velocity[1], size, 0.0, 0.0];
+        let until = number(&case["T"]);
+        let (events, end) = run(&ball, &q, &qdot, until);
+        let is_refracted = case["outcome"] == "refracted";
+        assert_eq!(events.len(), if is_refracted { 1 } else { 2 });
+        reflected += usize::from(!is_refracted);
+        let last = events.last().expect("an event");
+        close(last.t, number(&case["t_cross"]), 1e-12, "time");
+        close(
+            ball.position(&last.after)[1],
+            number(&case["y_cross"]),
+            1e-12,
+            "place",
+        );
+        let after = speeds(&ball, last.t, &last.after);
+        for (own, stored) in after.into_iter().zip(numbers(&case["velocity_after"])) {
+            close(own, stored, 1e-12, "velocity");
+        }
+        let energies =
+            [&events[0].before, &last.after].map(|own| ball.energy(0.0, own).expect("an energy"));
+        close(
+            energies[0],
+            number(&case["energy_before"]),
+            1e-12,
+            "energy before",
+        );
+        close(
+            energies[1],
+            number(&case["energy_after"]),
+            1e-12,
+            "energy after",
+        );
+        let place = ball.position(&end);
+        for (own, stored) in place.iter().zip(numbers(&case["position_at_T"])) {
+            close(*own, stored, 1e-11, "end");
+        }
+        let mode = if is_refracted {
+            smooth_and_rough_plane::Mode::Rough
+        } else {
+            smooth_and_rough_plane::Mode::Smooth
+        };
+        assert_eq!(ball.mode(&end), mode as usize);
+    }
+    assert!(reflected > 0);
+}
+
+#[test]
+fn a_table_switches_its_speed() {
+    let file = read("cortes_vinogradov");
+    for trajectory in file["cv63_table"]["trajectories"]
+        .as_array()
+        .expect("trajectories")
+    {
+        let ball = BallOnSwitchingTable::default();
+        assert_eq!(number(&trajectory["Omega_initial"]), ball.Om_minus);
+        let initial = numbers(&trajectory["initial(x,y,vx,vy,wz)"]);
+        let (x, y, vx, vy) = (initial[0], initial[1], initial[2], initial[3]);
+        let theta = 1.3;
+        let spin = [ball.Om_minus * x - vy, vx + ball.Om_minus * y, initial[4]];
+        let rates = euler_rates(theta, spin.map(|own| own / ball.r));
+        let rates = [rates[0], rates[1], initial[4] - theta.cos() * rates[0]];
+        let switches = trajectory["switches"].as_array().expect("switches");
+        let until = number(&switches[switches.len() - 1]["t"]) + 1e-3;
+        let q = [x, y, 0.2, theta, 0.0];
+        let (events, _) = run(&ball, &q, &[vx, vy, rates[0], rates[1], rates[2]], until);
+        assert_eq!(events.len(), switches.len());
+        for (event, stored) in events.iter().zip(switches) {
+            close(event.t, number(&stored["t"]), 1e-11, "time");
+            close(
+                ball.position(&event.after)[0],
+                number(&stored["x"]),
+                1e-11,
+                "place",
+            );
+            let sides = [
+                ("velocity_minus", &event.before),
+                ("velocity_plus", &event.after),
+            ];
+            for (name, state) in sides {
+                let own = speeds(&ball, event.t, state);
+                for (own, stored) in own.into_iter().zip(numbers(&stored[name])) {
+                    close(own, stored, 1e-11, name);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_rod_is_arrested() {
+    let file = read("cortes_vinogradov");
+    for case in file["cv64"]["cases"].as_array().expect("cases") {
+        let wheels = TwoWheelsArrested::default();
+        let initial = numbers(&case["initial(x1,x2,v1,v2)"]);
+        let first = &case["elastic_sequence"][0];
+        let q = [initial[0], initial[1], 0.0, 0.0];
+        let qdot = [
+            initial[2],
+            initial[3],
+            initial[2] / wheels.r1,
+            initial[3] / wheels.r2,
+        ];
+        let (events, _) = run(&wheels, &q, &qdot, 10.0);
+        assert_eq!(events.len(), 1);
+        close(events[0].t, number(&first["t"]), 1e-12, "time");
+        let p = wheels.momentum(0.0, &events[0].after).expect("momenta");
+        for (own, stored) in p.iter().zip(numbers(&first["inelastic_p_plus"])) {
+            close(*own, stored, 1e-13, "momentum");
+        }
+        let energy = wheels.energy(0.0, &events[0].after).expect("an energy");
+        close(energy, number(&first["energy_inelastic"]), 1e-13, "energy");
+    }
+}
+
+#[test]
+fn light_is_refracted_as_snell_says() {
+    let file = read("refraction");
+    let cases = file["snell"].as_array().expect("cases");
+    let mut reflected = 0;
+    for case in cases {
+        let particle = RefractedParticle {
+            m1: number(&case["m1"]),
+            m2: number(&case["m2"]),
+            V1: number(&case["V1"]),
+            V2: number(&case["V2"]),
+            ..RefractedParticle::default()
+        };
+        let p = numbers(&case["p_before"]);
+        let qdot = [p[0] / particle.m1, p[1] / particle.m1];
+        let (events, end) = run(&particle, &[-qdot[0], 0.0], &qdot, 1.5);
+        assert_eq!(events.len(), 1);
+        let after = particle.momentum(1.5, &end).expect("momenta");
+        for (own, stored) in after.iter().zip(numbers(&case["p_after"])) {
+            close(*own, stored, 4e-16, "momentum");
+        }
+        let is_reflected = case["outcome"] == "total reflection";
+        reflected += usize::from(is_reflected);
+        assert_eq!(particle.mode(&end), usize::from(!is_reflected));
+    }
+    assert!(reflected > 0);
+}
+
+#[test]
+fn a_point_crosses_a_sphere_in_a_plane() {
+    let file = read("refraction");
+    for case in file["sphere_in_plane"].as_array().expect("cases") {
+        let initial = numbers(&case["initial(rho,x,y,px,py)"]);
+        let point = SphereInPlane {
+            rho: initial[0],
+            ..SphereInPlane::default()
+        };
+        let until = number(&case["t_out"]) + 0.5;
+        let (events, _) = run(&point, &initial[1..3], &initial[3..5], until);
+        assert_eq!(events.len(), 2);
+        let compare = |own: &[f64], name: &str| {
+            for (own, stored) in own.iter().zip(numbers(&case[name])) {
+                close(*own, stored, 1e-11, name);
+            }
+        };
+        let momentum = |t: f64, state: &_| point.momentum(t, state).expect("momenta");
+        close(events[0].t, number(&case["t_in"]), 1e-12, "t_in");
+        compare(point.position(&events[0].after).as_slice(), "q_in");
+        compare(momentum(0.0, &events[0].after).as_slice(), "p_in_after");
+        let qdot = point.velocity(0.0, &events[0].after).expect("a velocity");
+        compare(qdot.as_slice(), "qdot_in_after");
+        close(events[1].t, number(&case["t_out"]), 1e-11, "t_out");
+        compare(point.position(&events[1].before).as_slice(), "q_out");
+        compare(momentum(0.0, &events[1].before).as_slice(), "p_before_exit");
+        compare(momentum(0.0, &events[1].after).as_slice(), "p_after_exit");
+        for event in &events {
+            let energy = |state: &_| point.energy(event.t, state).expect("an energy");
+            close(energy(&event.after), energy(&event.before), 1e-15, "energy");
+        }
+    }
+}
+
+/// The steps of one turn on the limit cycle, from the first spoke on.
+fn check_wheel<S>(wheel: &S, stored: &Value)
+where
+    S: Scene + TaylorField + Impacting<State: AsRef<[f64]>>,
+{
+    let cycle = &stored["limit_cycle_xi_true"];
+    let steps = cycle["steps"].as_array().expect("steps");
+    let first = [
+        number(&steps[0]["start_angle"]),
+        number(&steps[0]["start_rate"]),
+    ];
+    let period = number(&cycle["period"]);
+    let (events, end) = run(wheel, &first[..1], &first[1..], period * (1.0 + 1e-9));
+    assert_eq!(events.len(), steps.len());
+    let mut t = 0.0;
+    for (n, (event, step)) in events.iter().zip(steps).enumerate() {
+        t += number(&step["duration"]);
+        close(event.t, t, 1e-11, "time");
+        assert_eq!(wheel.mode(&event.before), n);
+        let before = [event.before.as_ref()[0], wheel_rate(wheel, &event.before)];
+        close(before[0], number(&step["end_angle"]), 1e-11, "angle");
+        close(before[1], number(&step["end_rate"]), 1e-11, "rate");
+        let next = &steps[(n + 1) % steps.len()];
+        close(
+            event.after.as_ref()[0],
+            number(&next["start_angle"]),
+            1e-11,
+            "angle after",
+        );
+        close(
+            wheel_rate(wheel, &event.after),
+            number(&next["start_rate"]),
+            1e-11,
+            "rate after",
+        );
+    }
+    assert_eq!(wheel.mode(&end), 0);
+}
+
+fn wheel_rate<S: System>(wheel: &S, state: &S::State) -> f64 {
+    let qdot = wheel.velocity(0.0, state).expect("a velocity");
+    dalembert::StateVector::as_slice(&qdot)[0]
+}
+
+#[test]
+fn wheels_of_many_spokes_have_the_stored_limit_cycles() {
+    let file = read("rimless_wheels");
+    check_wheel(&RimlessWheelFive::default(), &file["wheels"][0]);
+    check_wheel(&RimlessWheelTen::default(), &file["wheels"][1]);
+}
+
+/// A start anywhere is drawn to the limit cycle.
+#[test]
+fn a_wheel_tends_to_its_limit_cycle() {
+    let file = read("rimless_wheels");
+    let cycle = &file["wheels"][0]["limit_cycle_xi_true"]["steps"][0];
+    let wheel = RimlessWheelFive::default();
+    let start = [number(&cycle["start_angle"]), -0.6];
+    let (events, _) = run(&wheel, &start[..1], &start[1..], 60.0);
+    let turns: Vec<_> = events
+        .iter()
+        .filter(|event| wheel.mode(&event.after) == 0)
+        .collect();
+    assert!(turns.len() >= 3);
+    let rate = wheel_rate(&wheel, &turns[2].after);
+    close(rate, number(&cycle["start_rate"]), 1e-11, "rate");
+    assert_eq!(<RimlessWheelFive as VectorField>::State::default().len(), 3);
+}

@@ -1,0 +1,11 @@
+dalembert::model! {
+    Particle {
+        coordinates { x; y; theta: angle; }
+        parameters { m > 0 = 1; k > 0 = 1; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(theta)^2);
+        modes { smooth { } rough { } }
+        transitions { enter: smooth -> ruogh when x >= 0; leave: slick -> smooth when x <= 0; }
+    }
+}
+
+fn main() {}
