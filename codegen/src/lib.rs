@@ -112,7 +112,10 @@ fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostic
     compile_spec(&spec::parse(input)?, steps)
 }
 
-fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
+pub(crate) fn compile_spec(
+    spec: &spec::Spec,
+    steps: u64,
+) -> Result<Compiled, diagnostics::Diagnostics> {
     let model = model::check_within(spec, steps)?;
     let scenes: Vec<model::Model> = (0..model.scenes.len())
         .map(|scene| model.in_scene(scene))

@@ -27,9 +27,10 @@ use equations::Writer;
 use crate::claims::Finding;
 use crate::diagnostics::Diagnostics;
 use crate::emit::text;
-use crate::model::Model;
+use crate::model::{Mode, ModeGraph, Model};
 use crate::program::{Cost, Program};
-use crate::{Compiled, compile};
+use crate::spec::{self, Declaration, Modes};
+use crate::{Compiled, CompiledModes, compile_modes, compile_spec};
 
 /// A derivation in words and formulas.
 #[derive(Debug, Clone, PartialEq)]
@@ -127,7 +128,11 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
     let tokens: TokenStream = source
         .parse()
         .map_err(|error: LexError| ReportError::Tokens(error.to_string()))?;
-    let mut compiled = compile(tokens).map_err(ReportError::Declaration)?;
+    let spec = match spec::read(tokens).map_err(ReportError::Declaration)? {
+        Declaration::Model(spec) => spec,
+        Declaration::Modes(declared) => return report_of_modes(&declared),
+    };
+    let mut compiled = compile_spec(&spec, spec::STEPS).map_err(ReportError::Declaration)?;
     let names: Vec<String> = (compiled.model.scenes.iter())
         .map(|scene| scene.name.clone())
         .collect();
@@ -140,6 +145,73 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
         scenes,
         ..report_of(compiled, name)
     })
+}
+
+/// The report of a model with modes: how they hang together, and each of them as a scene.
+fn report_of_modes(declared: &Modes) -> Result<Report, ReportError> {
+    let compiled = compile_modes(declared).map_err(ReportError::Declaration)?;
+    let CompiledModes { graph, modes } = compiled;
+    let model = &graph.modes[0].model;
+    let coordinates = |mode: &Mode| {
+        let names = mode.model.coordinates.iter();
+        let names: Vec<&str> = names.map(|own| own.name.display.as_str()).collect();
+        names.join(", ")
+    };
+    let lines = graph.modes.iter().map(|mode| {
+        let documentation = text(&mode.scene.documentation).replace('\n', " ");
+        let line = format!(
+            "{}: {}. {documentation}",
+            mode.scene.name,
+            coordinates(mode)
+        );
+        Item::Words(line.trim_end().to_owned())
+    });
+    let sections = [
+        Section::plain("Modes", lines.collect()),
+        Section::plain("Transitions", transitions(&graph)),
+    ];
+    let (name, documentation) = (model.snake_name.clone(), text(&model.documentation));
+    let scenes = graph.modes.iter().zip(modes);
+    let scenes = scenes.map(|(mode, own)| report_of(own, mode.scene.name.clone()));
+    Ok(Report {
+        name,
+        documentation,
+        sections: sections.into(),
+        findings: Vec::new(),
+        scenes: scenes.collect(),
+    })
+}
+
+/// Where each transition leads, when, and with which state.
+fn transitions(graph: &ModeGraph) -> Vec<Item> {
+    let mut items = Vec::new();
+    for mode in &graph.modes {
+        for (index, surface) in mode.model.surfaces.iter().enumerate() {
+            let Some(transition) = &surface.transition else {
+                continue;
+            };
+            let kind = match (&transition.map, mode.model.is_first_order()) {
+                (Some(_), _) => "with the declared state",
+                (None, true) => "with the same position",
+                (None, false) if transition.keeps_lagrangian => {
+                    "with the nearest velocity that its constraints allow"
+                }
+                (None, false) => "refracted, or reflected where there is not enough energy",
+            };
+            let conditions = surface.conditions.iter();
+            let conditions =
+                conditions.map(|own| format!(" when {} > 0", mode.model.pool.text(*own)));
+            items.push(Item::Words(format!(
+                "{}: {} {} when {} <= 0{}, {kind}",
+                surface.name.display,
+                mode.scene.name,
+                mode.model.law_text(index),
+                mode.model.pool.text(surface.gap),
+                conditions.collect::<String>(),
+            )));
+        }
+    }
+    items
 }
 
 /// The report of a model or a scene.

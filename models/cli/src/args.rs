@@ -177,6 +177,9 @@ pub struct ModelArgs {
     /// Set a parameter; may be repeated.
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<String>,
+    /// The mode to begin in, of a model with modes; without it the first.
+    #[arg(long, value_name = "MODE")]
+    pub mode: Option<String>,
 }
 
 /// What to do with a velocity that violates the constraints.

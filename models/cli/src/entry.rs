@@ -107,6 +107,8 @@ pub(crate) struct Start {
 /// What tables and pictures show of a state; NaN where a quantity does not exist.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Point {
+    /// The name of the mode, of a model with modes.
+    pub mode: Option<&'static str>,
     pub q: Vec<f64>,
     pub qdot: Vec<f64>,
     pub p: Vec<f64>,
@@ -120,6 +122,7 @@ impl Point {
     pub fn undefined(description: &Description) -> Self {
         let nothing = vec![f64::NAN; description.coordinates.len()];
         Self {
+            mode: None,
             q: nothing.clone(),
             qdot: nothing.clone(),
             p: nothing,
@@ -135,6 +138,8 @@ pub(crate) trait AnyModel {
     fn description(&self) -> Description;
     fn parameter(&self, index: usize) -> f64;
     fn set_parameter(&mut self, index: usize, value: f64);
+    /// The mode, by number, that states are made in.
+    fn set_mode(&mut self, mode: usize);
     fn check_parameters(&self) -> Result<(), ParameterError>;
     fn initial(&self) -> Start;
     /// The velocities with those that are not `named` chosen by the constraints.
@@ -284,6 +289,10 @@ impl<M: Model> AnyModel for Typed<M> {
 
     fn set_parameter(&mut self, index: usize, value: f64) {
         self.0.set_parameter(index, value);
+    }
+
+    fn set_mode(&mut self, mode: usize) {
+        self.0.set_mode(mode);
     }
 
     fn check_parameters(&self) -> Result<(), ParameterError> {
@@ -438,8 +447,17 @@ fn abreast<M: Model, S: Model<Vector = M::Vector>>(
 
 /// What tables and pictures show of a state.
 pub(crate) fn point<M: Described>(model: &M, t: f64, state: &M::State) -> Point {
+    let mode = M::DESCRIPTION.modes.get(model.mode(state));
+    // A mode need not have all coordinates of the model.
+    let has = |index: usize| mode.is_none_or(|mode| mode.coordinates.contains(&index));
+    let own = |values: &[f64]| -> Vec<f64> {
+        let numbered = values.iter().enumerate();
+        numbered
+            .map(|(index, &value)| if has(index) { value } else { f64::NAN })
+            .collect()
+    };
     let components = |values: Result<M::Vector, Fault>| match values {
-        Ok(values) => values.as_slice().to_vec(),
+        Ok(values) => own(values.as_slice()),
         Err(_) => vec![f64::NAN; M::Vector::LEN],
     };
     let mut outputs = vec![f64::NAN; M::DESCRIPTION.outputs.len()];
@@ -447,7 +465,8 @@ pub(crate) fn point<M: Described>(model: &M, t: f64, state: &M::State) -> Point 
         outputs.fill(f64::NAN);
     }
     Point {
-        q: model.position(state).as_slice().to_vec(),
+        mode: mode.map(|mode| mode.name),
+        q: own(model.position(state).as_slice()),
         qdot: components(model.velocity(t, state)),
         p: components(model.momentum(t, state)),
         energy: model.energy(t, state).unwrap_or(f64::NAN),

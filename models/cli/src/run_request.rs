@@ -145,15 +145,23 @@ fn laws(model: &dyn AnyModel, flags: &[String]) -> Result<Vec<(usize, Law)>, Cli
         let law = parse_law(law)?;
         match surface {
             Some(name) => {
-                laws.push((
-                    names::find("--law", "surface", name, names::surfaces(description))?,
-                    law,
-                ));
+                let surface = names::find("--law", "surface", name, names::surfaces(description))?;
+                if model.law(surface) == Some(Law::Transition) {
+                    return Err(CliError::Usage(
+                        "--law: a transition leads to another mode, and takes no law",
+                    ));
+                }
+                laws.push((surface, law));
             }
             None if description.surfaces.is_empty() => {
                 return Err(CliError::Usage("--law: the model has no impact surfaces"));
             }
-            None => laws.extend((0..description.surfaces.len()).map(|surface| (surface, law))),
+            // Where modes meet there is no wall.
+            None => laws.extend(
+                (0..description.surfaces.len())
+                    .filter(|&surface| model.law(surface) != Some(Law::Transition))
+                    .map(|surface| (surface, law)),
+            ),
         }
     }
     let declares_reset = |surface: usize| model.law(surface) == Some(Law::Reset);

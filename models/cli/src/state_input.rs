@@ -28,6 +28,14 @@ pub fn build_model(models: &[Entry], args: &ModelArgs) -> Result<Box<dyn AnyMode
     for text in &args.set {
         set_parameter(model.as_mut(), text)?;
     }
+    if let Some(name) = &args.mode {
+        let modes = model.description().modes;
+        if modes.is_empty() {
+            return Err(CliError::Usage("--mode: the model has no modes"));
+        }
+        let names = modes.iter().map(|mode| mode.name);
+        model.set_mode(names::find("--mode", "mode", name, names)?);
+    }
     let checked = model.check_parameters();
     checked.map_err(|error| CliError::state("--set", &model.description(), error.into()))?;
     Ok(model)

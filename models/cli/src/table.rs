@@ -71,6 +71,7 @@ fn header(description: &Description) -> Vec<String> {
     header.extend(names::coordinates(description).map(names::velocity));
     header.extend(energy(description).map(|()| "energy".to_owned()));
     header.extend(description.outputs.iter().map(|&output| output.to_owned()));
+    header.extend((!description.modes.is_empty()).then(|| "mode".to_owned()));
     header.push("event".to_owned());
     header
 }
@@ -88,8 +89,14 @@ fn row(description: &Description, t: f64, point: &Point, event: &str) -> Vec<Str
         .chain(energy(description).map(|()| point.energy))
         .chain(point.outputs.iter().copied());
     // `Debug` writes the shortest decimal that reads back to the same number, with an exponent where that is short.
+    let has_modes = !description.modes.is_empty();
     numbers
-        .map(|number| format!("{number:?}"))
+        .map(|number| match has_modes && number.is_nan() {
+            // What the mode does not have.
+            true => String::new(),
+            false => format!("{number:?}"),
+        })
+        .chain(has_modes.then(|| point.mode.unwrap_or_default().to_owned()))
         .chain([event.to_owned()])
         .collect()
 }

@@ -77,7 +77,7 @@ fn laws(args: &EvalArgs) -> Vec<Law> {
         .filter(|(_, takes_coefficient)| !takes_coefficient);
     let mut laws: Vec<Law> = plain
         .filter_map(|(name, _)| Law::from_name(name, 0.0))
-        .filter(|law| *law != Law::Reset)
+        .filter(|law| !law.is_map())
         .collect();
     laws.extend(args.restitution.map(Law::Restitution));
     laws.extend(args.newton.map(Law::Newton));

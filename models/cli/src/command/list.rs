@@ -65,6 +65,7 @@ fn entry_json(entry: &Entry) -> Value {
         "parameters": description.parameters.iter().map(|parameter| parameter.name).collect::<Vec<_>>(),
         "constraints": description.constraints.iter().map(|constraint| constraint.name).collect::<Vec<_>>(),
         "surfaces": names::surfaces(description).collect::<Vec<_>>(),
+        "modes": description.modes.iter().map(|mode| mode.name).collect::<Vec<_>>(),
         "scenes": entry.scenes().collect::<Vec<_>>(),
     })
 }

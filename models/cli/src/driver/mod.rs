@@ -321,6 +321,8 @@ fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, V
             constraint: broken,
         } => vec![surface(index), constraint(broken)],
         Outcome::Contact { surface: index }
+        | Outcome::LeftMode { surface: index }
+        | Outcome::Trapped { surface: index }
         | Outcome::NoReset { surface: index }
         | Outcome::TangentialCrossing { surface: index }
         | Outcome::SingularSurface { surface: index } => vec![surface(index)],

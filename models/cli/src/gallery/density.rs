@@ -189,6 +189,7 @@ mod tests {
 
         fn at(&self, t: f64) -> Point {
             Point {
+                mode: None,
                 q: vec![],
                 qdot: vec![],
                 p: vec![],

@@ -161,8 +161,15 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
             .into_iter()
             .map(|kept| (marks[kept].t, marks[kept].values[curve]))
             .collect();
-        let line = PathElement::new(points, style::curve(index).stroke_width(stroke(1.4)));
-        chart.draw_series([line]).map_err(message)?;
+        // A mode need not have the quantity.
+        let pieces = points.split(|(_, value)| !value.is_finite());
+        let lines = pieces.map(|piece| {
+            PathElement::new(
+                piece.to_vec(),
+                style::curve(index).stroke_width(stroke(1.4)),
+            )
+        });
+        chart.draw_series(lines).map_err(message)?;
     }
     Ok(())
 }

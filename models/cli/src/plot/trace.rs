@@ -218,6 +218,7 @@ mod tests {
 
         fn at(&self, t: f64) -> Point {
             Point {
+                mode: None,
                 q: vec![t],
                 qdot: vec![1.0],
                 p: vec![1.0],

@@ -89,6 +89,9 @@ fn outcome(finished: &Finished<'_>) -> Value {
             .iter()
             .map(|(name, value)| ((*name).to_owned(), value.clone())),
     );
+    if let Some(mode) = ending.last.mode {
+        outcome.insert("mode".to_owned(), mode.into());
+    }
     outcome.insert("q".to_owned(), vector(&ending.last.q));
     outcome.insert("qdot".to_owned(), vector(&ending.last.qdot));
     Value::Object(outcome)
@@ -103,6 +106,10 @@ fn event(description: &Description, impact: &Impact) -> Value {
         "qdot_plus": vector(&impact.after.qdot),
         "energy": number(impact.after.energy),
     });
+    if let (Some(before), Some(after)) = (impact.before.mode, impact.after.mode) {
+        event["mode_minus"] = before.into();
+        event["mode_plus"] = after.into();
+    }
     // A reset of positions.
     if impact.before.q != impact.after.q {
         event["q_minus"] = vector(&impact.before.q);
@@ -123,12 +130,16 @@ fn hold(description: &Description, contact: &Contact) -> Value {
 }
 
 fn sample(description: &Description, t: f64, point: &Point) -> Value {
-    json!({
+    let mut sample = json!({
         "t": number(t),
         "q": vector(&point.q),
         "qdot": vector(&point.qdot),
         "p": vector(&point.p),
         "energy": number(point.energy),
         "outputs": named(description.outputs.iter().copied(), &point.outputs),
-    })
+    });
+    if let Some(mode) = point.mode {
+        sample["mode"] = mode.into();
+    }
+    sample
 }

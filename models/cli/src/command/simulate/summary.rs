@@ -16,6 +16,12 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     writeln!(output, "{}", title(finished))?;
     writeln!(output, "  outcome     {}", outcome(ending))?;
     writeln!(output, "  impacts     {}", impacts(finished))?;
+    if let (Some(first), Some(last)) = (ending.first.mode, ending.last.mode) {
+        writeln!(
+            output,
+            "  mode        {first} at the start, {last} at the end"
+        )?;
+    }
     if !finished.model.description().is_first_order {
         writeln!(output, "  energy      {}", energy(ending))?;
     }
