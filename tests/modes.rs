@@ -337,3 +337,54 @@ fn a_wheel_tends_to_its_limit_cycle() {
     close(rate, number(&cycle["start_rate"]), 1e-11, "rate");
     assert_eq!(<RimlessWheelFive as VectorField>::State::default().len(), 3);
 }
+
+dalembert::model! {
+    /// A field whose left side turns away from the line below `y = -1`.
+    Leaving {
+        coordinates { x; y; }
+        modes {
+            right { field { dot(x) = -1; dot(y) = -1; } }
+            left { field { dot(x) = 1 + y; dot(y) = -1; } }
+        }
+        transitions {
+            leftward: right -> left when x <= 0;
+            rightward: left -> right when x >= 0;
+        }
+    }
+}
+
+/// Where sliding begins and ends.
+struct Slides<S>(Vec<(f64, bool, S)>);
+
+impl<Sys: System> Observer<Sys> for Slides<Sys::State> {
+    fn hold(&mut self, hold: &dalembert::Hold<Sys::State>) -> ControlFlow<()> {
+        self.0.push((hold.t, hold.begins, hold.state));
+        ControlFlow::Continue(())
+    }
+}
+
+/// The motion slides down the line until one side leads away from it, and goes on there.
+#[test]
+fn a_slide_ends_where_one_side_leads_away() {
+    let field = Leaving::default();
+    let state = field
+        .state(0.0, &[0.5, 0.5].into(), &[0.0; 2].into())
+        .expect("a state");
+    let tolerance = Tolerance::new(1e-13).expect("a tolerance");
+    let mut slides = Slides(Vec::new());
+    let run = Simulation::new(&field, Taylor::new(tolerance), field.effects())
+        .run(0.0, state, 3.0, &mut slides)
+        .expect("a start");
+    assert_eq!((run.outcome, run.counters.impacts), (Outcome::Done, 1));
+    let times: Vec<(f64, bool)> = slides.0.iter().map(|own| (own.0, own.1)).collect();
+    assert_eq!(times.len(), 2);
+    assert!((times[0].0 - 0.5).abs() < 1e-14 && times[0].1);
+    assert!((times[1].0 - 1.5).abs() < 1e-13 && !times[1].1, "{times:?}");
+    assert_eq!(field.mode(&run.state), leaving::Mode::Left as usize);
+    // x = -(t - 1.5)^2/2, y = 1/2 - t
+    let q = field.position(&run.state);
+    assert!(
+        (q[0] + 1.125).abs() < 1e-12 && (q[1] + 2.5).abs() < 1e-13,
+        "{q:?}"
+    );
+}

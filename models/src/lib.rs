@@ -12,6 +12,7 @@ pub mod chaplygin_sleigh;
 pub mod dimensionless_walker;
 pub mod double_pendulum;
 pub mod figures;
+pub mod filippov_field;
 pub mod harmonic_oscillator;
 pub mod holonomic_bead_on_ellipses;
 pub mod point_billiard;
@@ -35,6 +36,7 @@ pub use chain::{Chain2, Chain3, Chain4, Chain8, Chain16};
 pub use chaplygin_sleigh::ChaplyginSleigh;
 pub use dimensionless_walker::DimensionlessWalker;
 pub use double_pendulum::DoublePendulum;
+pub use filippov_field::FilippovField;
 pub use harmonic_oscillator::HarmonicOscillator;
 pub use holonomic_bead_on_ellipses::HolonomicBeadOnEllipses;
 pub use point_billiard::PointBilliard;
@@ -64,6 +66,7 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         ChaplyginSleigh,
         DimensionlessWalker,
         DoublePendulum,
+        FilippovField,
         HarmonicOscillator,
         HolonomicBeadOnEllipses,
         PointBilliard,

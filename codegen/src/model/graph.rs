@@ -75,6 +75,42 @@ impl ModeGraph {
     }
 }
 
+impl ModeGraph {
+    /// Pairs of transitions between first-order modes that keep the state, at one surface from its two sides: the gap of
+    /// the second, as it is written, is that of the first with the other sign.
+    pub fn opposites(&self) -> impl Iterator<Item = [usize; 2]> {
+        let leaving = |index: usize| {
+            let mode = &self.modes[index];
+            let surfaces = mode.model.surfaces.iter().zip(&mode.places.surfaces);
+            surfaces
+                .filter_map(move |(own, place)| Some((mode, own, own.transition.as_ref()?, *place)))
+        };
+        let all = (0..self.modes.len())
+            .flat_map(move |index| leaving(index).map(move |own| (index, own)));
+        let modes: Vec<_> = all
+            .filter(|(_, (mode, _, transition, _))| {
+                mode.model.is_first_order() && transition.map.is_none()
+            })
+            .collect();
+        let mut pairs = Vec::new();
+        for (from, (mode, own, transition, place)) in &modes {
+            let mut pool = mode.model.pool.clone();
+            let opposite = pool.neg(own.gap);
+            let opposite = pool.text(opposite);
+            pairs.extend(
+                modes
+                    .iter()
+                    .filter_map(|(other, (target, back, returning, there))| {
+                        let leads_back = *other == transition.enters && returning.enters == *from;
+                        (leads_back && target.model.pool.text(back.gap) == opposite)
+                            .then_some([*place, *there])
+                    }),
+            );
+        }
+        pairs.into_iter()
+    }
+}
+
 /// Checks every mode and what they say of each other.
 ///
 /// # Errors

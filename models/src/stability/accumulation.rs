@@ -43,10 +43,6 @@ dalembert::model! {
     }
 }
 
-/// Why fields that differ by side cannot be declared.
-const NO_SIDES: &str =
-    "`modes` are not implemented: a field is the same on both sides of a surface";
-
 /// The cases.
 pub const CASES: &[Case] = &[
     Case {
@@ -114,22 +110,6 @@ pub const CASES: &[Case] = &[
             "the state itself is infinite where impacts accumulate: a run ends as `step_underflow` after some 32 impacts",
         ),
         ..Case::NIGHTLY
-    },
-    Case {
-        id: "B12",
-        title: "sliding between the fields (-2, 1) and (1, -1)",
-        right: "the sliding vector (0, -1/3) from the hit on",
-        bound: "a fixed number of switches, then sliding; P-STATE(1e3)",
-        pending: Some(NO_SIDES),
-        ..Case::QUICK
-    },
-    Case {
-        id: "B13",
-        title: "crossing between the fields (-2, 1) and (-1, -1)",
-        right: "crosses once",
-        bound: "one record, no slide",
-        pending: Some(NO_SIDES),
-        ..Case::QUICK
     },
 ];
 

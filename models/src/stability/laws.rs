@@ -20,9 +20,6 @@ dalembert::model! {
     }
 }
 
-/// Why two dynamics on either side of a surface cannot be had.
-const NO_MODES: &str = "`modes` and `transitions` are not implemented: the dynamics is the same on both sides of a surface";
-
 /// The cases.
 pub const CASES: &[Case] = &[
     Case {
@@ -73,46 +70,6 @@ pub const CASES: &[Case] = &[
         right: "v+ = 2w - v; H+ - H- = -eps d_t h with p+ - p- = eps d_x h",
         bound: "8 u of the largest speed, and u per step",
         run: Run::Steps(moving_wall),
-        ..Case::QUICK
-    },
-    Case {
-        id: "C15",
-        title: "a step dV of the potential across a surface",
-        right: "p_n+ = sqrt(p_n^2 - 2 m dV) where real, else reflected; p_t kept",
-        bound: "8 u; a graze where p_n^2 = 2 m dV",
-        pending: Some(NO_MODES),
-        ..Case::QUICK
-    },
-    Case {
-        id: "C16",
-        title: "a step of the potential by 0",
-        right: "the identity",
-        bound: "bit for bit",
-        pending: Some(NO_MODES),
-        ..Case::QUICK
-    },
-    Case {
-        id: "C17",
-        title: "refraction between metrics n_i^2 |dx|^2",
-        right: "n1 sin a1 = n2 sin a2; total reflection beyond the critical angle",
-        bound: "16 u",
-        pending: Some(NO_MODES),
-        ..Case::QUICK
-    },
-    Case {
-        id: "C18",
-        title: "a mode that changes at an impact and back at a second surface",
-        right: "the closed form, piece by piece",
-        bound: "exact sequence of modes",
-        pending: Some(NO_MODES),
-        ..Case::QUICK
-    },
-    Case {
-        id: "C19",
-        title: "an impact exactly where a mode changes",
-        right: "the documented order",
-        bound: "the same under 1e-15, or `ambiguous`",
-        pending: Some(NO_MODES),
         ..Case::QUICK
     },
     Case {

@@ -26,6 +26,7 @@ mod location;
 mod long;
 mod scaling;
 mod structure;
+mod switches;
 pub mod tables;
 mod zeno;
 
@@ -39,6 +40,7 @@ pub fn all() -> Vec<Case> {
         zeno::CASES,
         accumulation::CASES,
         laws::CASES,
+        switches::CASES,
         corners::CASES,
         constrained::CASES,
         drift::CASES,

@@ -82,6 +82,13 @@ pub trait Impacting: System {
         self.law(surface) == Law::Reset
     }
 
+    /// The transition that leads back at once from the mode that a transition leads to, where first-order modes meet at one
+    /// surface and the state stays the same: there motions may slide.
+    fn opposite(&self, surface: usize) -> Option<usize> {
+        let _ = surface;
+        None
+    }
+
     /// The state after the declared reset of a surface, or in the mode that it leads to.
     ///
     /// # Errors

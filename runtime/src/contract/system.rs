@@ -70,6 +70,12 @@ pub trait System: VectorField {
     /// The first [`ParameterError`], in order of declaration.
     fn check_parameters(&self) -> Result<(), ParameterError>;
 
+    /// How many components of a state, positions, come before those that hold its motion.
+    fn motion_start(&self, state: &Self::State) -> usize {
+        let _ = state;
+        Self::Vector::LEN
+    }
+
     /// The mode that a state is of (see [`modes`](crate::modes)); 0 for systems without modes.
     fn mode(&self, state: &Self::State) -> usize {
         let _ = state;

@@ -55,7 +55,11 @@ impl<Sys: Impacting> Impacts<Sys> {
                 .map(|((v, w), (p, q))| (v - w) * (p - q))
                 .sum())
         };
-        let difference = energy(&ascending, &descending)?;
+        let difference = match energy(&ascending, &descending) {
+            // A first-order system is where it is, and nothing besides.
+            Err(Outcome::FirstOrder) => return Ok(None),
+            difference => difference?,
+        };
         let changes = energy(&ascending, now.state)?.max(energy(&descending, now.state)?);
         Ok((difference > SAME * changes).then_some([first, last]))
     }
@@ -76,9 +80,8 @@ impl<Sys: Impacting> Impacts<Sys> {
             let rate = rates.as_slice()[surface];
             hits.set_still(surface, STILL * rate.abs());
             let struck = self.struck(now.system, surface, rate, now.t, &state)?;
-            let place = |state: &Sys::State| (now.system.mode(state), now.system.position(state));
-            if place(&struck.after) != place(&state) {
-                // A reset has left the corner, or a transition the mode.
+            if now.system.position(&struck.after) != now.system.position(&state) {
+                // A reset has left the corner.
                 return Ok(Some(struck.after));
             }
             (state, rates) = (struck.after, struck.rates);

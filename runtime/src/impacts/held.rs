@@ -11,6 +11,7 @@
 //! positive semidefinite, so that conjugate gradients solve them in as many steps as there are surfaces, one for one
 //! surface, without a matrix being kept.
 
+use super::sliding::Slide;
 use crate::contract::Impacting;
 use crate::effects::{Change, Moment};
 use crate::error::Fault;
@@ -25,6 +26,8 @@ const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
 pub struct Held<G> {
     /// 1 for those held.
     surfaces: G,
+    /// The two transitions between which the motion slides; they count as held.
+    slide: Option<Slide>,
 }
 
 impl<G: StateVector> Held<G> {
@@ -32,6 +35,7 @@ impl<G: StateVector> Held<G> {
     pub(super) fn none() -> Self {
         Self {
             surfaces: G::zeros(),
+            slide: None,
         }
     }
 
@@ -49,6 +53,18 @@ impl<G: StateVector> Held<G> {
 
     pub(super) fn release(&mut self, surface: usize) {
         self.surfaces.as_mut_slice()[surface] = 0.0;
+    }
+
+    /// The motion slides between two modes from now on.
+    pub(super) fn slide_along(&mut self, slide: Slide) {
+        self.hold(slide.back);
+        self.hold(slide.across);
+        self.slide = Some(slide);
+    }
+
+    /// The transitions between which the motion slides.
+    pub(super) fn slide(&self) -> Option<Slide> {
+        self.slide
     }
 
     /// Those held, in order of index.
@@ -74,6 +90,9 @@ impl<G: StateVector> Held<G> {
         t: f64,
         state: &Sys::State,
     ) -> Result<Option<G>, Fault> {
+        if let Some(slide) = self.slide {
+            return slide.pressures(system, t, state).map(Some);
+        }
         let mut rate = Sys::State::zeros();
         system.rate(t, state, &mut rate)?;
         self.sizes_at(system, t, state, &rate)
@@ -174,6 +193,10 @@ impl<G: StateVector> Held<G> {
         if self.is_empty() {
             return Ok(Change::Kept);
         }
+        if let Some(slide) = self.slide {
+            slide.settle(now.system, now.t, now.state)?;
+            return Ok(Change::Changed);
+        }
         now.counters.event_evaluations += 1;
         let gaps = now.system.gaps(now.t, now.state);
         self.settle_positions(now, &gaps)?;
@@ -222,6 +245,9 @@ impl<Sys: Impacting> Forces<Sys> for Held<Sys::Gaps> {
         state: &Sys::State,
         rate: &mut Sys::State,
     ) -> Result<(), Fault> {
+        if let Some(slide) = self.slide {
+            return slide.add(system, t, state, rate);
+        }
         match self.sizes_at(system, t, state, rate)? {
             Some(sizes) => self.push(system, t, state, &sizes, rate),
             None => Ok(()),
@@ -237,7 +263,7 @@ pub(super) fn second_rates<Sys: Impacting>(
     rate: &Sys::State,
 ) -> Result<Option<Sys::Gaps>, Fault> {
     let mut motion = Sys::Impulse::zeros();
-    let parts = rate.as_slice().iter().skip(Sys::Vector::LEN);
+    let parts = rate.as_slice().iter().skip(system.motion_start(state));
     for (part, rate) in motion.as_mut_slice().iter_mut().zip(parts) {
         *part = *rate;
     }

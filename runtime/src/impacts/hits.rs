@@ -39,7 +39,8 @@ impl<G: StateVector> Hits<G> {
         self.at_hand.as_slice().contains(&1.0)
     }
 
-    fn is_approached(&self, surface: usize, rates: &G) -> bool {
+    /// Whether a surface is at hand and approached.
+    pub(super) fn is_approached(&self, surface: usize, rates: &G) -> bool {
         self.at_hand.as_slice()[surface] == 1.0
             && rates.as_slice()[surface] < -self.still.as_slice()[surface]
     }

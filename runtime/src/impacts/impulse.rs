@@ -9,6 +9,7 @@ use super::law::{Blow, Law};
 use super::override_table::Overrides;
 use super::policy::{Corner, Penetration, Policies, Rest, Split};
 use super::resting::Resting;
+use super::sliding::Slide;
 use super::watch::Watch;
 use crate::contract::Impacting;
 use crate::effects::{Change, Effect, Moment, SceneEffects, StepView};
@@ -186,6 +187,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                 }
                 if changes {
                     self.watch.pass_by(&mut hits);
+                    self.slide(surface, &mut hits, &rates, now, observer)?;
                 }
             } else {
                 if self.watch.is_tangential_crossing(surface) {
@@ -199,6 +201,28 @@ impl<Sys: Impacting> Impacts<Sys> {
             several = several || hits.approached(&rates) > 0;
         }
         self.watch.leave(&hits, now, rates)
+    }
+
+    /// Begins to slide, if the mode that was just entered through a surface leads back at once, and nothing but the mode
+    /// changes on the way.
+    fn slide<O: Observer<Sys>>(
+        &mut self,
+        across: usize,
+        hits: &mut Hits<Sys::Gaps>,
+        rates: &Sys::Gaps,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        match now.system.opposite(across) {
+            Some(back) if hits.is_approached(back, rates) => {
+                hits.set_done(back);
+                self.resting
+                    .begin_slide(Slide { back, across }, now, observer)?;
+                self.watch.hold(self.resting.held());
+                Ok(())
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The impulse of the law in force.

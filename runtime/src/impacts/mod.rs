@@ -18,6 +18,7 @@ mod resting;
 mod root;
 mod search;
 mod series;
+mod sliding;
 mod tangency;
 mod watch;
 

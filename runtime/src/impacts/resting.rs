@@ -7,6 +7,7 @@ use core::ops::ControlFlow;
 
 use super::held::Held;
 use super::release::first_release;
+use super::sliding::Slide;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::integrate::Stepper;
@@ -114,7 +115,10 @@ impl<G: StateVector> Resting<G> {
     ) -> Result<bool, Outcome> {
         match core::mem::replace(&mut self.turn, Turn::Nothing) {
             Turn::Nothing => return Ok(false),
-            Turn::Leave(surface) => self.leave(surface, now, observer)?,
+            Turn::Leave(surface) => match self.held.slide() {
+                Some(slide) => self.end_slide(slide, surface, now, observer)?,
+                None => self.leave(surface, now, observer)?,
+            },
             Turn::Press(surface) => {
                 self.held.hold(surface);
                 if self.held.sizes(now.system, now.t, now.state)?.is_none() {
@@ -145,7 +149,7 @@ impl<G: StateVector> Resting<G> {
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
-        if self.held.is_empty() {
+        if self.held.is_empty() || self.held.slide().is_some() {
             return Ok(());
         }
         let (system, t) = (now.system, now.t);
@@ -176,12 +180,73 @@ impl<G: StateVector> Resting<G> {
         now: &Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
+        let is_left = |surface: usize| at_hand.as_slice()[surface] != 1.0;
+        if let Some(slide) = self.held.slide() {
+            return match is_left(slide.back) {
+                true => self.show_end_of_slide(slide, now, observer),
+                false => Ok(()),
+            };
+        }
         for surface in 0..G::LEN {
-            if self.held.is_held(surface) && at_hand.as_slice()[surface] != 1.0 {
+            if self.held.is_held(surface) && is_left(surface) {
                 self.leave(surface, now, observer)?;
             }
         }
         Ok(())
+    }
+
+    /// Two modes lead into each other: the motion slides between them.
+    pub(super) fn begin_slide<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+        &mut self,
+        slide: Slide,
+        now: &Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        self.count(slide.back, now.t)?;
+        self.held.slide_along(slide);
+        show(
+            observer,
+            Hold {
+                t: now.t,
+                surface: slide.across,
+                state: *now.state,
+                begins: true,
+                accumulation: None,
+            },
+        )
+    }
+
+    /// One of the modes leads away from the surface, that of this transition: the motion goes on there.
+    fn end_slide<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+        &mut self,
+        slide: Slide,
+        surface: usize,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        if surface == slide.across {
+            *now.state = slide.across(now.system, now.t, now.state)?;
+        }
+        self.show_end_of_slide(slide, now, observer)
+    }
+
+    fn show_end_of_slide<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+        &mut self,
+        slide: Slide,
+        now: &Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        self.held = Held::none();
+        show(
+            observer,
+            Hold {
+                t: now.t,
+                surface: slide.across,
+                state: *now.state,
+                begins: false,
+                accumulation: None,
+            },
+        )
     }
 
     /// Leaves surfaces that would have to pull, one after the other, but not the one just pressed.

@@ -248,6 +248,9 @@ pub(super) fn emit_system(whole: &Whole<'_>) -> TokenStream {
     let chart = whole.of_state(
         |_, mode| quote!(::dalembert::__private::modes::outside_chart::<#mode>(self, state)),
     );
+    let motion = whole.of_state(
+        |_, mode| quote!(<<#mode as ::dalembert::System>::Vector as ::dalembert::StateVector>::LEN),
+    );
     let unchecked = make(quote!(state_unchecked), quote!(t, q, qdot));
     let from_momenta = make(quote!(state_from_momenta), quote!(t, q, p));
     let nearest = make(quote!(state_nearest), quote!(t, q, qdot));
@@ -283,6 +286,8 @@ pub(super) fn emit_system(whole: &Whole<'_>) -> TokenStream {
                 #(::dalembert::System::check_parameters(&<#types as ::dalembert::Mode>::of(self))?;)*
                 ::core::result::Result::Ok(())
             }
+
+            fn motion_start(&self, state: &Self::State) -> usize { #motion }
 
             #[inline]
             fn mode(&self, state: &Self::State) -> usize { ::dalembert::__private::modes::index(state) }
@@ -408,6 +413,7 @@ pub(super) fn emit_impacting(whole: &Whole<'_>) -> TokenStream {
         true => quote!(false),
         false => quote!(::core::matches!(surface, #(#passable)|*)),
     };
+    let opposite = emit_opposites(whole);
     let result = |of: TokenStream| quote!(::core::result::Result<#of, ::dalembert::Fault>);
     let [optional, rated] = [
         quote!(::core::option::Option<Self::Gaps>),
@@ -446,6 +452,8 @@ pub(super) fn emit_impacting(whole: &Whole<'_>) -> TokenStream {
 
             fn is_passable(&self, surface: usize) -> bool { #passable }
 
+            #opposite
+
             fn landing(
                 &self,
                 surface: usize,
@@ -459,6 +467,25 @@ pub(super) fn emit_impacting(whole: &Whole<'_>) -> TokenStream {
             fn blow(&self, surface: usize, t: f64, state: &Self::State) -> #blown { #blow }
 
             fn contact(&self, surface: usize, t: f64, state: &Self::State) -> #touched { #contact }
+        }
+    }
+}
+
+/// The transition that leads back from each, between first-order modes.
+fn emit_opposites(whole: &Whole<'_>) -> TokenStream {
+    let opposites: Vec<[usize; 2]> = whole.graph.opposites().collect();
+    if opposites.is_empty() {
+        return TokenStream::new();
+    }
+    let arms = opposites
+        .iter()
+        .map(|[surface, back]| quote!(#surface => ::core::option::Option::Some(#back),));
+    quote! {
+        fn opposite(&self, surface: usize) -> ::core::option::Option<usize> {
+            match surface {
+                #(#arms)*
+                _ => ::core::option::Option::None,
+            }
         }
     }
 }

@@ -143,7 +143,8 @@ fn emit_mode(
         lines.extend([String::new(), format!(" Note: {note}")]);
     }
     let documentation = doc::lines(&lines);
-    let global = parameters::emit_global(context, &mode.scene.type_name, "mode", &quote!(pub));
+    let visibility = inner_visibility(&whole.model().visibility);
+    let global = parameters::emit_global(context, &mode.scene.type_name, "mode", &visibility);
     let lists = crate::emit::indices::emit_lists(own);
     let title = format!(
         " Indices of the names of the mode `{}`, in its own order.",
@@ -154,7 +155,7 @@ fn emit_mode(
         #documentation
         #[allow(private_interfaces)]
         #[derive(Debug, Clone, Copy, PartialEq)]
-        pub struct #type_name(
+        #visibility struct #type_name(
             /// The model with its parameters.
             pub super::#holder,
         );
@@ -162,5 +163,16 @@ fn emit_mode(
         #global
         #[doc = #title]
         pub mod #module { #lists }
+    }
+}
+
+/// The visibility of the model as it is written in the module beside it: a mode names the model in its interface, and may
+/// not be seen from farther away.
+fn inner_visibility(written: &str) -> TokenStream {
+    match written.replace(' ', "").as_str() {
+        "" => quote!(pub(super)),
+        "pub(super)" => quote!(pub(in super::super)),
+        "pub(self)" => quote!(pub(super)),
+        _ => written.parse().unwrap_or_default(),
     }
 }

@@ -9,7 +9,9 @@ use super::super::Lagrangian;
 use super::super::resolve::{Resolver, Scope};
 use super::targets::Section;
 use crate::diagnostics::{Location, listed};
-use crate::spec::{AssignmentTarget, Declared, InitialTarget, ItemId, RESET, Rate, Statement};
+use crate::spec::{
+    self, AssignmentTarget, Declared, InitialTarget, ItemId, RESET, Rate, Statement,
+};
 
 const NONE: &str = "a first-order system has no";
 
@@ -124,7 +126,9 @@ pub(super) fn check_surfaces(resolver: &mut Resolver<'_>) {
     if spec.field.is_none() {
         return;
     }
-    for surface in &spec.surfaces {
+    // Of a transition without a reset the state stays.
+    let takes_reset = |own: &&spec::Surface| own.enters.is_none() || own.law.is_some();
+    for surface in spec.surfaces.iter().filter(takes_reset) {
         match &surface.law {
             Some(law) if law.name.text == RESET => {
                 for entry in law.assignments.iter().flatten() {

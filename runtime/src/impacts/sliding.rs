@@ -1,0 +1,118 @@
+//! Sliding along a surface where two first-order modes meet and both lead into it.
+//!
+//! The motion is Filippov's: the combination of both fields that stays on the surface,
+//!
+//! ```text
+//! f = f_b + s (f_a - f_b),   s = r_b/(r_a + r_b),
+//! ```
+//!
+//! with `r_a`, `r_b` the gap rates of the two transitions, each in the mode that it leaves; both are negative. It ends where one
+//! of them is 0: the motion goes on in that mode.
+//!
+//! Reference: A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), section 4.
+
+use crate::contract::Impacting;
+use crate::error::Fault;
+use crate::outcome::Outcome;
+use crate::state::StateVector;
+
+/// Two transitions that lead into each other: the one that leaves the present mode, and the one that was taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Slide {
+    /// Out of the mode that the state is of.
+    pub(super) back: usize,
+    /// Out of the other mode.
+    pub(super) across: usize,
+}
+
+/// Both fields at a state, and how fast each leads into the surface.
+struct Sides<Sys: Impacting> {
+    own: Sys::State,
+    other: Sys::State,
+    /// `[r_b, r_a]`
+    rates: [f64; 2],
+}
+
+impl Slide {
+    /// The state in the other mode.
+    pub(super) fn across<Sys: Impacting>(
+        self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+    ) -> Result<Sys::State, Outcome> {
+        Ok(system.landing(self.back, t, state)?.state)
+    }
+
+    fn sides<Sys: Impacting>(
+        self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+    ) -> Result<Sides<Sys>, Fault> {
+        let other = self
+            .across(system, t, state)
+            .map_err(|_| Fault::SingularSurface { surface: self.back })?;
+        let mut rates = [Sys::State::zeros(); 2];
+        system.rate(t, state, &mut rates[0])?;
+        system.rate(t, &other, &mut rates[1])?;
+        let back = system.gap_rates(t, state)?.as_slice()[self.back];
+        let across = system.gap_rates(t, &other)?.as_slice()[self.across];
+        Ok(Sides {
+            own: rates[0],
+            other: rates[1],
+            rates: [back, across],
+        })
+    }
+
+    /// How fast both modes lead into the surface, at the places of their transitions; 0 elsewhere.
+    pub(super) fn pressures<Sys: Impacting>(
+        self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+    ) -> Result<Sys::Gaps, Fault> {
+        let [back, across] = self.sides(system, t, state)?.rates;
+        let mut pressures = Sys::Gaps::zeros();
+        pressures.as_mut_slice()[self.back] = -back;
+        pressures.as_mut_slice()[self.across] = -across;
+        Ok(pressures)
+    }
+
+    /// Turns the rate of the present mode into that of the sliding motion.
+    pub(super) fn add<Sys: Impacting>(
+        self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        rate: &mut Sys::State,
+    ) -> Result<(), Fault> {
+        let Sides { own, other, rates } = self.sides(system, t, state)?;
+        let share = rates[0] / (rates[0] + rates[1]);
+        let pairs = own.as_slice().iter().zip(other.as_slice());
+        for (rate, (own, other)) in rate.as_mut_slice().iter_mut().zip(pairs) {
+            *rate += share * (other - own);
+        }
+        Ok(())
+    }
+
+    /// Brings the state back to the surface, along the difference of both fields.
+    pub(super) fn settle<Sys: Impacting>(
+        self,
+        system: &Sys,
+        t: f64,
+        state: &mut Sys::State,
+    ) -> Result<(), Fault> {
+        let gap = system.gaps(t, state).as_slice()[self.back];
+        let Sides { own, other, rates } = self.sides(system, t, state)?;
+        let step = gap / (rates[0] + rates[1]);
+        if !step.is_finite() {
+            return Ok(());
+        }
+        let pairs = own.as_slice().iter().zip(other.as_slice());
+        for (value, (own, other)) in state.as_mut_slice().iter_mut().zip(pairs) {
+            *value += step * (other - own);
+        }
+        Ok(())
+    }
+}
