@@ -130,10 +130,11 @@ mod quadrature;
 pub mod record;
 pub mod simulation;
 pub mod state;
+pub mod variations;
 
 pub use contract::{
     Constrained, Divergence, Impacting, InvariantVolume, Lagrangian, System, TaylorField,
-    VectorField,
+    Variational, VectorField,
 };
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
@@ -153,6 +154,7 @@ pub use projection::Projection;
 pub use record::{Event, EventLog, Hold, Observer, Segment};
 pub use simulation::Simulation;
 pub use state::StateVector;
+pub use variations::{Tangent, Undefined, Variations};
 
 #[cfg(feature = "macros")]
 pub use dalembert_macros::model;

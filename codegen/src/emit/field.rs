@@ -52,6 +52,24 @@ impl Context<'_> {
         quote!(let [#(#parts),*] = *state;)
     }
 
+    /// `let [x, _] = *source;` with those of some locals that the function uses, from an array called `q` or `qdot`.
+    pub(super) fn bind_row_of(
+        &self,
+        function: &Function,
+        locals: &[Ident],
+        input: fn(usize) -> Input,
+    ) -> TokenStream {
+        let (pattern, any) = pattern(locals, |i| uses(function, |own| own == input(i)));
+        let source = match input(0) {
+            Input::Coordinate(_) => quote!(q),
+            _ => quote!(qdot),
+        };
+        match any {
+            true => quote!(let [#pattern, ..] = *#source;),
+            false => TokenStream::new(),
+        }
+    }
+
     fn state_patterns(&self, function: &Function) -> [(TokenStream, bool); 2] {
         let coordinates = pattern(&self.names.coordinates, |i| {
             uses(function, |input| input == Input::Coordinate(i))

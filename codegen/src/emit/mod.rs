@@ -17,6 +17,7 @@ mod names;
 mod parameters;
 mod reduced;
 mod scene;
+mod variational;
 mod volume;
 
 use proc_macro2::TokenStream;
@@ -121,7 +122,7 @@ fn contexts_of_scene<'a>(
 }
 
 /// What is implemented for a type of the model.
-fn implementations(context: &Context<'_>) -> [TokenStream; 10] {
+fn implementations(context: &Context<'_>) -> [TokenStream; 11] {
     [
         field::emit_field(context),
         field::emit_system(context),
@@ -131,6 +132,7 @@ fn implementations(context: &Context<'_>) -> [TokenStream; 10] {
         impact::emit_impacting(context),
         volume::emit_divergence(context),
         volume::emit_invariant_volume(context),
+        variational::emit_variational(context),
         describe::emit_described(context),
         describe::emit_scene(context),
     ]

@@ -37,6 +37,8 @@ pub struct Extras {
     pub projection: bool,
     /// Density form, divergence, and the invariant volume that a claim proves.
     pub volume: bool,
+    /// States, gaps and transitions over numbers, for first variations.
+    pub variations: bool,
 }
 
 impl Extras {
@@ -44,6 +46,7 @@ impl Extras {
     pub const ALL: Self = Self {
         projection: true,
         volume: true,
+        variations: true,
     };
 }
 
@@ -77,9 +80,17 @@ impl Model {
         let forces = parts.forces.iter().map(|own| &self.forces[*own].name);
         let surfaces = parts.surfaces.iter().map(|own| &self.surfaces[*own].name);
         let names = forces.chain(surfaces).map(|name| name.display.as_str());
-        let Extras { projection, volume } = parts.extras;
-        let projection = projection.then_some("projection");
-        let extras = projection.into_iter().chain(volume.then_some("volume"));
+        let Extras {
+            projection,
+            volume,
+            variations,
+        } = parts.extras;
+        let extras = [
+            projection.then_some("projection"),
+            volume.then_some("volume"),
+            variations.then_some("variations"),
+        ];
+        let extras = extras.into_iter().flatten();
         match listed(names.chain(extras)) {
             none if none.is_empty() => "motion alone".to_owned(),
             words => format!("motion with {words}"),

@@ -24,12 +24,8 @@ pub const SECTIONS: [&str; 17] = [
 ];
 
 /// Words of the language that this version does not implement, each with what can be written instead.
-pub const NOT_IMPLEMENTED: [(&str, &str); 3] = [
+pub const NOT_IMPLEMENTED: [(&str, &str); 2] = [
     ("inputs", "declare a parameter and set it between runs"),
-    (
-        "variations",
-        "leave it out; differences of runs from neighbouring states approximate them",
-    ),
     ("instantaneous", "declare the constraint in `constraints`"),
 ];
 
@@ -140,7 +136,7 @@ pub const RESET: &str = "reset";
 
 /// What a scene may use besides named forces and surfaces: the return to the constraints after steps, and density form,
 /// divergence and invariant volume.
-pub const EXTRAS: [&str; 2] = ["projection", "volume"];
+pub const EXTRAS: [&str; 3] = ["projection", "volume", "variations"];
 
 /// The scene that the model itself is: everything that was declared.
 pub const WHOLE: &str = "all";

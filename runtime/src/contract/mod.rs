@@ -6,10 +6,12 @@ mod constrained;
 mod field;
 mod impacting;
 mod system;
+mod variational;
 mod volume;
 
 pub use constrained::Constrained;
 pub use field::{TaylorField, VectorField};
 pub use impacting::Impacting;
 pub use system::{Lagrangian, System};
+pub use variational::Variational;
 pub use volume::{Divergence, InvariantVolume};

@@ -16,6 +16,7 @@
 
 use core::fmt;
 
+use crate::numbers::Numbers;
 use crate::state::StateVector;
 
 /// An impact law of a surface.
@@ -122,16 +123,14 @@ impl<V: StateVector> Contact<V> {
 
     /// What a law takes from the gap rate; NaN for [`Law::Reset`].
     pub fn rate_taken(&self, law: Law) -> f64 {
-        let elastic = self.constrained_rate + self.surface_rate;
-        match law {
-            Law::Elastic => 2.0 * elastic,
-            Law::Restitution(e) => (1.0 + e) * elastic,
-            Law::Newton(e) => (1.0 + e) * self.gap_rate,
-            Law::NonholonomicPlastic => 2.0 * self.rho() * self.gap_rate,
-            Law::ImpactPlastic => self.gap_rate,
-            Law::TotallyPlastic => self.rho() * self.gap_rate,
-            Law::Reset | Law::Transition => f64::NAN,
-        }
+        let scalars = [
+            self.gap_rate,
+            self.constrained_rate,
+            self.surface_rate,
+            self.constrained_compliance,
+            self.free_compliance,
+        ];
+        law.taken(law.coefficient().unwrap_or(0.0), &scalars)
     }
 
     /// The gap rate after an impulse of size `eps`.
@@ -168,6 +167,24 @@ impl Law {
             Self::TotallyPlastic => "totally_plastic",
             Self::Reset => "reset",
             Self::Transition => "transition",
+        }
+    }
+
+    /// What the law takes from the gap rate, with `e` for its coefficient and the numbers of a [`Contact`] in its order;
+    /// NaN for [`Law::Reset`].
+    #[inline(always)]
+    pub(crate) fn taken<L: Numbers>(self, e: L, scalars: &[L; 5]) -> L {
+        let [gap_rate, constrained_rate, surface_rate, constrained, free] = *scalars;
+        let elastic = constrained_rate + surface_rate;
+        let rho = || constrained / free;
+        match self {
+            Self::Elastic => L::of(2.0) * elastic,
+            Self::Restitution(_) => (L::of(1.0) + e) * elastic,
+            Self::Newton(_) => (L::of(1.0) + e) * gap_rate,
+            Self::NonholonomicPlastic => L::of(2.0) * rho() * gap_rate,
+            Self::ImpactPlastic => gap_rate,
+            Self::TotallyPlastic => rho() * gap_rate,
+            Self::Reset | Self::Transition => L::of(f64::NAN),
         }
     }
 

@@ -120,7 +120,7 @@ impl<S: StateVector> Weights<S> {
 }
 
 /// Shortest step at a time: sixteen units in its last place, so that every step moves the time.
-pub(super) fn least_step(t: f64) -> f64 {
+pub(crate) fn least_step(t: f64) -> f64 {
     (16.0 * f64::EPSILON * t.abs()).max(f64::MIN_POSITIVE)
 }
 

@@ -6,7 +6,7 @@
 //! [`Taylor`] sums power series whose coefficients are generated with the vector field
 //! ([`TaylorField`](crate::TaylorField)).
 
-mod controller;
+pub(crate) mod controller;
 mod dense;
 mod dop853;
 mod dop853_tableau;
@@ -16,14 +16,14 @@ mod fixed;
 mod gauss;
 mod iteration;
 mod lagrange_d_alembert;
-mod order;
+pub(crate) mod order;
 mod precise;
 mod rk4;
-mod rough;
+pub(crate) mod rough;
 mod stats;
 mod stepper;
 mod tableau;
-mod taylor;
+pub(crate) mod taylor;
 mod tolerance;
 
 pub use dense::Polynomial;

@@ -27,7 +27,7 @@ pub(super) const PART_OF_TOLERANCE: f64 = -3.895_276_610_400_201_5;
 const BOOKKEEPING: f64 = 200.0;
 
 /// The order that belongs to a tolerance.
-pub(super) fn order(tolerance: f64, work: Option<Work>) -> usize {
+pub(crate) fn order(tolerance: f64, work: Option<Work>) -> usize {
     let logarithm = -math::ln(tolerance);
     let length = logarithm - PART_OF_TOLERANCE * core::f64::consts::LN_2;
     let fixed = work.map_or(0.0, |work| {

@@ -9,7 +9,7 @@ const BIAS: u64 = 1023;
 const PLACE: u32 = 52;
 
 /// The largest power of two that is not above a positive number.
-pub(super) fn power_of_two(x: f64) -> f64 {
+pub(crate) fn power_of_two(x: f64) -> f64 {
     f64::from_bits(normal(x).to_bits() & EXPONENT)
 }
 

@@ -10,7 +10,7 @@ dalembert::model! {
             two: drag, volume;
             three: four;
             four: side[3], c;
-            five: variations;
+            five: variation;
         }
     }
 }

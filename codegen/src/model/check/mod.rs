@@ -152,7 +152,10 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
         ..
     } = resolver;
     let extras = match parts.field {
-        Some(_) => Extras::default(),
+        Some(_) => Extras {
+            variations: true,
+            ..Extras::default()
+        },
         None => Extras::ALL,
     };
     Model {

@@ -151,6 +151,7 @@ impl Resolver<'_> {
             extras: Extras {
                 projection: extra == Some(&"projection"),
                 volume: extra == Some(&"volume"),
+                variations: extra == Some(&"variations"),
             },
         });
         if let Some(scene) = scene {
@@ -219,5 +220,6 @@ impl Parts {
         }
         self.extras.projection |= other.extras.projection;
         self.extras.volume |= other.extras.volume;
+        self.extras.variations |= other.extras.variations;
     }
 }

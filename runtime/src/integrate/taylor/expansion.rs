@@ -7,10 +7,10 @@ use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
 /// What is known at one moment, and the coefficients above it.
-pub(super) struct Expansion<F: TaylorField, L: Numbers> {
-    pub(super) coefficients: [F::Row<L>; LENGTH],
-    pub(super) gaps: [F::Gaps<L>; LENGTH],
-    pub(super) firsts: F::Firsts<L>,
+pub(crate) struct Expansion<F: TaylorField, L: Numbers> {
+    pub(crate) coefficients: [F::Row<L>; LENGTH],
+    pub(crate) gaps: [F::Gaps<L>; LENGTH],
+    pub(crate) firsts: F::Firsts<L>,
     jets: F::Jets<L>,
 }
 
@@ -23,7 +23,7 @@ impl<F: TaylorField, L: Numbers> Clone for Expansion<F, L> {
 impl<F: TaylorField, L: Numbers> Copy for Expansion<F, L> {}
 
 impl<F: TaylorField, L: Numbers> Expansion<F, L> {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             coefficients: [F::Row::ZERO; LENGTH],
             gaps: [F::Gaps::ZERO; LENGTH],
@@ -34,7 +34,7 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
 
     /// Takes a state for the one that the next series begins at, and the one that the last ends at.
     #[inline(always)]
-    pub(super) fn begin(
+    pub(crate) fn begin(
         &mut self,
         parameters: &F::Parameters<L>,
         t: L,
@@ -45,7 +45,7 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
 
     /// The coefficients from the state that was begun with.
     #[inline(always)]
-    pub(super) fn advance(
+    pub(crate) fn advance(
         &mut self,
         parameters: &F::Parameters<L>,
         unit: L,
@@ -66,19 +66,19 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
 
     /// The rate of the state that was begun with.
     #[inline(always)]
-    pub(super) fn rate(&self) -> &[L] {
+    pub(crate) fn rate(&self) -> &[L] {
         &self.firsts.as_slice()[..F::Row::<L>::LEN]
     }
 
     /// The gaps of the state that was begun with.
     #[inline(always)]
-    pub(super) fn begun_gaps(&self) -> &[L] {
+    pub(crate) fn begun_gaps(&self) -> &[L] {
         &self.firsts.as_slice()[F::Row::<L>::LEN..][..F::Gaps::<L>::LEN]
     }
 
     /// The largest entries of the last coefficient and the one before it, each times its factor.
     #[inline(always)]
-    pub(super) fn sizes(&self, order: usize, factors: &F::Row<L>) -> [L; 2] {
+    pub(crate) fn sizes(&self, order: usize, factors: &F::Row<L>) -> [L; 2] {
         let mut sizes = [L::ZERO; 2];
         for (j, size) in sizes.iter_mut().enumerate() {
             let coefficient = self.coefficients[order - j].as_slice();
@@ -91,7 +91,7 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
 
     /// What the polynomial adds to the start after `theta` units of time, and its derivative there.
     #[inline(always)]
-    pub(super) fn change(&self, order: usize, theta: L) -> [F::Row<L>; 2] {
+    pub(crate) fn change(&self, order: usize, theta: L) -> [F::Row<L>; 2] {
         let (mut change, mut slope) = (F::Row::<L>::ZERO, F::Row::<L>::ZERO);
         for coefficient in self.coefficients[1..=order].iter().rev() {
             let sums = change.as_mut_slice().iter_mut().zip(slope.as_mut_slice());
@@ -111,7 +111,7 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
 /// The end of a step from a start that lacks `rest` since it is rounded, and what the end lacks: the rounding error of the
 /// sum, exactly (Moller, Knuth).
 #[inline(always)]
-pub(super) fn sum<L: Numbers>(start: L, change: L, rest: L) -> [L; 2] {
+pub(crate) fn sum<L: Numbers>(start: L, change: L, rest: L) -> [L; 2] {
     let change = change + rest;
     let end = start + change;
     let moved = end - start;
@@ -120,7 +120,7 @@ pub(super) fn sum<L: Numbers>(start: L, change: L, rest: L) -> [L; 2] {
 
 /// A state as a row.
 #[inline(always)]
-pub(super) fn row<F: TaylorField>(state: &F::State) -> F::Row<f64> {
+pub(crate) fn row<F: TaylorField>(state: &F::State) -> F::Row<f64> {
     let mut row = F::Row::<f64>::ZERO;
     row.as_mut_slice().copy_from_slice(state.as_slice());
     row
@@ -128,7 +128,7 @@ pub(super) fn row<F: TaylorField>(state: &F::State) -> F::Row<f64> {
 
 /// The state with these components.
 #[inline(always)]
-pub(super) fn state<F: TaylorField>(components: &[f64]) -> F::State {
+pub(crate) fn state<F: TaylorField>(components: &[f64]) -> F::State {
     let mut state = F::State::zeros();
     state.as_mut_slice().copy_from_slice(components);
     state

@@ -19,7 +19,7 @@
 //! Taylor methods*, Experimental Mathematics 14 (2005), sections 3.1 to 3.3; E. Hairer, C. Lubich, G. Wanner, *Geometric
 //! Numerical Integration* (2006), VIII.5, for the carried rest.
 
-mod expansion;
+pub(crate) mod expansion;
 #[cfg(feature = "lanes")]
 pub(crate) mod lanes;
 mod step;

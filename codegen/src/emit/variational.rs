@@ -1,0 +1,315 @@
+//! `Variational`: states, gaps and transitions over `L: Numbers`, where variations are asked for.
+//!
+//! The functions are those that are emitted over `f64`, written once more over numbers with their parameters as arguments.
+//! They are generic: a program that varies nothing compiles none of them.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::Context;
+use super::function::{Body, emit_body, joined, uses};
+use crate::model::Law;
+use crate::program::{Form, Function, Input};
+
+/// `impl Variational`, where variations are asked for. A type that holds a reduced model in its global form has none.
+pub(super) fn emit_variational(context: &Context<'_>) -> TokenStream {
+    if !context.model.extras.variations || context.is_wrapped() {
+        return TokenStream::new();
+    }
+    let type_name = &context.names.type_name;
+    let (n, k) = (context.dimension(), context.motion_dimension());
+    let size = n + k;
+    let parts = [
+        emit_counts(context),
+        emit_velocities(context),
+        emit_composed(context),
+        emit_deviations(context),
+        emit_clearances(context),
+        emit_collision(context),
+        emit_landing(context),
+        emit_declared_law(context),
+    ];
+    let surfaces = context.model.surfaces.len();
+    let (off, numbers) = (off_constraints(context), 5 + k);
+    let attributes = super::attributes();
+    quote! {
+        #attributes
+        impl ::dalembert::Variational for #type_name {
+            type Configuration<L: ::dalembert::numbers::Numbers> = [L; #n];
+            type Clearances<L: ::dalembert::numbers::Numbers> = [L; #surfaces];
+            type Collision<L: ::dalembert::numbers::Numbers> = [L; #numbers];
+            type Deviations<L: ::dalembert::numbers::Numbers> = [L; #off];
+            type Columns = [Self::State; #size];
+
+            fn columns() -> Self::Columns {
+                [<Self::State as ::dalembert::StateVector>::zeros(); #size]
+            }
+
+            #(#parts)*
+        }
+    }
+}
+
+/// Constraints that a state may be off.
+fn off_constraints(context: &Context<'_>) -> usize {
+    match (context.program.form, &context.program.constrained) {
+        (Form::Global, Some(_)) => context.model.constraints.len(),
+        _ => 0,
+    }
+}
+
+impl Context<'_> {
+    /// The statements of a function of `(t, s)` over numbers, and its results; where it takes velocities too, they are
+    /// computed first.
+    fn varied_body(&self, function: &Function) -> Body {
+        let state = self.bind_row(function);
+        let has_velocities = uses(function, |input| matches!(input, Input::Velocity(_)));
+        let velocities = match has_velocities {
+            true => {
+                let bound = self.bind_row_of(function, &self.names.velocities, Input::Velocity);
+                quote! {
+                    let qdot = <Self as ::dalembert::Variational>::velocities(parameters, t, state)?;
+                    let qdot = &qdot;
+                    #bound
+                }
+            }
+            false => TokenStream::new(),
+        };
+        self.written(joined([velocities, state]), function)
+    }
+
+    /// The statements of a function of `(t, q, qdot)` over numbers, and its results.
+    fn varied_velocity_body(&self, function: &Function) -> Body {
+        let q = self.bind_row_of(function, &self.names.coordinates, Input::Coordinate);
+        let qdot = self.bind_row_of(function, &self.names.velocities, Input::Velocity);
+        self.written(joined([q, qdot]), function)
+    }
+
+    fn written(&self, bindings: TokenStream, function: &Function) -> Body {
+        let Body {
+            statements,
+            outputs,
+        } = emit_body(function, &self.names.side_by_side());
+        Body {
+            statements: joined([bindings, statements]),
+            outputs,
+        }
+    }
+}
+
+fn emit_counts(context: &Context<'_>) -> TokenStream {
+    let counts = match context.program.impacting {
+        Some(_) => {
+            quote!(<Self as ::dalembert::Impacting>::surface_active(
+                self, surface, t, state
+            ))
+        }
+        None => quote!(true),
+    };
+    quote! {
+        #[inline]
+        fn counts(&self, surface: usize, t: f64, state: &Self::State) -> bool { #counts }
+    }
+}
+
+fn emit_velocities(context: &Context<'_>) -> TokenStream {
+    let Body {
+        statements,
+        outputs,
+    } = context.varied_body(&context.program.velocity);
+    quote! {
+        fn velocities<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> ::core::result::Result<Self::Configuration<L>, ::dalembert::Fault> {
+            #statements
+            ::core::result::Result::Ok([#(#outputs),*])
+        }
+    }
+}
+
+fn emit_composed(context: &Context<'_>) -> TokenStream {
+    let program = context.program;
+    let function = match (&program.reduced, program.form) {
+        (_, Form::FirstOrder) => None,
+        (Some(reduced), _) => Some(&reduced.quasi),
+        (None, _) => Some(&program.momentum),
+    };
+    let (statements, motion) = match function {
+        Some(function) => {
+            let body = context.varied_velocity_body(function);
+            (body.statements, body.outputs)
+        }
+        None => (TokenStream::new(), Vec::new()),
+    };
+    let positions = 0..context.dimension();
+    quote! {
+        fn composed<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            t: L,
+            q: &Self::Configuration<L>,
+            qdot: &Self::Configuration<L>,
+        ) -> ::core::result::Result<Self::Row<L>, ::dalembert::Fault> {
+            #statements
+            ::core::result::Result::Ok([#(q[#positions],)* #(#motion),*])
+        }
+    }
+}
+
+fn emit_deviations(context: &Context<'_>) -> TokenStream {
+    let body = match &context.program.constrained {
+        Some(functions) if off_constraints(context) > 0 => {
+            // The residuals come first; their natural scales after them are not asked for.
+            let body = context.varied_velocity_body(&functions.residuals);
+            let (statements, values) = (body.statements, &body.outputs[..off_constraints(context)]);
+            quote! {
+                let qdot = <Self as ::dalembert::Variational>::velocities(parameters, t, state)?;
+                let (q, qdot) = (state, &qdot);
+                #statements
+                ::core::result::Result::Ok([#(#values),*])
+            }
+        }
+        _ => quote!(::core::result::Result::Ok([])),
+    };
+    quote! {
+        fn deviations<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> ::core::result::Result<Self::Deviations<L>, ::dalembert::Fault> {
+            #body
+        }
+    }
+}
+
+fn emit_clearances(context: &Context<'_>) -> TokenStream {
+    let (statements, gaps) = match &context.program.impacting {
+        Some(functions) => {
+            let body = context.varied_body(&functions.gaps);
+            (body.statements, body.outputs)
+        }
+        None => (TokenStream::new(), Vec::new()),
+    };
+    quote! {
+        fn clearances<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> ::core::result::Result<Self::Clearances<L>, ::dalembert::Fault> {
+            #statements
+            ::core::result::Result::Ok([#(#gaps),*])
+        }
+    }
+}
+
+fn emit_collision(context: &Context<'_>) -> TokenStream {
+    let functions = context.program.impacting.iter();
+    let contacts = functions.flat_map(|functions| &functions.contacts);
+    let arms = contacts.enumerate().map(|(s, function)| {
+        let Body {
+            statements,
+            outputs,
+        } = context.varied_body(function);
+        quote!(#s => { #statements ::core::result::Result::Ok([#(#outputs),*]) })
+    });
+    let otherwise = match context.is_first_order() {
+        true => quote!(::dalembert::Fault::FirstOrder),
+        false => quote!(::dalembert::Fault::SingularSurface { surface }),
+    };
+    quote! {
+        fn collision<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> ::core::result::Result<Self::Collision<L>, ::dalembert::Fault> {
+            match surface {
+                #(#arms)*
+                _ => ::core::result::Result::Err(#otherwise),
+            }
+        }
+    }
+}
+
+fn emit_landing(context: &Context<'_>) -> TokenStream {
+    let n = context.dimension();
+    let functions = context.program.impacting.iter();
+    let resets = functions.flat_map(|functions| &functions.resets);
+    let arms = resets.enumerate().filter_map(|(s, function)| {
+        let Body {
+            statements,
+            outputs,
+        } = context.varied_body(function.as_ref()?);
+        let (q, qdot) = outputs.split_at(n);
+        Some(quote!(#s => { #statements [[#(#q),*], [#(#qdot),*]] }))
+    });
+    let arms: Vec<TokenStream> = arms.collect();
+    let body = match arms.is_empty() {
+        true => quote!(::core::result::Result::Ok(::core::option::Option::None)),
+        false => quote! {
+            let landing = match surface {
+                #(#arms)*
+                _ => return ::core::result::Result::Ok(::core::option::Option::None),
+            };
+            ::core::result::Result::Ok(::core::option::Option::Some(landing))
+        },
+    };
+    quote! {
+        fn landing<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> ::core::result::Result<::core::option::Option<[Self::Configuration<L>; 2]>, ::dalembert::Fault> {
+            #body
+        }
+    }
+}
+
+fn emit_declared_law(context: &Context<'_>) -> TokenStream {
+    let functions = context.program.impacting.iter();
+    let coefficients = functions.flat_map(|functions| &functions.coefficients);
+    let surfaces = context.model.surfaces.iter().zip(coefficients).enumerate();
+    let law = quote!(::dalembert::impacts::law::Law);
+    let arms = surfaces.map(|(s, (surface, coefficient))| {
+        let without = |name: TokenStream| quote!(#s => (#law::#name, L::ZERO),);
+        let with = |name: TokenStream| match coefficient {
+            Some(function) => {
+                let Body {
+                    statements,
+                    outputs,
+                } = context.written(TokenStream::new(), function);
+                quote! {
+                    #s => {
+                        #statements
+                        let coefficient: L = #(#outputs)*;
+                        (#law::#name(coefficient.lane(0)), coefficient)
+                    }
+                }
+            }
+            None => TokenStream::new(),
+        };
+        match surface.law {
+            Law::Elastic => without(quote!(Elastic)),
+            Law::Restitution(_) => with(quote!(Restitution)),
+            Law::Newton(_) => with(quote!(Newton)),
+            Law::NonholonomicPlastic => without(quote!(NonholonomicPlastic)),
+            Law::ImpactPlastic => without(quote!(ImpactPlastic)),
+            Law::TotallyPlastic => without(quote!(TotallyPlastic)),
+            Law::Reset => without(quote!(Reset)),
+            Law::Transition => without(quote!(Transition)),
+        }
+    });
+    quote! {
+        fn declared_law<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+        ) -> (#law, L) {
+            match surface {
+                #(#arms)*
+                _ => (#law::Elastic, L::ZERO),
+            }
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! What first variations need besides the power series of the motion: transitions, written over numbers.
+
+use super::{System, TaylorField};
+use crate::error::Fault;
+use crate::impacts::law::Law;
+use crate::numbers::{Numbers, Row};
+
+/// A system whose states, gaps and transitions can be computed in any [`Numbers`], and so be differentiated.
+///
+/// Parameters are given as numbers too, in the order of [`TaylorField::parameters`]. Every function here is one of the
+/// system's own, written once more over `L`: with `f64` it gives the same value up to rounding.
+#[diagnostic::on_unimplemented(
+    message = "the variations of `{Self}` are not known: add `variations` to the scene in its `model!`"
+)]
+pub trait Variational: TaylorField + System {
+    /// N numbers, one per coordinate: positions or velocities.
+    type Configuration<L: Numbers>: Row<L>;
+
+    /// One number per surface, whether gaps have series or not.
+    type Clearances<L: Numbers>: Row<L>;
+
+    /// The numbers of a [`Contact`](crate::Contact), in its order, and the direction of the impulse after them.
+    type Collision<L: Numbers>: Row<L>;
+
+    /// One number per constraint that a state may be off: M in the global form, none in the form reduced to D.
+    type Deviations<L: Numbers>: Row<L>;
+
+    /// As many states as a state has components: a square matrix by its columns.
+    type Columns: Copy + AsRef<[Self::State]> + AsMut<[Self::State]>;
+
+    /// The columns of a matrix of zeros.
+    fn columns() -> Self::Columns;
+
+    /// Whether a surface counts here, as [`Impacting::surface_active`](crate::Impacting::surface_active) says.
+    fn counts(&self, surface: usize, t: f64, state: &Self::State) -> bool;
+
+    /// The velocities of a state.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn velocities<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        t: L,
+        state: &Self::Row<L>,
+    ) -> Result<Self::Configuration<L>, Fault>;
+
+    /// The state with these positions and velocities, as [`System::state_unchecked`] makes it.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn composed<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        t: L,
+        q: &Self::Configuration<L>,
+        qdot: &Self::Configuration<L>,
+    ) -> Result<Self::Row<L>, Fault>;
+
+    /// `eta^a(qdot) + eta^a_0` of the constraints that a state may be off.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn deviations<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        t: L,
+        state: &Self::Row<L>,
+    ) -> Result<Self::Deviations<L>, Fault>;
+
+    /// The gaps `h_s`.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn clearances<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        t: L,
+        state: &Self::Row<L>,
+    ) -> Result<Self::Clearances<L>, Fault>;
+
+    /// What an impact on a surface by any law that is an impulse needs.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn collision<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        surface: usize,
+        t: L,
+        state: &Self::Row<L>,
+    ) -> Result<Self::Collision<L>, Fault>;
+
+    /// Positions and velocities after the declared reset of a surface; `None` where its law is no reset.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn landing<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        surface: usize,
+        t: L,
+        state: &Self::Row<L>,
+    ) -> Result<Option<[Self::Configuration<L>; 2]>, Fault>;
+
+    /// The declared law of a surface, and its coefficient as a number of the parameters; 0 for a law without one.
+    fn declared_law<L: Numbers>(parameters: &Self::Parameters<L>, surface: usize) -> (Law, L);
+}

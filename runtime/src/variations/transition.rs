@@ -1,0 +1,178 @@
+//! The augmented differential of a transition: what it makes of variations at fixed times.
+
+use super::flow::{dual_parameters, dual_state};
+use super::{SIDE, Side, Tangent, Undefined};
+use crate::contract::Variational;
+use crate::error::Fault;
+use crate::impacts::law::Law;
+use crate::numbers::{Numbers, Row};
+use crate::record::Event;
+use crate::state::StateVector;
+
+/// How far the state after a transition may be from what its law makes of the state before, in units of the largest
+/// component before and after: corrections of rounding errors are far smaller, anything else that happens there is not.
+const LAWFUL: f64 = 1e-6;
+
+/// Scalars of a collision before the direction of its impulse.
+const SCALARS: usize = 5;
+
+/// What is known of an arrival at a surface.
+struct Arrival<Sys: Variational> {
+    /// The rate of the state before.
+    rate: Sys::State,
+    /// The rate of the gap.
+    gap_rate: f64,
+}
+
+/// Carries all directions across a transition.
+pub(super) fn cross<Sys: Variational>(
+    system: &Sys,
+    event: &Event<Sys::State>,
+    tangents: &mut [Tangent<Sys>],
+) -> Result<(), Undefined> {
+    let arrival = arrival(system, event)?;
+    let mut rate = Sys::State::zeros();
+    system.rate(event.t, &event.after, &mut rate)?;
+    for some in tangents.chunks_mut(SIDE) {
+        let parameters = dual_parameters(system, some);
+        let (t, state) = arrival.met(event, &parameters, some)?;
+        let after = struck::<Sys, Side>(&parameters, event, t, &state)?;
+        check_lawful(event, after.as_slice())?;
+        for (k, tangent) in some.iter_mut().enumerate() {
+            let parts = after.as_slice().iter().zip(rate.as_slice());
+            for (own, (entry, rate)) in tangent.state.as_mut_slice().iter_mut().zip(parts) {
+                *own = entry.slopes[k] - rate * t.slopes[k];
+            }
+        }
+        check_finite(event, some)?;
+    }
+    Ok(())
+}
+
+/// Refuses what has no derivative; else what is known of the arrival.
+fn arrival<Sys: Variational>(
+    system: &Sys,
+    event: &Event<Sys::State>,
+) -> Result<Arrival<Sys>, Undefined> {
+    let (t, surface) = (event.t, event.surface);
+    if event.graze {
+        return Err(Undefined::Graze { t, surface });
+    }
+    if event.simultaneous {
+        return Err(Undefined::Corner { t, surface });
+    }
+    let mut rate = Sys::State::zeros();
+    system.rate(t, &event.before, &mut rate)?;
+    let gap_rate = gap_rate(system, event, &rate)?;
+    match gap_rate < 0.0 {
+        true => Ok(Arrival { rate, gap_rate }),
+        false => Err(Undefined::Graze { t, surface }),
+    }
+}
+
+/// `h_z . f + h_t`, along the motion before a transition.
+fn gap_rate<Sys: Variational>(
+    system: &Sys,
+    event: &Event<Sys::State>,
+    rate: &Sys::State,
+) -> Result<f64, Fault> {
+    let along = [Tangent::of_state(*rate)];
+    let parameters = dual_parameters(system, &along);
+    let mut t = Side::of(event.t);
+    t.slopes[0] = 1.0;
+    let state = dual_state(&event.before, &along);
+    let gaps = Sys::clearances(&parameters, t, &state)?;
+    Ok(gaps.as_slice()[event.surface].slopes[0])
+}
+
+impl<Sys: Variational> Arrival<Sys> {
+    /// Time and state at which neighbouring motions meet the surface.
+    fn met(
+        &self,
+        event: &Event<Sys::State>,
+        parameters: &Sys::Parameters<Side>,
+        tangents: &[Tangent<Sys>],
+    ) -> Result<(Side, Sys::Row<Side>), Undefined> {
+        let mut t = Side::of(event.t);
+        let mut state = dual_state(&event.before, tangents);
+        let gaps = Sys::clearances(parameters, t, &state)?;
+        let gap = &gaps.as_slice()[event.surface];
+        t.slopes = gap.slopes.map(|slope| -slope / self.gap_rate);
+        let parts = state.as_mut_slice().iter_mut().zip(self.rate.as_slice());
+        for (entry, rate) in parts {
+            for (slope, later) in entry.slopes.iter_mut().zip(t.slopes) {
+                *slope += rate * later;
+            }
+        }
+        Ok((t, state))
+    }
+}
+
+/// What the law of an impact makes of a state.
+fn struck<Sys: Variational, L: Numbers>(
+    parameters: &Sys::Parameters<L>,
+    event: &Event<Sys::State>,
+    t: L,
+    state: &Sys::Row<L>,
+) -> Result<Sys::Row<L>, Undefined> {
+    let surface = event.surface;
+    if event.law == Law::Transition {
+        // The state after it is one of another mode.
+        return Err(Undefined::Unlawful {
+            t: event.t,
+            surface,
+        });
+    }
+    if event.law == Law::Reset {
+        return match Sys::landing(parameters, surface, t, state)? {
+            Some([q, qdot]) => Ok(Sys::composed(parameters, t, &q, &qdot)?),
+            None => Err(Undefined::Unlawful {
+                t: event.t,
+                surface,
+            }),
+        };
+    }
+    let (declared, coefficient) = Sys::declared_law(parameters, surface);
+    let coefficient = match declared == event.law {
+        true => coefficient,
+        // A law that was chosen for the run: its coefficient is a number.
+        false => L::of(event.law.coefficient().unwrap_or(0.0)),
+    };
+    let collision = Sys::collision(parameters, surface, t, state)?;
+    let (scalars, direction) = collision.as_slice().split_at(SCALARS);
+    let scalars = core::array::from_fn(|i| scalars[i]);
+    let taken = event.law.taken(coefficient, &scalars);
+    let [_, _, _, compliance, _] = scalars;
+    let size = -taken / compliance;
+    let mut after = *state;
+    let first = Sys::Row::<L>::LEN - direction.len();
+    for (entry, direction) in after.as_mut_slice()[first..].iter_mut().zip(direction) {
+        *entry = size.mul_add(*direction, *entry);
+    }
+    Ok(after)
+}
+
+/// Whether the run did what was differentiated.
+fn check_lawful<S: StateVector>(event: &Event<S>, after: &[Side]) -> Result<(), Undefined> {
+    let states = [&event.before, &event.after];
+    let components = states.into_iter().flat_map(StateVector::as_slice);
+    let size = components.fold(0.0, |size, value| f64::max(size, value.abs()));
+    let mut pairs = after.iter().zip(event.after.as_slice());
+    match pairs.all(|(own, run)| (own.value - run).abs() <= LAWFUL * size) {
+        true => Ok(()),
+        false => Err(Undefined::Unlawful {
+            t: event.t,
+            surface: event.surface,
+        }),
+    }
+}
+
+fn check_finite<Sys: Variational>(
+    event: &Event<Sys::State>,
+    tangents: &[Tangent<Sys>],
+) -> Result<(), Undefined> {
+    match tangents.iter().all(|tangent| tangent.state.is_finite()) {
+        true => Ok(()),
+        false => Err(Undefined::NotFinite { t: event.t }),
+    }
+}
