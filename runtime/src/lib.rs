@@ -154,7 +154,7 @@ pub use projection::Projection;
 pub use record::{Event, EventLog, Hold, Observer, Segment};
 pub use simulation::Simulation;
 pub use state::StateVector;
-pub use variations::{Tangent, Undefined, Variations};
+pub use variations::{Orbit, OrbitError, Section, SectionError, Tangent, Undefined, Variations};
 
 #[cfg(feature = "macros")]
 pub use dalembert_macros::model;

@@ -30,7 +30,7 @@ pub(super) fn emit_variational(context: &Context<'_>) -> TokenStream {
         emit_declared_law(context),
     ];
     let surfaces = context.model.surfaces.len();
-    let (off, numbers) = (off_constraints(context), 5 + k);
+    let (off, numbers) = (off_constraints(context) + levels(context), 5 + k);
     let attributes = super::attributes();
     quote! {
         #attributes
@@ -45,6 +45,12 @@ pub(super) fn emit_variational(context: &Context<'_>) -> TokenStream {
                 [<Self::State as ::dalembert::StateVector>::zeros(); #size]
             }
 
+            type Tangents = [::dalembert::Tangent<Self>; #size];
+
+            fn tangents() -> Self::Tangents {
+                [::dalembert::Tangent::zero(); #size]
+            }
+
             #(#parts)*
         }
     }
@@ -56,6 +62,12 @@ fn off_constraints(context: &Context<'_>) -> usize {
         (Form::Global, Some(_)) => context.model.constraints.len(),
         _ => 0,
     }
+}
+
+/// Constraints with a position level.
+fn levels(context: &Context<'_>) -> usize {
+    let functions = context.program.constrained.as_ref();
+    functions.map_or(0, |functions| functions.levels.outputs.len())
 }
 
 impl Context<'_> {
@@ -158,19 +170,35 @@ fn emit_composed(context: &Context<'_>) -> TokenStream {
 }
 
 fn emit_deviations(context: &Context<'_>) -> TokenStream {
-    let body = match &context.program.constrained {
-        Some(functions) if off_constraints(context) > 0 => {
-            // The residuals come first; their natural scales after them are not asked for.
-            let body = context.varied_velocity_body(&functions.residuals);
-            let (statements, values) = (body.statements, &body.outputs[..off_constraints(context)]);
-            quote! {
+    let off = off_constraints(context);
+    let functions = context.program.constrained.as_ref();
+    let residuals = functions.filter(|_| off > 0).map(|functions| {
+        // The residuals come first; their natural scales after them are not asked for.
+        let body = context.varied_velocity_body(&functions.residuals);
+        let (statements, values) = (body.statements, &body.outputs[..off]);
+        quote! {
+            {
                 let qdot = <Self as ::dalembert::Variational>::velocities(parameters, t, state)?;
                 let (q, qdot) = (state, &qdot);
                 #statements
-                ::core::result::Result::Ok([#(#values),*])
+                values[..#off].copy_from_slice(&[#(#values),*]);
             }
         }
-        _ => quote!(::core::result::Result::Ok([])),
+    });
+    let with_levels = functions.filter(|_| levels(context) > 0).map(|functions| {
+        let body = context.varied_body(&functions.levels);
+        let (statements, values) = (body.statements, body.outputs);
+        quote!({ #statements values[#off..].copy_from_slice(&[#(#values),*]); })
+    });
+    let values = quote!(<Self::Deviations<L> as ::dalembert::numbers::Row<L>>::ZERO);
+    let body = match off + levels(context) {
+        0 => quote!(::core::result::Result::Ok(#values)),
+        _ => quote! {
+            let mut values = #values;
+            #residuals
+            #with_levels
+            ::core::result::Result::Ok(values)
+        },
     };
     quote! {
         fn deviations<L: ::dalembert::numbers::Numbers>(

@@ -4,6 +4,7 @@ use super::{System, TaylorField};
 use crate::error::Fault;
 use crate::impacts::law::Law;
 use crate::numbers::{Numbers, Row};
+use crate::variations::Tangent;
 
 /// A system whose states, gaps and transitions can be computed in any [`Numbers`], and so be differentiated.
 ///
@@ -12,7 +13,7 @@ use crate::numbers::{Numbers, Row};
 #[diagnostic::on_unimplemented(
     message = "the variations of `{Self}` are not known: add `variations` to the scene in its `model!`"
 )]
-pub trait Variational: TaylorField + System {
+pub trait Variational: TaylorField + System + Sized {
     /// N numbers, one per coordinate: positions or velocities.
     type Configuration<L: Numbers>: Row<L>;
 
@@ -22,7 +23,8 @@ pub trait Variational: TaylorField + System {
     /// The numbers of a [`Contact`](crate::Contact), in its order, and the direction of the impulse after them.
     type Collision<L: Numbers>: Row<L>;
 
-    /// One number per constraint that a state may be off: M in the global form, none in the form reduced to D.
+    /// One number per equation that the motion keeps to because of constraints: M in the global form, none in the form
+    /// reduced to D; and one per constraint that has a position level.
     type Deviations<L: Numbers>: Row<L>;
 
     /// As many states as a state has components: a square matrix by its columns.
@@ -30,6 +32,12 @@ pub trait Variational: TaylorField + System {
 
     /// The columns of a matrix of zeros.
     fn columns() -> Self::Columns;
+
+    /// As many directions as a state has components.
+    type Tangents: Copy + AsRef<[Tangent<Self>]> + AsMut<[Tangent<Self>]>;
+
+    /// No directions in any of these places.
+    fn tangents() -> Self::Tangents;
 
     /// Whether a surface counts here, as [`Impacting::surface_active`](crate::Impacting::surface_active) says.
     fn counts(&self, surface: usize, t: f64, state: &Self::State) -> bool;
@@ -55,7 +63,7 @@ pub trait Variational: TaylorField + System {
         qdot: &Self::Configuration<L>,
     ) -> Result<Self::Row<L>, Fault>;
 
-    /// `eta^a(qdot) + eta^a_0` of the constraints that a state may be off.
+    /// `eta^a(qdot) + eta^a_0` of the constraints where a state may be off them, then the levels `f^k` of those that have one.
     ///
     /// # Errors
     /// [`Fault`].

@@ -11,10 +11,17 @@
 //!
 //! is the augmented differential (saltation) of the transition. [`Variations`] is an observer that does both along a run.
 //!
+//! [`Section`] is the map from one arrival at a surface to a later one, with its derivative; [`Section::periodic`] finds the
+//! points that return to themselves, and their multipliers.
+//!
 //! Where the flow of a system with impacts has no derivative, none is given: see [`Undefined`].
 
+mod chart;
 mod dual;
+mod eigenvalues;
 mod flow;
+pub mod orbit;
+pub mod section;
 mod tangent;
 mod transition;
 
@@ -22,6 +29,9 @@ use core::fmt;
 use core::ops::ControlFlow;
 
 pub use dual::Dual;
+pub use eigenvalues::Multipliers;
+pub use orbit::{Orbit, OrbitError};
+pub use section::{Arrival, Section, SectionError};
 pub use tangent::Tangent;
 
 use crate::contract::Variational;
@@ -173,6 +183,14 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
         if self.undefined.is_none() {
             let crossed = transition::cross(self.system, event, self.tangents);
             self.undefined = crossed.err();
+        }
+    }
+
+    /// Moves the directions from a fixed time to the surface that is met there.
+    pub(crate) fn arrive(&mut self, event: &Event<Sys::State>) {
+        if self.undefined.is_none() {
+            let arrived = transition::arrive(self.system, event, self.tangents);
+            self.undefined = arrived.err();
         }
     }
 }

@@ -49,6 +49,51 @@ pub(super) fn cross<Sys: Variational>(
     Ok(())
 }
 
+/// Moves all directions from the time of an arrival to the surface, before anything happens there.
+pub(super) fn arrive<Sys: Variational>(
+    system: &Sys,
+    event: &Event<Sys::State>,
+    tangents: &mut [Tangent<Sys>],
+) -> Result<(), Undefined> {
+    let arrival = arrival(system, event)?;
+    for some in tangents.chunks_mut(SIDE) {
+        let parameters = dual_parameters(system, some);
+        let (_, state) = arrival.met(event, &parameters, some)?;
+        for (k, tangent) in some.iter_mut().enumerate() {
+            for (own, entry) in tangent
+                .state
+                .as_mut_slice()
+                .iter_mut()
+                .zip(state.as_slice())
+            {
+                *own = entry.slopes[k];
+            }
+        }
+        check_finite(event, some)?;
+    }
+    Ok(())
+}
+
+/// A time at which nothing that depends on time has a rate of 0 by accident.
+const SOME_TIME: f64 = 0.739_085_133_215_160_7;
+
+/// Whether the motion, the gaps or the transition of an event depend on time itself.
+pub(super) fn depends_on_time<Sys: Variational>(
+    system: &Sys,
+    event: &Event<Sys::State>,
+) -> Result<bool, Undefined> {
+    let parameters = dual_parameters(system, &[]);
+    let mut t = Side::of(SOME_TIME);
+    t.slopes[0] = 1.0;
+    let state = dual_state::<Sys>(&event.before, &[]);
+    let mut firsts = Sys::Firsts::<Side>::ZERO;
+    Sys::begin(&parameters, t, &state, &mut firsts)?;
+    let gaps = Sys::clearances(&parameters, t, &state)?;
+    let after = struck::<Sys, Side>(&parameters, event, t, &state)?;
+    let parts = [firsts.as_slice(), gaps.as_slice(), after.as_slice()];
+    Ok(parts.into_iter().flatten().any(|own| own.slopes[0] != 0.0))
+}
+
 /// Refuses what has no derivative; else what is known of the arrival.
 fn arrival<Sys: Variational>(
     system: &Sys,

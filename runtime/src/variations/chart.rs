@@ -1,0 +1,324 @@
+//! Directions along a section, and equations between them. Matrices are arrays of columns.
+
+use super::{SIDE, Side, Tangent, Undefined};
+use crate::contract::Variational;
+use crate::math;
+use crate::numbers::{Numbers, Row};
+use crate::state::StateVector;
+use crate::variations::flow::{dual_parameters, dual_state};
+
+/// Singular values below this part of the largest, or of 1, count as 0.
+const RANK: f64 = 1e-7;
+
+/// Part of a direction that must be left of it beside those before it.
+const DEPENDENT: f64 = 1e-10;
+
+/// Sweeps over all pairs of columns.
+const SWEEPS: usize = 60;
+
+/// Newton's steps back to the section.
+const STEPS: usize = 12;
+
+/// The directions of a section through a point of it: those in which neither the gap nor the constraints change.
+pub(super) struct Chart<Sys: Variational> {
+    /// Orthonormal, in units of the components: first what is left out, then the directions.
+    frame: Sys::Columns,
+    /// How many are left out.
+    left_out: usize,
+    scale: Sys::State,
+}
+
+impl<Sys: Variational> Clone for Chart<Sys> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys: Variational> Copy for Chart<Sys> {}
+
+/// What a section fixes: a surface, and values of what the constraints keep.
+pub(super) struct Fixed<Sys: Variational> {
+    surface: usize,
+    kept: Sys::Deviations<f64>,
+}
+
+impl<Sys: Variational> Fixed<Sys> {
+    /// The section that a point lies on.
+    pub(super) fn of(
+        system: &Sys,
+        surface: usize,
+        t: f64,
+        point: &Sys::State,
+    ) -> Result<Self, Undefined> {
+        let parameters = dual_parameters(system, &[]);
+        let row = dual_state::<Sys>(point, &[]);
+        let found = Sys::deviations(&parameters, Side::of(t), &row)?;
+        let mut kept = Sys::Deviations::<f64>::ZERO;
+        for (own, found) in kept.as_mut_slice().iter_mut().zip(found.as_slice()) {
+            *own = found.value;
+        }
+        Ok(Self { surface, kept })
+    }
+
+    /// How far a point is from the section, per equation, along some directions.
+    fn excess(
+        &self,
+        system: &Sys,
+        t: f64,
+        point: &Sys::State,
+        along: &[Tangent<Sys>],
+        mut take: impl FnMut(usize, Side),
+    ) -> Result<(), Undefined> {
+        let parameters = dual_parameters(system, along);
+        let row = dual_state(point, along);
+        let gaps = Sys::clearances(&parameters, Side::of(t), &row)?;
+        take(0, gaps.as_slice()[self.surface]);
+        let deviations = Sys::deviations(&parameters, Side::of(t), &row)?;
+        let kept = deviations.as_slice().iter().zip(self.kept.as_slice());
+        for (k, (own, kept)) in kept.enumerate() {
+            take(k + 1, *own - Side::of(*kept));
+        }
+        Ok(())
+    }
+}
+
+impl<Sys: Variational> Chart<Sys> {
+    /// The directions at a point, and what moves the point onto the section to first order.
+    fn at(
+        system: &Sys,
+        fixed: &Fixed<Sys>,
+        t: f64,
+        point: &Sys::State,
+    ) -> Result<(Self, Sys::State), Undefined> {
+        let scale = system.scale(t, point);
+        let mut frame = Sys::columns();
+        let mut values = Sys::State::zeros();
+        let mut equations = 0;
+        for first in (0..Sys::State::LEN).step_by(SIDE) {
+            let along: [Tangent<Sys>; SIDE] = core::array::from_fn(|k| {
+                let mut tangent = Tangent::<Sys>::of_component(first + k);
+                for (own, scale) in tangent
+                    .state
+                    .as_mut_slice()
+                    .iter_mut()
+                    .zip(scale.as_slice())
+                {
+                    *own *= scale;
+                }
+                tangent
+            });
+            fixed.excess(system, t, point, &along, |equation, excess| {
+                equations = equations.max(equation + 1);
+                values.as_mut_slice()[equation] = excess.value;
+                let row = frame.as_mut()[equation].as_mut_slice();
+                for (entry, slope) in row.iter_mut().skip(first).zip(excess.slopes) {
+                    *entry = slope;
+                }
+            })?;
+        }
+        let mut correction = Sys::State::zeros();
+        let left_out = orthonormalise(frame.as_mut(), equations, &values, &mut correction);
+        complete(frame.as_mut(), left_out);
+        for (own, scale) in correction.as_mut_slice().iter_mut().zip(scale.as_slice()) {
+            *own *= scale;
+        }
+        let chart = Self {
+            frame,
+            left_out,
+            scale,
+        };
+        Ok((chart, correction))
+    }
+
+    /// The point of the section near a point, and the directions there.
+    pub(super) fn onto(
+        system: &Sys,
+        fixed: &Fixed<Sys>,
+        t: f64,
+        mut point: Sys::State,
+    ) -> Result<(Self, Sys::State), Undefined> {
+        for _ in 0..STEPS {
+            let (_, correction) = Self::at(system, fixed, t, &point)?;
+            let before = point;
+            add(&mut point, 1.0, &correction);
+            if point == before || !point.is_finite() {
+                break;
+            }
+        }
+        match point.is_finite() {
+            true => Ok((Self::at(system, fixed, t, &point)?.0, point)),
+            false => Err(Undefined::NotFinite { t }),
+        }
+    }
+
+    /// Number of directions.
+    pub(super) fn dimension(&self) -> usize {
+        Sys::State::LEN - self.left_out
+    }
+
+    /// A direction, in units of the state.
+    pub(super) fn direction(&self, index: usize) -> Sys::State {
+        let mut direction = self.frame.as_ref()[self.left_out + index];
+        for (own, scale) in direction
+            .as_mut_slice()
+            .iter_mut()
+            .zip(self.scale.as_slice())
+        {
+            *own *= scale;
+        }
+        direction
+    }
+
+    /// The components of a change of the state along the directions.
+    pub(super) fn components(&self, change: &Sys::State) -> Sys::State {
+        let mut scaled = *change;
+        for (own, scale) in scaled.as_mut_slice().iter_mut().zip(self.scale.as_slice()) {
+            *own /= scale;
+        }
+        let mut components = Sys::State::zeros();
+        let directions = &self.frame.as_ref()[self.left_out..];
+        for (own, direction) in components.as_mut_slice().iter_mut().zip(directions) {
+            *own = dot(&scaled, direction);
+        }
+        components
+    }
+
+    /// The size of a change of the state, in units of its components.
+    pub(super) fn size(&self, change: &Sys::State) -> f64 {
+        let parts = change.as_slice().iter().zip(self.scale.as_slice());
+        parts.fold(0.0, |size, (own, scale)| {
+            f64::max(size, (own / scale).abs())
+        })
+    }
+}
+
+/// Makes the first `count` of the rows orthonormal, without those that depend on others, and gives how many are left. With
+/// it the least vector that takes `values` from what they give.
+fn orthonormalise<S: StateVector>(
+    rows: &mut [S],
+    count: usize,
+    values: &S,
+    correction: &mut S,
+) -> usize {
+    let mut kept = 0;
+    for index in 0..count {
+        let mut row = rows[index];
+        let before = math::sqrt(dot(&row, &row));
+        let missing = -values.as_slice()[index] - dot(&row, correction);
+        for _ in 0..2 {
+            for earlier in &rows[..kept] {
+                let along = dot(&row, earlier);
+                add(&mut row, -along, earlier);
+            }
+        }
+        let left = math::sqrt(dot(&row, &row));
+        let is_new = left > DEPENDENT * before;
+        rows[index] = S::zeros();
+        if is_new {
+            for own in row.as_mut_slice() {
+                *own /= left;
+            }
+            add(correction, missing / left, &row);
+            rows[kept] = row;
+            kept += 1;
+        }
+    }
+    kept
+}
+
+/// Completes `count` orthonormal rows to a basis, by the unit vectors of which most is left.
+fn complete<S: StateVector>(rows: &mut [S], count: usize) {
+    for kept in count..S::LEN {
+        let mut best = (0.0, S::zeros());
+        for component in 0..S::LEN {
+            let mut row = S::zeros();
+            row.as_mut_slice()[component] = 1.0;
+            for _ in 0..2 {
+                for earlier in &rows[..kept] {
+                    let along = dot(&row, earlier);
+                    add(&mut row, -along, earlier);
+                }
+            }
+            let left = dot(&row, &row);
+            // A little more, so that of equals the first is taken.
+            if left > 1.000_001 * best.0 {
+                best = (left, row);
+            }
+        }
+        let (left, mut row) = best;
+        let norm = math::sqrt(left);
+        for own in row.as_mut_slice() {
+            *own /= norm;
+        }
+        rows[kept] = row;
+    }
+}
+
+/// The least solution of `A x = b` in the sense of least squares, where singular values that count as 0 are left out. `A`,
+/// the leading square of `size`, is overwritten; so is `turned`.
+///
+/// One-sided rotations (Hestenes): columns are turned in pairs until all are orthogonal.
+pub(super) fn least_squares<S: StateVector>(
+    columns: &mut [S],
+    turned: &mut [S],
+    size: usize,
+    b: &S,
+) -> S {
+    for (i, column) in turned.iter_mut().enumerate() {
+        *column = S::zeros();
+        column.as_mut_slice()[i] = 1.0;
+    }
+    for _ in 0..SWEEPS {
+        let mut is_done = true;
+        for i in 0..size {
+            for j in i + 1..size {
+                let [one, other] = [&columns[i], &columns[j]];
+                let (a, b, c) = (dot(one, one), dot(other, other), dot(one, other));
+                if c.abs() <= f64::EPSILON * math::sqrt(a * b) {
+                    continue;
+                }
+                is_done = false;
+                let zeta = (b - a) / (2.0 * c);
+                let tangent = 1.0_f64.copysign(zeta) / (zeta.abs() + math::sqrt(1.0 + zeta * zeta));
+                let cosine = 1.0 / math::sqrt(1.0 + tangent * tangent);
+                turn(columns, [i, j], [cosine, cosine * tangent]);
+                turn(turned, [i, j], [cosine, cosine * tangent]);
+            }
+        }
+        if is_done {
+            break;
+        }
+    }
+    let squares = columns[..size].iter().map(|column| dot(column, column));
+    let largest = squares.fold(1.0, f64::max);
+    let mut solution = S::zeros();
+    for (column, direction) in columns[..size].iter().zip(turned.iter()) {
+        let square = dot(column, column);
+        if square > RANK * RANK * largest {
+            add(&mut solution, dot(column, b) / square, direction);
+        }
+    }
+    solution
+}
+
+/// Two columns turned by the angle of this cosine and sine.
+fn turn<S: StateVector>(columns: &mut [S], [i, j]: [usize; 2], [cosine, sine]: [f64; 2]) {
+    let (one, other) = (columns[i], columns[j]);
+    for k in 0..S::LEN {
+        let (x, y) = (one.as_slice()[k], other.as_slice()[k]);
+        columns[i].as_mut_slice()[k] = cosine * x - sine * y;
+        columns[j].as_mut_slice()[k] = sine * x + cosine * y;
+    }
+}
+
+pub(super) fn dot<S: StateVector>(a: &S, b: &S) -> f64 {
+    let pairs = a.as_slice().iter().zip(b.as_slice());
+    pairs.map(|(x, y)| x * y).sum()
+}
+
+/// Adds `factor * direction`.
+pub(super) fn add<S: StateVector>(sum: &mut S, factor: f64, direction: &S) {
+    for (own, entry) in sum.as_mut_slice().iter_mut().zip(direction.as_slice()) {
+        *own += factor * entry;
+    }
+}

@@ -1,0 +1,259 @@
+//! Periodic orbits: fixed points of the map of a section, by Newton's method with its derivative.
+
+use core::fmt;
+
+use super::chart::{Chart, Fixed, add, dot, least_squares};
+use super::eigenvalues::{Multipliers, eigenvalues};
+use super::section::{Arrival, Section, SectionError};
+use super::transition;
+use super::{Tangent, Undefined};
+use crate::contract::Variational;
+use crate::describe::{Described, Topology};
+use crate::effects::Effect;
+use crate::integrate::Stepper;
+use crate::record::Event;
+use crate::state::StateVector;
+
+/// Newton's steps that are made unless told otherwise.
+pub const ITERATIONS: u32 = 50;
+
+/// Halvings of one step.
+const HALVINGS: u32 = 12;
+
+/// A residual of this many units of rounding of the state, times the amplification of the orbit, is as good as 0.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// A periodic orbit of a section: a point that returns to itself.
+pub struct Orbit<Sys: Variational> {
+    /// The point of the section and what happens there; the time is the period.
+    pub point: Arrival<Sys::State>,
+    /// How far the point is from its image, in units of the components of the state.
+    pub residual: f64,
+    /// Newton's steps that were made.
+    pub iterations: u32,
+    /// Number of directions of the section in the constraints: N + N - M - 1, where the state is `(q, u)`.
+    pub dimension: usize,
+    /// The first `dimension` columns are directions along the section, orthonormal in units of the components.
+    pub directions: Sys::Columns,
+    /// The leading square of that size is the derivative of the section's map in these directions.
+    pub derivative: Sys::Columns,
+    /// Its eigenvalues, the Floquet multipliers of the orbit. The direction of the motion is not among those of the section. A
+    /// quantity that is conserved gives a multiplier 1, and so does a coordinate that nothing depends on.
+    pub multipliers: Multipliers<Sys::State>,
+}
+
+/// Why no orbit was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum OrbitError {
+    /// A point tried is not mapped back to the section, or has no derivative.
+    Section(SectionError),
+    /// The motion or its transitions depend on time: no return is the beginning of the next.
+    DependsOnTime,
+    /// Newton's method does not converge.
+    NotConverged {
+        /// The least distance of a point from its image, in units of the components of the state.
+        residual: f64,
+        /// Steps made.
+        iterations: u32,
+    },
+    /// The multipliers are not finite.
+    NoMultipliers,
+}
+
+impl fmt::Display for OrbitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Section(error) => error.fmt(f),
+            Self::DependsOnTime => write!(
+                f,
+                "the system depends on time: its section is not mapped to itself in the same way for ever"
+            ),
+            Self::NotConverged {
+                residual,
+                iterations,
+            } => write!(
+                f,
+                "no periodic orbit was found in {iterations} steps; the best point misses itself by {residual:e}"
+            ),
+            Self::NoMultipliers => write!(f, "the multipliers are not finite"),
+        }
+    }
+}
+
+impl core::error::Error for OrbitError {}
+
+impl From<SectionError> for OrbitError {
+    fn from(error: SectionError) -> Self {
+        Self::Section(error)
+    }
+}
+
+impl From<Undefined> for OrbitError {
+    fn from(undefined: Undefined) -> Self {
+        Self::Section(undefined.into())
+    }
+}
+
+/// A point of the section with what is known of its return.
+struct Trial<Sys: Variational> {
+    point: Sys::State,
+    chart: Chart<Sys>,
+    /// How long the return takes, and how it ends.
+    time: f64,
+    event: Event<Sys::State>,
+    /// Image minus point, along the directions.
+    miss: Sys::State,
+    residual: f64,
+    derivative: Sys::Columns,
+}
+
+impl<'a, Sys, Step, Effects> Section<'a, Sys, Step, Effects>
+where
+    Sys: Variational + Described,
+    Step: Stepper<Sys>,
+    Effects: Effect<Sys>,
+{
+    /// The periodic orbit near a point of the section (or near it), found by Newton's method in `iterations` steps at most
+    /// ([`ITERATIONS`] is enough).
+    ///
+    /// Angles close up to turns. Where an orbit belongs to a family, as all orbits of a conserved energy do, the one nearest
+    /// to the point is approached. A step that does not bring point and image closer is halved.
+    ///
+    /// # Errors
+    /// [`OrbitError`].
+    pub fn periodic(
+        &mut self,
+        near: &Sys::State,
+        iterations: u32,
+    ) -> Result<Orbit<Sys>, OrbitError> {
+        let fixed = Fixed::of(self.system, self.surface, 0.0, near)?;
+        let mut trial = self.attempt(&fixed, *near)?;
+        if transition::depends_on_time(self.system, &trial.event)? {
+            return Err(OrbitError::DependsOnTime);
+        }
+        let mut made = 0;
+        while trial.residual > 0.0 && made < iterations {
+            made += 1;
+            match self.improve(&fixed, &trial)? {
+                Some(better) => trial = better,
+                None => break,
+            }
+        }
+        let size = trial.chart.size(&trial.point) * amplification::<Sys>(&trial);
+        match trial.residual <= ROUNDING * f64::max(size, 1.0) {
+            true => finish(trial, made),
+            false => Err(OrbitError::NotConverged {
+                residual: trial.residual,
+                iterations: made,
+            }),
+        }
+    }
+
+    /// A better point along Newton's step, if there is one.
+    fn improve(
+        &mut self,
+        fixed: &Fixed<Sys>,
+        trial: &Trial<Sys>,
+    ) -> Result<Option<Trial<Sys>>, OrbitError> {
+        let step = newton(trial);
+        let mut factor = 1.0;
+        let mut failure = None;
+        for _ in 0..HALVINGS {
+            let mut point = trial.point;
+            add(&mut point, factor, &step);
+            match self.attempt(fixed, point) {
+                Ok(better) if better.residual < trial.residual => return Ok(Some(better)),
+                Ok(_) => failure = None,
+                Err(error) => failure = Some(error),
+            }
+            factor *= 0.5;
+        }
+        match failure {
+            Some(error) => Err(error),
+            None => Ok(None),
+        }
+    }
+
+    /// Maps the point of the section near a point, with its directions.
+    fn attempt(&mut self, fixed: &Fixed<Sys>, point: Sys::State) -> Result<Trial<Sys>, OrbitError> {
+        let (chart, point) = Chart::onto(self.system, fixed, 0.0, point)?;
+        let dimension = chart.dimension();
+        let mut tangents = Sys::tangents();
+        for (index, tangent) in tangents.as_mut()[..dimension].iter_mut().enumerate() {
+            *tangent = Tangent::of_state(chart.direction(index));
+        }
+        let returns = self.returns;
+        let (time, event) = self.pass(&point, returns, &mut tangents.as_mut()[..dimension])?;
+        let mut derivative = Sys::columns();
+        let images = tangents.as_ref()[..dimension].iter();
+        for (column, image) in derivative.as_mut().iter_mut().zip(images) {
+            *column = chart.components(&image.state);
+        }
+        let mut change = event.before;
+        add(&mut change, -1.0, &point);
+        close_angles::<Sys>(&mut change);
+        Ok(Trial {
+            point,
+            chart,
+            time,
+            event,
+            miss: chart.components(&change),
+            residual: chart.size(&change),
+            derivative,
+        })
+    }
+}
+
+/// The orbit of a point that returns to itself.
+fn finish<Sys: Variational>(trial: Trial<Sys>, iterations: u32) -> Result<Orbit<Sys>, OrbitError> {
+    let dimension = trial.chart.dimension();
+    let mut directions = Sys::columns();
+    for (index, direction) in directions.as_mut()[..dimension].iter_mut().enumerate() {
+        *direction = trial.chart.direction(index);
+    }
+    let mut work = trial.derivative;
+    let multipliers = eigenvalues(work.as_mut(), dimension);
+    Ok(Orbit {
+        point: Arrival::of(trial.time, &trial.event),
+        residual: trial.residual,
+        iterations,
+        dimension,
+        directions,
+        derivative: trial.derivative,
+        multipliers: multipliers.ok_or(OrbitError::NoMultipliers)?,
+    })
+}
+
+/// Newton's step from a point: the least solution of `(derivative - 1) step = -miss`.
+fn newton<Sys: Variational>(trial: &Trial<Sys>) -> Sys::State {
+    let dimension = trial.chart.dimension();
+    let (mut matrix, mut turned) = (trial.derivative, Sys::columns());
+    for (i, column) in matrix.as_mut()[..dimension].iter_mut().enumerate() {
+        column.as_mut_slice()[i] -= 1.0;
+    }
+    let solution = least_squares(matrix.as_mut(), turned.as_mut(), dimension, &trial.miss);
+    let mut step = Sys::State::zeros();
+    for (index, component) in solution.as_slice()[..dimension].iter().enumerate() {
+        add(&mut step, -component, &trial.chart.direction(index));
+    }
+    step
+}
+
+/// How much longer the image of a direction may be than the direction.
+fn amplification<Sys: Variational>(trial: &Trial<Sys>) -> f64 {
+    let columns = trial.derivative.as_ref()[..trial.chart.dimension()].iter();
+    let squares = columns.map(|column| dot(column, column)).sum::<f64>();
+    f64::max(crate::math::sqrt(squares), 1.0)
+}
+
+/// Takes whole turns out of the changes of angles.
+fn close_angles<Sys: Described>(change: &mut Sys::State) {
+    let coordinates = Sys::DESCRIPTION.coordinates.iter();
+    for (own, coordinate) in change.as_mut_slice().iter_mut().zip(coordinates) {
+        if coordinate.topology == Topology::Circle {
+            let turn = 2.0 * core::f64::consts::PI;
+            *own -= turn * libm::round(*own / turn);
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! Poincare sections: the states that arrive at a surface, and the map from one arrival to a later one.
+
+use core::fmt;
+use core::ops::ControlFlow;
+
+use super::{Tangent, Undefined, Variations};
+use crate::contract::Variational;
+use crate::effects::Effect;
+use crate::integrate::Stepper;
+use crate::outcome::{Outcome, StartError};
+use crate::record::{Event, Hold, Observer, Segment};
+use crate::simulation::Simulation;
+
+/// A surface of a system as a section of its motion, and how motions between its points are made.
+///
+/// A point of the section is a state *at* the surface *before* what happens there. It is carried through that, and on until
+/// the surface is met again as often as is wanted; other surfaces may be met on the way. A section that is no wall is a
+/// surface with the law `reset { }`.
+pub struct Section<'a, Sys: Variational, Step, Effects> {
+    pub(super) system: &'a Sys,
+    simulation: Simulation<'a, Sys, Step, Effects>,
+    pub(super) surface: usize,
+    pub(super) returns: u32,
+    horizon: f64,
+}
+
+/// An arrival at a section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrival<S> {
+    /// How long it took.
+    pub time: f64,
+    /// The point of the section: the state at the surface, before what happens there.
+    pub before: S,
+    /// The state after what happens there.
+    pub after: S,
+}
+
+impl<S: Copy> Arrival<S> {
+    pub(super) fn of(time: f64, event: &Event<S>) -> Self {
+        Self {
+            time,
+            before: event.before,
+            after: event.after,
+        }
+    }
+}
+
+/// Why a section is not met.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum SectionError {
+    /// The run was not begun.
+    Start(StartError),
+    /// The run ended before; with [`Outcome::Done`], the time allowed was over.
+    Ended(Outcome),
+    /// It is met, but the way to it has no derivative.
+    Undefined(Undefined),
+}
+
+impl fmt::Display for SectionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Start(error) => error.fmt(f),
+            Self::Ended(Outcome::Done) => {
+                write!(f, "the section is not met within the time allowed")
+            }
+            Self::Ended(outcome) => {
+                write!(f, "the run ended before the section was met: {outcome}")
+            }
+            Self::Undefined(undefined) => undefined.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for SectionError {}
+
+impl From<Undefined> for SectionError {
+    fn from(undefined: Undefined) -> Self {
+        Self::Undefined(undefined)
+    }
+}
+
+impl<'a, Sys, Step, Effects> Section<'a, Sys, Step, Effects>
+where
+    Sys: Variational,
+    Step: Stepper<Sys>,
+    Effects: Effect<Sys>,
+{
+    /// The section at a surface. A return may take the time `horizon`.
+    pub fn new(
+        system: &'a Sys,
+        stepper: Step,
+        effects: Effects,
+        surface: usize,
+        horizon: f64,
+    ) -> Self {
+        Self {
+            system,
+            simulation: Simulation::new(system, stepper, effects),
+            surface,
+            returns: 1,
+            horizon,
+        }
+    }
+
+    /// With so many returns, 1 or more, for one.
+    #[must_use]
+    pub fn with_returns(mut self, returns: u32) -> Self {
+        self.returns = returns.max(1);
+        self
+    }
+
+    /// The first arrival from a state that need not be on the section; `tangents`, any directions, become the derivatives
+    /// of the point arrived at.
+    ///
+    /// # Errors
+    /// [`SectionError`].
+    pub fn arrive(
+        &mut self,
+        state: &Sys::State,
+        tangents: &mut [Tangent<Sys>],
+    ) -> Result<Arrival<Sys::State>, SectionError> {
+        let (time, event) = self.pass(state, 0, tangents)?;
+        Ok(Arrival::of(time, &event))
+    }
+
+    /// The point that a point of the section is mapped to by as many returns as are wanted; `tangents`, directions along
+    /// the section, become their images.
+    ///
+    /// The images are derivatives of the map: they are directions along the section too. Along parameters they are
+    /// derivatives of its points at a fixed point to start from.
+    ///
+    /// # Errors
+    /// [`SectionError`].
+    pub fn next(
+        &mut self,
+        point: &Sys::State,
+        tangents: &mut [Tangent<Sys>],
+    ) -> Result<Arrival<Sys::State>, SectionError> {
+        let (time, event) = self.pass(point, self.returns, tangents)?;
+        Ok(Arrival::of(time, &event))
+    }
+
+    /// Runs on until the surface has been met `returns` times and once more; how long that took from the first of these
+    /// times on, or from the start where there is none, and how it ended.
+    pub(super) fn pass(
+        &mut self,
+        state: &Sys::State,
+        returns: u32,
+        tangents: &mut [Tangent<Sys>],
+    ) -> Result<(f64, Event<Sys::State>), SectionError> {
+        let mut passage = Passage {
+            variations: Variations::new(self.system, tangents),
+            surface: self.surface,
+            left: returns,
+            first: None,
+            last: None,
+        };
+        let run = self
+            .simulation
+            .run(0.0, *state, self.horizon, &mut passage)
+            .map_err(SectionError::Start)?;
+        let Some(last) = passage.last else {
+            return Err(SectionError::Ended(run.outcome));
+        };
+        passage.variations.tangents()?;
+        Ok((last.t - passage.first.unwrap_or(0.0), last))
+    }
+}
+
+/// Watches a run from one arrival to another.
+struct Passage<'a, Sys: Variational> {
+    variations: Variations<'a, Sys>,
+    surface: usize,
+    /// Arrivals before the one that is wanted.
+    left: u32,
+    /// When the surface was met first.
+    first: Option<f64>,
+    last: Option<Event<Sys::State>>,
+}
+
+impl<Sys: Variational> Observer<Sys> for Passage<'_, Sys> {
+    fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
+        self.variations.step(segment)
+    }
+
+    fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
+        if event.surface != self.surface {
+            return self.variations.event(event);
+        }
+        if self.left == 0 {
+            self.variations.arrive(event);
+            self.last = Some(*event);
+            return ControlFlow::Break(());
+        }
+        self.left -= 1;
+        self.first.get_or_insert(event.t);
+        self.variations.event(event)
+    }
+
+    fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
+        self.variations.hold(hold)
+    }
+}

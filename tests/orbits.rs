@@ -1,0 +1,171 @@
+//! Periodic orbits of sections and their multipliers: against references, closed forms, and differences of maps.
+
+use dalembert::contract::Variational;
+use dalembert::variations::{Orbit, OrbitError, Section, SectionError};
+use dalembert::{Described, Outcome, Scene, StateVector, System, Tangent, Taylor, Tolerance};
+use dalembert_models::{DimensionlessWalker, PointBilliard};
+use dalembert_tests::reference::{number, numbers, read};
+use dalembert_tests::systems::MovingWallDisk;
+
+/// Most of a return that any run here takes.
+const HORIZON: f64 = 1e4;
+
+fn taylor<S: Described + Variational>() -> Taylor<S> {
+    Taylor::new(Tolerance::new(1e-15).expect("a tolerance"))
+}
+
+/// The orbit near the first arrival from a state.
+fn orbit<S: Described + Variational + Scene>(
+    system: &S,
+    start: &S::State,
+    surface: usize,
+    returns: u32,
+) -> Result<Orbit<S>, OrbitError> {
+    let mut section =
+        Section::new(system, taylor(), system.effects(), surface, HORIZON).with_returns(returns);
+    let first = section.arrive(start, &mut [])?;
+    section.periodic(&first.before, dalembert::variations::orbit::ITERATIONS)
+}
+
+/// Positions and velocities as a state.
+fn state<S: Described>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
+    let (mut position, mut velocity) = (S::Vector::zeros(), S::Vector::zeros());
+    position.as_mut_slice().copy_from_slice(q);
+    velocity.as_mut_slice().copy_from_slice(qdot);
+    system.state(0.0, &position, &velocity).expect("a state")
+}
+
+#[test]
+fn the_walkers_orbits_are_those_of_the_reference() {
+    let file = read("walker_orbits");
+    for set in file["sets"].as_array().expect("sets") {
+        let of = |name: &str| number(&set[name]);
+        let walker = DimensionlessWalker {
+            mu: of("mu"),
+            eps: of("eps"),
+            alpha: of("alpha"),
+            delta: of("delta"),
+        };
+        let fixed = numbers(&set["fixed_point_post_impact(xi,eta)"]);
+        let start = [walker.delta, 1.02 * fixed[0], 0.99 * fixed[1]];
+        let orbit = orbit(&walker, &start.into(), 0, 1).expect("an orbit");
+        let after = orbit.point.after;
+        assert!(
+            (after[1] - fixed[0]).abs() < 1e-13 && (after[2] - fixed[1]).abs() < 1e-13,
+            "{after}"
+        );
+        assert!(
+            (orbit.point.time - of("period")).abs() < 1e-13,
+            "{}",
+            orbit.point.time
+        );
+        let expected = numbers(&set["floquet_multipliers"]);
+        assert_eq!(orbit.dimension, expected.len());
+        for ([re, im], expected) in orbit.multipliers.iter().zip(expected) {
+            assert!(
+                (re - expected).abs() < 1e-12 && im == 0.0,
+                "{re} + {im} i for {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_derivative_of_the_walkers_return_is_that_of_the_reference() {
+    let file = read("walker_orbits");
+    for set in file["sets"].as_array().expect("sets") {
+        let of = |name: &str| number(&set[name]);
+        let walker = DimensionlessWalker {
+            mu: of("mu"),
+            eps: of("eps"),
+            alpha: of("alpha"),
+            delta: of("delta"),
+        };
+        // From `(xi, eta)` after a step to those after the next one: both states lie at theta = delta.
+        let fixed = numbers(&set["fixed_point_post_impact(xi,eta)"]);
+        let start = [walker.delta, fixed[0], fixed[1]].into();
+        let mut columns = [Tangent::of_component(1), Tangent::of_component(2)];
+        let mut section = Section::new(&walker, taylor(), walker.effects(), 0, HORIZON);
+        let arrival = section.arrive(&start, &mut columns).expect("an arrival");
+        let reset = |xi: f64, eta: f64| {
+            let (c, s) = ((2.0 * walker.delta).cos(), walker.delta.cos());
+            [c * xi, eta + s * (1.0 - c) * xi]
+        };
+        let rows = set["return_map_jacobian"].as_array().expect("rows");
+        for (j, column) in columns.iter().enumerate() {
+            let image = reset(column.state[1], column.state[2]);
+            for (i, row) in rows.iter().enumerate() {
+                let expected = numbers(row)[j];
+                assert!(
+                    (image[i] - expected).abs() < 1e-12,
+                    "{} for {expected}",
+                    image[i]
+                );
+            }
+        }
+        assert!((arrival.before[0] + walker.delta).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn two_bounces_in_an_ellipse_have_the_traces_of_its_axes() {
+    let table = PointBilliard {
+        m: 1.0,
+        ta: 2.0,
+        tb: 1.0,
+    };
+    let along_minor = state(&table, &[0.0, 0.0], &[0.0, 1.0]);
+    let along_major = state(&table, &[0.0, 0.0], &[1.0, 0.0]);
+    for (start, trace, period) in [(along_minor, -1.0, 4.0), (along_major, 194.0, 8.0)] {
+        let orbit = orbit(&table, &start, 0, 2).expect("an orbit");
+        assert!((orbit.point.time - period).abs() < 1e-12);
+        assert_eq!(orbit.dimension, 3);
+        let diagonal: f64 = (0..3).map(|i| orbit.derivative[i][i]).sum();
+        // The energy gives a 1 besides.
+        assert!((diagonal - 1.0 - trace).abs() < 1e-10, "{diagonal}");
+        let product = orbit
+            .multipliers
+            .iter()
+            .fold([1.0, 0.0], |[a, b], [c, d]| [a * c - b * d, a * d + b * c]);
+        assert!(
+            (product[0] - 1.0).abs() < 1e-10 && product[1].abs() < 1e-10,
+            "{product:?}"
+        );
+    }
+}
+
+#[test]
+fn an_orbit_is_found_from_beside_it() {
+    let table = PointBilliard {
+        m: 1.0,
+        ta: 2.0,
+        tb: 1.0,
+    };
+    let start = state(&table, &[0.05, 0.0], &[0.02, 1.0]);
+    let orbit = orbit(&table, &start, 0, 2).expect("an orbit");
+    let point = orbit.point.before;
+    assert!(point[0].abs() < 1e-12 && point[2].abs() < 1e-12, "{point}");
+}
+
+#[test]
+fn what_is_no_orbit_is_said() {
+    let walker = DimensionlessWalker::default();
+    let far = [walker.delta, 5.0, 0.0].into();
+    let missed = orbit(&walker, &far, 0, 1).err().expect("no orbit");
+    assert!(
+        matches!(missed, OrbitError::Section(SectionError::Ended(_))),
+        "{missed}"
+    );
+    let disk = MovingWallDisk::default();
+    let start = disk.state_projected(
+        0.0,
+        &[0.0, 0.0, 0.0, 0.3].into(),
+        &[0.0, 0.0, 8.0, 0.5].into(),
+    );
+    let start = start.expect("a state");
+    let mut short = Section::new(&disk, taylor(), disk.effects(), 0, 0.1);
+    let missed = short.arrive(&start, &mut []).expect_err("no arrival");
+    assert_eq!(missed, SectionError::Ended(Outcome::Done));
+    let moving = orbit(&disk, &start, 0, 1).err().expect("no orbit");
+    assert_eq!(moving, OrbitError::DependsOnTime);
+}
