@@ -3,9 +3,22 @@
 use dalembert::contract::Variational;
 use dalembert::variations::{Orbit, OrbitError, Section, SectionError};
 use dalembert::{Described, Outcome, Scene, StateVector, System, Tangent, Taylor, Tolerance};
+use dalembert_cli::{Exit, Streams, models, run_with};
 use dalembert_models::{DimensionlessWalker, PointBilliard};
 use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::systems::MovingWallDisk;
+use serde_json::Value;
+
+dalembert::model! {
+    /// A spring that counts its passages of the middle, in scenes with and without variations.
+    pub Spring {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - x^2/2 - y^2/8;
+        impacts { middle: x >= 0 => reset { }; wall: y >= -3; }
+        initial { x = 1; y = 0.2; until = 20; }
+        scenes { bare: wall; varied: wall, middle, variations; }
+    }
+}
 
 /// Most of a return that any run here takes.
 const HORIZON: f64 = 1e4;
@@ -168,4 +181,126 @@ fn what_is_no_orbit_is_said() {
     assert_eq!(missed, SectionError::Ended(Outcome::Done));
     let moving = orbit(&disk, &start, 0, 1).err().expect("no orbit");
     assert_eq!(moving, OrbitError::DependsOnTime);
+}
+
+/// A command line over the models of this file.
+fn run(line: &str) -> (Exit, String, String) {
+    let (mut output, mut errors) = (Vec::new(), Vec::new());
+    let mut streams = Streams {
+        input: &mut std::io::empty(),
+        output: &mut output,
+        errors: &mut errors,
+        terminal: false,
+    };
+    let words = std::iter::once("dalembert").chain(line.split_whitespace());
+    let models = models![Spring, DimensionlessWalker, PointBilliard, MovingWallDisk];
+    let exit = run_with(words, &models, &mut streams);
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (exit, text(output), text(errors))
+}
+
+#[test]
+fn the_command_prints_the_orbit_and_its_multipliers() {
+    let (exit, text, errors) = run("orbit dimensionless_walker --surface step");
+    assert_eq!((exit, errors.as_str()), (Exit::Reached, ""));
+    let multipliers = text
+        .lines()
+        .find(|line| line.contains("multipliers"))
+        .expect("multipliers");
+    assert!(
+        multipliers.contains("0.52068371444893") && multipliers.contains("0.00738231665312"),
+        "{text}"
+    );
+    let line =
+        "orbit point_billiard --surface wall --period 2 --set ta=2 --q 0,0 --qdot 1,0 --json -";
+    let (exit, text, _) = run(line);
+    assert_eq!(exit, Exit::Reached);
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(document["outcome"]["kind"], "done");
+    assert_eq!(
+        (&document["surface"], &document["returns"]),
+        (&"wall".into(), &2.into())
+    );
+    assert_eq!(document["before"]["q"].to_string(), "[2.0,0.0]");
+    let real = document["multipliers"]
+        .as_array()
+        .expect("multipliers")
+        .iter();
+    let trace: f64 = real.map(|own| own["re"].as_f64().expect("a number")).sum();
+    assert!((trace - 195.0).abs() < 1e-10, "{trace}");
+    let rows = document["derivative"].as_array().expect("rows");
+    let directions = document["directions"].as_array().expect("directions");
+    assert_eq!((rows.len(), directions.len()), (3, 3));
+    assert_eq!(
+        numbers(&directions[0]).len(),
+        document["components"].as_array().expect("names").len()
+    );
+}
+
+#[test]
+fn a_section_that_is_no_wall_is_a_surface_without_effect() {
+    // Periods 2 pi and 4 pi: after two passages along both, energies and phases all stay.
+    let (exit, text, errors) =
+        run("orbit spring --scene varied --surface middle --period 2 --json -");
+    assert_eq!((exit, errors.as_str()), (Exit::Reached, ""), "{text}");
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    let period = document["period"].as_f64().expect("a period");
+    assert!(
+        (period - 4.0 * std::f64::consts::PI).abs() < 1e-12,
+        "{period}"
+    );
+    let rows = document["derivative"].as_array().expect("rows");
+    for (i, row) in rows.iter().enumerate() {
+        for (j, entry) in numbers(row).into_iter().enumerate() {
+            assert!(
+                (entry - f64::from(u8::from(i == j))).abs() < 1e-12,
+                "{text}"
+            );
+        }
+    }
+    // After one passage along the other it has gone half way round.
+    let (exit, text, _) = run("orbit spring --scene varied --surface middle");
+    assert_eq!(exit, Exit::Reached, "{text}");
+    let multipliers = text
+        .lines()
+        .find(|line| line.contains("multipliers"))
+        .expect("multipliers");
+    assert_eq!(
+        multipliers.matches("-1").count() + multipliers.matches("-0.99999").count(),
+        2,
+        "{text}"
+    );
+}
+
+#[test]
+fn the_command_says_what_it_cannot_do() {
+    let refused = |line: &str, part: &str| {
+        let (exit, text, errors) = run(line);
+        assert_eq!((exit, text.as_str()), (Exit::Refused, ""), "{line}");
+        assert!(errors.contains(part), "{line}: {errors}");
+    };
+    refused(
+        "orbit spring --surface ceiling",
+        "--surface: unknown surface `ceiling`",
+    );
+    refused(
+        "orbit spring --scene bare --surface wall",
+        "`bare` was declared without `variations`",
+    );
+    refused(
+        "orbit spring --surface wall --off-constraint keep",
+        "--off-constraint keep",
+    );
+    refused("orbit spring --surface wall --period 0", "--period");
+    refused("orbit spring", "--surface");
+    let (exit, text, _) = run(
+        "orbit moving_wall_disk --surface leading_edge --q 0,0,0,0.3 --qdot 1.910672978251212,0.5910404133226791,8,0.5",
+    );
+    assert_eq!(exit, Exit::Other);
+    assert!(text.contains("outcome      depends_on_time"), "{text}");
+    let (exit, text, _) = run("orbit dimensionless_walker --surface step --initial xi=5 --json -");
+    assert_eq!(exit, Exit::Other);
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    assert_ne!(document["outcome"]["kind"], "done");
+    assert!(document.get("multipliers").is_none());
 }

@@ -49,6 +49,7 @@ sections! {
     constraints_and_conditioning long_constraints_and_conditioning "D"
     scales_and_arithmetic long_scales_and_arithmetic "E"
     long_runs longest_runs "F"
+    derivatives_and_orbits long_derivatives_and_orbits "G"
     bad_input long_bad_input "H"
 }
 
@@ -65,10 +66,11 @@ fn every_row_has_a_case_with_a_number_of_its_own_and_a_bound() {
         ("D", 18),
         ("E", 15),
         ("F", 17),
+        ("G", 12),
         ("H", 11),
     ];
     // Rows about other things than runs have no case here.
-    let elsewhere = ["E07"];
+    let elsewhere = ["E07", "G01", "G02", "G03", "G04", "G05", "G06", "G07"];
     for (section, count) in rows {
         for number in 1..=count {
             let id = format!("{section}{number:02}");

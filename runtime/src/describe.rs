@@ -3,7 +3,7 @@
 //! Implemented by `model!` for every model, so that a tool can list, set and re-derive any of them.
 
 pub use crate::assumption::Assumption;
-use crate::contract::{Lagrangian, System, TaylorField};
+use crate::contract::{Lagrangian, System, TaylorField, Variational};
 use crate::effects::Scene;
 use crate::error::Fault;
 
@@ -133,6 +133,15 @@ pub trait Described: System + Clone {
         let _ = visitor;
     }
 
+    /// Shows the system to a visitor if its runs can be varied: the model itself can, and scenes with `variations`.
+    fn visit_variational<Visitor: VariationalVisitor>(
+        &self,
+        visitor: Visitor,
+    ) -> Option<Visitor::Output> {
+        let _ = visitor;
+        None
+    }
+
     /// The same system in its global form, with the state (q, p) on T*Q, off the constraints too. The model itself
     /// where it has no form reduced to D.
     type Global: Described<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
@@ -198,6 +207,15 @@ pub trait SceneVisitor {
     fn visit<S>(&mut self, name: &'static str)
     where
         S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static;
+}
+
+/// Sees a system whose runs can be varied (see [`Described::visit_variational`]).
+pub trait VariationalVisitor {
+    /// What it makes of it.
+    type Output;
+
+    /// The system, in its own type.
+    fn visit<S: Described + Scene + Variational>(self, system: &S) -> Self::Output;
 }
 
 /// The declared initial condition.

@@ -30,6 +30,7 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
     let declared = emit_declared(context);
     let inspect = emit_inspect(context);
     let scenes = scene::emit_visit(context);
+    let variational = super::variational::emit_visit(context);
     let attributes = super::attributes();
     quote! {
         #attributes
@@ -48,6 +49,7 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
             #declared
             #inspect
             #scenes
+            #variational
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::program::{Form, Function, Input};
 
 /// `impl Variational`, where variations are asked for. A type that holds a reduced model in its global form has none.
 pub(super) fn emit_variational(context: &Context<'_>) -> TokenStream {
-    if !context.model.extras.variations || context.is_wrapped() {
+    if !is_variational(context) {
         return TokenStream::new();
     }
     let type_name = &context.names.type_name;
@@ -54,6 +54,25 @@ pub(super) fn emit_variational(context: &Context<'_>) -> TokenStream {
             #(#parts)*
         }
     }
+}
+
+/// `visit_variational`, of what is.
+pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
+    if !is_variational(context) {
+        return TokenStream::new();
+    }
+    quote! {
+        fn visit_variational<Visitor: ::dalembert::describe::VariationalVisitor>(
+            &self,
+            visitor: Visitor,
+        ) -> ::core::option::Option<Visitor::Output> {
+            ::core::option::Option::Some(visitor.visit(self))
+        }
+    }
+}
+
+fn is_variational(context: &Context<'_>) -> bool {
+    context.model.extras.variations && !context.is_wrapped()
 }
 
 /// Constraints that a state may be off.

@@ -3,6 +3,7 @@
 
 mod ensemble;
 mod gallery;
+mod orbit;
 
 use std::path::PathBuf;
 
@@ -18,6 +19,7 @@ use dalembert::integrate::{
 use crate::scalar;
 pub use ensemble::EnsembleArgs;
 pub use gallery::GalleryArgs;
+pub use orbit::OrbitArgs;
 
 /// Derive, evaluate and simulate mechanical systems declared with `dalembert::model!`.
 #[derive(Debug, Parser)]
@@ -53,6 +55,9 @@ pub enum Command {
     /// Measure what accuracy costs: error, work and time of every integrator over tolerances.
     #[command(after_help = ACCURACY_EXAMPLES)]
     Accuracy(Box<AccuracyArgs>),
+    /// Find a periodic orbit by its returns to a surface, and its Floquet multipliers.
+    #[command(after_help = orbit::EXAMPLES)]
+    Orbit(Box<OrbitArgs>),
     /// Evaluate everything that is derived at given states.
     #[command(after_help = EVAL_EXAMPLES)]
     Eval(EvalArgs),

@@ -14,6 +14,7 @@ use crate::accuracy::{self, Plan, Study, Verified};
 use crate::args::{Form, OffConstraint};
 use crate::driver::{self, Abreast, Ending, Settings, Watch};
 use crate::error::state_text;
+use crate::orbit::{Finder, Found, Missed, Search};
 
 /// One model of the list handed to [`run`](crate::run), with its scenes.
 #[derive(Clone)]
@@ -180,6 +181,12 @@ pub(crate) trait AnyModel {
     ) -> Result<Study, String>;
     /// The measured error of a run.
     fn verify(&self, origin: &Origin, settings: &Settings) -> Result<Verified, String>;
+    /// A periodic orbit near the first arrival from this state; `None` for a scene without variations.
+    fn orbit(
+        &self,
+        origin: &Origin,
+        search: &Search,
+    ) -> Result<Option<Result<Found, Missed>>, String>;
 }
 
 /// One of several runs that are made at once.
@@ -408,6 +415,24 @@ impl<M: Model> AnyModel for Typed<M> {
         in_form!(self, origin, settings, |model, state| accuracy::verify(
             model, &state, settings
         ))
+    }
+
+    fn orbit(
+        &self,
+        origin: &Origin,
+        search: &Search,
+    ) -> Result<Option<Result<Found, Missed>>, String> {
+        let text = |error| state_text(&M::DESCRIPTION, &error);
+        let state = self.prepare(&self.0, 0.0, origin).map_err(text)?;
+        let velocity = self.0.velocity(0.0, &state);
+        let qdot = velocity.map_err(|fault| text(fault.into()))?;
+        let q = self.0.position(&state);
+        let finder = Finder {
+            search,
+            q: q.as_slice(),
+            qdot: qdot.as_slice(),
+        };
+        self.0.visit_variational(finder).transpose()
     }
 }
 

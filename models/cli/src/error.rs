@@ -55,6 +55,12 @@ pub enum CliError {
         /// The surface.
         surface: &'static str,
     },
+    /// Variations of a scene that was declared without them.
+    #[error("--scene: `{scene}` was declared without `variations`; add it to what the scene uses")]
+    Invariable {
+        /// The scene.
+        scene: String,
+    },
     /// Flags that do not go together, or one that needs another.
     #[error("{0}")]
     Usage(&'static str),

@@ -37,6 +37,7 @@ mod exit;
 pub mod gallery;
 mod json;
 mod names;
+mod orbit;
 mod plot;
 mod progress;
 mod record;
@@ -139,6 +140,7 @@ fn dispatch(
         Command::Simulate(args) => command::simulate::run(models, args, streams),
         Command::Ensemble(args) => command::ensemble::run(models, args, streams),
         Command::Accuracy(args) => command::accuracy::run(models, args, streams),
+        Command::Orbit(args) => command::orbit::run(models, args, streams),
         Command::Eval(args) => command::eval::run(models, args, streams),
         Command::Gallery(args) => command::gallery::run(catalogue, args, streams),
         Command::Stability(args) => command::stability::run(catalogue.suite(), args, streams),

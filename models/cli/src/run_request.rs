@@ -134,7 +134,7 @@ fn horizon(
 }
 
 /// The laws of `--law`, in order: a later one counts.
-fn laws(model: &dyn AnyModel, flags: &[String]) -> Result<Vec<(usize, Law)>, CliError> {
+pub(crate) fn laws(model: &dyn AnyModel, flags: &[String]) -> Result<Vec<(usize, Law)>, CliError> {
     let description = &model.description();
     let mut laws = Vec::new();
     for flag in flags {

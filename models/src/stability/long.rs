@@ -104,14 +104,6 @@ pub const CASES: &[Case] = &[
         ),
         ..Case::QUICK
     },
-    Case {
-        id: "F12",
-        title: "two-form and volume across elastic impacts",
-        right: "det = 1, J^T W J = W",
-        bound: "1e-11 per 100 impacts",
-        pending: Some("no first variations: differences of runs lose half the digits"),
-        ..Case::QUICK
-    },
 ];
 
 /// Watches impacts of a planar model through their positions and velocities after them.

@@ -28,6 +28,7 @@ mod scaling;
 mod structure;
 mod switches;
 pub mod tables;
+mod variations;
 mod zeno;
 
 use dalembert_cli::suite::Case;
@@ -50,6 +51,7 @@ pub fn all() -> Vec<Case> {
         long::CASES,
         energy::CASES,
         structure::CASES,
+        variations::CASES,
         ensembles::CASES,
         input::CASES,
     ];

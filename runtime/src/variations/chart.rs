@@ -254,8 +254,8 @@ fn complete<S: StateVector>(rows: &mut [S], count: usize) {
     }
 }
 
-/// The least solution of `A x = b` in the sense of least squares, where singular values that count as 0 are left out. `A`,
-/// the leading square of `size`, is overwritten; so is `turned`.
+/// The `x` of least `|A x - b|^2 + damping |x|^2`, where singular values that count as 0 are left out. `A`, the leading
+/// square of `size`, is overwritten; so is `turned`.
 ///
 /// One-sided rotations (Hestenes): columns are turned in pairs until all are orthogonal.
 pub(super) fn least_squares<S: StateVector>(
@@ -263,6 +263,7 @@ pub(super) fn least_squares<S: StateVector>(
     turned: &mut [S],
     size: usize,
     b: &S,
+    damping: f64,
 ) -> S {
     for (i, column) in turned.iter_mut().enumerate() {
         *column = S::zeros();
@@ -295,7 +296,11 @@ pub(super) fn least_squares<S: StateVector>(
     for (column, direction) in columns[..size].iter().zip(turned.iter()) {
         let square = dot(column, column);
         if square > RANK * RANK * largest {
-            add(&mut solution, dot(column, b) / square, direction);
+            add(
+                &mut solution,
+                dot(column, b) / (square + damping),
+                direction,
+            );
         }
     }
     solution

@@ -20,8 +20,16 @@ pub const ITERATIONS: u32 = 50;
 /// Halvings of one step.
 const HALVINGS: u32 = 12;
 
-/// A residual of this many units of rounding of the state, times the amplification of the orbit, is as good as 0.
+/// A residual of this many units of rounding of the state, times the amplification of the orbit, is as good as 0; or of so
+/// many errors of a step.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
+const STEPS: f64 = 16.0;
+
+/// A point that is closed is the last one if it misses itself by more than this part of what the one before did.
+const LAST_GAIN: f64 = 0.25;
+
+/// Part of the way along an orbit that it may be open by.
+const CLOSED: f64 = 1e-6;
 
 /// A periodic orbit of a section: a point that returns to itself.
 pub struct Orbit<Sys: Variational> {
@@ -117,8 +125,8 @@ where
     /// The periodic orbit near a point of the section (or near it), found by Newton's method in `iterations` steps at most
     /// ([`ITERATIONS`] is enough).
     ///
-    /// Angles close up to turns. Where an orbit belongs to a family, as all orbits of a conserved energy do, the one nearest
-    /// to the point is approached. A step that does not bring point and image closer is halved.
+    /// Angles close up to turns. Where an orbit belongs to a family, as all orbits of a conserved energy do, one near the
+    /// point is approached. A step that does not bring point and image closer is halved.
     ///
     /// # Errors
     /// [`OrbitError`].
@@ -135,19 +143,33 @@ where
         let mut made = 0;
         while trial.residual > 0.0 && made < iterations {
             made += 1;
-            match self.improve(&fixed, &trial)? {
-                Some(better) => trial = better,
-                None => break,
+            let Some(better) = self.improve(&fixed, &trial)? else {
+                break;
+            };
+            let is_last = better.residual > LAST_GAIN * trial.residual;
+            trial = better;
+            if is_last && self.is_closed(&trial)? {
+                break;
             }
         }
-        let size = trial.chart.size(&trial.point) * amplification::<Sys>(&trial);
-        match trial.residual <= ROUNDING * f64::max(size, 1.0) {
+        match self.is_closed(&trial)? {
             true => finish(trial, made),
             false => Err(OrbitError::NotConverged {
                 residual: trial.residual,
                 iterations: made,
             }),
         }
+    }
+
+    /// Whether a point is its own image, as far as can be told: by rounding, and beside the way from one to the other. A
+    /// motion that ceases comes back to where it is without being an orbit.
+    fn is_closed(&self, trial: &Trial<Sys>) -> Result<bool, Undefined> {
+        let mut rate = Sys::State::zeros();
+        self.system.rate(0.0, &trial.point, &mut rate)?;
+        let way = trial.chart.size(&rate) * trial.time;
+        let size = trial.chart.size(&trial.point) * amplification::<Sys>(trial);
+        let least = f64::max(ROUNDING, STEPS * self.tolerance) * f64::max(size, 1.0);
+        Ok(trial.residual <= f64::min(least, CLOSED * way))
     }
 
     /// A better point along Newton's step, if there is one.
@@ -225,14 +247,19 @@ fn finish<Sys: Variational>(trial: Trial<Sys>, iterations: u32) -> Result<Orbit<
     })
 }
 
-/// Newton's step from a point: the least solution of `(derivative - 1) step = -miss`.
+/// Newton's step from a point: `(derivative - 1) step = -miss`, damped by the size of the miss as Levenberg and Marquardt do.
+///
+/// Along a family of orbits `derivative - 1` is as small as the miss, not 0: undamped, steps would wander along the family.
+/// With this damping they converge quadratically to an orbit near by (J. Fan, Y. Yuan, Computing 74 (2005)).
 fn newton<Sys: Variational>(trial: &Trial<Sys>) -> Sys::State {
     let dimension = trial.chart.dimension();
     let (mut matrix, mut turned) = (trial.derivative, Sys::columns());
     for (i, column) in matrix.as_mut()[..dimension].iter_mut().enumerate() {
         column.as_mut_slice()[i] -= 1.0;
     }
-    let solution = least_squares(matrix.as_mut(), turned.as_mut(), dimension, &trial.miss);
+    let damping = crate::math::sqrt(dot(&trial.miss, &trial.miss));
+    let (columns, turned) = (matrix.as_mut(), turned.as_mut());
+    let solution = least_squares(columns, turned, dimension, &trial.miss, damping);
     let mut step = Sys::State::zeros();
     for (index, component) in solution.as_slice()[..dimension].iter().enumerate() {
         add(&mut step, -component, &trial.chart.direction(index));

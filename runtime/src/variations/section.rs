@@ -22,6 +22,8 @@ pub struct Section<'a, Sys: Variational, Step, Effects> {
     pub(super) surface: usize,
     pub(super) returns: u32,
     horizon: f64,
+    /// Relative error of one step.
+    pub(super) tolerance: f64,
 }
 
 /// An arrival at a section.
@@ -94,8 +96,10 @@ where
         surface: usize,
         horizon: f64,
     ) -> Self {
+        let tolerance = stepper.tolerance().relative();
         Self {
             system,
+            tolerance,
             simulation: Simulation::new(system, stepper, effects),
             surface,
             returns: 1,

@@ -7,5 +7,6 @@ pub mod ensemble;
 pub mod eval;
 pub mod gallery;
 pub mod list;
+pub mod orbit;
 pub mod simulate;
 pub mod stability;

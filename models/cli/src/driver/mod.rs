@@ -294,7 +294,7 @@ impl<M: Model> Piece for SegmentPiece<'_, '_, M> {
 }
 
 /// What an outcome says besides its kind and its time, in the model's names.
-fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, Value)> {
+pub(crate) fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, Value)> {
     let surface = |index: usize| ("surface", name(names::surfaces(description), index));
     let constraint = |index: usize| {
         (

@@ -27,7 +27,15 @@ fn json_has_the_same_and_the_names() {
 
 #[test]
 fn every_command_has_help_with_examples() {
-    for command in ["list", "derive", "check", "simulate", "eval", "stability"] {
+    for command in [
+        "list",
+        "derive",
+        "check",
+        "simulate",
+        "orbit",
+        "eval",
+        "stability",
+    ] {
         let done = run(&format!("{command} --help"));
         assert_eq!(done.exit, Exit::Reached, "{command}");
         assert!(done.output.contains("Examples:"), "{command}");

@@ -1,0 +1,102 @@
+//! `orbit`: a periodic orbit of a section, and its Floquet multipliers.
+
+mod document;
+mod summary;
+
+use dalembert::Tolerance;
+
+use crate::args::{OffConstraint, OrbitArgs};
+use crate::entry::{AnyModel, Entry};
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::orbit::{Found, Missed, Search};
+use crate::sink::{Sink, is_stdout};
+use crate::state_input::{build_model, initial_state};
+use crate::{Streams, names, run_request};
+
+/// The time that a return may take, unless the model's own `until` is longer.
+const HORIZON: f64 = 3600.0;
+
+/// What was looked for, and what was found.
+struct Finished<'a> {
+    model: &'a dyn AnyModel,
+    scene: &'a str,
+    search: Search,
+    result: Result<Found, Missed>,
+}
+
+/// Carries out `orbit`.
+///
+/// # Errors
+/// Bad flags, a scene without variations, a state that is refused, a file that cannot be written. That no orbit is found is
+/// not an error but [`Exit::Other`].
+pub fn run(
+    models: &[Entry],
+    args: &OrbitArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    let model = build_model(models, &args.model)?;
+    let search = search(model.as_ref(), args)?;
+    let origin = initial_state(model.as_ref(), &args.state)?;
+    let json = Sink::open_given("--json", args.json.as_deref())?;
+    let result = model
+        .orbit(&origin, &search)
+        .map_err(CliError::Start)?
+        .ok_or_else(|| invariable(model.as_ref(), args))?;
+    let finished = Finished {
+        model: model.as_ref(),
+        scene: &args.model.scene,
+        search,
+        result,
+    };
+    if let Some(sink) = json {
+        sink.write(streams, |output| document::write(output, &finished))?;
+    }
+    if !args.json.as_deref().is_some_and(is_stdout) {
+        summary::write(streams.output, &finished)?;
+    }
+    Ok(match finished.result {
+        Ok(_) => Exit::Reached,
+        Err(_) => Exit::Other,
+    })
+}
+
+/// Why there are no variations.
+fn invariable(model: &dyn AnyModel, args: &OrbitArgs) -> CliError {
+    match model.description().modes.is_empty() {
+        true => CliError::Invariable {
+            scene: args.model.scene.clone(),
+        },
+        false => CliError::Usage(
+            "orbit: runs that change between modes have no derivatives; choose one mode with --scene",
+        ),
+    }
+}
+
+fn search(model: &dyn AnyModel, args: &OrbitArgs) -> Result<Search, CliError> {
+    let description = model.description();
+    if description.surfaces.is_empty() {
+        return Err(CliError::Usage(
+            "--surface: the model has no impact surfaces",
+        ));
+    }
+    if args.state.off_constraint == OffConstraint::Keep {
+        return Err(CliError::Usage(
+            "--off-constraint keep: orbits are looked for on the constraints; use error or project",
+        ));
+    }
+    let surfaces = names::surfaces(&description);
+    let surface = names::find("--surface", "surface", &args.surface, surfaces)?;
+    let until = model.initial().until.unwrap_or(0.0);
+    let horizon = args.until.unwrap_or(until.max(HORIZON));
+    let tolerance = Tolerance::new(args.tol)
+        .map_err(|error| CliError::value("--tol", args.tol.to_string(), error.to_string()))?;
+    Ok(Search {
+        surface,
+        returns: args.period,
+        horizon,
+        tolerance,
+        laws: run_request::laws(model, &args.law)?,
+        policies: args.policies.policies(),
+    })
+}
