@@ -2,8 +2,8 @@
 //! how long it is.
 
 use dalembert::{
-    Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Scene, Simulation, Stepper, Taylor,
-    Tolerance,
+    Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Scene, Section, Simulation, Stepper, System,
+    Taylor, Tolerance,
 };
 use dalembert_cli::{Exit, Streams};
 use dalembert_models::{ChaplyginSleigh, PointBilliard, RollingDisk};
@@ -59,6 +59,22 @@ fn a_run_with_impacts_and_projection_allocates_nothing_and_repeats_to_the_bit() 
     let (first, second) = (runs(), runs());
     assert!(first.iter().all(|(_, count)| *count == 0), "{first:?}");
     assert_eq!(first, second);
+}
+
+#[test]
+fn a_search_for_an_orbit_allocates_nothing() {
+    let table = PointBilliard::default();
+    let start = table.state(0.0, &[0.05, 0.0].into(), &[0.02, 1.0].into());
+    let (start, tolerance) = (start.expect("a state"), Tolerance::new(1e-14));
+    let stepper = Taylor::new(tolerance.expect("a tolerance"));
+    let mut section = Section::new(&table, stepper, table.effects(), 0, 100.0).with_returns(2);
+    let mut dimension = None;
+    let count = allocations(|| {
+        let first = section.arrive(&start, &mut []).expect("an arrival");
+        let orbit = section.periodic(&first.before, 50);
+        dimension = orbit.ok().map(|own| own.dimension);
+    });
+    assert_eq!((dimension, count), (Some(3), 0));
 }
 
 /// Half a byte of stack for each step would be more than there is.

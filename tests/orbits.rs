@@ -2,11 +2,13 @@
 
 use dalembert::contract::Variational;
 use dalembert::variations::{Orbit, OrbitError, Section, SectionError};
-use dalembert::{Described, Outcome, Scene, StateVector, System, Tangent, Taylor, Tolerance};
+use dalembert::{
+    Described, Impacts, Law, Outcome, Scene, StateVector, System, Tangent, Taylor, Tolerance,
+};
 use dalembert_cli::{Exit, Streams, models, run_with};
-use dalembert_models::{DimensionlessWalker, PointBilliard};
+use dalembert_models::{BouncingBall, DimensionlessWalker, PointBilliard};
 use dalembert_tests::reference::{number, numbers, read};
-use dalembert_tests::systems::MovingWallDisk;
+use dalembert_tests::systems::{IntegrableBead, MovingWallDisk};
 use serde_json::Value;
 
 dalembert::model! {
@@ -17,6 +19,15 @@ dalembert::model! {
         impacts { middle: x >= 0 => reset { }; wall: y >= -3; }
         initial { x = 1; y = 0.2; until = 20; }
         scenes { bare: wall; varied: wall, middle, variations; }
+    }
+}
+
+dalembert::model! {
+    /// A wheel that counts its turns.
+    pub Wheel {
+        coordinates { theta: angle; }
+        lagrangian = dot(theta)^2/2;
+        impacts { mark: sin(theta) <= 0 when cos(theta) > 0 => reset { }; }
     }
 }
 
@@ -158,6 +169,57 @@ fn an_orbit_is_found_from_beside_it() {
     let orbit = orbit(&table, &start, 0, 2).expect("an orbit");
     let point = orbit.point.before;
     assert!(point[0].abs() < 1e-12 && point[2].abs() < 1e-12, "{point}");
+}
+
+#[test]
+fn an_orbit_of_an_angle_closes_after_a_turn() {
+    let wheel = Wheel {};
+    let orbit = orbit(&wheel, &state(&wheel, &[1.0], &[2.0]), 0, 1).expect("an orbit");
+    assert!((orbit.point.time - std::f64::consts::PI).abs() < 1e-14);
+    let turns = orbit.point.before[0] / (2.0 * std::f64::consts::PI);
+    assert!(
+        (turns - turns.round()).abs() < 1e-14 && turns > 0.5,
+        "{turns}"
+    );
+    let multipliers: Vec<[f64; 2]> = orbit.multipliers.iter().collect();
+    assert_eq!(multipliers, [[1.0, 0.0]]);
+}
+
+/// In the global form states can leave the constraint and the leaf of its level: neither is a direction of the section.
+#[test]
+fn directions_of_a_section_keep_constraints_and_levels() {
+    let bead = IntegrableBead::default();
+    let (x, y) = (-1.2, 0.8);
+    let start = state(&bead, &[x, y], &[0.0, 0.0]);
+    let orbit = orbit(&bead, &start, 0, 1).expect("an orbit");
+    assert_eq!((orbit.point.before.len(), orbit.dimension), (4, 1));
+    let [multiplier, imaginary] = orbit.multipliers.iter().next().expect("one");
+    assert!(
+        (multiplier - 1.0).abs() < 1e-10 && imaginary == 0.0,
+        "{multiplier}"
+    );
+    let level = |q: &[f64]| q[0] * q[0] / 4.0 + q[1] * q[1] - 1.0;
+    assert!(level(&orbit.point.before.as_slice()[..2]).abs() < 1e-12);
+    let direction = orbit.directions[0];
+    let along =
+        orbit.point.before[0] / 2.0 * direction[0] + 2.0 * orbit.point.before[1] * direction[1];
+    assert!(along.abs() < 1e-12, "{direction}");
+}
+
+/// Each bounce is lower than the one before: in the limit the ball returns to where it is, at rest.
+#[test]
+fn a_motion_that_ceases_is_no_orbit() {
+    let ball = BouncingBall::default();
+    let effects = Impacts::declared(&ball).with_law(0, Law::Newton(0.5));
+    let mut section = Section::new(&ball, taylor(), effects, 0, HORIZON);
+    let first = section
+        .arrive(&state(&ball, &[1.0], &[0.0]), &mut [])
+        .expect("an arrival");
+    let missed = section.periodic(&first.before, dalembert::variations::orbit::ITERATIONS);
+    assert!(matches!(
+        missed.err(),
+        Some(OrbitError::NotConverged { .. })
+    ));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use dalembert::contract::Variational;
 use dalembert::variations::Section;
 use dalembert::{
     Observer, Outcome, Run as Ran, Scene, SceneEffects, Simulation, StateVector, System, Tangent,
-    Taylor, Tolerance, Undefined, Variations,
+    Taylor, Tolerance, Undefined, Variations, VectorField,
 };
 use dalembert_cli::suite::{Case, Report, Run};
 
@@ -129,11 +129,11 @@ fn vary<S: Scene + Variational>(
     Some(Varied { run, columns })
 }
 
+/// A run, and the derivative of its end by columns.
+type Derived<S> = (Ran<<S as VectorField>::State>, Vec<Vec<f64>>);
+
 /// The entries of a derivative, or a failure in the report.
-fn matrix<S: Variational>(
-    report: &mut Report,
-    varied: Option<Varied<S>>,
-) -> Option<(Ran<S::State>, Vec<Vec<f64>>)> {
+fn matrix<S: Variational>(report: &mut Report, varied: Option<Varied<S>>) -> Option<Derived<S>> {
     let varied = varied.filter(|own| own.columns.is_ok());
     report.equal("has derivatives", varied.is_some(), true);
     let Varied { run, columns } = varied?;
