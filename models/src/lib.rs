@@ -20,6 +20,7 @@ pub mod refracted_particle;
 pub mod rimless_wheel_five;
 pub mod rimless_wheel_ten;
 pub mod rolling_ball_euler;
+pub mod rolling_ball_wall;
 pub mod rolling_disk;
 pub mod smooth_and_rough_plane;
 pub mod sphere_in_plane;
@@ -44,6 +45,7 @@ pub use refracted_particle::RefractedParticle;
 pub use rimless_wheel_five::RimlessWheelFive;
 pub use rimless_wheel_ten::RimlessWheelTen;
 pub use rolling_ball_euler::RollingBallEuler;
+pub use rolling_ball_wall::RollingBallWall;
 pub use rolling_disk::RollingDisk;
 pub use smooth_and_rough_plane::SmoothAndRoughPlane;
 pub use sphere_in_plane::SphereInPlane;
@@ -74,6 +76,7 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         RimlessWheelFive,
         RimlessWheelTen,
         RollingBallEuler,
+        RollingBallWall,
         RollingDisk,
         SmoothAndRoughPlane,
         SphereInPlane,

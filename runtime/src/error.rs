@@ -29,7 +29,8 @@ pub enum Fault {
         /// Index of the quasi-velocity.
         quasi: usize,
     },
-    /// `dh(pi_D grad h)` is not positive: no impulse that keeps the constraints can change the gap rate.
+    /// `dh(pi_D grad h)` is not positive: no impulse that keeps the constraints can change the gap rate; or the
+    /// instantaneous constraints of the surface depend on each other or on the constraints.
     SingularSurface {
         /// Index of the surface.
         surface: usize,

@@ -119,6 +119,16 @@ pub fn regular_surface(surface: usize, squared: f64) -> Result<(), Fault> {
     }
 }
 
+/// As [`independent_constraint`], or the fault of a surface whose instantaneous constraints depend on each other or on
+/// the constraints.
+#[inline(always)]
+pub fn independent_at(surface: usize, squared: f64, reference: f64) -> Result<(), Fault> {
+    match squared > LEAST_SQUARED_RATIO * reference {
+        true => Ok(()),
+        false => Err(Fault::SingularSurface { surface }),
+    }
+}
+
 /// Every parameter against its declaration.
 ///
 /// # Errors
@@ -296,5 +306,20 @@ pub mod lanes {
     #[inline(always)]
     pub fn regular_surface<L: Numbers>(surface: usize, squared: L) -> Result<(), Fault> {
         (0..L::LANES).try_for_each(|lane| super::regular_surface(surface, squared.lane(lane)))
+    }
+
+    /// As [`independent_at`](super::independent_at), of every lane.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    #[inline(always)]
+    pub fn independent_at<L: Numbers>(
+        surface: usize,
+        squared: L,
+        reference: L,
+    ) -> Result<(), Fault> {
+        (0..L::LANES).try_for_each(|lane| {
+            super::independent_at(surface, squared.lane(lane), reference.lane(lane))
+        })
     }
 }

@@ -70,7 +70,7 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     visit! {
         dalembert_models:
         BallOnRotatingTable BouncingBall Chain2 Chain3 Chain4 Chain8 Chain16 ChaplyginSleigh DoublePendulum
-        HarmonicOscillator HolonomicBeadOnEllipses PointBilliard RollingBallEuler RollingDisk TwoWheelsRod
+        HarmonicOscillator HolonomicBeadOnEllipses PointBilliard RollingBallEuler RollingBallWall RollingDisk TwoWheelsRod
         WalkerFootSlip
     }
     visit! {

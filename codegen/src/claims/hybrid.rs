@@ -33,6 +33,14 @@ pub(super) fn volume_remarks(
             ));
             continue;
         }
+        if !model.surfaces[surface].instantaneous.is_empty() {
+            let name = &model.surfaces[surface].name.display;
+            // States on a line along the impulses of the constraints become one.
+            remarks.push(format!(
+                "an impact at {name} maps it to 0, as its instantaneous constraints do"
+            ));
+            continue;
+        }
         let wall = Wall::of(model, derivation, surface);
         if let Some(reason) = wall.reset.as_ref().and_then(ResetMap::open) {
             let name = &model.surfaces[surface].name.display;

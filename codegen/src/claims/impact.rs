@@ -22,6 +22,11 @@ pub(super) fn check_conserved_under(
     seed: u64,
 ) -> Verdict {
     let name = model.surfaces[surface].name.display.clone();
+    if !model.surfaces[surface].instantaneous.is_empty() {
+        return Verdict::Undecided(format!(
+            "what impacts at `{name}` with their instantaneous constraints do to a quantity is not examined"
+        ));
+    }
     let wall = Wall::of(model, derivation, surface);
     let after = model.surfaces[surface].reset.clone().map(|reset| {
         let replacements = reset.replacements(&model.coordinates);

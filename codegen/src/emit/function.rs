@@ -219,9 +219,19 @@ impl<'a> Writer<'a> {
                 };
                 quote!(#guards::independent_form(#quasi, #squared, #reference)?;)
             }
-            Guard::Surface { surface, squared } => {
+            Guard::Surface {
+                surface,
+                squared,
+                reference,
+            } => {
                 let squared = at(squared);
-                quote!(#guards::regular_surface(#surface, #squared)?;)
+                match reference {
+                    None => quote!(#guards::regular_surface(#surface, #squared)?;),
+                    Some(reference) => {
+                        let reference = at(reference);
+                        quote!(#guards::independent_at(#surface, #squared, #reference)?;)
+                    }
+                }
             }
         };
         self.statements.extend(statement);

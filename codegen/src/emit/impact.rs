@@ -30,6 +30,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
         ]),
     };
     let resets = emit_resets(context, functions);
+    let instantaneous = super::instantaneous::emit_instantaneous(context, functions);
     let attributes = super::attributes();
     quote! {
         #attributes
@@ -41,6 +42,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
             #laws
             #contacts
             #resets
+            #instantaneous
         }
     }
 }

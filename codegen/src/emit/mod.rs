@@ -10,6 +10,7 @@ mod first_order;
 mod function;
 mod impact;
 mod indices;
+mod instantaneous;
 mod jet;
 mod lagrangian;
 pub mod modes;

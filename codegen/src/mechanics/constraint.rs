@@ -80,7 +80,7 @@ fn primitive(pool: &mut Pool, form: &[ExprId], curvature: ExprId) -> (Vec<ExprId
 }
 
 /// `eta(qdot) + eta_0`.
-fn derive_residual(
+pub(super) fn derive_residual(
     model: &mut Model,
     coordinates: &Coordinates,
     form: &[ExprId],

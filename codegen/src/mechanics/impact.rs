@@ -6,11 +6,26 @@
 use dalembert_expr::{ExprId, Pool};
 
 use super::common_factor::{factored, without_regular_factor};
+use super::constraint::derive_residual;
 use super::{Coordinates, Frame};
-use crate::model::Model;
+use crate::model::{Constraint, Model};
 
 /// Distinct parts beyond which a ray on D is not written out.
 const PARTS: usize = 400;
+
+/// A constraint `psi(qdot) + psi_0 = 0` that holds in the moment of an impact, and where the motion is held by the
+/// surface.
+#[derive(Debug)]
+pub struct InstantaneousForm {
+    /// `psi_j`, N entries.
+    pub form: Vec<ExprId>,
+    /// `psi_0`
+    pub affine: ExprId,
+    /// `psi(qdot) + psi_0`
+    pub residual: ExprId,
+    /// The rate of `residual` at fixed velocity.
+    pub curvature: ExprId,
+}
 
 /// One surface, differentiated.
 #[derive(Debug)]
@@ -27,6 +42,8 @@ pub struct SurfaceForm {
     pub curvature: ExprId,
     /// The functions that must be positive for the surface to count.
     pub conditions: Vec<ExprId>,
+    /// The constraints that hold in the moment of an impact only.
+    pub instantaneous: Vec<InstantaneousForm>,
     /// Of a wall that stands still, `dh` without what is never zero in all its entries.
     pub ray: Option<Vec<ExprId>>,
     /// The same of `X^T dh`, where it can be written out.
@@ -60,9 +77,29 @@ pub(super) fn derive_surfaces(
                 curvature: model.pool.derivative_along(gap_rate, &motion),
                 gap_rate,
                 conditions: model.surfaces[s].conditions.clone(),
+                instantaneous: derive_instantaneous(model, coordinates, s),
             }
         })
         .collect()
+}
+
+fn derive_instantaneous(
+    model: &mut Model,
+    coordinates: &Coordinates,
+    s: usize,
+) -> Vec<InstantaneousForm> {
+    let motion = coordinates.motion(model);
+    let declared = model.surfaces[s].instantaneous.clone();
+    let derive = |own: Constraint| {
+        let residual = derive_residual(model, coordinates, &own.form, own.affine);
+        InstantaneousForm {
+            curvature: model.pool.derivative_along(residual, &motion),
+            form: own.form,
+            affine: own.affine,
+            residual,
+        }
+    };
+    declared.into_iter().map(derive).collect()
 }
 
 /// `X^T dh`; `None` where a component of `X` that it takes is not written out.

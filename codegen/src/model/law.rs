@@ -3,7 +3,7 @@
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
 use super::{Coordinate, Model, Surface};
-use crate::spec::{ItemId, RESET};
+use crate::spec::{INSTANTANEOUS, ItemId, RESET};
 
 /// A declared impact law; coefficients are expressions of the parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,21 +122,30 @@ impl Reset {
 }
 
 impl Model {
-    /// The law of a surface as it was declared: `newton(e)`.
+    /// The law of a surface as it was declared, with the names of its instantaneous constraints:
+    /// `newton(e), instantaneous { no_slip }`.
     pub fn law_text(&self, surface: usize) -> String {
         let Surface {
             law,
             reset,
             transition,
+            instantaneous,
             ..
         } = &self.surfaces[surface];
         if let Some(transition) = transition {
             return transition.text(&self.pool);
         }
-        match (law.coefficient(), reset) {
+        let text = match (law.coefficient(), reset) {
             (Some(e), _) => format!("{}({})", law.name(), self.pool.text(e)),
             (None, Some(reset)) => reset.text(&self.pool, &self.coordinates),
             (None, None) => law.name().to_owned(),
+        };
+        let names: Vec<&str> = (instantaneous.iter())
+            .map(|own| own.name.display.as_str())
+            .collect();
+        match names.is_empty() {
+            true => text,
+            false => format!("{text}, {INSTANTANEOUS} {{ {} }}", names.join(", ")),
         }
     }
 }

@@ -212,6 +212,13 @@ pub struct Constraint {
     pub item: ItemId,
 }
 
+impl Constraint {
+    /// `eta` and `eta_0`.
+    pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
+        self.form.iter().copied().chain([self.affine])
+    }
+}
+
 /// A force as a one-form; coefficients may depend on coordinates, velocities and time.
 #[derive(Debug, Clone)]
 pub struct Force {
@@ -253,6 +260,8 @@ pub struct Surface {
     pub reset: Option<Reset>,
     /// The mode that is entered here.
     pub transition: Option<Transition>,
+    /// Constraints that hold in the moment of an impact, and while the motion is held by the surface; without levels.
+    pub instantaneous: Vec<Constraint>,
     /// Where it was declared.
     pub item: ItemId,
 }

@@ -68,6 +68,15 @@ impl<'a> Kernel<'a> {
         result
     }
 
+    /// What is left of a column `L^{-1} b` without its components along the constraint columns.
+    pub fn without_constraints(&mut self, column: Vec<Value>) -> Vec<Value> {
+        match self.constraints() {
+            0 => column,
+            _ => self
+                .with_constraints(|builder, ldlt, factors| factors.project(builder, ldlt, column)),
+        }
+    }
+
     /// The `lambda` with `m lambda = -(eta g^{-1} b + s)`.
     pub fn constraint_solve(&mut self, b: &[Value], s: &[Value]) -> Vec<Value> {
         let y = self.forward(b);

@@ -60,13 +60,22 @@ fn holds(guard: &Guard, values: &[f64]) -> bool {
             reference: None,
             ..
         }
-        | Guard::Surface { squared, .. } => values[squared.index()] > 0.0,
+        | Guard::Surface {
+            squared,
+            reference: None,
+            ..
+        } => values[squared.index()] > 0.0,
         Guard::Constraint {
             squared,
             reference: Some(reference),
             ..
         }
         | Guard::Frame {
+            squared,
+            reference: Some(reference),
+            ..
+        }
+        | Guard::Surface {
             squared,
             reference: Some(reference),
             ..

@@ -56,6 +56,8 @@ pub struct Kernel<'a> {
     arguments: Arguments,
     /// Whether constraint forms are taken without common numbers, so that multipliers are not those of the declaration.
     pub(super) primitive: bool,
+    /// Whether functions end where the instantaneous constraints of a surface depend on each other.
+    pub(super) guards_surfaces: bool,
     /// Whether velocities are taken from what is written out, rather than solved for one after the other.
     pub(super) written: bool,
     ldlt: Option<Ldlt>,
@@ -78,6 +80,7 @@ impl<'a> Kernel<'a> {
             expressions: Expressions::new(&model.pool),
             arguments,
             primitive: false,
+            guards_surfaces: true,
             written: false,
             ldlt: None,
             constraint_factors: None,
@@ -107,6 +110,15 @@ impl<'a> Kernel<'a> {
     pub fn without_multipliers(self) -> Self {
         Self {
             primitive: true,
+            ..self
+        }
+    }
+
+    /// The same for a function that says of surfaces what there is to be said: NaN where an impulse does not exist.
+    #[must_use]
+    pub fn without_surface_guards(self) -> Self {
+        Self {
+            guards_surfaces: false,
             ..self
         }
     }

@@ -199,13 +199,13 @@ pub struct Orthogonal {
 }
 
 impl Orthogonal {
-    /// Orthogonalises columns. `guard` makes the guard of a column from its number and its squared norms, after and
-    /// before the earlier columns were projected out; there is nothing before the first.
-    pub fn factor(
+    /// Orthogonalises columns. `guard` makes the guard of a column, if there is to be one, from its number and its squared
+    /// norms, after and before the earlier columns were projected out; there is nothing before the first.
+    pub fn factor<G: Into<Option<Guard>>>(
         builder: &mut Builder,
         ldlt: &Ldlt,
         columns: Vec<Vec<Value>>,
-        guard: impl Fn(usize, Value, Option<Value>) -> Guard,
+        guard: impl Fn(usize, Value, Option<Value>) -> G,
     ) -> Self {
         let mut factors = Self {
             columns: Vec::new(),
@@ -217,7 +217,9 @@ impl Orthogonal {
             let reference = (index > 0).then(|| ldlt.inner(builder, &column, &column));
             let (coefficients, rest) = factors.reduce(builder, ldlt, column);
             let squared = ldlt.inner(builder, &rest, &rest);
-            builder.guard(guard(index, squared, reference));
+            if let Some(guard) = guard(index, squared, reference).into() {
+                builder.guard(guard);
+            }
             factors.inverse_squares.push(builder.reciprocal(squared));
             factors.squares.push(squared);
             factors.above.push(coefficients);

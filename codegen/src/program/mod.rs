@@ -134,12 +134,15 @@ pub enum Guard {
         /// Squared norm before.
         reference: Option<Value>,
     },
-    /// `squared > 0`, else `SingularSurface`.
+    /// `squared > 0`, else `SingularSurface`; with `reference` as [`Guard::Constraint`], for the instantaneous
+    /// constraints of the surface.
     Surface {
         /// Number of the surface.
         surface: usize,
-        /// `dh(pi_D grad h)`.
+        /// `dh(pi_D grad h)`, or the squared norm of a form after projection.
         squared: Value,
+        /// Squared norm of the form before.
+        reference: Option<Value>,
     },
 }
 
@@ -160,11 +163,13 @@ impl Guard {
             }
             | Self::Frame {
                 squared, reference, ..
+            }
+            | Self::Surface {
+                squared, reference, ..
             } => (squared, reference),
             Self::Mass {
                 pivot, diagonal, ..
             } => (pivot, Some(diagonal)),
-            Self::Surface { squared, .. } => (squared, None),
         };
         core::iter::once(first).chain(second)
     }
@@ -487,6 +492,11 @@ pub struct Impacting {
     pub resets: Vec<Option<Function>>,
     /// Per surface that leads to another mode with a declared state: `(t, s) -> q, qdot` in that mode.
     pub entries: Vec<Option<Function>>,
+    /// Per surface with instantaneous constraints: `(t, s) ->` the impulse after which they hold.
+    pub focuses: Vec<Option<Function>>,
+    /// Per surface with instantaneous constraints: `(t, s, w) ->` what must be added to the rates `w` for them to go on
+    /// holding.
+    pub traces: Vec<Option<Function>>,
 }
 
 impl Impacting {
@@ -502,6 +512,8 @@ impl Impacting {
             coefficients,
             resets,
             entries,
+            focuses,
+            traces,
         } = self;
         let declared = conditions
             .iter()
@@ -509,6 +521,8 @@ impl Impacting {
             .chain(coefficients)
             .chain(resets)
             .chain(entries)
+            .chain(focuses)
+            .chain(traces)
             .flatten();
         let moving = [gap_rates, gap_accelerations, gap_responses];
         core::iter::once(gaps)

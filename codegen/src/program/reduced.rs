@@ -7,7 +7,7 @@ use super::builder::Builder;
 use super::coframe::Asked;
 use super::kernel::Kernel;
 use super::linear::Ldlt;
-use super::{Input, Value};
+use super::{Form, Input, Value};
 use crate::mechanics::Frame;
 use crate::mechanics::frame::{Invariant, Row};
 
@@ -195,6 +195,18 @@ impl<'a> Kernel<'a> {
         let result = work(&mut self.builder, &ldlt);
         self.reduced_ldlt = Some(ldlt);
         result
+    }
+
+    /// Runs `work` with the factors of the metric, or in reduced form with those of `G_D`.
+    pub fn with_state_ldlt<T>(
+        &mut self,
+        form: Form,
+        work: impl FnOnce(&mut Builder, &Ldlt) -> T,
+    ) -> T {
+        match form {
+            Form::Reduced => self.with_reduced_ldlt(work),
+            Form::Global | Form::FirstOrder => self.with_ldlt(work),
+        }
     }
 
     /// Whether the metric is diagonal with entries known to be positive: then so are the entries on the diagonal of

@@ -96,9 +96,14 @@ fn map_guard(guard: Guard, map: impl Fn(Value) -> Value) -> Guard {
             pivot: map(pivot),
             diagonal: map(diagonal),
         },
-        Guard::Surface { surface, squared } => Guard::Surface {
+        Guard::Surface {
+            surface,
+            squared,
+            reference,
+        } => Guard::Surface {
             surface,
             squared: map(squared),
+            reference: reference.map(map),
         },
     }
 }

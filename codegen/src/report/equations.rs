@@ -240,6 +240,7 @@ impl Writer<'_> {
                 ));
             }
             items.extend(self.reset(s, &name, &subscript));
+            items.extend(self.instantaneous(s));
         }
         if self.model.is_first_order() {
             return Section::plain("Impacts", items);
@@ -270,6 +271,37 @@ impl Writer<'_> {
             )
         });
         formulas.collect()
+    }
+
+    /// The constraints that hold in the moment of an impact only.
+    fn instantaneous(&mut self, s: usize) -> Vec<Item> {
+        let derivation = self.derivation;
+        let mut items = Vec::new();
+        for b in 0..derivation.surfaces[s].instantaneous.len() {
+            let name = self.model.surfaces[s].instantaneous[b].name.display.clone();
+            let own = &derivation.surfaces[s].instantaneous[b];
+            let row = own.form.iter().map(|&entry| self.print(entry)).collect();
+            let superscript = format!("^{{\\text{{{}}}}}", escape(&name));
+            items.push(Item::Matrix {
+                left: [format!("psi[{name}]"), format!("\\psi{superscript}")],
+                rows: vec![row],
+            });
+            for (label, value) in [("psi_0", own.affine), ("curvature", own.curvature)] {
+                if !self.is_zero(value) {
+                    let latex = match label {
+                        "psi_0" => format!("\\psi_0{superscript}"),
+                        _ => format!("\\text{{curvature}}{superscript}"),
+                    };
+                    items.push(self.formula(format!("{label}[{name}]"), latex, value));
+                }
+            }
+        }
+        if !items.is_empty() {
+            let words = "before the law: p' = p + nu_b pi_D^* psi^b with psi(qdot') + psi_0 = 0; then the law with \
+                         ker(eta, psi) for D, if dh(qdot') + d_t h < 0";
+            items.push(Item::Words(words.to_owned()));
+        }
+        items
     }
 
     pub(super) fn declared_outputs(&mut self) -> Section {

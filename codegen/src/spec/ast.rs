@@ -344,7 +344,7 @@ pub struct Comparison {
     pub at: Location,
 }
 
-/// `name: h >= 0 when g > 0 => LAW;`
+/// `name: h >= 0 when g > 0 => LAW, instantaneous { .. };`
 #[derive(Debug)]
 pub struct Surface {
     /// Its name, with the index of a family.
@@ -359,6 +359,8 @@ pub struct Surface {
     pub law: Option<Law>,
     /// The mode that is entered here, of a transition.
     pub enters: Option<Word>,
+    /// `instantaneous { .. }`
+    pub instantaneous: Vec<Equation>,
     /// The declaration.
     pub item: ItemId,
 }

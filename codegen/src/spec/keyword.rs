@@ -24,10 +24,8 @@ pub const SECTIONS: [&str; 17] = [
 ];
 
 /// Words of the language that this version does not implement, each with what can be written instead.
-pub const NOT_IMPLEMENTED: [(&str, &str); 2] = [
-    ("inputs", "declare a parameter and set it between runs"),
-    ("instantaneous", "declare the constraint in `constraints`"),
-];
+pub const NOT_IMPLEMENTED: [(&str, &str); 1] =
+    [("inputs", "declare a parameter and set it between runs")];
 
 /// The elementary functions: those of one argument, and before and after them the two that are built otherwise.
 pub const FUNCTIONS: [&str; Function::ALL.len() + 2] = {
@@ -133,6 +131,9 @@ pub const LAWS: [(&str, usize); 7] = [
 
 /// The law that is a map: `reset { x = ..; dot(x) = ..; }`.
 pub const RESET: &str = "reset";
+
+/// The word before the constraints that hold in the moment of an impact only: `=> LAW, instantaneous { .. }`.
+pub const INSTANTANEOUS: &str = "instantaneous";
 
 /// What a scene may use besides named forces and surfaces: the return to the constraints after steps, and density form,
 /// divergence and invariant volume.

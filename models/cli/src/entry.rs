@@ -157,6 +157,8 @@ pub(crate) trait AnyModel {
     fn law(&self, surface: usize) -> Option<Law>;
     /// The state after the impact of a law.
     fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64>;
+    /// The state after an impulse on its momenta.
+    fn kick(&self, state: &[f64], impulse: &[f64]) -> Vec<f64>;
     fn simulate(
         &self,
         origin: &Origin,
@@ -373,6 +375,12 @@ impl<M: Model> AnyModel for Typed<M> {
         };
         let mut state = vector(state);
         global.kick(&mut state, contact.impulse(law), &contact.direction);
+        StateVector::as_slice(&state).to_vec()
+    }
+
+    fn kick(&self, state: &[f64], impulse: &[f64]) -> Vec<f64> {
+        let mut state = vector(state);
+        self.0.global().kick(&mut state, 1.0, &vector(impulse));
         StateVector::as_slice(&state).to_vec()
     }
 

@@ -76,6 +76,38 @@ pub trait Impacting: System {
         Ok(None)
     }
 
+    /// The impulse after which the instantaneous constraints of a surface hold, the nearest one in the metric; `None`
+    /// where it has none. It acts before the law, and then the law within those constraints: what
+    /// [`Impacting::blow`] and [`Impacting::contact`] say of the surface has them among the constraints.
+    ///
+    /// # Errors
+    /// [`Fault`]; [`Fault::SingularSurface`] where they depend on each other or on the constraints.
+    fn focus(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Option<Self::Impulse>, Fault> {
+        let _ = (surface, t, state);
+        Ok(None)
+    }
+
+    /// What must be added to the rates `motion` of momenta or quasi-velocities for the instantaneous constraints of a
+    /// surface to go on holding, as they do along it; `None` where it has none.
+    ///
+    /// # Errors
+    /// As [`Impacting::focus`].
+    fn trace(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+        motion: &Self::Impulse,
+    ) -> Result<Option<Self::Impulse>, Fault> {
+        let _ = (surface, t, state, motion);
+        Ok(None)
+    }
+
     /// Whether motion is allowed on both sides of a surface, so that its gap may be negative: of surfaces with a reset, and of
     /// transitions that are counted from both sides.
     fn is_passable(&self, surface: usize) -> bool {
@@ -118,7 +150,7 @@ pub trait Impacting: System {
     /// What an impact on this surface by any law needs, and motion along it.
     ///
     /// # Errors
-    /// [`Fault`]; [`Fault::SingularSurface`] where `dh(pi_D grad h)` is not positive.
+    /// [`Fault`]; [`Fault::SingularSurface`] where `dh(pi_D grad h)` is not positive, and as [`Impacting::focus`].
     fn contact(
         &self,
         surface: usize,

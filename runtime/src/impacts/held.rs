@@ -10,7 +10,11 @@
 //! The same equations with gap rates or gaps on the right mend velocities and positions. Their matrix is symmetric and
 //! positive semidefinite, so that conjugate gradients solve them in as many steps as there are surfaces, one for one
 //! surface, without a matrix being kept.
+//!
+//! Instantaneous constraints of a surface hold as long as it does: the motion is that of its trace. Their forces come first,
+//! the surfaces push within them, and one surface of those held has some at most ([`super::resting`]).
 
+use super::instantaneous::{focused, is_rough};
 use super::sliding::Slide;
 use crate::contract::Impacting;
 use crate::effects::{Change, Moment};
@@ -106,10 +110,45 @@ impl<G: StateVector> Held<G> {
         state: &Sys::State,
         rate: &Sys::State,
     ) -> Result<Option<G>, Fault> {
-        match second_rates(system, t, state, rate)? {
+        let mut motion = motion_of(system, state, rate);
+        if let Some(force) = self.trace(system, t, state, &motion)? {
+            motion = sum(&motion, 1.0, &force);
+        }
+        match system.gap_accelerations(t, state, &motion)? {
             Some(accelerations) => self.against(system, t, state, &accelerations),
             None => Ok(None),
         }
+    }
+
+    /// The force of the instantaneous constraints where momenta or quasi-velocities change at these rates.
+    fn trace<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        motion: &Sys::Impulse,
+    ) -> Result<Option<Sys::Impulse>, Fault> {
+        for surface in self.iter() {
+            if let Some(force) = system.trace(surface, t, state, motion)? {
+                return Ok(Some(force));
+            }
+        }
+        Ok(None)
+    }
+
+    /// What instantaneous constraints add to an impulse or a force that is not within them.
+    fn reaction<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        motion: &Sys::Impulse,
+    ) -> Result<Option<Sys::Impulse>, Fault> {
+        let Some(with) = self.trace(system, t, state, motion)? else {
+            return Ok(None);
+        };
+        let without = self.trace(system, t, state, &Sys::Impulse::zeros())?;
+        Ok(without.map(|without| sum(&with, -1.0, &without)))
     }
 
     /// The sizes of the impulses, or forces, on the surfaces held that take these gap rates, or second rates.
@@ -160,13 +199,28 @@ impl<G: StateVector> Held<G> {
         state: &Sys::State,
         sizes: &G,
     ) -> Result<Option<G>, Fault> {
+        let mut motion = self.pushes(system, t, state, sizes)?;
+        if let Some(reaction) = self.reaction(system, t, state, &motion)? {
+            motion = sum(&motion, 1.0, &reaction);
+        }
+        let responses = system.gap_responses(t, state, &motion)?;
+        Ok(responses.map(|responses| self.only(&responses)))
+    }
+
+    /// The sum of impulses of these sizes.
+    fn pushes<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        sizes: &G,
+    ) -> Result<Sys::Impulse, Fault> {
         let mut motion = Sys::Impulse::zeros();
         for surface in self.iter() {
             let contact = system.contact(surface, t, state)?;
             motion = sum(&motion, sizes.as_slice()[surface], &contact.direction);
         }
-        let responses = system.gap_responses(t, state, &motion)?;
-        Ok(responses.map(|responses| self.only(&responses)))
+        Ok(motion)
     }
 
     /// Adds impulses of these sizes, taken at `state`, to a state or to a rate.
@@ -182,7 +236,29 @@ impl<G: StateVector> Held<G> {
             let contact = system.contact(surface, t, state)?;
             system.kick(to, sizes.as_slice()[surface], &contact.direction);
         }
+        if !self.is_rough(system, t, state)? {
+            return Ok(());
+        }
+        let pushes = self.pushes(system, t, state, sizes)?;
+        if let Some(reaction) = self.reaction(system, t, state, &pushes)? {
+            system.kick(to, 1.0, &reaction);
+        }
         Ok(())
+    }
+
+    /// Whether a surface held has instantaneous constraints.
+    pub(super) fn is_rough<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+    ) -> Result<bool, Fault> {
+        for surface in self.iter() {
+            if is_rough(system, surface, t, state)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Brings the state back to the surfaces held: gaps and gap rates to 0, each to first order.
@@ -223,12 +299,18 @@ impl<G: StateVector> Held<G> {
         Ok(())
     }
 
-    /// Takes the gap rates.
+    /// Takes the gap rates, after the instantaneous constraints are brought to hold.
     pub(super) fn settle_rates<Sys: Impacting<Gaps = G>>(
         &self,
         now: &mut Moment<'_, Sys>,
     ) -> Result<(), Fault> {
-        let (system, t, state) = (now.system, now.t, *now.state);
+        let (system, t) = (now.system, now.t);
+        for surface in self.iter() {
+            if let Some(focused) = focused(system, surface, t, now.state)? {
+                *now.state = focused;
+            }
+        }
+        let state = *now.state;
         let rates = system.gap_rates(t, &state)?;
         match self.against(system, t, &state, &rates)? {
             Some(sizes) => self.push(system, t, &state, &sizes, now.state),
@@ -248,10 +330,13 @@ impl<Sys: Impacting> Forces<Sys> for Held<Sys::Gaps> {
         if let Some(slide) = self.slide {
             return slide.add(system, t, state, rate);
         }
-        match self.sizes_at(system, t, state, rate)? {
-            Some(sizes) => self.push(system, t, state, &sizes, rate),
-            None => Ok(()),
+        let Some(sizes) = self.sizes_at(system, t, state, rate)? else {
+            return Ok(());
+        };
+        if let Some(force) = self.trace(system, t, state, &motion_of(system, state, rate))? {
+            system.kick(rate, 1.0, &force);
         }
+        self.push(system, t, state, &sizes, rate)
     }
 }
 
@@ -262,12 +347,17 @@ pub(super) fn second_rates<Sys: Impacting>(
     state: &Sys::State,
     rate: &Sys::State,
 ) -> Result<Option<Sys::Gaps>, Fault> {
+    system.gap_accelerations(t, state, &motion_of(system, state, rate))
+}
+
+/// The rates of momenta or quasi-velocities in the rate of a state.
+fn motion_of<Sys: Impacting>(system: &Sys, state: &Sys::State, rate: &Sys::State) -> Sys::Impulse {
     let mut motion = Sys::Impulse::zeros();
     let parts = rate.as_slice().iter().skip(system.motion_start(state));
     for (part, rate) in motion.as_mut_slice().iter_mut().zip(parts) {
         *part = *rate;
     }
-    system.gap_accelerations(t, state, &motion)
+    motion
 }
 
 fn product<V: StateVector>(a: &V, b: &V) -> f64 {

@@ -5,6 +5,7 @@ use core::ops::ControlFlow;
 use super::accumulation::{Accumulation, Ends};
 use super::held::Held;
 use super::hits::Hits;
+use super::instantaneous::focused;
 use super::law::{Blow, Law};
 use super::override_table::Overrides;
 use super::policy::{Corner, Penetration, Policies, Rest, Split};
@@ -31,6 +32,9 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 /// Hits at the same time (within rounding) are carried out in order of index, again and again until no surface at
 /// hand is approached. Where that order matters, where a law leaves the state approaching, and where the motion presses
 /// into a surface, the [`Policies`] say how to go on; by default the run ends, after an impact with the state after it.
+///
+/// A surface with instantaneous constraints first brings the state to them ([`Impacting::focus`]). Where it still
+/// approaches, the law acts within them; along the surface they hold.
 ///
 /// A surface with the law [`Law::Reset`] has no side that is not allowed: it counts whenever its gap falls through 0 from
 /// above, and where the reset leaves it falling it is crossed. At the first instant of a run, and where a reset has moved
@@ -239,7 +243,8 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// What the law in force makes of a state that approaches a surface at gap rate `rate`.
+    /// What the law in force makes of a state that approaches a surface at gap rate `rate`, after the instantaneous
+    /// constraints of the surface.
     pub(super) fn struck(
         &self,
         system: &Sys,
@@ -264,15 +269,32 @@ impl<Sys: Impacting> Impacts<Sys> {
                 is_graze: landing.is_graze,
             });
         }
-        let blow = self.blow(system, surface, t, before)?;
-        let mut after = *before;
+        let (before, rate) = match focused(system, surface, t, before)? {
+            None => (*before, rate),
+            Some(focused) => {
+                let rates = system.gap_rates(t, &focused)?;
+                let rate = rates.as_slice()[surface];
+                if rate >= 0.0 {
+                    // The constraints alone have turned the motion round.
+                    return Ok(Struck {
+                        after: focused,
+                        rates,
+                        by_impulse: true,
+                        is_graze: false,
+                    });
+                }
+                (focused, rate)
+            }
+        };
+        let blow = self.blow(system, surface, t, &before)?;
+        let mut after = before;
         system.kick(&mut after, blow.size, &blow.direction);
         // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction; without this the
         // energy would drift like the number of impacts instead of its root. The rate half way is small where the law is
         // elastic: rates before and after would be rounded to a grid that is coarse beside their difference.
         let taken = blow.share * rate;
         let half = rate - 0.5 * taken;
-        let middle = system.gap_rates(t, &between(before, &after))?.as_slice()[surface];
+        let middle = system.gap_rates(t, &between(&before, &after))?.as_slice()[surface];
         let missed = 2.0 * (half - middle);
         let correction = -missed / taken * blow.size;
         if correction.is_finite() {

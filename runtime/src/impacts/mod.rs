@@ -8,6 +8,7 @@ mod growth;
 mod held;
 mod hits;
 mod impulse;
+mod instantaneous;
 pub mod law;
 mod override_table;
 mod place;

@@ -6,6 +6,7 @@
 use core::ops::ControlFlow;
 
 use super::held::Held;
+use super::instantaneous::is_rough;
 use super::release::first_release;
 use super::sliding::Slide;
 use crate::contract::Impacting;
@@ -120,6 +121,13 @@ impl<G: StateVector> Resting<G> {
                 None => self.leave(surface, now, observer)?,
             },
             Turn::Press(surface) => {
+                // How two surfaces with instantaneous constraints share what both of them take is not known.
+                let (system, t) = (now.system, now.t);
+                if is_rough(system, surface, t, now.state)?
+                    && self.held.is_rough(system, t, now.state)?
+                {
+                    return Err(Outcome::Contact { surface });
+                }
                 self.held.hold(surface);
                 if self.held.sizes(now.system, now.t, now.state)?.is_none() {
                     return Err(Outcome::Contact { surface });

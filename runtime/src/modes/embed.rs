@@ -339,6 +339,40 @@ pub fn gap_responses<M: Mode + Impacting, G: StateVector>(
     Ok(own.map(|own| scattered(own.as_slice(), M::SURFACES)))
 }
 
+/// As [`Impacting::focus`].
+///
+/// # Errors
+/// That of the mode.
+pub fn focus<M: Mode + Impacting, I: StateVector>(
+    model: &M::Model,
+    surface: usize,
+    t: f64,
+    state: &StateOf<M>,
+) -> Result<Option<I>, Fault> {
+    let own = M::of(model).focus(known_surface::<M>(surface)?, t, &taken::<M>(state))?;
+    Ok(own.map(|own| beginning(&own)))
+}
+
+/// As [`Impacting::trace`].
+///
+/// # Errors
+/// That of the mode.
+pub fn trace<M: Mode + Impacting, I: StateVector>(
+    model: &M::Model,
+    surface: usize,
+    t: f64,
+    state: &StateOf<M>,
+    motion: &I,
+) -> Result<Option<I>, Fault> {
+    let own = M::of(model).trace(
+        known_surface::<M>(surface)?,
+        t,
+        &taken::<M>(state),
+        &beginning(motion),
+    )?;
+    Ok(own.map(|own| beginning(&own)))
+}
+
 /// As [`Impacting::surface_active`]; a surface that the mode does not have does not count.
 #[inline(always)]
 pub fn surface_active<M: Mode + Impacting>(

@@ -389,6 +389,7 @@ pub(super) fn emit_impacting(whole: &Whole<'_>) -> TokenStream {
     let blow = ask(quote!(blow), quote!(surface, t, state), no_surface.clone());
     let contact = ask(quote!(contact), quote!(surface, t, state), no_surface);
     let landing = whole.of_state(|mode, own| emit_landing(whole, mode, own));
+    let instantaneous = emit_instantaneous(whole);
     let laws = whole.graph.surfaces.iter().enumerate().map(|(place, entry)| {
         let own = whole.types()[entry.mode];
         let surface = entry.place;
@@ -467,6 +468,43 @@ pub(super) fn emit_impacting(whole: &Whole<'_>) -> TokenStream {
             fn blow(&self, surface: usize, t: f64, state: &Self::State) -> #blown { #blow }
 
             fn contact(&self, surface: usize, t: f64, state: &Self::State) -> #touched { #contact }
+
+            #instantaneous
+        }
+    }
+}
+
+/// `focus` and `trace`, where a surface of some mode has instantaneous constraints.
+fn emit_instantaneous(whole: &Whole<'_>) -> TokenStream {
+    let is_rough = |entry: &Mode| {
+        let mut surfaces = entry.model.surfaces.iter();
+        surfaces.any(|own| !own.instantaneous.is_empty())
+    };
+    if !whole.graph.modes.iter().any(is_rough) {
+        return TokenStream::new();
+    }
+    let ask = |function: TokenStream, arguments: TokenStream| {
+        whole.of_state(|mode, own| match mode.model.surfaces.is_empty() {
+            true => quote!(::core::result::Result::Ok(::core::option::Option::None)),
+            false => quote!(::dalembert::__private::modes::#function::<#own, _>(self, #arguments)),
+        })
+    };
+    let focus = ask(quote!(focus), quote!(surface, t, state));
+    let trace = ask(quote!(trace), quote!(surface, t, state, motion));
+    let result = quote! {
+        ::core::result::Result<::core::option::Option<Self::Impulse>, ::dalembert::Fault>
+    };
+    quote! {
+        fn focus(&self, surface: usize, t: f64, state: &Self::State) -> #result { #focus }
+
+        fn trace(
+            &self,
+            surface: usize,
+            t: f64,
+            state: &Self::State,
+            motion: &Self::Impulse,
+        ) -> #result {
+            #trace
         }
     }
 }

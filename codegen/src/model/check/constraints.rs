@@ -57,7 +57,12 @@ impl Resolver<'_> {
     }
 
     /// The coefficients of a constraint are periodic in angles and differentiable.
-    fn check_coefficients(&mut self, equation: &Equation, parts: &OneForm, scope: &Scope) {
+    pub(super) fn check_coefficients(
+        &mut self,
+        equation: &Equation,
+        parts: &OneForm,
+        scope: &Scope,
+    ) {
         let sides = [&equation.left, &equation.right];
         for coefficient in parts.form.iter().chain([&parts.affine]) {
             self.check_periodic(&sides, scope, *coefficient);
@@ -92,7 +97,7 @@ pub(super) fn check_independent(resolver: &mut Resolver<'_>, constraints: &[Cons
 }
 
 /// An error at a constraint that is a combination of others, and at each of those.
-fn refuse_dependent(
+pub(super) fn refuse_dependent(
     resolver: &mut Resolver<'_>,
     constraints: &[Constraint],
     row: usize,

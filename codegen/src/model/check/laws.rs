@@ -110,15 +110,17 @@ pub(super) fn notes(
     constraints: &[Constraint],
 ) -> Vec<String> {
     let mut notes = Vec::new();
-    if !constraints.is_empty() {
-        notes.extend(surfaces.iter().filter_map(plastic_note));
-    }
-    let affine = constraints
-        .iter()
-        .any(|constraint| !resolver.pool.is_syntactic_zero(constraint.affine));
-    if affine {
-        notes.extend(surfaces.iter().filter_map(affine_note));
-    }
+    let all = |surface: &'_ Surface| -> Vec<ExprId> {
+        let own = constraints.iter().chain(&surface.instantaneous);
+        own.map(|constraint| constraint.affine).collect()
+    };
+    let constrained = surfaces.iter().filter(|own| !all(own).is_empty());
+    notes.extend(constrained.filter_map(plastic_note));
+    let is_affine = |surface: &&Surface| {
+        let mut parts = all(surface).into_iter();
+        parts.any(|part| !resolver.pool.is_syntactic_zero(part))
+    };
+    notes.extend(surfaces.iter().filter(is_affine).filter_map(affine_note));
     notes.extend(coefficient_notes(resolver, surfaces));
     notes
 }

@@ -10,6 +10,7 @@ mod coordinates;
 mod field;
 mod frame;
 mod initial;
+mod instantaneous;
 mod integrable;
 mod laws;
 mod names;
@@ -139,6 +140,7 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     constraints::check_independent(resolver, &parts.constraints);
     frame::check_coframe(resolver, &parts.frame, &parts.constraints);
     surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
+    instantaneous::check_independent(resolver, &parts.surfaces, &parts.constraints);
     surfaces::check_distinct(resolver, &parts.surfaces);
     resolver.within_budget(resolver.spec.name.at);
 }
@@ -217,7 +219,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
     let mut used: Vec<ExprId> = vec![lagrangian.whole];
     used.extend(field.iter().flatten());
     for constraint in constraints {
-        used.extend(constraint.form.iter().chain([&constraint.affine]));
+        used.extend(constraint.expressions());
     }
     used.extend(forces.iter().flat_map(|force| &force.form));
     used.extend(frame.iter().flat_map(|entry| &entry.form));
@@ -230,7 +232,13 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
                 .copied()
                 .chain(surface.law.coefficient())
                 .chain(surface.reset.iter().flat_map(Reset::expressions))
-                .chain(surface.transition.iter().flat_map(Transition::expressions)),
+                .chain(surface.transition.iter().flat_map(Transition::expressions))
+                .chain(
+                    surface
+                        .instantaneous
+                        .iter()
+                        .flat_map(Constraint::expressions),
+                ),
         );
     }
     used.extend(

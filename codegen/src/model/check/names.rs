@@ -83,8 +83,17 @@ impl Names {
 impl Resolver<'_> {
     /// The members that a declaration declares, each with what its index stands for.
     pub(super) fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
+        self.members_within(declared, &Scope::default())
+    }
+
+    /// The same inside of another declaration, whose index is known.
+    pub(super) fn members_within(
+        &mut self,
+        declared: &Declared,
+        outer: &Scope,
+    ) -> Vec<(Name, Scope)> {
         let field = &declared.name.text;
-        let mut scope = Scope::default();
+        let mut scope = outer.clone();
         match &declared.index {
             None => vec![(member_name(field, None), scope)],
             Some(Index::One(index)) => {
@@ -103,7 +112,7 @@ impl Resolver<'_> {
                         break;
                     };
                     let value = self.pool.int(member);
-                    let mut scope = Scope::default();
+                    let mut scope = outer.clone();
                     scope.bind(&binder.name.text, value.into());
                     members.push((member_name(field, Some(index)), scope));
                 }

@@ -42,11 +42,15 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
                     Some(None),
                 ),
             };
+            let instantaneous = resolver.instantaneous(surface, &scope);
             resolver.within_budget(surface.gap.at);
             let conditions: Option<Vec<ExprId>> = conditions.into_iter().collect();
-            let (Some(gap), Some(conditions), Some(law), Some(reset), Some(transition)) =
-                (gap, conditions, law, reset, transition)
+            let (Some(law), Some(reset), Some(transition), Some(instantaneous)) =
+                (law, reset, transition, instantaneous)
             else {
+                break;
+            };
+            let (Some(gap), Some(conditions)) = (gap, conditions) else {
                 break;
             };
             surfaces.push(Surface {
@@ -57,6 +61,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
                 law,
                 reset,
                 transition,
+                instantaneous,
                 item: surface.item,
             });
         }

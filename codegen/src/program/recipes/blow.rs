@@ -36,9 +36,10 @@ fn finished(mut kernel: Kernel<'_>, form: Form, s: usize, blow: Blow) -> Functio
     kernel.builder.guard(Guard::Surface {
         surface: s,
         squared: blow.squared,
+        reference: None,
     });
     kernel.builder.name(blow.size, "size");
-    kernel.name_direction(form, &blow.direction);
+    kernel.name_direction(form, "direction_", &blow.direction);
     kernel.finish([vec![blow.size, blow.share], blow.direction].concat())
 }
 
@@ -73,7 +74,7 @@ fn takes_momentum(law: Law) -> bool {
 fn along_ray(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
     let surface = &kernel.derivation.surfaces[s];
     let law = kernel.model.surfaces[s].law;
-    if kernel.has_affine_constraints() {
+    if kernel.has_affine_constraints() || !surface.instantaneous.is_empty() {
         return None;
     }
     let share = constant_share(kernel, law)?;
@@ -184,7 +185,7 @@ fn from_contact(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
     let negative = builder.neg(taken);
     let size = builder.div(negative, constrained);
     // With affine constraints the momentum along the projected gradient is another thing than the gap rate.
-    let share = match of == gap_rate || !kernel.has_affine_constraints() {
+    let share = match of == gap_rate || !kernel.is_affine_at(s) {
         true => share,
         false => kernel.builder.div(taken, gap_rate),
     };
@@ -221,15 +222,15 @@ impl Kernel<'_> {
         number.is_some_and(Rational::is_one).then_some(only)
     }
 
-    fn name_direction(&mut self, form: Form, direction: &[Value]) {
+    /// Names the components of an impulse.
+    pub(super) fn name_direction(&mut self, form: Form, prefix: &str, direction: &[Value]) {
         match form {
-            Form::Global => self.name_by_coordinate(direction, "direction_", ""),
+            Form::Global => self.name_by_coordinate(direction, prefix, ""),
             Form::FirstOrder => {}
             Form::Reduced => {
                 let Some(frame) = self.frame() else { return };
                 for (quasi, &value) in frame.quasi.iter().zip(direction) {
-                    self.builder
-                        .name(value, format!("direction_{}", quasi.name));
+                    self.builder.name(value, format!("{prefix}{}", quasi.name));
                 }
             }
         }

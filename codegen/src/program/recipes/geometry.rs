@@ -6,7 +6,7 @@ use crate::claims::Volume;
 use crate::mechanics::{Derivation, Entry};
 use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
-use crate::program::recipes::{impact, motion, volume};
+use crate::program::recipes::{impact, instantaneous, motion, volume};
 use crate::program::{Form, Function, Value};
 
 /// A named group of results.
@@ -80,7 +80,7 @@ impl Results {
 
 /// `(t, q, p)` to everything.
 pub fn geometry(model: &Model, derivation: &Derivation, found: Option<&Volume>) -> Geometry {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Both);
+    let mut kernel = Kernel::new(model, derivation, Arguments::Both).without_surface_guards();
     let mut results = Results {
         groups: Vec::new(),
         values: Vec::new(),
@@ -219,6 +219,9 @@ fn report_surfaces(kernel: &mut Kernel<'_>, results: &mut Results) {
             results.scalar(format!("impacts.{name}.{quantity}"), value);
         }
         results.vector(format!("impacts.{name}.direction"), contact.direction);
+        if let Some(impulse) = instantaneous::focus_values(kernel, Form::Global, s) {
+            results.vector(format!("impacts.{name}.focus"), impulse);
+        }
         if let Some([q, qdot]) = impact::reset_values(kernel, s) {
             results.vector(format!("impacts.{name}.reset_q"), q);
             results.vector(format!("impacts.{name}.reset_qdot"), qdot);

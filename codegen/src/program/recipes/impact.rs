@@ -13,6 +13,7 @@ use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::recipes::blow::blow;
 use crate::program::recipes::declared::position_function;
+use crate::program::recipes::instantaneous;
 use crate::program::{Form, Function, Guard, Impacting, Input, Value};
 
 /// All of them; `None` without surfaces.
@@ -57,6 +58,12 @@ pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<I
             .collect(),
         entries: (0..model.surfaces.len())
             .map(|s| entry(model, derivation, form, s))
+            .collect(),
+        focuses: (0..model.surfaces.len())
+            .map(|s| instantaneous::focus(model, derivation, form, s))
+            .collect(),
+        traces: (0..model.surfaces.len())
+            .map(|s| instantaneous::trace(model, derivation, form, s))
             .collect(),
     })
 }
@@ -113,23 +120,7 @@ fn accelerations(model: &Model, derivation: &Derivation, form: Form) -> Function
         return kernel.finish(Vec::new());
     }
     let motion = motion_rates(&mut kernel, form);
-    let acceleration = match form {
-        Form::Global => {
-            let drift = kernel.values(&derivation.field.drift);
-            let inertial: Vec<Value> = motion
-                .iter()
-                .zip(drift)
-                .map(|(&w, d)| kernel.builder.sub(w, d))
-                .collect();
-            kernel.raise(&inertial)
-        }
-        Form::Reduced | Form::FirstOrder => {
-            let steady = kernel.frame_acceleration();
-            let changing = kernel.along_frame(&motion);
-            let pairs = steady.iter().zip(changing);
-            pairs.map(|(&a, b)| kernel.builder.add(a, b)).collect()
-        }
-    };
+    let acceleration = acceleration(&mut kernel, form, &motion);
     let outputs = derivation
         .surfaces
         .iter()
@@ -141,6 +132,28 @@ fn accelerations(model: &Model, derivation: &Derivation, form: Form) -> Function
         })
         .collect();
     kernel.finish(outputs)
+}
+
+/// `qddot` where the motion's part of the state changes at these rates.
+pub(super) fn acceleration(kernel: &mut Kernel<'_>, form: Form, motion: &[Value]) -> Vec<Value> {
+    match form {
+        Form::Global => {
+            let drift = kernel.derivation.field.drift.clone();
+            let drift = kernel.values(&drift);
+            let inertial: Vec<Value> = motion
+                .iter()
+                .zip(drift)
+                .map(|(&w, d)| kernel.builder.sub(w, d))
+                .collect();
+            kernel.raise(&inertial)
+        }
+        Form::Reduced | Form::FirstOrder => {
+            let steady = kernel.frame_acceleration();
+            let changing = kernel.along_frame(motion);
+            let pairs = steady.iter().zip(changing);
+            pairs.map(|(&a, b)| kernel.builder.add(a, b)).collect()
+        }
+    }
 }
 
 /// `dh(X w)`, or `dh(g^{-1} w)`
@@ -165,7 +178,7 @@ fn responses(model: &Model, derivation: &Derivation, form: Form) -> Function {
     kernel.finish(outputs)
 }
 
-fn motion_rates(kernel: &mut Kernel<'_>, form: Form) -> Vec<Value> {
+pub(super) fn motion_rates(kernel: &mut Kernel<'_>, form: Form) -> Vec<Value> {
     let count = match form {
         Form::Global => kernel.dimension(),
         Form::Reduced => kernel.quasi_velocities(),
@@ -191,6 +204,7 @@ fn contact(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Func
     kernel.builder.guard(Guard::Surface {
         surface: s,
         squared,
+        reference: None,
     });
     kernel.finish([contact.scalars.to_vec(), contact.direction].concat())
 }
@@ -221,12 +235,8 @@ pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues
     let surface_rate = kernel.value(surface.rate);
     let gap_rate = kernel.builder.add(along, surface_rate);
     let free = kernel.forward(&form);
-    let rest = match kernel.constraints() {
-        0 => free.clone(),
-        _ => kernel.with_constraints(|builder, ldlt, factors| {
-            factors.project(builder, ldlt, free.clone())
-        }),
-    };
+    let rest = kernel.without_constraints(free.clone());
+    let rest = kernel.within_instantaneous(Form::Global, s, rest);
     let (compliances, direction) = kernel.with_ldlt(|builder, ldlt| {
         let compliances = [&rest, &free].map(|y| ldlt.inner(builder, y, y));
         (compliances, ldlt.lower_times(builder, &rest))
@@ -244,14 +254,16 @@ pub(super) fn reduced_contact_values(kernel: &mut Kernel<'_>, s: usize) -> Conta
     let form = kernel.values(&surface.form);
     let restricted = kernel.restrict(&form);
     let surface_rate = kernel.value(surface.rate);
+    let rest = kernel.with_reduced_ldlt(|builder, ldlt| ldlt.forward(builder, &restricted));
+    let rest = kernel.within_instantaneous(Form::Reduced, s, rest);
     let (constrained, direction) = kernel.with_reduced_ldlt(|builder, ldlt| {
-        let rest = ldlt.forward(builder, &restricted);
         let compliance = ldlt.inner(builder, &rest, &rest);
         (compliance, ldlt.backward(builder, &rest))
     });
     let free = kernel.forward(&form);
     let free = kernel.with_ldlt(|builder, ldlt| ldlt.inner(builder, &free, &free));
-    let (along, constrained_rate) = if kernel.has_affine_constraints() {
+    let is_within_more = !surface.instantaneous.is_empty();
+    let (along, constrained_rate) = if kernel.has_affine_constraints() || is_within_more {
         let qdot = kernel.velocity();
         let momenta = kernel.lower_vector(&qdot);
         let momenta = kernel.restrict(&momenta);

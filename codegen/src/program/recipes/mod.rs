@@ -6,6 +6,7 @@ pub mod declared;
 pub mod geometry;
 pub mod gradient;
 pub mod impact;
+mod instantaneous;
 pub mod motion;
 pub mod reduced;
 pub mod volume;

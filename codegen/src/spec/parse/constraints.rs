@@ -7,8 +7,15 @@ use super::labelled;
 
 /// Reads one constraint.
 pub(super) fn constraint(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
+    let equation = equation(cursor, spec, "a constraint")?;
+    spec.constraints.push(equation);
+    Ok(())
+}
+
+/// Reads one equation of the kind that messages call `entry`.
+pub(super) fn equation(cursor: &mut Cursor<'_>, spec: &mut Spec, entry: &str) -> Read<Equation> {
     const FORM: &str = "name: d(x) - R*d(theta) = 0;";
-    let (documentation, declared) = labelled(cursor, "a constraint", FORM)?;
+    let (documentation, declared) = labelled(cursor, entry, FORM)?;
     let left = cursor.scalar()?;
     if let Some(sign) = cursor.comparison() {
         let help = match sign {
@@ -21,14 +28,13 @@ pub(super) fn constraint(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     cursor.expect_operator("=", FORM)?;
     let right = cursor.scalar()?;
     let item = spec.item(left.at.to(right.at));
-    spec.constraints.push(Equation {
+    Ok(Equation {
         declared,
         documentation,
         left,
         right,
         item,
-    });
-    Ok(())
+    })
 }
 
 /// Reads one force.

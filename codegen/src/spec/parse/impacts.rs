@@ -5,7 +5,7 @@ use proc_macro2::{Delimiter, TokenTree};
 use super::super::ast::{Comparison, Law, Scalar, Spec, Surface, Word};
 use super::super::cursor::{Cursor, Read, Refused, tokens_of};
 use super::super::keyword::{LAWS, RESET};
-use super::{labelled, refused_word, reset};
+use super::{instantaneous, labelled, reset};
 use crate::diagnostics::listed;
 
 const FORM: &str = "name: h >= 0 when g > 0 => LAW;";
@@ -16,6 +16,7 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let gap = comparison(cursor, Strictness::Weak, FORM)?;
     let conditions = conditions(cursor, FORM)?;
     let law = law(cursor, spec, FORM)?;
+    let instantaneous = instantaneous::equations(cursor, spec, law.as_ref())?;
     let item = spec.item(gap.at);
     spec.surfaces.push(Surface {
         declared,
@@ -24,6 +25,7 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         conditions,
         law,
         enters: None,
+        instantaneous,
         item,
     });
     Ok(())
@@ -151,10 +153,6 @@ pub(super) fn law(cursor: &mut Cursor<'_>, spec: &mut Spec, form: &str) -> Read<
         true => (Vec::new(), Some(reset::assignments(cursor)?)),
         false => (arguments(cursor, &name)?, None),
     };
-    if cursor.eat_operator(",").is_some() {
-        refused_word(cursor, &["instantaneous"])?;
-        return Err(cursor.unexpected("expected `;`", form));
-    }
     if cursor.is_word("when") {
         return Err(cursor.unexpected(
             "expected `;`",

@@ -8,6 +8,7 @@ mod field;
 mod header;
 mod impacts;
 mod initial;
+mod instantaneous;
 mod modes;
 mod parameters;
 mod reset;
@@ -358,16 +359,4 @@ fn begins_with_name(tokens: &[TokenTree]) -> bool {
         Some(TokenTree::Group(_)) | None => false,
         Some(_) => true,
     }
-}
-
-/// The reserved word that this version refuses, if it comes next.
-fn refused_word(cursor: &mut Cursor<'_>, words: &[&str]) -> Read<()> {
-    for word in words {
-        if cursor.is_word(word) {
-            let name = cursor.name("a word")?;
-            let instead = keyword::not_implemented(word).unwrap_or("leave it out");
-            return Err(refuse_not_implemented(&name, instead, cursor));
-        }
-    }
-    Ok(())
 }

@@ -288,6 +288,7 @@ fn transition(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<(Transition, Sur
         conditions,
         law,
         enters: Some(to.clone()),
+        instantaneous: Vec::new(),
         item,
     };
     Ok((Transition { name, from, to }, surface))

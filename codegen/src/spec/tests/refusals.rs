@@ -135,10 +135,22 @@ fn declarations_to_come_are_refused_by_name() {
         "«inputs» { a: b; }",
         "`inputs` is not implemented in this version",
     );
-    refused_in(
-        "impacts { w: x >= 0 => elastic, «instantaneous» { }; }",
-        "`instantaneous` is not implemented",
+}
+
+#[test]
+fn instantaneous_constraints_stand_in_braces_behind_a_law() {
+    let in_surface = |rest: &str, text: &str| {
+        refused_in(&format!("impacts {{ w: x >= 0 => {rest}; }}"), text);
+    };
+    in_surface(
+        "elastic, «instantaneous» { }",
+        "no instantaneous constraint",
     );
+    in_surface("elastic, instantaneous «5»", "expected `{ .. }` after");
+    in_surface("elastic, «sticky» { }", "expected `instantaneous { .. }`");
+    in_surface("elastic, instantaneous { s: x «>=» 0; }", "expected `=`");
+    in_surface("elastic, instantaneous { s: x = «0» }", "expected `;`");
+    in_surface("reset { }, «instantaneous» { }", "a reset takes no");
 }
 
 #[test]

@@ -1,13 +1,14 @@
 //! `eval`: everything that is derived, evaluated by the emitted code at given states.
 
+mod impact;
 mod input;
 mod report;
 
 use std::io::{BufWriter, Write};
 
+use dalembert::StateError;
 use dalembert::describe::Description;
 use dalembert::impacts::law::Law;
-use dalembert::{Fault, StateError};
 use serde_json::{Map, Value, json};
 
 use crate::Streams;
@@ -18,6 +19,7 @@ use crate::exit::Exit;
 use crate::json;
 use crate::names;
 use crate::state_input::build_model;
+use impact::Moment;
 use input::Given;
 use report::Collected;
 
@@ -99,80 +101,18 @@ fn evaluate(model: &dyn AnyModel, given: &Given, laws: &[Law]) -> Result<Value, 
     row.extend(collected.take_others());
     let mut impacts = Map::new();
     for (index, surface) in names::surfaces(&model.description()).enumerate() {
-        let laws = evaluate_laws(model, given.t, &state, &collected, index, laws);
-        let quantity = |name: &str| {
-            collected
-                .contact_scalar(surface, name)
-                .map_or(Value::Null, json::number)
+        let moment = Moment {
+            t: given.t,
+            state: &state,
+            collected: &collected,
         };
-        let fields =
-            json!({ "gap": quantity("gap"), "gap_rate": quantity("gap_rate"), "laws": laws });
-        impacts.insert(surface.to_owned(), fields);
+        impacts.insert(
+            surface.to_owned(),
+            impact::evaluate(model, &moment, index, laws),
+        );
     }
     row.insert("impacts".to_owned(), impacts.into());
     Ok(row.into())
-}
-
-/// The laws of one surface, a declared reset after the impulses. Where no impulse exists (its gradient may vanish away
-/// from the surface) that is said instead; it is no fault of the state.
-fn evaluate_laws(
-    model: &dyn AnyModel,
-    t: f64,
-    state: &[f64],
-    collected: &Collected,
-    surface: usize,
-    laws: &[Law],
-) -> Value {
-    let description = model.description();
-    let fault = |fault: &Fault| refusal(&description, &StateError::Fault(*fault));
-    let name = description.surfaces[surface].name;
-    let mut results = Map::new();
-    match collected.contact(name) {
-        Some(contact) => {
-            for &law in laws {
-                let after = Collected::at(model, t, &model.impact(state, &contact, law));
-                let result = match after {
-                    Ok(after) => struck(after, name).into(),
-                    Err(error) => fault(&error),
-                };
-                results.insert(law.name().to_owned(), result);
-            }
-        }
-        None if collected.reset(name).is_none() => {
-            return fault(&Fault::SingularSurface { surface });
-        }
-        None => {}
-    }
-    if let Some(reset) = collected.reset(name) {
-        let after = model
-            .state(t, &reset)
-            .and_then(|state| Ok(Collected::at(model, t, &state)?));
-        let result = match after {
-            Ok(after) => {
-                let mut fields = struck(after, name);
-                fields.insert("q_plus".to_owned(), json::vector(&reset.q));
-                fields.into()
-            }
-            Err(error) => refusal(&description, &error),
-        };
-        results.insert(Law::Reset.name().to_owned(), result);
-    }
-    results.into()
-}
-
-/// What is printed of a state after an impact.
-fn struck(mut after: Collected, surface: &str) -> Map<String, Value> {
-    let gap_rate = after.contact_scalar(surface, "gap_rate");
-    let fields = [
-        ("qdot_plus", after.take("qdot")),
-        ("p_plus", after.take("p")),
-        ("gap_rate_plus", gap_rate.map_or(Value::Null, json::number)),
-        ("energy_plus", after.take("energy")),
-    ];
-    fields
-        .into_iter()
-        .map(|(name, value)| (name.to_owned(), value))
-        .collect()
 }
 
 /// `{"error": {"kind", "message"}}`

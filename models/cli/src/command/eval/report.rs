@@ -46,6 +46,14 @@ impl Collected {
             .copied()
     }
 
+    /// The impulse on the momenta after which the instantaneous constraints of a surface hold, if it declares some.
+    pub fn focus(&self, surface: &str) -> Option<&[f64]> {
+        let found = self
+            .contact_vectors
+            .get(&format!("impacts.{surface}.focus"));
+        found.map(Vec::as_slice)
+    }
+
     /// Positions and velocities after the reset of a surface, if it declares one.
     pub fn reset(&self, surface: &str) -> Option<Origin> {
         let vector = |name| {

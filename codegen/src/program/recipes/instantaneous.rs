@@ -1,0 +1,139 @@
+//! Functions of the constraints that hold in the moment of an impact only.
+//!
+//! With `C_b = L^{-1} psi^b` without its components along the constraint columns, or `L_D^{-1} X^T psi^b` on D, the
+//! impulse `x = C nu` of least norm with `<C_b, x> = r_b` changes `psi^b(qdot)` by `r_b` and keeps every constraint. Such
+//! an impulse brings the state to `D' = ker(eta, psi)`, and such a force keeps it there. Within `D'` a law acts as it does
+//! within D: along what is left of `dh` without its components along `C`.
+
+use dalembert_expr::ExprId;
+
+use super::impact::{acceleration, motion_rates};
+use crate::mechanics::Derivation;
+use crate::mechanics::impact::InstantaneousForm;
+use crate::model::Model;
+use crate::program::kernel::Kernel;
+use crate::program::linear::Orthogonal;
+use crate::program::{Form, Function, Guard, Value};
+
+/// `(t, s) ->` the impulse after which the instantaneous constraints of a surface hold; `None` without any.
+pub(super) fn focus(
+    model: &Model,
+    derivation: &Derivation,
+    form: Form,
+    s: usize,
+) -> Option<Function> {
+    let mut kernel = Kernel::new(model, derivation, form.state());
+    let impulse = focus_values(&mut kernel, form, s)?;
+    Some(kernel.finish(impulse))
+}
+
+/// The impulse of [`focus`].
+pub(super) fn focus_values(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Vec<Value>> {
+    let own = constraints(kernel, s)?;
+    kernel.velocity();
+    let residuals: Vec<ExprId> = own.iter().map(|own| own.residual).collect();
+    let residuals = kernel.values(&residuals);
+    Some(against(kernel, form, s, &residuals))
+}
+
+/// `(t, s, w) ->` what must be added to the rates `w` for the instantaneous constraints to go on holding; `None` without
+/// any.
+pub(super) fn trace(
+    model: &Model,
+    derivation: &Derivation,
+    form: Form,
+    s: usize,
+) -> Option<Function> {
+    let mut kernel = Kernel::new(model, derivation, form.state());
+    let own = constraints(&kernel, s)?;
+    let motion = motion_rates(&mut kernel, form);
+    let acceleration = acceleration(&mut kernel, form, &motion);
+    let rates: Vec<Value> = own
+        .iter()
+        .map(|own| {
+            let form = kernel.values(&own.form);
+            let along = kernel.dot(&form, &acceleration);
+            let curvature = kernel.value(own.curvature);
+            kernel.builder.add(along, curvature)
+        })
+        .collect();
+    let force = against(&mut kernel, form, s, &rates);
+    Some(kernel.finish(force))
+}
+
+/// Those of a surface, if it has any.
+fn constraints<'d>(kernel: &Kernel<'d>, s: usize) -> Option<&'d [InstantaneousForm]> {
+    let own = &kernel.derivation.surfaces[s].instantaneous;
+    (!own.is_empty()).then_some(own)
+}
+
+/// The impulse within the constraints that takes these rates of the instantaneous ones.
+fn against(kernel: &mut Kernel<'_>, form: Form, s: usize, rates: &[Value]) -> Vec<Value> {
+    let factors = kernel.factor_instantaneous(form, s);
+    let wanted: Vec<Value> = rates.iter().map(|&rate| kernel.builder.neg(rate)).collect();
+    let x = factors.least_norm(&mut kernel.builder, &wanted);
+    let impulse = match form {
+        Form::Reduced => kernel.with_reduced_ldlt(|builder, ldlt| ldlt.backward(builder, &x)),
+        Form::Global | Form::FirstOrder => {
+            kernel.with_ldlt(|builder, ldlt| ldlt.lower_times(builder, &x))
+        }
+    };
+    kernel.name_direction(form, "impulse_", &impulse);
+    impulse
+}
+
+impl Kernel<'_> {
+    /// What is left of a column `L^{-1} b`, or `L_D^{-1} X^T b`, without its components along the instantaneous
+    /// constraints of a surface.
+    pub(super) fn within_instantaneous(
+        &mut self,
+        form: Form,
+        s: usize,
+        column: Vec<Value>,
+    ) -> Vec<Value> {
+        if self.derivation.surfaces[s].instantaneous.is_empty() {
+            return column;
+        }
+        let factors = self.factor_instantaneous(form, s);
+        self.with_state_ldlt(form, |builder, ldlt| {
+            factors.reduce(builder, ldlt, column).1
+        })
+    }
+
+    /// Whether constraints, or instantaneous ones of a surface, have an affine part.
+    pub(super) fn is_affine_at(&self, s: usize) -> bool {
+        let mut own = self.derivation.surfaces[s].instantaneous.iter();
+        let pool = &self.model.pool;
+        self.has_affine_constraints() || own.any(|own| !pool.is_syntactic_zero(own.affine))
+    }
+
+    /// The columns `C_b`, orthogonalised.
+    fn factor_instantaneous(&mut self, form: Form, s: usize) -> Orthogonal {
+        let derivation = self.derivation;
+        let mut columns = Vec::new();
+        let mut references = Vec::new();
+        for own in &derivation.surfaces[s].instantaneous {
+            let psi = self.values(&own.form);
+            let free = self.forward(&psi);
+            references.push(self.with_ldlt(|builder, ldlt| ldlt.inner(builder, &free, &free)));
+            columns.push(match form {
+                Form::Reduced => {
+                    let restricted = self.restrict(&psi);
+                    self.with_reduced_ldlt(|builder, ldlt| ldlt.forward(builder, &restricted))
+                }
+                Form::Global | Form::FirstOrder => self.without_constraints(free),
+            });
+        }
+        let guarded = self.guards_surfaces;
+        let guard = |index: usize, squared, _| {
+            guarded.then_some(Guard::Surface {
+                surface: s,
+                squared,
+                reference: Some(references[index]),
+            })
+        };
+        self.with_state_ldlt(form, |builder, ldlt| {
+            Orthogonal::factor(builder, ldlt, columns, guard)
+        })
+    }
+}

@@ -1,0 +1,117 @@
+//! What impacts on one surface make of a state.
+
+use dalembert::impacts::law::Law;
+use dalembert::{Fault, StateError};
+use serde_json::{Map, Value};
+
+use super::refusal;
+use super::report::Collected;
+use crate::entry::AnyModel;
+use crate::json;
+
+/// A state, and what the model reports of it.
+pub struct Moment<'m> {
+    pub t: f64,
+    pub state: &'m [f64],
+    pub collected: &'m Collected,
+}
+
+/// Gap, gap rate and laws of a surface. Where it has instantaneous constraints, the state that satisfies them too, at
+/// which the laws act.
+pub fn evaluate(model: &dyn AnyModel, moment: &Moment<'_>, index: usize, laws: &[Law]) -> Value {
+    let description = model.description();
+    let surface = description.surfaces[index].name;
+    let mut fields = Map::new();
+    for name in ["gap", "gap_rate"] {
+        let value = moment.collected.contact_scalar(surface, name);
+        fields.insert(name.to_owned(), value.map_or(Value::Null, json::number));
+    }
+    let laws = match moment.collected.focus(surface) {
+        None => evaluate_laws(model, moment, index, laws),
+        Some(impulse) => {
+            let state = model.kick(moment.state, impulse);
+            let singular = Fault::SingularSurface { surface: index };
+            let found = match impulse.iter().all(|own| own.is_finite()) {
+                true => Collected::at(model, moment.t, &state),
+                false => Err(singular),
+            };
+            match found {
+                Err(fault) => refusal(&description, &StateError::Fault(fault)),
+                Ok(collected) => {
+                    let focused = Moment {
+                        t: moment.t,
+                        state: &state,
+                        collected: &collected,
+                    };
+                    let laws = evaluate_laws(model, &focused, index, laws);
+                    fields.insert("focused".to_owned(), struck(collected, surface).into());
+                    laws
+                }
+            }
+        }
+    };
+    fields.insert("laws".to_owned(), laws);
+    fields.into()
+}
+
+/// The laws of one surface, a declared reset after the impulses. Where no impulse exists (its gradient may vanish away
+/// from the surface) that is said instead; it is no fault of the state.
+fn evaluate_laws(model: &dyn AnyModel, moment: &Moment<'_>, surface: usize, laws: &[Law]) -> Value {
+    let (t, state, collected) = (moment.t, moment.state, moment.collected);
+    let description = model.description();
+    let fault = |fault: &Fault| refusal(&description, &StateError::Fault(*fault));
+    let name = description.surfaces[surface].name;
+    let is_rough = collected.focus(name).is_some();
+    let mut results = Map::new();
+    match collected.contact(name) {
+        Some(contact) => {
+            for &law in laws {
+                // Instantaneous constraints may turn the motion round by themselves.
+                let is_left = is_rough && contact.gap_rate >= 0.0;
+                let after = match is_left {
+                    true => state.to_vec(),
+                    false => model.impact(state, &contact, law),
+                };
+                let result = match Collected::at(model, t, &after) {
+                    Ok(after) => struck(after, name).into(),
+                    Err(error) => fault(&error),
+                };
+                results.insert(law.name().to_owned(), result);
+            }
+        }
+        None if collected.reset(name).is_none() => {
+            return fault(&Fault::SingularSurface { surface });
+        }
+        None => {}
+    }
+    if let Some(reset) = collected.reset(name) {
+        let after = model
+            .state(t, &reset)
+            .and_then(|state| Ok(Collected::at(model, t, &state)?));
+        let result = match after {
+            Ok(after) => {
+                let mut fields = struck(after, name);
+                fields.insert("q_plus".to_owned(), json::vector(&reset.q));
+                fields.into()
+            }
+            Err(error) => refusal(&description, &error),
+        };
+        results.insert(Law::Reset.name().to_owned(), result);
+    }
+    results.into()
+}
+
+/// What is printed of a state after an impact.
+fn struck(mut after: Collected, surface: &str) -> Map<String, Value> {
+    let gap_rate = after.contact_scalar(surface, "gap_rate");
+    let fields = [
+        ("qdot_plus", after.take("qdot")),
+        ("p_plus", after.take("p")),
+        ("gap_rate_plus", gap_rate.map_or(Value::Null, json::number)),
+        ("energy_plus", after.take("energy")),
+    ];
+    fields
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
+}

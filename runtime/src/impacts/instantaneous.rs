@@ -1,0 +1,32 @@
+//! Constraints that hold in the moment of an impact only, and while the motion is held by their surface.
+//!
+//! An impact first brings the state to them, by the nearest impulse in the metric: J. Cortes and A. M. Vinogradov call where
+//! it leads the instantaneous focusing point. If the state still approaches there, the law acts within them.
+
+use crate::contract::Impacting;
+use crate::error::Fault;
+
+/// The state at the instantaneous constraints of a surface; `None` where it has none.
+pub(super) fn focused<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    t: f64,
+    state: &Sys::State,
+) -> Result<Option<Sys::State>, Fault> {
+    let Some(impulse) = system.focus(surface, t, state)? else {
+        return Ok(None);
+    };
+    let mut focused = *state;
+    system.kick(&mut focused, 1.0, &impulse);
+    Ok(Some(focused))
+}
+
+/// Whether a surface has instantaneous constraints.
+pub(super) fn is_rough<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    t: f64,
+    state: &Sys::State,
+) -> Result<bool, Fault> {
+    Ok(system.focus(surface, t, state)?.is_some())
+}

@@ -1,0 +1,654 @@
+//! Constraints that hold in the moment of an impact only: focusing, the law within them, and motion along the wall.
+
+use core::ops::ControlFlow;
+
+use dalembert::impacts::Impacts;
+use dalembert::impacts::law::Law;
+use dalembert::{
+    Described, Dop853, EventLog, Fault, Hold, Impacting, Observer, Outcome, Policies, Rest, Scene,
+    SceneEffects, Simulation, StateVector, System, Taylor, Tolerance,
+};
+use dalembert_cli::Exit;
+use dalembert_codegen::compile;
+use dalembert_codegen::program::{Input, Program, interpret::interpret};
+use dalembert_models::RollingBallWall;
+use dalembert_tests::command::dalembert;
+use dalembert_tests::interpreted::input;
+use dalembert_tests::numeric::assert_near;
+use dalembert_tests::reference::{number, numbers, read};
+use dalembert_tests::sampling::{Random, states};
+use serde_json::Value;
+
+dalembert::model! {
+    /// The ball at a wall with the sign that the source prints: a wall on the other side.
+    pub PrintedWall {
+        coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
+        parameters { r > 0 = 1; k > 0 = 2/3; }
+        let omega_x = cos(psi)*dot(theta) + sin(psi)*sin(theta)*dot(phi);
+        let omega_y = sin(psi)*dot(theta) - cos(psi)*sin(theta)*dot(phi);
+        let spin = dot(phi)^2 + dot(psi)^2 + 2*cos(theta)*dot(phi)*dot(psi) + dot(theta)^2;
+        lagrangian = 1/2*(dot(x)^2 + dot(y)^2) + k^2/2*spin;
+        constraints {
+            rolling_x: dot(x) - r*omega_y = 0;
+            rolling_y: dot(y) + r*omega_x = 0;
+        }
+        impacts {
+            wall: x <= 3 => elastic, instantaneous {
+                no_slip: dot(y) - r*(cos(theta)*dot(phi) + dot(psi)) = 0;
+            };
+        }
+    }
+}
+
+dalembert::model! {
+    /// A disk that falls on a floor which is inclined by `alpha`, and does not slip on it.
+    pub Incline {
+        coordinates { x; y; theta; }
+        parameters { m > 0 = 2; r > 0 = 1/2; I > 0 = 1/8; g > 0 = 9.81; alpha = 1/5; e in [0, 1] = 1/2; belt = 0; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + m*g*(x*sin(alpha) - y*cos(alpha));
+        impacts {
+            floor: y >= r => newton(e), instantaneous { roll: dot(x) - r*dot(theta) = belt; };
+        }
+        scenes { dropped: floor; }
+    }
+}
+
+dalembert::model! {
+    /// A point that a rough wall lets move across one direction only.
+    pub Rail {
+        coordinates { x; y; }
+        parameters { slope != 0 = 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts { wall: y >= 0 => elastic, instantaneous { rail: dot(x) + slope*dot(y) = 0; }; }
+    }
+}
+
+dalembert::model! {
+    /// A knife edge whose tip sticks to a curved wall along a direction that turns.
+    pub Tip {
+        coordinates { x; y; theta: angle; z; }
+        parameters { m > 0 = 2; I > 0 = 1/3; a > 0 = 1/4; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + dot(z)^2/2 + a*dot(x)*dot(theta)*sin(theta);
+        constraints { blade: sin(theta)*d(x) = cos(theta)*d(y); }
+        impacts {
+            wall: x + y^2/8 + sin(theta)/4 + z/3 >= 0 => elastic, instantaneous {
+                stick: dot(z) = cos(y)*dot(theta);
+                drag: d(y) + x*d(theta) - z*d(z) = 0;
+            };
+        }
+    }
+}
+
+dalembert::model! {
+    /// Walls that a point sticks to, one for each coordinate, and a floor that it does not stick to.
+    pub Corner {
+        const N = 2;
+        coordinates { x[N]; z; w; }
+        lagrangian = (dot(x[1])^2 + dot(x[2])^2 + dot(z)^2 + dot(w)^2)/2 - x[1] - x[2] - z;
+        impacts {
+            wall[i in 1..=N]: x[i] >= 0 => impact_plastic, instantaneous { slip: dot(w) = i*dot(z); };
+            floor: z + w >= 0 => impact_plastic;
+        }
+    }
+}
+
+dalembert::model! {
+    /// A constraint that becomes dependent on another one where x is 0.
+    pub Degenerate {
+        coordinates { x; y; z; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { level: d(z) = 0; }
+        impacts { wall: y >= 0 => elastic, instantaneous { stuck: x*d(x) + d(z) = 0; }; }
+    }
+}
+
+/// The state after an impact at `t = 0`, by the effect that runs use.
+fn struck<S: Scene + Impacting>(system: &S, law: Law, state: S::State) -> S::State {
+    let effects = Impacts::declared(system).with_law(0, law);
+    let stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
+    let mut events = EventLog::<_, 4>::new();
+    let mut simulation = Simulation::new(system, stepper, effects);
+    simulation.run(0.0, state, 0.0, &mut events).expect("a run");
+    events.iter().next().expect("an impact").after
+}
+
+/// Quasi-velocities to velocities of the ball.
+fn velocities(q: &[f64], [vx, vy, w1, w2, w3]: [f64; 5]) -> [f64; 5] {
+    let ((s, c), (sp, cp)) = (q[3].sin_cos(), q[4].sin_cos());
+    let theta = cp * w1 + sp * w2;
+    let phi = (sp * w1 - cp * w2) / s;
+    [vx, vy, phi, theta, w3 - c * phi]
+}
+
+fn check_ball<S: Scene + Impacting>(system: &S, variant: &str) -> usize {
+    let reference = read("cortes_vinogradov");
+    let cases = reference["cv62_wall"]["cases"].as_array().expect("cases");
+    let q = [
+        3.0 - f64::from(u8::from(variant == "physical")),
+        0.4,
+        0.7,
+        1.2,
+        -0.6,
+    ];
+    let of = |value: &Value| velocities(&q, numbers(value).try_into().expect("five numbers"));
+    let position = S::Vector::from_slice_of(&q);
+    for case in cases {
+        let before = S::Vector::from_slice_of(&of(&case["velocity_minus"]));
+        let state = system.state(0.0, &position, &before).expect("a state");
+        let energies = numbers(&case[variant]["energies"]);
+        for (law, name, energy) in [
+            (Law::Elastic, "elastic_velocity_plus", energies[1]),
+            (Law::Newton(1.0), "elastic_velocity_plus", energies[1]),
+            (
+                Law::Restitution(0.0),
+                "inelastic_velocity_plus",
+                energies[2],
+            ),
+            (Law::ImpactPlastic, "inelastic_velocity_plus", energies[2]),
+        ] {
+            let after = struck(system, law, state);
+            let actual = system.velocity(0.0, &after).expect("a velocity");
+            let label = format!("{variant} {law}");
+            assert_near(&label, actual.as_slice(), &of(&case[variant][name]), 1e-13);
+            let actual = system.energy(0.0, &after).expect("an energy");
+            assert_near(&label, &[actual], &[energy], 1e-13);
+        }
+    }
+    cases.len()
+}
+
+/// A vector from a slice of its length.
+trait FromSlice: StateVector {
+    fn from_slice_of(values: &[f64]) -> Self {
+        let mut vector = Self::zeros();
+        vector.as_mut_slice().copy_from_slice(values);
+        vector
+    }
+}
+
+impl<V: StateVector> FromSlice for V {}
+
+#[test]
+fn a_ball_leaves_a_wall_without_slip_as_the_references_say() {
+    let ball = RollingBallWall::default();
+    assert!(check_ball(&ball, "physical") >= 4);
+    check_ball(&ball.global(), "physical");
+    check_ball(&PrintedWall::default(), "printed");
+    check_ball(&PrintedWall::default().global(), "printed");
+}
+
+/// The states of `Tip` on its wall that approach it.
+fn at_the_wall(tip: &Tip, count: usize, seed: u64) -> Vec<<Tip as dalembert::VectorField>::State> {
+    let mut random = Random::new(seed);
+    (0..count)
+        .map(|_| {
+            let mut q: <Tip as System>::Vector = random.vector(-1.0, 1.0);
+            q[3] = -3.0 * (q[0] + q[1] * q[1] / 8.0 + q[2].sin() / 4.0);
+            let mut qdot: <Tip as System>::Vector = random.vector(-1.0, 1.0);
+            let state = tip.state_projected(0.0, &q, &qdot).expect("a state");
+            if tip.gap_rates(0.0, &state).expect("rates")[0] < 0.0 {
+                return state;
+            }
+            qdot = -tip.velocity(0.0, &state).expect("a velocity");
+            tip.state(0.0, &q, &qdot).expect("a state")
+        })
+        .collect()
+}
+
+/// The instantaneous constraints of `Tip` at a position, by hand.
+fn rough_forms(q: &[f64]) -> [[f64; 4]; 2] {
+    [[0.0, 0.0, -q[1].cos(), 1.0], [0.0, 1.0, q[0], -q[3]]]
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The vector across three covectors of four components.
+fn across([a, b, c]: [[f64; 4]; 3]) -> [f64; 4] {
+    std::array::from_fn(|skip| {
+        let kept: Vec<usize> = (0..4).filter(|i| *i != skip).collect();
+        let [i, j, k] = [kept[0], kept[1], kept[2]];
+        let minor = a[i] * (b[j] * c[k] - b[k] * c[j]) - a[j] * (b[i] * c[k] - b[k] * c[i])
+            + a[k] * (b[i] * c[j] - b[j] * c[i]);
+        if skip % 2 == 0 { minor } else { -minor }
+    })
+}
+
+#[test]
+fn focusing_is_the_projection_on_all_constraints_and_the_law_acts_within_them() {
+    let tip = Tip::default();
+    let mut turned = 0;
+    for before in at_the_wall(&tip, 200, 5) {
+        let q = tip.position(&before);
+        let blade = [q[2].sin(), -q[2].cos(), 0.0, 0.0];
+        let [stick, drag] = rough_forms(q.as_slice());
+        let left = across([blade, stick, drag]);
+        let impulse = tip
+            .focus(0, 0.0, &before)
+            .expect("no fault")
+            .expect("an impulse");
+        let mut focused = before;
+        tip.kick(&mut focused, 1.0, &impulse);
+        let qdot = tip.velocity(0.0, &focused).expect("a velocity");
+        for form in [blade, stick, drag] {
+            assert!(dot(&form, qdot.as_slice()).abs() < 1e-13);
+        }
+        // What an impulse of these constraints changes has no component along what they leave.
+        let change = tip.momentum(0.0, &focused).expect("momenta")
+            - tip.momentum(0.0, &before).expect("momenta");
+        assert!(dot(&left, change.as_slice()).abs() < 1e-13);
+        // One direction is left, so that a law can only multiply the velocity along it.
+        let rate = tip.gap_rates(0.0, &focused).expect("rates")[0];
+        let factor = if rate < 0.0 { -0.25 } else { 1.0 };
+        turned += usize::from(rate >= 0.0);
+        let after = struck(&tip, Law::Newton(0.25), before);
+        let actual = tip.velocity(0.0, &after).expect("a velocity");
+        assert_near(
+            "newton",
+            actual.as_slice(),
+            (qdot * factor).as_slice(),
+            1e-13,
+        );
+        let global = tip.global();
+        let state = global.state_unchecked(0.0, &q, &tip.velocity(0.0, &before).expect("one"));
+        let after = struck(&global, Law::Newton(0.25), state.expect("a state"));
+        let actual = global.velocity(0.0, &after).expect("a velocity");
+        assert_near(
+            "global",
+            actual.as_slice(),
+            (qdot * factor).as_slice(),
+            1e-12,
+        );
+    }
+    assert!((2..198).contains(&turned), "{turned} of 200");
+}
+
+/// Carnot's theorem for linear constraints (Cortes and Vinogradov, 5.7): the energy never grows, and what focusing takes is
+/// the energy of the velocity it takes.
+#[test]
+fn energy_is_lost_in_focusing_and_kept_by_an_elastic_wall_within_the_constraints() {
+    let tip = Tip::default();
+    let energy =
+        |state: &<Tip as dalembert::VectorField>::State| tip.energy(0.0, state).expect("an energy");
+    for before in at_the_wall(&tip, 60, 6) {
+        let impulse = tip
+            .focus(0, 0.0, &before)
+            .expect("no fault")
+            .expect("an impulse");
+        let mut focused = before;
+        tip.kick(&mut focused, 1.0, &impulse);
+        let velocity =
+            tip.velocity(0.0, &before).expect("one") - tip.velocity(0.0, &focused).expect("one");
+        let momentum =
+            tip.momentum(0.0, &before).expect("one") - tip.momentum(0.0, &focused).expect("one");
+        let taken = 0.5 * velocity.dot(&momentum);
+        assert!(taken > 1e-6);
+        let after = struck(&tip, Law::Elastic, before);
+        let lost = energy(&before) - energy(&after);
+        assert_near("elastic", &[lost], &[taken], 1e-13);
+        for law in [
+            Law::Restitution(0.5),
+            Law::Newton(0.9),
+            Law::ImpactPlastic,
+            Law::TotallyPlastic,
+            Law::NonholonomicPlastic,
+        ] {
+            let lost = energy(&before) - energy(&struck(&tip, law, before));
+            assert!(lost >= taken * (1.0 - 1e-12), "{law}: {lost} of {taken}");
+        }
+        // A state that satisfies them already loses nothing.
+        if tip.gap_rates(0.0, &focused).expect("rates")[0] < 0.0 {
+            let after = struck(&tip, Law::Elastic, focused);
+            assert_near("focused", &[energy(&after)], &[energy(&focused)], 1e-14);
+        }
+    }
+}
+
+#[test]
+fn constraints_may_turn_the_motion_round_before_the_law_does() {
+    let rail = Rail::default();
+    for (velocity, expected) in [([3.0, -1.0], [-2.0, 2.0]), ([-3.0, -1.0], [-1.0, 1.0])] {
+        let state = rail
+            .state(0.0, &[0.5, 0.0].into(), &velocity.into())
+            .expect("a state");
+        let after = struck(&rail, Law::Elastic, state);
+        assert_near("rail", &after.as_slice()[2..], &expected, 1e-15);
+    }
+}
+
+/// The disk dropped on its floor from a height of 0.1, at rest.
+fn rolled(disk: &Incline, law: Law) -> (Outcome, f64, <Incline as dalembert::VectorField>::State) {
+    let mut effects = disk.effects();
+    effects.set_law(0, law);
+    effects.set_policies(Policies {
+        rest: Rest::Contact,
+        ..Policies::default()
+    });
+    let stepper = Dop853::new(Tolerance::new(1e-13).expect("a tolerance"));
+    let mut simulation = Simulation::new(disk, stepper, effects);
+    let start = disk.state(0.0, &[0.0, disk.r + 0.1, 0.0].into(), &[0.0; 3].into());
+    let run = simulation
+        .run(0.0, start.expect("a state"), 2.0, &mut ())
+        .expect("a run");
+    let forces = simulation
+        .effects()
+        .0
+        .contact_forces(disk, run.t, &run.state);
+    let force = forces.expect("forces").expect("second rates")[0];
+    (run.outcome, force, run.state)
+}
+
+#[test]
+fn a_disk_rolls_down_an_incline_where_it_did_not_slip_in_its_impact() {
+    for belt in [0.0, 0.3] {
+        let disk = Incline {
+            belt,
+            ..Incline::default()
+        };
+        let (sin, cos) = disk.alpha.sin_cos();
+        let fall = (0.2 / (disk.g * cos)).sqrt();
+        // The impulse that stops the slip of what touches the floor.
+        let speed = disk.g * sin * fall;
+        let inverse = 1.0 / disk.m + disk.r * disk.r / disk.I;
+        let impulse = (belt - speed) / inverse;
+        let along = speed + impulse / disk.m;
+        let rate = disk.g * sin / (1.0 + disk.I / (disk.m * disk.r * disk.r));
+        let rest = 2.0 - fall;
+        let x = speed * fall / 2.0 + along * rest + rate * rest * rest / 2.0;
+        let speed = along + rate * rest;
+        let (outcome, force, state) = rolled(&disk, Law::ImpactPlastic);
+        assert_eq!(outcome, Outcome::Done);
+        assert_near("x, y", &state.as_slice()[..2], &[x, disk.r], 1e-11);
+        assert_near("speed", &[state[3] / disk.m], &[speed], 1e-11);
+        let spin = state[5] / disk.I;
+        assert_near("rolling", &[disk.r * spin], &[speed - belt], 1e-11);
+        assert_near("force", &[force], &[disk.m * disk.g * cos], 1e-11);
+    }
+}
+
+#[test]
+fn a_disk_that_bounces_rolls_from_its_first_impact_on() {
+    let disk = Incline::default();
+    let (outcome, _, state) = rolled(&disk, Law::Newton(0.5));
+    assert_eq!(outcome, Outcome::Done);
+    let (speed, spin) = (state[3] / disk.m, state[5] / disk.I);
+    assert_near("rolling", &[disk.r * spin], &[speed], 1e-10);
+    assert_near("height", &[state[1]], &[disk.r], 1e-12);
+}
+
+#[test]
+fn a_scene_takes_the_instantaneous_constraints_of_its_surfaces() {
+    let disk = incline::Dropped(Incline::default());
+    let state = disk.state(0.0, &[0.0, 0.5, 0.0].into(), &[1.0, -1.0, 0.0].into());
+    let after = struck(&disk, Law::ImpactPlastic, state.expect("a state"));
+    let qdot = disk.velocity(0.0, &after).expect("a velocity");
+    assert_near("focused", qdot.as_slice(), &[0.8, 0.0, 1.6], 1e-15);
+}
+
+/// Keeps the surfaces that begin to hold.
+struct Began(Vec<usize>);
+
+impl<M: System> Observer<M> for Began {
+    fn hold(&mut self, hold: &Hold<M::State>) -> ControlFlow<()> {
+        if hold.begins {
+            self.0.push(hold.surface);
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+#[test]
+fn a_wall_that_is_stuck_to_and_one_that_is_not_hold_together_and_two_that_are_do_not() {
+    let corner = Corner::default();
+    let mut effects = corner.effects();
+    effects.set_policies(Policies {
+        rest: Rest::Contact,
+        ..Policies::default()
+    });
+    let stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
+    let mut simulation = Simulation::new(&corner, stepper, effects);
+    let start = corner.state(0.0, &[2.0, 0.0, 1.0, -1.0].into(), &[0.0; 4].into());
+    let mut began = Began(Vec::new());
+    let run = simulation
+        .run(0.0, start.expect("a state"), 1.0, &mut began)
+        .expect("a run");
+    assert_eq!(run.outcome, Outcome::Done);
+    began.0.sort_unstable();
+    assert_eq!(began.0, [corner::surface::wall[1], corner::surface::floor]);
+    assert_near(
+        "held",
+        &run.state.as_slice()[..4],
+        &[1.5, 0.0, 1.0, -1.0],
+        1e-12,
+    );
+    // -1 - 2 nu + lambda = 0 and nu + lambda = 0.
+    let forces = simulation
+        .effects()
+        .0
+        .contact_forces(&corner, run.t, &run.state);
+    let forces = forces.expect("forces").expect("second rates");
+    assert_near("forces", forces.as_slice(), &[0.0, 1.0, 1.0 / 3.0], 1e-12);
+    let run = simulation
+        .run(0.0, start.expect("a state"), 3.0, &mut ())
+        .expect("a run");
+    let surface = corner::surface::wall[0];
+    assert_eq!(run.outcome, Outcome::Contact { surface });
+    assert_near("time", &[run.t], &[2.0], 1e-9);
+}
+
+#[test]
+fn constraints_that_depend_on_others_somewhere_end_the_run_there() {
+    let system = Degenerate::default();
+    let effects = system.effects();
+    let stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
+    let state = system.state(0.0, &[0.0, 1.0, 0.0].into(), &[0.0, -1.0, 0.0].into());
+    let run =
+        Simulation::new(&system, stepper, effects).run(0.0, state.expect("a state"), 2.0, &mut ());
+    let outcome = run.expect("a run").outcome;
+    assert_eq!(outcome, Outcome::SingularSurface { surface: 0 });
+    let state = system.state(0.0, &[0.0, 0.0, 0.0].into(), &[0.5, -1.0, 0.0].into());
+    let contact = system.contact(0, 0.0, &state.expect("a state"));
+    assert_eq!(contact.err(), Some(Fault::SingularSurface { surface: 0 }));
+}
+
+/// The force of the trace against differences of the constraints along the motion.
+fn check_trace<S: Described + Impacting>(system: &S, forms: impl Fn(&[f64]) -> [[f64; 4]; 2]) {
+    for state in states(system, 6, 9) {
+        let mut rate = S::State::zeros();
+        system.rate(0.0, &state, &mut rate).expect("a rate");
+        let mut motion = S::Impulse::zeros();
+        let parts = &rate.as_slice()[S::Vector::LEN..];
+        motion.as_mut_slice().copy_from_slice(parts);
+        let force = system
+            .trace(0, 0.0, &state, &motion)
+            .expect("no fault")
+            .expect("a force");
+        system.kick(&mut rate, 1.0, &force);
+        let residuals = |step: f64| {
+            let mut moved = state;
+            for (own, rate) in moved.as_mut_slice().iter_mut().zip(rate.as_slice()) {
+                *own += step * rate;
+            }
+            let (q, qdot) = (
+                system.position(&moved),
+                system.velocity(0.0, &moved).expect("one"),
+            );
+            forms(q.as_slice()).map(|form| dot(&form, qdot.as_slice()))
+        };
+        let (ahead, behind) = (residuals(1e-5), residuals(-1e-5));
+        for (ahead, behind) in ahead.iter().zip(behind) {
+            assert!((ahead - behind).abs() / 2e-5 < 1e-8, "{ahead} and {behind}");
+        }
+    }
+}
+
+#[test]
+fn the_trace_keeps_the_instantaneous_constraints() {
+    check_trace(&Tip::default(), rough_forms);
+    check_trace(&Tip::default().global(), rough_forms);
+}
+
+/// Emitted functions beside the interpreter of the program they were emitted from.
+fn check_emission<S: Described + Impacting>(system: &S, program: &Program) {
+    let functions = program.impacting.as_ref().expect("surfaces");
+    for state in states(system, 4, 3) {
+        let motion: S::Impulse = Random::new(4).vector(-1.0, 1.0);
+        let of_state = input(system, 0.0, &state);
+        let at = |input: Input| match input {
+            Input::MotionRate(i) => motion.as_slice()[i],
+            other => of_state(other),
+        };
+        let run = |function: &dalembert_codegen::program::Function| {
+            interpret(function, &at).expect("a value")
+        };
+        let focus = system
+            .focus(0, 0.0, &state)
+            .expect("no fault")
+            .expect("an impulse");
+        assert_eq!(
+            focus.as_slice(),
+            run(functions.focuses[0].as_ref().expect("one"))
+        );
+        let trace = system
+            .trace(0, 0.0, &state, &motion)
+            .expect("no fault")
+            .expect("a force");
+        assert_eq!(
+            trace.as_slice(),
+            run(functions.traces[0].as_ref().expect("one"))
+        );
+        let contact = system.contact(0, 0.0, &state).expect("a contact");
+        let interpreted = run(&functions.contacts[0]);
+        assert_eq!(contact.constrained_compliance, interpreted[3]);
+        assert_eq!(contact.direction.as_slice(), &interpreted[5..]);
+    }
+}
+
+#[test]
+fn emitted_functions_are_what_the_interpreter_executes() {
+    let compiled = compile(Tip::DESCRIPTION.source.parse().expect("tokens")).expect("a model");
+    check_emission(&Tip::default(), &compiled.programs.main);
+    check_emission(&Tip::default().global(), compiled.programs.global());
+}
+
+#[test]
+fn integrators_agree_on_a_ball_that_rolls_against_its_wall() {
+    let ball = RollingBallWall::default();
+    let start = ball.initial();
+    let qdot = ball
+        .complete_velocity(0.0, &start.q, &start.qdot, &start.named)
+        .expect("one");
+    let state = ball.state(0.0, &start.q, &qdot).expect("a state");
+    let tolerance = Tolerance::new(1e-13).expect("a tolerance");
+    let steps = Simulation::new(&ball, Dop853::new(tolerance), ball.effects()).run(
+        0.0,
+        state,
+        4.0,
+        &mut (),
+    );
+    let series = Simulation::new(&ball, Taylor::new(tolerance), ball.effects()).run(
+        0.0,
+        state,
+        4.0,
+        &mut (),
+    );
+    let (steps, series) = (steps.expect("a run"), series.expect("a run"));
+    assert_eq!((steps.counters.impacts, series.counters.impacts), (1, 1));
+    assert_near(
+        "state",
+        steps.state.as_slice(),
+        series.state.as_slice(),
+        1e-11,
+    );
+}
+
+/// What a model with claims is told; its messages if it is refused.
+fn told(claims: &str) -> Result<Vec<String>, Vec<String>> {
+    let model = format!(
+        "P {{ coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2;
+         impacts {{ w: y >= 0 => elastic, instantaneous {{ s: dot(x) = 0; }}; }} claims {{ {claims} }} }}"
+    );
+    match compile(model.parse().expect("tokens")) {
+        Ok(compiled) => Ok(compiled.findings.iter().map(|own| own.note()).collect()),
+        Err(errors) => Err(errors
+            .iter()
+            .map(|error| error.message().to_owned())
+            .collect()),
+    }
+}
+
+#[test]
+fn claims_about_such_impacts_stay_open() {
+    let refused = told("conserved under w: x;").expect_err("undecided");
+    assert!(
+        refused[0]
+            .contains("is undecided: what impacts at `w` with their instantaneous constraints"),
+        "{refused:?}"
+    );
+    assert!(told("not conserved under w: energy;").is_err());
+    let notes = told("density: exact; assume conserved under w: x;").expect("accepted");
+    let volume = notes
+        .iter()
+        .find(|note| note.contains("density: exact"))
+        .expect("a note");
+    assert!(volume.contains("an impact at w maps it to 0"), "{volume}");
+}
+
+#[test]
+fn the_state_at_the_constraints_is_printed_beside_the_laws() {
+    let q = [2.0, 0.0, 0.3, 1.0, -0.4];
+    let qdot = velocities(&q, [1.0, -0.5, 0.5, 1.0, 2.0]);
+    let given = serde_json::json!([{ "q": q, "qdot": qdot }]).to_string();
+    let done = dalembert(&["eval", "rolling_ball_wall"], &given);
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    let rows: Value = serde_json::from_str(&done.output).expect("JSON");
+    let wall = &rows[0]["impacts"]["wall"];
+    let of = |value: &Value, name: &str| numbers(&value[name]);
+    let focused = &wall["focused"];
+    let (before, after) = (
+        of(focused, "qdot_plus"),
+        of(&wall["laws"]["elastic"], "qdot_plus"),
+    );
+    assert_near("focused", &[before[0]], &[after[0].abs()], 1e-13);
+    let slip = |qdot: &[f64]| qdot[1] + qdot[2] * 1.0_f64.cos() + qdot[4];
+    assert_near("slip", &[slip(&before), slip(&after)], &[0.0; 2], 1e-13);
+    assert_near(
+        "rate",
+        &[number(&focused["gap_rate_plus"])],
+        &[-before[0]],
+        1e-13,
+    );
+    let text = dalembert(&["derive", "rolling_ball_wall"], "").output;
+    let expected = "surface wall: elastic, instantaneous { no_slip }";
+    assert!(text.contains(expected), "{text}");
+    assert!(text.contains("psi[no_slip]"), "{text}");
+}
+
+dalembert::model! {
+    /// The rail of one of two modes; the other one has a surface of its own before it.
+    pub Modal {
+        coordinates { x; y; }
+        modes {
+            free { impacts { side: x >= -9; } }
+            rough {
+                impacts { wall: y >= 0 => elastic, instantaneous { rail: dot(x) + dot(y) = 0; }; }
+            }
+        }
+        transitions { enter: free -> rough when x >= 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+    }
+}
+
+#[test]
+fn a_mode_has_the_instantaneous_constraints_of_its_surfaces() {
+    let modal = Modal::default();
+    let start = modal.state(0.0, &[0.0, 1.0].into(), &[3.0, -1.0].into());
+    let stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
+    let run = Simulation::new(&modal, stepper, modal.effects())
+        .run(0.0, start.expect("a state"), 2.0, &mut ())
+        .expect("a run");
+    assert_eq!(run.outcome, Outcome::Done);
+    let qdot = modal.velocity(run.t, &run.state).expect("a velocity");
+    assert_near("rail", qdot.as_slice(), &[-2.0, 2.0], 1e-12);
+}
