@@ -4,11 +4,13 @@
 //! The binary of this package is the `dalembert` command over all of them, with the hard cases of [`stability`] and the
 //! [`figures`] of the papers.
 
+pub mod appell_hamel;
 pub mod ball_on_rotating_table;
 pub mod ball_on_switching_table;
 pub mod bouncing_ball;
 pub mod chain;
 pub mod chaplygin_sleigh;
+pub mod constant_speed;
 pub mod dimensionless_walker;
 pub mod double_pendulum;
 pub mod figures;
@@ -30,11 +32,13 @@ pub mod two_wheels_arrested;
 pub mod two_wheels_rod;
 pub mod walker_foot_slip;
 
+pub use appell_hamel::AppellHamel;
 pub use ball_on_rotating_table::BallOnRotatingTable;
 pub use ball_on_switching_table::BallOnSwitchingTable;
 pub use bouncing_ball::BouncingBall;
 pub use chain::{Chain2, Chain3, Chain4, Chain8, Chain16};
 pub use chaplygin_sleigh::ChaplyginSleigh;
+pub use constant_speed::ConstantSpeed;
 pub use dimensionless_walker::DimensionlessWalker;
 pub use double_pendulum::DoublePendulum;
 pub use filippov_field::FilippovField;
@@ -57,6 +61,7 @@ pub use walker_foot_slip::WalkerFootSlip;
 /// Every shipped model, for the command line.
 pub fn all() -> Vec<dalembert_cli::Entry> {
     dalembert_cli::models![
+        AppellHamel,
         BallOnRotatingTable,
         BallOnSwitchingTable,
         BouncingBall,
@@ -66,6 +71,7 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         Chain8,
         Chain16,
         ChaplyginSleigh,
+        ConstantSpeed,
         DimensionlessWalker,
         DoublePendulum,
         FilippovField,

@@ -39,6 +39,14 @@ pub enum Fault {
     FirstOrder,
     /// The parts of Lagrange and d'Alembert's principle were asked of a system with modes: they belong to one mode.
     SeveralModes,
+    /// An impulse, or a step of a discrete principle, was asked of a system with constraints that are not linear in the
+    /// velocities, for which neither is defined.
+    NonlinearConstraints,
+    /// No velocity that satisfies this constraint was found near the given one.
+    ProjectionFailed {
+        /// Index of the constraint.
+        constraint: usize,
+    },
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
         /// Index of the offending component of the state, in its own order.
@@ -80,6 +88,14 @@ impl fmt::Display for Fault {
                     "a first-order system has no momenta, no energy and no impulses"
                 )
             }
+            Self::NonlinearConstraints => write!(
+                f,
+                "constraints that are not linear in the velocities define no impulses and no discrete principle"
+            ),
+            Self::ProjectionFailed { constraint } => write!(
+                f,
+                "no velocity that satisfies constraint {constraint} was found near the given one"
+            ),
             Self::NonFinite { component } => {
                 write!(f, "component {component} of the state is not finite")
             }

@@ -12,8 +12,12 @@ const ENTRIES: usize = 64 * 64;
 /// [`System::state`](crate::System::state).
 const ACCEPTED: f64 = 1e-9;
 
+/// Newton's steps where constraints are not linear in the velocities.
+const STEPS: u32 = 48;
+
 /// The velocities with the components of `qdot` where `named` is not 0, and elsewhere those of least norm that
-/// satisfy every constraint `eta(qdot) + eta_0 = 0`.
+/// satisfy every constraint `eta(qdot) + eta_0 = 0`. Where constraints are not linear in the velocities, they are those to which
+/// Newton's steps lead from 1: of several solutions one that is positive where it can be.
 ///
 /// # Errors
 /// [`StateError::OffConstraint`] if the components that are free cannot satisfy a constraint;
@@ -33,7 +37,7 @@ pub fn complete_velocities<Sys: Constrained>(
     let mut velocities = *qdot;
     for i in 0..n {
         if named.as_slice()[i] == 0.0 {
-            velocities.as_mut_slice()[i] = 0.0;
+            velocities.as_mut_slice()[i] = if Sys::IS_LINEAR { 0.0 } else { 1.0 };
         } else if !velocities.as_slice()[i].is_finite() {
             return Err(StateError::NotFinite { component: n + i });
         }
@@ -41,22 +45,28 @@ pub fn complete_velocities<Sys: Constrained>(
     let mut buffer = [0.0; ENTRIES];
     let forms = &mut buffer[..n * m];
     let mut affine = Sys::Multipliers::zeros();
-    system.constraint_forms(t, q, forms, &mut affine);
-    let mut wanted = Sys::Multipliers::zeros();
-    for (a, row) in forms.chunks_exact_mut(n.max(1)).enumerate() {
-        wanted.as_mut_slice()[a] = -residual(row, affine.as_slice()[a], &velocities).0;
-        for (entry, named) in row.iter_mut().zip(named.as_slice()) {
-            if *named != 0.0 {
-                *entry = 0.0;
+    for _ in 0..if Sys::IS_LINEAR { 1 } else { STEPS } {
+        system.linearised_forms(t, q, &velocities, forms, &mut affine);
+        let mut wanted = Sys::Multipliers::zeros();
+        for (a, row) in forms.chunks_exact_mut(n.max(1)).enumerate() {
+            wanted.as_mut_slice()[a] = -residual(row, affine.as_slice()[a], &velocities).0;
+            for (entry, named) in row.iter_mut().zip(named.as_slice()) {
+                if *named != 0.0 {
+                    *entry = 0.0;
+                }
             }
         }
+        let mut chosen = Sys::Vector::zeros();
+        least_norm(forms, n, wanted.as_slice(), chosen.as_mut_slice());
+        let before = velocities;
+        for i in 0..n {
+            velocities.as_mut_slice()[i] += chosen.as_slice()[i];
+        }
+        if velocities == before {
+            break;
+        }
     }
-    let mut chosen = Sys::Vector::zeros();
-    least_norm(forms, n, wanted.as_slice(), chosen.as_mut_slice());
-    for i in 0..n {
-        velocities.as_mut_slice()[i] += chosen.as_slice()[i];
-    }
-    system.constraint_forms(t, q, forms, &mut affine);
+    system.linearised_forms(t, q, &velocities, forms, &mut affine);
     check::<Sys>(forms, &affine, &velocities)?;
     Ok(velocities)
 }

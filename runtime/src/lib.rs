@@ -123,6 +123,7 @@ mod linalg;
 #[doc(hidden)]
 pub mod math;
 pub mod modes;
+mod nearest;
 pub mod numbers;
 pub mod outcome;
 pub mod projection;
@@ -166,6 +167,7 @@ pub mod __private {
     pub use crate::initial::complete_velocities;
     pub use crate::math;
     pub use crate::modes;
+    pub use crate::nearest::nearest_by_steps;
     pub use crate::quadrature::line_integral;
     pub use nalgebra::SVector;
 }

@@ -109,6 +109,8 @@ pub enum Outcome {
     FirstOrder,
     /// See [`Fault::SeveralModes`].
     SeveralModes,
+    /// See [`Fault::NonlinearConstraints`].
+    NonlinearConstraints,
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
         /// Index of the component of the state; gaps are counted after its components.
@@ -160,6 +162,7 @@ impl Outcome {
             Self::SingularSurface { .. } => "singular_surface",
             Self::FirstOrder => "first_order",
             Self::SeveralModes => "several_modes",
+            Self::NonlinearConstraints => "nonlinear_constraints",
             Self::NonFinite { .. } => "non_finite",
             Self::StepUnderflow { .. } => "step_underflow",
             Self::NotConverged { .. } => "not_converged",
@@ -243,6 +246,7 @@ impl fmt::Display for Outcome {
             Self::SingularSurface { surface } => Fault::SingularSurface { surface }.fmt(f),
             Self::FirstOrder => Fault::FirstOrder.fmt(f),
             Self::SeveralModes => Fault::SeveralModes.fmt(f),
+            Self::NonlinearConstraints => Fault::NonlinearConstraints.fmt(f),
             Self::NonFinite { component } => Fault::NonFinite { component }.fmt(f),
             Self::StepUnderflow { t } => StepFailure::StepUnderflow { t }.fmt(f),
             Self::NotConverged { t } => StepFailure::NotConverged { t }.fmt(f),
@@ -271,6 +275,8 @@ impl From<Fault> for Outcome {
             Fault::SingularSurface { surface } => Self::SingularSurface { surface },
             Fault::FirstOrder => Self::FirstOrder,
             Fault::SeveralModes => Self::SeveralModes,
+            Fault::NonlinearConstraints => Self::NonlinearConstraints,
+            Fault::ProjectionFailed { constraint } => Self::ProjectionFailed { constraint },
             Fault::NonFinite { component } => Self::NonFinite { component },
         }
     }

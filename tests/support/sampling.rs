@@ -69,7 +69,8 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     }
     visit! {
         dalembert_models:
-        BallOnRotatingTable BouncingBall Chain2 Chain3 Chain4 Chain8 Chain16 ChaplyginSleigh DoublePendulum
+        AppellHamel BallOnRotatingTable BouncingBall Chain2 Chain3 Chain4 Chain8 Chain16 ChaplyginSleigh ConstantSpeed
+        DoublePendulum
         HarmonicOscillator HolonomicBeadOnEllipses PointBilliard RollingBallEuler RollingBallWall RollingDisk TwoWheelsRod
         WalkerFootSlip
     }

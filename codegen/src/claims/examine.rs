@@ -29,6 +29,13 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
     if claims.is_empty() {
         return Examined::default();
     }
+    if model.is_nonlinear() {
+        let findings = claims.iter().map(|claim| open(claim, Undecided::Nonlinear));
+        return Examined {
+            findings: findings.collect(),
+            volume: None,
+        };
+    }
     let mut examiner = Examiner::of(model, derivation);
     let has_states = conserved::has_states(examiner.model, &examiner.dynamics);
     let mut findings: Vec<Finding> = claims
@@ -78,6 +85,10 @@ pub fn examine_volume(
     model: &mut Model,
     derivation: &Derivation,
 ) -> (Verdict, Vec<String>, Option<Volume>) {
+    if model.is_nonlinear() {
+        let reason = Undecided::Nonlinear.to_string();
+        return (Verdict::Undecided(reason), Vec::new(), None);
+    }
     let mut examiner = Examiner::of(model, derivation);
     if !conserved::has_states(examiner.model, &examiner.dynamics) {
         let reason = Undecided::Stateless.to_string();

@@ -13,7 +13,7 @@ use super::evidence::Wording;
 use super::finding::{Verdict, seed_of};
 use super::wall::Wall;
 use crate::mechanics::Derivation;
-use crate::model::{Model, Reset};
+use crate::model::{Model, Reset, Surface};
 use crate::spec::ItemId;
 
 /// Mistakes in resets: where, what, and what to write.
@@ -21,6 +21,9 @@ pub fn check_landings(model: &mut Model, derivation: &Derivation) -> Vec<(ItemId
     let surfaces = model.surfaces.iter();
     if derivation.constraints.is_empty() || surfaces.clone().all(|own| own.reset.is_none()) {
         return Vec::new();
+    }
+    if model.is_nonlinear() {
+        return unexamined(model);
     }
     let dynamics = Dynamics::of(model, derivation);
     let mut mistakes = Vec::new();
@@ -42,6 +45,24 @@ pub fn check_landings(model: &mut Model, derivation: &Derivation) -> Vec<(ItemId
         }
     }
     mistakes
+}
+
+/// Where constraints are not linear in the velocities, every run checks velocities after a reset; of levels nothing is known.
+fn unexamined(model: &Model) -> Vec<(ItemId, String, String)> {
+    let levels = model.constraints.iter();
+    let Some(level) = levels.clone().find(|own| own.level.is_some()) else {
+        return Vec::new();
+    };
+    let moving = (model.surfaces.iter())
+        .filter_map(|own| Some((own, own.reset.as_ref()?)))
+        .filter(|(_, reset)| reset.moves());
+    let mistake = |(surface, reset): (&Surface, &Reset)| {
+        let (name, level) = (&surface.name.display, &level.name.display);
+        let text = format!("the reset of `{name}` is not known to keep the level of `{level}`");
+        let help = "write `dot(..)` of the level in the constraint, or leave the positions";
+        (reset.item, text, help.to_owned())
+    };
+    moving.map(mistake).collect()
 }
 
 /// The reset of a surface.

@@ -9,6 +9,8 @@ pub enum Undecided {
     Degenerate,
     /// No real state was found at which the equations of motion have values: of what is not there anything is true.
     Stateless,
+    /// Constraints are not linear in the velocities.
+    Nonlinear,
     /// Brackets up to this depth did not close the hull, and deeper ones are out of reach.
     Depth(usize),
     /// Forces whose dependence on velocities is neither absent, linear nor quadratic.
@@ -29,6 +31,10 @@ impl fmt::Display for Undecided {
             Self::Stateless => write!(
                 f,
                 "no real state was found at which metric, forces and constraints have values"
+            ),
+            Self::Nonlinear => write!(
+                f,
+                "claims are examined where constraints are linear in the velocities"
             ),
             Self::Depth(depth) => write!(
                 f,

@@ -17,7 +17,10 @@ pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
     let levels = functions.levels.outputs.len();
     let is_reduced = context.program.form == Form::Reduced;
     let solve = emit_multipliers(context, functions);
-    let forms = emit_forms(context, functions);
+    let forms = match context.model.is_nonlinear() {
+        true => super::nonlinear::emit_forms(context, functions),
+        false => emit_forms(context, functions),
+    };
     let restore = emit_restore(context, functions);
     let positions = emit_levels(context, functions);
     let attributes = super::attributes();
@@ -158,6 +161,9 @@ pub(super) fn emit_nearest(context: &Context<'_>) -> TokenStream {
     let Some(back) = constrained.and_then(|own| own.return_to_constraints.as_ref()) else {
         return TokenStream::new();
     };
+    if context.model.is_nonlinear() {
+        return super::nonlinear::emit_nearest(context, back);
+    }
     let documentation = doc::formula(
         "p + mu_a eta^a, m mu = -(eta(qdot) + eta_0)",
         &back.nearest.cost,

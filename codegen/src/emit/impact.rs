@@ -24,6 +24,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
     let laws = emit_laws(context, functions);
     let contacts = match context.is_first_order() {
         true => super::first_order::emit_contacts(),
+        false if context.model.is_nonlinear() => super::nonlinear::emit_contacts(),
         false => joined([
             emit_blows(context, functions),
             emit_contacts(context, functions),

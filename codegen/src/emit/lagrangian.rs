@@ -19,6 +19,7 @@ pub(super) fn emit_lagrangian(context: &Context<'_>) -> TokenStream {
     }
     let force = emit_force(context);
     let reactions = match &context.program.constrained {
+        Some(_) if context.model.is_nonlinear() => super::nonlinear::emit_reactions(),
         Some(functions) => emit_reactions(context, functions),
         None => emit_no_reactions(),
     };

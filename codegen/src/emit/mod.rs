@@ -15,6 +15,7 @@ mod jet;
 mod lagrangian;
 pub mod modes;
 mod names;
+mod nonlinear;
 mod parameters;
 mod reduced;
 mod scene;

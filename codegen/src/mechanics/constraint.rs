@@ -1,4 +1,8 @@
 //! Constraint forms and the terms of `d/dt (eta(qdot) + eta_0)` that do not hold the acceleration.
+//!
+//! A constraint `phi(t, q, qdot) = 0` that is not linear in the velocities has the form `eta = dphi/dqdot` of Chetaev's rule:
+//! virtual displacements are those along which `phi` does not change with the velocity, and the force is `lambda eta`. Its
+//! rate is `eta(qddot) + curvature` as for the others, with the derivative of `phi` at fixed velocity for curvature.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign};
 
@@ -12,7 +16,7 @@ pub struct ConstraintForm {
     pub form: Vec<ExprId>,
     /// `eta_0`.
     pub affine: ExprId,
-    /// `eta(qdot) + eta_0`.
+    /// `eta(qdot) + eta_0`, or `phi`.
     pub residual: ExprId,
     /// The natural size of `residual`: its terms without their signs, sines and cosines counted as 1. With the
     /// sines themselves a term `cos(pi/2) v`, zero but for rounding, would have to vanish to the last digit.
@@ -41,7 +45,10 @@ pub(super) fn derive_constraints(
         .map(|a| {
             let form = model.constraints[a].form.clone();
             let affine = model.constraints[a].affine;
-            let residual = derive_residual(model, coordinates, &form, affine);
+            let residual = match model.constraints[a].nonlinear {
+                Some(phi) => phi,
+                None => derive_residual(model, coordinates, &form, affine),
+            };
             let curvature = model.pool.derivative_along(residual, &motion);
             ConstraintForm {
                 scale: amplitude(&mut model.pool, residual),

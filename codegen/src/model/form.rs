@@ -17,6 +17,17 @@ pub(super) struct OneForm {
     pub(super) affine: ExprId,
     /// `f` with `df = eta + eta_0 dt`, where known.
     pub(super) level: Option<ExprId>,
+    /// What vanishes, where that is not linear in the velocities; then the form is its derivative by them.
+    pub(super) nonlinear: Option<ExprId>,
+}
+
+/// How a constraint may depend on velocities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Dependence {
+    /// Linearly or affinely; what messages call the constraint.
+    Linear(&'static str),
+    /// In any way.
+    Any,
 }
 
 impl Resolver<'_> {
@@ -25,6 +36,7 @@ impl Resolver<'_> {
         &mut self,
         equation: &Equation,
         scope: &mut Scope,
+        dependence: Dependence,
     ) -> Option<OneForm> {
         let left = self.resolve(&equation.left, scope);
         let right = self.resolve(&equation.right, scope);
@@ -43,7 +55,7 @@ impl Resolver<'_> {
         match (uses(self, &differentials), uses(self, &velocities)) {
             (true, true) => self.refuse_mixture(&sides, &differentials, &velocities, scope),
             (true, false) => self.differential_form(&sides, value, &differentials, scope),
-            (false, true) => self.velocity_form(&sides, value, &velocities, scope),
+            (false, true) => self.velocity_form(&sides, value, &velocities, scope, dependence),
             (false, false) => self.refuse_without_differential(equation, scope),
         }
     }
@@ -55,7 +67,7 @@ impl Resolver<'_> {
         differentials: &[SymbolId],
         scope: &Scope,
     ) -> Option<OneForm> {
-        self.check_linear(sides, differentials, scope)?;
+        self.check_linear(sides, differentials, scope, "constraints")?;
         for (side, expr) in sides {
             self.check_every_term(side, *expr, differentials, scope)?;
         }
@@ -66,6 +78,7 @@ impl Resolver<'_> {
                 form,
                 affine,
                 level: value.level,
+                nonlinear: None,
             },
             sides,
         )
@@ -77,8 +90,18 @@ impl Resolver<'_> {
         value: Value,
         velocities: &[SymbolId],
         scope: &Scope,
+        dependence: Dependence,
     ) -> Option<OneForm> {
-        self.check_linear(sides, velocities, scope)?;
+        let linear =
+            (sides.iter()).all(|(_, expr)| has_degree(&mut self.pool, *expr, velocities, 1));
+        match dependence {
+            Dependence::Any if !linear => {
+                let form = self.chetaev_form(value.expr, velocities);
+                return self.nonzero_form(form, sides);
+            }
+            Dependence::Any => {}
+            Dependence::Linear(what) => self.check_linear(sides, velocities, scope, what)?,
+        }
         let form = coefficients(&mut self.pool, value.expr, velocities);
         let affine = at_zero(&mut self.pool, value.expr, velocities);
         let affine = without_hidden_zero(&self.pool, affine);
@@ -87,9 +110,33 @@ impl Resolver<'_> {
                 form,
                 affine,
                 level: value.level,
+                nonlinear: None,
             },
             sides,
         )
+    }
+
+    /// The form of virtual displacements of `phi = 0`, `eta = dphi/dqdot`, with `eta_0 = phi - eta(qdot)`.
+    fn chetaev_form(&mut self, phi: ExprId, velocities: &[SymbolId]) -> OneForm {
+        let pool = &mut self.pool;
+        let form: Vec<ExprId> = (velocities.iter())
+            .map(|velocity| {
+                let slope = pool.diff(phi, *velocity);
+                without_hidden_zero(pool, slope)
+            })
+            .collect();
+        let mut terms = vec![phi];
+        for (entry, velocity) in form.iter().zip(velocities) {
+            let velocity = pool.variable(*velocity);
+            let along = pool.mul(*entry, velocity);
+            terms.push(pool.neg(along));
+        }
+        OneForm {
+            affine: pool.sum(&terms),
+            form,
+            level: None,
+            nonlinear: Some(phi),
+        }
     }
 
     fn nonzero_form(&mut self, form: OneForm, sides: &[(&Scalar, ExprId)]) -> Option<OneForm> {
@@ -109,6 +156,7 @@ impl Resolver<'_> {
         sides: &[(&Scalar, ExprId)],
         symbols: &[SymbolId],
         scope: &Scope,
+        what: &str,
     ) -> Option<()> {
         for (side, expr) in sides {
             if has_degree(&mut self.pool, *expr, symbols, 1) {
@@ -118,7 +166,7 @@ impl Resolver<'_> {
                 degree_bound(pool, expr, symbols).is_none_or(|degree| degree > 1)
             };
             let part = self.culprit(side, scope, &nonlinear);
-            let text = format!("`{part}`: constraints are linear in velocities");
+            let text = format!("`{part}`: {what} are linear in velocities");
             return self.refuse(
                 part.at,
                 text,

@@ -1,7 +1,7 @@
 //! Stage 2, check: from what was written to a model with every name resolved and nothing derived yet.
 //!
 //! A [`Model`] can only be had from [`check()`], so it satisfies every rule a declaration must: the Lagrangian is
-//! natural, the metric is not degenerate, the constraints are linear or affine and independent, surfaces can be
+//! natural, the metric is not degenerate, the constraints are independent, surfaces can be
 //! reached. Indices are in order of declaration throughout: `i, j, k` coordinates, `a, b` constraints, `s` surfaces.
 
 mod call;
@@ -96,6 +96,11 @@ impl Model {
     /// Whether the rates of the coordinates were declared, in place of a Lagrangian.
     pub fn is_first_order(&self) -> bool {
         self.field.is_some()
+    }
+
+    /// Whether some constraint is not linear in the velocities.
+    pub fn is_nonlinear(&self) -> bool {
+        self.constraints.iter().any(|own| own.nonlinear.is_some())
     }
 }
 
@@ -208,6 +213,9 @@ pub struct Constraint {
     pub affine: ExprId,
     /// `f(t, q)` with `df = eta + eta_0 dt`, when the form is exact with a known function.
     pub level: Option<ExprId>,
+    /// `phi(t, q, qdot)` of a constraint `phi = 0` that is not linear in the velocities. Its form is `dphi/dqdot`, its affine
+    /// part `phi - eta(qdot)`, both functions of the velocities.
+    pub nonlinear: Option<ExprId>,
     /// Where it was declared.
     pub item: ItemId,
 }

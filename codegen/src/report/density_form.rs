@@ -11,8 +11,11 @@ type Matrix = Vec<Vec<ExprId>>;
 const LARGEST_BLOCK: usize = 4;
 
 /// `theta_k = m_ab [ W^{a,j} d_j eta^b_k + W^{b,j} d_k eta^a_j - W^b.(d_k g) W^a ]`, N components; `None` for a model
-/// that is too large to be written out.
+/// that is too large to be written out, and for constraints that are not linear in the velocities, which have none.
 pub fn density_form(model: &mut Model, derivation: &Derivation) -> Option<Vec<ExprId>> {
+    if model.is_nonlinear() {
+        return None;
+    }
     let metric = model.lagrangian.metric.clone();
     let pool = &mut model.pool;
     let cometric = inverse(pool, &metric)?;

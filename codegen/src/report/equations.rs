@@ -178,7 +178,10 @@ impl Writer<'_> {
                 left: [text, format!("\\{latex}")],
                 rows: vec![row],
             });
-            if !self.is_zero(affine) {
+            if let Some(phi) = self.model.constraints[a].nonlinear {
+                let [text, latex] = label("phi");
+                items.push(self.formula(text, format!("\\{latex}"), phi));
+            } else if !self.is_zero(affine) {
                 let [text, latex] = label("eta_0");
                 items.push(self.formula(text, format!("\\{latex}"), affine));
             }

@@ -24,13 +24,16 @@ impl Writer<'_> {
                 return Section::plain("Motion on D", items);
             }
             Err(Unreduced::NoRegularFrame(constraints)) => {
-                let names: Vec<&str> = constraints
-                    .iter()
-                    .map(|&a| self.model.constraints[a].name.display.as_str())
-                    .collect();
+                let names = self.names_of(constraints);
                 items.push(Item::Words(format!(
-                    "solved in global form: no velocity follows from {} at every configuration, and no frame is declared",
-                    names.join(", ")
+                    "solved in global form: no velocity follows from {names} at every configuration, and no frame is declared"
+                )));
+                return Section::plain("Motion on D", items);
+            }
+            Err(Unreduced::Nonlinear(constraints)) => {
+                let names = self.names_of(constraints);
+                items.push(Item::Words(format!(
+                    "solved in global form: {names} not linear in the velocities"
                 )));
                 return Section::plain("Motion on D", items);
             }
@@ -51,6 +54,14 @@ impl Writer<'_> {
             equation: EQUATION,
             items,
         }
+    }
+
+    fn names_of(&self, constraints: &[usize]) -> String {
+        let names = constraints.iter();
+        let names: Vec<&str> = names
+            .map(|&a| self.model.constraints[a].name.display.as_str())
+            .collect();
+        names.join(", ")
     }
 
     /// `alpha(qdot)`

@@ -249,6 +249,16 @@ pub fn fault_text(description: &Description, fault: &Fault) -> String {
                 surface
             )
         ),
+        Fault::ProjectionFailed { constraint } => format!(
+            "no velocity that satisfies constraint `{}` was found near the given one",
+            name(
+                description
+                    .constraints
+                    .iter()
+                    .map(|constraint| constraint.name),
+                constraint
+            )
+        ),
         ref other => other.to_string(),
     }
 }
@@ -261,6 +271,8 @@ pub const fn fault_kind(fault: &Fault) -> &'static str {
         Fault::SingularFrame { .. } => "singular_frame",
         Fault::SingularSurface { .. } => "singular_surface",
         Fault::FirstOrder => "first_order",
+        Fault::NonlinearConstraints => "nonlinear_constraints",
+        Fault::ProjectionFailed { .. } => "projection_failed",
         Fault::NonFinite { .. } => "non_finite",
         _ => "fault",
     }

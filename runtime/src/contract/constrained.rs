@@ -4,7 +4,8 @@ use super::System;
 use crate::error::Fault;
 use crate::state::StateVector;
 
-/// A system with constraints `eta^a(qdot) + eta^a_0 = 0`.
+/// A system with constraints `eta^a(qdot) + eta^a_0 = 0`, or `phi^a(t, q, qdot) = 0` that are not linear in the velocities:
+/// then `eta^a = dphi^a/dqdot`, and `phi^a` stands for `eta^a(qdot) + eta^a_0`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no constraints: declare `constraints {{ .. }}` in its `model!`"
 )]
@@ -31,7 +32,8 @@ pub trait Constrained: System {
         qdot: &Self::Vector,
     ) -> (Self::Multipliers, Self::Multipliers);
 
-    /// The forms `eta^a` (M rows of N, row after row) and their affine parts `eta^a_0` (M) at a position.
+    /// The forms `eta^a` (M rows of N, row after row) and their affine parts `eta^a_0` (M) at a position; of constraints that
+    /// are not linear, those at rest.
     fn constraint_forms(
         &self,
         t: f64,
@@ -39,6 +41,23 @@ pub trait Constrained: System {
         forms: &mut [f64],
         affine: &mut Self::Multipliers,
     );
+
+    /// Whether every constraint is linear or affine in the velocities.
+    const IS_LINEAR: bool = true;
+
+    /// The constraints linearised at a velocity: forms and affine parts as [`Constrained::constraint_forms`] gives them, with
+    /// `eta^a(qdot) + eta^a_0` the residual at this velocity. Of linear constraints they are the same at all of them.
+    fn linearised_forms(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+        forms: &mut [f64],
+        affine: &mut Self::Multipliers,
+    ) {
+        let _ = qdot;
+        self.constraint_forms(t, q, forms, affine);
+    }
 
     /// Whether every state satisfies the constraints by its construction: the form reduced to D.
     const IS_REDUCED: bool;

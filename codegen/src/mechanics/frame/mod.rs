@@ -63,6 +63,8 @@ pub enum Unreduced {
     Free,
     /// No choice of dependent velocities is regular at every configuration; the constraints that stand in the way.
     NoRegularFrame(Vec<usize>),
+    /// These constraints are not linear in the velocities.
+    Nonlinear(Vec<usize>),
 }
 
 /// The declared frame, or one that is regular at every configuration.
@@ -72,6 +74,14 @@ pub(super) fn derive_frame(
     constraints: &[ConstraintForm],
     field: &FieldTerms,
 ) -> Result<Frame, Unreduced> {
+    let declared_ones = model.constraints.iter().enumerate();
+    let nonlinear: Vec<usize> = declared_ones
+        .filter(|(_, own)| own.nonlinear.is_some())
+        .map(|(a, _)| a)
+        .collect();
+    if !nonlinear.is_empty() {
+        return Err(Unreduced::Nonlinear(nonlinear));
+    }
     let forms = if model.frame.is_empty() {
         if constraints.is_empty() {
             return Err(Unreduced::Free);

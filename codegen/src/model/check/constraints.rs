@@ -3,7 +3,7 @@
 use dalembert_expr::{Assumption as Known, ExprId, Rational};
 
 use super::super::Constraint;
-use super::super::form::OneForm;
+use super::super::form::{Dependence, OneForm};
 use super::super::resolve::{Resolver, Scope};
 use super::names::Names;
 use crate::diagnostics::{Location, listed};
@@ -21,7 +21,8 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
             resolver.multiplier_symbol(&name.display);
         }
         for (name, mut scope) in members {
-            let Some(parts) = resolver.constraint_form(equation, &mut scope) else {
+            let Some(parts) = resolver.constraint_form(equation, &mut scope, Dependence::Any)
+            else {
                 break;
             };
             resolver.check_coefficients(equation, &parts, &scope);
@@ -30,6 +31,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
                 form,
                 affine,
                 level,
+                nonlinear,
             } = parts;
             constraints.push(Constraint {
                 name,
@@ -37,6 +39,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
                 form,
                 affine,
                 level,
+                nonlinear,
                 item: equation.item,
             });
         }

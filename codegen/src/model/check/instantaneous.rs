@@ -3,7 +3,7 @@
 
 use dalembert_expr::ExprId;
 
-use super::super::form::OneForm;
+use super::super::form::{Dependence, OneForm};
 use super::super::resolve::{Resolver, Scope};
 use super::super::{Constraint, Surface};
 use super::constraints::refuse_dependent;
@@ -24,7 +24,8 @@ impl Resolver<'_> {
             let members = self.members_within(&equation.declared, scope);
             for (name, mut scope) in members {
                 names.add(self, &name, &equation.declared.name);
-                let parts = self.constraint_form(equation, &mut scope)?;
+                let dependence = Dependence::Linear("instantaneous constraints");
+                let parts = self.constraint_form(equation, &mut scope, dependence)?;
                 self.check_coefficients(equation, &parts, &scope);
                 self.within_budget(equation.left.at.to(equation.right.at));
                 let OneForm { form, affine, .. } = parts;
@@ -34,6 +35,7 @@ impl Resolver<'_> {
                     form,
                     affine,
                     level: None,
+                    nonlinear: None,
                     item: equation.item,
                 });
             }

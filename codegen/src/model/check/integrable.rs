@@ -22,7 +22,7 @@ pub(super) fn notes(resolver: &Resolver<'_>, constraints: &[Constraint]) -> Vec<
     variables.push(resolver.symbols.time);
     for constraint in constraints
         .iter()
-        .filter(|constraint| constraint.level.is_none())
+        .filter(|constraint| constraint.level.is_none() && constraint.nonlinear.is_none())
     {
         let mut form = constraint.form.clone();
         form.push(constraint.affine);

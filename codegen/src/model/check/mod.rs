@@ -14,6 +14,7 @@ mod instantaneous;
 mod integrable;
 mod laws;
 mod names;
+mod nonlinear;
 mod outputs;
 mod parameters;
 mod regular;
@@ -137,6 +138,7 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     // Rules broken by some of the constraints are broken by all of them: those that were refused may be missing.
     field::check_alone(resolver);
     field::check_surfaces(resolver);
+    nonlinear::check_alone(resolver, &parts.constraints);
     constraints::check_independent(resolver, &parts.constraints);
     frame::check_coframe(resolver, &parts.frame, &parts.constraints);
     surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
@@ -153,12 +155,16 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
         symbols,
         ..
     } = resolver;
+    let nonlinear = parts.constraints.iter().any(|own| own.nonlinear.is_some());
     let extras = match parts.field {
         Some(_) => Extras {
             variations: true,
             ..Extras::default()
         },
-        None => Extras::ALL,
+        None => Extras {
+            volume: !nonlinear,
+            ..Extras::ALL
+        },
     };
     Model {
         pool,
@@ -190,6 +196,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
 fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec<String> {
     let mut notes = natural::notes(resolver, lagrangian);
     notes.extend(integrable::notes(resolver, &parts.constraints));
+    notes.extend(nonlinear::notes(&parts.constraints));
     notes.extend(cancellation::notes(resolver, lagrangian, parts));
     notes.extend(laws::notes(resolver, &parts.surfaces, &parts.constraints));
     notes.extend(initial::notes(resolver, &parts.initial));

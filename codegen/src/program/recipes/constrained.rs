@@ -47,9 +47,13 @@ fn residuals(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// `eta` row after row, then `eta_0`.
+/// `eta` row after row, then `eta_0`; of constraints that are not linear in the velocities at the velocities given.
 fn forms(model: &Model, derivation: &Derivation) -> Function {
-    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let arguments = match model.is_nonlinear() {
+        true => Arguments::Velocities,
+        false => Arguments::Position,
+    };
+    let mut kernel = Kernel::new(model, derivation, arguments);
     let mut outputs = kernel.forms().concat();
     let affine: Vec<_> = derivation
         .constraints
@@ -112,7 +116,8 @@ fn project(model: &Model, derivation: &Derivation, arguments: Arguments) -> Func
 /// the error of the dependent ones over them, and with it over the energy.
 fn restore(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
-    let Some(pairs) = kernel.regular_minor() else {
+    let pairs = kernel.regular_minor().filter(|_| !model.is_nonlinear());
+    let Some(pairs) = pairs else {
         return project(model, derivation, Arguments::Momenta);
     };
     let before = kernel.velocity();
@@ -165,9 +170,9 @@ fn level_correction(model: &Model, derivation: &Derivation) -> Function {
             .map(|k| kernel.builder.input(Input::Excess(k)))
             .collect();
         let weights = kernel.partial_solve(&which, &excess);
-        let forms = kernel.forms();
         for (&a, &weight) in which.iter().zip(&weights) {
-            for (entry, &component) in covector.iter_mut().zip(&forms[a]) {
+            let form = kernel.values(&derivation.constraints[a].form);
+            for (entry, &component) in covector.iter_mut().zip(&form) {
                 *entry = kernel.builder.add_product(*entry, weight, component);
             }
         }

@@ -114,10 +114,7 @@ pub fn first_order_geometry(model: &Model, derivation: &Derivation) -> Geometry 
         let [gap, rate] = [surface.gap, surface.gap_rate].map(|own| kernel.value(own));
         results.scalar(format!("impacts.{name}.gap"), gap);
         results.scalar(format!("impacts.{name}.gap_rate"), rate);
-        if let Some([q, qdot]) = impact::reset_values(&mut kernel, s) {
-            results.vector(format!("impacts.{name}.reset_q"), q);
-            results.vector(format!("impacts.{name}.reset_qdot"), qdot);
-        }
+        report_reset(&mut kernel, &mut results, s);
     }
     Geometry {
         function: kernel.finish(results.values),
@@ -214,6 +211,12 @@ fn report_surfaces(kernel: &mut Kernel<'_>, results: &mut Results) {
         let name = &kernel.model.surfaces[s].name.display;
         let gap = kernel.value(kernel.derivation.surfaces[s].gap);
         results.scalar(format!("impacts.{name}.gap"), gap);
+        if kernel.model.is_nonlinear() {
+            let rate = kernel.value(kernel.derivation.surfaces[s].gap_rate);
+            results.scalar(format!("impacts.{name}.gap_rate"), rate);
+            report_reset(kernel, results, s);
+            continue;
+        }
         let contact = impact::contact_values(kernel, s);
         for (quantity, value) in impact::SCALARS.iter().zip(contact.scalars) {
             results.scalar(format!("impacts.{name}.{quantity}"), value);
@@ -222,10 +225,15 @@ fn report_surfaces(kernel: &mut Kernel<'_>, results: &mut Results) {
         if let Some(impulse) = instantaneous::focus_values(kernel, Form::Global, s) {
             results.vector(format!("impacts.{name}.focus"), impulse);
         }
-        if let Some([q, qdot]) = impact::reset_values(kernel, s) {
-            results.vector(format!("impacts.{name}.reset_q"), q);
-            results.vector(format!("impacts.{name}.reset_qdot"), qdot);
-        }
+        report_reset(kernel, results, s);
+    }
+}
+
+fn report_reset(kernel: &mut Kernel<'_>, results: &mut Results, s: usize) {
+    let name = &kernel.model.surfaces[s].name.display;
+    if let Some([q, qdot]) = impact::reset_values(kernel, s) {
+        results.vector(format!("impacts.{name}.reset_q"), q);
+        results.vector(format!("impacts.{name}.reset_qdot"), qdot);
     }
 }
 

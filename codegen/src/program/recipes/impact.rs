@@ -38,13 +38,16 @@ pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<I
             .collect(),
         contacts: match form {
             Form::FirstOrder => Vec::new(),
+            _ if model.is_nonlinear() => Vec::new(),
             _ => {
                 let contacts = surfaces.clone();
                 let contacts = contacts.map(|s| contact(model, derivation, form, s));
                 contacts.collect()
             }
         },
-        blows: surfaces.map(|s| blow(model, derivation, form, s)).collect(),
+        blows: surfaces
+            .map(|s| blow(model, derivation, form, s).filter(|_| !model.is_nonlinear()))
+            .collect(),
         coefficients: model
             .surfaces
             .iter()

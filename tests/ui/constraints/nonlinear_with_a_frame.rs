@@ -4,6 +4,7 @@ dalembert::model! {
         parameters { m > 0 = 1; k > 0 = 1; }
         lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(theta)^2);
         constraints { c: dot(x)^2 + dot(y)^2 = 1; }
+        frame { u: d(x); v: d(theta); }
     }
 }
 

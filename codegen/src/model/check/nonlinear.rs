@@ -1,0 +1,55 @@
+//! Constraints that are not linear in the velocities, whose forces follow Chetaev's rule.
+//!
+//! What is known of linear constraints only is refused beside them: frames, impulses at surfaces, volumes.
+
+use super::super::Constraint;
+use super::super::resolve::Resolver;
+use crate::spec::{Declared, RESET, Statement};
+
+/// Refuses what such constraints leave undefined.
+pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint]) {
+    let Some(first) = constraints.iter().find(|own| own.nonlinear.is_some()) else {
+        return;
+    };
+    let (spec, name) = (resolver.spec, &first.name.display);
+    let because = format!("`{name}` is not linear in the velocities");
+    if let Some(Declared { name: at, .. }) = spec.frame.first().map(|own| &own.declared) {
+        let text = format!("{because}: no frame reduces it");
+        resolver.refuse::<()>(at.at, text, "leave the frame out");
+    }
+    for surface in &spec.surfaces {
+        let law = surface.law.as_ref();
+        if law.is_some_and(|law| law.name.text == RESET) {
+            continue;
+        }
+        let at = law.map_or(surface.declared.name.at, |law| law.name.at);
+        let surface = &surface.declared.name.text;
+        let text = format!("{because}: no law says how `{surface}` is left");
+        let help = "write `=> reset { dot(x) = ..; }` with velocities that satisfy it";
+        resolver.refuse::<()>(at, text, help);
+    }
+    for part in spec.scenes.iter().flat_map(|scene| &scene.parts) {
+        if part.name.text == "volume" {
+            let text = format!("{because}: no volume is known for it");
+            resolver.refuse::<()>(part.name.at, text, "leave it out");
+        }
+    }
+    for claim in &spec.claims {
+        if !matches!(claim.statement, Statement::Conserved { .. }) {
+            let text = format!("{because}: only conserved quantities are claimed of it");
+            let at = spec.location(claim.item);
+            resolver.refuse::<()>(at, text, "write `assume conserved: ..;`");
+        }
+    }
+}
+
+/// Remarks on their forces.
+pub(super) fn notes(constraints: &[Constraint]) -> impl Iterator<Item = String> + '_ {
+    let nonlinear = constraints.iter().filter(|own| own.nonlinear.is_some());
+    nonlinear.map(|own| {
+        let name = &own.name.display;
+        format!(
+            "`{name}` is not linear in the velocities: its force is a multiple of its derivative by them (Chetaev's rule)"
+        )
+    })
+}

@@ -1,0 +1,426 @@
+//! Constraints that are not linear in the velocities: Chetaev's rule, ways back to the constraint, and what stays undefined.
+
+use dalembert::impacts::law::Law;
+use dalembert::projection::Projection;
+use dalembert::{
+    Constrained, Described, Dla2, Dop853, Fault, Impacting, Lagrangian, Outcome, Rk4, Scene,
+    SceneEffects, Simulation, StateError, StateVector, System, Tolerance, VectorField,
+};
+use dalembert_cli::Exit;
+use dalembert_codegen::compile;
+use dalembert_models::{AppellHamel, ConstantSpeed};
+use dalembert_tests::command::dalembert;
+use dalembert_tests::numeric::assert_near;
+use dalembert_tests::sampling::{Random, states};
+use serde_json::{Value, json};
+
+dalembert::model! {
+    /// Everything that a nonlinear constraint may meet: a metric that is not constant, forces, time, a linear constraint and
+    /// an integrable one.
+    pub Mixed {
+        coordinates { x; y; z; theta: angle; w; }
+        parameters { m > 0 = 2; a > 0 = 1/2; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2*(1 + x^2/4)) + dot(z)^2/2 + dot(theta)^2/2 + dot(w)^2/2
+            + a*dot(x)*dot(theta)*sin(theta)/4 + a*(x*dot(y) - y*dot(x)) - a*sin(t)*z - w*x/3;
+        constraints {
+            pace: dot(x)^2 + (1 + y^2/2)*dot(y)^2 + dot(z)*dot(theta)/3 = 1 + cos(t + theta)/4;
+            slope: dot(z) = x*dot(theta) + a;
+            circle: d(w - x*y/4) = 0;
+        }
+        forces { drag: -a*dot(x)*dot(y)*d(x) + cos(t)*d(theta); }
+    }
+}
+
+dalembert::model! {
+    /// An affine constraint as it is, and a second one that is none.
+    pub Belt {
+        coordinates { x; y; theta: angle; }
+        lagrangian = (dot(x)^2 + (1 + x^2)*dot(y)^2 + dot(theta)^2)/2 - y + x*dot(theta)/2;
+        constraints { belt: cos(theta)*dot(x) + sin(theta)*dot(y) = 1 + x*t; }
+    }
+}
+
+dalembert::model! {
+    /// The same, written as an equation that is not linear.
+    pub BentBelt {
+        coordinates { x; y; theta: angle; }
+        lagrangian = (dot(x)^2 + (1 + x^2)*dot(y)^2 + dot(theta)^2)/2 - y + x*dot(theta)/2;
+        constraints {
+            belt: exp((cos(theta)*dot(x) + sin(theta)*dot(y) - 1 - x*t)*(2 + dot(theta)^2)) = 1;
+        }
+    }
+}
+
+dalembert::model! {
+    /// A point at constant speed between walls that turn it round, one of them wrongly.
+    pub Runner {
+        coordinates { x; y; }
+        parameters { v > 0 = 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        constraints { speed: dot(x)^2 + dot(y)^2 = v^2; }
+        impacts {
+            right: x <= 1 => reset { dot(x) = -dot(x); };
+            top: y <= 5 => reset { dot(y) = -2*dot(y); };
+            bottom: y >= -100 => reset { };
+        }
+    }
+}
+
+dalembert::model! {
+    /// A square that would have to be negative.
+    pub Impossible {
+        coordinates { x; y; }
+        parameters { k > 0 = 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        constraints { c: dot(x)^2 + dot(y)^2 = -k; }
+    }
+}
+
+fn tolerance() -> Tolerance {
+    Tolerance::new(1e-13).expect("a tolerance")
+}
+
+fn residuals<S: Constrained>(system: &S, t: f64, state: &S::State) -> S::Multipliers {
+    let qdot = system.velocity(t, state).expect("a velocity");
+    system.residuals(t, &system.position(state), &qdot).0
+}
+
+/// Random states near the constraints and on them.
+fn near<S: Described>(system: &S, count: usize) -> Vec<S::State> {
+    let mut random = Random::new(17);
+    let mut found = states(system, count, 3);
+    found.extend(states(system, count, 4).into_iter().map(|state| {
+        let (q, qdot) = (
+            system.position(&state),
+            system.velocity(0.0, &state).expect("one"),
+        );
+        let mut off = qdot;
+        let shift: S::Vector = random.vector(-0.1, 0.1);
+        for (own, shift) in off.as_mut_slice().iter_mut().zip(shift.as_slice()) {
+            *own += shift;
+        }
+        system.state_unchecked(0.0, &q, &off).expect("a state")
+    }));
+    found
+}
+
+/// The state moved along its rate.
+fn moved<S: System>(state: &S::State, rate: &S::State, step: f64) -> S::State {
+    let mut moved = *state;
+    for (own, rate) in moved.as_mut_slice().iter_mut().zip(rate.as_slice()) {
+        *own += step * rate;
+    }
+    moved
+}
+
+/// On the constraint and off it the field keeps the value of every constraint.
+fn check_kept<S: Described + Constrained>(system: &S) {
+    for state in near(system, 8) {
+        let (t, h) = (0.0, 1e-5);
+        let mut rate = S::State::zeros();
+        system.rate(t, &state, &mut rate).expect("a rate");
+        let ahead = residuals(system, t + h, &moved::<S>(&state, &rate, h));
+        let behind = residuals(system, t - h, &moved::<S>(&state, &rate, -h));
+        for (ahead, behind) in ahead.as_slice().iter().zip(behind.as_slice()) {
+            let slope = (ahead - behind) / (2.0 * h);
+            assert!(slope.abs() < 1e-8, "{}: {slope}", S::DESCRIPTION.name);
+        }
+    }
+}
+
+#[test]
+fn the_field_keeps_the_value_of_every_constraint() {
+    check_kept(&ConstantSpeed::default());
+    check_kept(&AppellHamel::default());
+    check_kept(&Mixed::default());
+}
+
+/// The force of the constraints is that of Chetaev's rule, by differences of the constraints over the velocities.
+fn check_rule<S: Described + Constrained + Lagrangian>(system: &S) {
+    for state in near(system, 8) {
+        let (t, h) = (0.0, 1e-5);
+        let (q, qdot) = (
+            system.position(&state),
+            system.velocity(t, &state).expect("one"),
+        );
+        let mut rate = S::State::zeros();
+        system.rate(t, &state, &mut rate).expect("a rate");
+        let force = system.force(t, &q, &qdot);
+        let multipliers = system.multipliers(t, &state).expect("multipliers");
+        for k in 0..S::Vector::LEN {
+            let at = |step: f64| {
+                let mut qdot = qdot;
+                qdot.as_mut_slice()[k] += step;
+                system.residuals(t, &q, &qdot).0
+            };
+            let (ahead, behind) = (at(h), at(-h));
+            let slopes = ahead.as_slice().iter().zip(behind.as_slice());
+            let reaction: f64 = slopes
+                .zip(multipliers.as_slice())
+                .map(|((ahead, behind), lambda)| lambda * (ahead - behind) / (2.0 * h))
+                .sum();
+            let pdot = rate.as_slice()[S::Vector::LEN + k];
+            let expected = force.as_slice()[k] + reaction;
+            assert!(
+                (pdot - expected).abs() < 1e-8 * (1.0 + expected.abs()),
+                "{}: {pdot} for {expected}",
+                S::DESCRIPTION.name
+            );
+        }
+    }
+}
+
+#[test]
+fn the_force_is_a_multiple_of_the_derivative_by_the_velocities() {
+    check_rule(&ConstantSpeed::default());
+    check_rule(&AppellHamel::default());
+    check_rule(&Mixed::default());
+}
+
+#[test]
+fn an_affine_constraint_and_its_bent_form_have_the_same_field() {
+    let (belt, bent) = (Belt::default(), BentBelt::default());
+    let straight = belt.global();
+    for state in states(&straight, 12, 5) {
+        let t = 0.7;
+        let q = straight.position(&state);
+        let qdot = straight.velocity(t, &state).expect("a velocity");
+        let on = straight.state_projected(t, &q, &qdot).expect("a state");
+        let qdot = straight.velocity(t, &on).expect("a velocity");
+        let other = bent.state(t, &q, &qdot).expect("a state");
+        let (mut rate, mut bent_rate) = (on, other);
+        straight.rate(t, &on, &mut rate).expect("a rate");
+        bent.rate(t, &other, &mut bent_rate).expect("a rate");
+        assert_near("rate", rate.as_slice(), bent_rate.as_slice(), 1e-12);
+        // lambda eta: the bent form is `2 + thetadot^2` times the other one there.
+        let factor = 2.0 + qdot[2] * qdot[2];
+        let lambda = straight.multipliers(t, &on).expect("one")[0];
+        let bent_lambda = bent.multipliers(t, &other).expect("one")[0];
+        assert_near("lambda", &[bent_lambda * factor], &[lambda], 1e-12);
+    }
+}
+
+#[test]
+fn velocities_off_the_constraint_are_refused_or_moved_to_it() {
+    let machine = AppellHamel::default();
+    let (q, off) = ([0.1, 0.2, 0.3].into(), [0.7, -0.4, -0.5].into());
+    let refused = machine.state(0.0, &q, &off);
+    assert!(
+        matches!(
+            refused,
+            Err(StateError::OffConstraint { constraint: 0, .. })
+        ),
+        "{refused:?}"
+    );
+    let state = machine.state_projected(0.0, &q, &off).expect("a state");
+    assert!(residuals(&machine, 0.0, &state)[0].abs() < 1e-15);
+    assert!((machine.velocity(0.0, &state).expect("one") - off).amax() < 0.2);
+    let kept = machine.state_unchecked(0.0, &q, &off).expect("a state");
+    assert!(residuals(&machine, 0.0, &kept)[0].abs() > 0.1);
+    // At rest the constraint has no gradient.
+    let rest = machine
+        .state_projected(0.0, &q, &[0.0; 3].into())
+        .expect("a state");
+    let mut rate = rest;
+    let fault = machine.rate(0.0, &rest, &mut rate);
+    assert!(
+        matches!(fault, Err(Fault::SingularConstraint { constraint: 0, .. })),
+        "{fault:?}"
+    );
+}
+
+#[test]
+fn velocities_that_are_not_named_follow_and_those_that_contradict_are_refused() {
+    let particle = ConstantSpeed::default();
+    let complete = |qdot: [f64; 2], named: [f64; 2]| {
+        particle.complete_velocity(0.0, &[0.0; 2].into(), &qdot.into(), &named.into())
+    };
+    let both = complete([0.0; 2], [0.0; 2]).expect("velocities");
+    assert_near("both", both.as_slice(), &[2.0_f64.sqrt(); 2], 1e-15);
+    let one = complete([-1.2, 0.0], [1.0, 0.0]).expect("velocities");
+    assert_near("one", one.as_slice(), &[-1.2, 1.6], 1e-15);
+    for (qdot, named) in [([2.5, 0.0], [1.0, 0.0]), ([1.2, 1.5], [1.0, 1.0])] {
+        let refused = complete(qdot, named);
+        assert!(
+            matches!(refused, Err(StateError::OffConstraint { .. })),
+            "{refused:?}"
+        );
+    }
+    let mixed = Mixed::default();
+    let q = [0.3, -0.2, 0.1, 0.4, 0.0].into();
+    let completed = mixed
+        .complete_velocity(
+            0.0,
+            &q,
+            &[0.2, 0.0, 0.0, 0.0, 0.0].into(),
+            &[1.0, 0.0, 0.0, 0.0, 0.0].into(),
+        )
+        .expect("velocities");
+    assert!(mixed.state(0.0, &q, &completed).is_ok());
+    assert_eq!(completed[0], 0.2);
+}
+
+#[test]
+fn a_constraint_without_solutions_is_said_to_have_none() {
+    let impossible = Impossible::default();
+    let (q, qdot) = ([0.0; 2].into(), [0.3, 0.2].into());
+    let state = impossible.state_projected(0.0, &q, &qdot);
+    let fault = Fault::ProjectionFailed { constraint: 0 };
+    assert_eq!(state, Err(StateError::Fault(fault)));
+    let completed = impossible.complete_velocity(0.0, &q, &qdot, &[1.0, 0.0].into());
+    assert!(
+        matches!(
+            completed,
+            Err(StateError::OffConstraint { constraint: 0, .. })
+        ),
+        "{completed:?}"
+    );
+}
+
+#[test]
+fn projection_brings_a_coarse_run_back() {
+    let mixed = Mixed::default();
+    let q = [0.3, -0.2, 0.1, 0.4, 0.5].into();
+    let state = mixed
+        .state_projected(0.0, &q, &[0.6, 0.5, 0.2, -0.1, 0.3].into())
+        .expect("a state");
+    let run = |on: bool| {
+        let mut effects = (Projection::new(),);
+        effects.set_projection(on);
+        let stepper = Rk4::new(tolerance()).with_step(0.05);
+        let run = Simulation::new(&mixed, stepper, effects)
+            .run(0.0, state, 2.0, &mut ())
+            .expect("a run");
+        assert_eq!(run.outcome, Outcome::Done);
+        let left = residuals(&mixed, run.t, &run.state);
+        (
+            left.amax(),
+            mixed.levels(run.t, &mixed.position(&run.state))[0],
+            run.counters.projections,
+        )
+    };
+    let ((off, _, none), (on, level, some)) = (run(false), run(true));
+    assert!(off > 1e-9 && none == 0, "{off}");
+    assert!(on < 1e-13 && some > 10, "{on} after {some}");
+    assert_near("level", &[level], &[0.515], 1e-13);
+}
+
+#[test]
+fn walls_with_resets_are_the_only_ones_that_are_left() {
+    let runner = Runner::default();
+    let run = |qdot: [f64; 2], law: Option<Law>| {
+        let mut effects = runner.effects();
+        if let Some(law) = law {
+            effects.set_law(runner::surface::right, law);
+        }
+        let state = runner
+            .state(0.0, &[0.0; 2].into(), &qdot.into())
+            .expect("a state");
+        let mut simulation = Simulation::new(&runner, Dop853::new(tolerance()), effects);
+        simulation.run(0.0, state, 10.0, &mut ()).expect("a run")
+    };
+    let turned = run([1.0, 0.0], None);
+    assert_eq!(turned.outcome, Outcome::Done);
+    assert_near(
+        "turned",
+        turned.state.as_slice(),
+        &[-8.0, 0.0, -1.0, 0.0],
+        1e-12,
+    );
+    let surface = runner::surface::top;
+    let wrong = run([0.0, 1.0], None).outcome;
+    assert_eq!(
+        wrong,
+        Outcome::ResetOffConstraint {
+            surface,
+            constraint: 0
+        }
+    );
+    let outcome = run([1.0, 0.0], Some(Law::Elastic)).outcome;
+    assert_eq!(outcome, Outcome::NonlinearConstraints);
+    let state = runner
+        .state(0.0, &[0.0; 2].into(), &[1.0, 0.0].into())
+        .expect("a state");
+    assert_eq!(
+        runner.contact(0, 0.0, &state).err(),
+        Some(Fault::NonlinearConstraints)
+    );
+}
+
+#[test]
+fn the_discrete_principle_is_not_defined() {
+    let particle = ConstantSpeed::default();
+    let state = particle
+        .state(0.0, &[0.0; 2].into(), &[0.0, 2.0].into())
+        .expect("a state");
+    let stepper = Dla2::new(tolerance()).with_step(0.1);
+    let run = Simulation::new(&particle, stepper, particle.effects()).run(0.0, state, 1.0, &mut ());
+    assert_eq!(run.expect("a run").outcome, Outcome::NonlinearConstraints);
+}
+
+#[test]
+fn the_command_line_prints_what_there_is() {
+    let given = json!([{ "q": [0, 0], "qdot": [0.6, 0.8] }]).to_string();
+    let done = dalembert(&["eval", "constant_speed", "--set", "v=1"], &given);
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    let row: Value = serde_json::from_str(&done.output).expect("JSON");
+    let row = &row[0];
+    // m vdot = -m g y + 2 lambda v with (vdot . v) = 0: lambda = m g vy/(2 v^2).
+    assert_eq!(row["multipliers"], json!([0.4]));
+    assert_eq!(row["divergence_mu_C"], Value::Null);
+    assert_eq!(row["W"], json!([[1.2, 1.6]]));
+    let done = dalembert(&["simulate", "constant_speed", "--json", "-"], "");
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    let text = dalembert(&["derive", "appell_hamel"], "").output;
+    for expected in [
+        "phi[machine] = ",
+        "not linear in the velocities",
+        "eta[machine] = ",
+    ] {
+        assert!(text.contains(expected), "{expected} in {text}");
+    }
+    let done = dalembert(&["check", "appell_hamel"], "");
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+}
+
+/// The messages of a model that is refused.
+fn refused(declarations: &str) -> String {
+    let model = format!(
+        "P {{ coordinates {{ x; y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+         constraints {{ speed: dot(x)^2 + dot(y)^2 = 1; }} {declarations} }}"
+    );
+    let errors = compile(model.parse().expect("tokens")).expect_err("a refusal");
+    errors
+        .iter()
+        .map(|error| error.message().to_owned())
+        .collect()
+}
+
+#[test]
+fn claims_stay_open_and_what_needs_linear_constraints_is_refused() {
+    let open = "is undecided: claims are examined where constraints are linear in the velocities";
+    for claim in [
+        "conserved: energy;",
+        "not conserved: x;",
+        "conserved: dot(z);",
+    ] {
+        let text = refused(&format!("claims {{ {claim} }}"));
+        assert!(text.contains(open), "{text}");
+    }
+    let text =
+        refused("impacts { w: x >= 0 => reset { x = 1; }; } claims { conserved under w: y; }");
+    assert!(text.contains(open), "{text}");
+    let text = refused("claims { assume density: exact; }");
+    assert!(
+        text.contains("only conserved quantities are claimed of it"),
+        "{text}"
+    );
+    let text = refused("scenes { a: volume; }");
+    assert!(text.contains("no volume is known for it"), "{text}");
+    let text =
+        refused("constraints { c: d(z - x*y) = 0; } impacts { w: z >= 0 => reset { z = 1; }; }");
+    assert!(
+        text.contains("is not known to keep the level of `c`"),
+        "{text}"
+    );
+}
