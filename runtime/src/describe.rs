@@ -128,6 +128,9 @@ pub trait Described: System + Clone {
     /// Names, docs, topology, parameters, surfaces, scenes, source text.
     const DESCRIPTION: Description;
 
+    /// The inputs; their values are the parameters after those of the description.
+    const INPUTS: &'static [&'static str] = &[];
+
     /// Shows the type of each declared scene, in order; the model itself, the scene `all`, is not among them.
     fn visit_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
         let _ = visitor;

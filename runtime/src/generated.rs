@@ -228,6 +228,7 @@ pub mod arguments {
     pub fn size() {}
     pub fn direction() {}
     pub fn motion() {}
+    pub fn inputs() {}
     pub fn unit() {}
     pub fn order() {}
     pub fn coefficients() {}

@@ -115,6 +115,7 @@ pub mod forces;
 mod generated;
 pub mod impacts;
 pub mod initial;
+pub mod inputs;
 pub mod integrate;
 pub mod jet;
 #[cfg(feature = "lanes")]
@@ -132,10 +133,11 @@ pub mod record;
 pub mod simulation;
 pub mod state;
 pub mod variations;
+pub mod work;
 
 pub use contract::{
-    Constrained, Divergence, Impacting, InvariantVolume, Lagrangian, System, TaylorField,
-    Variational, VectorField,
+    Actuated, Constrained, Divergence, Impacting, InvariantVolume, Lagrangian, Powered, System,
+    TaylorField, Variational, VectorField,
 };
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
@@ -145,6 +147,7 @@ pub use impacts::Impacts;
 pub use impacts::law::{Blow, Contact, Jump, Landing, Law};
 pub use impacts::policy::{Corner, Penetration, Policies, Rest};
 pub use initial::complete_velocities;
+pub use inputs::Steered;
 pub use integrate::{
     Counters, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Stepper, Taylor, Tolerance,
     ToleranceError,
@@ -156,6 +159,7 @@ pub use record::{Event, EventLog, Hold, Observer, Segment};
 pub use simulation::Simulation;
 pub use state::StateVector;
 pub use variations::{Orbit, OrbitError, Section, SectionError, Tangent, Undefined, Variations};
+pub use work::Work;
 
 #[cfg(feature = "macros")]
 pub use dalembert_macros::model;

@@ -6,7 +6,7 @@ use crate::error::Fault;
 
 /// Nodes in `(0, 1)` and weights of Gauss and Legendre's rule of 16 points, the nodes below the midpoint; the others
 /// mirror them.
-const NODES: [(f64, f64); 8] = [
+pub(crate) const NODES: [(f64, f64); 8] = [
     (0.005_299_532_504_175_031, 0.013_576_229_705_877_047),
     (0.027_712_488_463_383_7, 0.031_126_761_969_323_95),
     (0.067_184_398_806_084_13, 0.047_579_255_841_246_39),

@@ -135,6 +135,24 @@ impl<Sys: System, O: Observer<Sys> + ?Sized> Observer<Sys> for &mut O {
     }
 }
 
+/// Both watch, one after the other; the run ends where either asks for it.
+impl<Sys: System, A: Observer<Sys>, B: Observer<Sys>> Observer<Sys> for (A, B) {
+    fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
+        self.0.step(segment)?;
+        self.1.step(segment)
+    }
+
+    fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
+        self.0.event(event)?;
+        self.1.event(event)
+    }
+
+    fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
+        self.0.hold(hold)?;
+        self.1.hold(hold)
+    }
+}
+
 /// Keeps the first `CAP` impacts of a run, and counts all of them.
 #[derive(Debug, Clone, Copy)]
 pub struct EventLog<S, const CAP: usize> {

@@ -26,6 +26,7 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
         Form::Reduced => (quote!(#global_name), quote!(#global_name(*self))),
     };
     let access = emit_parameter_access(context);
+    let inputs = super::actuation::emit_names(context);
     let initial = emit_initial(context);
     let declared = emit_declared(context);
     let inspect = emit_inspect(context);
@@ -45,6 +46,7 @@ pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
             fn with_defaults() -> Self { #defaults }
 
             #access
+            #inputs
             #initial
             #declared
             #inspect
@@ -119,7 +121,8 @@ pub(super) fn emit_coordinate_info(model: &Model, coordinate: &Coordinate) -> To
 
 /// What is said of all parameters.
 pub(super) fn emit_parameter_infos(model: &Model) -> TokenStream {
-    let infos = model.parameters.iter().map(|parameter| {
+    let declared = model.parameters.iter().filter(|own| !own.is_input);
+    let infos = declared.map(|parameter| {
         let name = &parameter.name.display;
         let assumption = match &parameter.assumption {
             Assumption::Finite => quote!(Finite),

@@ -2,6 +2,7 @@
 //!
 //! Generated code names only public items of `::dalembert`, `::dalembert::__private` and `::core`.
 
+mod actuation;
 mod constraint;
 mod describe;
 mod doc;
@@ -124,7 +125,7 @@ fn contexts_of_scene<'a>(
 }
 
 /// What is implemented for a type of the model.
-fn implementations(context: &Context<'_>) -> [TokenStream; 11] {
+fn implementations(context: &Context<'_>) -> [TokenStream; 13] {
     [
         field::emit_field(context),
         field::emit_system(context),
@@ -132,6 +133,8 @@ fn implementations(context: &Context<'_>) -> [TokenStream; 11] {
         constraint::emit_constrained(context),
         lagrangian::emit_lagrangian(context),
         impact::emit_impacting(context),
+        actuation::emit_actuated(context),
+        actuation::emit_powered(context),
         volume::emit_divergence(context),
         volume::emit_invariant_volume(context),
         variational::emit_variational(context),

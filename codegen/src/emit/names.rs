@@ -70,7 +70,7 @@ impl Numbers {
 }
 
 /// Names that generated functions use for their own arguments and locals; `dalembert::__private::arguments` has each of them.
-const ARGUMENTS: [&str; 29] = [
+const ARGUMENTS: [&str; 30] = [
     "t",
     "state",
     "rate",
@@ -86,6 +86,7 @@ const ARGUMENTS: [&str; 29] = [
     "size",
     "direction",
     "motion",
+    "inputs",
     "unit",
     "order",
     "coefficients",

@@ -76,7 +76,10 @@ fn emit_field_of(model: &Model, family: &[Parameter]) -> TokenStream {
     let first = &family[0];
     let field = Ident::new(&first.name.field, Span::call_site());
     let mut lines = first.documentation.clone();
-    lines.push(format!(" Parameter{}.", describe(model, first)));
+    lines.push(match first.is_input {
+        true => " Input, held until it is set; 0 at first.".to_owned(),
+        false => format!(" Parameter{}.", describe(model, first)),
+    });
     let documentation = doc::lines(&lines);
     let count = family.len();
     match first.name.member {

@@ -14,6 +14,8 @@ pub struct FieldTerms {
     pub drift: Vec<ExprId>,
     /// Where force and drift were shown to be the same.
     pub cancels: Vec<bool>,
+    /// `d_t L`, where named forces ask for it; else zero.
+    pub by_time: ExprId,
 }
 
 /// Distinct parts beyond which force and drift are not compared.
@@ -32,6 +34,10 @@ pub(super) fn derive_field(model: &mut Model, coordinates: &Coordinates) -> Fiel
         force: Vec::new(),
         drift: Vec::new(),
         cancels: Vec::new(),
+        by_time: match model.forces.is_empty() {
+            true => model.pool.zero(),
+            false => model.pool.diff(whole, coordinates.time),
+        },
     };
     let gradient = gradient_of_whole(model, coordinates);
     for (k, &gradient) in gradient.iter().enumerate() {

@@ -60,7 +60,7 @@ pub struct Model {
     pub time: SymbolId,
     /// Coordinates, families expanded.
     pub coordinates: Vec<Coordinate>,
-    /// Parameters, families expanded.
+    /// Parameters, families expanded; then inputs.
     pub parameters: Vec<Parameter>,
     /// The Lagrangian and its parts.
     pub lagrangian: Lagrangian,
@@ -96,6 +96,12 @@ impl Model {
     /// Whether the rates of the coordinates were declared, in place of a Lagrangian.
     pub fn is_first_order(&self) -> bool {
         self.field.is_some()
+    }
+
+    /// The inputs, with their indices among the parameters.
+    pub fn inputs(&self) -> impl Iterator<Item = (usize, &Parameter)> {
+        let all = self.parameters.iter().enumerate();
+        all.filter(|(_, own)| own.is_input)
     }
 
     /// Whether some constraint is not linear in the velocities.
@@ -159,6 +165,9 @@ pub struct Parameter {
     pub assumption: Assumption,
     /// Its default, an expression without symbols.
     pub default: Option<ExprId>,
+    /// Whether it is an input: held like a parameter until the caller changes it, at every instant if need be. Inputs come
+    /// after all parameters.
+    pub is_input: bool,
     /// Its symbol.
     pub symbol: SymbolId,
     /// Where it was declared.

@@ -105,7 +105,14 @@ impl Symbols {
         moving.extend(self.all_differentials());
         moving.extend(self.derived.momenta.iter().chain(&self.derived.multipliers));
         moving.extend([self.time, self.derived.energy]);
+        moving.extend(self.inputs());
         moving
+    }
+
+    /// What the caller supplies.
+    pub(super) fn inputs(&self) -> Vec<SymbolId> {
+        let inputs = self.parameters.iter().filter(|own| own.is_input);
+        inputs.map(|own| own.symbol).collect()
     }
 
     /// Where each coordinate goes, and time: the directions of a total time derivative.

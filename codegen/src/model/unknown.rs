@@ -119,6 +119,8 @@ impl Resolver<'_> {
             .any(|parameter| declares(&parameter.declared))
         {
             "parameter"
+        } else if spec.inputs.iter().any(|input| declares(&input.declared)) {
+            "input"
         } else if spec
             .definitions
             .iter()

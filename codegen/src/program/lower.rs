@@ -1,7 +1,7 @@
 //! From a derivation to the program: one function per item of the contract.
 
 use super::jet::{Jet, degree};
-use super::recipes::{constrained, declared, geometry, impact, motion, reduced, volume};
+use super::recipes::{constrained, declared, geometry, impact, motion, powers, reduced, volume};
 use super::{Density, Form, Function, Input, Program};
 use crate::claims::Volume;
 use crate::mechanics::Derivation;
@@ -89,6 +89,7 @@ fn lower_form(
             form: geometry::density_form(model, derivation),
         }),
         volume: found.map(|found| volume::invariant_volume(model, derivation, found)),
+        powers: powers::powers(model, derivation, form),
         outputs: declared::outputs(model, derivation, form),
         view_path: model
             .view

@@ -279,6 +279,8 @@ pub struct Program {
     pub density: Option<Density>,
     /// With an invariant volume.
     pub volume: Option<InvariantVolume>,
+    /// With named forces, what changes the energy.
+    pub powers: Option<Powers>,
     /// The declared outputs: `(t, s) -> values`.
     pub outputs: Option<Function>,
     /// The view's path: `(t, q) -> (x, y)`.
@@ -314,6 +316,7 @@ impl Program {
             impacting,
             density,
             volume,
+            powers,
             outputs,
             view_path,
             view_region,
@@ -330,6 +333,7 @@ impl Program {
         functions.extend(constrained.iter().flat_map(Constrained::functions));
         functions.extend(impacting.iter().flat_map(Impacting::functions));
         functions.extend(volume.iter().flat_map(InvariantVolume::functions));
+        functions.extend(powers.iter().map(|own| &own.function));
         functions
     }
 
@@ -421,6 +425,15 @@ impl Return {
     fn functions(&self) -> [&Function; 2] {
         [&self.nearest, &self.restore]
     }
+}
+
+/// The rates at which the energy changes, by cause.
+#[derive(Debug)]
+pub struct Powers {
+    /// The causes: named forces in order, then `constraints` and `time` where they do work.
+    pub names: Vec<String>,
+    /// `(t, s) ->` their powers, whose sum is the rate of the energy.
+    pub function: Function,
 }
 
 /// What the motion does to the volume `mu_C`.

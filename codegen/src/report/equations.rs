@@ -70,10 +70,10 @@ impl Writer<'_> {
                 model::Assumption::Within { low, high } => format!(" in [{low}, {high}]"),
             };
             let name = &parameter.name.display;
-            items.push(Item::Words(format!(
-                "parameter {name}{demand}{}",
-                default.unwrap_or_default()
-            )));
+            items.push(Item::Words(match parameter.is_input {
+                true => format!("input {name}"),
+                false => format!("parameter {name}{demand}{}", default.unwrap_or_default()),
+            }));
         }
         Section::plain("Declared", items)
     }

@@ -36,6 +36,8 @@ pub struct Spec {
     pub field: Option<Field>,
     /// `constraints { .. }`
     pub constraints: Vec<Equation>,
+    /// `inputs { .. }`
+    pub inputs: Vec<Supplied>,
     /// `forces { .. }`
     pub forces: Vec<Quantity>,
     /// `frame { .. }`
@@ -71,6 +73,7 @@ impl Spec {
             lagrangian: None,
             field: None,
             constraints: Vec::new(),
+            inputs: Vec::new(),
             forces: Vec::new(),
             frame: Vec::new(),
             surfaces: Vec::new(),
@@ -239,6 +242,17 @@ pub struct Parameter {
     pub assumption: Assumption,
     /// Its default.
     pub default: Option<ParameterDefault>,
+    /// The declaration.
+    pub item: ItemId,
+}
+
+/// `thrust[2];`, an input.
+#[derive(Debug)]
+pub struct Supplied {
+    /// Its name; the index is the size of the family.
+    pub declared: Declared,
+    /// Lines of its doc comment.
+    pub documentation: Vec<String>,
     /// The declaration.
     pub item: ItemId,
 }

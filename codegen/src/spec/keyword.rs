@@ -3,7 +3,7 @@
 use dalembert_expr::Function;
 
 /// The section keywords of this version, as they may begin a declaration of a model.
-pub const SECTIONS: [&str; 17] = [
+pub const SECTIONS: [&str; 18] = [
     "const",
     "coordinates",
     "parameters",
@@ -11,6 +11,7 @@ pub const SECTIONS: [&str; 17] = [
     "lagrangian",
     "field",
     "constraints",
+    "inputs",
     "forces",
     "frame",
     "impacts",
@@ -22,10 +23,6 @@ pub const SECTIONS: [&str; 17] = [
     "scenes",
     "claims",
 ];
-
-/// Words of the language that this version does not implement, each with what can be written instead.
-pub const NOT_IMPLEMENTED: [(&str, &str); 1] =
-    [("inputs", "declare a parameter and set it between runs")];
 
 /// The elementary functions: those of one argument, and before and after them the two that are built otherwise.
 pub const FUNCTIONS: [&str; Function::ALL.len() + 2] = {
@@ -189,14 +186,6 @@ pub fn reserved(name: &str) -> Option<&'static str> {
     } else {
         None
     }
-}
-
-/// What to write instead of a word that this version does not implement.
-pub fn not_implemented(word: &str) -> Option<&'static str> {
-    NOT_IMPLEMENTED
-        .iter()
-        .find(|(name, _)| *name == word)
-        .map(|(_, instead)| *instead)
 }
 
 /// What to write instead of a declaration of another language.

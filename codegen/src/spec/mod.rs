@@ -22,7 +22,7 @@ mod tests;
 pub use ast::*;
 pub use keyword::{
     EXTRAS, FUNCTIONS, INSTANTANEOUS, LAWS, PIECEWISE, RESET, SECTIONS, WHOLE, foreign_function,
-    is_function, is_not_differentiable, is_rust_keyword, not_implemented,
+    is_function, is_not_differentiable, is_rust_keyword,
 };
 pub use limits::{
     COORDINATES, EXPONENT, EXPONENT_DENOMINATOR_BITS, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS,

@@ -417,6 +417,9 @@ pub struct RunArgs {
     /// The model.
     #[command(flatten)]
     pub model: ModelArgs,
+    /// Hold an input at a value, 0 if it is not given; may be repeated.
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub input: Vec<String>,
     /// The state.
     #[command(flatten)]
     pub state: StateArgs,

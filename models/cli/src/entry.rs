@@ -137,6 +137,8 @@ impl Point {
 /// A model with values for its parameters. States are those of its global form, positions and momenta.
 pub(crate) trait AnyModel {
     fn description(&self) -> Description;
+    /// The names of the inputs, whose values are the parameters after those of the description.
+    fn inputs(&self) -> &'static [&'static str];
     fn parameter(&self, index: usize) -> f64;
     fn set_parameter(&mut self, index: usize, value: f64);
     /// The mode, by number, that states are made in.
@@ -290,6 +292,10 @@ macro_rules! in_form {
 impl<M: Model> AnyModel for Typed<M> {
     fn description(&self) -> Description {
         M::DESCRIPTION
+    }
+
+    fn inputs(&self) -> &'static [&'static str] {
+        M::INPUTS
     }
 
     fn parameter(&self, index: usize) -> f64 {

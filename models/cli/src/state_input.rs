@@ -2,7 +2,7 @@
 
 use dalembert::StateError;
 
-use crate::args::{ModelArgs, OffConstraint, StateArgs};
+use crate::args::{ModelArgs, OffConstraint, RunArgs, StateArgs};
 use crate::entry::{AnyModel, Entry, Origin, Rates, Start};
 use crate::error::CliError;
 use crate::names;
@@ -41,6 +41,18 @@ pub fn build_model(models: &[Entry], args: &ModelArgs) -> Result<Box<dyn AnyMode
     Ok(model)
 }
 
+/// The model of a run, with its inputs held as the flags say.
+///
+/// # Errors
+/// As [`build_model`]; an unknown input, or a value that is no number.
+pub fn build_run(models: &[Entry], args: &RunArgs) -> Result<Box<dyn AnyModel>, CliError> {
+    let mut model = build_model(models, &args.model)?;
+    for text in &args.input {
+        set_input(model.as_mut(), text)?;
+    }
+    Ok(model)
+}
+
 fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
     let (name, value) = names::assignment("--set", text, "NAME=VALUE")?;
     let parameters = model.description().parameters;
@@ -62,6 +74,25 @@ fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
             format!("a value {assumption}"),
         )),
         Err(expected) => Err(CliError::value(format!("--set {name}"), value, expected)),
+    }
+}
+
+/// An input that is held through a run.
+fn set_input(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
+    const HELD: &str = "a number that is held, such as 0.5 or -pi/2; inputs that depend on time or state are given in Rust, by                         `with_inputs`";
+    let (name, value) = names::assignment("--input", text, "NAME=VALUE")?;
+    let index = names::find("--input", "input", name, model.inputs().iter().copied())?;
+    match scalar::parse(value) {
+        Ok(number) if number.is_finite() => {
+            let after = model.description().parameters.len();
+            model.set_parameter(after + index, number);
+            Ok(())
+        }
+        _ => Err(CliError::value(
+            format!("--input {name}"),
+            value,
+            HELD.to_owned(),
+        )),
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Only [`VectorField`] is known to integrators. Time is an argument everywhere; autonomous systems ignore it.
 
+mod actuated;
 mod constrained;
 mod field;
 mod impacting;
@@ -9,6 +10,7 @@ mod system;
 mod variational;
 mod volume;
 
+pub use actuated::{Actuated, Powered};
 pub use constrained::Constrained;
 pub use field::{TaylorField, VectorField};
 pub use impacting::Impacting;

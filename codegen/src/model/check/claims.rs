@@ -85,6 +85,7 @@ impl Resolver<'_> {
                 holds,
             } => {
                 let expr = self.quantity(value)?;
+                self.forbid_inputs(value, &Scope::default(), expr)?;
                 self.check_periodic(&[value], &Scope::default(), expr);
                 let (under, across) = match under {
                     Some(declared) => {

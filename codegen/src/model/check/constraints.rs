@@ -72,7 +72,10 @@ impl Resolver<'_> {
         }
         for side in sides {
             let value = self.expression(side, &mut scope.clone());
-            value.and_then(|value| self.forbid_abs(side, scope, value, "`constraints`"));
+            value.and_then(|value| {
+                self.forbid_inputs(side, scope, value)?;
+                self.forbid_abs(side, scope, value, "`constraints`")
+            });
         }
     }
 }

@@ -7,6 +7,7 @@ use dalembert_expr::{ExprId, Pool};
 
 use super::super::Lagrangian;
 use super::super::resolve::{Resolver, Scope};
+use super::RATES;
 use super::targets::Section;
 use crate::diagnostics::{Location, listed};
 use crate::spec::{
@@ -160,7 +161,7 @@ fn refuse_velocity(resolver: &mut Resolver<'_>, declared: &Declared) {
 impl Resolver<'_> {
     /// The rate of a coordinate.
     fn rate(&mut self, rate: &Rate, mut scope: Scope) -> Option<ExprId> {
-        let value = self.position_expression(&rate.value, &mut scope, "rates")?;
+        let value = self.position_expression(&rate.value, &mut scope, RATES)?;
         self.check_periodic(&[&rate.value], &scope, value);
         self.within_budget(rate.value.at).then_some(value)
     }

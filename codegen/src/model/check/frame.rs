@@ -53,6 +53,7 @@ impl Resolver<'_> {
     /// The one-form of a quasi-velocity: linear in differentials, or in velocities, with coefficients of `(t, q)`.
     fn quasi_form(&mut self, entry: &Quantity, scope: &mut Scope) -> Option<Vec<ExprId>> {
         let expr = self.expression(&entry.value, scope)?;
+        self.forbid_inputs(&entry.value, scope, expr)?;
         let time = [self.symbols.time_differential];
         let text = "a quasi-velocity has no part along `t`: affine parts belong to constraints";
         self.forbid(&entry.value, scope, expr, &time, text, HELP)?;

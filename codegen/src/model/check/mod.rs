@@ -10,6 +10,7 @@ mod coordinates;
 mod field;
 mod frame;
 mod initial;
+mod inputs;
 mod instantaneous;
 mod integrable;
 mod laws;
@@ -38,6 +39,9 @@ use super::{
 use crate::diagnostics::{self, Diagnostics};
 use crate::spec::{PIECEWISE, STEPS, Scalar, Spec};
 use names::Names;
+
+/// What the entries of `field` are called: of all functions of the position they alone take inputs.
+const RATES: &str = "rates";
 
 /// What was declared of the motion, resolved.
 struct Parts {
@@ -139,6 +143,7 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     field::check_alone(resolver);
     field::check_surfaces(resolver);
     nonlinear::check_alone(resolver, &parts.constraints);
+    inputs::check_claims(resolver);
     constraints::check_independent(resolver, &parts.constraints);
     frame::check_coframe(resolver, &parts.frame, &parts.constraints);
     surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
@@ -162,7 +167,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
             ..Extras::default()
         },
         None => Extras {
-            volume: !nonlinear,
+            volume: !nonlinear && spec.inputs.is_empty(),
             ..Extras::ALL
         },
     };
@@ -298,6 +303,7 @@ fn lagrangian(resolver: &mut Resolver<'_>) -> Option<Lagrangian> {
         help,
     )?;
     resolver.forbid_abs(&declared.value, &scope, whole, "`lagrangian`")?;
+    resolver.forbid_inputs(&declared.value, &scope, whole)?;
     resolver.check_periodic(&[&declared.value], &scope, whole);
     let lagrangian = natural::split(resolver, &declared.value, whole, declared.item);
     resolver
@@ -402,6 +408,9 @@ impl Resolver<'_> {
         rates.extend(self.symbols.all_differentials());
         let text = format!("{what} depend on position (and time) only");
         self.forbid(written, scope, expr, &rates, &text, "")?;
+        if what != RATES {
+            self.forbid_inputs(written, scope, expr)?;
+        }
         Some(expr)
     }
 

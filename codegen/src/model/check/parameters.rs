@@ -8,7 +8,7 @@ use super::super::latex::latex;
 use super::super::resolve::Resolver;
 use super::super::symbols::{Meaning, member_name};
 use super::super::{Assumption, Parameter};
-use crate::spec::{self, PARAMETERS, ParameterDefault, Scalar};
+use crate::spec::{self, PARAMETERS, ParameterDefault, Scalar, Supplied};
 
 impl<'s> Resolver<'s> {
     /// All parameters, families expanded.
@@ -16,6 +16,39 @@ impl<'s> Resolver<'s> {
         let spec = self.spec;
         for parameter in &spec.parameters {
             self.parameter_family(parameter);
+        }
+        for input in &spec.inputs {
+            self.input_family(input);
+        }
+    }
+
+    /// Inputs are kept as parameters that are 0 until they are set.
+    fn input_family(&mut self, written: &'s Supplied) {
+        let first = self.symbols.parameters.len();
+        let size = self.family_size(
+            &written.declared,
+            first,
+            PARAMETERS,
+            "parameters and inputs",
+        );
+        let meaning = size.map_or(Meaning::Parameter(first), |size| {
+            Meaning::Parameters(first, size)
+        });
+        if !self.declare(&written.declared.name, meaning) {
+            return;
+        }
+        for member in 0..size.unwrap_or(1) {
+            let name = member_name(&written.declared.name.text, size.map(|_| member + 1));
+            let symbol = self.pool.symbol(&name.display, &latex(&name), Known::None);
+            self.symbols.parameters.push(Parameter {
+                name,
+                documentation: written.documentation.clone(),
+                assumption: Assumption::Finite,
+                default: Some(self.pool.zero()),
+                is_input: true,
+                symbol,
+                item: written.item,
+            });
         }
     }
 
@@ -40,6 +73,7 @@ impl<'s> Resolver<'s> {
                 documentation: written.documentation.clone(),
                 assumption: assumption.clone(),
                 default,
+                is_input: false,
                 symbol,
                 item: written.item,
             });
@@ -200,6 +234,12 @@ pub(super) fn unused(resolver: &Resolver<'_>, used: &BTreeSet<SymbolId>) -> Vec<
     let parameters = resolver.symbols.parameters.iter();
     let unused = parameters.filter(|parameter| !used.contains(&parameter.symbol));
     unused
-        .map(|parameter| format!("the parameter `{}` is not used", parameter.name.display))
+        .map(|parameter| {
+            let noun = match parameter.is_input {
+                true => "input",
+                false => "parameter",
+            };
+            format!("the {noun} `{}` is not used", parameter.name.display)
+        })
         .collect()
 }

@@ -65,6 +65,7 @@ impl Resolver<'_> {
         let text = "a reset contains no differentials";
         let help = "velocities are written `dot(x)`";
         self.forbid(written, &scope, value, &differentials, text, help)?;
+        self.forbid_inputs(written, &scope, value)?;
         let topology = self.symbols.coordinates[index].topology;
         match (entry.target, topology) {
             (AssignmentTarget::Position, Topology::Angle) => {

@@ -3,7 +3,7 @@
 use super::super::resolve::Resolver;
 use super::super::{Extras, Force, Name, Parts, Scene, Surface};
 use crate::diagnostics::{Location, listed};
-use crate::spec::{self, Declared, EXTRAS, SCENES, WHOLE, not_implemented};
+use crate::spec::{self, Declared, EXTRAS, SCENES, WHOLE};
 
 /// Modules of indices, next to which the module of a scene stands.
 const MODULES: [&str; 5] = [
@@ -163,11 +163,6 @@ impl Resolver<'_> {
     fn refuse_scene_part(&mut self, part: &Declared, material: &Material<'_>) {
         let field = part.name.text.as_str();
         let at: Location = part.name.at;
-        if let Some(instead) = not_implemented(field) {
-            let text = format!("`{field}` is not implemented in this version");
-            self.refuse::<()>(at, text, instead);
-            return;
-        }
         let is_later = self.spec.scenes.iter().any(|own| own.name.text == field);
         if is_later && part.index.is_none() {
             let text = format!("scene `{field}` is not declared before it is used");

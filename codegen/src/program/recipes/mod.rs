@@ -8,6 +8,7 @@ pub mod gradient;
 pub mod impact;
 mod instantaneous;
 pub mod motion;
+pub mod powers;
 pub mod reduced;
 pub mod volume;
 

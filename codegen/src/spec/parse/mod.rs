@@ -8,6 +8,7 @@ mod field;
 mod header;
 mod impacts;
 mod initial;
+mod inputs;
 mod instantaneous;
 mod modes;
 mod parameters;
@@ -21,7 +22,7 @@ use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 
 use super::ast::{Declaration, Declared, Index, Lagrangian, Spec, Word};
 use super::cursor::{Cursor, Read, tokens_of};
-use super::keyword::{self, SECTIONS, not_implemented};
+use super::keyword::{self, SECTIONS};
 use super::limits::check_nesting;
 use crate::diagnostics::{Diagnostics, Location, listed, nearest};
 
@@ -144,7 +145,7 @@ fn documentation_length(tokens: &[TokenTree]) -> usize {
 /// Whether this word, followed by this token, can only be the beginning of a declaration.
 fn begins_declaration(word: &Ident, next: Option<&TokenTree>) -> bool {
     let word = word.to_string();
-    let known = SECTIONS.contains(&word.as_str()) || not_implemented(&word).is_some();
+    let known = SECTIONS.contains(&word.as_str());
     match next {
         Some(TokenTree::Ident(next)) => match word.as_str() {
             "let" | "const" => true,
@@ -180,6 +181,7 @@ fn declare(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
             section(&word, cursor, spec, field::rate)
         }
         "constraints" => section(&word, cursor, spec, constraints::constraint),
+        "inputs" => section(&word, cursor, spec, inputs::input),
         "forces" => section(&word, cursor, spec, constraints::force),
         "frame" => section(&word, cursor, spec, constraints::quasi_velocity),
         "outputs" => section(&word, cursor, spec, constraints::output),
@@ -195,9 +197,6 @@ fn declare(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
 
 /// Refuses a word that begins no declaration of this version.
 fn unknown_declaration(word: &Word, cursor: &mut Cursor<'_>) -> super::cursor::Refused {
-    if let Some(instead) = not_implemented(&word.text) {
-        return refuse_not_implemented(word, instead, cursor);
-    }
     let help = if let Some(section) = keyword::foreign_section(&word.text) {
         section.to_owned()
     } else if let Some(near) = nearest(&word.text, SECTIONS) {
@@ -212,16 +211,6 @@ fn unknown_declaration(word: &Word, cursor: &mut Cursor<'_>) -> super::cursor::R
         format!("unknown declaration `{}`", word.text),
         &help,
     )
-}
-
-/// Refuses a declaration of the language that this version lacks.
-fn refuse_not_implemented(
-    word: &Word,
-    instead: &str,
-    cursor: &mut Cursor<'_>,
-) -> super::cursor::Refused {
-    let text = format!("`{}` is not implemented in this version", word.text);
-    cursor.refuse(word.at, text, instead)
 }
 
 /// Reads the entries of a section, each up to its `;`.

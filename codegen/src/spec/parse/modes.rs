@@ -17,7 +17,7 @@ const MODE: &str = "modes { slow { .. } fast { .. } }";
 const TRANSITION: &str = "name: slow -> fast when x >= 0 when y > 0 => LAW;";
 
 /// Declarations that stand outside of `modes`, each with the reason.
-const SHARED: [(&str, &str); 3] = [
+const SHARED: [(&str, &str); 4] = [
     (
         "const",
         "declare it outside of `modes`: all modes share constants",
@@ -25,6 +25,10 @@ const SHARED: [(&str, &str); 3] = [
     (
         "parameters",
         "declare them outside of `modes`: all modes share the parameters of the model",
+    ),
+    (
+        "inputs",
+        "declare a parameter in its place, and set it between runs",
     ),
     (
         "scenes",
@@ -148,7 +152,7 @@ fn take_apart(tokens: &[TokenTree], body: &Group, diagnostics: &mut Diagnostics)
             let _ = part(&mut cursor, &mut parts);
         } else {
             parts.shared.extend(declaration.iter().cloned());
-            if word.as_deref() == Some("scenes") {
+            if matches!(word.as_deref(), Some("inputs" | "scenes")) {
                 refuse_shared(declaration, diagnostics);
             }
         }
@@ -211,7 +215,7 @@ fn refuse_shared(tokens: &[TokenTree], diagnostics: &mut Diagnostics) {
         if let Some((_, help)) = SHARED.iter().find(|(shared, _)| *shared == word) {
             let at = Location::of(&declaration[documentation_length(declaration)]);
             let text = match word.as_str() {
-                "scenes" => "a model with modes has no `scenes`".to_owned(),
+                "inputs" | "scenes" => format!("a model with modes has no `{word}`"),
                 word => format!("`{word}` stands outside of `modes`"),
             };
             diagnostics.error(at, text).help(help);

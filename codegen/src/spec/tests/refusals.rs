@@ -130,14 +130,6 @@ fn declarations_are_known() {
 }
 
 #[test]
-fn declarations_to_come_are_refused_by_name() {
-    refused_in(
-        "«inputs» { a: b; }",
-        "`inputs` is not implemented in this version",
-    );
-}
-
-#[test]
 fn instantaneous_constraints_stand_in_braces_behind_a_law() {
     let in_surface = |rest: &str, text: &str| {
         refused_in(&format!("impacts {{ w: x >= 0 => {rest}; }}"), text);
@@ -174,6 +166,14 @@ fn modes_and_transitions_keep_their_forms() {
     refused_in(
         "modes { a { } } «scenes» { s; }",
         "a model with modes has no `scenes`",
+    );
+    refused_in(
+        "modes { a { } } «inputs» { u; }",
+        "a model with modes has no `inputs`",
+    );
+    refused_in(
+        "modes { a { «inputs» { u; } } }",
+        "a model with modes has no `inputs`",
     );
     refused_in(
         "modes { a { «modes» { b { } } } }",

@@ -15,7 +15,7 @@ use crate::exit::Exit;
 use crate::plot::{Drawn, work};
 use crate::progress::Steps;
 use crate::sink::Sink;
-use crate::state_input::{build_model, initial_state};
+use crate::state_input::{build_run, initial_state};
 use crate::{Streams, run_request};
 
 /// A study with what the files say of it.
@@ -32,7 +32,7 @@ struct Finished<'a> {
 /// # Errors
 /// As [`run`], but for files.
 pub fn draw(models: &[Entry], args: &AccuracyArgs) -> Result<Drawn, CliError> {
-    let model = build_model(models, &args.run.model)?;
+    let model = build_run(models, &args.run)?;
     let finished = measure(model.as_ref(), prepare(model.as_ref(), args)?, args, false)?;
     Ok(Drawn {
         svg: finished.picture(args)?,
@@ -51,7 +51,7 @@ pub fn run(
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
     run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
-    let model = build_model(models, &args.run.model)?;
+    let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;

@@ -49,6 +49,10 @@ pub fn run(
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
     check_flags(args)?;
+    if !args.run.input.is_empty() {
+        let text = "--input: an ensemble leaves inputs at 0; declare a parameter for what its members vary";
+        return Err(CliError::Usage(text));
+    }
     let model = build_model(models, &args.run.model)?;
     let model = model.as_ref();
     let settings = run_request::course(model, &args.run, &args.course)?;

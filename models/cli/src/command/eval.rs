@@ -49,12 +49,19 @@ const KEYS: [&str; 15] = [
 /// Bad flags, or input that is not an array of states of this model. A state at which something does not exist
 /// is not an error: it is reported in its place, and the exit is [`Exit::Other`].
 pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
-    let model = build_model(models, &args.model)?;
-    let states = input::read(&model.description(), args.input.as_deref(), streams.input)?;
+    let mut model = build_model(models, &args.model)?;
+    let description = model.description();
+    let path = args.input.as_deref();
+    let states = input::read(&description, model.inputs(), path, streams.input)?;
     let laws = laws(args);
     let results: Vec<_> = states
         .iter()
-        .map(|state| evaluate(model.as_ref(), state, &laws))
+        .map(|state| {
+            for (index, value) in state.inputs.iter().enumerate() {
+                model.set_parameter(description.parameters.len() + index, *value);
+            }
+            evaluate(model.as_ref(), state, &laws)
+        })
         .collect();
     let exit = if results.iter().all(Result::is_ok) {
         Exit::Reached
@@ -62,7 +69,6 @@ pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Resu
         Exit::Other
     };
 
-    let description = model.description();
     let rows = results
         .into_iter()
         .map(|result| result.unwrap_or_else(|error| refusal(&description, &error)));

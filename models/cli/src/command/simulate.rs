@@ -14,7 +14,7 @@ use crate::plot::{self, Drawn, Picture, quantity};
 use crate::progress::Progress;
 use crate::record::{Grid, Recorder, Wanted};
 use crate::sink::Sink;
-use crate::state_input::{build_model, initial_state};
+use crate::state_input::{build_run, initial_state};
 use crate::{Streams, run_request, table};
 
 /// A run that has ended, with what the files say of it.
@@ -48,7 +48,7 @@ pub fn run(
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
     run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
-    let model = build_model(models, &args.run.model)?;
+    let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;
     // Opened before the run: a path that cannot be written is better known at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
@@ -86,7 +86,7 @@ pub fn run(
 /// # Errors
 /// As [`run`], but for files.
 pub fn draw(models: &[Entry], args: &SimulateArgs) -> Result<Drawn, CliError> {
-    let model = build_model(models, &args.run.model)?;
+    let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;
     let finished = finish(model.as_ref(), prepared, args, false)?;
     Ok(Drawn {

@@ -11,7 +11,7 @@ use crate::entry::Entry;
 use crate::error::CliError;
 use crate::plot::contour::Window;
 use crate::plot::{self, Drawn, heat};
-use crate::state_input::build_model;
+use crate::state_input::build_run;
 
 /// Makes the run and draws its density.
 ///
@@ -23,7 +23,7 @@ pub fn draw(
     density: &Density,
     title: &str,
 ) -> Result<Drawn, CliError> {
-    let model = build_model(models, &args.run.model)?;
+    let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;
     let table = plot::Table {
         model: model.as_ref(),

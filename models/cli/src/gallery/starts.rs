@@ -7,7 +7,7 @@ use crate::driver::{Contact, Impact, Piece, Watch};
 use crate::entry::{AnyModel, Entry};
 use crate::error::CliError;
 use crate::plot::{self, Drawn, cloud};
-use crate::state_input::{build_model, initial_state};
+use crate::state_input::{build_run, initial_state};
 
 /// Makes the runs and draws where they are.
 ///
@@ -19,7 +19,7 @@ pub fn draw(
     starts: &Starts,
     title: &str,
 ) -> Result<Drawn, CliError> {
-    let model = build_model(models, &args.run.model)?;
+    let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;
     let middle = final_position(model.as_ref(), &prepared)?;
     let mut points = Vec::new();

@@ -1,5 +1,5 @@
 //! Reads states: a JSON array of `{"q": [..], "qdot": [..], "t": 0}`, with `p` for `qdot` if one likes, and
-//! numbers as numbers or as decimal strings. A first-order system takes `q` alone.
+//! numbers as numbers or as decimal strings. A first-order system takes `q` alone, a model with inputs `inputs: [..]` too.
 
 use std::fs;
 use std::io::Read;
@@ -21,6 +21,8 @@ pub struct Given {
     pub q: Vec<f64>,
     /// Velocities or momenta.
     pub rates: Rates,
+    /// The inputs; 0 if they were not given.
+    pub inputs: Vec<f64>,
 }
 
 /// Reads all states from the file, or from `stdin` without one.
@@ -29,6 +31,7 @@ pub struct Given {
 /// [`CliError::File`], [`CliError::Input`] or [`CliError::Length`].
 pub fn read(
     description: &Description,
+    inputs: &[&'static str],
     path: Option<&Path>,
     stdin: &mut dyn Read,
 ) -> Result<Vec<Given>, CliError> {
@@ -61,11 +64,23 @@ pub fn read(
     states
         .iter()
         .enumerate()
-        .map(|(index, state)| parse(description, &format!("{place}, state {index}"), state))
+        .map(|(index, state)| {
+            parse(
+                description,
+                inputs,
+                &format!("{place}, state {index}"),
+                state,
+            )
+        })
         .collect()
 }
 
-fn parse(description: &Description, place: &str, state: &Value) -> Result<Given, CliError> {
+fn parse(
+    description: &Description,
+    inputs: &[&'static str],
+    place: &str,
+    state: &Value,
+) -> Result<Given, CliError> {
     let Value::Object(state) = state else {
         return Err(invalid(
             place,
@@ -77,13 +92,16 @@ fn parse(description: &Description, place: &str, state: &Value) -> Result<Given,
         false => &["q", "qdot", "p", "t"],
     };
     for key in state.keys() {
-        names::find(place, "key", key, accepted.iter().copied())?;
+        let supplied = (!inputs.is_empty()).then_some("inputs");
+        names::find(place, "key", key, accepted.iter().copied().chain(supplied))?;
     }
+    let names: Vec<_> = names::coordinates(description).collect();
     let vector = |key: &str| {
-        state
-            .get(key)
-            .map(|value| vector(description, &format!("{place}, {key}"), value))
+        let value = state.get(key)?;
+        Some(vector(&names, &format!("{place}, {key}"), value))
     };
+    let supplied = state.get("inputs");
+    let supplied = supplied.map(|value| self::vector(inputs, &format!("{place}, inputs"), value));
     let Some(q) = vector("q") else {
         return Err(invalid(place, "\"q\" is missing"));
     };
@@ -99,6 +117,7 @@ fn parse(description: &Description, place: &str, state: &Value) -> Result<Given,
         t: time(place, state)?,
         q: q?,
         rates,
+        inputs: supplied.unwrap_or_else(|| Ok(vec![0.0; inputs.len()]))?,
     })
 }
 
@@ -108,15 +127,14 @@ fn time(place: &str, state: &Map<String, Value>) -> Result<f64, CliError> {
         .map_or(Ok(0.0), |value| number(&format!("{place}, t"), value))
 }
 
-fn vector(description: &Description, place: &str, value: &Value) -> Result<Vec<f64>, CliError> {
+fn vector(names: &[&'static str], place: &str, value: &Value) -> Result<Vec<f64>, CliError> {
     let Value::Array(values) = value else {
         return Err(invalid(place, "expected an array of numbers"));
     };
-    let names: Vec<_> = names::coordinates(description).collect();
     if values.len() != names.len() {
         return Err(CliError::Length {
             place: place.to_owned(),
-            names,
+            names: names.to_vec(),
             got: values.len(),
         });
     }

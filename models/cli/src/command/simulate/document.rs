@@ -33,6 +33,12 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     document.field("model", description.name)?;
     document.field("scene", *scene)?;
     document.field("parameters", named(names, &values))?;
+    if !model.inputs().is_empty() {
+        let held: Vec<f64> = (0..model.inputs().len())
+            .map(|index| model.parameter(values.len() + index))
+            .collect();
+        document.field("inputs", named(model.inputs().iter().copied(), &held))?;
+    }
     document.field("form", settings.form.name())?;
     document.field("integrator", settings.integrator.name())?;
     document.field("tol", number(settings.tol))?;

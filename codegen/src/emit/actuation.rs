@@ -1,0 +1,76 @@
+//! `Actuated`: inputs that the caller supplies. `Powered`: what changes the energy, by name.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::function::Body;
+use super::{Context, doc};
+
+/// The names of the inputs, if there are any.
+pub(super) fn emit_names(context: &Context<'_>) -> TokenStream {
+    let inputs = context.model.inputs();
+    let names: Vec<&str> = inputs.map(|(_, own)| own.name.display.as_str()).collect();
+    match names.is_empty() {
+        true => TokenStream::new(),
+        false => quote!(const INPUTS: &'static [&'static str] = &[#(#names),*];),
+    }
+}
+
+/// `impl Actuated`, if there are inputs.
+pub(super) fn emit_actuated(context: &Context<'_>) -> TokenStream {
+    let type_name = &context.names.type_name;
+    let inputs: Vec<usize> = context.model.inputs().map(|(k, _)| k).collect();
+    if inputs.is_empty() {
+        return TokenStream::new();
+    }
+    let count = inputs.len();
+    let set = inputs.iter().enumerate().map(|(index, &k)| {
+        let place = &context.names.parameters[k];
+        quote!(#place = inputs[#index];)
+    });
+    let attributes = super::attributes();
+    quote! {
+        #attributes
+        impl ::dalembert::Actuated for #type_name {
+            type Inputs = [f64; #count];
+
+            #[inline(always)]
+            fn set_inputs(&mut self, inputs: &Self::Inputs) {
+                #(#set)*
+            }
+        }
+    }
+}
+
+/// `impl Powered`, if forces are declared.
+pub(super) fn emit_powered(context: &Context<'_>) -> TokenStream {
+    let Some(powers) = &context.program.powers else {
+        return TokenStream::new();
+    };
+    let (type_name, names) = (&context.names.type_name, &powers.names);
+    let count = names.len();
+    let documentation = doc::formula("F_a(qdot), lambda eta(qdot), -d_t L", &powers.function.cost);
+    let Body {
+        statements,
+        outputs,
+    } = context.state_body(&powers.function);
+    let attributes = super::attributes();
+    quote! {
+        #attributes
+        impl ::dalembert::Powered for #type_name {
+            type Powers = ::dalembert::__private::SVector<f64, #count>;
+            const POWERS: &'static [&'static str] = &[#(#names),*];
+
+            #documentation
+            #[inline]
+            fn powers(
+                &self,
+                t: f64,
+                state: &Self::State,
+            ) -> ::core::result::Result<Self::Powers, ::dalembert::Fault> {
+                #statements
+                ::core::result::Result::Ok(::dalembert::__private::vector([#(#outputs),*]))
+            }
+        }
+    }
+}

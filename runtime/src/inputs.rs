@@ -1,0 +1,280 @@
+//! A system with inputs that are functions of time and state.
+
+use crate::contract::{Actuated, Constrained, Impacting, Powered, System, VectorField};
+use crate::error::{Fault, ParameterError, StateError};
+use crate::impacts::law::{Blow, Contact, Jump, Law};
+
+/// A system whose inputs are given by a function; [`Actuated::with_inputs`] makes one.
+///
+/// The function is called wherever the motion is evaluated, also at states that no run accepts; it should be smooth between
+/// impacts, as the integrators expect. Series of the motion (`Taylor`) and the discrete principle are not known for it.
+/// Effects are made for it as for any system: `Projection::new()`, `Impacts::declared(&steered)`.
+#[derive(Debug, Clone, Copy)]
+pub struct Steered<Sys, F> {
+    /// The system; the values of its inputs are replaced.
+    pub system: Sys,
+    /// `(t, state) -> inputs`
+    pub inputs: F,
+}
+
+impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> Steered<Sys, F> {
+    /// The system with the inputs of this instant.
+    #[inline(always)]
+    pub fn at(&self, t: f64, state: &Sys::State) -> Sys {
+        let mut system = self.system;
+        system.set_inputs(&(self.inputs)(t, state));
+        system
+    }
+}
+
+impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> VectorField for Steered<Sys, F> {
+    type State = Sys::State;
+
+    #[inline]
+    fn rate(&self, t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault> {
+        self.at(t, state).rate(t, state, rate)
+    }
+
+    fn scale(&self, t: f64, state: &Self::State) -> Self::State {
+        self.system.scale(t, state)
+    }
+}
+
+impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> System for Steered<Sys, F> {
+    type Vector = Sys::Vector;
+    type Impulse = Sys::Impulse;
+
+    fn position(&self, state: &Self::State) -> Self::Vector {
+        self.system.position(state)
+    }
+
+    fn velocity(&self, t: f64, state: &Self::State) -> Result<Self::Vector, Fault> {
+        self.at(t, state).velocity(t, state)
+    }
+
+    fn momentum(&self, t: f64, state: &Self::State) -> Result<Self::Vector, Fault> {
+        self.system.momentum(t, state)
+    }
+
+    fn state_unchecked(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, Fault> {
+        self.system.state_unchecked(t, q, qdot)
+    }
+
+    fn state_from_momenta(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        p: &Self::Vector,
+    ) -> Result<Self::State, Fault> {
+        self.system.state_from_momenta(t, q, p)
+    }
+
+    fn energy(&self, t: f64, state: &Self::State) -> Result<f64, Fault> {
+        self.system.energy(t, state)
+    }
+
+    fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse) {
+        self.system.kick(state, size, direction);
+    }
+
+    fn check_parameters(&self) -> Result<(), ParameterError> {
+        self.system.check_parameters()
+    }
+
+    fn outside_chart(&self, state: &Self::State) -> Option<usize> {
+        self.system.outside_chart(state)
+    }
+
+    fn admit(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<(), StateError> {
+        self.system.admit(t, q, qdot)
+    }
+
+    fn state_nearest(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, Fault> {
+        self.system.state_nearest(t, q, qdot)
+    }
+
+    fn complete_velocity(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+        named: &Self::Vector,
+    ) -> Result<Self::Vector, StateError> {
+        self.system.complete_velocity(t, q, qdot, named)
+    }
+}
+
+impl<Sys, F> Constrained for Steered<Sys, F>
+where
+    Sys: Actuated + Constrained,
+    F: Fn(f64, &Sys::State) -> Sys::Inputs,
+{
+    type Multipliers = Sys::Multipliers;
+    type Levels = Sys::Levels;
+
+    const IS_REDUCED: bool = Sys::IS_REDUCED;
+    const IS_LINEAR: bool = Sys::IS_LINEAR;
+
+    fn multipliers(&self, t: f64, state: &Self::State) -> Result<Self::Multipliers, Fault> {
+        self.at(t, state).multipliers(t, state)
+    }
+
+    fn residuals(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> (Self::Multipliers, Self::Multipliers) {
+        self.system.residuals(t, q, qdot)
+    }
+
+    fn constraint_forms(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        forms: &mut [f64],
+        affine: &mut Self::Multipliers,
+    ) {
+        self.system.constraint_forms(t, q, forms, affine);
+    }
+
+    fn linearised_forms(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+        forms: &mut [f64],
+        affine: &mut Self::Multipliers,
+    ) {
+        self.system.linearised_forms(t, q, qdot, forms, affine);
+    }
+
+    fn restore(&self, t: f64, state: &mut Self::State) -> Result<(), Fault> {
+        self.system.restore(t, state)
+    }
+
+    fn levels(&self, t: f64, q: &Self::Vector) -> Self::Levels {
+        self.system.levels(t, q)
+    }
+
+    fn level_correction(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        excess: &Self::Levels,
+    ) -> Result<Self::Vector, Fault> {
+        self.system.level_correction(t, q, excess)
+    }
+}
+
+impl<Sys, F> Impacting for Steered<Sys, F>
+where
+    Sys: Actuated + Impacting,
+    F: Fn(f64, &Sys::State) -> Sys::Inputs,
+{
+    type Gaps = Sys::Gaps;
+
+    fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps {
+        self.system.gaps(t, state)
+    }
+
+    fn gap_rates(&self, t: f64, state: &Self::State) -> Result<Self::Gaps, Fault> {
+        self.at(t, state).gap_rates(t, state)
+    }
+
+    fn gap_accelerations(
+        &self,
+        t: f64,
+        state: &Self::State,
+        motion: &Self::Impulse,
+    ) -> Result<Option<Self::Gaps>, Fault> {
+        self.system.gap_accelerations(t, state, motion)
+    }
+
+    fn gap_responses(
+        &self,
+        t: f64,
+        state: &Self::State,
+        motion: &Self::Impulse,
+    ) -> Result<Option<Self::Gaps>, Fault> {
+        self.system.gap_responses(t, state, motion)
+    }
+
+    fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
+        self.system.surface_active(surface, t, state)
+    }
+
+    fn law(&self, surface: usize) -> Law {
+        self.system.law(surface)
+    }
+
+    fn reset(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Option<Jump<Self::Vector>>, Fault> {
+        self.at(t, state).reset(surface, t, state)
+    }
+
+    fn focus(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Option<Self::Impulse>, Fault> {
+        self.system.focus(surface, t, state)
+    }
+
+    fn trace(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+        motion: &Self::Impulse,
+    ) -> Result<Option<Self::Impulse>, Fault> {
+        self.system.trace(surface, t, state, motion)
+    }
+
+    fn blow(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Blow<Self::Impulse>, Fault> {
+        self.system.blow(surface, t, state)
+    }
+
+    fn contact(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Contact<Self::Impulse>, Fault> {
+        self.system.contact(surface, t, state)
+    }
+}
+
+impl<Sys, F> Powered for Steered<Sys, F>
+where
+    Sys: Actuated + Powered,
+    F: Fn(f64, &Sys::State) -> Sys::Inputs,
+{
+    type Powers = Sys::Powers;
+
+    const POWERS: &'static [&'static str] = Sys::POWERS;
+
+    fn powers(&self, t: f64, state: &Self::State) -> Result<Self::Powers, Fault> {
+        self.at(t, state).powers(t, state)
+    }
+}

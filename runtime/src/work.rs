@@ -1,0 +1,75 @@
+//! The work along a run, by cause: what a balance of the energy is made of.
+
+use core::ops::ControlFlow;
+
+use crate::contract::Powered;
+use crate::error::Fault;
+use crate::quadrature::NODES;
+use crate::record::{Observer, Segment};
+use crate::state::StateVector;
+
+/// Watches a run and adds up the work of every cause in [`Powered::POWERS`]. Between impacts, and where no surface holds the
+/// motion, the energy changes by their sum, as exactly as the integrator follows the motion; impacts change it besides.
+///
+/// Powers are integrated over each stretch by Gauss and Legendre's rule of 16 points on the dense output, which every step pays
+/// for then. To watch with another observer as well, give a run the pair of them.
+#[derive(Debug, Clone, Copy)]
+pub struct Work<'a, Sys: Powered> {
+    system: &'a Sys,
+    done: Sys::Powers,
+    fault: Option<Fault>,
+}
+
+impl<'a, Sys: Powered> Work<'a, Sys> {
+    /// Nothing done yet by the forces on a system.
+    pub fn of(system: &'a Sys) -> Self {
+        Self {
+            system,
+            done: Sys::Powers::zeros(),
+            fault: None,
+        }
+    }
+
+    /// The work done so far, in the order of [`Powered::POWERS`].
+    pub fn done(&self) -> &Sys::Powers {
+        &self.done
+    }
+
+    /// The sum over all causes.
+    pub fn total(&self) -> f64 {
+        self.done.as_slice().iter().sum()
+    }
+
+    /// The fault that a power met; it stopped the run.
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
+    }
+
+    /// Adds the work along a stretch.
+    fn add(&mut self, segment: &mut Segment<'_, Sys::State>) -> Result<(), Fault> {
+        let (start, length) = (segment.t_start(), segment.t_end() - segment.t_start());
+        for (node, weight) in NODES {
+            for part in [node, 1.0 - node] {
+                let t = start + part * length;
+                let powers = self.system.powers(t, &segment.at(t)?)?;
+                let sums = self.done.as_mut_slice().iter_mut();
+                for (sum, power) in sums.zip(powers.as_slice()) {
+                    *sum += weight * length * power;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<Sys: Powered> Observer<Sys> for Work<'_, Sys> {
+    fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
+        match self.add(segment) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(fault) => {
+                self.fault = Some(fault);
+                ControlFlow::Break(())
+            }
+        }
+    }
+}

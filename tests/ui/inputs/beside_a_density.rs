@@ -1,0 +1,11 @@
+dalembert::model! {
+    Particle {
+        coordinates { x; y; theta: angle; }
+        parameters { m > 0 = 1; k > 0 = 1; }
+        inputs { u; v[2]; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(theta)^2);
+        forces { f: u*d(x); } claims { density: exact; }
+    }
+}
+
+fn main() {}
