@@ -112,7 +112,7 @@ fn a_held_input_is_a_constant_for_every_integrator() {
     let series = Simulation::new(&cart, Taylor::new(tolerance()), ())
         .run(0.0, at_rest(&cart, 0.1), 3.0, &mut ())
         .expect("a run");
-    let steered = cart.with_inputs(|_, _| [1.0]);
+    let steered = Cart { u: -3.0, ..cart }.with_inputs(|_, _| [1.0]);
     let steps = Simulation::new(&steered, Dop853::new(tolerance()), ())
         .run(0.0, at_rest(&cart, 0.1), 3.0, &mut ())
         .expect("a run");
