@@ -2,16 +2,17 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::describe::Described;
+use dalembert::describe::{Described, SceneVisitor};
 use dalembert::{
-    Dop853, Event, Impacting, Observer, Outcome, Scene, Simulation, System, Taylor, TaylorField,
-    Tolerance, VectorField,
+    Dop853, Event, Impacting, Lagrangian, Observer, Outcome, Scene, Simulation, System, Taylor,
+    TaylorField, Tolerance, VectorField,
 };
 use dalembert_models::{
     BallOnSwitchingTable, RefractedParticle, RimlessWheelFive, RimlessWheelTen,
     SmoothAndRoughPlane, SphereInPlane, TwoWheelsArrested,
     smooth_and_rough_plane::smooth_and_rough_plane,
 };
+use dalembert_tests::interpreted::compare_motion;
 use dalembert_tests::reference::{number, numbers, read};
 use serde_json::Value;
 
@@ -336,6 +337,52 @@ fn a_wheel_tends_to_its_limit_cycle() {
     let rate = wheel_rate(&wheel, &turns[2].after);
     close(rate, number(&cycle["start_rate"]), 1e-11, "rate");
     assert_eq!(<RimlessWheelFive as VectorField>::State::default().len(), 3);
+}
+
+/// Compares the emitted code of every mode of a model with the interpreter of its programs.
+struct Interpreted {
+    modes: Vec<dalembert_codegen::Compiled>,
+    next: usize,
+    compared: usize,
+}
+
+impl SceneVisitor for Interpreted {
+    fn visit<S>(&mut self, _: &'static str)
+    where
+        S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static,
+    {
+        let programs = &self.modes[self.next].programs;
+        self.next += 1;
+        let system = S::with_defaults();
+        self.compared += compare_motion(&system, &programs.main);
+        self.compared += compare_motion(&system.global(), programs.global());
+    }
+}
+
+fn check_emitted<S: Described>() {
+    let tokens = S::DESCRIPTION.source.parse().expect("tokens");
+    let declared = dalembert_codegen::spec::read(tokens).expect("a declaration");
+    let dalembert_codegen::spec::Declaration::Modes(declared) = declared else {
+        panic!("a model with modes");
+    };
+    let compiled = dalembert_codegen::compile_modes(&declared).expect("modes");
+    let mut visitor = Interpreted {
+        modes: compiled.modes,
+        next: 0,
+        compared: 0,
+    };
+    S::visit_scenes(&mut visitor);
+    assert_eq!(visitor.next, S::DESCRIPTION.modes.len());
+    assert!(visitor.compared >= 4);
+}
+
+#[test]
+fn emitted_code_of_modes_is_what_the_interpreter_executes() {
+    check_emitted::<SmoothAndRoughPlane>();
+    check_emitted::<BallOnSwitchingTable>();
+    check_emitted::<TwoWheelsArrested>();
+    check_emitted::<RefractedParticle>();
+    check_emitted::<RimlessWheelTen>();
 }
 
 dalembert::model! {

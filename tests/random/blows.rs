@@ -25,7 +25,7 @@ pub fn check_blows(own: &Comparison<'_>, program: &Program) -> Result<(), TestCa
                 Law::NonholonomicPlastic => 2.0 * constrained / free * gap_rate,
                 Law::ImpactPlastic => gap_rate,
                 Law::TotallyPlastic => constrained / free * gap_rate,
-                Law::Reset => f64::NAN,
+                Law::Reset | Law::Transition => f64::NAN,
             };
             let scaled = |size: f64, direction: &[f64]| -> Vec<f64> {
                 direction.iter().map(|own| size * own).collect()
