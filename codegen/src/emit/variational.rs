@@ -92,7 +92,7 @@ fn levels(context: &Context<'_>) -> usize {
 impl Context<'_> {
     /// The statements of a function of `(t, s)` over numbers, and its results; where it takes velocities too, they are
     /// computed first.
-    fn varied_body(&self, function: &Function) -> Body {
+    pub(super) fn varied_body(&self, function: &Function) -> Body {
         let state = self.bind_row(function);
         let has_velocities = uses(function, |input| matches!(input, Input::Velocity(_)));
         let velocities = match has_velocities {
@@ -110,7 +110,7 @@ impl Context<'_> {
     }
 
     /// The statements of a function of `(t, q, qdot)` over numbers, and its results.
-    fn varied_velocity_body(&self, function: &Function) -> Body {
+    pub(super) fn varied_velocity_body(&self, function: &Function) -> Body {
         let q = self.bind_row_of(function, &self.names.coordinates, Input::Coordinate);
         let qdot = self.bind_row_of(function, &self.names.velocities, Input::Velocity);
         self.written(joined([q, qdot]), function)

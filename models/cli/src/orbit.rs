@@ -143,7 +143,8 @@ fn place(description: &Description, undefined: &Undefined) -> Vec<(&'static str,
         Undefined::Graze { t, surface }
         | Undefined::Corner { t, surface }
         | Undefined::Held { t, surface }
-        | Undefined::Unlawful { t, surface } => {
+        | Undefined::Unlawful { t, surface }
+        | Undefined::Refracted { t, surface } => {
             let name = names::surfaces(description).nth(surface);
             vec![("surface", name.into()), ("after", json::number(t))]
         }

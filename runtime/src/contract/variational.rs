@@ -24,7 +24,8 @@ pub trait Variational: TaylorField + System + Sized {
     type Collision<L: Numbers>: Row<L>;
 
     /// One number per equation that the motion keeps to because of constraints: M in the global form, none in the form
-    /// reduced to D; and one per constraint that has a position level.
+    /// reduced to D; and one per constraint that has a position level. Of a model with modes as many as a state has components
+    /// but one: those of the mode, the components that it does not use, the number of the mode, zeros.
     type Deviations<L: Numbers>: Row<L>;
 
     /// As many states as a state has components: a square matrix by its columns.
@@ -55,7 +56,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// The state with these positions and velocities, as [`System::state_unchecked`] makes it.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// [`Fault`]; of a model with modes, [`Fault::SeveralModes`].
     fn composed<L: Numbers>(
         parameters: &Self::Parameters<L>,
         t: L,
@@ -63,7 +64,8 @@ pub trait Variational: TaylorField + System + Sized {
         qdot: &Self::Configuration<L>,
     ) -> Result<Self::Row<L>, Fault>;
 
-    /// `eta^a(qdot) + eta^a_0` of the constraints where a state may be off them, then the levels `f^k` of those that have one.
+    /// `eta^a(qdot) + eta^a_0` of the constraints where a state may be off them, then the levels `f^k` of those that have one; of a model
+    /// with modes, the components that no variation changes after them.
     ///
     /// # Errors
     /// [`Fault`].
@@ -94,7 +96,8 @@ pub trait Variational: TaylorField + System + Sized {
         state: &Self::Row<L>,
     ) -> Result<Self::Collision<L>, Fault>;
 
-    /// Positions and velocities after the declared reset of a surface; `None` where its law is no reset.
+    /// Positions and velocities after the declared reset of a surface; `None` where its law is no reset, and of a model with
+    /// modes, whose resets are those of the mode ([`Self::passed`]).
     ///
     /// # Errors
     /// [`Fault`].
@@ -104,6 +107,23 @@ pub trait Variational: TaylorField + System + Sized {
         t: L,
         state: &Self::Row<L>,
     ) -> Result<Option<[Self::Configuration<L>; 2]>, Fault>;
+
+    /// The state after the declared reset of a surface, or after a transition to another mode; `None` where it is
+    /// neither, or not known over numbers.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn passed<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        surface: usize,
+        t: L,
+        state: &Self::Row<L>,
+    ) -> Result<Option<Self::Row<L>>, Fault> {
+        match Self::landing(parameters, surface, t, state)? {
+            Some([q, qdot]) => Self::composed(parameters, t, &q, &qdot).map(Some),
+            None => Ok(None),
+        }
+    }
 
     /// The declared law of a surface, and its coefficient as a number of the parameters; 0 for a law without one.
     fn declared_law<L: Numbers>(parameters: &Self::Parameters<L>, surface: usize) -> (Law, L);

@@ -188,6 +188,19 @@ impl Law {
         }
     }
 
+    /// Adds the impulse of the law to the numbers that hold the motion, with `e` for its coefficient; `collision` holds the
+    /// numbers of a [`Contact`] in its order and the direction of the impulse behind them.
+    pub(crate) fn strike<L: Numbers>(self, e: L, collision: &[L], motion: &mut [L]) {
+        let (scalars, direction) = collision.split_at(5);
+        let scalars = core::array::from_fn(|i| scalars[i]);
+        let taken = self.taken(e, &scalars);
+        let [_, _, _, compliance, _] = scalars;
+        let size = -taken / compliance;
+        for (entry, direction) in motion.iter_mut().zip(direction) {
+            *entry = size.mul_add(*direction, *entry);
+        }
+    }
+
     /// The coefficient of restitution, for the laws that have one.
     pub const fn coefficient(&self) -> Option<f64> {
         match *self {

@@ -39,7 +39,7 @@ pub const fn rest<M: Mode>() -> usize {
 
 /// Writes values to where they belong; both have the same length.
 #[inline(always)]
-pub fn write(to: &mut [f64], values: &[f64]) {
+pub fn write<T: Copy>(to: &mut [T], values: &[T]) {
     for (to, value) in to.iter_mut().zip(values) {
         *to = *value;
     }
@@ -276,7 +276,7 @@ fn own_surface<M: Mode>(surface: usize) -> Option<usize> {
 }
 
 /// The place of a surface in the mode.
-fn known_surface<M: Mode>(surface: usize) -> Result<usize, Fault> {
+pub(super) fn known_surface<M: Mode>(surface: usize) -> Result<usize, Fault> {
     own_surface::<M>(surface).ok_or(Fault::SingularSurface { surface })
 }
 

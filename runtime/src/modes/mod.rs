@@ -11,6 +11,7 @@
 //! | `embed.rs` | the state of a mode in that of the whole, and what the whole answers by asking the mode |
 //! | `series.rs` | power series of the whole, by those of the modes |
 //! | `passage.rs` | the state that a mode is entered with: declared, or by the transition principle |
+//! | `vary.rs` | transitions and gaps over numbers with derivatives, for first variations |
 //! | `within.rs` | an effect that belongs to one mode |
 //!
 //! Reference: J. Cortes and A. M. Vinogradov, *Hamiltonian theory of constrained impulsive motion* (2006).
@@ -18,6 +19,7 @@
 mod embed;
 mod passage;
 mod series;
+mod vary;
 mod within;
 
 use crate::contract::{Lagrangian, System, TaylorField, VectorField};
@@ -28,6 +30,7 @@ use crate::error::Fault;
 pub use embed::*;
 pub use passage::{Passage, passage};
 pub use series::{Shape, advance, begin, work};
+pub use vary::*;
 pub use within::Within;
 
 /// A mode of a model: a system whose states are some of the model's. Implemented by `model!`.

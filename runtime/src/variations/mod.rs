@@ -78,6 +78,14 @@ pub enum Undefined {
         /// The surface.
         surface: usize,
     },
+    /// The Lagrangian changes at a transition where the state of one of the modes, reduced to its constraints, holds no
+    /// momenta: the derivatives of the refraction are not known.
+    Refracted {
+        /// When.
+        t: f64,
+        /// The transition.
+        surface: usize,
+    },
     /// The motion or its derivatives could not be computed from here on.
     NotFinite {
         /// When.
@@ -95,6 +103,7 @@ impl Undefined {
             Self::Corner { .. } => "corner",
             Self::Held { .. } => "held",
             Self::Unlawful { .. } => "unlawful",
+            Self::Refracted { .. } => "refracted",
             Self::NotFinite { .. } => "not_finite",
             Self::Fault(_) => "fault",
         }
@@ -119,6 +128,11 @@ impl fmt::Display for Undefined {
             Self::Unlawful { t, surface } => write!(
                 f,
                 "the impact on surface {surface} at t = {t} is not that of its law alone"
+            ),
+            Self::Refracted { t, surface } => write!(
+                f,
+                "transition {surface} changes the Lagrangian at t = {t}, of a mode that is reduced to its constraints; \
+                 derivatives end there"
             ),
             Self::NotFinite { t } => write!(f, "derivatives cannot be computed beyond t = {t}"),
             Self::Fault(fault) => fault.fmt(f),

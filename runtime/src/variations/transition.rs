@@ -13,9 +13,6 @@ use crate::state::StateVector;
 /// component before and after: corrections of rounding errors are far smaller, anything else that happens there is not.
 const LAWFUL: f64 = 1e-6;
 
-/// Scalars of a collision before the direction of its impulse.
-const SCALARS: usize = 5;
-
 /// What is known of an arrival at a surface.
 struct Arrival<Sys: Variational> {
     /// The rate of the state before.
@@ -36,7 +33,7 @@ pub(super) fn cross<Sys: Variational>(
     for some in tangents.chunks_mut(SIDE) {
         let parameters = dual_parameters(system, some);
         let (t, state) = arrival.met(event, &parameters, some)?;
-        let after = struck::<Sys, Side>(&parameters, event, t, &state)?;
+        let after = struck::<Sys, Side>(system, &parameters, event, t, &state)?;
         check_lawful(event, after.as_slice())?;
         for (k, tangent) in some.iter_mut().enumerate() {
             let parts = after.as_slice().iter().zip(rate.as_slice());
@@ -89,7 +86,7 @@ pub(super) fn depends_on_time<Sys: Variational>(
     let mut firsts = Sys::Firsts::<Side>::ZERO;
     Sys::begin(&parameters, t, &state, &mut firsts)?;
     let gaps = Sys::clearances(&parameters, t, &state)?;
-    let after = struck::<Sys, Side>(&parameters, event, t, &state)?;
+    let after = struck::<Sys, Side>(system, &parameters, event, t, &state)?;
     let parts = [firsts.as_slice(), gaps.as_slice(), after.as_slice()];
     Ok(parts.into_iter().flatten().any(|own| own.slopes[0] != 0.0))
 }
@@ -155,27 +152,20 @@ impl<Sys: Variational> Arrival<Sys> {
 
 /// What the law of an impact makes of a state.
 fn struck<Sys: Variational, L: Numbers>(
+    system: &Sys,
     parameters: &Sys::Parameters<L>,
     event: &Event<Sys::State>,
     t: L,
     state: &Sys::Row<L>,
 ) -> Result<Sys::Row<L>, Undefined> {
     let surface = event.surface;
-    if event.law == Law::Transition {
-        // The state after it is one of another mode.
-        return Err(Undefined::Unlawful {
-            t: event.t,
-            surface,
+    if matches!(event.law, Law::Reset | Law::Transition) {
+        let after = Sys::passed(parameters, surface, t, state)?;
+        let t = event.t;
+        return after.ok_or(match event.law {
+            Law::Transition => Undefined::Refracted { t, surface },
+            _ => Undefined::Unlawful { t, surface },
         });
-    }
-    if event.law == Law::Reset {
-        return match Sys::landing(parameters, surface, t, state)? {
-            Some([q, qdot]) => Ok(Sys::composed(parameters, t, &q, &qdot)?),
-            None => Err(Undefined::Unlawful {
-                t: event.t,
-                surface,
-            }),
-        };
     }
     let (declared, coefficient) = Sys::declared_law(parameters, surface);
     let coefficient = match declared == event.law {
@@ -184,16 +174,10 @@ fn struck<Sys: Variational, L: Numbers>(
         false => L::of(event.law.coefficient().unwrap_or(0.0)),
     };
     let collision = Sys::collision(parameters, surface, t, state)?;
-    let (scalars, direction) = collision.as_slice().split_at(SCALARS);
-    let scalars = core::array::from_fn(|i| scalars[i]);
-    let taken = event.law.taken(coefficient, &scalars);
-    let [_, _, _, compliance, _] = scalars;
-    let size = -taken / compliance;
     let mut after = *state;
-    let first = Sys::Row::<L>::LEN - direction.len();
-    for (entry, direction) in after.as_mut_slice()[first..].iter_mut().zip(direction) {
-        *entry = size.mul_add(*direction, *entry);
-    }
+    let first = system.motion_start(&event.before);
+    let motion = &mut after.as_mut_slice()[first..];
+    event.law.strike(coefficient, collision.as_slice(), motion);
     Ok(after)
 }
 

@@ -564,7 +564,7 @@ fn emit_landing(whole: &Whole<'_>, mode: &Mode, own: &TokenStream) -> TokenStrea
     }
 }
 
-fn passage(transition: &Transition, is_first_order: bool) -> TokenStream {
+pub(super) fn passage(transition: &Transition, is_first_order: bool) -> TokenStream {
     match (transition.map.is_some(), transition.keeps_lagrangian) {
         (true, _) => quote!(Declared),
         (false, _) if is_first_order => quote!(Kept),

@@ -78,6 +78,13 @@ pub(super) fn emit_described(whole: &Whole<'_>) -> TokenStream {
                 #inspect
             }
 
+            fn visit_variational<Visitor: ::dalembert::describe::VariationalVisitor>(
+                &self,
+                visitor: Visitor,
+            ) -> ::core::option::Option<Visitor::Output> {
+                ::core::option::Option::Some(visitor.visit(self))
+            }
+
             fn visit_scenes<Visitor: ::dalembert::describe::SceneVisitor>(visitor: &mut Visitor) {
                 #(visitor.visit::<#types>(#names);)*
             }

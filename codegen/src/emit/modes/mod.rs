@@ -3,6 +3,7 @@
 mod contract;
 mod describe;
 mod types;
+mod variational;
 
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
@@ -41,6 +42,8 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
         contract::emit_taylor(&whole),
         contract::emit_system(&whole),
         contract::emit_impacting(&whole),
+        variational::emit_modes(&whole),
+        variational::emit_variational(&whole),
         describe::emit_described(&whole),
         describe::emit_scene(&whole),
     ];

@@ -1,0 +1,316 @@
+//! `Variational` of the whole, and what its modes add over numbers: how they are entered, and their energy.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::Whole;
+use super::contract::passage;
+use crate::emit::function::Body;
+use crate::emit::{Context, attributes};
+use crate::model::Mode;
+use crate::program::Form;
+
+/// `impl VariationalMode` for each mode.
+pub(super) fn emit_modes(whole: &Whole<'_>) -> TokenStream {
+    let attributes = attributes();
+    let modes = whole.graph.modes.iter().zip(whole.own());
+    let modes = modes.map(|(mode, context)| {
+        let type_name = &context.names.type_name;
+        let holds_momenta = context.program.form == Form::Global;
+        let parts = [
+            emit_entered(mode, context),
+            emit_nearest(context),
+            emit_energy(context),
+        ];
+        quote! {
+            #attributes
+            impl ::dalembert::__private::modes::VariationalMode for #type_name {
+                const HOLDS_MOMENTA: bool = #holds_momenta;
+
+                #(#parts)*
+            }
+        }
+    });
+    modes.collect()
+}
+
+/// The states that are declared for other modes, if some are.
+fn emit_entered(mode: &Mode, context: &Context<'_>) -> TokenStream {
+    let functions = context.program.impacting.iter();
+    let entries = functions.flat_map(|functions| &functions.entries);
+    let arms = entries.enumerate().filter_map(|(surface, function)| {
+        let function = function.as_ref()?;
+        let transition = mode.model.surfaces[surface].transition.as_ref()?;
+        let count = transition.map.as_ref()?.q.len();
+        let Body {
+            statements,
+            outputs,
+        } = context.varied_body(function);
+        let (q_after, qdot_after) = outputs.split_at(count);
+        Some(quote! {
+            #surface => {
+                #statements
+                ::dalembert::__private::modes::write(after_q, &[#(#q_after),*]);
+                ::dalembert::__private::modes::write(after_qdot, &[#(#qdot_after),*]);
+            }
+        })
+    });
+    let arms: Vec<TokenStream> = arms.collect();
+    if arms.is_empty() {
+        return TokenStream::new();
+    }
+    quote! {
+        fn entered<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+            after_q: &mut [L],
+            after_qdot: &mut [L],
+        ) -> ::core::result::Result<(), ::dalembert::Fault> {
+            match surface {
+                #(#arms)*
+                _ => {}
+            }
+            ::core::result::Result::Ok(())
+        }
+    }
+}
+
+/// The state with the nearest velocity under the constraints, if there are some.
+fn emit_nearest(context: &Context<'_>) -> TokenStream {
+    let program = context.program;
+    let constrained = program.constrained.as_ref();
+    let function = match &program.reduced {
+        Some(reduced) => &reduced.nearest_velocities,
+        None => match constrained.and_then(|own| own.return_to_constraints.as_ref()) {
+            Some(back) => &back.nearest,
+            None => return TokenStream::new(),
+        },
+    };
+    let Body {
+        statements,
+        outputs,
+    } = context.varied_velocity_body(function);
+    let positions = 0..context.dimension();
+    quote! {
+        fn nearest<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            t: L,
+            q: &Self::Configuration<L>,
+            qdot: &Self::Configuration<L>,
+        ) -> ::core::result::Result<Self::Row<L>, ::dalembert::Fault> {
+            #statements
+            ::core::result::Result::Ok([#(q[#positions],)* #(#outputs),*])
+        }
+    }
+}
+
+fn emit_energy(context: &Context<'_>) -> TokenStream {
+    let Body {
+        statements,
+        outputs,
+    } = context.varied_body(&context.program.energy);
+    quote! {
+        fn energy_of<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> ::core::result::Result<L, ::dalembert::Fault> {
+            #statements
+            ::core::result::Result::Ok(#(#outputs)*)
+        }
+    }
+}
+
+/// `impl Variational`, where each function asks the mode of the state.
+pub(super) fn emit_variational(whole: &Whole<'_>) -> TokenStream {
+    let own = whole.type_name();
+    let attributes = attributes();
+    let (n, count) = (whole.graph.coordinates.len(), whole.graph.surfaces.len());
+    let parts = [
+        emit_counts(count),
+        emit_asked(whole),
+        emit_collision(whole),
+        emit_resets(),
+        emit_passed(whole),
+        emit_declared_law(whole),
+    ];
+    quote! {
+        #attributes
+        impl ::dalembert::Variational for #own {
+            type Configuration<L: ::dalembert::numbers::Numbers> = [L; #n];
+            type Clearances<L: ::dalembert::numbers::Numbers> = [L; #count];
+            type Collision<L: ::dalembert::numbers::Numbers> = [L; 5 + __IMPULSE];
+            type Deviations<L: ::dalembert::numbers::Numbers> = [L; __STATE - 1];
+            type Columns = [Self::State; __STATE];
+
+            fn columns() -> Self::Columns {
+                [<Self::State as ::dalembert::StateVector>::zeros(); __STATE]
+            }
+
+            type Tangents = [::dalembert::Tangent<Self>; __STATE];
+
+            fn tangents() -> Self::Tangents {
+                [::dalembert::Tangent::zero(); __STATE]
+            }
+
+            #(#parts)*
+        }
+    }
+}
+
+fn emit_counts(surfaces: usize) -> TokenStream {
+    let counts = match surfaces {
+        0 => quote!(true),
+        _ => quote!(<Self as ::dalembert::Impacting>::surface_active(
+            self, surface, t, state
+        )),
+    };
+    quote! {
+        #[inline]
+        fn counts(&self, surface: usize, t: f64, state: &Self::State) -> bool { #counts }
+    }
+}
+
+/// What the mode of a row of numbers answers.
+fn of_row(whole: &Whole<'_>, arm: impl Fn(&Mode, &TokenStream) -> TokenStream) -> TokenStream {
+    let number = quote!(::dalembert::__private::modes::index_of(state));
+    whole.of_number(&number, arm)
+}
+
+/// The functions of parameters, time and state that give a row.
+fn emit_asked(whole: &Whole<'_>) -> TokenStream {
+    let asked = [
+        (
+            quote!(velocities),
+            quote!(velocities_of),
+            quote!(Configuration),
+        ),
+        (
+            quote!(deviations),
+            quote!(deviations_of),
+            quote!(Deviations),
+        ),
+        (
+            quote!(clearances),
+            quote!(clearances_of),
+            quote!(Clearances),
+        ),
+    ];
+    let asked = asked.map(|(name, function, row)| {
+        let answer = of_row(
+            whole,
+            |_, own| quote!(::dalembert::__private::modes::#function::<#own, L, _>(parameters, t, state)),
+        );
+        quote! {
+            fn #name<L: ::dalembert::numbers::Numbers>(
+                parameters: &Self::Parameters<L>,
+                t: L,
+                state: &Self::Row<L>,
+            ) -> ::core::result::Result<Self::#row<L>, ::dalembert::Fault> {
+                #answer
+            }
+        }
+    });
+    quote!(#(#asked)*)
+}
+
+fn emit_collision(whole: &Whole<'_>) -> TokenStream {
+    let answer = of_row(
+        whole,
+        |_, own| quote!(::dalembert::__private::modes::collision_of::<#own, L, _>(parameters, surface, t, state)),
+    );
+    quote! {
+        fn collision<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> ::core::result::Result<Self::Collision<L>, ::dalembert::Fault> {
+            #answer
+        }
+    }
+}
+
+/// What positions and velocities do not tell without a mode.
+fn emit_resets() -> TokenStream {
+    quote! {
+        fn composed<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            t: L,
+            q: &Self::Configuration<L>,
+            qdot: &Self::Configuration<L>,
+        ) -> ::core::result::Result<Self::Row<L>, ::dalembert::Fault> {
+            ::core::result::Result::Err(::dalembert::Fault::SeveralModes)
+        }
+
+        fn landing<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> ::core::result::Result<::core::option::Option<[Self::Configuration<L>; 2]>, ::dalembert::Fault> {
+            ::core::result::Result::Ok(::core::option::Option::None)
+        }
+    }
+}
+
+/// Where each surface of a mode leads.
+fn emit_passed(whole: &Whole<'_>) -> TokenStream {
+    let types = whole.types();
+    let answer = of_row(whole, |mode, own| {
+        let surfaces = mode.model.surfaces.iter().zip(&mode.places.surfaces);
+        let arms = surfaces
+            .enumerate()
+            .filter_map(|(index, (surface, place))| {
+                let transition = surface.transition.as_ref()?;
+                let entered = types[transition.enters];
+                let passage = passage(transition, mode.model.is_first_order());
+                Some(quote! {
+                    #place => ::dalembert::__private::modes::passed_into::<#own, #entered, L, _>(
+                        parameters,
+                        ::dalembert::__private::modes::Passage::#passage,
+                        #index,
+                        t,
+                        state,
+                    ),
+                })
+            });
+        quote! {
+            match surface {
+                #(#arms)*
+                _ => ::dalembert::__private::modes::passed_within::<#own, L, _>(parameters, surface, t, state),
+            }
+        }
+    });
+    quote! {
+        fn passed<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> ::core::result::Result<::core::option::Option<Self::Row<L>>, ::dalembert::Fault> {
+            #answer
+        }
+    }
+}
+
+fn emit_declared_law(whole: &Whole<'_>) -> TokenStream {
+    let types = whole.types();
+    let arms = whole.graph.surfaces.iter().enumerate().map(|(place, entry)| {
+        let (own, surface) = (types[entry.mode], entry.place);
+        quote!(#place => ::dalembert::__private::modes::declared_law_of::<#own, L>(parameters, #surface),)
+    });
+    quote! {
+        fn declared_law<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+        ) -> (::dalembert::impacts::law::Law, L) {
+            match surface {
+                #(#arms)*
+                _ => (::dalembert::impacts::law::Law::Elastic, L::ZERO),
+            }
+        }
+    }
+}

@@ -1,0 +1,403 @@
+//! First variations of models with modes: augmented differentials of transitions, differences of runs, limit cycles.
+
+use core::ops::ControlFlow;
+
+use dalembert::contract::Variational;
+use dalembert::variations::{Orbit, Section, Undefined};
+use dalembert::{
+    Described, Event, Mode, Observer, Scene, SceneEffects, Simulation, StateVector, System,
+    Tangent, Taylor, Tolerance, Variations,
+};
+use dalembert_cli::{Exit, Streams, models, run_with};
+use dalembert_models::{
+    BallOnSwitchingTable, FilippovField, RefractedParticle, RimlessWheelFive, RimlessWheelTen,
+    SmoothAndRoughPlane, SphereInPlane, TentMap, TwoWheelsArrested,
+};
+use dalembert_tests::reference::{number, numbers, read};
+use serde_json::Value;
+
+/// The largest difference between a derivative and a difference of runs, in units of the largest entry of its column.
+const DIFFERENCE: f64 = 2e-9;
+
+dalembert::model! {
+    /// A field that is discontinuous at a plane.
+    Layers {
+        const N = 3;
+        coordinates { x; y; z; }
+        parameters {
+            /// The field before.
+            f[N] = 0;
+            /// The field after.
+            g[N] = 0;
+            /// The normal of the plane.
+            n[N] = 0;
+            /// 1 or -1: the side that the motion comes from.
+            side = 1;
+        }
+        modes {
+            before { field { dot(x) = f[1]; dot(y) = f[2]; dot(z) = f[3]; } }
+            after { field { dot(x) = g[1]; dot(y) = g[2]; dot(z) = g[3]; } }
+        }
+        transitions { crossing: before -> after when side*(n[1]*x + n[2]*y + n[3]*z) <= 0; }
+    }
+}
+
+dalembert::model! {
+    /// Modes of different lengths, each with impacts of its own, and declared states between them that depend on time.
+    Mixed {
+        parameters { e in [0, 1] = 4/5; k > 0 = 1/2; c = 1/3; }
+        modes {
+            pair {
+                coordinates { x; y; }
+                lagrangian = (dot(x)^2 + (2 + sin(x))*dot(y)^2)/2 - k*(x - y)^2/2 - y/3;
+                impacts {
+                    floor: y >= -1/2 => newton(e);
+                    mark: x >= -1/4 => reset { x = x; y = y + c/20; dot(x) = -k*dot(x); dot(y) = dot(y) + c*dot(x); };
+                }
+                initial { x = 0.3; y = 0.1; dot(x) = -1; dot(y) = -0.4; until = 5; }
+            }
+            single {
+                coordinates { y; }
+                lagrangian = dot(y)^2/2 - y;
+                impacts { ground: y >= -1 => restitution(e); }
+            }
+        }
+        transitions {
+            dropped: pair -> single when x >= 1/2 => reset { y = y + c*x^2 + t/50; dot(y) = dot(x) - k*dot(y); };
+            lifted: single -> pair when y - t/5 <= -7/4 => reset { x = -c/5; y = k*y; dot(x) = -dot(y); dot(y) = c*dot(y); };
+        }
+    }
+}
+
+dalembert::model! {
+    /// Mass, potential and constraint change at a curve; states may leave the constraints.
+    Medium {
+        coordinates { x; y; z; }
+        parameters { m > 0 = 2; V = 1/5; a = 1/2; b = 1/3; }
+        modes {
+            thin {
+                lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+                constraints { turn: (x + 2)*dot(y) - a*y*dot(x) = 0; }
+            }
+            dense {
+                lagrangian = m/2*(dot(x)^2 + (1 + a*x^2)*dot(y)^2 + dot(z)^2) - V;
+                constraints { turn: (x + 2)*dot(z) - b*y*dot(y) = 0; }
+            }
+        }
+        transitions {
+            enter: thin -> dense when x + b*y^2 - t/10 >= 0;
+            leave: dense -> thin when x + b*y^2 - t/10 <= -2;
+        }
+    }
+}
+
+dalembert::model! {
+    /// As the one above, of modes that are reduced to their constraints.
+    Reduced {
+        coordinates { x; y; }
+        parameters { m > 0 = 2; }
+        constraints { slope: dot(y) - x*dot(x) = 0; }
+        frame { u: d(x); }
+        modes {
+            thin { lagrangian = (dot(x)^2 + dot(y)^2)/2; }
+            dense { lagrangian = m/2*(dot(x)^2 + dot(y)^2); }
+        }
+        transitions { enter: thin -> dense when x >= 0; }
+    }
+}
+
+/// A state of the first mode.
+fn state<S: Described>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
+    let [mut position, mut velocity] = [S::Vector::zeros(); 2];
+    position.as_mut_slice()[..q.len()].copy_from_slice(q);
+    velocity.as_mut_slice()[..qdot.len()].copy_from_slice(qdot);
+    system.state(0.0, &position, &velocity).expect("a state")
+}
+
+/// The declared initial state.
+fn declared<S: Described>(system: &S) -> S::State {
+    let initial = system.initial();
+    let qdot = system
+        .complete_velocity(0.0, &initial.q, &initial.qdot, &initial.named)
+        .expect("velocities");
+    system.state(0.0, &initial.q, &qdot).expect("a state")
+}
+
+/// The surfaces met.
+struct Surfaces(Vec<usize>);
+
+impl<Sys: System> Observer<Sys> for Surfaces {
+    fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
+        self.0.push(event.surface);
+        ControlFlow::Continue(())
+    }
+}
+
+/// The end of a run, off the constraints too, with how many transitions and impacts there were.
+fn end<S: Described + Scene + Variational>(
+    system: &S,
+    start: &S::State,
+    until: f64,
+    seen: &mut impl Observer<S>,
+) -> (S::State, u64) {
+    let stepper = Taylor::new(Tolerance::new(1e-15).expect("a tolerance"));
+    let mut effects = system.effects();
+    effects.set_projection(false);
+    let run = Simulation::new(system, stepper, effects)
+        .run(0.0, *start, until, seen)
+        .expect("a start");
+    let name = S::DESCRIPTION.name;
+    assert!(run.outcome.is_done(), "{name}: {}", run.outcome);
+    (run.state, run.counters.impacts)
+}
+
+#[test]
+fn a_crossing_has_the_differential_of_the_reference() {
+    let file = read("zeno_and_filippov");
+    let cases = file["filippov"].as_array().expect("cases");
+    assert_eq!(cases.len(), 2);
+    for case in cases {
+        let of = |name: &str| -> [f64; 3] { numbers(&case[name]).try_into().expect("three") };
+        let (f, n) = (of("f"), of("dh"));
+        let rate: f64 = f.iter().zip(&n).map(|(f, n)| f * n).sum();
+        let layers = Layers {
+            f,
+            g: of("g"),
+            n,
+            side: -rate.signum(),
+            ..Layers::default()
+        };
+        let start = state(&layers, &f.map(|f| -f / 2.0), &[0.0; 3]);
+        let mut columns: Vec<Tangent<Layers>> = (0..3).map(Tangent::of_component).collect();
+        let mut variations = Variations::new(&layers, &mut columns);
+        let (last, crossed) = end(&layers, &start, 1.0, &mut variations);
+        assert_eq!((crossed, layers.mode(&last)), (1, 1));
+        variations.tangents().expect("derivatives");
+        let rows = case["augmented_differential"].as_array().expect("rows");
+        for (i, row) in rows.iter().enumerate() {
+            for (column, expected) in columns.iter().zip(numbers(row)) {
+                assert!((column.state[i] - expected).abs() < 1e-14, "{column:?}");
+            }
+        }
+        for column in &columns {
+            assert_eq!(column.state[3], 0.0);
+        }
+        let [a, b, c] = [0, 1, 2].map(|k| columns[k].state);
+        let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
+        let jacobian = a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1);
+        let expected = number(&case["hybrid_jacobian"]);
+        assert!((jacobian - expected).abs() < 1e-14, "{jacobian}");
+    }
+}
+
+/// The derivative at 0 of what `f` gives, by differences over four steps and their halves.
+fn difference<V: StateVector>(step: f64, f: impl Fn(f64) -> V) -> V {
+    let central = |h: f64| {
+        let (ahead, behind) = (f(h), f(-h));
+        let pairs = ahead.as_slice().iter().zip(behind.as_slice());
+        let slope = pairs.map(|(ahead, behind)| (ahead - behind) / (2.0 * h));
+        slope.collect::<Vec<f64>>()
+    };
+    let [one, two, four] = [1.0, 2.0, 4.0].map(|factor| central(factor * step));
+    let mut slope = V::zeros();
+    for (i, own) in slope.as_mut_slice().iter_mut().enumerate() {
+        *own = (64.0 * one[i] - 20.0 * two[i] + four[i]) / 45.0;
+    }
+    slope
+}
+
+/// Derivatives of a run with respect to the first `used` components of its start and to all parameters, against differences
+/// of runs with as many transitions and impacts, `passed` of them at least.
+fn check_differences<S>(system: S, start: S::State, used: usize, until: f64, passed: u64)
+where
+    S: Described + Scene + Variational,
+{
+    let name = S::DESCRIPTION.name;
+    let parameters = S::DESCRIPTION.parameters.len();
+    let mut columns: Vec<Tangent<S>> = (0..used).map(Tangent::of_component).collect();
+    columns.extend((0..parameters).map(Tangent::of_parameter));
+    let directions = columns.clone();
+    let mut variations = Variations::new(&system, &mut columns);
+    let (_, impacts) = end(&system, &start, until, &mut variations);
+    assert!(impacts >= passed, "{name}: {impacts}");
+    variations.tangents().expect("derivatives");
+    for (direction, column) in directions.iter().zip(&columns) {
+        let expected = difference(3e-4, |h| {
+            let (mut system, mut start) = (system.clone(), start);
+            let varied = dalembert::numbers::Row::as_slice(&direction.parameters);
+            for (k, own) in varied.iter().enumerate() {
+                system.set_parameter(k, system.parameter(k) + h * own);
+            }
+            let parts = start.as_mut_slice().iter_mut();
+            for (entry, own) in parts.zip(direction.state.as_slice()) {
+                *entry += h * own;
+            }
+            let (state, seen) = end(&system, &start, until, &mut ());
+            assert_eq!(seen, impacts, "{name}");
+            state
+        });
+        let parts = expected.as_slice().iter();
+        let size = parts.fold(1.0, |size: f64, own| size.max(own.abs()));
+        for (found, expected) in column.state.as_slice().iter().zip(expected.as_slice()) {
+            assert!(
+                (found - expected).abs() <= DIFFERENCE * size,
+                "{name}: {column:?} along {direction:?}: {found} for {expected}",
+            );
+        }
+    }
+}
+
+#[test]
+fn declared_states_have_their_derivatives() {
+    let wheel = RimlessWheelFive::default();
+    check_differences(wheel, declared(&wheel), 2, 9.0, 2);
+    let wheel = RimlessWheelTen::default();
+    check_differences(wheel, declared(&wheel), 2, 4.0, 4);
+    let squares = TentMap::default();
+    check_differences(squares, state(&squares, &[0.0, 0.34], &[]), 2, 2.5, 2);
+    let mixed = Mixed::default();
+    let mut seen = Surfaces(Vec::new());
+    end(&mixed, &declared(&mixed), 6.5, &mut seen);
+    seen.0.sort_unstable();
+    seen.0.dedup();
+    assert_eq!(seen.0, [0, 1, 2, 3, 4]);
+    check_differences(mixed, declared(&mixed), 4, 6.5, 5);
+}
+
+#[test]
+fn constraints_that_change_have_their_derivatives() {
+    let ball = SmoothAndRoughPlane::default();
+    check_differences(ball, declared(&ball), 10, 2.5, 1);
+    let start = state(
+        &ball,
+        &[-1.0, 0.2, 0.3, 1.2, 0.4],
+        &[1.0, 0.5, -8.0, 0.4, 0.2],
+    );
+    check_differences(ball, start, 10, 2.5, 1);
+    let ball = BallOnSwitchingTable::default();
+    check_differences(ball, declared(&ball), 8, 12.0, 1);
+    let wheels = TwoWheelsArrested::default();
+    check_differences(wheels, declared(&wheels), 6, 3.0, 1);
+}
+
+#[test]
+fn refraction_has_its_derivative() {
+    let particle = RefractedParticle::default();
+    check_differences(particle, declared(&particle), 4, 3.0, 1);
+    // Too little energy: it is reflected.
+    let walled = RefractedParticle {
+        V2: 2.0,
+        ..particle
+    };
+    check_differences(walled, declared(&walled), 4, 3.0, 1);
+    let point = SphereInPlane::default();
+    check_differences(point, declared(&point), 4, 2.0, 2);
+    let medium = Medium::default();
+    assert!(const { <medium::Thin as Mode>::CAN_LEAVE_CONSTRAINTS });
+    let start = state(&medium, &[-1.0, 0.5, 0.0], &[1.0, 0.25, 0.25]);
+    check_differences(medium, start, 6, 2.0, 1);
+}
+
+#[test]
+fn what_has_no_derivative_says_so() {
+    fn undefined<S: Described + Scene + Variational>(
+        system: &S,
+        start: &S::State,
+        until: f64,
+    ) -> Undefined {
+        let mut columns = [Tangent::of_component(0)];
+        let mut variations = Variations::new(system, &mut columns);
+        end(system, start, until, &mut variations);
+        variations.tangents().expect_err("no derivative")
+    }
+    let reduced = Reduced::default();
+    let start = state(&reduced, &[-1.0, 0.0], &[1.0, -1.0]);
+    let Undefined::Refracted { t, surface: 0 } = undefined(&reduced, &start, 2.0) else {
+        panic!("the Lagrangian of a reduced mode changes")
+    };
+    assert!(t > 0.5 && t < 2.0);
+    // The spin makes the rough side throw the ball back: two transitions at one time.
+    let ball = SmoothAndRoughPlane::default();
+    let [q, qdot] = [[-1.0, 0.2, 0.3, 1.2, 0.4], [1.0, 0.5, 8.0, 0.4, 0.2]];
+    let thrown = undefined(&ball, &state(&ball, &q, &qdot), 2.5);
+    assert_eq!(thrown.kind(), "corner");
+    // Both sides lead to the line: the motion slides.
+    let field = FilippovField::default();
+    let held = undefined(&field, &declared(&field), 3.0);
+    assert_eq!(held.kind(), "held");
+}
+
+/// The cycle of a wheel, found from its declared start, with its period and multiplier.
+fn check_wheel<S>(wheel: &S, stored: &Value)
+where
+    S: Described + Scene + Variational,
+{
+    let cycle = &stored["limit_cycle_xi_true"];
+    let step = &cycle["steps"][0];
+    let stepper = Taylor::new(Tolerance::new(1e-15).expect("a tolerance"));
+    let mut section = Section::new(wheel, stepper, wheel.effects(), 0, 1e3);
+    let first = section
+        .arrive(&declared(wheel), &mut [])
+        .expect("an arrival");
+    let orbit: Orbit<S> = section
+        .periodic(&first.before, dalembert::variations::orbit::ITERATIONS)
+        .expect("a cycle");
+    let close = |own: f64, name: &str, stored: &Value| {
+        let error = (own - number(stored)).abs();
+        assert!(error < 1e-11, "{name}: {own}, by {error:e}");
+    };
+    close(orbit.point.time, "period", &cycle["period"]);
+    let before = orbit.point.before;
+    close(before.as_slice()[0], "angle", &step["end_angle"]);
+    let rate = wheel.velocity(0.0, &before).expect("a velocity");
+    close(rate.as_slice()[0], "rate", &step["end_rate"]);
+    assert_eq!((orbit.dimension, wheel.mode(&before)), (1, 0));
+    assert_eq!(wheel.mode(&orbit.point.after), 1);
+    // Neither the angle nor the mode is a direction of the section.
+    let direction = orbit.directions.as_ref()[0];
+    assert_eq!(
+        (direction.as_slice()[0], direction.as_slice()[2]),
+        (0.0, 0.0)
+    );
+    let expected = number(&cycle["multiplier_of_x_dot^2"]);
+    let [multiplier, imaginary] = orbit.multipliers.iter().next().expect("one");
+    // It is a product of factors near 1: what rounding leaves of them is the error, however small it is.
+    let error = (multiplier - expected).abs();
+    assert!(
+        error < 4e-15 && imaginary == 0.0,
+        "{multiplier:e} for {expected:e}, by {error:e}"
+    );
+}
+
+#[test]
+fn wheels_have_the_stored_cycles_and_multipliers() {
+    let file = read("rimless_wheels");
+    check_wheel(&RimlessWheelFive::default(), &file["wheels"][0]);
+    check_wheel(&RimlessWheelTen::default(), &file["wheels"][1]);
+}
+
+#[test]
+fn the_command_finds_the_cycle_of_a_wheel() {
+    let (mut output, mut errors) = (Vec::new(), Vec::new());
+    let mut streams = Streams {
+        input: &mut std::io::empty(),
+        output: &mut output,
+        errors: &mut errors,
+        terminal: false,
+    };
+    let line = "dalembert orbit rimless_wheel_five --surface step1 --json -";
+    let exit = run_with(
+        line.split_whitespace(),
+        &models![RimlessWheelFive],
+        &mut streams,
+    );
+    let text = String::from_utf8(output).expect("text");
+    assert_eq!((exit, errors.len()), (Exit::Reached, 0), "{text}");
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    let cycle = &read("rimless_wheels")["wheels"][0]["limit_cycle_xi_true"];
+    let period = document["period"].as_f64().expect("a period");
+    assert!((period - number(&cycle["period"])).abs() < 1e-11);
+    let multiplier = document["multipliers"][0]["re"].as_f64().expect("a number");
+    let expected = number(&cycle["multiplier_of_x_dot^2"]);
+    assert!((multiplier / expected - 1.0).abs() < 1e-9, "{text}");
+}
