@@ -435,3 +435,144 @@ fn a_slide_ends_where_one_side_leads_away() {
         "{q:?}"
     );
 }
+
+dalembert::model! {
+    /// The ball of `SmoothAndRoughPlane` in other words: names, orders, constraints and surfaces are others, motions are not.
+    Reworded {
+        parameters { k > 0 = 2/3; r > 0 = 1; }
+        coordinates { b: angle; v; a in (0, pi); u; c: angle; }
+        let w1 = cos(b)*dot(a) + sin(b)*sin(a)*dot(c);
+        let w2 = sin(b)*dot(a) - cos(b)*sin(a)*dot(c);
+        lagrangian = k^2/2*(dot(c)^2 + dot(b)^2 + 2*cos(a)*dot(c)*dot(b) + dot(a)^2) + 1/2*(dot(v)^2 + dot(u)^2);
+        modes {
+            slippery { }
+            sticky {
+                constraints {
+                    one: (2 + v^2)*(dot(v) + r*w1) = 0;
+                    other: 3*(dot(u) - r*w2) - (dot(v) + r*w1)/2 = 0;
+                }
+            }
+        }
+        transitions {
+            onto: slippery -> sticky when 3*u*(1 + v^2) >= 0;
+            off: sticky -> slippery when u <= 0;
+        }
+    }
+}
+
+/// A state of the ball on the smooth side of the line, and the same of the reworded one.
+fn at_the_line(n: u32) -> [[f64; 5]; 2] {
+    let part = |k: f64| 2.0 * (f64::from(n) * k + 0.37 * k).fract() - 1.0;
+    let q = [
+        0.0,
+        part(0.618),
+        part(0.414),
+        1.5 + part(0.732),
+        part(0.236),
+    ];
+    let qdot = [
+        0.05 + part(0.5479).abs(),
+        part(0.3166),
+        part(0.6457),
+        part(0.8284),
+        part(0.1962),
+    ];
+    [q, qdot]
+}
+
+/// Carnot's theorem (Cortes and Vinogradov, section 5.5): linear constraints that begin never add energy, and take that of
+/// the velocity that is lost; nothing is lost exactly where the constraints hold already.
+#[test]
+fn constraints_that_begin_take_the_energy_of_what_is_lost() {
+    let ball = SmoothAndRoughPlane::default();
+    let rolling = smooth_and_rough_plane::Rough(ball);
+    for n in 0..200 {
+        let [q, qdot] = at_the_line(n).map(Into::into);
+        for rolls in [false, true] {
+            let qdot = match rolls {
+                true => {
+                    let nearest = rolling.state_projected(0.0, &q, &qdot).expect("a state");
+                    rolling.velocity(0.0, &nearest).expect("a velocity")
+                }
+                false => qdot,
+            };
+            let before = ball.state(0.0, &q, &qdot).expect("a state");
+            let after = ball.landing(0, 0.0, &before).expect("a state").state;
+            let of = |state: &_| {
+                let v = ball.velocity(0.0, state).expect("a velocity");
+                let p = ball.momentum(0.0, state).expect("momenta");
+                (v, p, ball.energy(0.0, state).expect("an energy"))
+            };
+            let ((v, p, energy), (v_after, p_after, energy_after)) = (of(&before), of(&after));
+            let lost = 0.5 * (v - v_after).dot(&(p - p_after));
+            close(
+                energy_after - energy,
+                -lost,
+                1e-14,
+                "the energy of the loss",
+            );
+            assert_eq!(lost < 1e-28, rolls, "{lost:e}");
+        }
+    }
+}
+
+#[test]
+fn transitions_do_not_depend_on_words_and_factors() {
+    let (ball, other) = (SmoothAndRoughPlane::default(), Reworded::default());
+    for n in 0..100 {
+        let [q, qdot] = at_the_line(n);
+        let reworded = |own: [f64; 5]| [own[4], own[1], own[3], own[0], own[2]];
+        let state = ball.state(0.0, &q.into(), &qdot.into()).expect("a state");
+        let same = other
+            .state(0.0, &reworded(q).into(), &reworded(qdot).into())
+            .expect("a state");
+        let [after, same] = [
+            ball.landing(0, 0.0, &state)
+                .map(|own| ball.velocity(0.0, &own.state)),
+            other
+                .landing(0, 0.0, &same)
+                .map(|own| other.velocity(0.0, &own.state)),
+        ];
+        let after = after.expect("a state").expect("a velocity");
+        let same = same.expect("a state").expect("a velocity");
+        let after: Vec<f64> = after.iter().copied().collect();
+        let expected = reworded([after[0], after[1], after[2], after[3], after[4]]);
+        for (own, expected) in same.iter().zip(expected) {
+            close(*own, expected, 1e-13, "velocity");
+        }
+    }
+}
+
+dalembert::model! {
+    /// Two belts that run towards each other.
+    Trap {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        modes {
+            left { constraints { belt: dot(x) = 1; } }
+            right { constraints { belt: dot(x) = -1; } }
+        }
+        transitions {
+            rightward: left -> right when x >= 0;
+            leftward: right -> left when x <= 0;
+        }
+    }
+}
+
+/// Where the belts meet each sends the motion back to the other.
+#[test]
+fn modes_that_lead_to_each_other_trap_the_motion() {
+    let trap = Trap::default();
+    let state = trap
+        .state_projected(0.0, &[-0.1, 0.0].into(), &[1.0, 0.1].into())
+        .expect("a state");
+    let tolerance = Tolerance::new(1e-12).expect("a tolerance");
+    let run = Simulation::new(&trap, Dop853::new(tolerance), trap.effects())
+        .run(0.0, state, 1.0, &mut ())
+        .expect("a start");
+    assert!(
+        matches!(run.outcome, Outcome::Trapped { .. }),
+        "{:?}",
+        run.outcome
+    );
+}

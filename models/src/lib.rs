@@ -26,6 +26,7 @@ pub mod rolling_ball_wall;
 pub mod rolling_disk;
 pub mod smooth_and_rough_plane;
 pub mod sphere_in_plane;
+pub mod spring_mass_walker;
 pub mod stability;
 pub mod tent_map;
 pub mod two_wheels_arrested;
@@ -53,6 +54,7 @@ pub use rolling_ball_wall::RollingBallWall;
 pub use rolling_disk::RollingDisk;
 pub use smooth_and_rough_plane::SmoothAndRoughPlane;
 pub use sphere_in_plane::SphereInPlane;
+pub use spring_mass_walker::SpringMassWalker;
 pub use tent_map::TentMap;
 pub use two_wheels_arrested::TwoWheelsArrested;
 pub use two_wheels_rod::TwoWheelsRod;
@@ -86,6 +88,7 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         RollingDisk,
         SmoothAndRoughPlane,
         SphereInPlane,
+        SpringMassWalker,
         TentMap,
         TwoWheelsArrested,
         TwoWheelsRod,
