@@ -112,7 +112,8 @@ pub struct Description {
     pub surfaces: &'static [SurfaceInfo],
     /// The declared outputs.
     pub outputs: &'static [&'static str],
-    /// The scenes; `all`, the model itself, comes first. Of a model with modes each mode by itself is one.
+    /// The scenes; `all`, the model itself, comes first. Of a model with modes each mode by itself is one for `derive` and
+    /// `check`; [`Described::visit_scenes`] does not show them.
     pub scenes: &'static [&'static str],
     /// The modes; none of a model in one piece.
     pub modes: &'static [ModeInfo],

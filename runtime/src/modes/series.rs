@@ -2,6 +2,9 @@
 //!
 //! Motions that run side by side may be in different modes. Each mode that any of them is in expands the lanes that are in
 //! it; the other lanes are given the numbers of one that is, and what comes of them is dropped.
+//!
+//! NOTE: no mode's series is inlined into those of the whole: with many modes one function would hold all of them, and compilers
+//! take minutes over it.
 
 use super::Mode;
 use crate::error::Fault;
@@ -74,7 +77,7 @@ fn is_in<L: Numbers>(mode: usize, number: &L, lane: usize) -> bool {
 ///
 /// # Errors
 /// That of the mode.
-#[inline(always)]
+#[inline(never)]
 pub fn begin<M: Mode, L: Numbers>(
     shape: Shape,
     parameters: &[L],

@@ -34,8 +34,6 @@ pub(super) fn emit_described(whole: &Whole<'_>) -> TokenStream {
         |_, mode| quote!(::dalembert::__private::modes::view_region::<#mode, _>(self, t, q)),
     );
     let inspect = ask(quote!(inspect), quote!(t, state, report));
-    let types = whole.types();
-    let names = whole.graph.modes.iter().map(|mode| &mode.scene.name);
     quote! {
         #attributes
         impl ::dalembert::Described for #own {
@@ -85,9 +83,6 @@ pub(super) fn emit_described(whole: &Whole<'_>) -> TokenStream {
                 ::core::option::Option::Some(visitor.visit(self))
             }
 
-            fn visit_scenes<Visitor: ::dalembert::describe::SceneVisitor>(visitor: &mut Visitor) {
-                #(visitor.visit::<#types>(#names);)*
-            }
         }
     }
 }

@@ -32,7 +32,7 @@ const SHARED: [(&str, &str); 4] = [
     ),
     (
         "scenes",
-        "leave them out: each mode is a scene of its own on the command line",
+        "leave them out: what a scene would leave out, a mode need not declare",
     ),
 ];
 

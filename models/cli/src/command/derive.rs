@@ -18,7 +18,8 @@ use crate::state_input::find_model;
 /// An unknown model, or whatever the generator says of its source.
 pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Result<Exit, CliError> {
     let entry = find_model(models, &args.model)?;
-    let scene = names::find("--scene", "scene", &args.scene, entry.scenes())?;
+    let scenes = entry.description().scenes.iter().copied();
+    let scene = names::find("--scene", "scene", &args.scene, scenes)?;
     let mut report =
         report(entry.description().source).map_err(|error| CliError::Derive(error.to_string()))?;
     // The model itself is the first of its scenes.
