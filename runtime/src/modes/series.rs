@@ -120,7 +120,7 @@ pub fn begin<M: Mode, L: Numbers>(
 }
 
 /// As [`TaylorField::advance`](crate::TaylorField::advance), for the lanes that are in this mode.
-#[inline(always)]
+#[inline(never)]
 #[allow(
     clippy::too_many_arguments,
     reason = "those of `advance`, and the shape"
