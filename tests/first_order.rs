@@ -5,10 +5,11 @@ use dalembert::{
     Simulation, StateVector, Stepper, System, Taylor, Tolerance, VectorField,
 };
 
-use dalembert_cli::{Exit, Streams, models};
+use dalembert_cli::{Exit, models};
 use dalembert_codegen::compile;
 use dalembert_codegen::program::{Form, Function, Input, interpret::interpret};
 use dalembert_models::DimensionlessWalker;
+use dalembert_tests::command::{self, Finished};
 use serde_json::Value;
 
 dalembert::model! {
@@ -218,37 +219,38 @@ fn integrals_are_kept() {
 }
 
 /// The command line over these models, with an input: exit, output, errors.
-fn command(line: &str, given: &str) -> (Exit, String, String) {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut given.as_bytes(),
-        output: &mut output,
-        errors: &mut errors,
-        terminal: false,
-    };
-    let words = std::iter::once("dalembert").chain(line.split_whitespace());
-    let models = models![Driven, Prey, Sawtooth];
-    let exit = dalembert_cli::run_with(words, &models, &mut streams);
-    let text = |bytes| String::from_utf8(bytes).expect("text");
-    (exit, text(output), text(errors))
+fn command(line: &str, given: &str) -> Finished {
+    command::line(&models![Driven, Prey, Sawtooth], line, given)
 }
 
 #[test]
 fn the_command_line_shows_no_mechanics() {
-    let (exit, output, errors) = command("simulate driven --csv -", "");
+    let Finished {
+        exit,
+        output,
+        errors,
+    } = command("simulate driven --csv -", "");
     assert_eq!(exit, Exit::Reached, "{errors}");
     let header = output.lines().next().expect("a header");
     assert_eq!(header, "t,x,phi,x_dot,phi_dot,speed,event");
-    let (exit, _, errors) = command("simulate driven", "");
+    let Finished { exit, errors, .. } = command("simulate driven", "");
     assert_eq!(exit, Exit::Reached);
     assert!(!errors.contains("energy"), "{errors}");
-    let (exit, output, errors) = command("simulate sawtooth --json -", "");
+    let Finished {
+        exit,
+        output,
+        errors,
+    } = command("simulate sawtooth --json -", "");
     assert_eq!(exit, Exit::Reached, "{errors}");
     let run: Value = serde_json::from_str(&output).expect("JSON");
     assert_eq!(run["events"][0]["energy"], Value::Null);
     let first = run["events"][0]["t"].as_f64().expect("a time");
     assert!((first - 1.0).abs() <= 2.0 * f64::EPSILON, "{first}");
-    let (exit, output, errors) = command("derive prey", "");
+    let Finished {
+        exit,
+        output,
+        errors,
+    } = command("derive prey", "");
     assert_eq!(exit, Exit::Reached, "{errors}");
     assert!(
         output.contains("dot(x) = ") && !output.contains("Lagrangian"),
@@ -258,7 +260,11 @@ fn the_command_line_shows_no_mechanics() {
 
 #[test]
 fn states_of_the_command_line_are_positions() {
-    let (exit, output, errors) = command("eval sawtooth", r#"[{"q": [1, 0.5, 3], "t": 2}]"#);
+    let Finished {
+        exit,
+        output,
+        errors,
+    } = command("eval sawtooth", r#"[{"q": [1, 0.5, 3], "t": 2}]"#);
     assert_eq!(exit, Exit::Reached, "{errors}");
     let states: Value = serde_json::from_str(&output).expect("JSON");
     assert_eq!(states[0]["qdot"], serde_json::json!([1.0, 1.0 / 3.0, 0.0]));
@@ -287,11 +293,12 @@ fn states_of_the_command_line_are_positions() {
         ),
     ];
     for (line, message) in refused {
-        let (exit, _, errors) = command(line, "");
+        let Finished { exit, errors, .. } = command(line, "");
         assert_eq!(exit, Exit::Refused, "{line}: {errors}");
         assert!(errors.contains(message), "{line}: {errors}");
     }
-    let (exit, _, errors) = command("eval driven", r#"[{"q": [1, 0.5], "qdot": [1, 0.5]}]"#);
+    let Finished { exit, errors, .. } =
+        command("eval driven", r#"[{"q": [1, 0.5], "qdot": [1, 0.5]}]"#);
     assert!(
         exit == Exit::Refused && errors.contains("unknown key `qdot`"),
         "{errors}"

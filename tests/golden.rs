@@ -2,7 +2,9 @@
 //! `ACCEPT=1 cargo test --release -p dalembert-tests --test golden`.
 
 use dalembert::Described;
-use dalembert_models::{ChaplyginSleigh, DoublePendulum, RollingDisk, TwoWheelsRod};
+use dalembert_models::{
+    ChaplyginSleigh, DoublePendulum, RollingDisk, TwoWheelsArrested, TwoWheelsRod,
+};
 use dalembert_tests::golden;
 
 fn expansion(source: &str) -> String {
@@ -32,4 +34,5 @@ fn expansions_are_as_stored() {
     compare::<ChaplyginSleigh>();
     compare::<DoublePendulum>();
     compare::<TwoWheelsRod>();
+    compare::<TwoWheelsArrested>();
 }

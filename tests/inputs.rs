@@ -6,8 +6,9 @@ use dalembert::{
     Actuated, Described, Dop853, EventLog, Gauss6, Outcome, Powered, Simulation, System, Taylor,
     Tolerance, VectorField, Work,
 };
-use dalembert_cli::{Entry, Exit, Streams};
+use dalembert_cli::{Exit, models};
 use dalembert_codegen::compile;
+use dalembert_tests::command::{self, Finished};
 use dalembert_tests::interpreted::compare_motion;
 use dalembert_tests::numeric::assert_near;
 
@@ -227,19 +228,8 @@ fn emitted_code_is_what_the_interpreter_executes_with_inputs() {
 }
 
 /// Runs the command line over the models of this file.
-fn command(arguments: &[&str], input: &str) -> (Exit, String, String) {
-    let models: Vec<Entry> = dalembert_cli::models![Cart];
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut std::io::Cursor::new(input),
-        output: &mut output,
-        errors: &mut errors,
-        terminal: false,
-    };
-    let line = ["dalembert"].iter().chain(arguments);
-    let exit = dalembert_cli::run_with(line, &models, &mut streams);
-    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
-    (exit, text(output), text(errors))
+fn command(arguments: &[&str], input: &str) -> Finished {
+    command::run(&models![Cart], arguments, input)
 }
 
 #[test]
@@ -250,7 +240,11 @@ fn the_command_line_holds_inputs() {
         ];
         command(&arguments, "")
     };
-    let (exit, output, errors) = run("u=0.5");
+    let Finished {
+        exit,
+        output,
+        errors,
+    } = run("u=0.5");
     assert_eq!(exit, Exit::Reached, "{errors}");
     let document: serde_json::Value = serde_json::from_str(&output).expect("JSON");
     assert_eq!(document["inputs"], serde_json::json!({ "u": 0.5 }));
@@ -275,11 +269,11 @@ fn the_command_line_holds_inputs() {
         ("v=1", "unknown input"),
         ("u", "--input"),
     ] {
-        let (exit, _, errors) = run(input);
+        let Finished { exit, errors, .. } = run(input);
         assert_eq!(exit, Exit::Refused, "{input}");
         assert!(errors.contains(expected), "{input}: {errors}");
     }
-    let (exit, _, errors) = command(
+    let Finished { exit, errors, .. } = command(
         &["ensemble", "cart", "--vary", "k=1:2:3", "--input", "u=1"],
         "",
     );
@@ -293,7 +287,11 @@ fn the_command_line_holds_inputs() {
 #[test]
 fn states_to_evaluate_have_inputs() {
     let given = r#"[{"q": [0.5], "qdot": [0], "inputs": [2]}, {"q": [0.5], "qdot": [0]}]"#;
-    let (exit, output, errors) = command(&["eval", "cart"], given);
+    let Finished {
+        exit,
+        output,
+        errors,
+    } = command(&["eval", "cart"], given);
     assert_eq!(exit, Exit::Reached, "{errors}");
     let rows: serde_json::Value = serde_json::from_str(&output).expect("JSON");
     let force = |row: usize| rows[row]["pdot"][0].as_f64().expect("a number");
@@ -304,7 +302,7 @@ fn states_to_evaluate_have_inputs() {
         1e-14,
     );
     let given = r#"[{"q": [0.5], "qdot": [0], "inputs": [2, 3]}]"#;
-    let (exit, _, errors) = command(&["eval", "cart"], given);
+    let Finished { exit, errors, .. } = command(&["eval", "cart"], given);
     assert!(
         exit == Exit::Refused && errors.contains("inputs"),
         "{errors}"

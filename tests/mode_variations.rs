@@ -8,11 +8,12 @@ use dalembert::{
     Described, Event, Mode, Observer, Scene, SceneEffects, Simulation, StateVector, System,
     Tangent, Taylor, Tolerance, Variations,
 };
-use dalembert_cli::{Exit, Streams, models, run_with};
+use dalembert_cli::{Exit, models};
 use dalembert_models::{
     BallOnSwitchingTable, FilippovField, RefractedParticle, RimlessWheelFive, RimlessWheelTen,
     SmoothAndRoughPlane, SphereInPlane, TentMap, TwoWheelsArrested,
 };
+use dalembert_tests::command;
 use dalembert_tests::reference::{number, numbers, read};
 use serde_json::Value;
 
@@ -293,7 +294,7 @@ fn refraction_has_its_derivative() {
     let point = SphereInPlane::default();
     check_differences(point, declared(&point), 4, 2.0, 2);
     let medium = Medium::default();
-    assert!(const { <medium::Thin as Mode>::CAN_LEAVE_CONSTRAINTS });
+    const { assert!(<medium::Thin as Mode>::CAN_LEAVE_CONSTRAINTS) };
     let start = state(&medium, &[-1.0, 0.5, 0.0], &[1.0, 0.25, 0.25]);
     check_differences(medium, start, 6, 2.0, 1);
 }
@@ -378,21 +379,14 @@ fn wheels_have_the_stored_cycles_and_multipliers() {
 
 #[test]
 fn the_command_finds_the_cycle_of_a_wheel() {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut std::io::empty(),
-        output: &mut output,
-        errors: &mut errors,
-        terminal: false,
-    };
-    let line = "dalembert orbit rimless_wheel_five --surface step1 --json -";
-    let exit = run_with(
-        line.split_whitespace(),
-        &models![RimlessWheelFive],
-        &mut streams,
+    let line = "orbit rimless_wheel_five --surface step1 --json -";
+    let finished = command::line(&models![RimlessWheelFive], line, "");
+    let text = finished.output;
+    assert_eq!(
+        (finished.exit, finished.errors.as_str()),
+        (Exit::Reached, ""),
+        "{text}"
     );
-    let text = String::from_utf8(output).expect("text");
-    assert_eq!((exit, errors.len()), (Exit::Reached, 0), "{text}");
     let document: Value = serde_json::from_str(&text).expect("JSON");
     let cycle = &read("rimless_wheels")["wheels"][0]["limit_cycle_xi_true"];
     let period = document["period"].as_f64().expect("a period");

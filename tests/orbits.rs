@@ -5,8 +5,9 @@ use dalembert::variations::{Orbit, OrbitError, Section, SectionError};
 use dalembert::{
     Described, Impacts, Law, Outcome, Scene, StateVector, System, Tangent, Taylor, Tolerance,
 };
-use dalembert_cli::{Exit, Streams, models, run_with};
+use dalembert_cli::{Exit, models};
 use dalembert_models::{BouncingBall, DimensionlessWalker, PointBilliard};
+use dalembert_tests::command::{self, Finished};
 use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::systems::{IntegrableBead, MovingWallDisk};
 use serde_json::Value;
@@ -246,24 +247,21 @@ fn what_is_no_orbit_is_said() {
 }
 
 /// A command line over the models of this file.
-fn run(line: &str) -> (Exit, String, String) {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut std::io::empty(),
-        output: &mut output,
-        errors: &mut errors,
-        terminal: false,
-    };
-    let words = std::iter::once("dalembert").chain(line.split_whitespace());
-    let models = models![Spring, DimensionlessWalker, PointBilliard, MovingWallDisk];
-    let exit = run_with(words, &models, &mut streams);
-    let text = |bytes| String::from_utf8(bytes).expect("text");
-    (exit, text(output), text(errors))
+fn run(line: &str) -> Finished {
+    command::line(
+        &models![Spring, DimensionlessWalker, PointBilliard, MovingWallDisk],
+        line,
+        "",
+    )
 }
 
 #[test]
 fn the_command_prints_the_orbit_and_its_multipliers() {
-    let (exit, text, errors) = run("orbit dimensionless_walker --surface step");
+    let Finished {
+        exit,
+        output: text,
+        errors,
+    } = run("orbit dimensionless_walker --surface step");
     assert_eq!((exit, errors.as_str()), (Exit::Reached, ""));
     let multipliers = text
         .lines()
@@ -275,7 +273,9 @@ fn the_command_prints_the_orbit_and_its_multipliers() {
     );
     let line =
         "orbit point_billiard --surface wall --period 2 --set ta=2 --q 0,0 --qdot 1,0 --json -";
-    let (exit, text, _) = run(line);
+    let Finished {
+        exit, output: text, ..
+    } = run(line);
     assert_eq!(exit, Exit::Reached);
     let document: Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(document["outcome"]["kind"], "done");
@@ -302,8 +302,11 @@ fn the_command_prints_the_orbit_and_its_multipliers() {
 #[test]
 fn a_section_that_is_no_wall_is_a_surface_without_effect() {
     // Periods 2 pi and 4 pi: after two passages along both, energies and phases all stay.
-    let (exit, text, errors) =
-        run("orbit spring --scene varied --surface middle --period 2 --json -");
+    let Finished {
+        exit,
+        output: text,
+        errors,
+    } = run("orbit spring --scene varied --surface middle --period 2 --json -");
     assert_eq!((exit, errors.as_str()), (Exit::Reached, ""), "{text}");
     let document: Value = serde_json::from_str(&text).expect("JSON");
     let period = document["period"].as_f64().expect("a period");
@@ -321,7 +324,9 @@ fn a_section_that_is_no_wall_is_a_surface_without_effect() {
         }
     }
     // After one passage along the other it has gone half way round.
-    let (exit, text, _) = run("orbit spring --scene varied --surface middle");
+    let Finished {
+        exit, output: text, ..
+    } = run("orbit spring --scene varied --surface middle");
     assert_eq!(exit, Exit::Reached, "{text}");
     let multipliers = text
         .lines()
@@ -337,7 +342,11 @@ fn a_section_that_is_no_wall_is_a_surface_without_effect() {
 #[test]
 fn the_command_says_what_it_cannot_do() {
     let refused = |line: &str, part: &str| {
-        let (exit, text, errors) = run(line);
+        let Finished {
+            exit,
+            output: text,
+            errors,
+        } = run(line);
         assert_eq!((exit, text.as_str()), (Exit::Refused, ""), "{line}");
         assert!(errors.contains(part), "{line}: {errors}");
     };
@@ -355,12 +364,16 @@ fn the_command_says_what_it_cannot_do() {
     );
     refused("orbit spring --surface wall --period 0", "--period");
     refused("orbit spring", "--surface");
-    let (exit, text, _) = run(
+    let Finished {
+        exit, output: text, ..
+    } = run(
         "orbit moving_wall_disk --surface leading_edge --q 0,0,0,0.3 --qdot 1.910672978251212,0.5910404133226791,8,0.5",
     );
     assert_eq!(exit, Exit::Other);
     assert!(text.contains("outcome      depends_on_time"), "{text}");
-    let (exit, text, _) = run("orbit dimensionless_walker --surface step --initial xi=5 --json -");
+    let Finished {
+        exit, output: text, ..
+    } = run("orbit dimensionless_walker --surface step --initial xi=5 --json -");
     assert_eq!(exit, Exit::Other);
     let document: Value = serde_json::from_str(&text).expect("JSON");
     assert_ne!(document["outcome"]["kind"], "done");

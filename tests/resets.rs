@@ -6,12 +6,13 @@ use dalembert::{
     Dop853, EventLog, Impacting, Outcome, Run, Scene, Simulation, StateVector, Stepper, System,
     Tolerance,
 };
-use dalembert_cli::{Exit, Streams, models};
+use dalembert_cli::{Exit, models};
 use dalembert_codegen::claims::Verdict;
 use dalembert_codegen::program::{Program, interpret::interpret};
 use dalembert_codegen::{compile, try_expand};
 use dalembert_models::WalkerFootSlip;
 use dalembert_tests::claim::Declaration;
+use dalembert_tests::command::{self, Finished};
 use dalembert_tests::interpreted::{compare_report, input};
 use dalembert_tests::sampling::states;
 use serde_json::Value;
@@ -298,25 +299,18 @@ fn a_reset_off_the_constraints_is_refused_with_a_state() {
 }
 
 /// The command line over the models of this file.
-fn command(line: &str, given: &str) -> (Exit, String, String) {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut given.as_bytes(),
-        output: &mut output,
-        errors: &mut errors,
-        terminal: false,
-    };
-    let words = std::iter::once("dalembert").chain(line.split_whitespace());
-    let models = models![Swap, MirrorSleigh, Strip];
-    let exit = dalembert_cli::run_with(words, &models, &mut streams);
-    let text = |bytes| String::from_utf8(bytes).expect("text");
-    (exit, text(output), text(errors))
+fn command(line: &str, given: &str) -> Finished {
+    command::line(&models![Swap, MirrorSleigh, Strip], line, given)
 }
 
 #[test]
 fn eval_prints_declared_resets_beside_the_impulses() {
     let given = r#"[{"q": [0, 0.5], "qdot": [-2, 3]}]"#;
-    let (exit, output, errors) = command("eval strip", given);
+    let Finished {
+        exit,
+        output,
+        errors,
+    } = command("eval strip", given);
     assert_eq!(exit, Exit::Reached, "{errors}");
     let rows: Value = serde_json::from_str(&output).expect("JSON");
     let laws = &rows[0]["impacts"]["left"]["laws"];
@@ -331,15 +325,23 @@ fn eval_prints_declared_resets_beside_the_impulses() {
 #[test]
 fn simulate_takes_reset_where_it_is_declared() {
     let start = "simulate strip --initial x=0.5,x_dot=-1,y_dot=1 --until 0.6 --json -";
-    let (exit, output, errors) = command(&format!("{start} --law left=reset"), "");
+    let Finished {
+        exit,
+        output,
+        errors,
+    } = command(&format!("{start} --law left=reset"), "");
     assert_eq!(exit, Exit::Reached, "{errors}");
     let document: Value = serde_json::from_str(&output).expect("JSON");
     assert_eq!(document["events"][0]["qdot_plus"][0], 1.25);
     assert!(document["events"][0].get("q_minus").is_none());
-    let (exit, _, _) = command(&format!("{start} --law elastic --law left=reset"), "");
+    let Finished { exit, .. } = command(&format!("{start} --law elastic --law left=reset"), "");
     assert_eq!(exit, Exit::Reached);
     let sleigh = "simulate mirror_sleigh --initial x=0.5,x_dot=1 --until 0.6 --json -";
-    let (exit, output, errors) = command(sleigh, "");
+    let Finished {
+        exit,
+        output,
+        errors,
+    } = command(sleigh, "");
     assert_eq!(exit, Exit::Reached, "{errors}");
     let document: Value = serde_json::from_str(&output).expect("JSON");
     assert_eq!(document["events"][0]["q_minus"][2], 0.0);
@@ -349,17 +351,9 @@ fn simulate_takes_reset_where_it_is_declared() {
 #[test]
 fn simulate_refuses_reset_where_it_is_not_declared() {
     let walls = "simulate bouncing_ball --until 1 --law floor=reset";
-    let mut errors = Vec::new();
-    let mut output = Vec::new();
-    let mut streams = Streams {
-        input: &mut std::io::empty(),
-        output: &mut output,
-        errors: &mut errors,
-        terminal: false,
-    };
-    let words = std::iter::once("dalembert").chain(walls.split_whitespace());
-    let exit = dalembert_cli::run_with(words, &dalembert_models::all(), &mut streams);
-    let text = String::from_utf8(errors).expect("text");
+    let Finished {
+        exit, errors: text, ..
+    } = command::line(&dalembert_models::all(), walls, "");
     assert_eq!(exit, Exit::Refused, "{text}");
     assert!(
         text.contains("--law: surface `floor` declares no reset"),
@@ -369,7 +363,11 @@ fn simulate_refuses_reset_where_it_is_not_declared() {
 
 #[test]
 fn derive_prints_the_map() {
-    let (exit, output, errors) = command("derive strip", "");
+    let Finished {
+        exit,
+        output,
+        errors,
+    } = command("derive strip", "");
     assert_eq!(exit, Exit::Reached, "{errors}");
     assert!(output.contains("surface left: reset {"), "{output}");
     assert!(output.contains("dot(x)+[left] = -al*dot(x)"), "{output}");

@@ -24,8 +24,6 @@ const TOLERANCE: f64 = 1e-11;
 /// The largest difference between a derivative and a difference of runs, in units of the largest entry of its column.
 const DIFFERENCE: f64 = 2e-9;
 
-type One = Dual<1>;
-
 dalembert::model! {
     /// A ball over a floor that swings, whose law loses speed by a parameter.
     pub SwungFloor {
@@ -79,22 +77,19 @@ fn dual<S: Described + Variational>(
     system: &S,
     state: &S::State,
     direction: &S::State,
-) -> (S::Parameters<One>, S::Row<One>) {
-    let mut parameters = S::Parameters::<One>::ZERO;
+) -> (S::Parameters<Dual>, S::Row<Dual>) {
+    let mut parameters = S::Parameters::<Dual>::ZERO;
     for (entry, value) in parameters
         .as_mut_slice()
         .iter_mut()
         .zip(system.parameters().as_slice())
     {
-        *entry = One::of(*value);
+        *entry = Dual::of(*value);
     }
-    let mut row = S::Row::<One>::ZERO;
+    let mut row = S::Row::<Dual>::ZERO;
     for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
         let (value, slope) = (state.as_slice()[i], direction.as_slice()[i]);
-        *entry = One {
-            value,
-            slopes: [slope],
-        };
+        *entry = Dual::new(value, [slope, 0.0, 0.0, 0.0]);
     }
     (parameters, row)
 }
@@ -107,11 +102,11 @@ fn unfolded<S: Described + Variational>(
     direction: &S::State,
 ) -> Vec<f64> {
     let (parameters, row) = dual(system, state, direction);
-    let velocities = S::velocities(&parameters, One::of(t), &row).expect("velocities");
+    let velocities = S::velocities(&parameters, Dual::of(t), &row).expect("velocities");
     let n = S::Vector::LEN;
     let q = row.as_slice()[..n].iter();
     q.chain(velocities.as_slice())
-        .map(|entry| entry.slopes[0])
+        .map(|entry| entry.slopes()[0])
         .collect()
 }
 
@@ -123,11 +118,11 @@ fn allowed_directions<S: Described + Variational>(
 ) -> Vec<Tangent<S>> {
     let deviation = |direction: &S::State| -> f64 {
         let (parameters, row) = dual(system, state, direction);
-        let deviations = S::deviations(&parameters, One::of(t), &row).expect("deviations");
+        let deviations = S::deviations(&parameters, Dual::of(t), &row).expect("deviations");
         deviations
             .as_slice()
             .first()
-            .map_or(0.0, |own| own.slopes[0])
+            .map_or(0.0, |own| own.slopes()[0])
     };
     let components: Vec<Tangent<S>> = (0..S::State::LEN).map(Tangent::of_component).collect();
     let deviations: Vec<f64> = components.iter().map(|own| deviation(&own.state)).collect();

@@ -22,8 +22,18 @@ pub fn models() -> Vec<Entry> {
     models
 }
 
-/// Runs `dalembert` with these arguments and this standard input.
+/// Runs `dalembert` over [`models`] with these arguments and this standard input.
 pub fn dalembert(arguments: &[&str], input: &str) -> Finished {
+    run(&models(), arguments, input)
+}
+
+/// Runs `dalembert` over these models, the arguments parted by white space.
+pub fn line(models: &[Entry], line: &str, input: &str) -> Finished {
+    run(models, &Vec::from_iter(line.split_whitespace()), input)
+}
+
+/// Runs `dalembert` over these models with these arguments and this standard input.
+pub fn run(models: &[Entry], arguments: &[&str], input: &str) -> Finished {
     let (mut output, mut errors) = (Vec::new(), Vec::new());
     let mut streams = Streams {
         input: &mut Cursor::new(input),
@@ -31,8 +41,8 @@ pub fn dalembert(arguments: &[&str], input: &str) -> Finished {
         errors: &mut errors,
         terminal: false,
     };
-    let line = ["dalembert"].iter().chain(arguments);
-    let exit = dalembert_cli::run_with(line, &models(), &mut streams);
+    let words = ["dalembert"].iter().chain(arguments);
+    let exit = dalembert_cli::run_with(words, models, &mut streams);
     Finished {
         exit,
         output: String::from_utf8_lossy(&output).into_owned(),

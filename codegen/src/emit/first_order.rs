@@ -1,9 +1,7 @@
-//! What `System` and `Lagrangian` ask for of a first-order system: its state is the position, and of mechanics there is nothing.
+//! What `System` asks for of a first-order system: its state is the position, and of mechanics there is nothing.
 
 use proc_macro2::TokenStream;
 use quote::quote;
-
-use super::Context;
 
 /// States, and momenta that are refused.
 pub(super) fn emit_state_functions() -> TokenStream {
@@ -55,35 +53,6 @@ pub(super) fn emit_energy() -> TokenStream {
     quote! {
         fn energy(&self, t: f64, state: &Self::State) -> ::core::result::Result<f64, ::dalembert::Fault> {
             ::core::result::Result::Err(::dalembert::Fault::FirstOrder)
-        }
-    }
-}
-
-/// `impl Lagrangian`: a principle that cannot be put to work.
-pub(super) fn emit_lagrangian(context: &Context<'_>) -> TokenStream {
-    let type_name = &context.names.type_name;
-    let attributes = super::attributes();
-    quote! {
-        #attributes
-        impl ::dalembert::Lagrangian for #type_name {
-            type Reactions = ::dalembert::__private::SVector<f64, 0usize>;
-
-            fn force(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Self::Vector {
-                <Self::Vector as ::dalembert::StateVector>::zeros()
-            }
-
-            fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions) -> Self::Vector {
-                <Self::Vector as ::dalembert::StateVector>::zeros()
-            }
-
-            fn constrained_velocity(
-                &self,
-                t: f64,
-                q: &Self::Vector,
-                p: &Self::Vector,
-            ) -> ::core::result::Result<(Self::Vector, Self::Reactions), ::dalembert::Fault> {
-                ::core::result::Result::Err(::dalembert::Fault::FirstOrder)
-            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `Lagrangian`: the parts of Lagrange and d'Alembert's principle.
 
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use super::function::Body;
 use super::{Context, doc};
@@ -12,7 +12,10 @@ pub(super) fn emit_lagrangian(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let m = context.model.constraints.len();
     if context.is_first_order() {
-        return super::first_order::emit_lagrangian(context);
+        return emit_refusal(
+            &context.names.type_name,
+            &quote!(::dalembert::Fault::FirstOrder),
+        );
     }
     if context.is_wrapped() {
         return emit_delegated(context);
@@ -143,6 +146,34 @@ fn emit_no_reactions() -> TokenStream {
             let state = <Self as ::dalembert::System>::state_from_momenta(self, t, q, p)?;
             let qdot = <Self as ::dalembert::System>::velocity(self, t, &state)?;
             ::core::result::Result::Ok((qdot, <Self::Reactions as ::dalembert::StateVector>::zeros()))
+        }
+    }
+}
+
+/// `impl Lagrangian` of what has no principle that can be put to work: it answers this fault.
+pub(super) fn emit_refusal(type_name: &impl ToTokens, fault: &TokenStream) -> TokenStream {
+    let attributes = super::attributes();
+    quote! {
+        #attributes
+        impl ::dalembert::Lagrangian for #type_name {
+            type Reactions = ::dalembert::__private::SVector<f64, 0usize>;
+
+            fn force(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Self::Vector {
+                <Self::Vector as ::dalembert::StateVector>::zeros()
+            }
+
+            fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions) -> Self::Vector {
+                <Self::Vector as ::dalembert::StateVector>::zeros()
+            }
+
+            fn constrained_velocity(
+                &self,
+                t: f64,
+                q: &Self::Vector,
+                p: &Self::Vector,
+            ) -> ::core::result::Result<(Self::Vector, Self::Reactions), ::dalembert::Fault> {
+                ::core::result::Result::Err(#fault)
+            }
         }
     }
 }

@@ -4,7 +4,7 @@
 //! They are generic: a program that varies nothing compiles none of them.
 
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use super::Context;
 use super::function::{Body, emit_body, joined, uses};
@@ -18,9 +18,8 @@ pub(super) fn emit_variational(context: &Context<'_>) -> TokenStream {
     }
     let type_name = &context.names.type_name;
     let (n, k) = (context.dimension(), context.motion_dimension());
-    let size = n + k;
     let parts = [
-        emit_counts(context),
+        emit_counts(context.program.impacting.is_some()),
         emit_velocities(context),
         emit_composed(context),
         emit_deviations(context),
@@ -29,29 +28,62 @@ pub(super) fn emit_variational(context: &Context<'_>) -> TokenStream {
         emit_landing(context),
         emit_declared_law(context),
     ];
-    let surfaces = context.model.surfaces.len();
-    let (off, numbers) = (off_constraints(context) + levels(context), 5 + k);
-    let attributes = super::attributes();
-    quote! {
-        #attributes
-        impl ::dalembert::Variational for #type_name {
-            type Configuration<L: ::dalembert::numbers::Numbers> = [L; #n];
-            type Clearances<L: ::dalembert::numbers::Numbers> = [L; #surfaces];
-            type Collision<L: ::dalembert::numbers::Numbers> = [L; #numbers];
-            type Deviations<L: ::dalembert::numbers::Numbers> = [L; #off];
-            type Columns = [Self::State; #size];
+    let off = off_constraints(context) + levels(context);
+    let lengths = Lengths {
+        configuration: n,
+        clearances: context.model.surfaces.len(),
+        collision: (5 + k).to_token_stream(),
+        deviations: off.to_token_stream(),
+        state: (n + k).to_token_stream(),
+    };
+    lengths.emit_implementation(type_name, &parts)
+}
 
-            fn columns() -> Self::Columns {
-                [<Self::State as ::dalembert::StateVector>::zeros(); #size]
+/// Lengths of the vectors of `Variational`.
+pub(super) struct Lengths {
+    pub configuration: usize,
+    pub clearances: usize,
+    pub collision: TokenStream,
+    pub deviations: TokenStream,
+    pub state: TokenStream,
+}
+
+impl Lengths {
+    /// `impl Variational` with these functions.
+    pub(super) fn emit_implementation(
+        &self,
+        type_name: &impl ToTokens,
+        functions: &[TokenStream],
+    ) -> TokenStream {
+        let Self {
+            configuration,
+            clearances,
+            collision,
+            deviations,
+            state,
+        } = self;
+        let attributes = super::attributes();
+        quote! {
+            #attributes
+            impl ::dalembert::Variational for #type_name {
+                type Configuration<L: ::dalembert::numbers::Numbers> = [L; #configuration];
+                type Clearances<L: ::dalembert::numbers::Numbers> = [L; #clearances];
+                type Collision<L: ::dalembert::numbers::Numbers> = [L; #collision];
+                type Deviations<L: ::dalembert::numbers::Numbers> = [L; #deviations];
+                type Columns = [Self::State; #state];
+
+                fn columns() -> Self::Columns {
+                    [<Self::State as ::dalembert::StateVector>::zeros(); #state]
+                }
+
+                type Tangents = [::dalembert::Tangent<Self>; #state];
+
+                fn tangents() -> Self::Tangents {
+                    [::dalembert::Tangent::zero(); #state]
+                }
+
+                #(#functions)*
             }
-
-            type Tangents = [::dalembert::Tangent<Self>; #size];
-
-            fn tangents() -> Self::Tangents {
-                [::dalembert::Tangent::zero(); #size]
-            }
-
-            #(#parts)*
         }
     }
 }
@@ -128,14 +160,13 @@ impl Context<'_> {
     }
 }
 
-fn emit_counts(context: &Context<'_>) -> TokenStream {
-    let counts = match context.program.impacting {
-        Some(_) => {
-            quote!(<Self as ::dalembert::Impacting>::surface_active(
-                self, surface, t, state
-            ))
-        }
-        None => quote!(true),
+/// `counts`, of a system with or without surfaces.
+pub(super) fn emit_counts(has_surfaces: bool) -> TokenStream {
+    let counts = match has_surfaces {
+        true => quote!(<Self as ::dalembert::Impacting>::surface_active(
+            self, surface, t, state
+        )),
+        false => quote!(true),
     };
     quote! {
         #[inline]

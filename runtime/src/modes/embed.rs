@@ -194,6 +194,15 @@ pub fn outside_chart<M: Mode>(model: &M::Model, state: &StateOf<M>) -> Option<us
     M::COORDINATES.get(own).copied()
 }
 
+/// The state of the model that the mode makes of these of its coordinates and their rates or momenta.
+fn made<M: Mode, V: StateVector>(
+    given: [&V; 2],
+    make: impl FnOnce(&M::Vector, &M::Vector) -> Result<M::State, Fault>,
+) -> Result<StateOf<M>, Fault> {
+    let [q, rates] = given.map(|values| gathered(values, M::COORDINATES));
+    Ok(placed::<M>(&make(&q, &rates)?))
+}
+
 /// As [`System::state_unchecked`](crate::System::state_unchecked), in this mode.
 ///
 /// # Errors
@@ -204,9 +213,9 @@ pub fn state_unchecked<M: Mode, V: StateVector>(
     q: &V,
     qdot: &V,
 ) -> Result<StateOf<M>, Fault> {
-    let [q, qdot] = [q, qdot].map(|values| gathered(values, M::COORDINATES));
-    let own = M::of(model).state_unchecked(t, &q, &qdot)?;
-    Ok(placed::<M>(&own))
+    made::<M, V>([q, qdot], |q, qdot| {
+        M::of(model).state_unchecked(t, q, qdot)
+    })
 }
 
 /// As [`System::state_from_momenta`](crate::System::state_from_momenta), in this mode.
@@ -219,9 +228,7 @@ pub fn state_from_momenta<M: Mode, V: StateVector>(
     q: &V,
     p: &V,
 ) -> Result<StateOf<M>, Fault> {
-    let [q, p] = [q, p].map(|values| gathered(values, M::COORDINATES));
-    let own = M::of(model).state_from_momenta(t, &q, &p)?;
-    Ok(placed::<M>(&own))
+    made::<M, V>([q, p], |q, p| M::of(model).state_from_momenta(t, q, p))
 }
 
 /// As [`System::state_nearest`](crate::System::state_nearest), in this mode.
@@ -234,9 +241,7 @@ pub fn state_nearest<M: Mode, V: StateVector>(
     q: &V,
     qdot: &V,
 ) -> Result<StateOf<M>, Fault> {
-    let [q, qdot] = [q, qdot].map(|values| gathered(values, M::COORDINATES));
-    let own = M::of(model).state_nearest(t, &q, &qdot)?;
-    Ok(placed::<M>(&own))
+    made::<M, V>([q, qdot], |q, qdot| M::of(model).state_nearest(t, q, qdot))
 }
 
 /// As [`System::admit`](crate::System::admit), in this mode. A constraint is named by its place in the mode.

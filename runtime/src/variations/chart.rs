@@ -1,6 +1,6 @@
 //! Directions along a section, and equations between them. Matrices are arrays of columns.
 
-use super::{SIDE, Side, Tangent, Undefined};
+use super::{DIRECTIONS, Dual, Tangent, Undefined};
 use crate::contract::Variational;
 use crate::math;
 use crate::numbers::{Numbers, Row};
@@ -52,7 +52,7 @@ impl<Sys: Variational> Fixed<Sys> {
     ) -> Result<Self, Undefined> {
         let parameters = dual_parameters(system, &[]);
         let row = dual_state::<Sys>(point, &[]);
-        let found = Sys::deviations(&parameters, Side::of(t), &row)?;
+        let found = Sys::deviations(&parameters, Dual::of(t), &row)?;
         let mut kept = Sys::Deviations::<f64>::ZERO;
         for (own, found) in kept.as_mut_slice().iter_mut().zip(found.as_slice()) {
             *own = found.value;
@@ -67,16 +67,16 @@ impl<Sys: Variational> Fixed<Sys> {
         t: f64,
         point: &Sys::State,
         along: &[Tangent<Sys>],
-        mut take: impl FnMut(usize, Side),
+        mut take: impl FnMut(usize, Dual),
     ) -> Result<(), Undefined> {
         let parameters = dual_parameters(system, along);
         let row = dual_state(point, along);
-        let gaps = Sys::clearances(&parameters, Side::of(t), &row)?;
+        let gaps = Sys::clearances(&parameters, Dual::of(t), &row)?;
         take(0, gaps.as_slice()[self.surface]);
-        let deviations = Sys::deviations(&parameters, Side::of(t), &row)?;
+        let deviations = Sys::deviations(&parameters, Dual::of(t), &row)?;
         let kept = deviations.as_slice().iter().zip(self.kept.as_slice());
         for (k, (own, kept)) in kept.enumerate() {
-            take(k + 1, *own - Side::of(*kept));
+            take(k + 1, *own - Dual::of(*kept));
         }
         Ok(())
     }
@@ -94,8 +94,8 @@ impl<Sys: Variational> Chart<Sys> {
         let mut frame = Sys::columns();
         let mut values = Sys::State::zeros();
         let mut equations = 0;
-        for first in (0..Sys::State::LEN).step_by(SIDE) {
-            let along: [Tangent<Sys>; SIDE] = core::array::from_fn(|k| {
+        for first in (0..Sys::State::LEN).step_by(DIRECTIONS) {
+            let along: [Tangent<Sys>; DIRECTIONS] = core::array::from_fn(|k| {
                 let mut tangent = Tangent::<Sys>::of_component(first + k);
                 for (own, scale) in tangent
                     .state
@@ -111,7 +111,7 @@ impl<Sys: Variational> Chart<Sys> {
                 equations = equations.max(equation + 1);
                 values.as_mut_slice()[equation] = excess.value;
                 let row = frame.as_mut()[equation].as_mut_slice();
-                for (entry, slope) in row.iter_mut().skip(first).zip(excess.slopes) {
+                for (entry, slope) in row.iter_mut().skip(first).zip(excess.slopes()) {
                     *entry = slope;
                 }
             })?;

@@ -2,81 +2,120 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
+use wide::f64x4;
+
 use crate::math;
 use crate::numbers::Numbers;
 
-/// A number and its derivatives along `K` directions.
+/// Directions whose derivatives are carried side by side.
+pub const DIRECTIONS: usize = 4;
+
+/// A number and its derivatives along [`DIRECTIONS`].
 ///
 /// Every operation of [`Numbers`] carries the derivatives along by its own rule, so that a function written over
 /// [`Numbers`] gives its differential with its value, exact to rounding. The value has the bits that `f64` has.
+// NOTE: a vector, not an array: loops or numbers one by one in each operation of a long series keep compilers busy for minutes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Dual<const K: usize> {
+pub struct Dual {
     /// The number.
     pub value: f64,
-    /// Its derivative along each direction.
-    pub slopes: [f64; K],
+    slopes: f64x4,
 }
 
-impl<const K: usize> Dual<K> {
+/// This factor along each direction.
+#[inline(always)]
+fn all(factor: f64) -> f64x4 {
+    // NOTE: written out, since `splat` is a loop until it is optimised.
+    f64x4::new([factor, factor, factor, factor])
+}
+
+/// `a*b + c` along each direction, fused where [`math::mul_add`] is.
+#[inline(always)]
+fn fused(a: f64x4, b: f64, c: f64x4) -> f64x4 {
+    #[cfg(all(target_feature = "fma", feature = "std", not(feature = "strict")))]
+    {
+        a.mul_add(all(b), c)
+    }
+    #[cfg(not(all(target_feature = "fma", feature = "std", not(feature = "strict"))))]
+    {
+        a * all(b) + c
+    }
+}
+
+impl Dual {
     /// A number that does not change along any direction.
     pub const fn constant(value: f64) -> Self {
         Self {
             value,
-            slopes: [0.0; K],
+            slopes: f64x4::ZERO,
         }
+    }
+
+    /// A number with its derivative along each direction.
+    #[inline]
+    pub const fn new(value: f64, slopes: [f64; DIRECTIONS]) -> Self {
+        Self {
+            value,
+            slopes: f64x4::new(slopes),
+        }
+    }
+
+    /// Its derivative along each direction.
+    #[inline]
+    pub fn slopes(&self) -> [f64; DIRECTIONS] {
+        self.slopes.to_array()
     }
 
     /// A function's value here, with its derivative here.
     #[inline(always)]
     fn chain(self, value: f64, derivative: f64) -> Self {
         // NOTE: what does not depend on a direction has no derivative along it, however steep the function is.
-        let slopes = self.slopes.map(|slope| match slope == 0.0 {
-            true => 0.0,
-            false => derivative * slope,
-        });
-        Self { value, slopes }
-    }
-
-    #[inline(always)]
-    fn combined(self, other: Self, value: f64, rule: impl Fn(f64, f64) -> f64) -> Self {
-        let mut slopes = [0.0; K];
-        for (i, slope) in slopes.iter_mut().enumerate() {
-            *slope = rule(self.slopes[i], other.slopes[i]);
+        let moves = self.slopes.simd_ne(f64x4::ZERO);
+        Self {
+            value,
+            slopes: moves & (self.slopes * all(derivative)),
         }
-        Self { value, slopes }
     }
 }
 
-impl<const K: usize> Add for Dual<K> {
+impl Add for Dual {
     type Output = Self;
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.combined(other, self.value + other.value, |a, b| a + b)
+        Self {
+            value: self.value + other.value,
+            slopes: self.slopes + other.slopes,
+        }
     }
 }
 
-impl<const K: usize> Sub for Dual<K> {
+impl Sub for Dual {
     type Output = Self;
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.combined(other, self.value - other.value, |a, b| a - b)
+        Self {
+            value: self.value - other.value,
+            slopes: self.slopes - other.slopes,
+        }
     }
 }
 
-impl<const K: usize> Mul for Dual<K> {
+impl Mul for Dual {
     type Output = Self;
 
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        self.combined(other, self.value * other.value, |a, b| {
-            math::mul_add(a, other.value, self.value * b)
-        })
+        let of_other = other.slopes * all(self.value);
+        Self {
+            value: self.value * other.value,
+            slopes: fused(self.slopes, other.value, of_other),
+        }
     }
 }
 
-impl<const K: usize> Div for Dual<K> {
+impl Div for Dual {
     type Output = Self;
 
     // The derivative of a quotient has other operations in it.
@@ -84,23 +123,26 @@ impl<const K: usize> Div for Dual<K> {
     #[inline(always)]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        self.combined(other, value, |a, b| (a - value * b) / other.value)
+        Self {
+            value,
+            slopes: (self.slopes - other.slopes * all(value)) / all(other.value),
+        }
     }
 }
 
-impl<const K: usize> Neg for Dual<K> {
+impl Neg for Dual {
     type Output = Self;
 
     #[inline(always)]
     fn neg(self) -> Self {
         Self {
             value: -self.value,
-            slopes: self.slopes.map(|slope| -slope),
+            slopes: -self.slopes,
         }
     }
 }
 
-impl<const K: usize> Numbers for Dual<K> {
+impl Numbers for Dual {
     const LANES: usize = 1;
     const ZERO: Self = Self::constant(0.0);
 
@@ -121,14 +163,9 @@ impl<const K: usize> Numbers for Dual<K> {
 
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
-        let mut slopes = [0.0; K];
-        for (i, slope) in slopes.iter_mut().enumerate() {
-            let of_b = math::mul_add(self.value, b.slopes[i], c.slopes[i]);
-            *slope = math::mul_add(self.slopes[i], b.value, of_b);
-        }
         Self {
             value: math::mul_add(self.value, b.value, c.value),
-            slopes,
+            slopes: fused(self.slopes, b.value, fused(b.slopes, self.value, c.slopes)),
         }
     }
 
@@ -163,9 +200,10 @@ impl<const K: usize> Numbers for Dual<K> {
     fn atan2(self, x: Self) -> Self {
         let squared = self.value * self.value + x.value * x.value;
         let (along_y, along_x) = (x.value / squared, self.value / squared);
-        self.combined(x, math::atan2(self.value, x.value), |y, x| {
-            along_y * y - along_x * x
-        })
+        Self {
+            value: math::atan2(self.value, x.value),
+            slopes: self.slopes * all(along_y) - x.slopes * all(along_x),
+        }
     }
 
     #[inline(always)]
@@ -246,18 +284,15 @@ impl<const K: usize> Numbers for Dual<K> {
 mod tests {
     use super::*;
 
-    type One = Dual<1>;
-
     /// The derivative of a function against a central difference, and its value against that of `f64`.
-    fn check(name: &str, x: f64, function: impl Fn(One) -> One, plain: impl Fn(f64) -> f64) {
-        let found = function(Dual {
-            value: x,
-            slopes: [1.0],
-        });
+    fn check(name: &str, x: f64, function: impl Fn(Dual) -> Dual, plain: impl Fn(f64) -> f64) {
+        let found = function(Dual::new(x, [1.0, 0.0, 0.0, -2.0]));
         assert_eq!(found.value.to_bits(), plain(x).to_bits(), "{name} at {x}");
         let step = 1e-5;
         let expected = (plain(x + step) - plain(x - step)) / (2.0 * step);
-        let error = (found.slopes[0] - expected).abs();
+        let [along, .., back] = found.slopes();
+        assert!((back + 2.0 * along).abs() < 1e-12 * (1.0 + along.abs()));
+        let error = (along - expected).abs();
         assert!(
             error < 1e-8 * (1.0 + expected.abs()),
             "{name} at {x}: {found:?}, {expected}"
@@ -282,7 +317,7 @@ mod tests {
     fn operations_of_two_carry_their_derivatives() {
         macro_rules! operations {
             ($($name:literal: |$x:ident| $expression:expr),* $(,)?) => {
-                $(check($name, 0.7, |$x: One| $expression(One::of), |$x: f64| $expression(|own: f64| own));)*
+                $(check($name, 0.7, |$x: Dual| $expression(Dual::of), |$x: f64| $expression(|own: f64| own));)*
             };
         }
         type Of<L> = fn(f64) -> L;
@@ -304,11 +339,7 @@ mod tests {
 
     #[test]
     fn a_direction_that_changes_nothing_stays_out_of_steep_functions() {
-        let root = Dual::<2> {
-            value: 0.0,
-            slopes: [0.0, 1.0],
-        }
-        .sqrt();
-        assert_eq!(root.slopes, [0.0, f64::INFINITY]);
+        let root = Dual::new(0.0, [0.0, 1.0, 0.0, -1.0]).sqrt();
+        assert_eq!(root.slopes(), [0.0, f64::INFINITY, 0.0, f64::NEG_INFINITY]);
     }
 }

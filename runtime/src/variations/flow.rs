@@ -1,6 +1,6 @@
 //! Variations along smooth motion.
 
-use super::{SIDE, Side, Tangent, Undefined};
+use super::{DIRECTIONS, Dual, Tangent, Undefined};
 use crate::contract::Variational;
 use crate::integrate::controller::least_step;
 use crate::integrate::order::order;
@@ -30,7 +30,7 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Power series of the motion with their derivatives.
 pub(super) struct Flow<Sys: Variational> {
-    expansion: Expansion<Sys, Side>,
+    expansion: Expansion<Sys, Dual>,
     order: usize,
     unit: f64,
     scale: Sys::State,
@@ -61,7 +61,7 @@ impl<Sys: Variational> Flow<Sys> {
         if tangents.is_empty() {
             return self.follow_some(system, t, start, &mut []);
         }
-        for some in tangents.chunks_mut(SIDE) {
+        for some in tangents.chunks_mut(DIRECTIONS) {
             self.follow_some(system, t, start, some)?;
         }
         Ok(())
@@ -81,7 +81,7 @@ impl<Sys: Variational> Flow<Sys> {
         while t < end {
             let theta = self.step(&parameters, t, &state, end - t)?;
             self.look_for_grazes(system, t, theta)?;
-            let [change, _] = self.expansion.change(self.order, Side::of(theta));
+            let [change, _] = self.expansion.change(self.order, Dual::of(theta));
             for (entry, change) in state.as_mut_slice().iter_mut().zip(change.as_slice()) {
                 *entry = *entry + *change;
             }
@@ -95,7 +95,7 @@ impl<Sys: Variational> Flow<Sys> {
                 .iter_mut()
                 .zip(state.as_slice())
             {
-                *own = entry.slopes[k];
+                *own = entry.slopes()[k];
             }
         }
         Ok(())
@@ -104,15 +104,15 @@ impl<Sys: Variational> Flow<Sys> {
     /// Expands the motion from a state; the part of `length` that its series reach, in units of time.
     fn step(
         &mut self,
-        parameters: &Sys::Parameters<Side>,
+        parameters: &Sys::Parameters<Dual>,
         t: f64,
-        state: &Sys::Row<Side>,
+        state: &Sys::Row<Dual>,
         length: f64,
     ) -> Result<f64, Undefined> {
-        self.expansion.begin(parameters, Side::of(t), state)?;
+        self.expansion.begin(parameters, Dual::of(t), state)?;
         loop {
             self.expansion
-                .advance(parameters, Side::of(self.unit), self.order, state);
+                .advance(parameters, Dual::of(self.unit), self.order, state);
             if let Some(theta) = self.reach(length / self.unit) {
                 return Ok(theta);
             }
@@ -125,13 +125,13 @@ impl<Sys: Variational> Flow<Sys> {
 
     /// The part of `wished` units of time that the series reach; `None` where they must be made in a shorter unit.
     fn reach(&self, wished: f64) -> Option<f64> {
-        let mut sizes = [[0.0; SIDE + 1]; LENGTH];
+        let mut sizes = [[0.0; DIRECTIONS + 1]; LENGTH];
         for (sizes, row) in sizes
             .iter_mut()
             .zip(&self.expansion.coefficients[..=self.order])
         {
             for (entry, scale) in row.as_slice().iter().zip(self.scale.as_slice()) {
-                let values = entry.slopes.iter().chain([&entry.value]);
+                let values = entry.slopes().into_iter().chain([entry.value]);
                 for (size, value) in sizes.iter_mut().zip(values) {
                     if !value.is_finite() {
                         return None;
@@ -141,7 +141,7 @@ impl<Sys: Variational> Flow<Sys> {
             }
         }
         let mut theta = wished.min(LONGEST);
-        while (0..=SIDE).any(|k| !is_small(|j| sizes[j][k], self.order, theta)) {
+        while (0..=DIRECTIONS).any(|k| !is_small(|j| sizes[j][k], self.order, theta)) {
             theta *= SHRINK;
             if theta < 1.0 / LONGEST {
                 return None;
@@ -152,7 +152,7 @@ impl<Sys: Variational> Flow<Sys> {
 
     /// Refuses a step in which the gap of a surface falls to 0 within rounding, and rises.
     fn look_for_grazes(&self, system: &Sys, t: f64, theta: f64) -> Result<(), Undefined> {
-        for surface in 0..Sys::Gaps::<Side>::LEN {
+        for surface in 0..Sys::Gaps::<Dual>::LEN {
             let mut falls_from = None;
             for place in 0..=PLACES {
                 let part = theta * place as f64 / PLACES as f64;
@@ -227,12 +227,21 @@ fn is_small(size: impl Fn(usize) -> f64, order: usize, theta: f64) -> bool {
     true
 }
 
+/// A number that changes along each tangent at the rate `of` it; [`DIRECTIONS`] tangents at most.
+fn along<T>(value: f64, tangents: &[T], of: impl Fn(&T) -> f64) -> Dual {
+    let mut slopes = [0.0; DIRECTIONS];
+    for (slope, tangent) in slopes.iter_mut().zip(tangents) {
+        *slope = of(tangent);
+    }
+    Dual::new(value, slopes)
+}
+
 /// The parameters with their variations.
 pub(super) fn dual_parameters<Sys: Variational>(
     system: &Sys,
     tangents: &[Tangent<Sys>],
-) -> Sys::Parameters<Side> {
-    let mut row = Sys::Parameters::<Side>::ZERO;
+) -> Sys::Parameters<Dual> {
+    let mut row = Sys::Parameters::<Dual>::ZERO;
     let values = system.parameters();
     for (i, (entry, value)) in row
         .as_mut_slice()
@@ -240,10 +249,7 @@ pub(super) fn dual_parameters<Sys: Variational>(
         .zip(values.as_slice())
         .enumerate()
     {
-        entry.value = *value;
-        for (slope, tangent) in entry.slopes.iter_mut().zip(tangents) {
-            *slope = tangent.parameters.as_slice()[i];
-        }
+        *entry = along(*value, tangents, |tangent| tangent.parameters.as_slice()[i]);
     }
     row
 }
@@ -252,18 +258,15 @@ pub(super) fn dual_parameters<Sys: Variational>(
 pub(super) fn dual_state<Sys: Variational>(
     state: &Sys::State,
     tangents: &[Tangent<Sys>],
-) -> Sys::Row<Side> {
-    let mut row = Sys::Row::<Side>::ZERO;
+) -> Sys::Row<Dual> {
+    let mut row = Sys::Row::<Dual>::ZERO;
     for (i, (entry, value)) in row
         .as_mut_slice()
         .iter_mut()
         .zip(state.as_slice())
         .enumerate()
     {
-        entry.value = *value;
-        for (slope, tangent) in entry.slopes.iter_mut().zip(tangents) {
-            *slope = tangent.state.as_slice()[i];
-        }
+        *entry = along(*value, tangents, |tangent| tangent.state.as_slice()[i]);
     }
     row
 }

@@ -28,7 +28,7 @@ mod transition;
 use core::fmt;
 use core::ops::ControlFlow;
 
-pub use dual::Dual;
+pub use dual::{DIRECTIONS, Dual};
 pub use eigenvalues::Multipliers;
 pub use orbit::{Orbit, OrbitError};
 pub use section::{Arrival, Section, SectionError};
@@ -38,12 +38,6 @@ use crate::contract::Variational;
 use crate::error::Fault;
 use crate::record::{Event, Hold, Observer, Segment};
 use flow::Flow;
-
-/// Directions that are carried side by side.
-const SIDE: usize = 3;
-
-/// What variations are computed in.
-type Side = Dual<SIDE>;
 
 /// Why a run has no derivative, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]

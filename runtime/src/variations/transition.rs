@@ -1,7 +1,7 @@
 //! The augmented differential of a transition: what it makes of variations at fixed times.
 
 use super::flow::{dual_parameters, dual_state};
-use super::{SIDE, Side, Tangent, Undefined};
+use super::{DIRECTIONS, Dual, Tangent, Undefined};
 use crate::contract::Variational;
 use crate::error::Fault;
 use crate::impacts::law::Law;
@@ -30,15 +30,15 @@ pub(super) fn cross<Sys: Variational>(
     let arrival = arrival(system, event)?;
     let mut rate = Sys::State::zeros();
     system.rate(event.t, &event.after, &mut rate)?;
-    for some in tangents.chunks_mut(SIDE) {
+    for some in tangents.chunks_mut(DIRECTIONS) {
         let parameters = dual_parameters(system, some);
         let (t, state) = arrival.met(event, &parameters, some)?;
-        let after = struck::<Sys, Side>(system, &parameters, event, t, &state)?;
+        let after = struck::<Sys, Dual>(system, &parameters, event, t, &state)?;
         check_lawful(event, after.as_slice())?;
         for (k, tangent) in some.iter_mut().enumerate() {
             let parts = after.as_slice().iter().zip(rate.as_slice());
             for (own, (entry, rate)) in tangent.state.as_mut_slice().iter_mut().zip(parts) {
-                *own = entry.slopes[k] - rate * t.slopes[k];
+                *own = entry.slopes()[k] - rate * t.slopes()[k];
             }
         }
         check_finite(event, some)?;
@@ -53,7 +53,7 @@ pub(super) fn arrive<Sys: Variational>(
     tangents: &mut [Tangent<Sys>],
 ) -> Result<(), Undefined> {
     let arrival = arrival(system, event)?;
-    for some in tangents.chunks_mut(SIDE) {
+    for some in tangents.chunks_mut(DIRECTIONS) {
         let parameters = dual_parameters(system, some);
         let (_, state) = arrival.met(event, &parameters, some)?;
         for (k, tangent) in some.iter_mut().enumerate() {
@@ -63,7 +63,7 @@ pub(super) fn arrive<Sys: Variational>(
                 .iter_mut()
                 .zip(state.as_slice())
             {
-                *own = entry.slopes[k];
+                *own = entry.slopes()[k];
             }
         }
         check_finite(event, some)?;
@@ -80,15 +80,22 @@ pub(super) fn depends_on_time<Sys: Variational>(
     event: &Event<Sys::State>,
 ) -> Result<bool, Undefined> {
     let parameters = dual_parameters(system, &[]);
-    let mut t = Side::of(SOME_TIME);
-    t.slopes[0] = 1.0;
+    let t = passing(SOME_TIME);
     let state = dual_state::<Sys>(&event.before, &[]);
-    let mut firsts = Sys::Firsts::<Side>::ZERO;
+    let mut firsts = Sys::Firsts::<Dual>::ZERO;
     Sys::begin(&parameters, t, &state, &mut firsts)?;
     let gaps = Sys::clearances(&parameters, t, &state)?;
-    let after = struck::<Sys, Side>(system, &parameters, event, t, &state)?;
+    let after = struck::<Sys, Dual>(system, &parameters, event, t, &state)?;
     let parts = [firsts.as_slice(), gaps.as_slice(), after.as_slice()];
-    Ok(parts.into_iter().flatten().any(|own| own.slopes[0] != 0.0))
+    Ok(parts
+        .into_iter()
+        .flatten()
+        .any(|own| own.slopes()[0] != 0.0))
+}
+
+/// A time that passes along the first direction.
+fn passing(t: f64) -> Dual {
+    Dual::new(t, [1.0, 0.0, 0.0, 0.0])
 }
 
 /// Refuses what has no derivative; else what is known of the arrival.
@@ -120,11 +127,10 @@ fn gap_rate<Sys: Variational>(
 ) -> Result<f64, Fault> {
     let along = [Tangent::of_state(*rate)];
     let parameters = dual_parameters(system, &along);
-    let mut t = Side::of(event.t);
-    t.slopes[0] = 1.0;
+    let t = passing(event.t);
     let state = dual_state(&event.before, &along);
     let gaps = Sys::clearances(&parameters, t, &state)?;
-    Ok(gaps.as_slice()[event.surface].slopes[0])
+    Ok(gaps.as_slice()[event.surface].slopes()[0])
 }
 
 impl<Sys: Variational> Arrival<Sys> {
@@ -132,21 +138,23 @@ impl<Sys: Variational> Arrival<Sys> {
     fn met(
         &self,
         event: &Event<Sys::State>,
-        parameters: &Sys::Parameters<Side>,
+        parameters: &Sys::Parameters<Dual>,
         tangents: &[Tangent<Sys>],
-    ) -> Result<(Side, Sys::Row<Side>), Undefined> {
-        let mut t = Side::of(event.t);
+    ) -> Result<(Dual, Sys::Row<Dual>), Undefined> {
+        let t = Dual::of(event.t);
         let mut state = dual_state(&event.before, tangents);
         let gaps = Sys::clearances(parameters, t, &state)?;
         let gap = &gaps.as_slice()[event.surface];
-        t.slopes = gap.slopes.map(|slope| -slope / self.gap_rate);
+        let later = gap.slopes().map(|slope| -slope / self.gap_rate);
         let parts = state.as_mut_slice().iter_mut().zip(self.rate.as_slice());
         for (entry, rate) in parts {
-            for (slope, later) in entry.slopes.iter_mut().zip(t.slopes) {
+            let mut slopes = entry.slopes();
+            for (slope, later) in slopes.iter_mut().zip(later) {
                 *slope += rate * later;
             }
+            *entry = Dual::new(entry.value, slopes);
         }
-        Ok((t, state))
+        Ok((Dual::new(event.t, later), state))
     }
 }
 
@@ -182,7 +190,7 @@ fn struck<Sys: Variational, L: Numbers>(
 }
 
 /// Whether the run did what was differentiated.
-fn check_lawful<S: StateVector>(event: &Event<S>, after: &[Side]) -> Result<(), Undefined> {
+fn check_lawful<S: StateVector>(event: &Event<S>, after: &[Dual]) -> Result<(), Undefined> {
     let states = [&event.before, &event.after];
     let components = states.into_iter().flat_map(StateVector::as_slice);
     let size = components.fold(0.0, |size, value| f64::max(size, value.abs()));

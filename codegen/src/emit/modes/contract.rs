@@ -1,12 +1,12 @@
 //! The contract of the whole: each trait asks the mode of the state.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Whole;
 use crate::emit::attributes;
 use crate::emit::function::Body;
-use crate::model::{Law, Mode, Transition};
+use crate::emit::lagrangian::emit_refusal;
 
 /// Lengths of the vectors of the whole, from those of its modes.
 pub(super) fn emit_sizes(whole: &Whole<'_>) -> TokenStream {
@@ -231,11 +231,33 @@ pub(super) fn emit_system(whole: &Whole<'_>) -> TokenStream {
     let attributes = attributes();
     let n = whole.graph.coordinates.len();
     let types = whole.types();
+    let readings = emit_readings(whole);
+    let makers = emit_makers(whole);
+    let lagrangian = emit_refusal(&own, &quote!(::dalembert::Fault::SeveralModes));
+    quote! {
+        #attributes
+        impl ::dalembert::System for #own {
+            type Vector = ::dalembert::__private::SVector<f64, #n>;
+            type Impulse = ::dalembert::__private::SVector<f64, __IMPULSE>;
+
+            #readings
+
+            #makers
+
+            fn check_parameters(&self) -> ::core::result::Result<(), ::dalembert::ParameterError> {
+                #(::dalembert::System::check_parameters(&<#types as ::dalembert::Mode>::of(self))?;)*
+                ::core::result::Result::Ok(())
+            }
+        }
+
+        #lagrangian
+    }
+}
+
+/// What is read off a state, or changed in it: its mode answers.
+fn emit_readings(whole: &Whole<'_>) -> TokenStream {
     let ask = |function: TokenStream, arguments: TokenStream| {
         whole.of_state(|_, mode| quote!(::dalembert::__private::modes::#function::<#mode, _>(self, #arguments)))
-    };
-    let make = |function: TokenStream, arguments: TokenStream| {
-        whole.of_start(|_, mode| quote!(::dalembert::__private::modes::#function::<#mode, _>(self, #arguments)))
     };
     let position = ask(quote!(position), quote!(state));
     let velocity = ask(quote!(velocity), quote!(t, state));
@@ -251,324 +273,67 @@ pub(super) fn emit_system(whole: &Whole<'_>) -> TokenStream {
     let motion = whole.of_state(
         |_, mode| quote!(<<#mode as ::dalembert::System>::Vector as ::dalembert::StateVector>::LEN),
     );
+    let vector = quote!(::core::result::Result<Self::Vector, ::dalembert::Fault>);
+    quote! {
+        #[inline]
+        fn position(&self, state: &Self::State) -> Self::Vector { #position }
+
+        #[inline]
+        fn velocity(&self, t: f64, state: &Self::State) -> #vector { #velocity }
+
+        fn momentum(&self, t: f64, state: &Self::State) -> #vector { #momentum }
+
+        #[inline]
+        fn energy(&self, t: f64, state: &Self::State) -> ::core::result::Result<f64, ::dalembert::Fault> { #energy }
+
+        #[inline]
+        fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse) { #kick }
+
+        fn motion_start(&self, state: &Self::State) -> usize { #motion }
+
+        #[inline]
+        fn mode(&self, state: &Self::State) -> usize { ::dalembert::__private::modes::index(state) }
+
+        #[inline]
+        fn outside_chart(&self, state: &Self::State) -> ::core::option::Option<usize> { #chart }
+    }
+}
+
+/// What makes states, or judges what they are made of: the mode in which motion starts answers.
+fn emit_makers(whole: &Whole<'_>) -> TokenStream {
+    let make = |function: TokenStream, arguments: TokenStream| {
+        whole.of_start(|_, mode| quote!(::dalembert::__private::modes::#function::<#mode, _>(self, #arguments)))
+    };
     let unchecked = make(quote!(state_unchecked), quote!(t, q, qdot));
     let from_momenta = make(quote!(state_from_momenta), quote!(t, q, p));
     let nearest = make(quote!(state_nearest), quote!(t, q, qdot));
     let admit = make(quote!(admit), quote!(t, q, qdot));
     let complete = make(quote!(complete_velocity), quote!(t, q, qdot, named));
     let fault = quote!(::core::result::Result<Self::State, ::dalembert::Fault>);
-    let vector = quote!(::core::result::Result<Self::Vector, ::dalembert::Fault>);
     quote! {
-        #attributes
-        impl ::dalembert::System for #own {
-            type Vector = ::dalembert::__private::SVector<f64, #n>;
-            type Impulse = ::dalembert::__private::SVector<f64, __IMPULSE>;
+        fn state_unchecked(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> #fault { #unchecked }
 
-            #[inline]
-            fn position(&self, state: &Self::State) -> Self::Vector { #position }
+        fn state_from_momenta(&self, t: f64, q: &Self::Vector, p: &Self::Vector) -> #fault { #from_momenta }
 
-            #[inline]
-            fn velocity(&self, t: f64, state: &Self::State) -> #vector { #velocity }
+        fn state_nearest(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> #fault { #nearest }
 
-            fn momentum(&self, t: f64, state: &Self::State) -> #vector { #momentum }
-
-            fn state_unchecked(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> #fault { #unchecked }
-
-            fn state_from_momenta(&self, t: f64, q: &Self::Vector, p: &Self::Vector) -> #fault { #from_momenta }
-
-            #[inline]
-            fn energy(&self, t: f64, state: &Self::State) -> ::core::result::Result<f64, ::dalembert::Fault> { #energy }
-
-            #[inline]
-            fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse) { #kick }
-
-            fn check_parameters(&self) -> ::core::result::Result<(), ::dalembert::ParameterError> {
-                #(::dalembert::System::check_parameters(&<#types as ::dalembert::Mode>::of(self))?;)*
-                ::core::result::Result::Ok(())
-            }
-
-            fn motion_start(&self, state: &Self::State) -> usize { #motion }
-
-            #[inline]
-            fn mode(&self, state: &Self::State) -> usize { ::dalembert::__private::modes::index(state) }
-
-            #[inline]
-            fn outside_chart(&self, state: &Self::State) -> ::core::option::Option<usize> { #chart }
-
-            fn admit(
-                &self,
-                t: f64,
-                q: &Self::Vector,
-                qdot: &Self::Vector,
-            ) -> ::core::result::Result<(), ::dalembert::StateError> {
-                #admit
-            }
-
-            fn state_nearest(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> #fault { #nearest }
-
-            fn complete_velocity(
-                &self,
-                t: f64,
-                q: &Self::Vector,
-                qdot: &Self::Vector,
-                named: &Self::Vector,
-            ) -> ::core::result::Result<Self::Vector, ::dalembert::StateError> {
-                #complete
-            }
-        }
-
-        #attributes
-        impl ::dalembert::Lagrangian for #own {
-            type Reactions = ::dalembert::__private::SVector<f64, 0usize>;
-
-            fn force(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Self::Vector {
-                <Self::Vector as ::dalembert::StateVector>::zeros()
-            }
-
-            fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions) -> Self::Vector {
-                <Self::Vector as ::dalembert::StateVector>::zeros()
-            }
-
-            fn constrained_velocity(
-                &self,
-                t: f64,
-                q: &Self::Vector,
-                p: &Self::Vector,
-            ) -> ::core::result::Result<(Self::Vector, Self::Reactions), ::dalembert::Fault> {
-                ::core::result::Result::Err(::dalembert::Fault::SeveralModes)
-            }
-        }
-    }
-}
-
-/// `impl Impacting`, if there are surfaces or transitions.
-pub(super) fn emit_impacting(whole: &Whole<'_>) -> TokenStream {
-    if whole.graph.surfaces.is_empty() {
-        return TokenStream::new();
-    }
-    let own = whole.type_name();
-    let attributes = attributes();
-    let count = whole.graph.surfaces.len();
-    let ask = |function: TokenStream, arguments: TokenStream, without: TokenStream| {
-        whole.of_state(|mode, own| match mode.model.surfaces.is_empty() {
-            true => without.clone(),
-            false => quote!(::dalembert::__private::modes::#function::<#own, _>(self, #arguments)),
-        })
-    };
-    let zeros = quote!(<Self::Gaps as ::dalembert::StateVector>::zeros());
-    let no_surface = quote!(::core::result::Result::Err(
-        ::dalembert::Fault::SingularSurface { surface }
-    ));
-    let gaps = ask(
-        quote!(gaps),
-        quote!(t, state),
-        quote!(::dalembert::__private::modes::no_gaps()),
-    );
-    let rates = ask(
-        quote!(gap_rates),
-        quote!(t, state),
-        quote!(::core::result::Result::Ok(#zeros)),
-    );
-    let none = quote!(::core::result::Result::Ok(::core::option::Option::None));
-    let accelerations = whole.of_state(|mode, own| match mode.model.surfaces.is_empty() {
-        true => none.clone(),
-        false => quote!(::dalembert::__private::modes::gap_accelerations::<#own, _>(self, t, state, motion)),
-    });
-    let responses = whole.of_state(|mode, own| match mode.model.surfaces.is_empty() {
-        true => none.clone(),
-        false => {
-            quote!(::dalembert::__private::modes::gap_responses::<#own, _>(self, t, state, motion))
-        }
-    });
-    let active = whole.of_state(|mode, own| match mode.model.surfaces.is_empty() {
-        true => quote!(false),
-        false => {
-            quote!(::dalembert::__private::modes::surface_active::<#own>(self, surface, t, state))
-        }
-    });
-    let blow = ask(quote!(blow), quote!(surface, t, state), no_surface.clone());
-    let contact = ask(quote!(contact), quote!(surface, t, state), no_surface);
-    let landing = whole.of_state(|mode, own| emit_landing(whole, mode, own));
-    let instantaneous = emit_instantaneous(whole);
-    let laws = whole.graph.surfaces.iter().enumerate().map(|(place, entry)| {
-        let own = whole.types()[entry.mode];
-        let surface = entry.place;
-        quote!(#place => ::dalembert::Impacting::law(&<#own as ::dalembert::Mode>::of(self), #surface),)
-    });
-    let passable = whole
-        .graph
-        .surfaces
-        .iter()
-        .enumerate()
-        .filter(|(_, entry)| {
-            let surface = &whole.graph.modes[entry.mode].model.surfaces[entry.place];
-            surface.law == Law::Reset
-                || surface
-                    .transition
-                    .as_ref()
-                    .is_some_and(|own| own.has_no_side)
-        });
-    let passable = passable.map(|(place, _)| Literal::usize_unsuffixed(place));
-    let passable: Vec<Literal> = passable.collect();
-    let passable = match passable.is_empty() {
-        true => quote!(false),
-        false => quote!(::core::matches!(surface, #(#passable)|*)),
-    };
-    let opposite = emit_opposites(whole);
-    let result = |of: TokenStream| quote!(::core::result::Result<#of, ::dalembert::Fault>);
-    let [optional, rated] = [
-        quote!(::core::option::Option<Self::Gaps>),
-        quote!(Self::Gaps),
-    ]
-    .map(result);
-    let [blown, touched] = [
-        quote!(::dalembert::impacts::law::Blow<Self::Impulse>),
-        quote!(::dalembert::impacts::law::Contact<Self::Impulse>),
-    ]
-    .map(result);
-    quote! {
-        #attributes
-        impl ::dalembert::Impacting for #own {
-            type Gaps = ::dalembert::__private::SVector<f64, #count>;
-
-            #[inline]
-            fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps { #gaps }
-
-            #[inline]
-            fn gap_rates(&self, t: f64, state: &Self::State) -> #rated { #rates }
-
-            fn gap_accelerations(&self, t: f64, state: &Self::State, motion: &Self::Impulse) -> #optional { #accelerations }
-
-            fn gap_responses(&self, t: f64, state: &Self::State, motion: &Self::Impulse) -> #optional { #responses }
-
-            #[inline]
-            fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool { #active }
-
-            fn law(&self, surface: usize) -> ::dalembert::impacts::law::Law {
-                match surface {
-                    #(#laws)*
-                    _ => ::dalembert::impacts::law::Law::Elastic,
-                }
-            }
-
-            fn is_passable(&self, surface: usize) -> bool { #passable }
-
-            #opposite
-
-            fn landing(
-                &self,
-                surface: usize,
-                t: f64,
-                state: &Self::State,
-            ) -> ::core::result::Result<::dalembert::impacts::law::Landing<Self::State>, ::dalembert::Outcome> {
-                #landing
-            }
-
-            #[inline]
-            fn blow(&self, surface: usize, t: f64, state: &Self::State) -> #blown { #blow }
-
-            fn contact(&self, surface: usize, t: f64, state: &Self::State) -> #touched { #contact }
-
-            #instantaneous
-        }
-    }
-}
-
-/// `focus` and `trace`, where a surface of some mode has instantaneous constraints.
-fn emit_instantaneous(whole: &Whole<'_>) -> TokenStream {
-    let is_rough = |entry: &Mode| {
-        let mut surfaces = entry.model.surfaces.iter();
-        surfaces.any(|own| !own.instantaneous.is_empty())
-    };
-    if !whole.graph.modes.iter().any(is_rough) {
-        return TokenStream::new();
-    }
-    let ask = |function: TokenStream, arguments: TokenStream| {
-        whole.of_state(|mode, own| match mode.model.surfaces.is_empty() {
-            true => quote!(::core::result::Result::Ok(::core::option::Option::None)),
-            false => quote!(::dalembert::__private::modes::#function::<#own, _>(self, #arguments)),
-        })
-    };
-    let focus = ask(quote!(focus), quote!(surface, t, state));
-    let trace = ask(quote!(trace), quote!(surface, t, state, motion));
-    let result = quote! {
-        ::core::result::Result<::core::option::Option<Self::Impulse>, ::dalembert::Fault>
-    };
-    quote! {
-        fn focus(&self, surface: usize, t: f64, state: &Self::State) -> #result { #focus }
-
-        fn trace(
+        fn admit(
             &self,
-            surface: usize,
             t: f64,
-            state: &Self::State,
-            motion: &Self::Impulse,
-        ) -> #result {
-            #trace
+            q: &Self::Vector,
+            qdot: &Self::Vector,
+        ) -> ::core::result::Result<(), ::dalembert::StateError> {
+            #admit
         }
-    }
-}
 
-/// The transition that leads back from each, between first-order modes.
-fn emit_opposites(whole: &Whole<'_>) -> TokenStream {
-    let opposites: Vec<[usize; 2]> = whole.graph.opposites().collect();
-    if opposites.is_empty() {
-        return TokenStream::new();
-    }
-    let arms = opposites
-        .iter()
-        .map(|[surface, back]| quote!(#surface => ::core::option::Option::Some(#back),));
-    quote! {
-        fn opposite(&self, surface: usize) -> ::core::option::Option<usize> {
-            match surface {
-                #(#arms)*
-                _ => ::core::option::Option::None,
-            }
+        fn complete_velocity(
+            &self,
+            t: f64,
+            q: &Self::Vector,
+            qdot: &Self::Vector,
+            named: &Self::Vector,
+        ) -> ::core::result::Result<Self::Vector, ::dalembert::StateError> {
+            #complete
         }
-    }
-}
-
-/// Where each surface of a mode leads.
-fn emit_landing(whole: &Whole<'_>, mode: &Mode, own: &TokenStream) -> TokenStream {
-    if mode.model.surfaces.is_empty() {
-        return quote!(::core::result::Result::Err(::dalembert::Outcome::NoReset {
-            surface
-        }));
-    }
-    let types = whole.types();
-    let surfaces = mode
-        .model
-        .surfaces
-        .iter()
-        .zip(&mode.places.surfaces)
-        .enumerate();
-    let arms = surfaces.filter_map(|(index, (surface, place))| {
-        let transition = surface.transition.as_ref()?;
-        let entered = types[transition.enters];
-        let passage = passage(transition, mode.model.is_first_order());
-        Some(quote! {
-            #place => ::dalembert::__private::modes::passage::<#own, #entered>(
-                self,
-                ::dalembert::__private::modes::Passage::#passage,
-                [#index, #place],
-                t,
-                state,
-            ),
-        })
-    });
-    quote! {
-        match surface {
-            #(#arms)*
-            _ => ::dalembert::__private::modes::landing::<#own>(self, surface, t, state),
-        }
-    }
-}
-
-pub(super) fn passage(transition: &Transition, is_first_order: bool) -> TokenStream {
-    match (transition.map.is_some(), transition.keeps_lagrangian) {
-        (true, _) => quote!(Declared),
-        (false, _) if is_first_order => quote!(Kept),
-        (false, true) => quote!(Focused),
-        (false, false) => quote!(Refracted),
     }
 }

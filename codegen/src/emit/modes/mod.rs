@@ -2,6 +2,7 @@
 
 mod contract;
 mod describe;
+mod impacting;
 mod types;
 mod variational;
 
@@ -41,7 +42,7 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
         contract::emit_field(&whole),
         contract::emit_taylor(&whole),
         contract::emit_system(&whole),
-        contract::emit_impacting(&whole),
+        impacting::emit_impacting(&whole),
         variational::emit_modes(&whole),
         variational::emit_variational(&whole),
         describe::emit_described(&whole),
@@ -100,6 +101,18 @@ impl Whole<'_> {
     /// What the mode of `state` answers.
     fn of_state(&self, arm: impl Fn(&Mode, &TokenStream) -> TokenStream) -> TokenStream {
         self.of_number(&quote!(::dalembert::__private::modes::index(state)), arm)
+    }
+
+    /// The same of what only modes with surfaces answer.
+    fn of_surfaces(
+        &self,
+        without: &TokenStream,
+        arm: impl Fn(&TokenStream) -> TokenStream,
+    ) -> TokenStream {
+        self.of_state(|mode, own| match mode.model.surfaces.is_empty() {
+            true => without.clone(),
+            false => arm(own),
+        })
     }
 
     /// What the mode answers in which states are made.

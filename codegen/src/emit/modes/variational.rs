@@ -4,8 +4,9 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Whole;
-use super::contract::passage;
+use super::impacting::passage;
 use crate::emit::function::Body;
+use crate::emit::variational::{Lengths, emit_counts};
 use crate::emit::{Context, attributes};
 use crate::model::Mode;
 use crate::program::Form;
@@ -125,52 +126,23 @@ fn emit_energy(context: &Context<'_>) -> TokenStream {
 
 /// `impl Variational`, where each function asks the mode of the state.
 pub(super) fn emit_variational(whole: &Whole<'_>) -> TokenStream {
-    let own = whole.type_name();
-    let attributes = attributes();
     let (n, count) = (whole.graph.coordinates.len(), whole.graph.surfaces.len());
     let parts = [
-        emit_counts(count),
+        emit_counts(count > 0),
         emit_asked(whole),
         emit_collision(whole),
         emit_resets(),
         emit_passed(whole),
         emit_declared_law(whole),
     ];
-    quote! {
-        #attributes
-        impl ::dalembert::Variational for #own {
-            type Configuration<L: ::dalembert::numbers::Numbers> = [L; #n];
-            type Clearances<L: ::dalembert::numbers::Numbers> = [L; #count];
-            type Collision<L: ::dalembert::numbers::Numbers> = [L; 5 + __IMPULSE];
-            type Deviations<L: ::dalembert::numbers::Numbers> = [L; __STATE - 1];
-            type Columns = [Self::State; __STATE];
-
-            fn columns() -> Self::Columns {
-                [<Self::State as ::dalembert::StateVector>::zeros(); __STATE]
-            }
-
-            type Tangents = [::dalembert::Tangent<Self>; __STATE];
-
-            fn tangents() -> Self::Tangents {
-                [::dalembert::Tangent::zero(); __STATE]
-            }
-
-            #(#parts)*
-        }
-    }
-}
-
-fn emit_counts(surfaces: usize) -> TokenStream {
-    let counts = match surfaces {
-        0 => quote!(true),
-        _ => quote!(<Self as ::dalembert::Impacting>::surface_active(
-            self, surface, t, state
-        )),
+    let lengths = Lengths {
+        configuration: n,
+        clearances: count,
+        collision: quote!(5 + __IMPULSE),
+        deviations: quote!(__STATE - 1),
+        state: quote!(__STATE),
     };
-    quote! {
-        #[inline]
-        fn counts(&self, surface: usize, t: f64, state: &Self::State) -> bool { #counts }
-    }
+    lengths.emit_implementation(&whole.type_name(), &parts)
 }
 
 /// What the mode of a row of numbers answers.
