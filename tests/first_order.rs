@@ -220,7 +220,7 @@ fn integrals_are_kept() {
 
 /// The command line over these models, with an input: exit, output, errors.
 fn command(line: &str, given: &str) -> Finished {
-    command::line(&models![Driven, Prey, Sawtooth], line, given)
+    command::line(models![Driven, Prey, Sawtooth], line, given)
 }
 
 #[test]

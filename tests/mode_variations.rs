@@ -380,7 +380,7 @@ fn wheels_have_the_stored_cycles_and_multipliers() {
 #[test]
 fn the_command_finds_the_cycle_of_a_wheel() {
     let line = "orbit rimless_wheel_five --surface step1 --json -";
-    let finished = command::line(&models![RimlessWheelFive], line, "");
+    let finished = command::line(models![RimlessWheelFive], line, "");
     let text = finished.output;
     assert_eq!(
         (finished.exit, finished.errors.as_str()),

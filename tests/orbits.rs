@@ -249,7 +249,7 @@ fn what_is_no_orbit_is_said() {
 /// A command line over the models of this file.
 fn run(line: &str) -> Finished {
     command::line(
-        &models![Spring, DimensionlessWalker, PointBilliard, MovingWallDisk],
+        models![Spring, DimensionlessWalker, PointBilliard, MovingWallDisk],
         line,
         "",
     )

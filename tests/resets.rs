@@ -300,7 +300,7 @@ fn a_reset_off_the_constraints_is_refused_with_a_state() {
 
 /// The command line over the models of this file.
 fn command(line: &str, given: &str) -> Finished {
-    command::line(&models![Swap, MirrorSleigh, Strip], line, given)
+    command::line(models![Swap, MirrorSleigh, Strip], line, given)
 }
 
 #[test]
@@ -353,7 +353,7 @@ fn simulate_refuses_reset_where_it_is_not_declared() {
     let walls = "simulate bouncing_ball --until 1 --law floor=reset";
     let Finished {
         exit, errors: text, ..
-    } = command::line(&dalembert_models::all(), walls, "");
+    } = command::line(dalembert_models::all(), walls, "");
     assert_eq!(exit, Exit::Refused, "{text}");
     assert!(
         text.contains("--law: surface `floor` declares no reset"),

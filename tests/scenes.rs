@@ -85,7 +85,8 @@ fn named(item: &syn::ImplItem) -> (String, String) {
 fn assert_same(body: &str, [forces, impacts]: [&str; 2], uses: &str) {
     let plain = format!("P {{ {body} forces {{ {forces} }} impacts {{ {impacts} }} }}");
     let all = format!("forces {{ {DRAG} {DAMPING} }} impacts {{ {LID} {SIDES} }}");
-    let scene = format!("P {{ {body} {all} scenes {{ only: {uses} projection, volume; }} }}");
+    let scene =
+        format!("P {{ {body} {all} scenes {{ only: {uses} projection, volume, variations; }} }}");
     for [type_name, plain_name] in [["Only", "P"], ["OnlyGlobal", "PGlobal"]] {
         if plain_name == "PGlobal" && body == TWISTED {
             continue;

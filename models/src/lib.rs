@@ -25,9 +25,11 @@ pub mod rolling_ball_euler;
 pub mod rolling_ball_wall;
 pub mod rolling_disk;
 pub mod smooth_and_rough_plane;
+pub mod spasmodic_hamiltonian;
 pub mod sphere_in_plane;
 pub mod spring_mass_walker;
 pub mod stability;
+pub mod super_elastic_strip;
 pub mod tent_map;
 pub mod two_wheels_arrested;
 pub mod two_wheels_rod;
@@ -53,8 +55,10 @@ pub use rolling_ball_euler::RollingBallEuler;
 pub use rolling_ball_wall::RollingBallWall;
 pub use rolling_disk::RollingDisk;
 pub use smooth_and_rough_plane::SmoothAndRoughPlane;
+pub use spasmodic_hamiltonian::SpasmodicHamiltonian;
 pub use sphere_in_plane::SphereInPlane;
 pub use spring_mass_walker::SpringMassWalker;
+pub use super_elastic_strip::SuperElasticStrip;
 pub use tent_map::TentMap;
 pub use two_wheels_arrested::TwoWheelsArrested;
 pub use two_wheels_rod::TwoWheelsRod;
@@ -87,8 +91,10 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         RollingBallWall,
         RollingDisk,
         SmoothAndRoughPlane,
+        SpasmodicHamiltonian,
         SphereInPlane,
         SpringMassWalker,
+        SuperElasticStrip,
         TentMap,
         TwoWheelsArrested,
         TwoWheelsRod,

@@ -37,7 +37,8 @@ pub enum Fault {
     },
     /// Momenta, an energy or an impulse were asked of a first-order system, which has none.
     FirstOrder,
-    /// The parts of Lagrange and d'Alembert's principle were asked of a system with modes: they belong to one mode.
+    /// The parts of Lagrange and d'Alembert's principle, or a state over numbers of positions and velocities alone, were asked
+    /// of a system with modes: they belong to one mode.
     SeveralModes,
     /// An impulse, or a step of a discrete principle, was asked of a system with constraints that are not linear in the
     /// velocities, for which neither is defined.
@@ -80,7 +81,8 @@ impl fmt::Display for Fault {
             ),
             Self::SeveralModes => write!(
                 f,
-                "a discrete principle belongs to one mode, and the system has several"
+                "what was asked for (a step of a discrete principle, a state of positions and velocities) belongs to one mode, \
+                 and the system has several"
             ),
             Self::FirstOrder => {
                 write!(

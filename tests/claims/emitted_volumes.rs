@@ -4,7 +4,8 @@
 use dalembert::describe::Report;
 use dalembert::{Described, Fault, InvariantVolume, Scene, StateVector, System};
 use dalembert_models::{
-    BallOnRotatingTable, HolonomicBeadOnEllipses, RollingBallEuler, RollingDisk, TwoWheelsRod,
+    BallOnRotatingTable, HolonomicBeadOnEllipses, RollingBallEuler, RollingBallWall, RollingDisk,
+    TwoWheelsRod,
 };
 use dalembert_tests::flow::Flow;
 use dalembert_tests::golden;
@@ -22,6 +23,7 @@ macro_rules! of_each_claimed {
             $function::<BallOnRotatingTable>(),
             $function::<HolonomicBeadOnEllipses>(),
             $function::<RollingBallEuler>(),
+            $function::<RollingBallWall>(),
             $function::<RollingDisk>(),
             $function::<TwoWheelsRod>(),
             $function::<FallingDisk>(),

@@ -60,6 +60,7 @@ impl<'g> Golden<'g> {
         let scope = Scope {
             coordinates: &self.coordinates,
             parameters: &self.parameters,
+            definitions: &[],
             state: &state,
             partial: None,
         };

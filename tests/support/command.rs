@@ -24,16 +24,16 @@ pub fn models() -> Vec<Entry> {
 
 /// Runs `dalembert` over [`models`] with these arguments and this standard input.
 pub fn dalembert(arguments: &[&str], input: &str) -> Finished {
-    run(&models(), arguments, input)
+    run(models(), arguments, input)
 }
 
 /// Runs `dalembert` over these models, the arguments parted by white space.
-pub fn line(models: &[Entry], line: &str, input: &str) -> Finished {
+pub fn line(models: Vec<Entry>, line: &str, input: &str) -> Finished {
     run(models, &Vec::from_iter(line.split_whitespace()), input)
 }
 
 /// Runs `dalembert` over these models with these arguments and this standard input.
-pub fn run(models: &[Entry], arguments: &[&str], input: &str) -> Finished {
+pub fn run(models: Vec<Entry>, arguments: &[&str], input: &str) -> Finished {
     let (mut output, mut errors) = (Vec::new(), Vec::new());
     let mut streams = Streams {
         input: &mut Cursor::new(input),
@@ -42,7 +42,7 @@ pub fn run(models: &[Entry], arguments: &[&str], input: &str) -> Finished {
         terminal: false,
     };
     let words = ["dalembert"].iter().chain(arguments);
-    let exit = dalembert_cli::run_with(words, models, &mut streams);
+    let exit = dalembert_cli::run_with(words, &models, &mut streams);
     Finished {
         exit,
         output: String::from_utf8_lossy(&output).into_owned(),

@@ -10,6 +10,8 @@ pub struct Scope<'s> {
     pub coordinates: &'s [&'s str],
     /// Names and values of parameters.
     pub parameters: &'s [(&'s str, f64)],
+    /// Names and texts of definitions.
+    pub definitions: &'s [(String, TokenStream)],
     /// The state.
     pub state: &'s Snapshot,
     /// The coordinate `x` for which `partial(x)` is 1, the others being 0.
@@ -30,6 +32,27 @@ pub fn value(text: &str, scope: &Scope<'_>) -> f64 {
     let value = reader.sum();
     assert_eq!(reader.next, reader.tokens.len(), "{text}");
     value
+}
+
+/// The definitions `let NAME = ..;` of a declaration, of single names.
+pub fn definitions(source: &str) -> Vec<(String, TokenStream)> {
+    let tokens: TokenStream = source.parse().expect("tokens");
+    let body = tokens.into_iter().find_map(|token| match token {
+        TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => Some(group.stream()),
+        _ => None,
+    });
+    let body: Vec<TokenTree> = body.expect("a body").into_iter().collect();
+    let is = |token: &TokenTree, text: &str| token.to_string() == text;
+    let found = body.windows(3).enumerate().filter_map(|(i, window)| {
+        let [first, name, equals] = window else {
+            return None;
+        };
+        (is(first, "let") && is(equals, "=")).then(|| {
+            let text = body[i + 3..].iter().take_while(|token| !is(token, ";"));
+            (name.to_string(), text.cloned().collect())
+        })
+    });
+    found.collect()
 }
 
 struct Reader<'r> {
@@ -119,6 +142,9 @@ impl Reader<'_> {
         }
         if let Some((_, value)) = parameters.iter().find(|(own, _)| *own == name) {
             return *value;
+        }
+        if let Some((_, text)) = self.scope.definitions.iter().find(|(own, _)| own == name) {
+            return self.inner(text.clone()).sum();
         }
         match name {
             "energy" => state.energy,

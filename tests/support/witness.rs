@@ -3,7 +3,7 @@
 use dalembert::impacts::law::Law;
 
 use crate::claim::Witness;
-use crate::formula::{Scope, value};
+use crate::formula::{Scope, definitions, value};
 use crate::numeric::{Numeric, Snapshot, moved, slope, slopes};
 use crate::obstruction::Criterion;
 
@@ -28,6 +28,7 @@ pub fn at(system: &dyn Numeric, text: &str, state: &Snapshot, partial: Option<us
     let scope = Scope {
         coordinates: &coordinates,
         parameters: &parameters,
+        definitions: &definitions(system.description().source),
         state,
         partial,
     };

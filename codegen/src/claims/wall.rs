@@ -17,12 +17,12 @@
 
 use dalembert_expr::{
     Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Node, Pool, Rational,
-    RealPoint, SymbolId, Verdict as Zero,
+    RealPoint, Series, SymbolId, Verdict as Zero,
 };
 
 use super::conserved::with_velocities;
 use super::dynamics::{Dynamics, Number};
-use super::linear::{dot, solve};
+use super::linear::{Matrix, dot, solve};
 use super::reset::ResetMap;
 use super::sample::{Sample, sample, uses};
 use crate::mechanics::Derivation;
@@ -48,6 +48,54 @@ pub(super) struct Wall {
     /// Functions that are positive where the surface counts.
     conditions: Vec<ExprId>,
     polynomials: Vec<Polynomial>,
+}
+
+/// `grad h` and `pi_D grad h` at a point.
+struct Normal<A: Arithmetic> {
+    gradient: Vec<Series<A>>,
+    projected: Vec<Series<A>>,
+}
+
+impl<A: Arithmetic> Normal<A> {
+    /// Of a metric, the forms of the constraints and `dh`; `None` where the metric or the constraints are singular.
+    fn of(
+        jets: &Jets<'_, A>,
+        metric: &Matrix<A>,
+        forms: &Matrix<A>,
+        slope: &[Series<A>],
+    ) -> Option<Self> {
+        let m = forms.len();
+        let right = (0..slope.len())
+            .map(|i| {
+                let mut row: Vec<_> = forms.iter().map(|form| form[i].clone()).collect();
+                row.push(slope[i].clone());
+                row
+            })
+            .collect();
+        let raised = solve(jets, metric.clone(), right)?.unknowns;
+        let column = |j: usize| -> Vec<_> { raised.iter().map(|row| row[j].clone()).collect() };
+        let gradient = column(m);
+        let duals: Vec<Vec<_>> = (0..m).map(column).collect();
+        let mass = forms
+            .iter()
+            .map(|form| duals.iter().map(|dual| dot(jets, form, dual)).collect())
+            .collect();
+        let along = forms
+            .iter()
+            .map(|form| vec![dot(jets, form, &gradient)])
+            .collect();
+        let share = solve(jets, mass, along)?.unknowns;
+        let mut projected = gradient.clone();
+        for (part, dual) in share.iter().zip(&duals) {
+            for (own, w) in projected.iter_mut().zip(dual) {
+                *own = jets.sub(own, &jets.mul(&part[0], w));
+            }
+        }
+        Some(Self {
+            gradient,
+            projected,
+        })
+    }
 }
 
 /// Where the position of a state is.
@@ -124,32 +172,10 @@ impl Wall {
         let [rate, coefficient] = rest.as_slice() else {
             return None;
         };
-        let right = (0..n)
-            .map(|i| {
-                let mut row: Vec<_> = forms.iter().map(|form| form[i].clone()).collect();
-                row.push(slope[i].clone());
-                row
-            })
-            .collect();
-        let raised = solve(&jets, metric.clone(), right)?.unknowns;
-        let column = |j: usize| -> Vec<_> { raised.iter().map(|row| row[j].clone()).collect() };
-        let gradient = column(m);
-        let duals: Vec<Vec<_>> = (0..m).map(column).collect();
-        let mass = forms
-            .iter()
-            .map(|form| duals.iter().map(|dual| dot(&jets, form, dual)).collect())
-            .collect();
-        let along = forms
-            .iter()
-            .map(|form| vec![dot(&jets, form, &gradient)])
-            .collect();
-        let share = solve(&jets, mass, along)?.unknowns;
-        let mut projected = gradient.clone();
-        for (part, dual) in share.iter().zip(&duals) {
-            for (own, w) in projected.iter_mut().zip(dual) {
-                *own = jets.sub(own, &jets.mul(&part[0], w));
-            }
-        }
+        let Normal {
+            gradient,
+            projected,
+        } = Normal::of(&jets, &metric, &forms, &slope)?;
         let velocity: Vec<_> = self
             .velocities
             .iter()

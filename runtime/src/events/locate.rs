@@ -64,18 +64,19 @@ pub(crate) enum Search {
 }
 
 /// The gap of one surface along a step.
-pub(crate) struct Line<'a, G, R> {
+// NOTE: functions behind pointers: the search is long, and compiled once instead of for every system and integrator.
+pub(crate) struct Line<'a> {
     /// The gap at a part of the step.
-    pub gap: G,
+    pub gap: &'a mut dyn FnMut(f64) -> f64,
     /// The size of its rounding errors; asked for once or twice.
-    pub rounding: R,
+    pub rounding: &'a mut dyn FnMut() -> f64,
     /// Its samples over the whole step.
     pub whole: &'a [f64; SAMPLES],
     /// Where to begin.
     pub start: Start,
 }
 
-impl<G: FnMut(f64) -> f64, R: FnMut() -> f64> Line<'_, G, R> {
+impl Line<'_> {
     /// Finds the first fall.
     pub(crate) fn first_fall(mut self) -> Search {
         match self.isolate() {
@@ -351,13 +352,13 @@ mod tests {
     fn first(function: impl Fn(f64) -> f64, start: Start) -> (Search, u32) {
         let whole = NODES.map(&function);
         let mut evaluations = 0;
-        let gap = |theta: f64| {
+        let mut gap = |theta: f64| {
             evaluations += 1;
             function(theta)
         };
         let found = Line {
-            gap,
-            rounding: || 1e-15,
+            gap: &mut gap,
+            rounding: &mut || 1e-15,
             whole: &whole,
             start,
         }

@@ -38,8 +38,8 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     let mut rounding = || rounding_along(surface, step, sizes, &mut more);
     let found = match known {
         Known::Samples(whole) => Line {
-            gap,
-            rounding,
+            gap: &mut gap,
+            rounding: &mut rounding,
             whole,
             start,
         }
@@ -51,8 +51,8 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
                 let found = first_on_series(surface, series, whole, start, &mut rounding, &mut gap);
                 found.unwrap_or_else(|| {
                     let line = Line {
-                        gap,
-                        rounding,
+                        gap: &mut gap,
+                        rounding: &mut rounding,
                         whole,
                         start,
                     };
@@ -71,7 +71,7 @@ fn plain_fall<G: StateVector>(
     series: &GapSeries<G>,
     signs: Signs,
     start: Start,
-    gap: impl FnMut(f64) -> f64,
+    gap: &mut dyn FnMut(f64) -> f64,
 ) -> Option<Search> {
     let is_plain = start.from == 0.0 && start.above;
     if !(is_plain && matches!(signs, Signs::Falls | Signs::Unclear)) {
@@ -94,15 +94,16 @@ fn first_on_series<G: StateVector>(
     series: &GapSeries<G>,
     whole: &[f64; SAMPLES],
     start: Start,
-    rounding: impl FnMut() -> f64,
-    gap: impl FnMut(f64) -> f64,
+    rounding: &mut dyn FnMut() -> f64,
+    gap: &mut dyn FnMut(f64) -> f64,
 ) -> Option<Search> {
+    // At the end the gap itself: it may be negative by rounding where the polynomial is not.
+    let mut on_series = |part: f64| match part >= 1.0 {
+        true => whole[SAMPLES - 1],
+        false => series.at(surface, part),
+    };
     let line = Line {
-        // At the end the gap itself: it may be negative by rounding where the polynomial is not.
-        gap: |part: f64| match part >= 1.0 {
-            true => whole[SAMPLES - 1],
-            false => series.at(surface, part),
-        },
+        gap: &mut on_series,
         rounding,
         whole,
         start,

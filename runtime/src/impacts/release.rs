@@ -69,7 +69,7 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         return Err(Outcome::Contact { surface });
     }
     let mut fault = None;
-    let force = |part: f64| match sizes(held, step, part) {
+    let mut force = |part: f64| match sizes(held, step, part) {
         Ok(sizes) => sizes.as_slice()[surface],
         Err(found) => {
             fault = Some(found);
@@ -77,8 +77,8 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         }
     };
     let line = Line {
-        gap: force,
-        rounding: || ROUNDING * largest,
+        gap: &mut force,
+        rounding: &mut || ROUNDING * largest,
         whole,
         start: Start {
             from: 0.0,
