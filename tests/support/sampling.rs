@@ -71,7 +71,8 @@ pub fn visit_all(visitor: &mut impl Visitor) {
         dalembert_models:
         AppellHamel BallOnRotatingTable BouncingBall Chain2 Chain3 Chain4 Chain8 Chain16 ChaplyginSleigh ConstantSpeed
         DoublePendulum
-        HarmonicOscillator HolonomicBeadOnEllipses PointBilliard RollingBallEuler RollingBallWall RollingDisk TwoWheelsRod
+        HarmonicOscillator HolonomicBeadOnEllipses PointBilliard RollingBallEuler RollingBallWall RollingDisk
+        SuperElasticStrip TwoWheelsRod
         WalkerFootSlip
     }
     visit! {
