@@ -9,7 +9,7 @@ use std::process::Command;
 use dalembert::Described;
 use dalembert_benches::table::{Layout, Table};
 use dalembert_benches::timing::{is_benchmark, median, timed};
-use dalembert_codegen::{mechanics, model, program, spec, try_expand};
+use dalembert_codegen::{compile_modes, mechanics, model, program, spec, try_expand};
 use dalembert_models::{Chain16, DoublePendulum, RollingDisk};
 
 /// What is measured of one expansion.
@@ -39,9 +39,17 @@ fn expand(source: &str, rounds: usize) -> Expansion {
     }
 }
 
-/// Operations of the rate.
+/// Operations of the rate; of all modes together, where there are some.
 fn operations(source: &str) -> usize {
-    let spec = spec::parse(source.parse().expect("tokens")).expect("a declaration");
+    let declared = spec::read(source.parse().expect("tokens")).expect("a declaration");
+    let spec = match declared {
+        spec::Declaration::Model(spec) => spec,
+        spec::Declaration::Modes(modes) => {
+            let compiled = compile_modes(&modes).expect("a model");
+            let rates = compiled.modes.iter().map(|own| &own.programs.main.rate);
+            return rates.map(|rate| rate.cost.total()).sum();
+        }
+    };
     let mut model = model::check(&spec).expect("a model");
     let derivation = mechanics::derive(&mut model);
     program::lower(&model, &derivation, None)
