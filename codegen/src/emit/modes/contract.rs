@@ -4,9 +4,11 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Whole;
-use crate::emit::attributes;
 use crate::emit::function::Body;
 use crate::emit::lagrangian::emit_refusal;
+use crate::emit::{Context, attributes};
+use crate::model::Mode;
+use crate::program::Function;
 
 /// Lengths of the vectors of the whole, from those of its modes.
 pub(super) fn emit_sizes(whole: &Whole<'_>) -> TokenStream {
@@ -36,34 +38,7 @@ pub(super) fn emit_modes(whole: &Whole<'_>) -> TokenStream {
             [&places.coordinates, &places.surfaces, &places.outputs]
                 .map(|own| quote!(&[#(#own),*]));
         let can_leave = context.program.constrained.is_some() && context.program.reduced.is_none();
-        let entries = context
-            .program
-            .impacting
-            .iter()
-            .flat_map(|own| &own.entries);
-        let arms = entries.enumerate().filter_map(|(surface, function)| {
-            let function = function.as_ref()?;
-            let count = mode.model.surfaces[surface]
-                .transition
-                .as_ref()?
-                .map
-                .as_ref()?
-                .q
-                .len();
-            let Body {
-                statements,
-                outputs,
-            } = context.state_body(function);
-            let (q_after, qdot_after) = outputs.split_at(count);
-            Some(quote! {
-                #surface => {
-                    #statements
-                    ::dalembert::__private::modes::write(after_q, &[#(#q_after),*]);
-                    ::dalembert::__private::modes::write(after_qdot, &[#(#qdot_after),*]);
-                }
-            })
-        });
-        let arms: Vec<TokenStream> = arms.collect();
+        let arms = emit_entries(mode, context, |function| context.state_body(function));
         let entry = (!arms.is_empty()).then(|| {
             quote! {
                 fn entry(
@@ -100,6 +75,34 @@ pub(super) fn emit_modes(whole: &Whole<'_>) -> TokenStream {
         }
     });
     modes.collect()
+}
+
+/// An arm for each surface of a mode for which a state of another is declared: it writes that state.
+pub(super) fn emit_entries(
+    mode: &Mode,
+    context: &Context<'_>,
+    body: impl Fn(&Function) -> Body,
+) -> Vec<TokenStream> {
+    let functions = context.program.impacting.iter();
+    let entries = functions.flat_map(|functions| &functions.entries);
+    let arms = entries.enumerate().filter_map(|(surface, function)| {
+        let function = function.as_ref()?;
+        let transition = mode.model.surfaces[surface].transition.as_ref()?;
+        let count = transition.map.as_ref()?.q.len();
+        let Body {
+            statements,
+            outputs,
+        } = body(function);
+        let (q_after, qdot_after) = outputs.split_at(count);
+        Some(quote! {
+            #surface => {
+                #statements
+                ::dalembert::__private::modes::write(after_q, &[#(#q_after),*]);
+                ::dalembert::__private::modes::write(after_qdot, &[#(#qdot_after),*]);
+            }
+        })
+    });
+    arms.collect()
 }
 
 /// `impl VectorField`

@@ -4,6 +4,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Whole;
+use super::contract::emit_entries;
 use super::impacting::passage;
 use crate::emit::function::Body;
 use crate::emit::variational::{Lengths, emit_counts};
@@ -37,26 +38,7 @@ pub(super) fn emit_modes(whole: &Whole<'_>) -> TokenStream {
 
 /// The states that are declared for other modes, if some are.
 fn emit_entered(mode: &Mode, context: &Context<'_>) -> TokenStream {
-    let functions = context.program.impacting.iter();
-    let entries = functions.flat_map(|functions| &functions.entries);
-    let arms = entries.enumerate().filter_map(|(surface, function)| {
-        let function = function.as_ref()?;
-        let transition = mode.model.surfaces[surface].transition.as_ref()?;
-        let count = transition.map.as_ref()?.q.len();
-        let Body {
-            statements,
-            outputs,
-        } = context.varied_body(function);
-        let (q_after, qdot_after) = outputs.split_at(count);
-        Some(quote! {
-            #surface => {
-                #statements
-                ::dalembert::__private::modes::write(after_q, &[#(#q_after),*]);
-                ::dalembert::__private::modes::write(after_qdot, &[#(#qdot_after),*]);
-            }
-        })
-    });
-    let arms: Vec<TokenStream> = arms.collect();
+    let arms = emit_entries(mode, context, |function| context.varied_body(function));
     if arms.is_empty() {
         return TokenStream::new();
     }
