@@ -28,9 +28,6 @@ pub const CASES: &[Case] = &[
         title: "the global field off the constraint, with the short steps of a low order",
         right: "eta(qdot) constant",
         bound: "1e-12 over 1e3 units of time, as a share of the terms",
-        pending: Some(
-            "the coefficients of the Runge-Kutta tables are rounded: every step errs by up to u in the same direction",
-        ),
         run: Run::Chosen(&[Integrator::Dopri5], off_the_constraint),
         ..Case::QUICK
     },

@@ -1,18 +1,33 @@
-//! Dense output as a polynomial in the nested form of Hairer's codes.
+//! Dense output as a polynomial in nested form.
 
 use crate::state::StateVector;
 
 /// The state inside a step: with `s = 1 - theta`,
-/// `y(theta) = base + theta (c_0 + s (c_1 + theta (c_2 + s (c_3 + ..))))`.
+/// `y(theta) = base + theta (c_0 + theta (c_1 + s (c_2 + s (c_3 + theta (c_4 + s (c_5 + ..))))))`.
 ///
-/// The form is exact at both ends and keeps its relative accuracy for `theta` near 0, where roots just after an
-/// impact lie.
+/// The form of Hairer's codes with the first two terms in powers of `theta`: it keeps its relative accuracy for `theta` near 0,
+/// where roots just after an impact lie, and of a step many times as long as the part that is looked at. There the ends
+/// differ by far more than the motion has changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polynomial<S, const K: usize> {
     /// The state at `theta = 0`.
     pub(super) base: S,
     /// The coefficients `c_0, .., c_{K-1}`.
     pub(super) coefficients: [S; K],
+}
+
+/// What a component is to do at both ends of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cubic {
+    /// `h` times the rate at the start.
+    pub(super) rate: f64,
+    /// What the end differs by from where that rate alone would lead.
+    pub(super) bend: f64,
+    /// What `h` times the rate gains until the end.
+    pub(super) gained: f64,
+    /// What rounding errors may make of `bend`. Where the cubic is a parabola but for these, the parabola is taken: its bend is
+    /// half of what is gained, which errs far less than a sum with large weights does.
+    pub(super) rounding: f64,
 }
 
 impl<S: StateVector, const K: usize> Polynomial<S, K> {
@@ -24,28 +39,29 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         }
     }
 
-    /// Sets the part every scheme shares: a cubic through the ends `y0`, `y1` with `h` times the rates `k0`, `k1`.
+    /// Sets the part every scheme shares, in component `i`.
     #[inline(always)]
-    pub(super) fn set_cubic(&mut self, h: f64, ends: [&S; 2], rates: [&S; 2]) {
-        self.base = *ends[0];
-        for i in 0..S::LEN {
-            let change = ends[1].as_slice()[i] - ends[0].as_slice()[i];
-            let start = h * rates[0].as_slice()[i] - change;
-            self.coefficients[0].as_mut_slice()[i] = change;
-            self.coefficients[1].as_mut_slice()[i] = start;
-            self.coefficients[2].as_mut_slice()[i] = change - h * rates[1].as_slice()[i] - start;
+    pub(super) fn set_cubic(&mut self, i: usize, start: f64, cubic: Cubic) {
+        let twist = 2.0 * cubic.bend - cubic.gained;
+        let is_parabola = twist.abs() <= 2.0 * cubic.rounding;
+        let [bend, twist] = match is_parabola {
+            true => [0.5 * cubic.gained, 0.0],
+            false => [cubic.bend, twist],
+        };
+        self.base.as_mut_slice()[i] = start;
+        for (k, value) in [cubic.rate, bend, twist].into_iter().enumerate() {
+            self.coefficients[k].as_mut_slice()[i] = value;
         }
     }
 
-    /// `h` times the rate of a stage at a node, component `i`, without that of the cubic.
+    /// What `h` times the rate of a stage at a node gains over that at the start, component `i`, without that of the cubic.
     ///
     /// The weights of the higher coefficients do not see the rates of a cubic, but for the weights' rounding errors, which
     /// are the same in every step: unless the cubic's part is taken out they add up over a run.
     #[inline(always)]
-    pub(super) fn beside_cubic(&self, h: f64, node: f64, rate: &S, i: usize) -> f64 {
+    pub(super) fn beside_cubic(&self, node: f64, gained: f64, i: usize) -> f64 {
         let at = |k: usize| self.coefficients[k].as_slice()[i];
-        let slope = at(0) + (1.0 - 2.0 * node) * at(1) + node * (2.0 - 3.0 * node) * at(2);
-        h * rate.as_slice()[i] - slope
+        gained - node * (2.0 * at(1) + (2.0 - 3.0 * node) * at(2))
     }
 
     /// The state at `theta` in \[0, 1\].
@@ -53,7 +69,8 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
     pub fn at(&self, theta: f64) -> S {
         let mut value = S::zeros();
         for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
-            let factor = if k % 2 == 0 { theta } else { 1.0 - theta };
+            let is_along = matches!(k, 0 | 1) || (k > 3 && k % 2 == 0);
+            let factor = if is_along { theta } else { 1.0 - theta };
             for i in 0..S::LEN {
                 let sum = value.as_slice()[i] + coefficient.as_slice()[i];
                 value.as_mut_slice()[i] = sum * factor;
@@ -80,7 +97,9 @@ impl<S: StateVector> Polynomial<S, 5> {
         const FOURTH: f64 = 2.0 * A * B * (1.0 - 2.0 * A);
         const FIFTH: [f64; 2] = [A * A * B * (3.0 - 5.0 * A), B * B * A * (3.0 - 5.0 * B)];
         for i in 0..S::LEN {
-            let missing = [(0, A), (1, B)].map(|(k, node)| self.beside_cubic(h, node, rates[k], i));
+            let first = self.coefficients[0].as_slice()[i];
+            let missing = [(0, A), (1, B)]
+                .map(|(k, node)| self.beside_cubic(node, h * rates[k].as_slice()[i] - first, i));
             let fifth = (missing[0] + missing[1]) / (FIFTH[0] + FIFTH[1]);
             self.coefficients[3].as_mut_slice()[i] = (missing[0] - FIFTH[0] * fifth) / FOURTH;
             self.coefficients[4].as_mut_slice()[i] = fifth;
@@ -104,7 +123,15 @@ mod tests {
             Scalar::new((1.0 - 4.0 * x + 3.0 * x * x - 12.0 * x.powi(3) + 10.0 * x.powi(4)) / h)
         };
         let mut dense = Polynomial::<Scalar, 5>::zero();
-        dense.set_cubic(h, [&value(0.0), &value(1.0)], [&rate(0.0), &rate(1.0)]);
+        let [start, end] = [rate(0.0)[0], rate(1.0)[0]].map(|rate| h * rate);
+        let bend = value(1.0)[0] - value(0.0)[0] - start;
+        let cubic = Cubic {
+            rate: start,
+            bend,
+            gained: end - start,
+            rounding: 0.0,
+        };
+        dense.set_cubic(0, 1.0, cubic);
         dense.set_inner(h, [&rate(INNER), &rate(1.0 - INNER)]);
         for step in 0..=16 {
             let x = f64::from(step) / 16.0;

@@ -4,10 +4,10 @@
 //! (Hairer, Norsett, Wanner I, II.5, II.6; coefficients in the neighbouring table.)
 
 use super::controller::Control;
-use super::dense::Polynomial;
+use super::dense::{Cubic, Polynomial};
 use super::dop853_tableau::*;
 use super::embedded::{Counted, Embedded, Scheme, Span};
-use super::tableau::{combine, larger, sum, weigh};
+use super::tableau::{combine, larger, rounding, subtract_first, sum, weigh_beyond_rounding};
 use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::math;
@@ -58,12 +58,13 @@ impl Scheme for Dop853Scheme {
     ) -> Result<(), Fault> {
         macro_rules! stage {
             ($($index:literal $row:ident)*) => {$(
-                combine(start, h, stages, &$row, end);
+                combine(start, h, stages, (NODES[$index], &$row), end);
                 field.rate(t + NODES[$index] * h, end, &mut stages[$index])?;
+                subtract_first(stages, $index);
             )*};
         }
         stage! { 1 A1 2 A2 3 A3 4 A4 5 A5 6 A6 7 A7 8 A8 9 A9 10 A10 11 A11 }
-        combine(start, h, stages, &B, end);
+        combine(start, h, stages, (1.0, &B), end);
         Ok(())
     }
 
@@ -91,32 +92,59 @@ impl Scheme for Dop853Scheme {
         stages: &mut [F::State],
         dense: &mut Self::Dense<F::State>,
     ) -> Result<(), Fault> {
-        let Span { t, h, start, end } = span;
-        let mut inside = *start;
-        macro_rules! stage {
-            ($($index:literal $row:ident)*) => {$(
-                combine(start, h, stages, &$row, &mut inside);
-                field.rate(t + NODES[$index] * h, &inside, &mut stages[$index])?;
-            )*};
-        }
-        stage! { 13 A13 14 A14 15 A15 }
-        dense.set_cubic(h, [start, end], [&stages[0], &stages[Self::LAST]]);
-        for i in 0..F::State::LEN {
-            let mut beside = [0.0; STAGES];
-            for &(j, _) in &D3 {
-                beside[j] = dense.beside_cubic(h, NODES[j], &stages[j], i);
-            }
-            for (k, row) in [D3, D4, D5, D6].iter().enumerate() {
-                dense.coefficients[3 + k].as_mut_slice()[i] = weigh(&beside, row);
-            }
-        }
-        Ok(())
+        let last = stages[Self::LAST];
+        subtract_first(stages, Self::LAST);
+        let built = fill_dense(field, span, stages, dense);
+        stages[Self::LAST] = last;
+        built
     }
 
     #[inline(always)]
     fn interpolate<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> S {
         dense.at(theta)
     }
+}
+
+/// The dense output from differences of all stages, that of the rate at the end too.
+#[inline(always)]
+fn fill_dense<F: VectorField>(
+    field: &mut Counted<'_, F>,
+    span: Span<'_, F::State>,
+    stages: &mut [F::State],
+    dense: &mut Polynomial<F::State, 7>,
+) -> Result<(), Fault> {
+    let Span { t, h, start, .. } = span;
+    let mut inside = *start;
+    macro_rules! stage {
+        ($($index:literal $row:ident)*) => {$(
+            combine(start, h, stages, (NODES[$index], &$row), &mut inside);
+            field.rate(t + NODES[$index] * h, &inside, &mut stages[$index])?;
+            subtract_first(stages, $index);
+        )*};
+    }
+    stage! { 13 A13 14 A14 15 A15 }
+    for i in 0..F::State::LEN {
+        let mut gains = [0.0; STAGES];
+        let mut size = (h * stages[0].as_slice()[i]).abs();
+        for &(j, _) in &D3[1..] {
+            gains[j] = h * stages[j].as_slice()[i];
+            size = larger(size, gains[j].abs());
+        }
+        let cubic = Cubic {
+            rate: h * stages[0].as_slice()[i],
+            bend: span.bend(stages, &B, i),
+            gained: gains[Dop853Scheme::LAST],
+            rounding: rounding(size, &B),
+        };
+        dense.set_cubic(i, start.as_slice()[i], cubic);
+        for &(j, _) in &D3[1..] {
+            gains[j] = dense.beside_cubic(NODES[j], gains[j], i);
+        }
+        for (k, row) in [D3, D4, D5, D6].iter().enumerate() {
+            dense.coefficients[3 + k].as_mut_slice()[i] = weigh_beyond_rounding(&gains, row, size);
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -147,6 +175,7 @@ mod tests {
     fn table_satisfies_its_order_conditions() {
         check::rows_sum_to_nodes(&ROWS, &NODES);
         check::weights_have_order(8, &B, &ROWS, &NODES);
+        check::constant_forces_shift_no_step(&B, &NODES);
         check::estimate_has_order(5, &E5, &NODES);
         check::estimate_has_order(3, &E3, &NODES);
     }

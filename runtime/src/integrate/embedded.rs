@@ -6,6 +6,7 @@
 use super::controller::{Control, Memory, Weights, first_step, landing, least_step, not_finite};
 use super::stats::Counters;
 use super::stepper::{StepFailure, Stepper};
+use super::tableau::{Term, sum};
 use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
@@ -40,6 +41,18 @@ pub struct Span<'a, S> {
     pub(super) end: &'a S,
 }
 
+impl<S: StateVector> Span<'_, S> {
+    /// What the end differs by from where the rate at the start alone would lead, component `i`. `weights` are those of the
+    /// end. Computed from the stages, which tell it far better than the ends do; what the end was moved by since is added.
+    #[inline(always)]
+    pub(super) fn bend(&self, stages: &[S], weights: &[Term], i: usize) -> f64 {
+        let (start, rate) = (self.start.as_slice()[i], stages[0].as_slice()[i]);
+        let differences = sum(stages, weights, i);
+        let moved = self.end.as_slice()[i] - (start + self.h * (rate + differences));
+        self.h * differences + moved
+    }
+}
+
 /// The coefficients of an embedded pair, and what is computed from them. Implemented by the schemes here.
 pub trait Scheme {
     /// See [`Stepper::NAME`].
@@ -67,7 +80,8 @@ pub trait Scheme {
     /// Dense output that is zero.
     fn dense<S: StateVector>() -> Self::Dense<S>;
 
-    /// From the first stage, all others but [`Scheme::LAST`], and the state at the end of a step of `h`.
+    /// From the first stage, all others but [`Scheme::LAST`], and the state at the end of a step of `h`. The first stage and
+    /// the last hold rates, the others what their rates differ by from that of the first.
     #[doc(hidden)]
     fn advance<F: VectorField>(
         field: &mut Counted<'_, F>,

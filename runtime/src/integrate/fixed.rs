@@ -6,7 +6,7 @@
 //! not solved is made in 2, 4, 8, .. equal parts, which keeps the grid and what the method preserves.
 
 use super::controller::{RETREAT, Weights, first_step, least_step, not_finite};
-use super::dense::{INNER, Polynomial};
+use super::dense::{Cubic, INNER, Polynomial};
 use super::embedded::Counted;
 use super::precise::Precise;
 use super::stats::Counters;
@@ -411,10 +411,18 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
         counters.dense_constructions += 1;
         let mut field = Counted { field, counters };
         let h = self.made;
-        let ends = [&self.ends[0].value, &self.ends[1].value];
-        let rates = [&self.rates[0], &self.rates[1]];
         self.dense = Polynomial::zero();
-        self.dense.set_cubic(h, ends, rates);
+        for i in 0..F::State::LEN {
+            let [first, last] = [0, 1].map(|end| h * self.rates[end].as_slice()[i]);
+            let cubic = Cubic {
+                rate: first,
+                bend: self.ends[1].minus(&self.ends[0], i) - first,
+                gained: last - first,
+                rounding: 0.0,
+            };
+            self.dense
+                .set_cubic(i, self.ends[0].value.as_slice()[i], cubic);
+        }
         for _ in 0..M::REFINEMENTS {
             let mut inner = [F::State::zeros(); 2];
             for (theta, rate) in [INNER, 1.0 - INNER].into_iter().zip(&mut inner) {

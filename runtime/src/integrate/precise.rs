@@ -26,6 +26,13 @@ impl<S: StateVector> Precise<S> {
         self.value.as_slice()[i] + (self.rest.as_slice()[i] + increment)
     }
 
+    /// Component `i` less that of another, with what both were rounded off.
+    #[inline(always)]
+    pub(super) fn minus(&self, other: &Self, i: usize) -> f64 {
+        let rests = self.rest.as_slice()[i] - other.rest.as_slice()[i];
+        (self.value.as_slice()[i] - other.value.as_slice()[i]) + rests
+    }
+
     /// The sum with `increment(i)` in each component, and what is rounded off.
     #[inline]
     pub(super) fn advanced(&self, increment: impl Fn(usize) -> f64) -> Self {
