@@ -7,6 +7,7 @@ use core::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
+use dalembert::integrate::Instant;
 use dalembert::{
     Counters, Described, Dop853, DormandPrince5, Effect, Impacts, Outcome, Scene, Simulation,
     Stepper, System, Tolerance,
@@ -263,12 +264,12 @@ fn step<S: Described, Step: Stepper<S>>(
     let name = format!("{}/{}", S::DESCRIPTION.name, Step::NAME);
     group.bench_function(name, |bencher| {
         stepper
-            .start(system, 0.0, &state, UNTIL, &mut counters)
+            .start(system, Instant::default(), &state, UNTIL, &mut counters)
             .expect("a start");
         bencher.iter(|| {
             if stepper.t_end() >= UNTIL {
                 stepper
-                    .start(system, 0.0, &state, UNTIL, &mut counters)
+                    .start(system, Instant::default(), &state, UNTIL, &mut counters)
                     .expect("a start");
             }
             stepper

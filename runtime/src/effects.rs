@@ -37,7 +37,7 @@ impl<Sys: System, Step: Stepper<Sys>> StepView<'_, Sys, Step> {
     /// Length of the step.
     #[inline(always)]
     pub fn length(&self) -> f64 {
-        self.stepper.t_end() - self.stepper.t_start()
+        self.stepper.length()
     }
 
     /// Time at a part of the step; exact at both ends.

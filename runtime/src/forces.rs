@@ -2,7 +2,7 @@
 
 use crate::contract::{System, VectorField};
 use crate::error::Fault;
-use crate::integrate::{Counters, Series, StepFailure, Stepper, Tolerance};
+use crate::integrate::{Counters, Instant, Series, StepFailure, Stepper, Tolerance};
 
 /// Forces on a system.
 pub trait Forces<Sys: System>: Copy + PartialEq {
@@ -86,23 +86,24 @@ where
     fn start(
         &mut self,
         _: &Sys,
-        t: f64,
+        now: Instant,
         state: &Sys::State,
         t_end: f64,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
-        self.stepper.start(self.field, t, state, t_end, counters)
+        self.stepper.start(self.field, now, state, t_end, counters)
     }
 
     fn restart(
         &mut self,
         _: &Sys,
-        t: f64,
+        now: Instant,
         state: &Sys::State,
         limit: f64,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
-        self.stepper.restart(self.field, t, state, limit, counters)
+        self.stepper
+            .restart(self.field, now, state, limit, counters)
     }
 
     fn step(&mut self, _: &Sys, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
@@ -122,12 +123,12 @@ where
         self.stepper.replace_end(self.field, state, counters)
     }
 
-    fn t_start(&self) -> f64 {
-        self.stepper.t_start()
+    fn start_time(&self) -> Instant {
+        self.stepper.start_time()
     }
 
-    fn t_end(&self) -> f64 {
-        self.stepper.t_end()
+    fn end_time(&self) -> Instant {
+        self.stepper.end_time()
     }
 
     fn start_state(&self) -> &Sys::State {
@@ -164,5 +165,9 @@ where
 
     fn interpolate(&self, theta: f64) -> Sys::State {
         self.stepper.interpolate(theta)
+    }
+
+    fn cut(&mut self, theta: f64) -> (Instant, Sys::State) {
+        self.stepper.cut(theta)
     }
 }

@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 use crate::contract::System;
 use crate::effects::{Change, Effect, Moment, StepView};
 use crate::forces::{Along, Driven};
-use crate::integrate::{Counters, Dop853, Stepper};
+use crate::integrate::{Counters, Dop853, Instant, Stepper};
 use crate::outcome::{Outcome, Run, StartError};
 use crate::record::{Observer, Segment};
 use crate::state::StateVector;
@@ -96,8 +96,8 @@ pub(crate) struct Progress<S> {
     /// Whether the integrator has made steps before.
     is_begun: bool,
     pub(crate) t: f64,
-    /// The part of the time that `t` cannot hold: lengths of flights add up without losing it.
-    late: f64,
+    /// The part of the time that `t` cannot hold: lengths of steps and flights add up without losing it.
+    rest: f64,
     /// Time since the last cut, in full precision however short it is.
     flight: f64,
     pub(crate) state: S,
@@ -109,11 +109,24 @@ impl<S> Progress<S> {
         Self {
             is_begun: false,
             t,
-            late: 0.0,
+            rest: 0.0,
             flight: 0.0,
             state,
             counters: Counters::default(),
         }
+    }
+
+    /// The time in both parts.
+    fn now(&self) -> Instant {
+        Instant {
+            t: self.t,
+            rest: self.rest,
+        }
+    }
+
+    /// Goes to a time.
+    fn set_time(&mut self, Instant { t, rest }: Instant) {
+        (self.t, self.rest) = (t, rest);
     }
 
     pub(crate) fn ended(self, outcome: Outcome) -> Run<S> {
@@ -193,9 +206,9 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
 
     /// The integrator begins where the run is.
     pub(crate) fn set_off(&mut self, t_end: f64) -> Result<(), Outcome> {
+        let now = self.progress.now();
         let Progress {
             is_begun,
-            t,
             state,
             counters,
             ..
@@ -203,10 +216,10 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         match *is_begun {
             false => self
                 .stepper
-                .start(self.system, *t, state, t_end, counters)?,
+                .start(self.system, now, state, t_end, counters)?,
             true => self
                 .stepper
-                .restart(self.system, *t, state, f64::INFINITY, counters)?,
+                .restart(self.system, now, state, f64::INFINITY, counters)?,
         }
         *is_begun = true;
         Ok(())
@@ -238,11 +251,12 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         if self.effects.forces() != *forces {
             return Ok(Next::Forces);
         }
+        let now = self.progress.now();
         let Progress {
-            t, state, counters, ..
+            state, counters, ..
         } = &mut *self.progress;
         self.stepper
-            .restart(self.system, *t, state, limit, counters)?;
+            .restart(self.system, now, state, limit, counters)?;
         Ok(Next::Step)
     }
 
@@ -283,8 +297,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         if let Some(coordinate) = self.system.outside_chart(self.stepper.end_state()) {
             return Err(self.leave_chart(1.0, coordinate, observer));
         }
-        self.progress.t = self.stepper.t_end();
-        self.progress.flight += self.progress.t - self.stepper.t_start();
+        self.progress.set_time(self.stepper.end_time());
+        self.progress.flight += self.stepper.length();
         self.progress.state = *self.stepper.end_state();
         let mut now = Moment {
             system: self.system,
@@ -315,8 +329,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             self.effects.act(theta, &mut now, observer)?;
             return Ok(f64::INFINITY);
         }
-        let limit = FLIGHTS
-            * (self.progress.flight + theta * (self.stepper.t_end() - self.stepper.t_start()));
+        let limit = FLIGHTS * (self.progress.flight + theta * self.stepper.length());
         self.progress.flight = 0.0;
         self.arrive(theta)?;
         if let Some(coordinate) = self.system.outside_chart(&self.progress.state) {
@@ -342,18 +355,13 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
 
     /// Sets time and state to those at `theta`.
     fn arrive(&mut self, theta: f64) -> Result<(), Outcome> {
-        let (start, end) = (self.stepper.t_start(), self.stepper.t_end());
-        if theta >= 1.0 {
-            self.progress.t = end;
-            self.progress.state = *self.stepper.end_state();
-            return Ok(());
+        if theta < 1.0 {
+            self.stepper
+                .prepare_dense(self.system, &mut self.progress.counters)?;
         }
-        self.stepper
-            .prepare_dense(self.system, &mut self.progress.counters)?;
-        let length = theta * (end - start) + self.progress.late;
-        self.progress.t = (start + length).min(end);
-        self.progress.late = length - (self.progress.t - start);
-        self.progress.state = self.stepper.interpolate(theta);
+        let (now, state) = self.stepper.cut(theta);
+        self.progress.set_time(now);
+        self.progress.state = state;
         Ok(())
     }
 
@@ -361,7 +369,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     #[inline(always)]
     fn show<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
         let t = [self.stepper.t_start(), self.progress.t];
-        let step = self.stepper.t_end() - t[0];
+        let step = self.stepper.length();
         let mut source = StepView {
             system: self.system,
             counters: &mut self.progress.counters,

@@ -95,12 +95,8 @@ pub const CASES: &[Case] = &[
         title: "H = p_x (1 + x^2) + p_y^2 x/2 with p_y -> -p_y at y = 0, 1",
         right: "x = tan t; n-th impact at acos(exp(-(n - y0)/|p_y|)); blow-up at pi/2",
         bound: "1e-12 until the spacing is below 4 ulp, then `spasmodic`",
-        pending: Some(
-            "the state itself is infinite where impacts accumulate: steps next to it are below the rounding of time after some \
-             32 impacts, and a run ends as `step_underflow`",
-        ),
         run: Run::Chosen(&[Integrator::Taylor], escape),
-        ..Case::NIGHTLY
+        ..Case::QUICK
     },
 ];
 

@@ -106,9 +106,6 @@ dalembert::model! {
 }
 
 /// Why times of events that do not bounce drift.
-const ROUNDED: &str = "the state at an event is rounded to half a unit in the last place of the angle: times walk at random by as \
-                       much per event";
-
 /// The cases.
 pub const CASES: &[Case] = &[
     Case {
@@ -176,7 +173,6 @@ pub const CASES: &[Case] = &[
         title: "a free rotor that passes cos(theta) = 0, to t = 1e6",
         right: "floor(1e6/pi + 1/2) = 318310 events",
         bound: "exact count; times to 4 u t",
-        pending: Some(ROUNDED),
         run: Run::Integrators(|setting, report| rotor(setting, report, 1e6, 318_310)),
         ..Case::NIGHTLY
     },
@@ -185,7 +181,6 @@ pub const CASES: &[Case] = &[
         title: "the same to t = 1e3",
         right: "floor(1e3/pi + 1/2) = 318 events",
         bound: "exact count; times to 4 u t",
-        pending: Some(ROUNDED),
         run: Run::Steps(|setting, report| rotor(setting, report, 1e3, 318)),
         ..Case::QUICK
     },

@@ -96,7 +96,7 @@ impl Line<'_> {
     /// Looks for the first fall stretch after stretch; unclear stretches are halved.
     fn isolate(&mut self) -> Result<Drop, Search> {
         let (mut above, mut rose) = (self.start.above, self.start.slope.is_none());
-        let mut floor = None;
+        let (mut floor, mut high) = (None, None);
         // The stretch number `index` of those of length `(1 - from) / 2^depth`.
         let (mut index, mut depth) = (0_u64, 0_u32);
         for _ in 0..STRETCHES {
@@ -107,11 +107,20 @@ impl Line<'_> {
             let samples = self.samples(left, right);
             let values = deflate(&samples, [left, right], self.start.slope);
             match signs(&values) {
-                Signs::Positive | Signs::Rises => (above, rose) = (true, true),
+                Signs::Positive | Signs::Rises => {
+                    (above, rose) = (true, true);
+                    high = Some(High::of(&samples, &values, [left, right]));
+                }
                 Signs::Negative if above => {
                     let floor = *floor.get_or_insert_with(&mut self.rounding);
-                    if samples.iter().any(|gap| *gap < -floor) {
-                        return Err(Search::Sinks(if rose { left } else { 0.0 }));
+                    if let Some(low) = samples.iter().position(|gap| *gap < -floor) {
+                        return match high.filter(|high| high.gap > floor) {
+                            // It fell where two stretches meet, or where it is flat.
+                            Some(high) => {
+                                self.of_interest(high.drop_to(low, &values, [left, right]))
+                            }
+                            None => Err(Search::Sinks(if rose { left } else { 0.0 })),
+                        };
                     }
                 }
                 Signs::Negative => {}
@@ -241,6 +250,38 @@ fn deflate(
         }
     }
     values
+}
+
+/// The highest sample of a stretch: its gap, where it is, and its value.
+#[derive(Debug, Clone, Copy)]
+struct High {
+    gap: f64,
+    x: f64,
+    value: f64,
+}
+
+impl High {
+    fn of(samples: &[f64; SAMPLES], values: &[f64; SAMPLES], [left, right]: [f64; 2]) -> Self {
+        let highest = (1..SAMPLES).fold(0, |best, j| match samples[j] > samples[best] {
+            true => j,
+            false => best,
+        });
+        Self {
+            gap: samples[highest],
+            x: inside(left, right, NODES[highest]),
+            value: values[highest],
+        }
+    }
+
+    /// The fall from here to a sample of a later stretch.
+    fn drop_to(self, low: usize, values: &[f64; SAMPLES], [left, right]: [f64; 2]) -> Drop {
+        let beside = if low + 1 < SAMPLES { low + 1 } else { low - 1 };
+        let [at, next] = [low, beside].map(|j| inside(left, right, NODES[j]));
+        Drop {
+            x: [at, self.x, next],
+            f: [values[low], self.value, values[beside]],
+        }
+    }
 }
 
 /// A fall between two samples, and a third sample beside them: positions and values. The newest point comes first;
@@ -389,6 +430,31 @@ mod tests {
         let (found, evaluations) = first(|x| (0.7 - x).sinh(), FROM_ABOVE);
         assert_falls_at(found, 0.7);
         assert!(evaluations <= 9, "{evaluations}");
+    }
+
+    #[test]
+    fn roots_where_stretches_meet_are_found_to_the_last_bits() {
+        // A gap that is rounded to multiples of this, and said to err by far more.
+        let unit = 1.0 / (1_u64 << 40) as f64;
+        for part in [0.25, 0.125] {
+            for eighths in -8..=8 {
+                let root = part + f64::from(eighths) / 8.0 * unit;
+                // It rises from the surface at the start.
+                let turns = core::f64::consts::PI * (1.0 - 4.0 * unit) / root;
+                let gap = |x: f64| ((turns * (root - x)).sin() / unit).round() * unit;
+                let line = Line {
+                    gap: &mut { gap },
+                    rounding: &mut || 64.0 * unit,
+                    whole: &NODES.map(gap),
+                    start: FROM_ABOVE,
+                };
+                let found = line.first_fall();
+                let Search::Falls(Bracket { nearest, .. }) = found else {
+                    panic!("{part} {eighths}: {found:?}")
+                };
+                assert!((nearest - root).abs() <= 2.0 * unit, "{nearest} for {root}");
+            }
+        }
     }
 
     #[test]

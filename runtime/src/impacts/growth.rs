@@ -8,8 +8,12 @@
 use crate::math;
 use crate::state::StateVector;
 
-/// Flights shorter than this many units in the last place of the time are too short to tell the next ones.
-const RESOLVED: f64 = 4096.0 * f64::EPSILON;
+/// Flights shorter than this many units in the last place of the time are too short to tell the next ones: where they hardly
+/// shrink from one to the next, and where they do.
+const RESOLVED: [f64; 2] = [4096.0 * f64::EPSILON, 4.0 * f64::EPSILON];
+
+/// Part of the flight before that the next is less than where flights are said to shrink from one to the next.
+const QUICK: f64 = 0.875;
 
 /// Rounding of a flight, in parts of the time.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
@@ -57,7 +61,7 @@ impl<V: StateVector> Growth<V> {
     }
 
     /// Takes in a flight that ends at `t`, and the one before. Returns the time of accumulation, if flights have become
-    /// too short to be told while the energy grew.
+    /// too short to be told while the energy grew. `energy` is that of the motion, or what takes its place.
     pub(super) fn add(
         &mut self,
         surface: usize,
@@ -85,7 +89,8 @@ impl<V: StateVector> Growth<V> {
             return None;
         }
         let first = self.firsts.as_slice()[surface];
-        if count > FIRST && flight <= RESOLVED * t.abs() && flight < SHRUNK * first {
+        let resolved = RESOLVED[usize::from(flight < QUICK * before)] * t.abs();
+        if count > FIRST && flight <= resolved && flight < SHRUNK * first {
             let grown = energy();
             let first = self.energies.as_slice()[surface];
             let is_growth = grown - first > GROWN * grown.abs().max(first.abs());

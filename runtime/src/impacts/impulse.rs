@@ -391,7 +391,12 @@ impl<Sys: Impacting> Impacts<Sys> {
         };
         let bounce = if rate_after > still { rate_after } else { 0.0 };
         let may_rest = self.may_rest(surface);
-        let energy = || system.energy(t, &struck.after).unwrap_or(f64::NAN);
+        // A first-order system has no energy: whether its motion becomes faster is told by the rate it leaves the surface at.
+        let energy = || match system.energy(t, &struck.after) {
+            Ok(energy) => energy,
+            Err(Fault::FirstOrder) => rate_after * rate_after,
+            Err(_) => f64::NAN,
+        };
         let watch = &self.watch;
         let rounding = || watch.rounding(surface, now);
         match self.accumulation.add(surface, t, bounce, rounding, energy) {

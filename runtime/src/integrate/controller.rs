@@ -1,5 +1,6 @@
 //! Step size control (Hairer, Norsett, Wanner I, II.4; Gustafsson's PI controller).
 
+use super::instant::Instant;
 use super::tableau::larger;
 use super::tolerance::Tolerance;
 use crate::math;
@@ -119,15 +120,20 @@ impl<S: StateVector> Weights<S> {
     }
 }
 
-/// Shortest step at a time: sixteen units in its last place, so that every step moves the time.
+/// Shortest step at a time: a 64th of a unit in its last place. Times are kept in two parts, so that such a step moves them.
 pub(crate) fn least_step(t: f64) -> f64 {
-    (16.0 * f64::EPSILON * t.abs()).max(f64::MIN_POSITIVE)
+    (f64::EPSILON / 64.0 * t.abs()).max(f64::MIN_POSITIVE)
 }
 
-/// The end of a step of about `h` from `t`: `t_end` itself when a hundredth more would reach it.
+/// The length and the end of a step of about `h`: `t_end` itself when a hundredth more would reach it.
 #[inline(always)]
-pub(super) fn landing(t: f64, h: f64, t_end: f64) -> f64 {
-    if t + 1.01 * h >= t_end { t_end } else { t + h }
+pub(super) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
+    let end = Instant::new(t_end);
+    let left = end.since(start);
+    match 1.01 * h >= left {
+        true => (left, end),
+        false => (h, start.after(h)),
+    }
 }
 
 /// The first component that is not finite.

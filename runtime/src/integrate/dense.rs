@@ -1,5 +1,6 @@
 //! Dense output as a polynomial in nested form.
 
+use super::precise::Precise;
 use crate::state::StateVector;
 
 /// The state inside a step: with `s = 1 - theta`,
@@ -11,7 +12,7 @@ use crate::state::StateVector;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polynomial<S, const K: usize> {
     /// The state at `theta = 0`.
-    pub(super) base: S,
+    pub(super) base: Precise<S>,
     /// The coefficients `c_0, .., c_{K-1}`.
     pub(super) coefficients: [S; K],
 }
@@ -34,21 +35,22 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
     /// The polynomial 0.
     pub(super) fn zero() -> Self {
         Self {
-            base: S::zeros(),
+            base: Precise::new(S::zeros()),
             coefficients: [S::zeros(); K],
         }
     }
 
     /// Sets the part every scheme shares, in component `i`.
     #[inline(always)]
-    pub(super) fn set_cubic(&mut self, i: usize, start: f64, cubic: Cubic) {
+    pub(super) fn set_cubic(&mut self, i: usize, start: &Precise<S>, cubic: Cubic) {
         let twist = 2.0 * cubic.bend - cubic.gained;
         let is_parabola = twist.abs() <= 2.0 * cubic.rounding;
         let [bend, twist] = match is_parabola {
             true => [0.5 * cubic.gained, 0.0],
             false => [cubic.bend, twist],
         };
-        self.base.as_mut_slice()[i] = start;
+        self.base.value.as_mut_slice()[i] = start.value.as_slice()[i];
+        self.base.rest.as_mut_slice()[i] = start.rest.as_slice()[i];
         for (k, value) in [cubic.rate, bend, twist].into_iter().enumerate() {
             self.coefficients[k].as_mut_slice()[i] = value;
         }
@@ -67,6 +69,12 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
     /// The state at `theta` in \[0, 1\].
     #[inline(always)]
     pub fn at(&self, theta: f64) -> S {
+        self.precisely_at(theta).value
+    }
+
+    /// The state at `theta`, and what it is rounded off.
+    #[inline(always)]
+    pub(super) fn precisely_at(&self, theta: f64) -> Precise<S> {
         let mut value = S::zeros();
         for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
             let is_along = matches!(k, 0 | 1) || (k > 3 && k % 2 == 0);
@@ -76,10 +84,7 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
                 value.as_mut_slice()[i] = sum * factor;
             }
         }
-        for i in 0..S::LEN {
-            value.as_mut_slice()[i] += self.base.as_slice()[i];
-        }
-        value
+        self.base.advanced(|i| value.as_slice()[i])
     }
 }
 
@@ -131,7 +136,7 @@ mod tests {
             gained: end - start,
             rounding: 0.0,
         };
-        dense.set_cubic(0, 1.0, cubic);
+        dense.set_cubic(0, &Precise::new(value(0.0)), cubic);
         dense.set_inner(h, [&rate(INNER), &rate(1.0 - INNER)]);
         for step in 0..=16 {
             let x = f64::from(step) / 16.0;

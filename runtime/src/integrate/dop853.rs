@@ -7,7 +7,8 @@ use super::controller::Control;
 use super::dense::{Cubic, Polynomial};
 use super::dop853_tableau::*;
 use super::embedded::{Counted, Embedded, Scheme, Span};
-use super::tableau::{combine, larger, rounding, subtract_first, sum, weigh_beyond_rounding};
+use super::precise::Precise;
+use super::tableau::{Term, combine, larger, rounding, subtract_first, sum, weigh_beyond_rounding};
 use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::math;
@@ -27,6 +28,7 @@ impl Scheme for Dop853Scheme {
     const NAME: &'static str = "dop853";
     const ORDER: usize = 8;
     const DENSE_ORDER: usize = 7;
+    const WEIGHTS: &'static [Term] = &B;
     const LAST: usize = 12;
     const ERROR_TAKES_LAST: bool = false;
     const CONTROL: Control = Control {
@@ -54,17 +56,16 @@ impl Scheme for Dop853Scheme {
         h: f64,
         start: &F::State,
         stages: &mut [F::State],
-        end: &mut F::State,
+        inside: &mut F::State,
     ) -> Result<(), Fault> {
         macro_rules! stage {
             ($($index:literal $row:ident)*) => {$(
-                combine(start, h, stages, (NODES[$index], &$row), end);
-                field.rate(t + NODES[$index] * h, end, &mut stages[$index])?;
+                combine(start, h, stages, (NODES[$index], &$row), inside);
+                field.rate(t + NODES[$index] * h, inside, &mut stages[$index])?;
                 subtract_first(stages, $index);
             )*};
         }
         stage! { 1 A1 2 A2 3 A3 4 A4 5 A5 6 A6 7 A7 8 A8 9 A9 10 A10 11 A11 }
-        combine(start, h, stages, (1.0, &B), end);
         Ok(())
     }
 
@@ -100,8 +101,8 @@ impl Scheme for Dop853Scheme {
     }
 
     #[inline(always)]
-    fn interpolate<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> S {
-        dense.at(theta)
+    fn dense_at<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> Precise<S> {
+        dense.precisely_at(theta)
     }
 }
 
@@ -114,10 +115,10 @@ fn fill_dense<F: VectorField>(
     dense: &mut Polynomial<F::State, 7>,
 ) -> Result<(), Fault> {
     let Span { t, h, start, .. } = span;
-    let mut inside = *start;
+    let mut inside = start.value;
     macro_rules! stage {
         ($($index:literal $row:ident)*) => {$(
-            combine(start, h, stages, (NODES[$index], &$row), &mut inside);
+            combine(&start.value, h, stages, (NODES[$index], &$row), &mut inside);
             field.rate(t + NODES[$index] * h, &inside, &mut stages[$index])?;
             subtract_first(stages, $index);
         )*};
@@ -136,7 +137,7 @@ fn fill_dense<F: VectorField>(
             gained: gains[Dop853Scheme::LAST],
             rounding: rounding(size, &B),
         };
-        dense.set_cubic(i, start.as_slice()[i], cubic);
+        dense.set_cubic(i, start, cubic);
         for &(j, _) in &D3[1..] {
             gains[j] = dense.beside_cubic(NODES[j], gains[j], i);
         }
@@ -149,7 +150,7 @@ fn fill_dense<F: VectorField>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::tableau::{Term, check};
+    use super::super::tableau::check;
     use super::*;
 
     const ROWS: [&[Term]; STAGES] = [

@@ -6,6 +6,7 @@
 use super::controller::Control;
 use super::dense::{Cubic, Polynomial};
 use super::embedded::{Counted, Embedded, Scheme, Span};
+use super::precise::Precise;
 use super::tableau::{Term, combine, larger, rounding, subtract_first, sum, weigh_beyond_rounding};
 use crate::contract::VectorField;
 use crate::error::Fault;
@@ -77,6 +78,7 @@ impl Scheme for DormandPrince5Scheme {
     const NAME: &'static str = "dopri5";
     const ORDER: usize = 5;
     const DENSE_ORDER: usize = 4;
+    const WEIGHTS: &'static [Term] = &B;
     const LAST: usize = 6;
     const ERROR_TAKES_LAST: bool = true;
     const CONTROL: Control = Control {
@@ -104,17 +106,16 @@ impl Scheme for DormandPrince5Scheme {
         h: f64,
         start: &F::State,
         stages: &mut [F::State],
-        end: &mut F::State,
+        inside: &mut F::State,
     ) -> Result<(), Fault> {
         macro_rules! stage {
             ($($index:literal $row:ident)*) => {$(
-                combine(start, h, stages, (NODES[$index], &$row), end);
-                field.rate(t + NODES[$index] * h, end, &mut stages[$index])?;
+                combine(start, h, stages, (NODES[$index], &$row), inside);
+                field.rate(t + NODES[$index] * h, inside, &mut stages[$index])?;
                 subtract_first(stages, $index);
             )*};
         }
         stage! { 1 A1 2 A2 3 A3 4 A4 5 A5 }
-        combine(start, h, stages, (1.0, &B), end);
         Ok(())
     }
 
@@ -154,7 +155,7 @@ impl Scheme for DormandPrince5Scheme {
                 gained: gains[Self::LAST],
                 rounding: rounding(size, &B),
             };
-            dense.set_cubic(i, span.start.as_slice()[i], cubic);
+            dense.set_cubic(i, span.start, cubic);
             for &(j, _) in &D[1..] {
                 gains[j] = dense.beside_cubic(NODES[j], gains[j], i);
             }
@@ -164,8 +165,8 @@ impl Scheme for DormandPrince5Scheme {
     }
 
     #[inline(always)]
-    fn interpolate<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> S {
-        dense.at(theta)
+    fn dense_at<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> Precise<S> {
+        dense.precisely_at(theta)
     }
 }
 

@@ -4,6 +4,8 @@
 //! estimate does without it, it is evaluated only once the error has passed.
 
 use super::controller::{Control, Memory, Weights, first_step, landing, least_step, not_finite};
+use super::instant::Instant;
+use super::precise::Precise;
 use super::stats::Counters;
 use super::stepper::{StepFailure, Stepper};
 use super::tableau::{Term, sum};
@@ -37,8 +39,8 @@ impl<F: VectorField> Counted<'_, F> {
 pub struct Span<'a, S> {
     pub(super) t: f64,
     pub(super) h: f64,
-    pub(super) start: &'a S,
-    pub(super) end: &'a S,
+    pub(super) start: &'a Precise<S>,
+    pub(super) end: &'a Precise<S>,
 }
 
 impl<S: StateVector> Span<'_, S> {
@@ -46,9 +48,9 @@ impl<S: StateVector> Span<'_, S> {
     /// end. Computed from the stages, which tell it far better than the ends do; what the end was moved by since is added.
     #[inline(always)]
     pub(super) fn bend(&self, stages: &[S], weights: &[Term], i: usize) -> f64 {
-        let (start, rate) = (self.start.as_slice()[i], stages[0].as_slice()[i]);
         let differences = sum(stages, weights, i);
-        let moved = self.end.as_slice()[i] - (start + self.h * (rate + differences));
+        let length = self.h * (stages[0].as_slice()[i] + differences);
+        let moved = self.end.value.as_slice()[i] - self.start.plus(i, length);
         self.h * differences + moved
     }
 }
@@ -80,8 +82,12 @@ pub trait Scheme {
     /// Dense output that is zero.
     fn dense<S: StateVector>() -> Self::Dense<S>;
 
-    /// From the first stage, all others but [`Scheme::LAST`], and the state at the end of a step of `h`. The first stage and
-    /// the last hold rates, the others what their rates differ by from that of the first.
+    /// Weights of the solution at the end.
+    #[doc(hidden)]
+    const WEIGHTS: &'static [Term];
+
+    /// From the first stage, all others but [`Scheme::LAST`], with room for a state. The first stage and the last hold rates,
+    /// the others what their rates differ by from that of the first.
     #[doc(hidden)]
     fn advance<F: VectorField>(
         field: &mut Counted<'_, F>,
@@ -89,7 +95,7 @@ pub trait Scheme {
         h: f64,
         start: &F::State,
         stages: &mut [F::State],
-        end: &mut F::State,
+        inside: &mut F::State,
     ) -> Result<(), Fault>;
 
     /// The error of the step over what is allowed. `allowed(i)` is the error allowed in component `i`.
@@ -105,9 +111,9 @@ pub trait Scheme {
         dense: &mut Self::Dense<F::State>,
     ) -> Result<(), Fault>;
 
-    /// The state at `theta`.
+    /// The state at `theta`, and what it is rounded off.
     #[doc(hidden)]
-    fn interpolate<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> S;
+    fn dense_at<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> Precise<S>;
 }
 
 /// An embedded pair at work.
@@ -120,9 +126,11 @@ pub struct Embedded<S: StateVector, M: Scheme> {
     memory: Memory,
     /// The step size for the next trial.
     next: f64,
-    t: [f64; 2],
-    start: S,
-    end: S,
+    t: [Instant; 2],
+    start: Precise<S>,
+    end: Precise<S>,
+    /// Where the last step was cut, until the next begins.
+    cut: Option<Precise<S>>,
     stages: M::Stages<S>,
     dense: M::Dense<S>,
     dense_ready: bool,
@@ -139,9 +147,10 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
             weights: Weights::new(tolerance, &zeros),
             memory: Memory::new(),
             next: 0.0,
-            t: [0.0; 2],
-            start: zeros,
-            end: zeros,
+            t: [Instant::default(); 2],
+            start: Precise::new(zeros),
+            end: Precise::new(zeros),
+            cut: None,
             stages: M::stages(),
             dense: M::dense(),
             dense_ready: false,
@@ -166,16 +175,18 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         self
     }
 
-    /// Takes `(t, state)` for the end of a step, as a start does.
+    /// Takes `(now, state)` for the end of a step, as a start does.
     fn place<F: VectorField<State = S>>(
         &mut self,
         field: &mut Counted<'_, F>,
-        t: f64,
-        state: &S,
+        now: Instant,
+        precise: Precise<S>,
     ) -> Result<(), StepFailure> {
-        self.t = [t; 2];
-        self.start = *state;
-        self.end = *state;
+        let (t, state) = (now.t, &precise.value);
+        self.t = [now; 2];
+        self.start = precise;
+        self.end = precise;
+        self.cut = None;
         self.dense_ready = false;
         self.memory = Memory::new();
         self.weights = Weights::new(self.tolerance, &field.field.scale(t, state));
@@ -204,22 +215,26 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         field: &mut Counted<'_, F>,
         h: f64,
     ) -> Result<f64, StepFailure> {
-        let t = self.t[0];
+        let t = self.t[0].t;
         let stages = self.stages.as_mut();
-        M::advance(field, t, h, &self.start, stages, &mut self.end)?;
+        M::advance(field, t, h, &self.start.value, stages, &mut self.end.value)?;
+        self.end = self
+            .start
+            .advanced(|i| h * (stages[0].as_slice()[i] + sum(stages, M::WEIGHTS, i)));
+        let end = &self.end.value;
         if M::ERROR_TAKES_LAST {
-            field.rate(t + h, &self.end, &mut stages[M::LAST])?;
+            field.rate(t + h, end, &mut stages[M::LAST])?;
         }
         let error = M::error(h, stages, |i| {
-            self.weights.allowed(i, &self.start, &self.end)
+            self.weights.allowed(i, &self.start.value, end)
         });
         if error > 1.0 {
             return Ok(error);
         }
         if !M::ERROR_TAKES_LAST {
-            field.rate(t + h, &self.end, &mut stages[M::LAST])?;
+            field.rate(t + h, end, &mut stages[M::LAST])?;
         }
-        match not_finite(self.end.as_slice()).or(not_finite(stages[M::LAST].as_slice())) {
+        match not_finite(end.as_slice()).or(not_finite(stages[M::LAST].as_slice())) {
             Some(component) => Err(StepFailure::NonFinite { component }),
             None if error.is_nan() => Err(StepFailure::NonFinite { component: 0 }),
             None => Ok(error),
@@ -245,13 +260,14 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
     fn start(
         &mut self,
         field: &F,
-        t: f64,
+        now: Instant,
         state: &F::State,
         t_end: f64,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
+        let t = now.t;
         let mut field = Counted { field, counters };
-        self.place(&mut field, t, state)?;
+        self.place(&mut field, now, Precise::new(*state))?;
         let rate = self.stages.as_ref()[M::LAST];
         let rate_after = |h: f64| {
             let mut moved = *state;
@@ -279,26 +295,25 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
     fn restart(
         &mut self,
         field: &F,
-        t: f64,
+        now: Instant,
         state: &F::State,
         limit: f64,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
         self.next = self.next.min(limit);
-        self.place(&mut Counted { field, counters }, t, state)
+        let precise = self.cut.as_ref().unwrap_or(&self.end).kept(state);
+        self.place(&mut Counted { field, counters }, now, precise)
     }
 
     #[inline]
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
         self.move_on();
         let mut field = Counted { field, counters };
-        let t = self.t[0];
+        let t = self.t[0].t;
         let least = least_step(t);
         let mut h = self.next.min(self.max_step).max(least);
         loop {
-            let arrival = landing(t, h, t_end);
-            // NOTE: the step that is made is the difference of the two times, not the one asked for.
-            let made = arrival - t;
+            let (made, arrival) = landing(self.t[0], h, t_end);
             let attempt = self.attempt(&mut field, made);
             if let Ok(error) = attempt
                 && error <= 1.0
@@ -327,30 +342,30 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         state: &F::State,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
-        self.end = *state;
+        self.end = self.end.kept(state);
         let rate = &mut self.stages.as_mut()[M::LAST];
-        Counted { field, counters }.rate(self.t[1], state, rate)?;
+        Counted { field, counters }.rate(self.t[1].t, state, rate)?;
         Ok(())
     }
 
     #[inline(always)]
-    fn t_start(&self) -> f64 {
+    fn start_time(&self) -> Instant {
         self.t[0]
     }
 
     #[inline(always)]
-    fn t_end(&self) -> f64 {
+    fn end_time(&self) -> Instant {
         self.t[1]
     }
 
     #[inline(always)]
     fn start_state(&self) -> &F::State {
-        &self.start
+        &self.start.value
     }
 
     #[inline(always)]
     fn end_state(&self) -> &F::State {
-        &self.end
+        &self.end.value
     }
 
     #[inline(always)]
@@ -371,8 +386,8 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         }
         counters.dense_constructions += 1;
         let span = Span {
-            t: self.t[0],
-            h: self.t[1] - self.t[0],
+            t: self.t[0].t,
+            h: self.t[1].since(self.t[0]),
             start: &self.start,
             end: &self.end,
         };
@@ -388,6 +403,19 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
 
     #[inline(always)]
     fn interpolate(&self, theta: f64) -> F::State {
-        M::interpolate(&self.dense, theta)
+        M::dense_at(&self.dense, theta).value
+    }
+
+    #[inline]
+    fn cut(&mut self, theta: f64) -> (Instant, F::State) {
+        let (now, state) = match theta >= 1.0 {
+            true => (self.t[1], self.end),
+            false => (
+                self.t[0].after(theta * self.t[1].since(self.t[0])),
+                M::dense_at(&self.dense, theta),
+            ),
+        };
+        self.cut = Some(state);
+        (now, state.value)
     }
 }

@@ -8,6 +8,7 @@
 use super::controller::{RETREAT, Weights, first_step, least_step, not_finite};
 use super::dense::{Cubic, INNER, Polynomial};
 use super::embedded::Counted;
+use super::instant::Instant;
 use super::precise::Precise;
 use super::stats::Counters;
 use super::stepper::{StepFailure, Stepper};
@@ -75,13 +76,15 @@ pub struct FixedStep<S: StateVector, M: Method> {
     step: f64,
     /// The size of the next step: that of the run, or less after an impact.
     next: f64,
-    t: [f64; 2],
-    /// The length of the last step; the difference of its times has lost digits to their size.
+    t: [Instant; 2],
+    /// The length of the last step.
     made: f64,
     /// The grid: since this time, this many steps of the run's size.
-    grid: (f64, f64),
+    grid: (Instant, f64),
     units: S,
     ends: [Precise<S>; 2],
+    /// Where the last step was cut, until the next begins.
+    cut: Option<Precise<S>>,
     rates: [S; 2],
     memory: M::Memory<S>,
     dense: Polynomial<S, 5>,
@@ -101,11 +104,12 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
             given: None,
             step: 0.0,
             next: 0.0,
-            t: [0.0; 2],
+            t: [Instant::default(); 2],
             made: 0.0,
-            grid: (0.0, 0.0),
+            grid: (Instant::default(), 0.0),
             units: zeros,
             ends: [Precise::new(zeros); 2],
+            cut: None,
             rates: [zeros; 2],
             memory: M::memory(),
             dense: Polynomial::zero(),
@@ -120,17 +124,19 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         self
     }
 
-    /// Takes `(t, state)` for the end of a step, as a start does.
+    /// Takes `(now, state)` for the end of a step, as a start does.
     fn place<F: VectorField<State = S>>(
         &mut self,
         field: &mut Counted<'_, F>,
-        t: f64,
-        state: &S,
+        now: Instant,
+        precise: Precise<S>,
     ) -> Result<(), StepFailure> {
-        self.t = [t; 2];
+        let (t, state) = (now.t, &precise.value);
+        self.t = [now; 2];
         self.made = 0.0;
-        self.grid = (t, 0.0);
-        self.ends = [Precise::new(*state); 2];
+        self.grid = (now, 0.0);
+        self.ends = [precise; 2];
+        self.cut = None;
         self.dense_ready = false;
         self.memory = M::memory();
         self.units = usable(field.field.scale(t, state));
@@ -178,17 +184,17 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     }
 
     /// The length of a step of about `h`, and the time it leads to: `t_end` where that is in reach.
-    fn aim(&self, h: f64, t_end: f64) -> (f64, f64) {
-        let t = self.t[0];
-        let rest = t_end - t;
+    fn aim(&self, h: f64, t_end: f64) -> (f64, Instant) {
+        let end = Instant::new(t_end);
+        let rest = end.since(self.t[0]);
         if rest <= h + SLIVER * h {
-            (rest, t_end)
+            (rest, end)
         } else if h == self.step {
             // NOTE: the number of steps times their size does not add up rounding, and the length of a step does not
             // depend on the time at which it is made.
-            (h, self.grid.0 + (self.grid.1 + 1.0) * h)
+            (h, self.grid.0.after((self.grid.1 + 1.0) * h))
         } else {
-            (h, t + h)
+            (h, self.t[0].after(h))
         }
     }
 
@@ -228,13 +234,13 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         (self.ends[1], self.rates[1]) = (self.ends[0], self.rates[0]);
         for k in 0..parts {
             let departure = Departure {
-                t: self.t[0] + f64::from(k) * part,
+                t: self.t[0].t + f64::from(k) * part,
                 state: &self.ends[1],
                 rate: &self.rates[1],
                 units: &self.units,
             };
             let end = M::advance(field, part, &departure, &mut self.memory)?;
-            let t = self.t[0] + f64::from(k + 1) * part;
+            let t = self.t[0].t + f64::from(k + 1) * part;
             self.ends[1] = end;
             evaluate(field, t, &end.value, &mut self.rates[1])?;
             check_finite(&end.value, &self.rates[1])?;
@@ -243,7 +249,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     }
 
     /// Takes in a step that was made.
-    fn accept(&mut self, made: f64, arrival: f64) {
+    fn accept(&mut self, made: f64, arrival: Instant) {
         self.t[1] = arrival;
         self.made = made;
         self.next = (GROW * made).min(self.step);
@@ -294,16 +300,16 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
     fn start(
         &mut self,
         field: &F,
-        t: f64,
+        now: Instant,
         state: &F::State,
         t_end: f64,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
         let mut field = Counted { field, counters };
-        self.place(&mut field, t, state)?;
+        self.place(&mut field, now, Precise::new(*state))?;
         self.step = match self.given {
             Some(step) => step,
-            None => self.automatic_step(&mut field, t, state, t_end),
+            None => self.automatic_step(&mut field, now.t, state, t_end),
         };
         self.next = self.step;
         Ok(())
@@ -312,24 +318,25 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
     fn restart(
         &mut self,
         field: &F,
-        t: f64,
+        now: Instant,
         state: &F::State,
         limit: f64,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
         self.next = self.step.min(limit);
-        self.place(&mut Counted { field, counters }, t, state)
+        let precise = self.cut.as_ref().unwrap_or(&self.ends[1]).kept(state);
+        self.place(&mut Counted { field, counters }, now, precise)
     }
 
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
         self.move_on();
         let mut field = Counted { field, counters };
-        let t = self.t[0];
+        let t = self.t[0].t;
         let least = least_step(t);
         let mut h = self.next.max(least);
         loop {
             let (made, arrival) = self.aim(h, t_end);
-            let attempt = match arrival > t {
+            let attempt = match arrival.since(self.t[0]) > 0.0 {
                 true => self.cross(&mut field, made),
                 false => Err(StepFailure::StepUnderflow { t }),
             };
@@ -364,10 +371,10 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
         state: &F::State,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
-        self.ends[1] = Precise::new(*state);
+        self.ends[1] = self.ends[1].kept(state);
         evaluate(
             &mut Counted { field, counters },
-            self.t[1],
+            self.t[1].t,
             state,
             &mut self.rates[1],
         )?;
@@ -375,12 +382,12 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
     }
 
     #[inline(always)]
-    fn t_start(&self) -> f64 {
+    fn start_time(&self) -> Instant {
         self.t[0]
     }
 
     #[inline(always)]
-    fn t_end(&self) -> f64 {
+    fn end_time(&self) -> Instant {
         self.t[1]
     }
 
@@ -420,15 +427,14 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
                 gained: last - first,
                 rounding: 0.0,
             };
-            self.dense
-                .set_cubic(i, self.ends[0].value.as_slice()[i], cubic);
+            self.dense.set_cubic(i, &self.ends[0], cubic);
         }
         for _ in 0..M::REFINEMENTS {
             let mut inner = [F::State::zeros(); 2];
             for (theta, rate) in [INNER, 1.0 - INNER].into_iter().zip(&mut inner) {
                 evaluate(
                     &mut field,
-                    self.t[0] + theta * h,
+                    self.t[0].t + theta * h,
                     &self.dense.at(theta),
                     rate,
                 )?;
@@ -442,5 +448,17 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
     #[inline(always)]
     fn interpolate(&self, theta: f64) -> F::State {
         self.dense.at(theta)
+    }
+
+    fn cut(&mut self, theta: f64) -> (Instant, F::State) {
+        let (now, state) = match theta >= 1.0 {
+            true => (self.t[1], self.ends[1]),
+            false => (
+                self.t[0].after(theta * self.made),
+                self.dense.precisely_at(theta),
+            ),
+        };
+        self.cut = Some(state);
+        (now, state.value)
     }
 }

@@ -20,6 +20,18 @@ impl<S: StateVector> Precise<S> {
         }
     }
 
+    /// This state, and what the components that it shares with `self` were rounded off.
+    #[inline]
+    pub(super) fn kept(&self, state: &S) -> Self {
+        let mut kept = Self::new(*state);
+        for i in 0..S::LEN {
+            if state.as_slice()[i] == self.value.as_slice()[i] {
+                kept.rest.as_mut_slice()[i] = self.rest.as_slice()[i];
+            }
+        }
+        kept
+    }
+
     /// Component `i` plus a number, rounded once.
     #[inline(always)]
     pub(super) fn plus(&self, i: usize, increment: f64) -> f64 {

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::instant::Instant;
 use super::stats::Counters;
 use super::tolerance::Tolerance;
 use crate::contract::VectorField;
@@ -19,28 +20,29 @@ pub trait Stepper<F: VectorField> {
     /// The tolerance it was made with.
     fn tolerance(&self) -> Tolerance;
 
-    /// Begins at `(t, state)`, heading for `t_end`: finds a first step size.
+    /// Begins at `(now, state)`, heading for `t_end`: finds a first step size.
     ///
     /// # Errors
     /// [`StepFailure`] where the vector field does not exist at the start.
     fn start(
         &mut self,
         field: &F,
-        t: f64,
+        now: Instant,
         state: &F::State,
         t_end: f64,
         counters: &mut Counters,
     ) -> Result<(), StepFailure>;
 
     /// Begins again after a jump, with the step size known so far but none larger than `limit`. An integrator that
-    /// keeps a size goes back to it within a few steps.
+    /// keeps a size goes back to it within a few steps. Components of the state that are those of the last cut keep what they
+    /// were rounded off there.
     ///
     /// # Errors
     /// [`StepFailure`] where the vector field does not exist at the new state.
     fn restart(
         &mut self,
         field: &F,
-        t: f64,
+        now: Instant,
         state: &F::State,
         limit: f64,
         counters: &mut Counters,
@@ -70,10 +72,28 @@ pub trait Stepper<F: VectorField> {
     ) -> Result<(), StepFailure>;
 
     /// Time at the start of the last step.
-    fn t_start(&self) -> f64;
+    fn start_time(&self) -> Instant;
 
     /// Time at the end of the last step.
-    fn t_end(&self) -> f64;
+    fn end_time(&self) -> Instant;
+
+    /// Time at the start of the last step, rounded.
+    #[inline(always)]
+    fn t_start(&self) -> f64 {
+        self.start_time().t
+    }
+
+    /// Time at the end of the last step, rounded.
+    #[inline(always)]
+    fn t_end(&self) -> f64 {
+        self.end_time().t
+    }
+
+    /// Length of the last step, also of one that is shorter than a unit in the last place of its times.
+    #[inline(always)]
+    fn length(&self) -> f64 {
+        self.end_time().since(self.start_time())
+    }
 
     /// State at the start of the last step.
     fn start_state(&self) -> &F::State;
@@ -113,6 +133,18 @@ pub trait Stepper<F: VectorField> {
     ///
     /// Meaningful only while [`Stepper::dense_ready`].
     fn interpolate(&self, theta: f64) -> F::State;
+
+    /// Time and state at a part of the step where the motion is cut; after [`Stepper::prepare_dense`], unless it is the end.
+    /// [`Stepper::restart`] follows. What the state is rounded off is kept until then by integrators that carry it.
+    fn cut(&mut self, theta: f64) -> (Instant, F::State) {
+        match theta >= 1.0 {
+            true => (self.end_time(), *self.end_state()),
+            false => (
+                self.start_time().after(theta * self.length()),
+                self.interpolate(theta),
+            ),
+        }
+    }
 }
 
 /// That a step is a power series in `s`, at time `t_start + unit s`.
@@ -128,7 +160,7 @@ pub struct Series {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum StepFailure {
-    /// The error stays too large down to steps that no longer change the time: a singularity of the motion.
+    /// The error stays too large down to steps far shorter than the last digit of the time: a singularity of the motion.
     StepUnderflow {
         /// Where.
         t: f64,

@@ -9,6 +9,7 @@ use super::{LONGEST, Taylor, not_finite};
 use crate::contract::TaylorField;
 use crate::error::Fault;
 use crate::integrate::controller::landing;
+use crate::integrate::instant::Instant;
 use crate::integrate::rough::power_of_two;
 use crate::integrate::stats::Counters;
 use crate::numbers::{Numbers, Row};
@@ -42,7 +43,7 @@ pub(crate) trait Walker<F: TaylorField> {
 #[derive(Clone, Copy, Default)]
 struct Plan {
     reach: f64,
-    arrival: f64,
+    arrival: Instant,
     made: f64,
 }
 
@@ -125,11 +126,11 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             let taylor = walker.taylor();
             let reach = taylor.reach_of(sizes.map(|size| size.lane(lane)));
             let reach = reach.min(LONGEST) * taylor.unit;
-            let arrival = landing(taylor.t[0], taylor.length(reach), walker.t_end());
+            let (made, arrival) = landing(taylor.t[0], taylor.length(reach), walker.t_end());
             *plan = Plan {
                 reach,
                 arrival,
-                made: arrival - taylor.t[0],
+                made,
             };
         }
         plans
@@ -149,7 +150,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             let rest = &mut self.rests.as_mut_slice()[i];
             [self.end.as_mut_slice()[i], *rest] = sum(start, *change, *rest);
         }
-        let arrival = L::gathered(|lane| plans[lane.min(walkers.len() - 1)].arrival);
+        let arrival = L::gathered(|lane| plans[lane.min(walkers.len() - 1)].arrival.t);
         self.expansion.begin(&self.parameters, arrival, &self.end)
     }
 

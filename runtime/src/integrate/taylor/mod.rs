@@ -29,7 +29,9 @@ use core::fmt;
 use expansion::{Expansion, row, state, sum};
 
 use super::controller::{Weights, least_step, not_finite};
+use super::instant::Instant;
 use super::order::{LEAST_ORDER, PART_OF_TOLERANCE, order};
+use super::precise::Precise;
 use super::rough;
 use super::stats::Counters;
 use super::stepper::StepFailure;
@@ -37,6 +39,7 @@ use super::tolerance::Tolerance;
 use crate::contract::TaylorField;
 use crate::error::Fault;
 use crate::jet::{INVERSES, LENGTH};
+use crate::math;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
@@ -71,11 +74,13 @@ pub struct Taylor<F: TaylorField> {
     next_unit: f64,
     /// No step longer than this for now: after a jump, and at the start.
     limit: f64,
-    t: [f64; 2],
+    t: [Instant; 2],
     start: F::State,
     end: F::State,
     /// What the states at both ends lack, since they are rounded.
     rests: [F::State; 2],
+    /// Where the last step was cut, until the next begins.
+    cut: Option<Precise<F::State>>,
     rates: [F::State; 2],
     expansion: Expansion<F, f64>,
     /// Whether the coefficients of the last step are at hand: they are not where it was made abreast of others.
@@ -114,10 +119,11 @@ impl<F: TaylorField> Taylor<F> {
             unit: 1.0,
             next_unit: 1.0,
             limit: f64::INFINITY,
-            t: [0.0; 2],
+            t: [Instant::default(); 2],
             start: zeros,
             end: zeros,
             rests: [zeros; 2],
+            cut: None,
             rates: [zeros; 2],
             expansion: Expansion::new(),
             is_expanded: true,
@@ -154,13 +160,20 @@ impl<F: TaylorField> Taylor<F> {
         self.order
     }
 
-    /// Takes `(t, state)` for the end of a step, as a start does.
-    fn place(&mut self, field: &F, t: f64, state: &F::State) -> Result<(), StepFailure> {
-        self.t = [t; 2];
+    /// Takes `(now, state)` for the end of a step, as a start does.
+    fn place(
+        &mut self,
+        field: &F,
+        now: Instant,
+        precise: Precise<F::State>,
+    ) -> Result<(), StepFailure> {
+        let state = &precise.value;
+        self.t = [now; 2];
         self.start = *state;
         self.end = *state;
-        self.rests = [F::State::zeros(); 2];
-        self.weights = Weights::new(self.tolerance, &field.scale(t, state));
+        self.rests = [precise.rest; 2];
+        self.cut = None;
+        self.weights = Weights::new(self.tolerance, &field.scale(now.t, state));
         if let Some(component) = not_finite(state.as_slice()) {
             return Err(StepFailure::NonFinite { component });
         }
@@ -171,7 +184,7 @@ impl<F: TaylorField> Taylor<F> {
     #[inline(always)]
     fn begin(&mut self, field: &F) -> Result<(), StepFailure> {
         self.expansion
-            .begin(&field.parameters(), self.t[1], &row::<F>(&self.end))?;
+            .begin(&field.parameters(), self.t[1].t, &row::<F>(&self.end))?;
         self.rates[1] = state::<F>(self.expansion.rate());
         match not_finite(self.rates[1].as_slice()) {
             Some(component) => Err(StepFailure::NonFinite { component }),
@@ -193,7 +206,7 @@ impl<F: TaylorField> Taylor<F> {
             };
             counters.rejected += 1;
             self.unit *= SHRINK;
-            if self.unit < least_step(self.t[0]) {
+            if self.unit < least_step(self.t[0].t) {
                 return Err(StepFailure::NonFinite { component });
             }
         }
@@ -230,7 +243,7 @@ impl<F: TaylorField> Taylor<F> {
     /// The length of the step that the coefficients reach, as far as it is wanted.
     #[inline(always)]
     fn length(&self, reach: f64) -> f64 {
-        let least = least_step(self.t[0]);
+        let least = least_step(self.t[0].t);
         reach.min(self.max_step).min(self.limit).max(least)
     }
 
@@ -267,7 +280,7 @@ impl<F: TaylorField> Taylor<F> {
         &mut self,
         field: &F,
         theta: f64,
-        arrival: f64,
+        arrival: Instant,
         counters: &mut Counters,
     ) -> Result<bool, StepFailure> {
         let slope = self.arrive(theta);
@@ -292,11 +305,29 @@ impl<F: TaylorField> Taylor<F> {
         })
     }
 
+    /// The state at a part of the step, and what it is rounded off.
+    #[inline(always)]
+    fn state_at(&self, theta: f64) -> Precise<F::State> {
+        let s = theta * (self.t[1].since(self.t[0]) / self.unit);
+        let mut change = F::State::zeros();
+        for coefficient in self.expansion.coefficients[1..=self.order].iter().rev() {
+            for (i, entry) in coefficient.as_slice().iter().enumerate() {
+                let sum = &mut change.as_mut_slice()[i];
+                *sum = math::mul_add(*sum, s, *entry);
+            }
+        }
+        let start = Precise {
+            value: self.start,
+            rest: self.rests[0],
+        };
+        start.advanced(|i| change.as_slice()[i] * s)
+    }
+
     /// The coefficients of the last step, which was made abreast of others.
     fn expand_again(&mut self, field: &F) -> Result<(), Fault> {
         let (parameters, start) = (field.parameters(), row::<F>(&self.start));
         let end = self.expansion.firsts;
-        self.expansion.begin(&parameters, self.t[0], &start)?;
+        self.expansion.begin(&parameters, self.t[0].t, &start)?;
         self.expansion
             .advance(&parameters, self.unit, self.order, &start);
         self.expansion.firsts = end;

@@ -4,11 +4,12 @@ use super::{LONGEST, TAYLOR, Taylor};
 use crate::contract::TaylorField;
 use crate::error::Fault;
 use crate::integrate::controller::{RETREAT, landing, least_step};
+use crate::integrate::instant::Instant;
+use crate::integrate::precise::Precise;
 use crate::integrate::rough::power_of_two;
 use crate::integrate::stats::Counters;
 use crate::integrate::stepper::{Series, StepFailure, Stepper};
 use crate::integrate::tolerance::Tolerance;
-use crate::math;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
@@ -22,20 +23,20 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
     fn start(
         &mut self,
         field: &F,
-        t: f64,
+        now: Instant,
         state: &F::State,
         t_end: f64,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
         counters.rate_evaluations += 1;
-        self.place(field, t, state)?;
+        self.place(field, now, Precise::new(*state))?;
         self.limit = self.first_step.unwrap_or(f64::INFINITY);
         let size = self.weights.norm(state, |i| state.as_slice()[i]);
         let speed = self.weights.norm(state, |i| self.rates[1].as_slice()[i]);
         let time = size / speed;
         let known = time > 0.0 && time.is_finite();
-        let time = if known { time } else { t_end - t };
-        self.next_unit = power_of_two(time.min(t_end - t));
+        let time = if known { time } else { t_end - now.t };
+        self.next_unit = power_of_two(time.min(t_end - now.t));
         Ok(())
     }
 
@@ -43,27 +44,33 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
     fn restart(
         &mut self,
         field: &F,
-        t: f64,
+        now: Instant,
         state: &F::State,
         limit: f64,
         _: &mut Counters,
     ) -> Result<(), StepFailure> {
         self.limit = limit;
-        self.place(field, t, state)
+        let precise = match &self.cut {
+            Some(cut) => cut.kept(state),
+            None => Precise {
+                value: self.end,
+                rest: self.rests[1],
+            }
+            .kept(state),
+        };
+        self.place(field, now, precise)
     }
 
     #[inline]
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
         self.set_out();
         self.is_expanded = true;
-        let t = self.t[0];
+        let t = self.t[0].t;
         let reach = self.expand(field, counters)?.min(LONGEST) * self.unit;
         let mut h = self.length(reach);
         self.next_unit = power_of_two(h);
         loop {
-            let arrival = landing(t, h, t_end);
-            // NOTE: the step that is made is the difference of the two times, not the one asked for.
-            let made = arrival - t;
+            let (made, arrival) = landing(self.t[0], h, t_end);
             let attempt = self.attempt(field, made / self.unit, arrival, counters);
             if let Ok(true) = attempt {
                 self.accept(made, reach, counters);
@@ -95,12 +102,12 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
     }
 
     #[inline(always)]
-    fn t_start(&self) -> f64 {
+    fn start_time(&self) -> Instant {
         self.t[0]
     }
 
     #[inline(always)]
-    fn t_end(&self) -> f64 {
+    fn end_time(&self) -> Instant {
         self.t[1]
     }
 
@@ -153,18 +160,25 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
 
     #[inline(always)]
     fn interpolate(&self, theta: f64) -> F::State {
-        let s = theta * ((self.t[1] - self.t[0]) / self.unit);
-        let mut state = F::State::zeros();
-        for coefficient in self.expansion.coefficients[1..=self.order].iter().rev() {
-            for (i, entry) in coefficient.as_slice().iter().enumerate() {
-                let sum = &mut state.as_mut_slice()[i];
-                *sum = math::mul_add(*sum, s, *entry);
+        self.state_at(theta).value
+    }
+
+    #[inline]
+    fn cut(&mut self, theta: f64) -> (Instant, F::State) {
+        let (now, state) = match theta >= 1.0 {
+            true => {
+                let end = Precise {
+                    value: self.end,
+                    rest: self.rests[1],
+                };
+                (self.t[1], end)
             }
-        }
-        for i in 0..F::State::LEN {
-            let moved = state.as_slice()[i] * s + self.rests[0].as_slice()[i];
-            state.as_mut_slice()[i] = self.start.as_slice()[i] + moved;
-        }
-        state
+            false => (
+                self.t[0].after(theta * self.t[1].since(self.t[0])),
+                self.state_at(theta),
+            ),
+        };
+        self.cut = Some(state);
+        (now, state.value)
     }
 }
