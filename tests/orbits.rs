@@ -6,10 +6,10 @@ use dalembert::{
     Described, Impacts, Law, Outcome, Scene, StateVector, System, Tangent, Taylor, Tolerance,
 };
 use dalembert_cli::{Exit, models};
-use dalembert_models::{BouncingBall, DimensionlessWalker, PointBilliard};
+use dalembert_models::{BouncingBall, DimensionlessWalker, MovingWallDisk, PointBilliard};
 use dalembert_tests::command::{self, Finished};
 use dalembert_tests::reference::{number, numbers, read};
-use dalembert_tests::systems::{IntegrableBead, MovingWallDisk};
+use dalembert_tests::systems::IntegrableBead;
 use serde_json::Value;
 
 dalembert::model! {

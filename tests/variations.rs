@@ -9,12 +9,12 @@ use dalembert::{
     Stepper, System, Tangent, Taylor, Tolerance, Variations,
 };
 use dalembert_models::{
-    BouncingBall, ChaplyginSleigh, DimensionlessWalker, PointBilliard, RollingBallEuler,
-    RollingDisk, TwoWheelsRod, WalkerFootSlip,
+    BouncingBall, ChaplyginSleigh, DimensionlessWalker, MovingWallDisk, PointBilliard,
+    RollingBallEuler, RollingDisk, TwoWheelsRod, WalkerFootSlip,
 };
 use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::systems::{
-    AffineSleigh, DampedSleigh, IntegrableBead, MagneticDisk, MovingWallDisk, Rheonomic, TableWall,
+    AffineSleigh, DampedSleigh, IntegrableBead, MagneticDisk, Rheonomic, TableWall,
 };
 use serde_json::Value;
 

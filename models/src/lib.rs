@@ -17,6 +17,7 @@ pub mod figures;
 pub mod filippov_field;
 pub mod harmonic_oscillator;
 pub mod holonomic_bead_on_ellipses;
+pub mod moving_wall_disk;
 pub mod point_billiard;
 pub mod refracted_particle;
 pub mod rimless_wheel_five;
@@ -47,6 +48,7 @@ pub use double_pendulum::DoublePendulum;
 pub use filippov_field::FilippovField;
 pub use harmonic_oscillator::HarmonicOscillator;
 pub use holonomic_bead_on_ellipses::HolonomicBeadOnEllipses;
+pub use moving_wall_disk::MovingWallDisk;
 pub use point_billiard::PointBilliard;
 pub use refracted_particle::RefractedParticle;
 pub use rimless_wheel_five::RimlessWheelFive;
@@ -83,6 +85,7 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         FilippovField,
         HarmonicOscillator,
         HolonomicBeadOnEllipses,
+        MovingWallDisk,
         PointBilliard,
         RefractedParticle,
         RimlessWheelFive,

@@ -71,13 +71,13 @@ pub fn visit_all(visitor: &mut impl Visitor) {
         dalembert_models:
         AppellHamel BallOnRotatingTable BouncingBall Chain2 Chain3 Chain4 Chain8 Chain16 ChaplyginSleigh ConstantSpeed
         DoublePendulum
-        HarmonicOscillator HolonomicBeadOnEllipses PointBilliard RollingBallEuler RollingBallWall RollingDisk
+        HarmonicOscillator HolonomicBeadOnEllipses MovingWallDisk PointBilliard RollingBallEuler RollingBallWall RollingDisk
         SuperElasticStrip TwoWheelsRod
         WalkerFootSlip
     }
     visit! {
         systems:
-        AffineSleigh TableWall MagneticDisk DampedSleigh IntegrableBead MovingWallDisk Rheonomic
+        AffineSleigh TableWall MagneticDisk DampedSleigh IntegrableBead Rheonomic
         WalkerWithMultiplier FallingDisk MixedDisk NonholonomicParticle HelicalCircle
         CurvedDual RouthSphere OnePole
     }

@@ -89,26 +89,6 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Rolling disk inside an ellipse that moves with constant velocity.
-    pub MovingWallDisk {
-        coordinates { x; y; theta: angle; phi: angle; }
-        parameters {
-            m > 0 = 3/2; R > 0 = 1/4; I > 0 = 1/5; J > 0 = 1/8; ta > 0 = 2; tb > 0 = 3/2; wx = 1/2; wy = -1/4;
-        }
-        let table(u, v) = 1 - (u - wx*t)^2/ta^2 - (v - wy*t)^2/tb^2;
-        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + J/2*dot(phi)^2;
-        constraints {
-            rolling_x: d(x) - R*cos(phi)*d(theta) = 0;
-            rolling_y: d(y) - R*sin(phi)*d(theta) = 0;
-        }
-        impacts {
-            leading_edge: table(x + R*cos(phi), y + R*sin(phi)) >= 0;
-            trailing_edge: table(x - R*cos(phi), y - R*sin(phi)) >= 0;
-        }
-    }
-}
-
-dalembert::model! {
     /// Everything depends on time: metric and linear terms, potential, constraint, force and wall.
     pub Rheonomic {
         coordinates { x; y; z; }
@@ -243,7 +223,6 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
         MagneticDisk,
         DampedSleigh,
         IntegrableBead,
-        MovingWallDisk,
         Rheonomic,
         WalkerWithMultiplier,
         FallingDisk,
