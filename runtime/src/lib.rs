@@ -111,6 +111,7 @@ pub mod describe;
 pub mod effects;
 pub mod error;
 mod events;
+pub mod extended;
 pub mod forces;
 mod generated;
 pub mod impacts;

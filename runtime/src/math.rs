@@ -64,6 +64,19 @@ pub fn mul_add(a: f64, b: f64, c: f64) -> f64 {
     }
 }
 
+/// The largest integer that is not above a number.
+#[inline(always)]
+pub fn floor(x: f64) -> f64 {
+    #[cfg(feature = "std")]
+    {
+        x.floor()
+    }
+    #[cfg(not(feature = "std"))]
+    {
+        libm::floor(x)
+    }
+}
+
 /// `|x|`.
 #[inline(always)]
 pub fn abs(x: f64) -> f64 {

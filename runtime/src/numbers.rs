@@ -6,7 +6,16 @@
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
+use crate::jet::INVERSES;
 use crate::math;
+
+/// The circle constant, as [`Numbers::constant`] takes it.
+pub const PI: [f64; 4] = [
+    core::f64::consts::PI,
+    1.2246467991473532e-16,
+    -2.9947698097183397e-33,
+    1.1124542208633653e-49,
+];
 
 /// One number, or one of each of several lanes.
 pub trait Numbers:
@@ -30,6 +39,19 @@ pub trait Numbers:
 
     /// The same number in every lane.
     fn of(number: f64) -> Self;
+
+    /// The constant that is the sum of these numbers, each the nearest to what those before it leave: the first alone
+    /// unless numbers have more than double precision.
+    #[inline(always)]
+    fn constant(parts: [f64; 4]) -> Self {
+        Self::of(parts[0])
+    }
+
+    /// `1 / k`, for `k` up to 32.
+    #[inline(always)]
+    fn inverse(k: usize) -> Self {
+        Self::of(INVERSES[k])
+    }
 
     /// The number that `of_lane` gives for each lane.
     fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self;
@@ -88,6 +110,13 @@ pub trait Numbers:
     #[inline(always)]
     fn powf(self, exponent: f64) -> Self {
         self.map(|x| math::powf(x, exponent))
+    }
+
+    /// The power with a constant exponent that is no double.
+    #[must_use]
+    #[inline(always)]
+    fn power(self, exponent: Self) -> Self {
+        self.powf(exponent.lane(0))
     }
 
     /// Sine.

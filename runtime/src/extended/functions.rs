@@ -1,0 +1,263 @@
+//! Elementary functions in 6 parts: more than any number that they are rounded to has.
+//!
+//! Exponentials and sines are sums of their series after the argument has been reduced, their inverses follow by Newton's
+//! method or its like of third order. What is infinite or no number, and where a function jumps, is that of `f64`.
+
+use core::f64::consts;
+
+use super::number::Extended;
+use crate::math;
+
+/// What functions are computed in.
+pub(super) type Wide = Extended<6>;
+
+/// Half of the circle constant.
+const HALF_PI: Wide = Wide::constant_of([
+    consts::FRAC_PI_2,
+    6.123233995736766e-17,
+    -1.4973849048591698e-33,
+    5.562271104316826e-50,
+    2.836115989820158e-66,
+    8.724931080676243e-84,
+]);
+
+/// The natural logarithm of 2.
+const LN_2: Wide = Wide::constant_of([
+    consts::LN_2,
+    2.3190468138462996e-17,
+    5.707708438416212e-34,
+    -3.5824322106018114e-50,
+    -1.352169675798863e-66,
+    6.080638740240814e-83,
+]);
+
+const ONE: Wide = Wide::plain(1.0);
+
+/// Angles beyond this are not reduced: `2^50`.
+const LARGEST_ANGLE: f64 = (1_u64 << 50) as f64;
+
+/// Halvings of the argument of an exponential before its series is summed.
+const HALVINGS: u32 = 8;
+
+/// Up to this size hyperbolic functions follow from `e^x - 1`.
+const SMALL: f64 = 0.25;
+
+/// Steps of methods of third order from a double: 53, 159, 477 bits.
+const STEPS: u32 = 2;
+
+/// The nearest integer of a number below `2^51`.
+fn rounded(x: f64) -> f64 {
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    (x + SHIFT) - SHIFT
+}
+
+/// `2^exponent`, for exponents of normal numbers.
+fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((1023 + i64::from(exponent)) as u64) << 52)
+}
+
+/// The exponent of a positive finite number.
+fn exponent_of(x: f64) -> i32 {
+    let exponent = |x: f64| ((x.to_bits() >> 52) & 0x7ff) as i32 - 1023;
+    match x < f64::MIN_POSITIVE {
+        true => exponent(x * power_of_two(54)) - 54,
+        false => exponent(x),
+    }
+}
+
+/// A number times `2^exponent`, over the whole range.
+fn shifted(x: Wide, exponent: i32) -> Wide {
+    let half = exponent / 2;
+    x.scaled(power_of_two(half))
+        .scaled(power_of_two(exponent - half))
+}
+
+/// `first + .. ` where each term is the last one times `factor` over the next divisor, to its last digit.
+fn series(first: Wide, factor: Wide, mut divisor: impl FnMut(u32) -> f64) -> Wide {
+    let (mut sum, mut term) = (first, first);
+    for k in 1.. {
+        term = term * factor / Wide::plain(divisor(k));
+        if term.nearest().abs() <= Wide::ROUNDING * sum.nearest().abs() {
+            break;
+        }
+        sum = sum + term;
+    }
+    sum
+}
+
+/// `e^x - 1` of a number below 1.
+fn exp_less_one(x: Wide) -> Wide {
+    if x.nearest() == 0.0 {
+        return x;
+    }
+    let part = x.scaled(power_of_two(-(HALVINGS as i32)));
+    let mut power = series(part, part, |k| f64::from(k + 1));
+    for _ in 0..HALVINGS {
+        power = power.fused(power, power.scaled(2.0));
+    }
+    power
+}
+
+pub(super) fn exp(x: Wide) -> Wide {
+    /// Beyond it `e^x` is infinite, or 0.
+    const RANGE: f64 = 750.0;
+    let leading = x.nearest();
+    if leading.is_nan() || leading.abs() > RANGE {
+        return Wide::plain(math::exp(leading));
+    }
+    let twos = rounded(leading * consts::LOG2_E);
+    let rest = LN_2.fused(Wide::plain(-twos), x);
+    shifted(exp_less_one(rest) + ONE, twos as i32)
+}
+
+pub(super) fn ln(x: Wide) -> Wide {
+    let leading = x.nearest();
+    if !(leading > 0.0 && leading.is_finite()) {
+        return Wide::plain(math::ln(leading));
+    }
+    let mut twos = exponent_of(leading);
+    let mut mantissa = shifted(x, -twos);
+    if mantissa.nearest() > consts::SQRT_2 {
+        twos += 1;
+        mantissa = mantissa.scaled(0.5);
+    }
+    let mut logarithm = Wide::plain(math::ln(mantissa.nearest()));
+    for _ in 0..STEPS {
+        let power = exp(logarithm);
+        logarithm = logarithm + (mantissa - power).scaled(2.0) / (mantissa + power);
+    }
+    LN_2.fused(Wide::plain(f64::from(twos)), logarithm)
+}
+
+/// The power of a base that is positive, or has a whole exponent; else that of `f64`.
+pub(super) fn power(base: Wide, exponent: Wide) -> Wide {
+    let (x, e) = (base.nearest(), exponent.nearest());
+    if x == 0.0 || e == 0.0 || !x.is_finite() || !e.is_finite() {
+        return Wide::plain(math::powf(x, e));
+    }
+    if x > 0.0 {
+        return exp(exponent * ln(base));
+    }
+    // Of exponents so large all are even.
+    let is_large = e.abs() >= LARGEST_ANGLE;
+    let is_whole = is_large || rounded(e) == e;
+    if !is_whole || exponent != Wide::plain(e) {
+        return Wide::plain(f64::NAN);
+    }
+    let size = exp(exponent * ln(-base));
+    match is_large || rounded(0.5 * e) == 0.5 * e {
+        true => size,
+        false => -size,
+    }
+}
+
+pub(super) fn sin_cos(x: Wide) -> (Wide, Wide) {
+    let leading = x.nearest();
+    // Not a comparison that NaN passes.
+    let is_reduced = leading.abs() <= LARGEST_ANGLE;
+    if !is_reduced {
+        return (Wide::plain(f64::NAN), Wide::plain(f64::NAN));
+    }
+    let quarters = rounded(leading * consts::FRAC_2_PI);
+    let rest = HALF_PI.fused(Wide::plain(-quarters), x);
+    let square = -(rest * rest);
+    let sine = match rest.nearest() == 0.0 {
+        true => rest,
+        false => series(rest, square, |k| f64::from(2 * k * (2 * k + 1))),
+    };
+    let cosine = series(ONE, square, |k| f64::from((2 * k - 1) * 2 * k));
+    // NOTE: whole, so that the conversion is exact.
+    match (quarters as i64).rem_euclid(4) {
+        0 => (sine, cosine),
+        1 => (cosine, -sine),
+        2 => (-sine, -cosine),
+        _ => (-cosine, sine),
+    }
+}
+
+pub(super) fn tan(x: Wide) -> Wide {
+    let (sine, cosine) = sin_cos(x);
+    sine / cosine
+}
+
+pub(super) fn atan2(y: Wide, x: Wide) -> Wide {
+    let [b, a] = [y.nearest(), x.nearest()];
+    if b.is_nan() || a.is_nan() {
+        return Wide::plain(f64::NAN);
+    }
+    let is_regular = |own: f64| own != 0.0 && own.is_finite();
+    if !(is_regular(b) && is_regular(a)) {
+        // The angle is a multiple of an eighth of the circle.
+        let eighths = rounded(math::atan2(b, a) * (2.0 * consts::FRAC_2_PI));
+        return match eighths == 0.0 {
+            true => Wide::plain(math::atan2(b, a)),
+            false => HALF_PI * Wide::plain(0.5 * eighths),
+        };
+    }
+    let twos = -exponent_of(b.abs().max(a.abs()));
+    let [y, x] = [shifted(y, twos), shifted(x, twos)];
+    let radius = (x * x + y * y).root();
+    let [sine, cosine] = [y / radius, x / radius];
+    let mut angle = Wide::plain(math::atan2(b, a));
+    for _ in 0..STEPS {
+        let (s, c) = sin_cos(angle);
+        // The sine of what is missing.
+        angle = angle + (sine * c - cosine * s);
+    }
+    angle
+}
+
+pub(super) fn asin(x: Wide) -> Wide {
+    atan2(x, cosine_of_asin(x))
+}
+
+pub(super) fn acos(x: Wide) -> Wide {
+    atan2(cosine_of_asin(x), x)
+}
+
+fn cosine_of_asin(x: Wide) -> Wide {
+    ((ONE - x) * (ONE + x)).root()
+}
+
+/// `e^x / 2`, which may be in the range where `e^x` is not, and its inverse over 4.
+fn halves(x: Wide) -> [Wide; 2] {
+    let root = exp(x.scaled(0.5));
+    let half = root.scaled(0.5) * root;
+    [half, Wide::plain(0.25) / half]
+}
+
+/// A function that changes its sign with that of the argument, from what it is for positive ones.
+fn odd(x: Wide, function: impl Fn(Wide) -> Wide) -> Wide {
+    match x.is_negative() {
+        true => -function(-x),
+        false => function(x),
+    }
+}
+
+pub(super) fn sinh(x: Wide) -> Wide {
+    if x.nearest().abs() < SMALL {
+        let power = exp_less_one(x);
+        return (power + power / (power + ONE)).scaled(0.5);
+    }
+    odd(x, |x| {
+        let [half, inverse] = halves(x);
+        half - inverse
+    })
+}
+
+pub(super) fn cosh(x: Wide) -> Wide {
+    let x = if x.is_negative() { -x } else { x };
+    let [half, inverse] = halves(x);
+    half + inverse
+}
+
+pub(super) fn tanh(x: Wide) -> Wide {
+    if x.nearest().abs() < SMALL {
+        let power = exp_less_one(x.scaled(2.0));
+        return power / (power + Wide::plain(2.0));
+    }
+    odd(x, |x| {
+        let power = exp(x.scaled(-2.0));
+        (ONE - power) / (ONE + power)
+    })
+}

@@ -1,0 +1,368 @@
+//! Numbers of more than double precision.
+
+use core::cmp::Ordering;
+use core::fmt;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::functions::{self, Wide};
+use super::sums::Sum;
+use crate::math;
+use crate::numbers::Numbers;
+
+/// The most parts that an [`Extended`] may have: constants of generated code are known to so many.
+pub const MOST_PARTS: usize = 4;
+
+/// A number that is the sum of `PARTS` doubles: about 53 bits, or 16 digits, for each of them, in the range of doubles.
+///
+/// `PARTS` is 1 to [`MOST_PARTS`]; other numbers of parts do not compile. With 1 part arithmetic is that of `f64`, with the
+/// elementary functions rounded from more digits.
+///
+/// Sums, products, quotients and roots have relative errors of a few units of `2^(-53 PARTS)`; differences, of the larger
+/// operand, one double below that. Elementary functions are taken in 6 parts and rounded. Digits below `1e-308` do not
+/// exist: numbers below `1e-308 / 2^(-53 (PARTS - 1))` have fewer. Sines, cosines and tangents of angles beyond `2^50` are NaN. What is
+/// infinite or no number in `f64` is so here.
+///
+/// ```
+/// use dalembert::extended::Extended;
+///
+/// let third = Extended::<3>::from(1.0) / Extended::from(3.0);
+/// let error = third * Extended::from(3.0) - Extended::from(1.0);
+/// assert!(error.nearest().abs() < 1e-47);
+/// assert_eq!("0.1".parse::<Extended<2>>()?.parts(), [0.1, -5.551115123125783e-18]);
+/// # Ok::<(), dalembert::extended::NotDecimal>(())
+/// ```
+#[derive(Clone, Copy, PartialEq)]
+pub struct Extended<const PARTS: usize> {
+    /// Each is the sum of itself and those behind it, rounded.
+    parts: [f64; PARTS],
+}
+
+impl<const PARTS: usize> Extended<PARTS> {
+    /// Half of what a rounding changes of 1: `2^(-53 PARTS)`.
+    pub const ROUNDING: f64 = {
+        let bits = 53 * PARTS as u64;
+        f64::from_bits((1023 - bits) << 52)
+    };
+
+    /// The sum of these numbers, the largest first.
+    pub fn of_parts(parts: [f64; PARTS]) -> Self {
+        let mut sum = Sum::of(&[0.0; PARTS]);
+        for (level, part) in parts.into_iter().enumerate() {
+            sum.add(part, level);
+        }
+        Self::summed(parts[0], sum)
+    }
+
+    /// The numbers that it is the sum of: each the nearest double to what is left behind those before it.
+    pub const fn parts(&self) -> [f64; PARTS] {
+        self.parts
+    }
+
+    /// The nearest double.
+    pub const fn nearest(&self) -> f64 {
+        self.parts[0]
+    }
+
+    /// The sum whose leading part is about `leading`: that alone where it is not finite.
+    #[inline(always)]
+    fn summed(leading: f64, sum: Sum<PARTS>) -> Self {
+        if !leading.is_finite() {
+            return Self::plain(leading);
+        }
+        let parts = sum.parts();
+        match parts[0].is_finite() {
+            true => Self { parts },
+            false => Self::plain(parts[0]),
+        }
+    }
+
+    /// This double.
+    #[inline(always)]
+    pub(super) const fn plain(number: f64) -> Self {
+        let mut parts = [0.0; PARTS];
+        parts[0] = number;
+        Self { parts }
+    }
+
+    /// These parts, which do not overlap.
+    pub(super) const fn constant_of(parts: [f64; PARTS]) -> Self {
+        Self { parts }
+    }
+
+    /// The same number in other parts, rounded to them.
+    pub(super) fn converted<const OTHER: usize>(self) -> Extended<OTHER> {
+        if self.parts[0] == 0.0 {
+            // With its sign.
+            return Extended::plain(self.parts[0]);
+        }
+        let mut sum = Sum::<OTHER>::of(&[0.0; OTHER]);
+        for (level, part) in self.parts.into_iter().enumerate() {
+            sum.add(part, level.min(OTHER));
+        }
+        Extended::summed(self.parts[0], sum)
+    }
+
+    /// Every part times a power of two.
+    pub(super) fn scaled(self, power: f64) -> Self {
+        let parts = self.parts.map(|part| part * power);
+        match parts[0].is_finite() {
+            true => Self { parts },
+            false => Self::plain(parts[0]),
+        }
+    }
+
+    /// `self b + c`, rounded once.
+    #[inline]
+    pub(super) fn fused(self, b: Self, c: Self) -> Self {
+        let mut sum = Sum::of(&c.parts);
+        for (i, x) in self.parts.into_iter().enumerate() {
+            if x == 0.0 {
+                continue;
+            }
+            for (j, y) in b.parts[..PARTS.min(PARTS + 1 - i)].iter().enumerate() {
+                if *y != 0.0 {
+                    sum.add_product(x, *y, i + j);
+                }
+            }
+        }
+        Self::summed(self.parts[0] * b.parts[0] + c.parts[0], sum)
+    }
+
+    /// The square root, a part after the other.
+    #[inline]
+    pub(super) fn root(self) -> Self {
+        let first = math::sqrt(self.parts[0]);
+        if !(first > 0.0 && first.is_finite()) {
+            return Self::plain(first);
+        }
+        let mut root = Self::plain(first);
+        for _ in 0..PARTS {
+            let left = (-root).fused(root, self);
+            root = root + Self::plain(left.parts[0] / (2.0 * first));
+        }
+        root
+    }
+
+    pub(super) fn is_negative(self) -> bool {
+        self.parts[0] < 0.0
+    }
+
+    /// A function that is taken in more parts, rounded to these.
+    fn by(self, function: impl FnOnce(Wide) -> Wide) -> Self {
+        function(self.converted()).converted()
+    }
+}
+
+impl<const PARTS: usize> fmt::Debug for Extended<PARTS> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Extended").field(&self.parts).finish()
+    }
+}
+
+impl<const PARTS: usize> From<f64> for Extended<PARTS> {
+    #[inline(always)]
+    fn from(number: f64) -> Self {
+        Self::plain(number)
+    }
+}
+
+impl<const PARTS: usize> PartialOrd for Extended<PARTS> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        let [one, two] = [self.parts[0], other.parts[0]];
+        match one == two && one.is_finite() {
+            true => (*self - *other).parts[0].partial_cmp(&0.0),
+            false => one.partial_cmp(&two),
+        }
+    }
+}
+
+impl<const PARTS: usize> Add for Extended<PARTS> {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let mut sum = Sum::of(&self.parts);
+        for (level, part) in other.parts.into_iter().enumerate() {
+            sum.add(part, level);
+        }
+        Self::summed(self.parts[0] + other.parts[0], sum)
+    }
+}
+
+impl<const PARTS: usize> Sub for Extended<PARTS> {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<const PARTS: usize> Mul for Extended<PARTS> {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let product = self.fused(other, Self::plain(0.0));
+        match product.parts[0] == 0.0 {
+            // The sign of a product that is 0.
+            true => Self::plain(self.parts[0] * other.parts[0]),
+            false => product,
+        }
+    }
+}
+
+impl<const PARTS: usize> Div for Extended<PARTS> {
+    type Output = Self;
+
+    /// Long division, a part of the quotient after the other.
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let first = self.parts[0] / other.parts[0];
+        if first == 0.0 || !first.is_finite() || !other.parts[0].is_finite() {
+            return Self::plain(first);
+        }
+        let mut quotient = Sum::of(&[0.0; PARTS]);
+        let mut left = self;
+        for level in 0..=PARTS {
+            let next = left.parts[0] / other.parts[0];
+            quotient.add(next, level);
+            if next == 0.0 {
+                break;
+            }
+            left = other.fused(Self::plain(-next), left);
+        }
+        Self::summed(first, quotient)
+    }
+}
+
+impl<const PARTS: usize> Neg for Extended<PARTS> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            parts: self.parts.map(|part| -part),
+        }
+    }
+}
+
+impl<const PARTS: usize> Numbers for Extended<PARTS> {
+    const LANES: usize = 1;
+    const ZERO: Self = {
+        assert!(
+            PARTS >= 1 && PARTS <= MOST_PARTS,
+            "extended numbers have 1 to 4 parts"
+        );
+        Self::plain(0.0)
+    };
+
+    #[inline(always)]
+    fn of(number: f64) -> Self {
+        Self::plain(number)
+    }
+
+    fn constant(parts: [f64; MOST_PARTS]) -> Self {
+        Extended { parts }.converted()
+    }
+
+    fn inverse(k: usize) -> Self {
+        Self::plain(1.0) / Self::plain(k as f64)
+    }
+
+    fn gathered(mut of_lane: impl FnMut(usize) -> f64) -> Self {
+        Self::plain(of_lane(0))
+    }
+
+    fn lane(&self, _: usize) -> f64 {
+        self.parts[0]
+    }
+
+    #[inline]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self.fused(b, c)
+    }
+
+    fn sqrt(self) -> Self {
+        self.root()
+    }
+
+    fn abs(self) -> Self {
+        self.turned(self)
+    }
+
+    fn max(self, other: Self) -> Self {
+        match self.parts[0].is_nan() || self < other {
+            true => other,
+            false => self,
+        }
+    }
+
+    fn turned(self, sign: Self) -> Self {
+        match sign.is_negative() {
+            true => -self,
+            false => self,
+        }
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        functions::atan2(self.converted(), x.converted()).converted()
+    }
+
+    fn powf(self, exponent: f64) -> Self {
+        self.by(|base| functions::power(base, Wide::plain(exponent)))
+    }
+
+    fn power(self, exponent: Self) -> Self {
+        self.by(|base| functions::power(base, exponent.converted()))
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let (sine, cosine) = functions::sin_cos(self.converted());
+        (sine.converted(), cosine.converted())
+    }
+
+    fn sin(self) -> Self {
+        Numbers::sin_cos(self).0
+    }
+
+    fn cos(self) -> Self {
+        Numbers::sin_cos(self).1
+    }
+
+    fn tan(self) -> Self {
+        self.by(functions::tan)
+    }
+
+    fn asin(self) -> Self {
+        self.by(functions::asin)
+    }
+
+    fn acos(self) -> Self {
+        self.by(functions::acos)
+    }
+
+    fn atan(self) -> Self {
+        self.by(|x| functions::atan2(x, Wide::plain(1.0)))
+    }
+
+    fn exp(self) -> Self {
+        self.by(functions::exp)
+    }
+
+    fn ln(self) -> Self {
+        self.by(functions::ln)
+    }
+
+    fn sinh(self) -> Self {
+        self.by(functions::sinh)
+    }
+
+    fn cosh(self) -> Self {
+        self.by(functions::cosh)
+    }
+
+    fn tanh(self) -> Self {
+        self.by(functions::tanh)
+    }
+}
