@@ -38,6 +38,20 @@ impl Rational {
             _ => nearest_double(&self.numer(), &self.denom()),
         }
     }
+
+    /// Four doubles, each the nearest to what those before it leave of the number: zeros after the first where the number is
+    /// a double, or beyond the range.
+    pub fn to_parts(&self) -> [f64; 4] {
+        let mut left = self.clone();
+        core::array::from_fn(|_| {
+            let part = left.to_f64();
+            left = match BigRational::from_float(part) {
+                Some(own) => left.clone() - Self::from_big(own),
+                None => Self::ZERO,
+            };
+            part
+        })
+    }
 }
 
 /// The exponent of a decimal number; beyond four digits no result fits [`MAX_BITS`].
@@ -134,6 +148,31 @@ mod tests {
         ] {
             assert_eq!(Rational::from_decimal(text), None, "{text}");
         }
+    }
+
+    #[test]
+    fn parts_are_what_rounding_leaves() {
+        let exact = |part: f64| Rational::from_big(BigRational::from_float(part).unwrap());
+        for (number, bits) in [
+            (Rational::new(1, 3), 212),
+            (-decimal("0.1"), 212),
+            (decimal("123456789012345678901234567890"), 400),
+        ] {
+            let parts = number.to_parts();
+            assert_eq!(parts[0], number.to_f64());
+            let sum = parts
+                .map(exact)
+                .into_iter()
+                .fold(Rational::ZERO, |a, b| a + b);
+            let error = (number.clone() - sum).abs().to_f64();
+            assert!(
+                error <= number.abs().to_f64() * 0.5_f64.powi(bits),
+                "{number:?}: {parts:?}"
+            );
+        }
+        assert_eq!(decimal("0.375").to_parts(), [0.375, 0.0, 0.0, 0.0]);
+        assert_eq!(decimal("1e-400").to_parts(), [0.0; 4]);
+        assert_eq!(decimal("1e400").to_parts(), [f64::INFINITY, 0.0, 0.0, 0.0]);
     }
 
     #[test]

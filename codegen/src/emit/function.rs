@@ -283,8 +283,11 @@ impl<'a> Writer<'a> {
     fn piece(&mut self, op: &Op) -> Piece {
         match op {
             Op::Input(input) => atom(self.input(*input)),
-            Op::Number(number) => self.constant(literal(number.to_f64())),
-            Op::Pi => self.constant(atom(quote!(::core::f64::consts::PI))),
+            Op::Number(number) => match self.names.numbers {
+                Numbers::One => literal(number.to_f64()),
+                numbers => atom(numbers.rational(number)),
+            },
+            Op::Pi => atom(self.names.numbers.pi()),
             Op::Neg(a) => {
                 let (tokens, size) = self.operand(*a, Binding::Product);
                 Piece {
@@ -307,16 +310,15 @@ impl<'a> Writer<'a> {
 
     fn power(&mut self, base: Value, exponent: &Rational) -> Piece {
         let base = self.tokens_of(base);
-        let exponent = literal(exponent.to_f64()).tokens;
-        let functions = self.names.numbers.functions();
-        atom(quote!(#functions::powf(#base, #exponent)))
-    }
-
-    fn constant(&self, piece: Piece) -> Piece {
-        match self.names.numbers {
-            Numbers::One => piece,
-            Numbers::SideBySide => atom(self.names.numbers.constant(piece.tokens)),
+        let numbers = self.names.numbers;
+        let is_double = exponent.to_parts()[1] == 0.0;
+        if numbers == Numbers::SideBySide && !is_double {
+            let exponent = numbers.rational(exponent);
+            return atom(quote!(L::power(#base, #exponent)));
         }
+        let exponent = literal(exponent.to_f64()).tokens;
+        let functions = numbers.functions();
+        atom(quote!(#functions::powf(#base, #exponent)))
     }
 
     fn input(&self, input: Input) -> TokenStream {

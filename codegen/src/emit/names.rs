@@ -8,6 +8,9 @@ use quote::quote;
 use crate::mechanics::Frame;
 use crate::model::{Model, Name, Scene};
 use crate::program::{Function, Input, Op};
+use dalembert_expr::Rational;
+
+use super::function::number;
 
 /// Identifiers of a model's quantities inside generated functions.
 #[derive(Clone)]
@@ -44,6 +47,26 @@ pub(super) enum Numbers {
 }
 
 impl Numbers {
+    /// An exact number: rounded, or in as many parts as numbers may have.
+    pub(super) fn rational(self, exact: &Rational) -> TokenStream {
+        let parts = exact.to_parts();
+        match self == Self::One || parts[1] == 0.0 {
+            true => self.constant(number(parts[0])),
+            false => {
+                let parts = parts.map(number);
+                quote!(L::constant([#(#parts),*]))
+            }
+        }
+    }
+
+    /// The circle constant.
+    pub(super) fn pi(self) -> TokenStream {
+        match self {
+            Self::One => quote!(::core::f64::consts::PI),
+            Self::SideBySide => quote!(L::constant(::dalembert::numbers::PI)),
+        }
+    }
+
     /// A constant.
     pub(super) fn constant(self, constant: TokenStream) -> TokenStream {
         match self {

@@ -63,14 +63,6 @@ pub const CASES: &[Case] = &[
         ..Case::QUICK
     },
     Case {
-        id: "F06",
-        title: "F05 with 53, 106 and 160 bits",
-        right: "the horizon grows like the number of bits",
-        bound: "1:2:3 within 20%",
-        pending: Some("states are `f64`: there is no second type of numbers"),
-        ..Case::QUICK
-    },
-    Case {
         id: "F07",
         title: "turned round after 100 bounces, a circle and an ellipse billiard",
         right: "back at the start with the opposite velocity",

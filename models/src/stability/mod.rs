@@ -20,6 +20,7 @@ mod crossing;
 mod drift;
 mod energy;
 mod ensembles;
+mod horizon;
 mod input;
 mod laws;
 mod location;
@@ -49,6 +50,7 @@ pub fn all() -> Vec<Case> {
         scaling::CASES,
         arithmetic::CASES,
         long::CASES,
+        horizon::CASES,
         energy::CASES,
         structure::CASES,
         variations::CASES,

@@ -26,7 +26,7 @@ const SAFETY: f64 = 0.9;
 const LEAST_ERROR: f64 = 1e-4;
 
 /// Factor after a trial that has no error estimate at all: a fault, or numbers that are not finite.
-pub(super) const RETREAT: f64 = 0.25;
+pub(crate) const RETREAT: f64 = 0.25;
 
 /// What the controller remembers between steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,7 +127,7 @@ pub(crate) fn least_step(t: f64) -> f64 {
 
 /// The length and the end of a step of about `h`: `t_end` itself when a hundredth more would reach it.
 #[inline(always)]
-pub(super) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
+pub(crate) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
     let end = Instant::new(t_end);
     let left = end.since(start);
     match 1.01 * h >= left {
@@ -137,7 +137,7 @@ pub(super) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
 }
 
 /// The first component that is not finite.
-pub(super) fn not_finite(components: &[f64]) -> Option<usize> {
+pub(crate) fn not_finite(components: &[f64]) -> Option<usize> {
     components.iter().position(|value| !value.is_finite())
 }
 

@@ -10,6 +10,12 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
+    /// As small as doubles allow.
+    pub(crate) const LEAST: Self = Self {
+        relative: f64::EPSILON,
+        absolute: f64::EPSILON,
+    };
+
     /// The same number for both.
     ///
     /// # Errors

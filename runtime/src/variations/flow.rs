@@ -1,32 +1,19 @@
 //! Variations along smooth motion.
 
+use super::graze::Seen;
 use super::{DIRECTIONS, Dual, Tangent, Undefined};
 use crate::contract::Variational;
 use crate::integrate::controller::least_step;
 use crate::integrate::order::order;
 use crate::integrate::rough::power_of_two;
 use crate::integrate::taylor::expansion::Expansion;
+use crate::integrate::taylor::reach::{LONGEST, reach};
 use crate::jet::LENGTH;
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
 /// How large the last two terms of a series may be beside the first ones: what rounding leaves of the sum.
 const LAST: f64 = 0.25 * f64::EPSILON;
-
-/// Terms that tell how large a series is.
-const LEADING: usize = 4;
-
-/// Factor by which a step shrinks until its last terms are small enough.
-const SHRINK: f64 = 0.75;
-
-/// Largest step in units of time of its expansion: powers up to the highest stay far from overflow.
-const LONGEST: f64 = 1024.0;
-
-/// Places in a step at which the rate of a gap is looked at: between two of them it falls and rises at most once.
-const PLACES: usize = 16;
-
-/// Rounding errors of a gap, in units of the sum of the absolute values of its terms.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Power series of the motion with their derivatives.
 pub(super) struct Flow<Sys: Variational> {
@@ -80,7 +67,13 @@ impl<Sys: Variational> Flow<Sys> {
         self.unit = power_of_two(end - t);
         while t < end {
             let theta = self.step(&parameters, t, &state, end - t)?;
-            self.look_for_grazes(system, t, theta)?;
+            let seen = Seen {
+                system,
+                expansion: &self.expansion,
+                order: self.order,
+                unit: self.unit,
+            };
+            seen.look_for_grazes(t, theta)?;
             let [change, _] = self.expansion.change(self.order, Dual::of(theta));
             for (entry, change) in state.as_mut_slice().iter_mut().zip(change.as_slice()) {
                 *entry = *entry + *change;
@@ -140,91 +133,8 @@ impl<Sys: Variational> Flow<Sys> {
                 }
             }
         }
-        let mut theta = wished.min(LONGEST);
-        while (0..=DIRECTIONS).any(|k| !is_small(|j| sizes[j][k], self.order, theta)) {
-            theta *= SHRINK;
-            if theta < 1.0 / LONGEST {
-                return None;
-            }
-        }
-        Some(theta)
+        reach(&sizes, self.order, wished, LAST)
     }
-
-    /// Refuses a step in which the gap of a surface falls to 0 within rounding, and rises.
-    fn look_for_grazes(&self, system: &Sys, t: f64, theta: f64) -> Result<(), Undefined> {
-        for surface in 0..Sys::Gaps::<Dual>::LEN {
-            let mut falls_from = None;
-            for place in 0..=PLACES {
-                let part = theta * place as f64 / PLACES as f64;
-                let [_, rate, _] = self.gap(surface, part);
-                if rate < 0.0 {
-                    falls_from = Some(part);
-                } else if let Some(low) = falls_from.take()
-                    && let Some(part) = self.touch(surface, [low, part])
-                {
-                    let t = t + part * self.unit;
-                    if system.counts(surface, t, &self.state_at(part)) {
-                        return Err(Undefined::Graze { t, surface });
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Where the least gap between two parts is 0 within rounding.
-    fn touch(&self, surface: usize, [mut low, mut high]: [f64; 2]) -> Option<f64> {
-        loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            match self.gap(surface, middle)[1] < 0.0 {
-                true => low = middle,
-                false => high = middle,
-            }
-        }
-        let [gap, _, size] = self.gap(surface, low);
-        (gap.abs() <= ROUNDING * size).then_some(low)
-    }
-
-    /// A gap at a part, its rate, and the sum of the absolute values of its terms.
-    fn gap(&self, surface: usize, part: f64) -> [f64; 3] {
-        let (mut gap, mut rate, mut size) = (0.0, 0.0, 0.0);
-        for row in self.expansion.gaps[..=self.order].iter().rev() {
-            let term = row.as_slice()[surface].value;
-            rate = rate * part + gap;
-            gap = gap * part + term;
-            size = size * part + term.abs();
-        }
-        [gap, rate, size]
-    }
-
-    fn state_at(&self, part: f64) -> Sys::State {
-        let mut state = Sys::State::zeros();
-        for row in self.expansion.coefficients[..=self.order].iter().rev() {
-            for (sum, entry) in state.as_mut_slice().iter_mut().zip(row.as_slice()) {
-                *sum = *sum * part + entry.value;
-            }
-        }
-        state
-    }
-}
-
-/// Whether the last two terms of a series are small beside its first ones.
-fn is_small(size: impl Fn(usize) -> f64, order: usize, theta: f64) -> bool {
-    let mut power = 1.0;
-    let mut leading = 0.0;
-    for j in 0..=order {
-        let term = size(j) * power;
-        if j < LEADING.min(order - 1) {
-            leading = f64::max(leading, term);
-        } else if j + 1 >= order && term > LAST * leading && leading > 0.0 {
-            return false;
-        }
-        power *= theta;
-    }
-    true
 }
 
 /// A number that changes along each tangent at the rate `of` it; [`DIRECTIONS`] tangents at most.

@@ -20,10 +20,11 @@ mod chart;
 mod dual;
 mod eigenvalues;
 mod flow;
+pub(crate) mod graze;
 pub mod orbit;
 pub mod section;
 mod tangent;
-mod transition;
+pub(crate) mod transition;
 
 use core::fmt;
 use core::ops::ControlFlow;
@@ -39,7 +40,7 @@ use crate::error::Fault;
 use crate::record::{Event, Hold, Observer, Segment};
 use flow::Flow;
 
-/// Why a run has no derivative, and where.
+/// Why a run has no derivative, or no more digits than doubles have, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Undefined {
@@ -80,12 +81,12 @@ pub enum Undefined {
         /// The transition.
         surface: usize,
     },
-    /// The motion or its derivatives could not be computed from here on.
+    /// The motion, its derivatives or more of its digits could not be computed from here on.
     NotFinite {
         /// When.
         t: f64,
     },
-    /// A fault met while derivatives were computed.
+    /// A fault met while derivatives or more digits were computed.
     Fault(Fault),
 }
 
@@ -109,7 +110,7 @@ impl fmt::Display for Undefined {
         match *self {
             Self::Graze { t, surface } => write!(
                 f,
-                "surface {surface} is grazed at t = {t}, where the motion has no derivative"
+                "surface {surface} is grazed at t = {t}, where rounding decides and the motion has no derivative"
             ),
             Self::Corner { t, surface } => write!(
                 f,
@@ -117,7 +118,7 @@ impl fmt::Display for Undefined {
             ),
             Self::Held { t, surface } => write!(
                 f,
-                "surface {surface} holds the motion from t = {t}; derivatives end there"
+                "surface {surface} holds the motion from t = {t}, by a force that has no power series"
             ),
             Self::Unlawful { t, surface } => write!(
                 f,
@@ -125,10 +126,13 @@ impl fmt::Display for Undefined {
             ),
             Self::Refracted { t, surface } => write!(
                 f,
-                "transition {surface} changes the Lagrangian at t = {t}, of a mode that is reduced to its constraints; \
-                 derivatives end there"
+                "transition {surface} changes the Lagrangian at t = {t}, of a mode that is reduced to its constraints: \
+                 what it does is known in doubles alone"
             ),
-            Self::NotFinite { t } => write!(f, "derivatives cannot be computed beyond t = {t}"),
+            Self::NotFinite { t } => write!(
+                f,
+                "the series of the motion cannot be computed beyond t = {t}"
+            ),
             Self::Fault(fault) => fault.fmt(f),
         }
     }

@@ -14,11 +14,11 @@ use crate::state::StateVector;
 const LAWFUL: f64 = 1e-6;
 
 /// What is known of an arrival at a surface.
-struct Arrival<Sys: Variational> {
+pub(crate) struct Arrival<Sys: Variational> {
     /// The rate of the state before.
     rate: Sys::State,
     /// The rate of the gap.
-    gap_rate: f64,
+    pub(crate) gap_rate: f64,
 }
 
 /// Carries all directions across a transition.
@@ -34,7 +34,7 @@ pub(super) fn cross<Sys: Variational>(
         let parameters = dual_parameters(system, some);
         let (t, state) = arrival.met(event, &parameters, some)?;
         let after = struck::<Sys, Dual>(system, &parameters, event, t, &state)?;
-        check_lawful(event, after.as_slice())?;
+        check_near(event, &event.after, after.as_slice())?;
         for (k, tangent) in some.iter_mut().enumerate() {
             let parts = after.as_slice().iter().zip(rate.as_slice());
             for (own, (entry, rate)) in tangent.state.as_mut_slice().iter_mut().zip(parts) {
@@ -99,7 +99,7 @@ fn passing(t: f64) -> Dual {
 }
 
 /// Refuses what has no derivative; else what is known of the arrival.
-fn arrival<Sys: Variational>(
+pub(crate) fn arrival<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
 ) -> Result<Arrival<Sys>, Undefined> {
@@ -159,7 +159,7 @@ impl<Sys: Variational> Arrival<Sys> {
 }
 
 /// What the law of an impact makes of a state.
-fn struck<Sys: Variational, L: Numbers>(
+pub(crate) fn struck<Sys: Variational, L: Numbers>(
     system: &Sys,
     parameters: &Sys::Parameters<L>,
     event: &Event<Sys::State>,
@@ -189,13 +189,17 @@ fn struck<Sys: Variational, L: Numbers>(
     Ok(after)
 }
 
-/// Whether the run did what was differentiated.
-fn check_lawful<S: StateVector>(event: &Event<S>, after: &[Dual]) -> Result<(), Undefined> {
+/// Whether a state of the run, before or after an event, is this one.
+pub(crate) fn check_near<S: StateVector, L: Numbers>(
+    event: &Event<S>,
+    run: &S,
+    state: &[L],
+) -> Result<(), Undefined> {
     let states = [&event.before, &event.after];
     let components = states.into_iter().flat_map(StateVector::as_slice);
     let size = components.fold(0.0, |size, value| f64::max(size, value.abs()));
-    let mut pairs = after.iter().zip(event.after.as_slice());
-    match pairs.all(|(own, run)| (own.value - run).abs() <= LAWFUL * size) {
+    let mut pairs = state.iter().zip(run.as_slice());
+    match pairs.all(|(own, run)| (own.lane(0) - run).abs() <= LAWFUL * size) {
         true => Ok(()),
         false => Err(Undefined::Unlawful {
             t: event.t,

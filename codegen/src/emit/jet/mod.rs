@@ -174,7 +174,7 @@ fn advance(
     let places = |from: usize, to: usize| (from..to).map(Literal::usize_unsuffixed);
     let first_rates = places(0, components);
     let coefficient = quote! {
-        let step = unit * L::of(::dalembert::jet::INVERSES[k + 1]);
+        let step = unit * L::inverse(k + 1);
         coefficients[k + 1] = [#(step * #rates),*];
     };
     let (first_gaps, gaps, coefficient, last) = match gaps.is_empty() {
@@ -199,7 +199,7 @@ fn advance(
         coefficients[1] = [#(unit * firsts[#first_rates]),*];
         #first_gaps
         for k in #last ::core::cmp::Ord::min(order, ::dalembert::jet::LENGTH - 1) {
-            let (weight, inverse) = (L::of(k as f64), L::of(::dalembert::jet::INVERSES[k]));
+            let (weight, inverse) = (L::of(k as f64), L::inverse(k));
             #orders
             #gaps
             #coefficient

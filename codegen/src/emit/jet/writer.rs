@@ -6,7 +6,7 @@ use proc_macro2::{Delimiter, Group, Ident, Literal, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
 
 use super::super::Context;
-use super::super::function::{joined, number};
+use super::super::function::joined;
 use super::super::names::Numbers;
 use super::layout::{Layout, local};
 use crate::program::jet::{History, Jet, Recurrence};
@@ -188,10 +188,9 @@ impl<'a> Writer<'a> {
 
     /// Order 0 of a value.
     pub(super) fn first(&mut self, value: Value) -> TokenStream {
-        let constant = |constant| Numbers::SideBySide.constant(constant);
         match &self.jet.function.ops[value.index()] {
-            Op::Number(own) => constant(number(own.to_f64())),
-            Op::Pi => constant(quote!(::core::f64::consts::PI)),
+            Op::Number(own) => Numbers::SideBySide.rational(own),
+            Op::Pi => Numbers::SideBySide.pi(),
             Op::Input(Input::Parameter(k)) => {
                 let place = Literal::usize_unsuffixed(*k);
                 quote!(parameters[#place])

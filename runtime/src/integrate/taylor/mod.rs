@@ -22,6 +22,7 @@
 pub(crate) mod expansion;
 #[cfg(feature = "lanes")]
 pub(crate) mod lanes;
+pub(crate) mod reach;
 mod step;
 
 use core::fmt;

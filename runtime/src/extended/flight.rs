@@ -1,0 +1,290 @@
+//! Motion between transitions in extended numbers, and where it meets a surface.
+
+use super::number::Extended;
+use super::{At, Impact};
+use crate::contract::Variational;
+use crate::error::Fault;
+use crate::integrate::StepFailure;
+use crate::integrate::controller::least_step;
+use crate::integrate::order::order;
+use crate::integrate::rough::power_of_two;
+use crate::integrate::taylor::expansion::Expansion;
+use crate::integrate::taylor::reach::{LONGEST, reach};
+use crate::jet::LENGTH;
+use crate::numbers::Row;
+use crate::record::Event;
+use crate::state::StateVector;
+use crate::variations::Undefined;
+use crate::variations::graze::Seen;
+use crate::variations::transition::{arrival, check_near, struck};
+
+/// How far the rate at the end of a step may be from the slope of the series, in rounding errors of the state.
+const DEFECT: f64 = 4096.0;
+
+/// How large the last two terms of a series may be, in rounding errors of the first ones.
+const LAST: f64 = 0.25;
+
+/// Steps to the root of a gap at a slope that is known to a double: each adds as many digits as that has.
+const CHORDS: u32 = 32;
+
+/// A flight on its way.
+pub(super) struct Flight<'a, Sys: Variational, const PARTS: usize> {
+    system: &'a Sys,
+    parameters: Sys::Parameters<Extended<PARTS>>,
+    pub(super) expansion: Expansion<Sys, Extended<PARTS>>,
+    pub(super) order: usize,
+    /// Unit of time of the coefficients, a power of two.
+    pub(super) unit: f64,
+    /// That of the next ones.
+    pub(super) next_unit: f64,
+    /// Length of the last step in this unit.
+    pub(super) theta: f64,
+    /// Ends of the last step.
+    pub(super) ends: [At<Sys, PARTS>; 2],
+    /// Whether there are coefficients at the start of the last step.
+    is_expanded: bool,
+}
+
+/// Numbers as a row of extended ones.
+pub(super) fn widened<const PARTS: usize, R: Row<Extended<PARTS>>>(values: &[f64]) -> R {
+    let mut row = R::ZERO;
+    for (own, value) in row.as_mut_slice().iter_mut().zip(values) {
+        *own = Extended::from(*value);
+    }
+    row
+}
+
+impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
+    /// A flight from a state, that may last so long.
+    pub(super) fn new(system: &'a Sys, start: At<Sys, PARTS>, length: f64) -> Self {
+        Self {
+            system,
+            parameters: widened(system.parameters().as_slice()),
+            expansion: Expansion::new(),
+            order: order(Extended::<PARTS>::ROUNDING, Sys::WORK),
+            unit: power_of_two(length),
+            next_unit: power_of_two(length),
+            theta: 0.0,
+            ends: [start; 2],
+            is_expanded: false,
+        }
+    }
+
+    /// Evaluates what is known at the end of the last step.
+    pub(super) fn begin(&mut self) -> Result<(), StepFailure> {
+        let At { t, state } = &self.ends[1];
+        self.expansion.begin(&self.parameters, *t, state)?;
+        let all = [state.as_slice(), self.expansion.rate()];
+        for numbers in all {
+            let is_finite = |number: &Extended<PARTS>| number.nearest().is_finite();
+            if let Some(component) = numbers.iter().position(|own| !is_finite(own)) {
+                return Err(StepFailure::NonFinite { component });
+            }
+        }
+        Ok(())
+    }
+
+    /// Expands the motion from the end of the last step; how much of a length of time its series reach.
+    pub(super) fn expand(&mut self, length: f64) -> Result<f64, StepFailure> {
+        self.ends[0] = self.ends[1];
+        (self.unit, self.theta) = (self.next_unit, 0.0);
+        let At { t, state } = self.ends[0];
+        loop {
+            let unit = Extended::from(self.unit);
+            self.expansion
+                .advance(&self.parameters, unit, self.order, &state);
+            if let Some(theta) = self.reach(length / self.unit) {
+                self.is_expanded = true;
+                return Ok(theta * self.unit);
+            }
+            self.unit *= 1.0 / LONGEST;
+            if self.unit < least_step(t.nearest()) {
+                return Err(StepFailure::StepUnderflow { t: t.nearest() });
+            }
+        }
+    }
+
+    /// The part of `wished` units of time that the series reach.
+    fn reach(&self, wished: f64) -> Option<f64> {
+        let scale = self.scale();
+        let mut sizes = [[0.0]; LENGTH];
+        let rows = &self.expansion.coefficients[..=self.order];
+        for ([size], row) in sizes.iter_mut().zip(rows) {
+            for (entry, scale) in row.as_slice().iter().zip(scale.as_slice()) {
+                let own = (entry.nearest() / scale).abs();
+                if !own.is_finite() {
+                    return None;
+                }
+                *size = f64::max(*size, own);
+            }
+        }
+        reach(
+            &sizes,
+            self.order,
+            wished,
+            LAST * Extended::<PARTS>::ROUNDING,
+        )
+    }
+
+    fn scale(&self) -> Sys::State {
+        let At { t, .. } = &self.ends[0];
+        self.system.scale(t.nearest(), &self.ends[0].rounded())
+    }
+
+    /// Time and state after so many units, and the slope of the series there.
+    fn after(&self, theta: Extended<PARTS>) -> (At<Sys, PARTS>, Sys::Row<Extended<PARTS>>) {
+        let [change, slope] = self.expansion.change(self.order, theta);
+        let mut at = self.ends[0];
+        at.t = at.t + theta * Extended::from(self.unit);
+        for (own, change) in at.state.as_mut_slice().iter_mut().zip(change.as_slice()) {
+            *own = *own + *change;
+        }
+        (at, slope)
+    }
+
+    /// Makes a step of this length from where the motion was expanded; whether the motion at its end is that of the series.
+    pub(super) fn make(&mut self, length: Extended<PARTS>) -> Result<bool, StepFailure> {
+        let theta = length / Extended::from(self.unit);
+        let (end, slope) = self.after(theta);
+        self.theta = theta.nearest();
+        self.ends[1] = end;
+        self.begin()?;
+        Ok(self.is_motion(length.nearest(), &slope))
+    }
+
+    /// Whether the slope of the series at the end of a step is the rate there.
+    fn is_motion(&self, length: f64, slope: &Sys::Row<Extended<PARTS>>) -> bool {
+        let scale = self.scale();
+        let (rates, end) = (self.expansion.rate(), self.ends[1].state.as_slice());
+        let component = |i: usize| {
+            let change = (rates[i].nearest() * length).abs();
+            (end[i].nearest().abs() + change) / scale.as_slice()[i]
+        };
+        let size = (0..rates.len()).map(component).fold(0.0, f64::max);
+        let unit = Extended::from(self.unit);
+        (0..rates.len()).all(|i| {
+            let defect = (rates[i] - slope.as_slice()[i] / unit).nearest().abs() * length.abs();
+            let allowed = DEFECT * Extended::<PARTS>::ROUNDING * size * scale.as_slice()[i];
+            // Sizes that are no normal numbers have no digits to compare.
+            defect <= allowed.max(f64::MIN_POSITIVE)
+        })
+    }
+
+    /// Goes the rest of the way to a time that rounding has reached.
+    pub(super) fn land(&mut self, t_end: f64) -> Result<(), StepFailure> {
+        let rest = Extended::from(t_end) - self.ends[1].t;
+        if rest.nearest() == 0.0 {
+            return Ok(());
+        }
+        self.begin()?;
+        self.expand(rest.nearest().abs())?;
+        self.make(rest).map(drop)
+    }
+
+    /// The end of the last step is where it began.
+    pub(super) fn retract(&mut self) -> Result<(), StepFailure> {
+        self.ends[1] = self.ends[0];
+        self.theta = 0.0;
+        self.begin()
+    }
+
+    /// Refuses what passes until a time, if a surface is grazed before.
+    pub(super) fn look_for_grazes(&self, until: f64) -> Result<(), Undefined> {
+        let t = self.ends[0].t.nearest();
+        let seen = Seen {
+            system: self.system,
+            expansion: &self.expansion,
+            order: self.order,
+            unit: self.unit,
+        };
+        seen.look_for_grazes(t, (until - t) / self.unit)
+    }
+
+    /// The last step was not made: it led to what cannot be told.
+    pub(super) fn forget(&mut self) {
+        self.ends[1] = self.ends[0];
+    }
+
+    /// Goes to where a surface is met, and carries out what a run in doubles has found there.
+    pub(super) fn cross(
+        &mut self,
+        event: &Event<Sys::State>,
+    ) -> Result<Impact<Sys, PARTS>, Undefined> {
+        let rate = arrival(self.system, event)?.gap_rate;
+        let before = self.met(event, rate)?;
+        check_near(event, &event.before, before.state.as_slice())?;
+        let after = struck(
+            self.system,
+            &self.parameters,
+            event,
+            before.t,
+            &before.state,
+        )?;
+        check_near(event, &event.after, after.as_slice())?;
+        self.ends = [At {
+            t: before.t,
+            state: after,
+        }; 2];
+        (self.is_expanded, self.theta) = (false, 0.0);
+        self.begin()
+            .map_err(|failure| undefined(failure, event.t))?;
+        Ok(Impact {
+            t: before.t,
+            surface: event.surface,
+            law: event.law,
+            before: before.state,
+            after,
+        })
+    }
+
+    /// Where a gap vanishes near an event, at which it has this rate.
+    fn met(&mut self, event: &Event<Sys::State>, rate: f64) -> Result<At<Sys, PARTS>, Undefined> {
+        let (t, surface) = (event.t, event.surface);
+        if !self.is_expanded {
+            // At the first instant of a run.
+            let expanded = self.begin().and_then(|()| self.expand(self.unit));
+            self.theta = expanded.map_err(|failure| undefined(failure, t))? / self.unit;
+        }
+        let slope = Extended::from(rate * self.unit);
+        let mut theta = (Extended::from(t) - self.ends[0].t) / Extended::from(self.unit);
+        let mut last = f64::INFINITY;
+        for _ in 0..CHORDS {
+            let at = self.after(theta).0;
+            let gaps = Sys::clearances(&self.parameters, at.t, &at.state)?;
+            let step = gaps.as_slice()[surface] / slope;
+            theta = theta - step;
+            let size = step.nearest().abs();
+            // Not a comparison that NaN passes.
+            let is_less = size < 0.5 * last;
+            last = size;
+            if !is_less || size == 0.0 {
+                break;
+            }
+        }
+        // What is left is rounding, unless the root is none.
+        let digits = crate::math::sqrt(Extended::<PARTS>::ROUNDING);
+        let size = theta.nearest().abs().max(self.theta.abs());
+        match last <= digits * size {
+            true => Ok(self.after(theta).0),
+            false => Err(Undefined::Graze { t, surface }),
+        }
+    }
+}
+
+/// What a failure at a transition is.
+fn undefined(failure: StepFailure, t: f64) -> Undefined {
+    match failure {
+        StepFailure::Fault(fault) => fault.into(),
+        StepFailure::NonFinite { component } => Fault::NonFinite { component }.into(),
+        _ => Undefined::NotFinite { t },
+    }
+}
+
+/// The state of the nearest doubles.
+pub(super) fn rounded<S: StateVector, const PARTS: usize>(row: &[Extended<PARTS>]) -> S {
+    let mut values = S::zeros();
+    for (own, number) in values.as_mut_slice().iter_mut().zip(row) {
+        *own = number.nearest();
+    }
+    values
+}

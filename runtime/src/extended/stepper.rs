@@ -1,0 +1,241 @@
+//! A flight in extended numbers as an integrator of doubles: its steps, rounded. Whatever watches a run watches these.
+
+use core::cell::RefCell;
+
+use super::flight::{Flight, rounded};
+use super::number::Extended;
+use crate::contract::Variational;
+use crate::error::Fault;
+use crate::integrate::controller::{RETREAT, landing, least_step};
+use crate::integrate::rough::power_of_two;
+use crate::integrate::{Counters, Series, StepFailure, Stepper, Tolerance};
+use crate::jet::LENGTH;
+use crate::math;
+use crate::numbers::Row;
+use crate::state::StateVector;
+
+/// Largest factor between a step that was limited from outside and the next.
+const GROW: f64 = 8.0;
+
+/// The steps of a flight, rounded.
+pub(super) struct Rounded<'r, 'a, Sys: Variational, const PARTS: usize> {
+    flight: &'r RefCell<Flight<'a, Sys, PARTS>>,
+    order: usize,
+    unit: f64,
+    theta: f64,
+    /// No step longer than this for now: after a jump.
+    limit: f64,
+    t: [f64; 2],
+    states: [Sys::State; 2],
+    rates: [Sys::State; 2],
+    /// What rounding takes from the state at the start.
+    rest: Sys::State,
+    coefficients: [Sys::State; LENGTH],
+    gaps: [Sys::Gaps<f64>; LENGTH],
+    end_gaps: Sys::Gaps<f64>,
+}
+
+impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
+    pub(super) fn new(flight: &'r RefCell<Flight<'a, Sys, PARTS>>) -> Self {
+        let zeros = Sys::State::zeros();
+        Self {
+            flight,
+            order: 1,
+            unit: 1.0,
+            theta: 0.0,
+            limit: f64::INFINITY,
+            t: [0.0; 2],
+            states: [zeros; 2],
+            rates: [zeros; 2],
+            rest: zeros,
+            coefficients: [zeros; LENGTH],
+            gaps: [Sys::Gaps::ZERO; LENGTH],
+            end_gaps: Sys::Gaps::ZERO,
+        }
+    }
+
+    /// Takes in where the flight is: the end of a step, or the state after a transition.
+    fn place(&mut self) -> Result<(), StepFailure> {
+        self.flight.borrow_mut().begin()?;
+        self.take_end();
+        (self.t[0], self.states[0], self.rates[0]) = (self.t[1], self.states[1], self.rates[1]);
+        Ok(())
+    }
+
+    fn take_end(&mut self) {
+        let flight = self.flight.borrow();
+        let end = &flight.ends[1];
+        self.t[1] = end.t.nearest();
+        self.states[1] = end.rounded();
+        self.rates[1] = rounded(flight.expansion.rate());
+        round_into(self.end_gaps.as_mut_slice(), flight.expansion.begun_gaps());
+    }
+
+    /// Takes in the coefficients of a step.
+    fn take_series(&mut self) {
+        let flight = self.flight.borrow();
+        (self.order, self.unit) = (flight.order, flight.unit);
+        for k in 0..=self.order {
+            let row = flight.expansion.coefficients[k].as_slice();
+            self.coefficients[k] = rounded(row);
+            let gaps = flight.expansion.gaps[k].as_slice();
+            round_into(self.gaps[k].as_mut_slice(), gaps);
+        }
+        let start = flight.ends[0].state.as_slice();
+        for (own, number) in self.rest.as_mut_slice().iter_mut().zip(start) {
+            *own = (*number - Extended::from(number.nearest())).nearest();
+        }
+    }
+}
+
+fn round_into<const PARTS: usize>(doubles: &mut [f64], numbers: &[Extended<PARTS>]) {
+    for (own, number) in doubles.iter_mut().zip(numbers) {
+        *own = number.nearest();
+    }
+}
+
+impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys, PARTS> {
+    const NAME: &'static str = "extended";
+
+    fn tolerance(&self) -> Tolerance {
+        Tolerance::LEAST
+    }
+
+    fn start(
+        &mut self,
+        _: &Sys,
+        _: f64,
+        _: &Sys::State,
+        _: f64,
+        counters: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        counters.rate_evaluations += 1;
+        self.place()
+    }
+
+    /// NOTE: the state is the one that the flight has reached, of which the driver holds a rounded one.
+    fn restart(
+        &mut self,
+        _: &Sys,
+        _: f64,
+        _: &Sys::State,
+        limit: f64,
+        _: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        self.limit = limit;
+        self.place()
+    }
+
+    fn step(&mut self, _: &Sys, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
+        let t = self.t[1];
+        (self.t[0], self.states[0], self.rates[0]) = (t, self.states[1], self.rates[1]);
+        let flight = self.flight;
+        let mut flight = flight.borrow_mut();
+        counters.expansions += 1;
+        counters.coefficients += flight.order as u64;
+        let least = least_step(t);
+        let reach = flight.expand(t_end - t)?;
+        let mut length = reach.min(self.limit).max(least);
+        loop {
+            let arrival = landing(t, length, t_end);
+            let start = flight.ends[0].t;
+            let exact = match arrival == t_end {
+                true => Extended::from(t_end) - start,
+                false => Extended::from(length),
+            };
+            counters.rate_evaluations += 1;
+            let made = flight.make(exact);
+            if let Ok(true) = made {
+                break;
+            }
+            counters.rejected += 1;
+            length = (arrival - t) * if made.is_ok() { 0.5 } else { RETREAT };
+            if length < least {
+                flight.retract()?;
+                return Err(made.err().unwrap_or(StepFailure::StepUnderflow { t }));
+            }
+        }
+        counters.accepted += 1;
+        self.theta = flight.theta;
+        self.limit = match length < reach {
+            true => GROW * length.max(self.limit.min(reach)),
+            false => f64::INFINITY,
+        };
+        drop(flight);
+        self.take_series();
+        self.take_end();
+        // The next series are made in a unit near this step.
+        self.flight.borrow_mut().next_unit = power_of_two(length);
+        Ok(())
+    }
+
+    /// NOTE: a projection keeps doubles to the constraints; the flight keeps to them by all its digits, and goes on from
+    /// its own state.
+    fn replace_end(
+        &mut self,
+        _: &Sys,
+        _: &Sys::State,
+        _: &mut Counters,
+    ) -> Result<(), StepFailure> {
+        Ok(())
+    }
+
+    fn t_start(&self) -> f64 {
+        self.t[0]
+    }
+
+    fn t_end(&self) -> f64 {
+        self.t[1]
+    }
+
+    fn start_state(&self) -> &Sys::State {
+        &self.states[0]
+    }
+
+    fn end_state(&self) -> &Sys::State {
+        &self.states[1]
+    }
+
+    fn end_rates(&self) -> [&Sys::State; 2] {
+        let [start, end] = &self.rates;
+        [start, end]
+    }
+
+    fn series(&self) -> Option<Series> {
+        Some(Series {
+            unit: self.unit,
+            order: self.order,
+        })
+    }
+
+    fn gap_coefficient(&self, k: usize) -> &[f64] {
+        self.gaps[k].as_slice()
+    }
+
+    fn end_gaps(&self) -> &[f64] {
+        self.end_gaps.as_slice()
+    }
+
+    fn dense_ready(&self) -> bool {
+        true
+    }
+
+    fn prepare_dense(&mut self, _: &Sys, _: &mut Counters) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn interpolate(&self, theta: f64) -> Sys::State {
+        let s = theta * self.theta;
+        let mut state = Sys::State::zeros();
+        for coefficient in self.coefficients[1..=self.order].iter().rev() {
+            for (sum, entry) in state.as_mut_slice().iter_mut().zip(coefficient.as_slice()) {
+                *sum = math::mul_add(*sum, s, *entry);
+            }
+        }
+        let starts = self.states[0].as_slice().iter().zip(self.rest.as_slice());
+        for (sum, (start, rest)) in state.as_mut_slice().iter_mut().zip(starts) {
+            *sum = start + (*sum * s + rest);
+        }
+        state
+    }
+}
