@@ -232,12 +232,14 @@ fn a_run_goes_on_from_its_end() {
 fn what_rounding_decides_ends_a_run() {
     let table = Sinai {};
     // Along a side of the disk, within its rounding.
-    let (end, _) = run::<_, 2>(&table, [&[0.5, -0.9], &[0.0, 1.0]], 3.0);
+    let (end, _) = run::<_, 2>(&table, [&[0.5, -0.9], &[0.0, 1.0]], 1.5);
     assert!(
         matches!(end.outcome, Err(Undefined::Graze { surface: 4, .. })),
         "{:?}",
         end.outcome
     );
+    // The step in which it is grazed is not made.
+    assert!(end.end.t.nearest() < 0.9, "{}", end.end.t);
     // Into a corner.
     let (end, impacts) = run::<_, 2>(&table, [&[0.75, 0.75], &[1.0, 1.0]], 3.0);
     assert!(
@@ -319,6 +321,14 @@ fn the_caller_and_budgets_end_a_run_with_its_last_impact() {
         assert_near("time", run.end.t, Extended::from(5.0), 1e-44);
         assert_near("speed", run.end.state[1], Extended::from(1.0), 1e-44);
     }
+    // The nearest double to the time of an impact is the end: it is met all the same.
+    let t_end = core::f64::consts::SQRT_2;
+    let (met, impacts) = run::<_, 3>(&ball, [&[1.0], &[0.0]], t_end);
+    assert_eq!(
+        (met.outcome, met.end.t),
+        (Ok(Outcome::Done), Extended::from(t_end))
+    );
+    assert_eq!(impacts.len(), 1);
     let backwards = ExtendedSimulation::<_, _, 3>::new(&ball, ball.effects()).run(
         At::of(1.0, &state),
         0.0,

@@ -15,7 +15,8 @@
 //!
 //! Parameters and laws chosen for a run are doubles; so is a start, unless it is given in more digits. A projection to
 //! constraints acts on the rounded states alone: the motion keeps to them by all its digits. At a kink of `|x|`
-//! that the motion passes, series end: the run ends as [`Outcome::StepUnderflow`](crate::Outcome::StepUnderflow).
+//! that the motion passes, series end: the run ends as [`Outcome::StepUnderflow`](crate::Outcome::StepUnderflow). Of a surface
+//! whose gap has a kink somewhere, grazes within the rounding of doubles are decided by these, and not refused.
 //!
 //! ```
 //! use core::ops::ControlFlow;
