@@ -39,6 +39,8 @@ pub(super) struct Flight<'a, Sys: Variational, const PARTS: usize> {
     pub(super) next_unit: f64,
     /// Length of the last step in this unit.
     pub(super) theta: f64,
+    /// Where in it the motion is cut, if it is.
+    pub(super) cut: Option<f64>,
     /// Ends of the last step.
     pub(super) ends: [At<Sys, PARTS>; 2],
     /// Whether there are coefficients at the start of the last step.
@@ -65,6 +67,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
             unit: power_of_two(length),
             next_unit: power_of_two(length),
             theta: 0.0,
+            cut: None,
             ends: [start; 2],
             is_expanded: false,
         }
@@ -87,7 +90,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
     /// Expands the motion from the end of the last step; how much of a length of time its series reach.
     pub(super) fn expand(&mut self, length: f64) -> Result<f64, StepFailure> {
         self.ends[0] = self.ends[1];
-        (self.unit, self.theta) = (self.next_unit, 0.0);
+        (self.unit, self.theta, self.cut) = (self.next_unit, 0.0, None);
         let At { t, state } = self.ends[0];
         loop {
             let unit = Extended::from(self.unit);
@@ -170,6 +173,22 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         })
     }
 
+    /// Takes where the last step was cut, though nothing happened there, for its end; `is_start` where that is its start.
+    pub(super) fn settle(&mut self, is_start: bool) -> Result<(), StepFailure> {
+        if !self.is_expanded {
+            // After a transition.
+            return Ok(());
+        }
+        match self.cut.take() {
+            Some(part) if part < self.theta => {
+                let length = Extended::from(part) * Extended::from(self.unit);
+                self.make(length).map(drop)
+            }
+            None if is_start => self.retract(),
+            _ => Ok(()),
+        }
+    }
+
     /// Goes the rest of the way to a time that rounding has reached.
     pub(super) fn land(&mut self, t_end: f64) -> Result<(), StepFailure> {
         let rest = Extended::from(t_end) - self.ends[1].t;
@@ -188,16 +207,16 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         self.begin()
     }
 
-    /// Refuses what passes until a time, if a surface is grazed before.
-    pub(super) fn look_for_grazes(&self, until: f64) -> Result<(), Undefined> {
-        let t = self.ends[0].t.nearest();
+    /// Refuses what passes of the last step if a surface is grazed in it.
+    pub(super) fn look_for_grazes(&self) -> Result<(), Undefined> {
         let seen = Seen {
             system: self.system,
             expansion: &self.expansion,
             order: self.order,
             unit: self.unit,
         };
-        seen.look_for_grazes(t, (until - t) / self.unit)
+        let t = self.ends[0].t.nearest();
+        seen.look_for_grazes(t, self.cut.unwrap_or(self.theta))
     }
 
     /// The last step was not made: it led to what cannot be told.
@@ -225,7 +244,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
             t: before.t,
             state: after,
         }; 2];
-        (self.is_expanded, self.theta) = (false, 0.0);
+        (self.is_expanded, self.theta, self.cut) = (false, 0.0, None);
         self.begin()
             .map_err(|failure| undefined(failure, event.t))?;
         Ok(Impact {
@@ -246,7 +265,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
             self.theta = expanded.map_err(|failure| undefined(failure, t))? / self.unit;
         }
         let slope = Extended::from(rate * self.unit);
-        let mut theta = (Extended::from(t) - self.ends[0].t) / Extended::from(self.unit);
+        let mut theta = Extended::from(self.cut.unwrap_or(0.0));
         let mut last = f64::INFINITY;
         for _ in 0..CHORDS {
             let at = self.after(theta).0;

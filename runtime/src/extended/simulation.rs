@@ -132,7 +132,7 @@ impl<'a, Sys: Variational, Effects: Effect<Sys>, const PARTS: usize>
         let mut flight = flight.into_inner();
         let mut outcome = undefined.map_or(Ok(run.outcome), Err);
         // A step that was not passed whole is one that has not been made.
-        if run.t < flight.ends[1].t.nearest() {
+        if flight.cut.is_some() || run.t < flight.ends[1].t.nearest() {
             flight.forget();
         }
         if outcome == Ok(Outcome::Done)
@@ -168,8 +168,8 @@ where
     Sys: Variational,
     See: FnMut(&Impact<Sys, PARTS>) -> ControlFlow<()>,
 {
-    fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
-        let looked = self.flight.borrow().look_for_grazes(segment.t_end());
+    fn step(&mut self, _: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
+        let looked = self.flight.borrow().look_for_grazes();
         match looked {
             Ok(()) => ControlFlow::Continue(()),
             Err(undefined) => self.end(undefined),

@@ -8,7 +8,7 @@ use crate::contract::Variational;
 use crate::error::Fault;
 use crate::integrate::controller::{RETREAT, landing, least_step};
 use crate::integrate::rough::power_of_two;
-use crate::integrate::{Counters, Series, StepFailure, Stepper, Tolerance};
+use crate::integrate::{Counters, Instant, Series, StepFailure, Stepper, Tolerance};
 use crate::jet::LENGTH;
 use crate::math;
 use crate::numbers::Row;
@@ -25,7 +25,7 @@ pub(super) struct Rounded<'r, 'a, Sys: Variational, const PARTS: usize> {
     theta: f64,
     /// No step longer than this for now: after a jump.
     limit: f64,
-    t: [f64; 2],
+    t: [Instant; 2],
     states: [Sys::State; 2],
     rates: [Sys::State; 2],
     /// What rounding takes from the state at the start.
@@ -44,7 +44,7 @@ impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
             unit: 1.0,
             theta: 0.0,
             limit: f64::INFINITY,
-            t: [0.0; 2],
+            t: [Instant::default(); 2],
             states: [zeros; 2],
             rates: [zeros; 2],
             rest: zeros,
@@ -65,7 +65,7 @@ impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
     fn take_end(&mut self) {
         let flight = self.flight.borrow();
         let end = &flight.ends[1];
-        self.t[1] = end.t.nearest();
+        self.t[1] = instant(end.t);
         self.states[1] = end.rounded();
         self.rates[1] = rounded(flight.expansion.rate());
         round_into(self.end_gaps.as_mut_slice(), flight.expansion.begun_gaps());
@@ -88,6 +88,15 @@ impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
     }
 }
 
+/// A time in two parts.
+fn instant<const PARTS: usize>(t: Extended<PARTS>) -> Instant {
+    let first = t.nearest();
+    Instant {
+        t: first,
+        rest: (t - Extended::from(first)).nearest(),
+    }
+}
+
 fn round_into<const PARTS: usize>(doubles: &mut [f64], numbers: &[Extended<PARTS>]) {
     for (own, number) in doubles.iter_mut().zip(numbers) {
         *own = number.nearest();
@@ -104,7 +113,7 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
     fn start(
         &mut self,
         _: &Sys,
-        _: f64,
+        _: Instant,
         _: &Sys::State,
         _: f64,
         counters: &mut Counters,
@@ -117,12 +126,13 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
     fn restart(
         &mut self,
         _: &Sys,
-        _: f64,
+        now: Instant,
         _: &Sys::State,
         limit: f64,
         _: &mut Counters,
     ) -> Result<(), StepFailure> {
         self.limit = limit;
+        self.flight.borrow_mut().settle(now == self.t[0])?;
         self.place()
     }
 
@@ -133,14 +143,14 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
         let mut flight = flight.borrow_mut();
         counters.expansions += 1;
         counters.coefficients += flight.order as u64;
-        let least = least_step(t);
-        let reach = flight.expand(t_end - t)?;
+        let least = least_step(t.t);
+        let reach = flight.expand(Instant::new(t_end).since(t))?;
         let mut length = reach.min(self.limit).max(least);
         loop {
-            let arrival = landing(t, length, t_end);
-            let start = flight.ends[0].t;
-            let exact = match arrival == t_end {
-                true => Extended::from(t_end) - start,
+            let (made, arrival) = landing(t, length, t_end);
+            length = made;
+            let exact = match arrival == Instant::new(t_end) {
+                true => Extended::from(t_end) - flight.ends[0].t,
                 false => Extended::from(length),
             };
             counters.rate_evaluations += 1;
@@ -149,10 +159,10 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
                 break;
             }
             counters.rejected += 1;
-            length = (arrival - t) * if made.is_ok() { 0.5 } else { RETREAT };
+            length *= if made.is_ok() { 0.5 } else { RETREAT };
             if length < least {
                 flight.retract()?;
-                return Err(made.err().unwrap_or(StepFailure::StepUnderflow { t }));
+                return Err(made.err().unwrap_or(StepFailure::StepUnderflow { t: t.t }));
             }
         }
         counters.accepted += 1;
@@ -180,11 +190,11 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
         Ok(())
     }
 
-    fn t_start(&self) -> f64 {
+    fn start_time(&self) -> Instant {
         self.t[0]
     }
 
-    fn t_end(&self) -> f64 {
+    fn end_time(&self) -> Instant {
         self.t[1]
     }
 
@@ -237,5 +247,16 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
             *sum = start + (*sum * s + rest);
         }
         state
+    }
+
+    fn cut(&mut self, theta: f64) -> (Instant, Sys::State) {
+        self.flight.borrow_mut().cut = Some(theta * self.theta);
+        match theta >= 1.0 {
+            true => (self.t[1], self.states[1]),
+            false => (
+                self.t[0].after(theta * self.length()),
+                self.interpolate(theta),
+            ),
+        }
     }
 }

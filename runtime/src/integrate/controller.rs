@@ -137,7 +137,7 @@ pub(crate) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
 }
 
 /// The first component that is not finite.
-pub(crate) fn not_finite(components: &[f64]) -> Option<usize> {
+pub(super) fn not_finite(components: &[f64]) -> Option<usize> {
     components.iter().position(|value| !value.is_finite())
 }
 
