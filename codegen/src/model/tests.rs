@@ -355,6 +355,33 @@ fn plastic_laws_say_where_they_leave_the_state_approaching() {
 }
 
 #[test]
+fn resets_that_leave_the_motion_on_its_way_are_noted() {
+    let notes = |motion: &str, reset: &str| {
+        let model = model(&format!(
+            "P {{ coordinates {{ x; y; z; }} {motion} impacts {{ w: x - z*t >= 0 => reset {{ {reset} }}; }} }}"
+        ));
+        model.notes.join("\n")
+    };
+    let free = "lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;";
+    let passes = "the reset of `w` leaves its gap and the gap rate as they are";
+    for reset in ["dot(y) = -dot(y);", "y = 0;", "z = z + 0; dot(y) = 1;"] {
+        assert!(notes(free, reset).contains(passes), "{reset}");
+    }
+    for reset in [
+        "",
+        "dot(x) = -dot(x);",
+        "dot(z) = 0;",
+        "x = x + 1;",
+        "z = 0; dot(y) = 1;",
+    ] {
+        assert_eq!(notes(free, reset), "", "{reset}");
+    }
+    let field = "field { dot(x) = y; dot(y) = -x; dot(z) = 0; }";
+    assert!(notes(field, "x = z*t + (x - z*t);").contains(passes));
+    assert_eq!(notes(field, "y = -y;"), "");
+}
+
+#[test]
 fn coefficients_that_may_leave_the_unit_interval_are_noted() {
     let notes = |parameter: &str, coefficient: &str| {
         let model = model(&format!(

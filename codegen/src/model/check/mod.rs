@@ -18,6 +18,7 @@ mod names;
 mod nonlinear;
 mod outputs;
 mod parameters;
+mod passages;
 mod regular;
 mod resets;
 mod scenes;
@@ -204,6 +205,11 @@ fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec
     notes.extend(nonlinear::notes(&parts.constraints));
     notes.extend(cancellation::notes(resolver, lagrangian, parts));
     notes.extend(laws::notes(resolver, &parts.surfaces, &parts.constraints));
+    notes.extend(passages::notes(
+        resolver,
+        &parts.surfaces,
+        parts.field.as_deref(),
+    ));
     notes.extend(initial::notes(resolver, &parts.initial));
     notes.extend(parameters::unused(
         resolver,
