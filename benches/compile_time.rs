@@ -9,7 +9,7 @@ use std::process::Command;
 use dalembert::Described;
 use dalembert_benches::table::{Layout, Table};
 use dalembert_benches::timing::{is_benchmark, median, timed};
-use dalembert_codegen::{compile_modes, mechanics, model, program, spec, try_expand};
+use dalembert_codegen::{compile_modes, mechanics, model, program, read, spec, try_expand};
 use dalembert_models::{Chain16, DoublePendulum, RollingDisk};
 
 /// What is measured of one expansion.
@@ -41,7 +41,7 @@ fn expand(source: &str, rounds: usize) -> Expansion {
 
 /// Operations of the rate; of all modes together, where there are some.
 fn operations(source: &str) -> usize {
-    let declared = spec::read(source.parse().expect("tokens")).expect("a declaration");
+    let declared = read(source.parse().expect("tokens")).expect("a declaration");
     let spec = match declared {
         spec::Declaration::Model(spec) => spec,
         spec::Declaration::Modes(modes) => {

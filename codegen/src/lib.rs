@@ -35,7 +35,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
 /// # Errors
 /// Every mistake of the first stage that found any.
 pub fn try_expand(input: TokenStream) -> Result<TokenStream, diagnostics::Diagnostics> {
-    match spec::read(input)? {
+    match read(input)? {
         spec::Declaration::Model(spec) => {
             let mut compiled = compile_spec(&spec, spec::STEPS)?;
             compiled.note_findings();
@@ -48,6 +48,14 @@ pub fn try_expand(input: TokenStream) -> Result<TokenStream, diagnostics::Diagno
             Ok(emit::modes::tokens(&compiled))
         }
     }
+}
+
+/// The first stage: a declaration as it was written, with its families of modes written out.
+///
+/// # Errors
+/// Every mistake of syntax.
+pub fn read(input: TokenStream) -> Result<spec::Declaration, diagnostics::Diagnostics> {
+    spec::read(input, model::INDICES)
 }
 
 /// A model with modes after all stages but the last.

@@ -27,32 +27,13 @@ dalembert::model! {
         let landing(angle, half) = pi/2 - angle - 2*half - alpha;
         let pendulum(r) = r^2*dot(x)^2/2 - g*r*cos(x);
         modes {
-            spoke1 { lagrangian = pendulum(l[1]); initial { x = 0.1; dot(x) = -0.4; until = 40; } }
-            spoke2 { lagrangian = pendulum(l[2]); }
-            spoke3 { lagrangian = pendulum(l[3]); }
-            spoke4 { lagrangian = pendulum(l[4]); }
-            spoke5 { lagrangian = pendulum(l[5]); }
+            spoke[i in 1..=N] { lagrangian = pendulum(l[i]); }
+            spoke[1] { initial { x = 0.1; dot(x) = -0.4; until = 40; } }
         }
         transitions {
-            step1: spoke1 -> spoke2 when x <= landing(xi[1], delta[1]) => reset {
-                x = x + 2*delta[1];
-                dot(x) = l[1]/l[2]*cos(2*delta[1])*dot(x);
-            };
-            step2: spoke2 -> spoke3 when x <= landing(xi[2], delta[2]) => reset {
-                x = x + 2*delta[2];
-                dot(x) = l[2]/l[3]*cos(2*delta[2])*dot(x);
-            };
-            step3: spoke3 -> spoke4 when x <= landing(xi[3], delta[3]) => reset {
-                x = x + 2*delta[3];
-                dot(x) = l[3]/l[4]*cos(2*delta[3])*dot(x);
-            };
-            step4: spoke4 -> spoke5 when x <= landing(xi[4], delta[4]) => reset {
-                x = x + 2*delta[4];
-                dot(x) = l[4]/l[5]*cos(2*delta[4])*dot(x);
-            };
-            step5: spoke5 -> spoke1 when x <= landing(xi[5], delta[5]) => reset {
-                x = x + 2*delta[5];
-                dot(x) = l[5]/l[1]*cos(2*delta[5])*dot(x);
+            step[i in 1..=N]: spoke[i] -> spoke[i%N + 1] when x <= landing(xi[i], delta[i]) => reset {
+                x = x + 2*delta[i];
+                dot(x) = l[i]/l[i%N + 1]*cos(2*delta[i])*dot(x);
             };
         }
         claims { conserved: energy; }

@@ -346,7 +346,7 @@ fn a_wheel_tends_to_its_limit_cycle() {
 /// The modes of a model, derived again from its source.
 fn compiled<S: Described>() -> Vec<dalembert_codegen::Compiled> {
     let tokens = S::DESCRIPTION.source.parse().expect("tokens");
-    let declared = dalembert_codegen::spec::read(tokens).expect("a declaration");
+    let declared = dalembert_codegen::read(tokens).expect("a declaration");
     let dalembert_codegen::spec::Declaration::Modes(declared) = declared else {
         panic!("a model with modes");
     };

@@ -9,8 +9,8 @@ use super::check::{check_mode, peer};
 use super::scene::{Extras, Parts, Scene};
 use super::transition::Peer;
 use super::{Coordinate, Model, Name, Topology};
-use crate::diagnostics::{Diagnostics, listed, nearest};
-use crate::spec::{self, SCENES, STEPS};
+use crate::diagnostics::Diagnostics;
+use crate::spec::{self, STEPS};
 
 /// A checked model with modes.
 #[derive(Debug)]
@@ -158,12 +158,6 @@ fn check_names(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
             .error(parameter.declared.name.at, text)
             .help(help);
     }
-    if let Some(mode) = declared.modes.get(SCENES) {
-        let text = format!("more than {SCENES} modes");
-        diagnostics
-            .error(mode.name.at, text)
-            .help("split the model");
-    }
     for (index, mode) in declared.modes.iter().enumerate() {
         let (name, at) = (mode.name.text.as_str(), mode.name.at);
         let own = spec::camel_case(name);
@@ -197,10 +191,10 @@ fn check_reached(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     for (index, transition) in declared.transitions.iter().enumerate() {
         for word in [&transition.from, &transition.to] {
             if !names.contains(&word.text.as_str()) {
-                let help = match nearest(&word.text, names.iter().copied()) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("the modes are {}", listed(names.iter().copied())),
-                };
+                let written: Vec<String> = (declared.modes.iter())
+                    .map(|mode| mode.written.clone())
+                    .collect();
+                let help = spec::mode_help(&word.text, &written);
                 let text = format!("unknown mode `{}`", word.text);
                 diagnostics.error(word.at, text).help(help);
             }
@@ -241,10 +235,10 @@ fn check_reached(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     }
     for mode in &declared.modes {
         if !reached.contains(&mode.name.text.as_str()) {
-            let text = format!("mode `{}` is never entered", mode.name.text);
+            let text = format!("mode `{}` is never entered", mode.written);
             let help = format!(
                 "write a transition that leads to it, as `name: {} -> {} when x >= 0;`, or leave it out",
-                names[0], mode.name.text
+                declared.modes[0].written, mode.written
             );
             diagnostics.error(mode.name.at, text).help(help);
         }

@@ -4,7 +4,31 @@ use dalembert_expr::{ExprId, Rational};
 
 use super::resolve::{Resolver, Scope, Value};
 use super::symbols::Meaning;
-use crate::spec::{Binder, FAMILY, Scalar, ScalarKind, Word};
+use crate::diagnostics::Diagnostics;
+use crate::spec::{Binder, Declared, FAMILY, Indices, STEPS, Scalar, ScalarKind, Spec, Word};
+
+/// What indices of families of modes stand for while they are read.
+pub const INDICES: Indices = Indices { members, value };
+
+fn members(spec: &Spec, declared: &Declared) -> Result<Vec<usize>, Diagnostics> {
+    let mut resolver = with_constants(spec);
+    let members = resolver.members(declared).into_iter();
+    let members = members.filter_map(|(name, _)| name.member).collect();
+    resolver.diagnostics.finish(members)
+}
+
+fn value(spec: &Spec, index: &Scalar) -> Result<i64, Diagnostics> {
+    let mut resolver = with_constants(spec);
+    let value = resolver.integer(index, &mut Scope::default());
+    value.ok_or(resolver.diagnostics)
+}
+
+/// A resolver that knows constants alone.
+fn with_constants(spec: &Spec) -> Resolver<'_> {
+    let mut resolver = Resolver::new(spec, STEPS);
+    resolver.constants();
+    resolver
+}
 
 impl Resolver<'_> {
     /// `a % b` of indices, in `0..b`.

@@ -37,6 +37,7 @@ pub use crate::spec::Existence;
 pub use check::check;
 pub(crate) use check::check_within;
 pub use graph::{Entry, Mode, ModeGraph, Places, check_modes};
+pub use index::INDICES;
 pub use law::{Law, Reset};
 pub use scene::{Extras, Parts, Scene};
 pub use transition::{Map, Transition};

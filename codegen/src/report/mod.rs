@@ -30,7 +30,7 @@ use crate::emit::text;
 use crate::model::{Mode, ModeGraph, Model};
 use crate::program::{Cost, Program};
 use crate::spec::{self, Declaration, Modes};
-use crate::{Compiled, CompiledModes, compile_modes, compile_spec};
+use crate::{Compiled, CompiledModes, compile_modes, compile_spec, read};
 
 /// A derivation in words and formulas.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,7 +128,7 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
     let tokens: TokenStream = source
         .parse()
         .map_err(|error: LexError| ReportError::Tokens(error.to_string()))?;
-    let spec = match spec::read(tokens).map_err(ReportError::Declaration)? {
+    let spec = match read(tokens).map_err(ReportError::Declaration)? {
         Declaration::Model(spec) => spec,
         Declaration::Modes(declared) => return report_of_modes(&declared),
     };

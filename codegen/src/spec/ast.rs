@@ -3,7 +3,7 @@
 use dalembert_expr::Rational;
 use proc_macro2::Span;
 
-use crate::diagnostics::Location;
+use crate::diagnostics::{Diagnostics, Location};
 
 /// A declaration. Later stages name what is faulty by its id; [`Spec::location`] knows where that is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -141,6 +141,15 @@ pub enum Index {
     One(Scalar),
     /// `[i in a..=b]`
     Each(Binder),
+}
+
+/// What indices stand for, of the constants of a model. The next stage says it, which knows what names mean.
+#[derive(Debug, Clone, Copy)]
+pub struct Indices {
+    /// The members that a declared name with its index stands for, counted from 1.
+    pub members: fn(&Spec, &Declared) -> Result<Vec<usize>, Diagnostics>,
+    /// The value of an index.
+    pub value: fn(&Spec, &Scalar) -> Result<i64, Diagnostics>,
 }
 
 /// `i in a..=b`
@@ -388,7 +397,7 @@ pub enum Declaration {
     Modes(Modes),
 }
 
-/// A model with modes: what stands outside of `modes` belongs to each of them.
+/// A model with modes, families written out: what stands outside of `modes` belongs to each of them.
 #[derive(Debug)]
 pub struct Modes {
     /// The modes, in order; the first is where a run begins.
@@ -401,8 +410,10 @@ pub struct Modes {
 /// that leave it.
 #[derive(Debug)]
 pub struct Mode {
-    /// Its name.
+    /// Its name: `rough`, of a member of a family `spoke3`.
     pub name: Word,
+    /// As a declaration writes it: `rough`, `spoke[3]`.
+    pub written: String,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
     /// The model.

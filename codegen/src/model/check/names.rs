@@ -82,7 +82,7 @@ impl Names {
 
 impl Resolver<'_> {
     /// The members that a declaration declares, each with what its index stands for.
-    pub(super) fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
+    pub(in crate::model) fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
         self.members_within(declared, &Scope::default())
     }
 

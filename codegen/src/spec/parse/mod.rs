@@ -4,6 +4,7 @@ mod claims;
 mod constraints;
 mod coordinates;
 mod definitions;
+mod families;
 mod field;
 mod header;
 mod impacts;
@@ -16,39 +17,33 @@ mod reset;
 mod scenes;
 mod source;
 mod target;
+mod transitions;
 mod view;
+mod written_out;
 
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 
-use super::ast::{Declaration, Declared, Index, Lagrangian, Spec, Word};
+use super::ast::{Declaration, Declared, Index, Indices, Lagrangian, Spec, Word};
 use super::cursor::{Cursor, Read, tokens_of};
 use super::keyword::{self, SECTIONS};
 use super::limits::check_nesting;
 use crate::diagnostics::{Diagnostics, Location, listed, nearest};
 
+pub use families::mode_help;
 pub use header::camel_case;
 
-/// Reads a declaration: a model, or a model with modes.
+/// Reads a declaration: a model, or a model with modes. `indices` says what the indices of families of modes stand for.
 ///
 /// # Errors
 /// Every mistake of syntax, each at its token.
-pub fn read(tokens: TokenStream) -> Result<Declaration, Diagnostics> {
-    check_nesting(&tokens)?;
-    let tokens = source::flatten_header(tokens);
-    let mut diagnostics = Diagnostics::new();
-    let start = tokens
-        .first()
-        .map_or_else(|| Location::from(Span::call_site()), Location::of);
-    let mut cursor = Cursor::new(&tokens, start, &mut diagnostics);
-    let Ok((mut spec, body)) = header::read(&mut cursor) else {
-        return Err(diagnostics);
-    };
+pub fn read(tokens: TokenStream, indices: Indices) -> Result<Declaration, Diagnostics> {
+    let (spec, body, diagnostics) = header(tokens)?;
     let tokens = tokens_of(body.stream());
     if modes::are_declared(&tokens) && diagnostics.is_empty() {
-        return modes::read(&spec, &tokens, &body).map(Declaration::Modes);
+        return modes::read(&spec, &tokens, &body, indices).map(Declaration::Modes);
     }
-    declarations(&tokens, &body, &mut spec, &mut diagnostics);
-    diagnostics.finish(Declaration::Model(Box::new(spec)))
+    let spec = one_piece(spec, &tokens, &body, diagnostics)?;
+    Ok(Declaration::Model(Box::new(spec)))
 }
 
 /// Reads the declaration of a model in one piece.
@@ -56,16 +51,42 @@ pub fn read(tokens: TokenStream) -> Result<Declaration, Diagnostics> {
 /// # Errors
 /// As [`read`]; modes are refused.
 pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
-    match read(tokens)? {
-        Declaration::Model(spec) => Ok(*spec),
-        Declaration::Modes(declared) => {
-            let mut diagnostics = Diagnostics::new();
-            let name = &declared.modes[0].spec.name;
-            let text = format!("`{}` has modes: it is no model in one piece", name.text);
-            diagnostics.error(name.at, text);
-            Err(diagnostics)
-        }
+    let (spec, body, mut diagnostics) = header(tokens)?;
+    let tokens = tokens_of(body.stream());
+    if modes::are_declared(&tokens) {
+        let text = format!(
+            "`{}` has modes: it is no model in one piece",
+            spec.name.text
+        );
+        diagnostics.error(spec.name.at, text);
+        return Err(diagnostics);
     }
+    one_piece(spec, &tokens, &body, diagnostics)
+}
+
+/// What stands before the braces of a model, and these.
+fn header(tokens: TokenStream) -> Result<(Spec, Group, Diagnostics), Diagnostics> {
+    check_nesting(&tokens)?;
+    let tokens = source::flatten_header(tokens);
+    let mut diagnostics = Diagnostics::new();
+    let start = tokens
+        .first()
+        .map_or_else(|| Location::from(Span::call_site()), Location::of);
+    let mut cursor = Cursor::new(&tokens, start, &mut diagnostics);
+    match header::read(&mut cursor) {
+        Ok((spec, body)) => Ok((spec, body, diagnostics)),
+        Err(_) => Err(diagnostics),
+    }
+}
+
+fn one_piece(
+    mut spec: Spec,
+    tokens: &[TokenTree],
+    body: &Group,
+    mut diagnostics: Diagnostics,
+) -> Result<Spec, Diagnostics> {
+    declarations(tokens, body, &mut spec, &mut diagnostics);
+    diagnostics.finish(spec)
 }
 
 /// The lines of the doc comments that come next. Other attributes are refused.
@@ -113,6 +134,16 @@ fn declarations(
         before = declaration.last().map_or(before, Location::of);
         rest = others;
     }
+}
+
+/// The declarations one after the other.
+fn split(tokens: &[TokenTree]) -> impl Iterator<Item = &[TokenTree]> {
+    let mut rest = tokens;
+    core::iter::from_fn(move || {
+        let (declaration, others) = rest.split_at(declaration_length(rest));
+        rest = others;
+        (!declaration.is_empty()).then_some(declaration)
+    })
 }
 
 /// How many tokens belong to the first declaration: up to a `;`, a section's braces, or what begins another one.

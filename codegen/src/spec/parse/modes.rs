@@ -1,20 +1,19 @@
 //! `modes { rough { .. } smooth { .. } }` and `transitions { enter: smooth -> rough when x >= 0; }`
 //!
 //! A mode is read as a model of its own: the declarations outside of `modes`, then those in its braces, then as surfaces
-//! the transitions that leave it. What modes share is so read once for each of them.
+//! the transitions that leave it. What modes share is so read once for each of them. Families are written out before, as
+//! tokens.
 
 use proc_macro2::{Delimiter, Group, TokenTree};
 
-use super::super::ast::{Comparison, Mode, Modes, Spec, Surface, Transition, Word};
+use super::super::ast::{Indices, Mode, Modes, Spec, Word};
 use super::super::cursor::{Cursor, Read, Refused, tokens_of};
-use super::impacts::{Strictness, comparison, conditions, law};
-use super::{
-    declaration_length, declarations, documentation, documentation_length, entry_length, labelled,
-};
+use super::families::{Constants, Entry, Members};
+use super::transitions::Transitions;
+use super::{declarations, declared, documentation, documentation_length, split};
 use crate::diagnostics::{Diagnostics, Location};
 
 const MODE: &str = "modes { slow { .. } fast { .. } }";
-const TRANSITION: &str = "name: slow -> fast when x >= 0 when y > 0 => LAW;";
 
 /// Declarations that stand outside of `modes`, each with the reason.
 const SHARED: [(&str, &str); 4] = [
@@ -41,8 +40,8 @@ const SHARED: [(&str, &str); 4] = [
 struct Parts {
     /// What stands outside of `modes` and `transitions`.
     shared: Vec<TokenTree>,
-    /// Documentation, name and braces of each mode.
-    modes: Vec<(Vec<String>, Word, Group)>,
+    /// What stands in `modes`.
+    entries: Vec<Entry>,
     /// The braces of `transitions`.
     transitions: Vec<Group>,
     /// The first of the words `modes` and `transitions`.
@@ -74,63 +73,38 @@ pub(super) fn read(
     header: &Spec,
     tokens: &[TokenTree],
     body: &Group,
+    indices: Indices,
 ) -> Result<Modes, Diagnostics> {
     let mut diagnostics = Diagnostics::new();
     let parts = take_apart(tokens, body, &mut diagnostics);
-    if parts.modes.is_empty() {
-        return Err(without_modes(&parts, header, body, diagnostics));
-    }
-    let mut declared = Modes {
-        modes: Vec::new(),
-        transitions: Vec::new(),
-    };
-    for (documentation, name, block) in &parts.modes {
-        let mut own = Diagnostics::new();
-        let inside = tokens_of(block.stream());
-        refuse_shared(&inside, &mut own);
-        let mut spec = header.beginning();
-        let together = [parts.shared.clone(), inside].concat();
-        declarations(&together, body, &mut spec, &mut own);
-        declared.transitions = transitions(&parts.transitions, &name.text, &mut spec, &mut own);
-        diagnostics.extend_once(own);
-        declared.modes.push(Mode {
-            name: name.clone(),
-            documentation: documentation.clone(),
-            spec,
-        });
-    }
-    diagnostics.finish(declared)
-}
-
-/// What is wrong with a model that has `modes` or `transitions` and no mode: that, and whatever else is.
-fn without_modes(
-    parts: &Parts,
-    header: &Spec,
-    body: &Group,
-    mut diagnostics: Diagnostics,
-) -> Diagnostics {
-    if let (Some(first), true) = (&parts.first, diagnostics.is_empty()) {
+    if let (Some(first), [], true) = (&parts.first, &*parts.entries, diagnostics.is_empty()) {
         let text = format!("`{}` without a mode", first.text);
         let help = format!("write `{MODE}`");
         diagnostics.error(first.at, text).help(help);
     }
-    declarations(
-        &parts.shared,
-        body,
-        &mut header.beginning(),
-        &mut diagnostics,
-    );
-    diagnostics
-}
-
-/// The declarations one after the other.
-fn split(tokens: &[TokenTree]) -> impl Iterator<Item = &[TokenTree]> {
-    let mut rest = tokens;
-    core::iter::from_fn(move || {
-        let (declaration, others) = rest.split_at(declaration_length(rest));
-        rest = others;
-        (!declaration.is_empty()).then_some(declaration)
-    })
+    let constants = Constants::read(header, &parts.shared, body, indices, &mut diagnostics);
+    let members = Members::of(&parts.entries, &constants, &mut diagnostics);
+    let written = Transitions::of(&parts.transitions, &constants, &mut diagnostics);
+    let mut read = Modes {
+        modes: Vec::new(),
+        transitions: Vec::new(),
+    };
+    for member in &members.list {
+        let mut own = Diagnostics::new();
+        refuse_shared(&member.inside, &mut own);
+        let mut spec = header.beginning();
+        let together = [&*parts.shared, &*member.inside].concat();
+        declarations(&together, body, &mut spec, &mut own);
+        read.transitions = written.read(&members, &constants, &member.name, &mut spec, &mut own);
+        diagnostics.extend_once(own);
+        read.modes.push(Mode {
+            name: member.name.clone(),
+            written: member.written(),
+            documentation: member.documentation.clone(),
+            spec,
+        });
+    }
+    diagnostics.finish(read)
 }
 
 /// The word that a declaration begins with.
@@ -183,26 +157,25 @@ fn part(cursor: &mut Cursor<'_>, parts: &mut Parts) -> Read<()> {
     Ok(())
 }
 
-/// `slow { .. }`
+/// `slow { .. }`, `spoke[i in 1..=N] { .. }`
 fn mode(cursor: &mut Cursor<'_>, parts: &mut Parts) -> Read<()> {
     let documentation = documentation(cursor)?;
     if cursor.eat_operator(";").is_some() {
         return Ok(());
     }
-    let name = cursor.new_name("the name of a mode")?;
+    let declared = declared(cursor, "the name of a mode")?;
     let Some(block) = cursor.eat_group(Delimiter::Brace) else {
-        let text = format!("expected `{{ .. }}` after the mode `{}`", name.text);
+        let text = format!(
+            "expected `{{ .. }}` after the mode `{}`",
+            declared.name.text
+        );
         return Err(cursor.unexpected(&text, &format!("write `{MODE}`")));
     };
-    if let Some((_, first, _)) = parts.modes.iter().find(|(_, own, _)| own.text == name.text) {
-        let text = format!("mode `{}` declared again", name.text);
-        let error = cursor.diagnostics.error(name.at, text);
-        error
-            .help("choose another name")
-            .also(first.at, "first declared here");
-        return Ok(());
-    }
-    parts.modes.push((documentation, name, block.clone()));
+    parts.entries.push(Entry {
+        documentation,
+        declared,
+        block: block.clone(),
+    });
     Ok(())
 }
 
@@ -221,79 +194,4 @@ fn refuse_shared(tokens: &[TokenTree], diagnostics: &mut Diagnostics) {
             diagnostics.error(at, text).help(help);
         }
     }
-}
-
-/// All transitions; those that leave this mode become surfaces of its model.
-fn transitions(
-    groups: &[Group],
-    mode: &str,
-    spec: &mut Spec,
-    diagnostics: &mut Diagnostics,
-) -> Vec<Transition> {
-    let mut transitions = Vec::new();
-    for group in groups {
-        let tokens = tokens_of(group.stream());
-        let mut inside = Cursor::new(&tokens, Location::opening(group), diagnostics);
-        while !inside.is_at_end() {
-            let length = entry_length(inside.remaining());
-            let (tokens, ended) = inside.take(length);
-            let mut cursor = inside.inside(tokens, group);
-            if cursor.is_at_end() {
-                continue;
-            }
-            let Ok((transition, surface)) = transition(&mut cursor, spec) else {
-                continue;
-            };
-            if cursor.end().is_ok() && !ended {
-                let at = cursor.last();
-                cursor.refuse(at, "expected `;`", "end the transition with `;`");
-            }
-            if transition.from.text == mode {
-                spec.surfaces.push(surface);
-            }
-            transitions.push(transition);
-        }
-    }
-    transitions
-}
-
-/// `enter: smooth -> rough when x >= 0 when y > 0 => LAW`
-fn transition(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<(Transition, Surface)> {
-    let help = format!("write `{TRANSITION}`");
-    let (documentation, declared) = labelled(cursor, "a transition", TRANSITION)?;
-    let from = cursor.name("the mode that is left")?;
-    if let Some(sign) = ["=>", ","]
-        .into_iter()
-        .find(|sign| cursor.is_operator(sign))
-    {
-        let text = format!("expected `->`, found `{sign}`");
-        return Err(cursor.refuse_operator(sign, text, &help));
-    }
-    cursor.expect_operator("->", TRANSITION)?;
-    let to = cursor.name("the mode that is entered")?;
-    if !cursor.eat_word("when") {
-        return Err(cursor.unexpected("expected `when`", &help));
-    }
-    let Comparison { greater, less, at } = comparison(cursor, Strictness::Weak, TRANSITION)?;
-    let conditions = conditions(cursor, TRANSITION)?;
-    let law = law(cursor, spec, TRANSITION)?;
-    let item = spec.item(at);
-    let name = declared.name.clone();
-    // A transition happens when what is compared becomes true; the gap of a surface is positive before.
-    let gap = Comparison {
-        greater: less,
-        less: greater,
-        at,
-    };
-    let surface = Surface {
-        declared,
-        documentation,
-        gap,
-        conditions,
-        law,
-        enters: Some(to.clone()),
-        instantaneous: Vec::new(),
-        item,
-    };
-    Ok((Transition { name, from, to }, surface))
 }

@@ -2,13 +2,14 @@
 
 #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
 
+mod families;
 mod missing_tokens;
 mod refusals;
 mod slips;
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
-use super::{ScalarKind, Spec, parse};
+use super::{Declaration, ScalarKind, Spec, parse};
 use crate::diagnostics::Diagnostics;
 
 const MODEL: &str = "
@@ -31,7 +32,10 @@ const MODEL: &str = "
     }";
 
 fn read(source: &str) -> Result<Spec, Diagnostics> {
-    parse(source.parse().unwrap())
+    match crate::read(source.parse().unwrap())? {
+        Declaration::Model(spec) => Ok(*spec),
+        Declaration::Modes(declared) => panic!("{declared:?}"),
+    }
 }
 
 fn lagrangian(expression: &str) -> String {
