@@ -143,6 +143,12 @@ fn a_solve_that_would_lose_its_digits_is_refused_with_its_condition() {
     assert!((1e4..1e6).contains(&condition), "{condition:e}");
 }
 
+/// No motion takes a rod to length 0: nothing is looked for in steps.
+#[test]
+fn rods_cannot_become_dependent() {
+    const { assert!(!<Rods as System>::CAN_LOSE_RANK) };
+}
+
 #[test]
 fn operations_grow_with_the_number_of_rods() {
     let source = Rods::DESCRIPTION.source;

@@ -16,11 +16,13 @@ pub enum Fault {
         /// The pivot's value; may be NaN.
         value: f64,
     },
-    /// The constraint one-forms are dependent, or too nearly so to solve for the multipliers.
+    /// The constraint one-forms are dependent, or too nearly so to solve for the multipliers. A run ends with it, at the
+    /// last state before, also where they are so at one instant between two evaluations of the rates
+    /// ([`System::rank_drop`](crate::System::rank_drop)); it does not begin where they are.
     SingularConstraint {
         /// Index of the first constraint that depends on the earlier ones.
         constraint: usize,
-        /// Estimated condition number of the forms in the metric; infinite when dependent.
+        /// Estimated condition number of the forms in the metric; infinite when dependent, and where a run reaches that.
         condition: f64,
     },
     /// The form of a declared quasi-velocity follows from the constraints and the other forms: velocities do not

@@ -241,6 +241,7 @@ pub mod arguments {
     pub fn inverse() {}
     pub fn step() {}
     pub fn visitor() {}
+    pub fn reach() {}
     pub fn after_q() {}
     pub fn after_qdot() {}
 }

@@ -1,6 +1,6 @@
 //! A system with inputs that are functions of time and state.
 
-use crate::contract::{Actuated, Constrained, Impacting, Powered, System, VectorField};
+use crate::contract::{Actuated, Constrained, Impacting, Powered, RankDrop, System, VectorField};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::impacts::law::{Blow, Contact, Jump, Law};
 
@@ -88,6 +88,16 @@ impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> System for Steered<S
 
     fn outside_chart(&self, state: &Self::State) -> Option<usize> {
         self.system.outside_chart(state)
+    }
+
+    const CAN_LOSE_RANK: bool = Sys::CAN_LOSE_RANK;
+
+    fn rank_drop(
+        &self,
+        motion: impl Fn(f64) -> (f64, Self::State),
+        reach: f64,
+    ) -> Option<RankDrop> {
+        self.system.rank_drop(motion, reach)
     }
 
     fn admit(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<(), StateError> {

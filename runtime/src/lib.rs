@@ -130,6 +130,7 @@ pub mod numbers;
 pub mod outcome;
 pub mod projection;
 mod quadrature;
+mod rank;
 pub mod record;
 pub mod simulation;
 pub mod state;
@@ -137,8 +138,8 @@ pub mod variations;
 pub mod work;
 
 pub use contract::{
-    Actuated, Constrained, Divergence, Impacting, InvariantVolume, Lagrangian, Powered, System,
-    TaylorField, Variational, VectorField,
+    Actuated, Constrained, Divergence, Impacting, InvariantVolume, Lagrangian, Powered, RankDrop,
+    System, TaylorField, Variational, VectorField,
 };
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
@@ -174,5 +175,6 @@ pub mod __private {
     pub use crate::modes;
     pub use crate::nearest::nearest_by_steps;
     pub use crate::quadrature::line_integral;
+    pub use crate::rank::rank_drop;
     pub use nalgebra::SVector;
 }

@@ -2,8 +2,9 @@
 
 use core::ops::ControlFlow;
 
-use crate::contract::System;
+use crate::contract::{RankDrop, System};
 use crate::effects::{Change, Effect, Moment, StepView};
+use crate::error::Fault;
 use crate::forces::{Along, Driven};
 use crate::integrate::{Counters, Dop853, Instant, Stepper};
 use crate::outcome::{Outcome, Run, StartError};
@@ -16,6 +17,10 @@ pub const STEP_BUDGET: u64 = 1_000_000_000;
 /// After an impact no step is longer than this many times the last flight, so that hops that shrink are followed
 /// by steps of their own size.
 const FLIGHTS: f64 = 4.0;
+
+/// A step whose dense output meets dependent constraints is made again as a step this many times as long: its stages lie
+/// elsewhere then.
+const SHORTER: f64 = 0.3;
 
 /// A system with an integrator and effects.
 #[derive(Debug, Clone)]
@@ -238,12 +243,19 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         forces: &Option<Effects::Forces>,
         observer: &mut O,
     ) -> Result<Next, Outcome> {
+        if Sys::CAN_LOSE_RANK && self.shorten_where_dependent()? {
+            return Ok(Next::Step);
+        }
         let mut view = StepView {
             system: self.system,
             counters: &mut self.progress.counters,
             stepper: &mut *self.stepper,
         };
-        let Some(theta) = self.effects.propose(&mut view)? else {
+        let proposed = self.effects.propose(&mut view)?;
+        if Sys::CAN_LOSE_RANK {
+            self.keep_rank(proposed.unwrap_or(1.0), observer)?;
+        }
+        let Some(theta) = proposed else {
             self.pass(observer)?;
             return Ok(Next::Step);
         };
@@ -384,6 +396,47 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(Outcome::Stopped),
         }
+    }
+
+    /// Makes the dense output ready. Whether a rate that it takes meets dependent constraints instead: then a shorter step
+    /// is to be made from the same start.
+    fn shorten_where_dependent(&mut self) -> Result<bool, Outcome> {
+        let now = self.progress.now();
+        let Progress {
+            state, counters, ..
+        } = &mut *self.progress;
+        match self.stepper.prepare_dense(self.system, counters) {
+            Ok(()) => Ok(false),
+            Err(Fault::SingularConstraint { .. }) => {
+                let shorter = SHORTER * self.stepper.length();
+                self.stepper
+                    .restart(self.system, now, state, shorter, counters)?;
+                Ok(true)
+            }
+            Err(fault) => Err(fault.into()),
+        }
+    }
+
+    /// Ends the run where the constraint forms become dependent between the start of the step and `reach`.
+    #[inline(never)]
+    fn keep_rank<O: Observer<Sys>>(&mut self, reach: f64, observer: &mut O) -> Result<(), Outcome> {
+        let (start, end) = (self.stepper.t_start(), self.stepper.t_end());
+        let stepper = &*self.stepper;
+        // At the ends the states that this step has in common with its neighbours, so that nothing passes between two steps.
+        let motion = |theta: f64| match theta {
+            0.0 => (start, *stepper.start_state()),
+            1.0 => (end, *stepper.end_state()),
+            _ => (start + theta * stepper.length(), stepper.interpolate(theta)),
+        };
+        let Some(RankDrop { theta, constraint }) = self.system.rank_drop(motion, reach) else {
+            return Ok(());
+        };
+        self.arrive(theta)?;
+        self.show(observer)?;
+        Err(Outcome::SingularConstraint {
+            constraint,
+            condition: f64::INFINITY,
+        })
     }
 
     /// At `theta` the motion is outside the chart: goes to the last state inside it, by bisection.

@@ -190,10 +190,13 @@ pub(super) fn emit_nearest(context: &Context<'_>) -> TokenStream {
 
 /// What a system with constraints answers where others accept every state.
 pub(super) fn emit_system_hooks(context: &Context<'_>) -> TokenStream {
-    if context.program.constrained.is_none() {
+    let Some(functions) = &context.program.constrained else {
         return TokenStream::new();
-    }
+    };
+    let drop = functions.can_lose_rank.then(|| emit_rank_drop(context));
     quote! {
+        #drop
+
         fn admit(
             &self,
             t: f64,
@@ -211,6 +214,22 @@ pub(super) fn emit_system_hooks(context: &Context<'_>) -> TokenStream {
             named: &Self::Vector,
         ) -> ::core::result::Result<Self::Vector, ::dalembert::StateError> {
             ::dalembert::__private::complete_velocities(self, t, q, qdot, named)
+        }
+    }
+}
+
+/// `rank_drop` of a system whose forms may become dependent.
+fn emit_rank_drop(context: &Context<'_>) -> TokenStream {
+    let (m, n) = (context.model.constraints.len(), context.dimension());
+    quote! {
+        const CAN_LOSE_RANK: bool = true;
+
+        fn rank_drop(
+            &self,
+            motion: impl ::core::ops::Fn(f64) -> (f64, Self::State),
+            reach: f64,
+        ) -> ::core::option::Option<::dalembert::RankDrop> {
+            ::dalembert::__private::rank_drop::<Self, #m, #n>(self, motion, reach)
         }
     }
 }

@@ -93,7 +93,7 @@ impl Numbers {
 }
 
 /// Names that generated functions use for their own arguments and locals; `dalembert::__private::arguments` has each of them.
-const ARGUMENTS: [&str; 30] = [
+const ARGUMENTS: [&str; 31] = [
     "t",
     "state",
     "rate",
@@ -122,6 +122,7 @@ const ARGUMENTS: [&str; 30] = [
     "inverse",
     "step",
     "visitor",
+    "reach",
     "after_q",
     "after_qdot",
 ];

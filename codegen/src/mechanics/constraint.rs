@@ -196,7 +196,7 @@ pub(crate) fn regular_minor(
     Some(pairs)
 }
 
-fn never_zero(pool: &Pool, expression: ExprId) -> bool {
+pub(super) fn never_zero(pool: &Pool, expression: ExprId) -> bool {
     matches!(
         pool.sign(expression),
         Sign::Positive | Sign::Negative | Sign::NonZero

@@ -20,6 +20,7 @@ pub mod field;
 pub mod frame;
 pub mod impact;
 pub mod metric;
+mod rank;
 
 use dalembert_expr::{ExprId, SymbolId};
 
@@ -42,6 +43,8 @@ pub struct Derivation {
     pub field: FieldTerms,
     /// Constraint forms with their curvature terms.
     pub constraints: Vec<ConstraintForm>,
+    /// Whether their forms are linear in the velocities and not known to be independent at every state.
+    pub can_lose_rank: bool,
     /// Impact surfaces with their differentials.
     pub surfaces: Vec<SurfaceForm>,
     /// What the density form and the divergence need.
@@ -81,6 +84,8 @@ pub fn derive(model: &mut Model) -> Derivation {
     let surfaces = impact::derive_surfaces(model, &coordinates, frame.as_ref().ok());
     let metric_rows = model.lagrangian.metric.clone();
     Derivation {
+        can_lose_rank: !model.is_nonlinear()
+            && !rank::is_constant(&model.pool, &coordinates.q, &constraints),
         factors: factors::derive_factors(&mut model.pool, &metric_rows),
         field,
         constraints,

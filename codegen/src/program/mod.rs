@@ -375,6 +375,8 @@ impl Reduced {
 /// Functions of a system with constraints.
 #[derive(Debug)]
 pub struct Constrained {
+    /// Whether the forms may become dependent somewhere.
+    pub can_lose_rank: bool,
     /// `(t, s) -> lambda`
     pub multipliers: Function,
     /// `(t, q, qdot) -> residuals, scales`
@@ -396,6 +398,7 @@ pub struct Constrained {
 impl Constrained {
     fn functions(&self) -> Vec<&Function> {
         let Self {
+            can_lose_rank: _,
             multipliers,
             residuals,
             forms,

@@ -71,10 +71,7 @@ pub const CASES: &[Case] = &[
         title: "two forms whose rank drops at y = 0, reached at t = 1",
         right: "the constraint forces are not determined there",
         bound: "`singular_constraint` within 1e-9 of y = 0",
-        pending: Some(
-            "a rank that drops at one instant is stepped over: pivots are no longer known once the rates are evaluated",
-        ),
-        run: Run::Integrators(rank_drops),
+        run: Run::Steps(rank_drops),
         ..Case::QUICK
     },
     Case {

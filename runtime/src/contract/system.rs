@@ -88,6 +88,21 @@ pub trait System: VectorField {
         None
     }
 
+    /// Whether the constraint forms may become dependent somewhere: not proved otherwise while building. A run watches such
+    /// systems in every step, and only them.
+    const CAN_LOSE_RANK: bool = false;
+
+    /// The first place in `[0, reach]` along a piece of smooth motion at which the constraint forms become dependent;
+    /// `motion` gives time and state at a part of it. None where [`System::CAN_LOSE_RANK`] is false.
+    fn rank_drop(
+        &self,
+        motion: impl Fn(f64) -> (f64, Self::State),
+        reach: f64,
+    ) -> Option<RankDrop> {
+        let _ = (motion, reach);
+        None
+    }
+
     /// Refuses velocities off the constraints by more than 1e-9 of the sum of absolute terms. Systems without
     /// constraints accept all.
     ///
@@ -180,6 +195,15 @@ pub trait System: VectorField {
         }
         Ok(state)
     }
+}
+
+/// Where constraint forms become dependent along a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RankDrop {
+    /// The last place before it, as a part of the motion.
+    pub theta: f64,
+    /// Index of the constraint that depends on the earlier ones there, or vanishes.
+    pub constraint: usize,
 }
 
 /// The parts of Lagrange and d'Alembert's principle

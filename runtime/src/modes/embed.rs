@@ -4,7 +4,7 @@
 //! rates 0, so that they are neither met nor neared.
 
 use super::{Mode, StateOf};
-use crate::contract::Impacting;
+use crate::contract::{Impacting, RankDrop};
 use crate::describe::{Initial, Report};
 use crate::error::{Fault, StateError};
 use crate::impacts::law::{Blow, Contact, Landing};
@@ -192,6 +192,19 @@ pub fn kick<M: Mode>(
 pub fn outside_chart<M: Mode>(model: &M::Model, state: &StateOf<M>) -> Option<usize> {
     let own = M::of(model).outside_chart(&taken::<M>(state))?;
     M::COORDINATES.get(own).copied()
+}
+
+/// As [`System::rank_drop`](crate::System::rank_drop), along motion in the mode.
+pub fn rank_drop<M: Mode>(
+    model: &M::Model,
+    motion: impl Fn(f64) -> (f64, StateOf<M>),
+    reach: f64,
+) -> Option<RankDrop> {
+    let own = |theta: f64| {
+        let (t, state) = motion(theta);
+        (t, taken::<M>(&state))
+    };
+    M::of(model).rank_drop(own, reach)
 }
 
 /// The state of the model that the mode makes of these of its coordinates and their rates or momenta.

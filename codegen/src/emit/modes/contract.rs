@@ -273,6 +273,7 @@ fn emit_readings(whole: &Whole<'_>) -> TokenStream {
     let chart = whole.of_state(
         |_, mode| quote!(::dalembert::__private::modes::outside_chart::<#mode>(self, state)),
     );
+    let drop = emit_rank_drop(whole);
     let motion = whole.of_state(
         |_, mode| quote!(<<#mode as ::dalembert::System>::Vector as ::dalembert::StateVector>::LEN),
     );
@@ -299,6 +300,32 @@ fn emit_readings(whole: &Whole<'_>) -> TokenStream {
 
         #[inline]
         fn outside_chart(&self, state: &Self::State) -> ::core::option::Option<usize> { #chart }
+
+        #drop
+    }
+}
+
+/// `rank_drop`, if a mode has forms that may become dependent: the mode in which the piece of motion begins answers.
+fn emit_rank_drop(whole: &Whole<'_>) -> TokenStream {
+    let mut programs = whole.contexts.iter().map(|contexts| contexts[0].program);
+    let mut constrained = programs.by_ref().filter_map(|own| own.constrained.as_ref());
+    if !constrained.any(|own| own.can_lose_rank) {
+        return TokenStream::new();
+    }
+    let ask = whole.of_state(
+        |_, mode| quote!(::dalembert::__private::modes::rank_drop::<#mode>(self, motion, reach)),
+    );
+    quote! {
+        const CAN_LOSE_RANK: bool = true;
+
+        fn rank_drop(
+            &self,
+            motion: impl ::core::ops::Fn(f64) -> (f64, Self::State),
+            reach: f64,
+        ) -> ::core::option::Option<::dalembert::RankDrop> {
+            let state = &motion(0.0).1;
+            #ask
+        }
     }
 }
 

@@ -11,6 +11,7 @@ pub fn constrained(model: &Model, derivation: &Derivation, form: Form) -> Option
         return None;
     }
     Some(Constrained {
+        can_lose_rank: derivation.can_lose_rank,
         multipliers: multipliers(model, derivation, form),
         residuals: residuals(model, derivation),
         forms: forms(model, derivation),

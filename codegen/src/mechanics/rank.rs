@@ -1,0 +1,257 @@
+//! Whether the constraint forms can become dependent somewhere.
+//!
+//! What is sought is a proof that they cannot, by steps each of which keeps "independent at every state" as it is: a form
+//! with columns of its own that never vanish together is left out; a form with an entry that is never zero is eliminated
+//! from the others. Of what is left the squares of all minors are added up: the forms are independent where the sum is
+//! positive (Cauchy and Binet).
+//!
+//! A form that is the differential of a function may vanish where no motion comes: see [`keeps_off`].
+
+use dalembert_expr::{ExprId, Pool, Rational, SymbolId};
+
+use super::ConstraintForm;
+use super::constraint::{never_zero, regular_minor};
+
+/// Forms of which every minor is looked at.
+const MINORS: usize = 3;
+
+/// Entries beyond which no form is eliminated from others, and no minor is made.
+const ENTRIES: usize = 256;
+
+/// A form that is left.
+struct Row {
+    entries: Vec<ExprId>,
+    /// The function whose differential it is, if that is known and the form is as it was declared.
+    level: Option<ExprId>,
+}
+
+/// Whether it is proved that no motion that begins where the forms are independent reaches a state where they are not.
+/// The pool is left as it is.
+pub(super) fn is_constant(pool: &Pool, q: &[SymbolId], constraints: &[ConstraintForm]) -> bool {
+    if regular_minor(pool, constraints).is_some() {
+        return true;
+    }
+    let mut pool = pool.clone();
+    let rows = constraints.iter().map(|own| Row {
+        entries: own.form.clone(),
+        level: own.level.or_else(|| quadratic_level(&mut pool, q, own)),
+    });
+    let mut rows: Vec<Row> = rows.collect();
+    while !rows.is_empty() {
+        let is_small = rows.iter().map(|row| row.entries.len()).sum::<usize>() <= ENTRIES;
+        if let Some(alone) = (0..rows.len()).find(|&a| stands_alone(&mut pool, q, &rows, a)) {
+            rows.remove(alone);
+        } else if let Some(pivot) = pivot(&pool, &rows).filter(|_| is_small) {
+            eliminate(&mut pool, &mut rows, pivot);
+        } else {
+            return rows.len() <= MINORS && is_small && has_a_minor(&mut pool, &rows);
+        }
+    }
+    true
+}
+
+/// Whether the entries of a form in columns that no other has never vanish together, or not along a motion.
+fn stands_alone(pool: &mut Pool, q: &[SymbolId], rows: &[Row], a: usize) -> bool {
+    let is_alone = |j: &usize| {
+        let mut rows = rows.iter().enumerate();
+        rows.all(|(b, row)| (b == a) != pool.is_syntactic_zero(row.entries[*j]))
+    };
+    let columns = (0..rows[a].entries.len()).filter(is_alone);
+    let columns: Vec<usize> = columns.collect();
+    let own: Vec<ExprId> = columns.iter().map(|&j| rows[a].entries[j]).collect();
+    if never_vanish_together(pool, &own) {
+        return true;
+    }
+    // Without elimination the columns are the coordinates.
+    rows[a].level.is_some_and(|level| {
+        let along: Vec<SymbolId> = columns.iter().map(|&j| q[j]).collect();
+        keeps_off(pool, &along, level)
+    })
+}
+
+/// The function `sum_j q^j eta_j / 2`, if the form is its differential.
+fn quadratic_level(pool: &mut Pool, q: &[SymbolId], own: &ConstraintForm) -> Option<ExprId> {
+    if !pool.is_syntactic_zero(own.affine) {
+        return None;
+    }
+    let mut terms = Vec::new();
+    for (&symbol, &entry) in q.iter().zip(&own.form) {
+        let place = pool.variable(symbol);
+        let term = pool.mul(place, entry);
+        terms.push(pool.scale(&Rational::HALF, term));
+    }
+    let sum = pool.sum(&terms);
+    let level = pool.multiply_out(sum);
+    let is_level = q.iter().zip(&own.form).all(|(&symbol, &entry)| {
+        let slope = pool.diff(level, symbol);
+        let difference = pool.sub(slope, entry);
+        let difference = pool.multiply_out(difference);
+        pool.is_syntactic_zero(difference)
+    });
+    is_level.then_some(level)
+}
+
+/// Whether the derivatives of a function by these coordinates vanish together at no state of a motion that keeps the
+/// function, unless they do at all of them. So it is if the function is `c + sum_j c_j l_j^2` with `c_j > 0`, or all negative,
+/// and a derivative in proportion to each `l_j`: where they vanish it is `c`, and where it is `c` they vanish.
+fn keeps_off(pool: &mut Pool, along: &[SymbolId], level: ExprId) -> bool {
+    let (_, terms) = pool.linear_form(level);
+    let varying = pool.combine(&terms);
+    let mut rest = vec![varying];
+    let mut signs = Vec::new();
+    for &q in along {
+        let slope = pool.diff(varying, q);
+        let second = pool.diff(slope, q);
+        let is_constant = along.iter().all(|&q| !pool.depends_on(second, q));
+        if !is_constant || !never_zero(pool, second) {
+            return false;
+        }
+        signs.push(pool.sign(second).is_nonnegative());
+        let square = pool.mul(slope, slope);
+        let part = pool.div(square, second);
+        rest.push(pool.scale(&-&Rational::HALF, part));
+    }
+    let rest = pool.sum(&rest);
+    let rest = pool.multiply_out(rest);
+    let is_definite = signs.windows(2).all(|pair| pair[0] == pair[1]);
+    is_definite && !signs.is_empty() && pool.is_syntactic_zero(rest)
+}
+
+/// Whether the sum of the squares is positive.
+fn never_vanish_together(pool: &mut Pool, entries: &[ExprId]) -> bool {
+    let squares: Vec<ExprId> = entries.iter().map(|&own| pool.mul(own, own)).collect();
+    let sum = pool.sum(&squares);
+    let simple = pool.simplify(sum);
+    never_zero(pool, sum) || never_zero(pool, simple)
+}
+
+/// A form and a column with an entry that is never zero.
+fn pivot(pool: &Pool, rows: &[Row]) -> Option<(usize, usize)> {
+    let entries = |a: usize| (0..rows[a].entries.len()).map(move |j| (a, j));
+    let mut places = (0..rows.len()).flat_map(entries);
+    places.find(|&(a, j)| never_zero(pool, rows[a].entries[j]))
+}
+
+/// Takes a form out of the others, and leaves it and the column of its pivot out.
+fn eliminate(pool: &mut Pool, rows: &mut Vec<Row>, (a, column): (usize, usize)) {
+    let own = rows.remove(a).entries;
+    for Row {
+        entries: row,
+        level,
+    } in rows.iter_mut()
+    {
+        *level = None;
+        let factor = pool.div(row[column], own[column]);
+        for (entry, &taken) in row.iter_mut().zip(&own) {
+            let product = pool.mul(factor, taken);
+            let rest = pool.sub(*entry, product);
+            *entry = pool.simplify(rest);
+        }
+        row.remove(column);
+    }
+}
+
+/// Whether the minors of the forms never vanish together.
+fn has_a_minor(pool: &mut Pool, rows: &[Row]) -> bool {
+    let columns = rows.first().map_or(0, |row| row.entries.len());
+    let mut minors = Vec::new();
+    let mut chosen = Vec::new();
+    collect_minors(pool, rows, columns, &mut chosen, &mut minors);
+    never_vanish_together(pool, &minors)
+}
+
+fn collect_minors(
+    pool: &mut Pool,
+    rows: &[Row],
+    columns: usize,
+    chosen: &mut Vec<usize>,
+    minors: &mut Vec<ExprId>,
+) {
+    if chosen.len() == rows.len() {
+        let minor = determinant(pool, rows, chosen);
+        minors.push(pool.simplify(minor));
+        return;
+    }
+    for column in chosen.last().map_or(0, |last| last + 1)..columns {
+        chosen.push(column);
+        collect_minors(pool, rows, columns, chosen, minors);
+        chosen.pop();
+    }
+}
+
+/// The determinant of these columns, by its first row.
+fn determinant(pool: &mut Pool, rows: &[Row], columns: &[usize]) -> ExprId {
+    let Some((first, below)) = rows.split_first() else {
+        return pool.one();
+    };
+    let mut terms = Vec::with_capacity(columns.len());
+    for (place, &column) in columns.iter().enumerate() {
+        if pool.is_syntactic_zero(first.entries[column]) {
+            continue;
+        }
+        let others: Vec<usize> = columns.iter().copied().filter(|j| *j != column).collect();
+        let minor = determinant(pool, below, &others);
+        let term = pool.mul(first.entries[column], minor);
+        terms.push(if place % 2 == 0 { term } else { pool.neg(term) });
+    }
+    pool.sum(&terms)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile;
+
+    /// Whether the rank of these constraints is known to be constant.
+    fn is_constant(constraints: &str) -> bool {
+        let source = format!(
+            "pub Model {{
+                coordinates {{ x; y; z; w; theta: angle; }}
+                parameters {{ a > 0 = 1; b = 1; c != 0 = 1; }}
+                lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2 + dot(theta)^2)/2;
+                constraints {{ {constraints} }}
+            }}"
+        );
+        let compiled = compile(source.parse().expect("tokens")).expect("a model");
+        !compiled.derivation.can_lose_rank
+    }
+
+    #[test]
+    fn constant_ranks_are_proved() {
+        for constraints in [
+            "k: d(x) - y*d(z) = 0;",
+            "k: sin(theta)*d(x) - cos(theta)*d(y) = 0;",
+            "k: (1 + x^2)*d(x) + y*d(z) = 0;",
+            "k: x*d(y) + y*d(z) + a*d(w) = 0;",
+            "k: d(z) - y*d(x) = 0; l: d(z) - y*d(x) + c*(d(w) - x*d(y)) = 0;",
+            "k: a*sin(theta)*d(x) - a*cos(theta)*d(y) = 0; l: cos(theta)*d(x) + sin(theta)*d(y) - b*d(z) = 0;",
+            "k: d(x^2/a + y^2 - 1) = 0;",
+            "k: d(x^2 + y^2) = 0; l: d(z) - w*d(w) - x*d(theta) = 0;",
+            "k: d(x^2 + y^2) = 0; l: d((x - z)^2 + w^2) = 0;",
+            "k: x*d(x) + y*d(y) = 0; l: (z - x)*(d(z) - d(x)) + (w - y)*(d(w) - d(y)) = 0;",
+            "k: (a + exp(t))*(sin(theta)*d(x) - cos(theta)*d(y)) = 0;",
+        ] {
+            assert!(is_constant(constraints), "{constraints}");
+        }
+    }
+
+    #[test]
+    fn what_can_drop_is_never_proved() {
+        for constraints in [
+            "k: d(x) = 0; l: d(x) + y*d(z) = 0;",
+            "k: d(x) = 0; l: d(x) + y^2*d(z) = 0;",
+            "k: d(x) = 0; l: d(x) + cos(theta)*d(z) = 0;",
+            "k: y*d(x) = 0;",
+            "k: x*d(y) + y*d(x) = 0;",
+            "k: d(x^2 + y^4) = 0;",
+            "k: d(x^2 - y^2) = 0;",
+            "k: d((x - y)^2 + (x + y)^3) = 0;",
+            "k: x*d(z) + y*d(w) = 0;",
+            "k: d(x) - t*d(y) = 0; l: d(x) - d(y) = 0;",
+            "k: d(x) + y*d(z) = 0; l: y*d(x) + d(z) = 0;",
+            "k: x*d(x) + y*d(y) + z*d(t) = 0;",
+            "k: b*d(x) + y*d(z) = 0;",
+        ] {
+            assert!(!is_constant(constraints), "{constraints}");
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! Where constraint forms become dependent between the ends of a step.
+//!
+//! Rates are evaluated at a few places only, and a rank that drops at one instant is not seen from there: on either side the
+//! forms are as independent as can be. What gives it away is the plane that the forms span together with its orientation,
+//! the multivector `eta^1 ^ .. ^ eta^M`. It is continuous along the motion and vanishes where the forms are dependent. Where
+//! it vanishes to an odd order, however often it turns besides, it points the other way after it: two places between which
+//! it turned round are brought together until either the turn is seen to be a smooth one, or they are neighbours. Where it
+//! vanishes to an even order it comes back as it went, and the least of its size is sought instead.
+
+use crate::contract::{Constrained, RankDrop};
+use crate::math::{abs, sqrt};
+use crate::state::StateVector;
+
+/// Places at which a step is looked at. A minimum between two of them shows in the values at three: distances grow by no
+/// more than three times from one to the next.
+const PLACES: [f64; 11] = [
+    0.0,
+    1.0 / 256.0,
+    1.0 / 64.0,
+    1.0 / 16.0,
+    0.25,
+    0.5,
+    0.75,
+    15.0 / 16.0,
+    63.0 / 64.0,
+    255.0 / 256.0,
+    1.0,
+];
+
+/// A size that does not fall below this part of what it is nearby has no zero between: `((3 - 1)/(3 + 1))^2` for three
+/// places with distances 1 and 3 and a zero of second order half way along the longer one, and a margin.
+const DIP: f64 = 0.5;
+
+/// What is left of a size where it vanishes.
+const ZERO: f64 = 4.0 * f64::EPSILON;
+
+/// A turn that takes no more than this part of the time is one at an instant but for the rounding errors of the steps before.
+const INSTANT: f64 = 512.0 * f64::EPSILON;
+
+/// Steps of a search for a minimum: as many as bring a bracket down to neighbouring numbers.
+const NARROWINGS: u32 = 80;
+
+/// The plane of the forms at one place.
+#[derive(Debug, Clone, Copy)]
+struct Plane<const M: usize, const N: usize> {
+    /// The place.
+    theta: f64,
+    /// The time there.
+    t: f64,
+    /// Its orthonormal basis; a row that depends on the earlier ones is 0.
+    basis: [[f64; N]; M],
+    /// How long each form is without its components along the earlier ones.
+    lengths: [f64; M],
+}
+
+impl<const M: usize, const N: usize> Plane<M, N> {
+    /// By the modified Gram-Schmidt method.
+    fn of(theta: f64, t: f64, mut forms: [[f64; N]; M]) -> Self {
+        let mut lengths = [0.0; M];
+        for a in 0..M {
+            let (earlier, rest) = forms.split_at_mut(a);
+            let own = &mut rest[0];
+            for other in earlier.iter() {
+                let product = inner(own, other);
+                for (own, other) in own.iter_mut().zip(other) {
+                    *own -= product * other;
+                }
+            }
+            let length = sqrt(inner(own, own));
+            lengths[a] = length;
+            let inverse = if length > 0.0 { 1.0 / length } else { 0.0 };
+            own.iter_mut().for_each(|entry| *entry *= inverse);
+        }
+        Self {
+            theta,
+            t,
+            basis: forms,
+            lengths,
+        }
+    }
+
+    /// The cosine of the angle between the oriented planes: `det (Q_a Q_b^T)`.
+    fn cosine(&self, other: &Self) -> f64 {
+        let mut products = [[0.0; M]; M];
+        for (row, own) in products.iter_mut().zip(&self.basis) {
+            for (entry, other) in row.iter_mut().zip(&other.basis) {
+                *entry = inner(own, other);
+            }
+        }
+        determinant(products)
+    }
+
+    /// How large the multivector is, and each of its factors, beside those at another place.
+    fn size_beside(&self, other: &Self) -> f64 {
+        self.lengths_beside(other).product()
+    }
+
+    fn lengths_beside(&self, other: &Self) -> impl Iterator<Item = f64> {
+        let pairs = self.lengths.iter().zip(other.lengths);
+        pairs.map(|(own, other)| own / other)
+    }
+}
+
+fn inner<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// By elimination with the largest pivots.
+fn determinant<const M: usize>(mut rows: [[f64; M]; M]) -> f64 {
+    let mut product = 1.0;
+    for k in 0..M {
+        let size = |row: usize| abs(rows[row][k]);
+        let largest = (k..M).max_by(|&a, &b| size(a).total_cmp(&size(b)));
+        let pivot = largest.unwrap_or(k);
+        if pivot != k {
+            rows.swap(pivot, k);
+            product = -product;
+        }
+        let own = rows[k];
+        product *= own[k];
+        if own[k] == 0.0 {
+            return 0.0;
+        }
+        for row in &mut rows[k + 1..] {
+            let factor = row[k] / own[k];
+            for (entry, own) in row.iter_mut().zip(&own) {
+                *entry -= factor * own;
+            }
+        }
+    }
+    product
+}
+
+/// As [`System::rank_drop`](crate::System::rank_drop), of a system with M constraints on N coordinates.
+pub fn rank_drop<S: Constrained, const M: usize, const N: usize>(
+    system: &S,
+    motion: impl Fn(f64) -> (f64, S::State),
+    reach: f64,
+) -> Option<RankDrop> {
+    let plane = |theta: f64| {
+        let (t, state) = motion(theta);
+        let mut forms = [[0.0; N]; M];
+        let mut affine = S::Multipliers::zeros();
+        let q = system.position(&state);
+        system.constraint_forms(t, &q, forms.as_flattened_mut(), &mut affine);
+        Plane::of(theta, t, forms)
+    };
+    first_drop::<M, N>(plane, reach)
+}
+
+/// The first drop among places up to `reach`.
+fn first_drop<const M: usize, const N: usize>(
+    plane: impl Fn(f64) -> Plane<M, N>,
+    reach: f64,
+) -> Option<RankDrop> {
+    let first = plane(0.0);
+    let named = |at: Plane<M, N>, theta: f64| {
+        let lengths = at.lengths_beside(&first).enumerate();
+        let least = lengths.min_by(|a, b| a.1.total_cmp(&b.1));
+        RankDrop {
+            theta,
+            constraint: least.map_or(0, |(constraint, _)| constraint),
+        }
+    };
+    let size = |theta: f64| plane(theta).size_beside(&first);
+    let mut last = first;
+    // Places with the sizes there: the last three.
+    let mut sizes = [(0.0, f64::NAN), (0.0, f64::NAN), (0.0, 1.0)];
+    for (k, place) in PLACES.into_iter().enumerate().skip(1) {
+        let next = plane(place * reach);
+        sizes = [sizes[1], sizes[2], (next.theta, next.size_beside(&first))];
+        let turn = turned_round(&plane, last, next);
+        let touch = dip(k, &sizes).and_then(|bracket| vanishing(&size, bracket));
+        match (turn, touch) {
+            (Some(turn), Some(touch)) if touch <= turn[0].theta => {
+                return Some(named(plane(touch), touch));
+            }
+            (Some([before, after]), _) => return Some(named(after, before.theta)),
+            (None, Some(touch)) => return Some(named(plane(touch), touch)),
+            (None, None) => last = next,
+        }
+    }
+    None
+}
+
+/// The neighbouring places between which the plane turns round, if it does so at one instant.
+fn turned_round<const M: usize, const N: usize>(
+    plane: &impl Fn(f64) -> Plane<M, N>,
+    mut before: Plane<M, N>,
+    mut after: Plane<M, N>,
+) -> Option<[Plane<M, N>; 2]> {
+    let turns = before.cosine(&after) <= 0.0;
+    if !turns {
+        return None;
+    }
+    loop {
+        let middle = 0.5 * (before.theta + after.theta);
+        if middle <= before.theta || middle >= after.theta {
+            return Some([before, after]);
+        }
+        let middle = plane(middle);
+        // NOTE: where the forms are dependent to the last digit the basis is 0, or noise that may lie across both sides.
+        if before.cosine(&middle) <= 0.0 {
+            after = middle;
+        } else if middle.cosine(&after) <= 0.0 {
+            before = middle;
+        } else {
+            let is_instant = after.t - before.t <= INSTANT * abs(before.t).max(abs(after.t));
+            return is_instant.then_some([before, after]);
+        }
+    }
+}
+
+/// The ends between which the last of these places shows that the size may vanish: around the one before it, or next to
+/// either end of the step.
+fn dip(k: usize, sizes: &[(f64, f64); 3]) -> Option<[f64; 2]> {
+    let [a, b, c] = *sizes;
+    let falls = |least: f64, most: f64| least < DIP * most;
+    if b.1 <= a.1 && b.1 <= c.1 && falls(b.1, a.1.max(c.1)) {
+        return Some([a.0, c.0]);
+    }
+    if k == 2 && a.1 <= b.1 && falls(a.1, c.1) {
+        return Some([a.0, b.0]);
+    }
+    let is_last = k + 1 == PLACES.len();
+    (is_last && c.1 <= b.1 && falls(c.1, a.1)).then_some([b.0, c.0])
+}
+
+/// Where the size vanishes between these places, if its least is nothing beside the sizes there; by golden sections.
+fn vanishing(size: &impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> Option<f64> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let most = size(low).max(size(high));
+    let inside = |low: f64, high: f64, part: f64| {
+        let theta = low + part * (high - low);
+        (theta, size(theta))
+    };
+    let mut left = inside(low, high, 1.0 - GOLDEN);
+    let mut right = inside(low, high, GOLDEN);
+    for _ in 0..NARROWINGS {
+        if left.1 <= right.1 {
+            (high, right) = (right.0, left);
+            left = inside(low, high, 1.0 - GOLDEN);
+        } else {
+            (low, left) = (left.0, right);
+            right = inside(low, high, GOLDEN);
+        }
+    }
+    let least = [left.1, right.1, size(low), size(high)]
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    (least <= ZERO * most).then_some(low)
+}
