@@ -245,7 +245,7 @@ fn a_form_that_vanishes_is_told_from_one_that_turns_fast() {
 
 #[test]
 fn forms_that_are_small_or_turn_are_no_drop() {
-    assert!(NearlyDependent::CAN_LOSE_RANK && Ring::CAN_LOSE_RANK);
+    const { assert!(NearlyDependent::CAN_LOSE_RANK && Ring::CAN_LOSE_RANK) };
     for delta in [1.0, 1e-3, 1e-6, 1e-9] {
         let (x, y) = (0.7, -0.4);
         let system = NearlyDependent { delta };

@@ -178,6 +178,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             let before = rates.as_slice()[surface];
             if self.law_of(now.system, surface).is_map() {
                 let place = (now.system.mode(now.state), now.system.position(now.state));
+                let arrived = *now.state;
                 rates = self.impact(surface, several, before, now, observer)?;
                 let changes = now.system.mode(now.state) != place.0;
                 match changes {
@@ -185,6 +186,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                     false => hits.set_done(surface),
                 }
                 if changes || now.system.position(now.state) != place.1 {
+                    self.watch.resize(&arrived, now.state);
                     self.watch.relocate(&mut hits, &rates, now)?;
                     self.resting.keep(&hits.at_hand, now, observer)?;
                     self.watch.hold(self.resting.held());

@@ -92,8 +92,20 @@ impl<Sys: Impacting> Watch<Sys> {
         self.held = Held::none();
         let rates = now.system.gap_rates(now.t, now.state)?;
         let mut hits = Hits::<Sys::Gaps>::none();
+        self.sizes = *now.state;
         self.relocate(&mut hits, &rates, now)?;
         Ok(hits)
+    }
+
+    /// Takes in what an impact made of `before`: components that it changed have the size they have now, those it left alone
+    /// keep the rounding errors of the flight.
+    pub(super) fn resize(&mut self, before: &Sys::State, after: &Sys::State) {
+        let states = before.as_slice().iter().zip(after.as_slice());
+        for (size, (before, after)) in self.sizes.as_mut_slice().iter_mut().zip(states) {
+            if before != after {
+                *size = *after;
+            }
+        }
     }
 
     /// The surfaces at hand at a position that the motion did not come to by itself.
@@ -105,15 +117,13 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Result<(), Outcome> {
         self.grazes = Sys::Gaps::zeros();
         self.bends = Sys::Gaps::zeros();
-        (self.sizes, self.steps) = (*now.state, 0);
         let gaps = measured(now)?;
         self.here = Some(gaps);
         let mut at_hand = Sys::Gaps::zeros();
         for (surface, &gap) in gaps.as_slice().iter().enumerate() {
             if now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (rates.as_slice()[surface] * now.t).abs();
-                let state = *now.state;
-                if gap.abs() <= 2.0 * rounding(now, surface, &state) + drift {
+                if gap.abs() <= 2.0 * rounding(now, surface, &self.sizes) + drift {
                     at_hand.as_mut_slice()[surface] = 1.0;
                 }
             }
@@ -139,12 +149,13 @@ impl<Sys: Impacting> Watch<Sys> {
         rates: Sys::Gaps,
     ) -> Result<(), Outcome> {
         self.rates = rates;
-        (self.sizes, self.steps) = (*now.state, 0);
+        self.steps = 0;
         let (held, here) = (self.held, self.here.take());
         let is_at_hand =
             |surface: usize| hits.at_hand.as_slice()[surface] == 1.0 || held.is_held(surface);
         self.gaps = Sys::Gaps::zeros();
         if (0..Sys::Gaps::LEN).all(is_at_hand) {
+            self.sizes = *now.state;
             return Ok(());
         }
         let gaps = match here {
@@ -154,7 +165,10 @@ impl<Sys: Impacting> Watch<Sys> {
         for surface in (0..Sys::Gaps::LEN).filter(|&surface| !is_at_hand(surface)) {
             self.gaps.as_mut_slice()[surface] = gaps.as_slice()[surface];
         }
-        self.check_negative(now)
+        // A gap that should be 0 has the rounding errors of the flight that ended; the next ones are those of the next.
+        let checked = self.check_negative(now);
+        self.sizes = *now.state;
+        checked
     }
 
     /// The surfaces hit where the step was cut: those found there, and those whose gaps are 0 there within rounding.
