@@ -67,7 +67,6 @@ fn a_wrong_promise_is_noticed() {
     );
     for wrong in [
         "| a | guaranteed | `A99` |",
-        "| a | guaranteed | `F06` |",
         "| a | not handled | `A01` |",
         "| a | promised | `A01` |",
         "| a | guaranteed | `tests/no_std.rs` `a_program_without_std` |",
