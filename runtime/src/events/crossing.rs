@@ -202,10 +202,11 @@ pub(crate) fn clear(values: [f64; 2], slopes: [f64; 2], probe: f64) -> bool {
     let cubic =
         S * S * S * v0 + 3.0 * S * PROBE * (S * b1 + PROBE * b2) + PROBE * PROBE * PROBE * v1;
     let quartic = (probe - cubic) / (PROBE * PROBE * S * S);
+    // Means, not sums: these may be beyond the range where gaps are near its end.
     let coefficients = [
-        0.25 * (v0 + 3.0 * b1),
-        0.5 * (b1 + b2) + quartic / 6.0,
-        0.25 * (3.0 * b2 + v1),
+        0.25 * v0 + 0.75 * b1,
+        0.5 * b1 + 0.5 * b2 + quartic / 6.0,
+        0.75 * b2 + 0.25 * v1,
         v1,
     ];
     let (mut least, mut largest) = (v1, v1);

@@ -12,6 +12,7 @@ use crate::events::crossing::{NODES, SAMPLES, Signs};
 use crate::events::locate::{Bracket, Search, Start};
 use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
+use crate::integrate::controller::least_step;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -60,6 +61,10 @@ impl<Sys: Impacting> Watch<Sys> {
             };
             let (part, rate) = match self.first_hit(surface, step, &known, glance)? {
                 Found::Hit(part, rate) => (part, Some(rate)),
+                // Gaps that cannot be told however short the step is: it would be cut again and again where it begins.
+                Found::Unfinished(part) if part * self.length < least_step(step.t_start()) => {
+                    return Err(Outcome::StepUnderflow { t: step.t_start() });
+                }
                 Found::Unfinished(part) => (part, None),
                 Found::Nothing if glance.is_due(surface) && is_active(surface, step, 1.0) => {
                     (1.0, Some(glance.rates.as_slice()[surface]))
