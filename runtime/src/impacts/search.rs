@@ -12,7 +12,7 @@ use crate::events::crossing::{NODES, SAMPLES, Signs};
 use crate::events::locate::{Bracket, Search, Start};
 use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
-use crate::integrate::controller::least_step;
+use crate::integrate::controller::least_trial;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -62,7 +62,7 @@ impl<Sys: Impacting> Watch<Sys> {
             let (part, rate) = match self.first_hit(surface, step, &known, glance)? {
                 Found::Hit(part, rate) => (part, Some(rate)),
                 // Gaps that cannot be told however short the step is: it would be cut again and again where it begins.
-                Found::Unfinished(part) if part * self.length < least_step(step.t_start()) => {
+                Found::Unfinished(part) if part * self.length < least_trial(step.t_start()) => {
                     return Err(Outcome::StepUnderflow { t: step.t_start() });
                 }
                 Found::Unfinished(part) => (part, None),

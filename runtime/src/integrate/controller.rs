@@ -120,20 +120,37 @@ impl<S: StateVector> Weights<S> {
     }
 }
 
-/// Shortest step at a time: a 64th of a unit in its last place. Times are kept in two parts, so that such a step moves them.
+/// Shortest step that is chosen at a time: sixteen units in its last place. A tolerance relative to a component that is 0, as
+/// at a wall, would ask for steps of no length.
 pub(crate) fn least_step(t: f64) -> f64 {
+    (16.0 * f64::EPSILON * t.abs()).max(f64::MIN_POSITIVE)
+}
+
+/// Shortest step that one that failed is shortened to: a 64th of a unit in the last place of the time. Times are kept in two
+/// parts, so that such a step moves them.
+pub(crate) fn least_trial(t: f64) -> f64 {
     (f64::EPSILON / 64.0 * t.abs()).max(f64::MIN_POSITIVE)
 }
 
+/// Steps longer than this many units in the last place of the time are differences of two rounded times.
+const LONG: f64 = 1024.0 * f64::EPSILON;
+
 /// The length and the end of a step of about `h`: `t_end` itself when a hundredth more would reach it.
+///
+/// What the time lacks stays as it is in a step that is long beside the last place of the time. Its length has no digits
+/// below that place: those of `h` depend on units, which no run may.
 #[inline(always)]
 pub(crate) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
     let end = Instant::new(t_end);
     let left = end.since(start);
-    match 1.01 * h >= left {
-        true => (left, end),
-        false => (h, start.after(h)),
+    if 1.01 * h >= left {
+        return (left, end);
     }
+    if h <= LONG * start.t.abs() {
+        return (h, start.after(h));
+    }
+    let t = start.t + h;
+    (t - start.t, Instant { t, ..start })
 }
 
 /// The first component that is not finite.

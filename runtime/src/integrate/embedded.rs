@@ -3,7 +3,9 @@
 //! First-same-as-last: the rate at the end of an accepted step is the first stage of the next one. Where the error
 //! estimate does without it, it is evaluated only once the error has passed.
 
-use super::controller::{Control, Memory, Weights, first_step, landing, least_step, not_finite};
+use super::controller::{
+    Control, Memory, Weights, first_step, landing, least_step, least_trial, not_finite,
+};
 use super::instant::Instant;
 use super::precise::Precise;
 use super::stats::Counters;
@@ -310,8 +312,8 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         self.move_on();
         let mut field = Counted { field, counters };
         let t = self.t[0].t;
-        let least = least_step(t);
-        let mut h = self.next.min(self.max_step).max(least);
+        let least = least_trial(t);
+        let mut h = self.next.min(self.max_step).max(least_step(t));
         loop {
             let (made, arrival) = landing(self.t[0], h, t_end);
             let attempt = self.attempt(&mut field, made);

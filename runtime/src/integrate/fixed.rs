@@ -5,7 +5,7 @@
 //! allows; a step in which the vector field does not exist is shortened until it does; and an implicit step that is
 //! not solved is made in 2, 4, 8, .. equal parts, which keeps the grid and what the method preserves.
 
-use super::controller::{RETREAT, Weights, first_step, least_step, not_finite};
+use super::controller::{RETREAT, Weights, first_step, least_step, least_trial, not_finite};
 use super::dense::{Cubic, INNER, Polynomial};
 use super::embedded::Counted;
 use super::instant::Instant;
@@ -332,8 +332,8 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
         self.move_on();
         let mut field = Counted { field, counters };
         let t = self.t[0].t;
-        let least = least_step(t);
-        let mut h = self.next.max(least);
+        let least = least_trial(t);
+        let mut h = self.next.max(least_step(t));
         loop {
             let (made, arrival) = self.aim(h, t_end);
             let attempt = match arrival.since(self.t[0]) > 0.0 {

@@ -29,7 +29,7 @@ use core::fmt;
 
 use expansion::{Expansion, row, state, sum};
 
-use super::controller::{Weights, least_step, not_finite};
+use super::controller::{Weights, least_step, least_trial, not_finite};
 use super::instant::Instant;
 use super::order::{LEAST_ORDER, PART_OF_TOLERANCE, order};
 use super::precise::Precise;
@@ -207,7 +207,7 @@ impl<F: TaylorField> Taylor<F> {
             };
             counters.rejected += 1;
             self.unit *= SHRINK;
-            if self.unit < least_step(self.t[0].t) {
+            if self.unit < least_trial(self.t[0].t) {
                 return Err(StepFailure::NonFinite { component });
             }
         }

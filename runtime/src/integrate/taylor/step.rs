@@ -3,7 +3,7 @@
 use super::{LONGEST, TAYLOR, Taylor};
 use crate::contract::TaylorField;
 use crate::error::Fault;
-use crate::integrate::controller::{RETREAT, landing, least_step};
+use crate::integrate::controller::{RETREAT, landing, least_trial};
 use crate::integrate::instant::Instant;
 use crate::integrate::precise::Precise;
 use crate::integrate::rough::power_of_two;
@@ -78,7 +78,7 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
             }
             counters.rejected += 1;
             h = made * if attempt.is_ok() { 0.5 } else { RETREAT };
-            if h < least_step(t) {
+            if h < least_trial(t) {
                 self.retract(field)?;
                 return Err(attempt.err().unwrap_or(StepFailure::StepUnderflow { t }));
             }
