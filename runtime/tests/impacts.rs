@@ -378,6 +378,30 @@ fn starting_inside_is_refused_as_an_outcome() {
 }
 
 #[test]
+fn a_wall_that_counts_by_rounding_alone_is_not_met_from_inside() {
+    fn ledge([_, y]: [f64; 2]) -> (f64, [f64; 2]) {
+        (y - 0.7, [0.0, 1.0])
+    }
+    let mut ball = Particle::new([0.0, -1.0], [ledge, floor]);
+    // The wall x >= 0 lies below the ledge, which ends there.
+    ball.active = |surface, [x, y]| if surface == 0 { x < 0.0 } else { y < 0.7 };
+    for height in (0..40).map(|k| 0.8 + 0.01 * f64::from(k)) {
+        let start = at(-9.0, height, 1.0, 0.0);
+        with_every_integrator(&ball, start, 5.0, |run, log, case| {
+            assert_done(run, case);
+            assert!(log.iter().all(|event| event.surface == 0), "{case}");
+            assert!(log.seen() >= 1, "{case}");
+        });
+    }
+    // Without the ledge the motion comes below its height, and then the wall counts.
+    ball.active = |surface, [_, y]| surface == 1 && y < 0.7;
+    with_every_integrator(&ball, at(-9.0, 1.0, 1.0, 0.0), 5.0, |run, _, case| {
+        let inside = matches!(run.outcome, Outcome::StartsInside { surface: 1, gap } if gap < -3.0);
+        assert!(inside, "{case}: {}", run.outcome);
+    });
+}
+
+#[test]
 fn the_same_run_gives_the_same_bits() {
     let ball = Particle::new([-1.0, 0.3], [floor]).with_law(Law::Restitution(0.9));
     let (mut first, mut second) = (Log::new(), Log::new());

@@ -1,7 +1,8 @@
 //! How small a gap can be told from zero: `32 u` times the sum of the absolute values of its terms.
 //!
 //! The terms are not known here, but how far the gap moves when a component moves by a small part of itself is:
-//! `sum_i |dh/dx_i| |x_i|`, at a zero of `h` the same up to the degree of the terms.
+//! `sum_i |dh/dx_i| |x_i|`, at a zero of `h` the same up to the degree of the terms. Conditions of surfaces are granted the
+//! same: on their boundary rounding decides.
 
 use crate::contract::Impacting;
 use crate::state::StateVector;
@@ -34,4 +35,28 @@ pub(crate) fn resolution<Sys: Impacting>(
         sum += (gap(t, &moved) - here).abs();
     }
     UNITS * sum / PART
+}
+
+/// Whether a surface counts, and would if rounding had moved the state: a component of one of these sizes, or time,
+/// either way by as much as all of them together may be off.
+pub(crate) fn counts_beyond_rounding<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    t: f64,
+    state: &Sys::State,
+    sizes: &Sys::State,
+) -> bool {
+    let part = 2.0 * UNITS * (1.0 + Sys::State::LEN as f64);
+    let later = [0.0, part * t, -part * t];
+    let counts_throughout = later
+        .into_iter()
+        .all(|later| system.surface_active(surface, t + later, state));
+    counts_throughout
+        && (0..Sys::State::LEN).all(|i| {
+            [part, -part].into_iter().all(|part| {
+                let mut moved = *state;
+                moved.as_mut_slice()[i] += part * sizes.as_slice()[i].abs();
+                system.surface_active(surface, t, &moved)
+            })
+        })
 }

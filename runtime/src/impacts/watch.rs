@@ -13,7 +13,7 @@ use super::place::Place;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::events::crossing::{Signs, clear};
-use crate::events::resolution::resolution;
+use crate::events::resolution::{counts_beyond_rounding, resolution};
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
@@ -381,17 +381,20 @@ impl<Sys: Impacting> Watch<Sys> {
         (!passes).then_some(signs)
     }
 
-    /// Surfaces that count have a gap that is not negative beyond rounding; within rounding they are at hand.
+    /// Surfaces that count have a gap that is not negative beyond rounding; within rounding they are at hand. One that
+    /// counts by rounding alone does not yet: so a ball that lands on a ledge is not inside the wall below.
     fn check_negative(&mut self, now: &mut Moment<'_, Sys>) -> Result<(), Outcome> {
         for surface in 0..Sys::Gaps::LEN {
             let gap = self.gaps.as_slice()[surface];
             let is_wall = !self.is_passable(surface);
             if is_wall && gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (self.rates.as_slice()[surface] * now.t).abs();
-                if gap < -2.0 * rounding(now, surface, &self.sizes) - drift {
+                if gap >= -2.0 * rounding(now, surface, &self.sizes) - drift {
+                    self.gaps.as_mut_slice()[surface] = 0.0;
+                } else if counts_beyond_rounding(now.system, surface, now.t, now.state, &self.sizes)
+                {
                     return Err(Outcome::StartsInside { surface, gap });
                 }
-                self.gaps.as_mut_slice()[surface] = 0.0;
             }
         }
         Ok(())
