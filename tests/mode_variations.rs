@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 use dalembert::contract::Variational;
 use dalembert::variations::{Orbit, Section, Undefined};
 use dalembert::{
-    Described, Event, Mode, Observer, Scene, SceneEffects, Simulation, StateVector, System,
+    Described, Event, Hold, Mode, Observer, Scene, SceneEffects, Simulation, StateVector, System,
     Tangent, Taylor, Tolerance, Variations,
 };
 use dalembert_cli::{Exit, models};
@@ -13,12 +13,9 @@ use dalembert_models::{
     BallOnSwitchingTable, FilippovField, RefractedParticle, RimlessWheelFive, RimlessWheelTen,
     SmoothAndRoughPlane, SphereInPlane, TentMap, TwoWheelsArrested,
 };
-use dalembert_tests::command;
 use dalembert_tests::reference::{number, numbers, read};
+use dalembert_tests::{command, differences};
 use serde_json::Value;
-
-/// The largest difference between a derivative and a difference of runs, in units of the largest entry of its column.
-const DIFFERENCE: f64 = 2e-9;
 
 dalembert::model! {
     /// A field that is discontinuous at a plane.
@@ -107,6 +104,36 @@ dalembert::model! {
     }
 }
 
+dalembert::model! {
+    /// Fields that both lead to a curve which moves: the motion slides along it, and leaves it into either mode.
+    Slider {
+        coordinates { x; y; }
+        parameters { a = 1/2; b = 1/3; c = 3/2; k = 2/5; w = 1/20; }
+        modes {
+            right { field { dot(x) = -1 - b*x + k*y*t; dot(y) = 1 + b*x*y + sin(t)/4; } }
+            left { field { dot(x) = c - y; dot(y) = 1/2 + x^2 + k*cos(y); } }
+        }
+        transitions {
+            leftward: right -> left when x <= a*y^2/4 + w*t;
+            rightward: left -> right when x >= a*y^2/4 + w*t;
+        }
+    }
+}
+
+dalembert::model! {
+    /// The constraint of one side makes the motion leave it at once: two transitions at one moment, on a curve that moves.
+    Thrown {
+        coordinates { x; y; z; }
+        parameters { r = 1/2; c = 3/10; w = 1/10; a = 1/5; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + (1 + a*x^2)*dot(z)^2)/2 + a*y*x/4;
+        modes { smooth { } rough { constraints { roll: dot(x) + a*y*dot(y) = r*dot(z); } } }
+        transitions {
+            enter: smooth -> rough when x >= c*y^2 + w*t;
+            leave: rough -> smooth when x <= c*y^2 + w*t;
+        }
+    }
+}
+
 /// A state of the first mode.
 fn state<S: Described>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
     let [mut position, mut velocity] = [S::Vector::zeros(); 2];
@@ -191,61 +218,16 @@ fn a_crossing_has_the_differential_of_the_reference() {
     }
 }
 
-/// The derivative at 0 of what `f` gives, by differences over four steps and their halves.
-fn difference<V: StateVector>(step: f64, f: impl Fn(f64) -> V) -> V {
-    let central = |h: f64| {
-        let (ahead, behind) = (f(h), f(-h));
-        let pairs = ahead.as_slice().iter().zip(behind.as_slice());
-        let slope = pairs.map(|(ahead, behind)| (ahead - behind) / (2.0 * h));
-        slope.collect::<Vec<f64>>()
-    };
-    let [one, two, four] = [1.0, 2.0, 4.0].map(|factor| central(factor * step));
-    let mut slope = V::zeros();
-    for (i, own) in slope.as_mut_slice().iter_mut().enumerate() {
-        *own = (64.0 * one[i] - 20.0 * two[i] + four[i]) / 45.0;
-    }
-    slope
-}
-
 /// Derivatives of a run with respect to the first `used` components of its start and to all parameters, against differences
 /// of runs with as many transitions and impacts, `passed` of them at least.
 fn check_differences<S>(system: S, start: S::State, used: usize, until: f64, passed: u64)
 where
     S: Described + Scene + Variational,
 {
-    let name = S::DESCRIPTION.name;
-    let parameters = S::DESCRIPTION.parameters.len();
-    let mut columns: Vec<Tangent<S>> = (0..used).map(Tangent::of_component).collect();
-    columns.extend((0..parameters).map(Tangent::of_parameter));
-    let directions = columns.clone();
-    let mut variations = Variations::new(&system, &mut columns);
-    let (_, impacts) = end(&system, &start, until, &mut variations);
-    assert!(impacts >= passed, "{name}: {impacts}");
-    variations.tangents().expect("derivatives");
-    for (direction, column) in directions.iter().zip(&columns) {
-        let expected = difference(3e-4, |h| {
-            let (mut system, mut start) = (system.clone(), start);
-            let varied = dalembert::numbers::Row::as_slice(&direction.parameters);
-            for (k, own) in varied.iter().enumerate() {
-                system.set_parameter(k, system.parameter(k) + h * own);
-            }
-            let parts = start.as_mut_slice().iter_mut();
-            for (entry, own) in parts.zip(direction.state.as_slice()) {
-                *entry += h * own;
-            }
-            let (state, seen) = end(&system, &start, until, &mut ());
-            assert_eq!(seen, impacts, "{name}");
-            state
-        });
-        let parts = expected.as_slice().iter();
-        let size = parts.fold(1.0, |size: f64, own| size.max(own.abs()));
-        for (found, expected) in column.state.as_slice().iter().zip(expected.as_slice()) {
-            assert!(
-                (found - expected).abs() <= DIFFERENCE * size,
-                "{name}: {column:?} along {direction:?}: {found} for {expected}",
-            );
-        }
-    }
+    let impacts = differences::check_differences(system, start, used, |system, start, mut seen| {
+        end(system, start, until, &mut seen)
+    });
+    assert!(impacts >= passed, "{}: {impacts}", S::DESCRIPTION.name);
 }
 
 #[test]
@@ -275,6 +257,12 @@ fn constraints_that_change_have_their_derivatives() {
         &[1.0, 0.5, -8.0, 0.4, 0.2],
     );
     check_differences(ball, start, 10, 2.5, 1);
+    // The spin makes the rough side throw the ball back: two transitions at one time.
+    let [q, qdot] = [[-1.0, 0.2, 0.3, 1.2, 0.4], [1.0, 0.5, 8.0, 0.4, 0.2]];
+    check_differences(ball, state(&ball, &q, &qdot), 10, 2.5, 2);
+    let thrown = Thrown::default();
+    let start = state(&thrown, &[-0.3, 0.2, 0.1], &[1.0, 0.3, -6.0]);
+    check_differences(thrown, start, 6, 3.0, 2);
     let ball = BallOnSwitchingTable::default();
     check_differences(ball, declared(&ball), 8, 12.0, 1);
     let wheels = TwoWheelsArrested::default();
@@ -317,15 +305,40 @@ fn what_has_no_derivative_says_so() {
         panic!("the Lagrangian of a reduced mode changes")
     };
     assert!(t > 0.5 && t < 2.0);
-    // The spin makes the rough side throw the ball back: two transitions at one time.
-    let ball = SmoothAndRoughPlane::default();
-    let [q, qdot] = [[-1.0, 0.2, 0.3, 1.2, 0.4], [1.0, 0.5, 8.0, 0.4, 0.2]];
-    let thrown = undefined(&ball, &state(&ball, &q, &qdot), 2.5);
-    assert_eq!(thrown.kind(), "corner");
-    // Both sides lead to the line: the motion slides.
+    // A slide begins at once, of neighbours on one side of the line later.
     let field = FilippovField::default();
-    let held = undefined(&field, &declared(&field), 3.0);
+    let held = undefined(&field, &state(&field, &[0.0, 0.0], &[]), 3.0);
     assert_eq!(held.kind(), "held");
+}
+
+/// How often motion begins to be held, and ceases to be.
+#[derive(Default)]
+struct Turns([usize; 2]);
+
+impl<Sys: System> Observer<Sys> for Turns {
+    fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
+        self.0[usize::from(!hold.begins)] += 1;
+        ControlFlow::Continue(())
+    }
+}
+
+#[test]
+fn sliding_has_its_derivative() {
+    let field = FilippovField::default();
+    check_differences(field, declared(&field), 2, 3.0, 1);
+    // It ends in the left mode: the one entered last if the motion came from the right, the other one if from the left.
+    let slider = Slider::default();
+    for (mode, x) in [(0, 0.5), (1, -0.5)] {
+        let mut start = state(&slider, &[x, 0.1], &[]);
+        start[2] = f64::from(mode);
+        for (until, turns) in [(1.0, [1, 0]), (3.0, [1, 1])] {
+            let mut seen = Turns::default();
+            let (last, _) = end(&slider, &start, until, &mut seen);
+            assert_eq!(seen.0, turns, "from {x} until {until}: {last}");
+            assert!(turns[1] == 0 || slider.mode(&last) == 1);
+            check_differences(slider, start, 2, until, 1);
+        }
+    }
 }
 
 /// The cycle of a wheel, found from its declared start, with its period and multiplier.

@@ -30,8 +30,10 @@ pub struct Event<S> {
 pub struct Hold<S> {
     /// When.
     pub t: f64,
-    /// Index of the surface.
+    /// Index of the surface; where the motion slides between two modes, of the transition that was taken.
     pub surface: usize,
+    /// Where the motion slides, the transition that leads back: the state is of the mode that it leaves.
+    pub back: Option<usize>,
     /// The state, on the surface.
     pub state: S,
     /// Whether the motion is held on the surface from now on, or no more.

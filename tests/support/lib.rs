@@ -11,6 +11,7 @@ pub mod bodies;
 pub mod claim;
 pub mod command;
 pub mod curvature;
+pub mod differences;
 pub mod divergence;
 pub mod flow;
 pub mod formula;

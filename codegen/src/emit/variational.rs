@@ -8,6 +8,7 @@ use quote::{ToTokens, quote};
 
 use super::Context;
 use super::function::{Body, emit_body, joined, uses};
+use super::instantaneous::emit_varied;
 use crate::model::Law;
 use crate::program::{Form, Function, Input};
 
@@ -25,6 +26,7 @@ pub(super) fn emit_variational(context: &Context<'_>) -> TokenStream {
         emit_deviations(context),
         emit_clearances(context),
         emit_collision(context),
+        emit_varied(context),
         emit_landing(context),
         emit_declared_law(context),
     ];

@@ -175,8 +175,9 @@ fn symplectic(report: &mut Report, steps: u64) {
     let start: [&[f64]; 2] = [&[0.4, 0.3], &[0.0, 0.0]];
     let series = energy!(long, Gauss4, 0.02, pendulum, start);
     long.bounded(&series, 4e-8, 4e-12);
+    // What drift there is is rounding's: over eight starts 1.4e-14 root mean square, of either sign. The bound is four times that.
     let series = energy!(long, Gauss6, 0.02, pendulum, start);
-    long.bounded(&series, 2e-11, 1e-14);
+    long.bounded(&series, 2e-11, 6e-14);
     // At a quarter of the step the error of the method is that of rounding.
     let series = energy!(long, Gauss6, 0.005, pendulum, start);
     long.below(&series, 4e-14);

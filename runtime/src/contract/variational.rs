@@ -96,6 +96,37 @@ pub trait Variational: TaylorField + System + Sized {
         state: &Self::Row<L>,
     ) -> Result<Self::Collision<L>, Fault>;
 
+    /// The state at the instantaneous constraints of a surface, as [`Impacting::focus`](crate::Impacting::focus) brings it
+    /// there; `None` where it has none.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn focus<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        surface: usize,
+        t: L,
+        state: &Self::Row<L>,
+    ) -> Result<Option<Self::Row<L>>, Fault> {
+        let _ = (parameters, surface, t, state);
+        Ok(None)
+    }
+
+    /// A rate of the state with the force that keeps the instantaneous constraints of a surface, as
+    /// [`Impacting::trace`](crate::Impacting::trace) gives it; `None` where it has none.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    fn trace<L: Numbers>(
+        parameters: &Self::Parameters<L>,
+        surface: usize,
+        t: L,
+        state: &Self::Row<L>,
+        rate: &Self::Row<L>,
+    ) -> Result<Option<Self::Row<L>>, Fault> {
+        let _ = (parameters, surface, t, state, rate);
+        Ok(None)
+    }
+
     /// Positions and velocities after the declared reset of a surface; `None` where its law is no reset, and of a model with
     /// modes, whose resets are those of the mode ([`Self::passed`]).
     ///

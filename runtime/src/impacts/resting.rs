@@ -141,6 +141,7 @@ impl<G: StateVector> Resting<G> {
                     Hold {
                         t: now.t,
                         surface,
+                        back: None,
                         state: *now.state,
                         begins: true,
                         accumulation: (!accumulation.is_nan()).then_some(accumulation),
@@ -217,6 +218,7 @@ impl<G: StateVector> Resting<G> {
             Hold {
                 t: now.t,
                 surface: slide.across,
+                back: Some(slide.back),
                 state: *now.state,
                 begins: true,
                 accumulation: None,
@@ -250,6 +252,7 @@ impl<G: StateVector> Resting<G> {
             Hold {
                 t: now.t,
                 surface: slide.across,
+                back: Some(slide.back),
                 state: *now.state,
                 begins: false,
                 accumulation: None,
@@ -290,6 +293,7 @@ impl<G: StateVector> Resting<G> {
             Hold {
                 t: now.t,
                 surface,
+                back: None,
                 state: *now.state,
                 begins: false,
                 accumulation: None,

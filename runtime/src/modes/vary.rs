@@ -150,6 +150,38 @@ pub fn collision_of<M: VariationalMode, L: Numbers, R: Row<L>>(
     Ok(beginning(own.as_slice()))
 }
 
+/// As [`Variational::focus`].
+///
+/// # Errors
+/// That of the mode.
+pub fn focus_of<M: VariationalMode, L: Numbers, R: Row<L>>(
+    parameters: &[L],
+    surface: usize,
+    t: L,
+    state: &[L],
+) -> Result<Option<R>, Fault> {
+    let own = super::embed::known_surface::<M>(surface)?;
+    let focused = M::focus(&beginning(parameters), own, t, &beginning(state))?;
+    Ok(focused.map(|focused| placed::<M, L, R>(&focused)))
+}
+
+/// As [`Variational::trace`]. Neither the mode nor what it does not use has a rate.
+///
+/// # Errors
+/// That of the mode.
+pub fn trace_of<M: VariationalMode, L: Numbers, R: Row<L>>(
+    parameters: &[L],
+    surface: usize,
+    t: L,
+    state: &[L],
+    rate: &[L],
+) -> Result<Option<R>, Fault> {
+    let own = super::embed::known_surface::<M>(surface)?;
+    let (state, rate) = (beginning(state), beginning(rate));
+    let traced = M::trace(&beginning(parameters), own, t, &state, &rate)?;
+    Ok(traced.map(|traced| beginning(traced.as_slice())))
+}
+
 /// As [`Variational::declared_law`]; `surface` is the place in the mode.
 pub fn declared_law_of<M: VariationalMode, L: Numbers>(
     parameters: &[L],

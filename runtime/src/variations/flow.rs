@@ -1,6 +1,7 @@
 //! Variations along smooth motion.
 
 use super::graze::Seen;
+use super::held::Holder;
 use super::{DIRECTIONS, Dual, Tangent, Undefined};
 use crate::contract::Variational;
 use crate::integrate::controller::least_step;
@@ -10,6 +11,7 @@ use crate::integrate::taylor::expansion::Expansion;
 use crate::integrate::taylor::reach::{LONGEST, reach};
 use crate::jet::LENGTH;
 use crate::numbers::{Numbers, Row};
+use crate::record::Segment;
 use crate::state::StateVector;
 
 /// How large the last two terms of a series may be beside the first ones: what rounding leaves of the sum.
@@ -17,10 +19,10 @@ const LAST: f64 = 0.25 * f64::EPSILON;
 
 /// Power series of the motion with their derivatives.
 pub(super) struct Flow<Sys: Variational> {
-    expansion: Expansion<Sys, Dual>,
+    pub(super) expansion: Expansion<Sys, Dual>,
     order: usize,
     unit: f64,
-    scale: Sys::State,
+    pub(super) scale: Sys::State,
 }
 
 impl<Sys: Variational> Flow<Sys> {
@@ -33,25 +35,28 @@ impl<Sys: Variational> Flow<Sys> {
         }
     }
 
-    /// Carries all directions from a state to the later of two times.
+    /// Carries all directions along a stretch of motion, with what holds it.
     pub(super) fn follow(
         &mut self,
         system: &Sys,
-        t: [f64; 2],
-        start: &Sys::State,
+        holder: Option<Holder>,
+        segment: &Segment<'_, Sys::State>,
         tangents: &mut [Tangent<Sys>],
     ) -> Result<(), Undefined> {
+        let t = [segment.t_start(), segment.t_end()];
         if t[1] <= t[0] {
             return Ok(());
         }
-        self.scale = system.scale(t[0], start);
+        let ends = [segment.start(), segment.end()];
+        self.scale = system.scale(t[0], ends[0]);
+        let mut follow_some = |some: &mut [Tangent<Sys>]| match holder {
+            None => self.follow_some(system, t, ends[0], some),
+            Some(holder) => self.follow_held(system, holder, t, ends, some),
+        };
         if tangents.is_empty() {
-            return self.follow_some(system, t, start, &mut []);
+            return follow_some(&mut []);
         }
-        for some in tangents.chunks_mut(DIRECTIONS) {
-            self.follow_some(system, t, start, some)?;
-        }
-        Ok(())
+        tangents.chunks_mut(DIRECTIONS).try_for_each(follow_some)
     }
 
     /// Carries as many directions as go side by side.
@@ -81,16 +86,7 @@ impl<Sys: Variational> Flow<Sys> {
             let length = theta * self.unit;
             t = if t + length >= end { end } else { t + length };
         }
-        for (k, tangent) in tangents.iter_mut().enumerate() {
-            for (own, entry) in tangent
-                .state
-                .as_mut_slice()
-                .iter_mut()
-                .zip(state.as_slice())
-            {
-                *own = entry.slopes()[k];
-            }
-        }
+        take_slopes(&state, tangents);
         Ok(())
     }
 
@@ -179,4 +175,14 @@ pub(super) fn dual_state<Sys: Variational>(
         *entry = along(*value, tangents, |tangent| tangent.state.as_slice()[i]);
     }
     row
+}
+
+/// Takes the derivatives of a state for the directions that it was varied along.
+pub(super) fn take_slopes<Sys: Variational>(state: &Sys::Row<Dual>, tangents: &mut [Tangent<Sys>]) {
+    for (k, tangent) in tangents.iter_mut().enumerate() {
+        let entries = state.as_slice().iter();
+        for (own, entry) in tangent.state.as_mut_slice().iter_mut().zip(entries) {
+            *own = entry.slopes()[k];
+        }
+    }
 }

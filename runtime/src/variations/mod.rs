@@ -16,11 +16,14 @@
 //!
 //! Where the flow of a system with impacts has no derivative, none is given: see [`Undefined`].
 
+mod along;
 mod chart;
 mod dual;
 mod eigenvalues;
+mod extrapolation;
 mod flow;
 pub(crate) mod graze;
+mod held;
 pub mod orbit;
 pub mod section;
 mod tangent;
@@ -39,6 +42,8 @@ use crate::contract::Variational;
 use crate::error::Fault;
 use crate::record::{Event, Hold, Observer, Segment};
 use flow::Flow;
+use held::Holder;
+use transition::Sequence;
 
 /// Why a run has no derivative, or no more digits than doubles have, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,14 +57,15 @@ pub enum Undefined {
         /// The surface.
         surface: usize,
     },
-    /// Several surfaces were hit at one time: a neighbouring run meets them in another order.
+    /// Several surfaces were hit at one time: a neighbouring run meets them one after the other, or in another order.
     Corner {
         /// When.
         t: f64,
         /// The surface hit last.
         surface: usize,
     },
-    /// A surface holds the motion from here on, by a force that the power series do not know.
+    /// From here on the motion is held in a way whose derivatives are not known: by several surfaces, after impacts that
+    /// accumulate, or where a neighbouring run is not held.
     Held {
         /// When.
         t: f64,
@@ -118,7 +124,7 @@ impl fmt::Display for Undefined {
             ),
             Self::Held { t, surface } => write!(
                 f,
-                "surface {surface} holds the motion from t = {t}, by a force that has no power series"
+                "surface {surface} holds the motion at t = {t} in a way whose derivatives and digits are not known"
             ),
             Self::Unlawful { t, surface } => write!(
                 f,
@@ -154,6 +160,12 @@ pub struct Variations<'a, Sys: Variational> {
     system: &'a Sys,
     tangents: &'a mut [Tangent<Sys>],
     flow: Flow<Sys>,
+    /// What holds the motion.
+    holder: Option<Holder>,
+    /// Transitions at one moment, and what held the motion before. What holds it after is known when it goes on.
+    crossing: Option<(Sequence<Sys::State>, Option<Holder>)>,
+    /// The end of the last stretch of motion.
+    end: Option<Sys::State>,
     undefined: Option<Undefined>,
 }
 
@@ -164,6 +176,9 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
             system,
             tangents,
             flow: Flow::new(),
+            holder: None,
+            crossing: None,
+            end: None,
             undefined: None,
         }
     }
@@ -172,55 +187,102 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
     ///
     /// # Errors
     /// [`Undefined`]: the first place where the run has none.
-    pub fn tangents(&self) -> Result<&[Tangent<Sys>], Undefined> {
+    pub fn tangents(&mut self) -> Result<&[Tangent<Sys>], Undefined> {
+        self.go_on();
         match self.undefined {
             Some(undefined) => Err(undefined),
             None => Ok(self.tangents),
         }
     }
 
-    /// Takes a stretch of smooth motion, unless derivatives have ended.
-    pub(crate) fn flow(&mut self, segment: &Segment<'_, Sys::State>) {
-        if self.undefined.is_none() {
-            let t = [segment.t_start(), segment.t_end()];
-            let flown = self
-                .flow
-                .follow(self.system, t, segment.start(), self.tangents);
-            self.undefined = flown.err();
-        }
-    }
-
-    /// Takes a transition, unless derivatives have ended.
-    pub(crate) fn cross(&mut self, event: &Event<Sys::State>) {
-        if self.undefined.is_none() {
-            let crossed = transition::cross(self.system, event, self.tangents);
-            self.undefined = crossed.err();
-        }
-    }
-
     /// Moves the directions from a fixed time to the surface that is met there.
     pub(crate) fn arrive(&mut self, event: &Event<Sys::State>) {
+        self.go_on();
         if self.undefined.is_none() {
-            let arrived = transition::arrive(self.system, event, self.tangents);
+            let (flow, holder) = (&mut self.flow, self.holder);
+            let arrived = transition::arrive(self.system, event, holder, flow, self.tangents);
             self.undefined = arrived.err();
+        }
+    }
+
+    /// Carries the directions across the last transitions, unless derivatives have ended.
+    fn go_on(&mut self) {
+        if let Some((sequence, before)) = self.crossing.take()
+            && self.undefined.is_none()
+        {
+            self.undefined = self.cross(&sequence, [before, self.holder]).err();
+        }
+    }
+
+    fn cross(
+        &mut self,
+        sequence: &Sequence<Sys::State>,
+        holders: [Option<Holder>; 2],
+    ) -> Result<(), Undefined> {
+        let (system, last) = (self.system, sequence.last());
+        let t = last.t;
+        if let [Some(holder), Some(_)] = holders {
+            // What the impact makes of the motion depends on the surface that holds it.
+            return Err(holder.undefined(t));
+        }
+        transition::cross(system, sequence, holders, &mut self.flow, self.tangents)?;
+        match holders[1] {
+            Some(holder) => holder.check_along(system, t, &last.after, self.tangents),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes a beginning or an end of held motion.
+    fn turn(&mut self, hold: &Hold<Sys::State>) -> Result<(), Undefined> {
+        let (system, t) = (self.system, hold.t);
+        let holder = Holder::of(hold);
+        let held = core::mem::replace(&mut self.holder, hold.begins.then_some(holder));
+        let crosses = self.crossing.is_some();
+        match (held, hold.begins) {
+            (None, true) if hold.accumulation.is_some() => Err(holder.undefined(t)),
+            (None, true) if crosses => Ok(()),
+            // At the start of a run.
+            (None, true) if self.end.is_none() => {
+                holder.check_along(system, t, &hold.state, self.tangents)
+            }
+            (Some(held), false) if held == holder => match &self.end {
+                Some(end) if !crosses => {
+                    let ends = [end, &hold.state];
+                    self.flow.check_release(system, holder, t, ends)
+                }
+                _ => Ok(()),
+            },
+            _ => Err(holder.undefined(t)),
         }
     }
 }
 
 impl<Sys: Variational> Observer<Sys> for Variations<'_, Sys> {
     fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
-        self.flow(segment);
+        self.go_on();
+        if self.undefined.is_none() {
+            let followed = self
+                .flow
+                .follow(self.system, self.holder, segment, self.tangents);
+            self.undefined = followed.err();
+        }
+        self.end = Some(*segment.end());
         ControlFlow::Continue(())
     }
 
     fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
-        self.cross(event);
+        let follows = |(sequence, _): &mut (Sequence<_>, _)| sequence.add(event);
+        if !self.crossing.as_mut().is_some_and(follows) {
+            self.go_on();
+            self.crossing = Some((Sequence::of(event), self.holder));
+        }
         ControlFlow::Continue(())
     }
 
     fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
-        let (t, surface) = (hold.t, hold.surface);
-        self.undefined.get_or_insert(Undefined::Held { t, surface });
+        if self.undefined.is_none() {
+            self.undefined = self.turn(hold).err();
+        }
         ControlFlow::Continue(())
     }
 }

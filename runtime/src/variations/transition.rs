@@ -1,6 +1,8 @@
 //! The augmented differential of a transition: what it makes of variations at fixed times.
 
-use super::flow::{dual_parameters, dual_state};
+use super::along::Neighbours;
+use super::flow::{Flow, dual_parameters, dual_state, take_slopes};
+use super::held::Holder;
 use super::{DIRECTIONS, Dual, Tangent, Undefined};
 use crate::contract::Variational;
 use crate::error::Fault;
@@ -11,7 +13,10 @@ use crate::state::StateVector;
 
 /// How far the state after a transition may be from what its law makes of the state before, in units of the largest
 /// component before and after: corrections of rounding errors are far smaller, anything else that happens there is not.
-const LAWFUL: f64 = 1e-6;
+pub(super) const LAWFUL: f64 = 1e-6;
+
+/// Transitions at one moment that are carried across: more than one are two modes that pass the motion to and fro.
+const SEQUENCE: usize = 8;
 
 /// What is known of an arrival at a surface.
 pub(crate) struct Arrival<Sys: Variational> {
@@ -21,51 +26,99 @@ pub(crate) struct Arrival<Sys: Variational> {
     pub(crate) gap_rate: f64,
 }
 
-/// Carries all directions across a transition.
+/// Carries all directions across transitions at one moment, with what holds the motion before and after.
 pub(super) fn cross<Sys: Variational>(
     system: &Sys,
-    event: &Event<Sys::State>,
+    sequence: &Sequence<Sys::State>,
+    holders: [Option<Holder>; 2],
+    flow: &mut Flow<Sys>,
     tangents: &mut [Tangent<Sys>],
 ) -> Result<(), Undefined> {
-    let arrival = arrival(system, event)?;
-    let mut rate = Sys::State::zeros();
-    system.rate(event.t, &event.after, &mut rate)?;
+    let (event, last) = (sequence.first(), sequence.last());
+    let before = flow.rate_of(system, holders[0], event.t, &event.before)?;
+    let arrival = arrival_at(system, event, before)?;
+    let rate = flow.rate_of(system, holders[1], event.t, &last.after)?;
     for some in tangents.chunks_mut(DIRECTIONS) {
         let parameters = dual_parameters(system, some);
         let (t, state) = arrival.met(event, &parameters, some)?;
-        let after = struck::<Sys, Dual>(system, &parameters, event, t, &state)?;
-        check_near(event, &event.after, after.as_slice())?;
+        let mut now = Neighbours::<Sys> {
+            parameters,
+            t,
+            state,
+        };
+        for (k, event) in sequence.iter() {
+            let (t, surface) = (event.t, event.surface);
+            if k > 0 && !now.share_gap(surface)? {
+                // Neighbouring motions meet them at different times.
+                return Err(Undefined::Corner { t, surface });
+            }
+            now.state = struck::<Sys, Dual>(system, &parameters, event, now.t, &now.state)?;
+            check_near(event, &event.after, now.state.as_slice())?;
+        }
+        let after = now.state;
         for (k, tangent) in some.iter_mut().enumerate() {
             let parts = after.as_slice().iter().zip(rate.as_slice());
             for (own, (entry, rate)) in tangent.state.as_mut_slice().iter_mut().zip(parts) {
                 *own = entry.slopes()[k] - rate * t.slopes()[k];
             }
         }
-        check_finite(event, some)?;
+        check_finite(last, some)?;
     }
     Ok(())
+}
+
+/// Transitions that follow each other at one moment.
+pub(super) struct Sequence<S> {
+    events: [Event<S>; SEQUENCE],
+    count: usize,
+}
+
+impl<S: Copy> Sequence<S> {
+    pub(super) fn of(event: &Event<S>) -> Self {
+        Self {
+            events: [*event; SEQUENCE],
+            count: 1,
+        }
+    }
+
+    /// Adds what follows at the same moment; whether it does, and there is room for it.
+    pub(super) fn add(&mut self, event: &Event<S>) -> bool {
+        let follows = event.simultaneous && event.t == self.first().t;
+        let is_added = follows && self.count < SEQUENCE;
+        if is_added {
+            self.events[self.count] = *event;
+            self.count += 1;
+        }
+        is_added
+    }
+
+    pub(super) fn first(&self) -> &Event<S> {
+        &self.events[0]
+    }
+
+    pub(super) fn last(&self) -> &Event<S> {
+        &self.events[self.count - 1]
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (usize, &Event<S>)> {
+        self.events[..self.count].iter().enumerate()
+    }
 }
 
 /// Moves all directions from the time of an arrival to the surface, before anything happens there.
 pub(super) fn arrive<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
+    holder: Option<Holder>,
+    flow: &mut Flow<Sys>,
     tangents: &mut [Tangent<Sys>],
 ) -> Result<(), Undefined> {
-    let arrival = arrival(system, event)?;
+    let rate = flow.rate_of(system, holder, event.t, &event.before)?;
+    let arrival = arrival_at(system, event, rate)?;
     for some in tangents.chunks_mut(DIRECTIONS) {
         let parameters = dual_parameters(system, some);
         let (_, state) = arrival.met(event, &parameters, some)?;
-        for (k, tangent) in some.iter_mut().enumerate() {
-            for (own, entry) in tangent
-                .state
-                .as_mut_slice()
-                .iter_mut()
-                .zip(state.as_slice())
-            {
-                *own = entry.slopes()[k];
-            }
-        }
+        take_slopes(&state, some);
         check_finite(event, some)?;
     }
     Ok(())
@@ -98,10 +151,21 @@ fn passing(t: f64) -> Dual {
     Dual::new(t, [1.0, 0.0, 0.0, 0.0])
 }
 
-/// Refuses what has no derivative; else what is known of the arrival.
+/// Refuses what has no derivative; else what is known of an arrival by free motion.
 pub(crate) fn arrival<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
+) -> Result<Arrival<Sys>, Undefined> {
+    let mut rate = Sys::State::zeros();
+    system.rate(event.t, &event.before, &mut rate)?;
+    arrival_at(system, event, rate)
+}
+
+/// As [`arrival`], of motion at this rate.
+fn arrival_at<Sys: Variational>(
+    system: &Sys,
+    event: &Event<Sys::State>,
+    rate: Sys::State,
 ) -> Result<Arrival<Sys>, Undefined> {
     let (t, surface) = (event.t, event.surface);
     if event.graze {
@@ -110,8 +174,6 @@ pub(crate) fn arrival<Sys: Variational>(
     if event.simultaneous {
         return Err(Undefined::Corner { t, surface });
     }
-    let mut rate = Sys::State::zeros();
-    system.rate(t, &event.before, &mut rate)?;
     let gap_rate = gap_rate(system, event, &rate)?;
     match gap_rate < 0.0 {
         true => Ok(Arrival { rate, gap_rate }),
@@ -181,8 +243,13 @@ pub(crate) fn struck<Sys: Variational, L: Numbers>(
         // A law that was chosen for the run: its coefficient is a number.
         false => L::of(event.law.coefficient().unwrap_or(0.0)),
     };
-    let collision = Sys::collision(parameters, surface, t, state)?;
-    let mut after = *state;
+    let focused = Sys::focus(parameters, surface, t, state)?;
+    let mut after = focused.unwrap_or(*state);
+    let collision = Sys::collision(parameters, surface, t, &after)?;
+    if focused.is_some() && collision.as_slice()[0].lane(0) >= 0.0 {
+        // The instantaneous constraints alone have turned the motion round.
+        return Ok(after);
+    }
     let first = system.motion_start(&event.before);
     let motion = &mut after.as_mut_slice()[first..];
     event.law.strike(coefficient, collision.as_slice(), motion);

@@ -149,13 +149,19 @@ fn fallible(of: &TokenStream) -> TokenStream {
     quote!(::core::result::Result<#of, ::dalembert::Fault>)
 }
 
+/// Whether a surface of some mode has instantaneous constraints.
+pub(super) fn is_rough(whole: &Whole<'_>) -> bool {
+    let mut surfaces = whole
+        .graph
+        .modes
+        .iter()
+        .flat_map(|mode| &mode.model.surfaces);
+    surfaces.any(|own| !own.instantaneous.is_empty())
+}
+
 /// `focus` and `trace`, where a surface of some mode has instantaneous constraints.
 fn emit_instantaneous(whole: &Whole<'_>) -> TokenStream {
-    let is_rough = |entry: &Mode| {
-        let mut surfaces = entry.model.surfaces.iter();
-        surfaces.any(|own| !own.instantaneous.is_empty())
-    };
-    if !whole.graph.modes.iter().any(is_rough) {
+    if !is_rough(whole) {
         return TokenStream::new();
     }
     let none = quote!(::core::result::Result::Ok(::core::option::Option::None));

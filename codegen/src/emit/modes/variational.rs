@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::Whole;
 use super::contract::emit_entries;
-use super::impacting::passage;
+use super::impacting::{is_rough, passage};
 use crate::emit::function::Body;
 use crate::emit::variational::{Lengths, emit_counts};
 use crate::emit::{Context, attributes};
@@ -113,6 +113,7 @@ pub(super) fn emit_variational(whole: &Whole<'_>) -> TokenStream {
         emit_counts(count > 0),
         emit_asked(whole),
         emit_collision(whole),
+        emit_instantaneous(whole),
         emit_resets(),
         emit_passed(whole),
         emit_declared_law(whole),
@@ -183,6 +184,41 @@ fn emit_collision(whole: &Whole<'_>) -> TokenStream {
             state: &Self::Row<L>,
         ) -> ::core::result::Result<Self::Collision<L>, ::dalembert::Fault> {
             #answer
+        }
+    }
+}
+
+/// `focus` and `trace`, where a surface of some mode has instantaneous constraints.
+fn emit_instantaneous(whole: &Whole<'_>) -> TokenStream {
+    if !is_rough(whole) {
+        return TokenStream::new();
+    }
+    let focus = of_row(
+        whole,
+        |_, own| quote!(::dalembert::__private::modes::focus_of::<#own, L, _>(parameters, surface, t, state)),
+    );
+    let trace = of_row(
+        whole,
+        |_, own| quote!(::dalembert::__private::modes::trace_of::<#own, L, _>(parameters, surface, t, state, rate)),
+    );
+    quote! {
+        fn focus<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> ::core::result::Result<::core::option::Option<Self::Row<L>>, ::dalembert::Fault> {
+            #focus
+        }
+
+        fn trace<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+            rate: &Self::Row<L>,
+        ) -> ::core::result::Result<::core::option::Option<Self::Row<L>>, ::dalembert::Fault> {
+            #trace
         }
     }
 }

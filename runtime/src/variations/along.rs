@@ -1,0 +1,138 @@
+//! Whether what holds for a motion holds for its neighbours as well: that they are on the surface too, or meet it when it does.
+
+use super::flow::{dual_parameters, dual_state};
+use super::held::Holder;
+use super::{DIRECTIONS, Dual, Tangent, Undefined};
+use crate::contract::Variational;
+use crate::error::Fault;
+use crate::numbers::{Numbers, Row};
+
+/// How much a value may change along a direction, in units of the sum of what its arguments change it by.
+const ROUNDING: f64 = 1e-9;
+
+/// A moment of neighbouring motions.
+pub(super) struct Neighbours<Sys: Variational> {
+    pub(super) parameters: Sys::Parameters<Dual>,
+    pub(super) t: Dual,
+    pub(super) state: Sys::Row<Dual>,
+}
+
+impl<Sys: Variational> Clone for Neighbours<Sys> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys: Variational> Copy for Neighbours<Sys> {}
+
+impl<Sys: Variational> Neighbours<Sys> {
+    /// At one time, in some directions.
+    fn at(system: &Sys, t: f64, state: &Sys::State, tangents: &[Tangent<Sys>]) -> Self {
+        Self {
+            parameters: dual_parameters(system, tangents),
+            t: Dual::of(t),
+            state: dual_state(state, tangents),
+        }
+    }
+
+    /// The motion itself, over and over.
+    fn still(&self) -> Self {
+        let mut still = *self;
+        still.t = Dual::of(self.t.value);
+        let rows = [still.parameters.as_mut_slice(), still.state.as_mut_slice()];
+        for entry in rows.into_iter().flatten() {
+            *entry = Dual::of(entry.value);
+        }
+        still
+    }
+
+    /// Neighbours that each differ by one of the arguments only.
+    fn parts(&self) -> impl Iterator<Item = Self> {
+        let still = self.still();
+        let by_time = Self { t: self.t, ..still };
+        let by_state = (0..Sys::Row::<Dual>::LEN).map(move |i| {
+            let mut part = still;
+            part.state.as_mut_slice()[i] = self.state.as_slice()[i];
+            part
+        });
+        let by_parameters = (0..Sys::Parameters::<Dual>::LEN).map(move |k| {
+            let mut part = still;
+            part.parameters.as_mut_slice()[k] = self.parameters.as_slice()[k];
+            part
+        });
+        [by_time].into_iter().chain(by_state).chain(by_parameters)
+    }
+
+    /// Whether a value is the same for all of them, to rounding.
+    fn share(&self, value: impl Fn(&Self) -> Result<Dual, Fault>) -> Result<bool, Fault> {
+        let (mut sums, mut sizes) = ([0.0; DIRECTIONS], [0.0; DIRECTIONS]);
+        for part in self.parts() {
+            let slopes = value(&part)?.slopes();
+            for (slope, (sum, size)) in slopes.into_iter().zip(sums.iter_mut().zip(&mut sizes)) {
+                *sum += slope;
+                *size += slope.abs();
+            }
+        }
+        let mut pairs = sums.into_iter().zip(sizes);
+        Ok(pairs.all(|(sum, size): (f64, f64)| sum.abs() <= ROUNDING * size))
+    }
+
+    /// Whether all of them are at a surface if one of them is.
+    pub(super) fn share_gap(&self, surface: usize) -> Result<bool, Fault> {
+        self.share(|own| {
+            let gaps = Sys::clearances(&own.parameters, own.t, &own.state)?;
+            Ok(gaps.as_slice()[surface])
+        })
+    }
+
+    fn share_gap_rate(&self, surface: usize) -> Result<bool, Fault> {
+        self.share(|own| {
+            let collision = Sys::collision(&own.parameters, surface, own.t, &own.state)?;
+            Ok(collision.as_slice()[0])
+        })
+    }
+
+    /// Whether all of them keep to the instantaneous constraints of a surface if one of them does.
+    fn are_focused(&self, surface: usize) -> Result<bool, Fault> {
+        let Some(focused) = Sys::focus(&self.parameters, surface, self.t, &self.state)? else {
+            return Ok(true);
+        };
+        let (mut errors, mut sizes) = ([0.0; DIRECTIONS], [0.0_f64; DIRECTIONS]);
+        for (own, focused) in self.state.as_slice().iter().zip(focused.as_slice()) {
+            let slopes = own.slopes().into_iter().zip(focused.slopes());
+            for ((own, focused), (error, size)) in slopes.zip(errors.iter_mut().zip(&mut sizes)) {
+                *error += (focused - own).abs();
+                *size = size.max(own.abs());
+            }
+        }
+        let mut pairs = errors.into_iter().zip(sizes);
+        Ok(pairs.all(|(error, size): (f64, f64)| error <= ROUNDING * size))
+    }
+}
+
+impl Holder {
+    /// Refuses directions that lead off what holds the motion: neighbours along them are not held.
+    pub(super) fn check_along<Sys: Variational>(
+        self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        tangents: &[Tangent<Sys>],
+    ) -> Result<(), Undefined> {
+        for some in tangents.chunks(DIRECTIONS) {
+            let neighbours = Neighbours::at(system, t, state, some);
+            let are_held = match self {
+                Self::Slide { back, .. } => neighbours.share_gap(back)?,
+                Self::Surface(surface) => {
+                    neighbours.share_gap(surface)?
+                        && neighbours.share_gap_rate(surface)?
+                        && neighbours.are_focused(surface)?
+                }
+            };
+            if !are_held {
+                return Err(self.undefined(t));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,206 @@
+//! Variations along motion that a surface holds, or that slides between two modes.
+//!
+//! What holds the motion adds to its field, and the sum has no power series. Over numbers with derivatives it is
+//!
+//! ```text
+//! f + lambda w,        lambda = -h''/dh(w)            held by h, whose impulses are along w
+//! f_b + s (f_a - f_b),  s = r_b/(r_a + r_b)            sliding between modes a and b
+//! ```
+//!
+//! with the second rate `h''` along `f`, and the gap rates `r`, from the first coefficients of the gaps' series.
+//!
+//! Where such motion begins, neighbours begin it on the surface: they jump as at any transition, with the held field for
+//! `f+`. Where it ends by itself the field is continuous, and they do not jump.
+
+use super::flow::{Flow, dual_parameters, dual_state};
+use super::{Dual, Undefined};
+use crate::contract::Variational;
+use crate::numbers::{Numbers, Row};
+use crate::record::Hold;
+use crate::state::StateVector;
+
+/// How far the field may jump where motion ceases to be held, in units of its largest component.
+const JUMP: f64 = 1e-5;
+
+/// What holds the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Holder {
+    Surface(usize),
+    /// The transition back to the other mode, and the one that was taken.
+    Slide {
+        back: usize,
+        across: usize,
+    },
+}
+
+impl Holder {
+    pub(super) fn of<S>(hold: &Hold<S>) -> Self {
+        match hold.back {
+            Some(back) => Self::Slide {
+                back,
+                across: hold.surface,
+            },
+            None => Self::Surface(hold.surface),
+        }
+    }
+
+    /// The surface of the mode that the state is of.
+    pub(super) fn surface(self) -> usize {
+        match self {
+            Self::Surface(surface) | Self::Slide { back: surface, .. } => surface,
+        }
+    }
+
+    pub(super) fn undefined(self, t: f64) -> Undefined {
+        let surface = self.surface();
+        Undefined::Held { t, surface }
+    }
+}
+
+impl<Sys: Variational> Flow<Sys> {
+    /// The rate of a state, with what holds it.
+    pub(super) fn rate(
+        &mut self,
+        system: &Sys,
+        parameters: &Sys::Parameters<Dual>,
+        holder: Option<Holder>,
+        t: f64,
+        state: &Sys::Row<Dual>,
+    ) -> Result<Sys::Row<Dual>, Undefined> {
+        match holder {
+            None => {
+                self.expansion.begin(parameters, Dual::of(t), state)?;
+                let mut rate = Sys::Row::<Dual>::ZERO;
+                rate.as_mut_slice().copy_from_slice(self.expansion.rate());
+                Ok(rate)
+            }
+            Some(Holder::Surface(surface)) => self.pressed(system, parameters, surface, t, state),
+            Some(Holder::Slide { back, across }) => self.slid(parameters, [back, across], t, state),
+        }
+    }
+
+    /// As [`Flow::rate`], of a state alone.
+    pub(super) fn rate_of(
+        &mut self,
+        system: &Sys,
+        holder: Option<Holder>,
+        t: f64,
+        state: &Sys::State,
+    ) -> Result<Sys::State, Undefined> {
+        if holder.is_none() {
+            let mut rate = Sys::State::zeros();
+            system.rate(t, state, &mut rate)?;
+            return Ok(rate);
+        }
+        let parameters = dual_parameters(system, &[]);
+        let row = dual_state::<Sys>(state, &[]);
+        let row = self.rate(system, &parameters, holder, t, &row)?;
+        Ok(values::<Sys>(&row))
+    }
+
+    /// The rate of a state, and coefficient `k` of the gap of a surface along its free motion.
+    fn free(
+        &mut self,
+        parameters: &Sys::Parameters<Dual>,
+        (surface, k): (usize, usize),
+        t: f64,
+        state: &Sys::Row<Dual>,
+    ) -> Result<(Sys::Row<Dual>, Dual), Undefined> {
+        self.expansion.begin(parameters, Dual::of(t), state)?;
+        self.expansion.advance(parameters, Dual::of(1.0), k, state);
+        let gaps = self.expansion.gaps[k].as_slice();
+        let gap = *gaps.get(surface).ok_or(Undefined::Held { t, surface })?;
+        Ok((self.expansion.coefficients[1], gap))
+    }
+
+    /// The rate along a surface that pushes.
+    fn pressed(
+        &mut self,
+        system: &Sys,
+        parameters: &Sys::Parameters<Dual>,
+        surface: usize,
+        t: f64,
+        state: &Sys::Row<Dual>,
+    ) -> Result<Sys::Row<Dual>, Undefined> {
+        let (mut rate, half) = self.free(parameters, (surface, 2), t, state)?;
+        let now = Dual::of(t);
+        let collision = Sys::collision(parameters, surface, now, state)?;
+        let [gap_rate, _, _, compliance, ..] = *collision.as_slice() else {
+            return Err(Undefined::Held { t, surface });
+        };
+        let mut second = half + half;
+        if let Some(traced) = Sys::trace(parameters, surface, now, state, &rate)? {
+            // A gap rate is affine in the motion: what a force changes it by is a difference of two.
+            let forced = sum(state, &sum(&traced, &rate, -1.0), 1.0);
+            let collision = Sys::collision(parameters, surface, now, &forced)?;
+            second = second + (collision.as_slice()[0] - gap_rate);
+            rate = traced;
+        }
+        let size = -(second / compliance);
+        let first = system.motion_start(&values::<Sys>(state));
+        let directions = &collision.as_slice()[5..];
+        for (entry, direction) in rate.as_mut_slice()[first..].iter_mut().zip(directions) {
+            *entry = size.mul_add(*direction, *entry);
+        }
+        Ok(rate)
+    }
+
+    /// The rate between two modes that lead into each other.
+    fn slid(
+        &mut self,
+        parameters: &Sys::Parameters<Dual>,
+        [back, across]: [usize; 2],
+        t: f64,
+        state: &Sys::Row<Dual>,
+    ) -> Result<Sys::Row<Dual>, Undefined> {
+        let (own, leaves) = self.free(parameters, (back, 1), t, state)?;
+        let other = Sys::passed(parameters, back, Dual::of(t), state)?;
+        let other = other.ok_or(Undefined::Unlawful { t, surface: back })?;
+        let (other, enters) = self.free(parameters, (across, 1), t, &other)?;
+        let share = leaves / (leaves + enters);
+        let mut rate = own;
+        for (entry, other) in rate.as_mut_slice().iter_mut().zip(other.as_slice()) {
+            *entry = share.mul_add(*other - *entry, *entry);
+        }
+        Ok(rate)
+    }
+}
+
+impl<Sys: Variational> Flow<Sys> {
+    /// Refuses an end of held motion where the field jumps, since something else than its force has ended it.
+    pub(super) fn check_release(
+        &mut self,
+        system: &Sys,
+        holder: Holder,
+        t: f64,
+        [before, after]: [&Sys::State; 2],
+    ) -> Result<(), Undefined> {
+        let along = self.rate_of(system, Some(holder), t, before)?;
+        let free = self.rate_of(system, None, t, after)?;
+        let pairs = || along.as_slice().iter().zip(free.as_slice());
+        let size = pairs().fold(0.0, |size: f64, (a, b)| size.max(a.abs()).max(b.abs()));
+        match pairs().all(|(along, free)| (along - free).abs() <= JUMP * size) {
+            true => Ok(()),
+            false => Err(holder.undefined(t)),
+        }
+    }
+}
+
+/// The numbers of a row without their derivatives.
+fn values<Sys: Variational>(row: &Sys::Row<Dual>) -> Sys::State {
+    let mut values = Sys::State::zeros();
+    for (own, entry) in values.as_mut_slice().iter_mut().zip(row.as_slice()) {
+        *own = entry.value;
+    }
+    values
+}
+
+/// `a + factor b`
+pub(super) fn sum<R: Row<Dual>>(a: &R, b: &R, factor: f64) -> R {
+    let mut sum = *a;
+    let factor = Dual::of(factor);
+    for (entry, b) in sum.as_mut_slice().iter_mut().zip(b.as_slice()) {
+        *entry = b.mul_add(factor, *entry);
+    }
+    sum
+}
