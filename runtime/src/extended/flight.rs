@@ -5,7 +5,7 @@ use super::{At, Impact};
 use crate::contract::Variational;
 use crate::error::Fault;
 use crate::integrate::StepFailure;
-use crate::integrate::controller::least_step;
+use crate::integrate::controller::least_trial;
 use crate::integrate::order::order;
 use crate::integrate::rough::power_of_two;
 use crate::integrate::taylor::expansion::Expansion;
@@ -101,7 +101,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
                 return Ok(theta * self.unit);
             }
             self.unit *= 1.0 / LONGEST;
-            if self.unit < least_step(t.nearest()) {
+            if self.unit < least_trial(t.nearest()) {
                 return Err(StepFailure::StepUnderflow { t: t.nearest() });
             }
         }

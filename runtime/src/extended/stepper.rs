@@ -6,7 +6,7 @@ use super::flight::{Flight, rounded};
 use super::number::Extended;
 use crate::contract::Variational;
 use crate::error::Fault;
-use crate::integrate::controller::{RETREAT, landing, least_step};
+use crate::integrate::controller::{RETREAT, landing, least_step, least_trial};
 use crate::integrate::rough::power_of_two;
 use crate::integrate::{Counters, Instant, Series, StepFailure, Stepper, Tolerance};
 use crate::jet::LENGTH;
@@ -143,9 +143,9 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
         let mut flight = flight.borrow_mut();
         counters.expansions += 1;
         counters.coefficients += flight.order as u64;
-        let least = least_step(t.t);
+        let least = least_trial(t.t);
         let reach = flight.expand(Instant::new(t_end).since(t))?;
-        let mut length = reach.min(self.limit).max(least);
+        let mut length = reach.min(self.limit).max(least_step(t.t));
         loop {
             let (made, arrival) = landing(t, length, t_end);
             length = made;

@@ -6,6 +6,7 @@
 use super::controller::{
     Control, Memory, Weights, first_step, landing, least_step, least_trial, not_finite,
 };
+use super::ends::Ends;
 use super::instant::Instant;
 use super::precise::Precise;
 use super::stats::Counters;
@@ -128,11 +129,7 @@ pub struct Embedded<S: StateVector, M: Scheme> {
     memory: Memory,
     /// The step size for the next trial.
     next: f64,
-    t: [Instant; 2],
-    start: Precise<S>,
-    end: Precise<S>,
-    /// Where the last step was cut, until the next begins.
-    cut: Option<Precise<S>>,
+    ends: Ends<S>,
     stages: M::Stages<S>,
     dense: M::Dense<S>,
     dense_ready: bool,
@@ -149,10 +146,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
             weights: Weights::new(tolerance, &zeros),
             memory: Memory::new(),
             next: 0.0,
-            t: [Instant::default(); 2],
-            start: Precise::new(zeros),
-            end: Precise::new(zeros),
-            cut: None,
+            ends: Ends::new(),
             stages: M::stages(),
             dense: M::dense(),
             dense_ready: false,
@@ -185,10 +179,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         precise: Precise<S>,
     ) -> Result<(), StepFailure> {
         let (t, state) = (now.t, &precise.value);
-        self.t = [now; 2];
-        self.start = precise;
-        self.end = precise;
-        self.cut = None;
+        self.ends.place(now, precise);
         self.dense_ready = false;
         self.memory = Memory::new();
         self.weights = Weights::new(self.tolerance, &field.field.scale(t, state));
@@ -203,8 +194,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
     /// The end of the last step becomes the start of the next.
     #[inline(always)]
     fn move_on(&mut self) {
-        self.t[0] = self.t[1];
-        self.start = self.end;
+        self.ends.move_on();
         let stages = self.stages.as_mut();
         stages[0] = stages[M::LAST];
         self.dense_ready = false;
@@ -217,18 +207,26 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         field: &mut Counted<'_, F>,
         h: f64,
     ) -> Result<f64, StepFailure> {
-        let t = self.t[0].t;
+        let t = self.ends.t[0].t;
         let stages = self.stages.as_mut();
-        M::advance(field, t, h, &self.start.value, stages, &mut self.end.value)?;
-        self.end = self
+        M::advance(
+            field,
+            t,
+            h,
+            &self.ends.start.value,
+            stages,
+            &mut self.ends.end.value,
+        )?;
+        self.ends.end = self
+            .ends
             .start
             .advanced(|i| h * (stages[0].as_slice()[i] + sum(stages, M::WEIGHTS, i)));
-        let end = &self.end.value;
+        let end = &self.ends.end.value;
         if M::ERROR_TAKES_LAST {
             field.rate(t + h, end, &mut stages[M::LAST])?;
         }
         let error = M::error(h, stages, |i| {
-            self.weights.allowed(i, &self.start.value, end)
+            self.weights.allowed(i, &self.ends.start.value, end)
         });
         if error > 1.0 {
             return Ok(error);
@@ -245,8 +243,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
 
     /// Puts the last good state back in place after a failure.
     fn retract(&mut self) {
-        self.t[1] = self.t[0];
-        self.end = self.start;
+        self.ends.retract();
         let stages = self.stages.as_mut();
         stages[M::LAST] = stages[0];
     }
@@ -303,7 +300,7 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
         self.next = self.next.min(limit);
-        let precise = self.cut.as_ref().unwrap_or(&self.end).kept(state);
+        let precise = self.ends.kept(state);
         self.place(&mut Counted { field, counters }, now, precise)
     }
 
@@ -311,17 +308,17 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
         self.move_on();
         let mut field = Counted { field, counters };
-        let t = self.t[0].t;
+        let t = self.ends.t[0].t;
         let least = least_trial(t);
         let mut h = self.next.min(self.max_step).max(least_step(t));
         loop {
-            let (made, arrival) = landing(self.t[0], h, t_end);
+            let (made, arrival) = landing(self.ends.t[0], h, t_end);
             let attempt = self.attempt(&mut field, made);
             if let Ok(error) = attempt
                 && error <= 1.0
             {
                 field.counters.accepted += 1;
-                self.t[1] = arrival;
+                self.ends.t[1] = arrival;
                 self.next = made * self.memory.accept(&M::CONTROL, error);
                 return Ok(());
             }
@@ -344,30 +341,30 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         state: &F::State,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
-        self.end = self.end.kept(state);
+        self.ends.end = self.ends.end.kept(state);
         let rate = &mut self.stages.as_mut()[M::LAST];
-        Counted { field, counters }.rate(self.t[1].t, state, rate)?;
+        Counted { field, counters }.rate(self.ends.t[1].t, state, rate)?;
         Ok(())
     }
 
     #[inline(always)]
     fn start_time(&self) -> Instant {
-        self.t[0]
+        self.ends.t[0]
     }
 
     #[inline(always)]
     fn end_time(&self) -> Instant {
-        self.t[1]
+        self.ends.t[1]
     }
 
     #[inline(always)]
     fn start_state(&self) -> &F::State {
-        &self.start.value
+        &self.ends.start.value
     }
 
     #[inline(always)]
     fn end_state(&self) -> &F::State {
-        &self.end.value
+        &self.ends.end.value
     }
 
     #[inline(always)]
@@ -388,10 +385,10 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         }
         counters.dense_constructions += 1;
         let span = Span {
-            t: self.t[0].t,
-            h: self.t[1].since(self.t[0]),
-            start: &self.start,
-            end: &self.end,
+            t: self.ends.t[0].t,
+            h: self.ends.length(),
+            start: &self.ends.start,
+            end: &self.ends.end,
         };
         M::build_dense(
             &mut Counted { field, counters },
@@ -410,14 +407,7 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
 
     #[inline]
     fn cut(&mut self, theta: f64) -> (Instant, F::State) {
-        let (now, state) = match theta >= 1.0 {
-            true => (self.t[1], self.end),
-            false => (
-                self.t[0].after(theta * self.t[1].since(self.t[0])),
-                M::dense_at(&self.dense, theta),
-            ),
-        };
-        self.cut = Some(state);
-        (now, state.value)
+        let (length, dense) = (self.ends.length(), &self.dense);
+        self.ends.cut(theta, length, || M::dense_at(dense, theta))
     }
 }

@@ -8,6 +8,7 @@
 use super::controller::{RETREAT, Weights, first_step, least_step, least_trial, not_finite};
 use super::dense::{Cubic, INNER, Polynomial};
 use super::embedded::Counted;
+use super::ends::Ends;
 use super::instant::Instant;
 use super::precise::Precise;
 use super::stats::Counters;
@@ -76,15 +77,12 @@ pub struct FixedStep<S: StateVector, M: Method> {
     step: f64,
     /// The size of the next step: that of the run, or less after an impact.
     next: f64,
-    t: [Instant; 2],
     /// The length of the last step.
     made: f64,
     /// The grid: since this time, this many steps of the run's size.
     grid: (Instant, f64),
     units: S,
-    ends: [Precise<S>; 2],
-    /// Where the last step was cut, until the next begins.
-    cut: Option<Precise<S>>,
+    ends: Ends<S>,
     rates: [S; 2],
     memory: M::Memory<S>,
     dense: Polynomial<S, 5>,
@@ -104,12 +102,10 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
             given: None,
             step: 0.0,
             next: 0.0,
-            t: [Instant::default(); 2],
             made: 0.0,
             grid: (Instant::default(), 0.0),
             units: zeros,
-            ends: [Precise::new(zeros); 2],
-            cut: None,
+            ends: Ends::new(),
             rates: [zeros; 2],
             memory: M::memory(),
             dense: Polynomial::zero(),
@@ -132,11 +128,9 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         precise: Precise<S>,
     ) -> Result<(), StepFailure> {
         let (t, state) = (now.t, &precise.value);
-        self.t = [now; 2];
+        self.ends.place(now, precise);
         self.made = 0.0;
         self.grid = (now, 0.0);
-        self.ends = [precise; 2];
-        self.cut = None;
         self.dense_ready = false;
         self.memory = M::memory();
         self.units = usable(field.field.scale(t, state));
@@ -170,23 +164,21 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
 
     /// The end of the last step becomes the start of the next.
     fn move_on(&mut self) {
-        self.t[0] = self.t[1];
-        self.ends[0] = self.ends[1];
+        self.ends.move_on();
         self.rates[0] = self.rates[1];
         self.dense_ready = false;
     }
 
     /// Puts the last good state back in place after a failure.
     fn retract(&mut self) {
-        self.t[1] = self.t[0];
-        self.ends[1] = self.ends[0];
+        self.ends.retract();
         self.rates[1] = self.rates[0];
     }
 
     /// The length of a step of about `h`, and the time it leads to: `t_end` where that is in reach.
     fn aim(&self, h: f64, t_end: f64) -> (f64, Instant) {
         let end = Instant::new(t_end);
-        let rest = end.since(self.t[0]);
+        let rest = end.since(self.ends.t[0]);
         if rest <= h + SLIVER * h {
             (rest, end)
         } else if h == self.step {
@@ -194,7 +186,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
             // depend on the time at which it is made.
             (h, self.grid.0.after((self.grid.1 + 1.0) * h))
         } else {
-            (h, self.t[0].after(h))
+            (h, self.ends.t[0].after(h))
         }
     }
 
@@ -231,17 +223,17 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         M: Advance<F>,
     {
         let part = h / f64::from(parts);
-        (self.ends[1], self.rates[1]) = (self.ends[0], self.rates[0]);
+        (self.ends.end, self.rates[1]) = (self.ends.start, self.rates[0]);
         for k in 0..parts {
             let departure = Departure {
-                t: self.t[0].t + f64::from(k) * part,
-                state: &self.ends[1],
+                t: self.ends.t[0].t + f64::from(k) * part,
+                state: &self.ends.end,
                 rate: &self.rates[1],
                 units: &self.units,
             };
             let end = M::advance(field, part, &departure, &mut self.memory)?;
-            let t = self.t[0].t + f64::from(k + 1) * part;
-            self.ends[1] = end;
+            let t = self.ends.t[0].t + f64::from(k + 1) * part;
+            self.ends.end = end;
             evaluate(field, t, &end.value, &mut self.rates[1])?;
             check_finite(&end.value, &self.rates[1])?;
         }
@@ -250,7 +242,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
 
     /// Takes in a step that was made.
     fn accept(&mut self, made: f64, arrival: Instant) {
-        self.t[1] = arrival;
+        self.ends.t[1] = arrival;
         self.made = made;
         self.next = (GROW * made).min(self.step);
         if made == self.step {
@@ -324,19 +316,19 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
         self.next = self.step.min(limit);
-        let precise = self.cut.as_ref().unwrap_or(&self.ends[1]).kept(state);
+        let precise = self.ends.kept(state);
         self.place(&mut Counted { field, counters }, now, precise)
     }
 
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
         self.move_on();
         let mut field = Counted { field, counters };
-        let t = self.t[0].t;
+        let t = self.ends.t[0].t;
         let least = least_trial(t);
         let mut h = self.next.max(least_step(t));
         loop {
             let (made, arrival) = self.aim(h, t_end);
-            let attempt = match arrival.since(self.t[0]) > 0.0 {
+            let attempt = match arrival.since(self.ends.t[0]) > 0.0 {
                 true => self.cross(&mut field, made),
                 false => Err(StepFailure::StepUnderflow { t }),
             };
@@ -371,10 +363,10 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
         state: &F::State,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
-        self.ends[1] = self.ends[1].kept(state);
+        self.ends.end = self.ends.end.kept(state);
         evaluate(
             &mut Counted { field, counters },
-            self.t[1].t,
+            self.ends.t[1].t,
             state,
             &mut self.rates[1],
         )?;
@@ -383,22 +375,22 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
 
     #[inline(always)]
     fn start_time(&self) -> Instant {
-        self.t[0]
+        self.ends.t[0]
     }
 
     #[inline(always)]
     fn end_time(&self) -> Instant {
-        self.t[1]
+        self.ends.t[1]
     }
 
     #[inline(always)]
     fn start_state(&self) -> &F::State {
-        &self.ends[0].value
+        &self.ends.start.value
     }
 
     #[inline(always)]
     fn end_state(&self) -> &F::State {
-        &self.ends[1].value
+        &self.ends.end.value
     }
 
     #[inline(always)]
@@ -423,18 +415,18 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
             let [first, last] = [0, 1].map(|end| h * self.rates[end].as_slice()[i]);
             let cubic = Cubic {
                 rate: first,
-                bend: self.ends[1].minus(&self.ends[0], i) - first,
+                bend: self.ends.end.minus(&self.ends.start, i) - first,
                 gained: last - first,
                 rounding: 0.0,
             };
-            self.dense.set_cubic(i, &self.ends[0], cubic);
+            self.dense.set_cubic(i, &self.ends.start, cubic);
         }
         for _ in 0..M::REFINEMENTS {
             let mut inner = [F::State::zeros(); 2];
             for (theta, rate) in [INNER, 1.0 - INNER].into_iter().zip(&mut inner) {
                 evaluate(
                     &mut field,
-                    self.t[0].t + theta * h,
+                    self.ends.t[0].t + theta * h,
                     &self.dense.at(theta),
                     rate,
                 )?;
@@ -451,14 +443,7 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
     }
 
     fn cut(&mut self, theta: f64) -> (Instant, F::State) {
-        let (now, state) = match theta >= 1.0 {
-            true => (self.t[1], self.ends[1]),
-            false => (
-                self.t[0].after(theta * self.made),
-                self.dense.precisely_at(theta),
-            ),
-        };
-        self.cut = Some(state);
-        (now, state.value)
+        let (length, dense) = (self.made, &self.dense);
+        self.ends.cut(theta, length, || dense.precisely_at(theta))
     }
 }

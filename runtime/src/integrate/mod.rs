@@ -12,6 +12,7 @@ mod dop853;
 mod dop853_tableau;
 mod dopri5;
 mod embedded;
+mod ends;
 mod fixed;
 mod gauss;
 mod instant;

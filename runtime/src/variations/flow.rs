@@ -83,8 +83,11 @@ impl<Sys: Variational> Flow<Sys> {
             for (entry, change) in state.as_mut_slice().iter_mut().zip(change.as_slice()) {
                 *entry = *entry + *change;
             }
-            let length = theta * self.unit;
-            t = if t + length >= end { end } else { t + length };
+            let later = t + theta * self.unit;
+            if later <= t {
+                return Err(Undefined::NotFinite { t });
+            }
+            t = later.min(end);
         }
         take_slopes(&state, tangents);
         Ok(())

@@ -99,9 +99,11 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
 
     fn expand(&mut self, walkers: &[impl Walker<F>], order: usize) {
         let mut start = F::Row::<L>::ZERO;
-        gather(&mut start, |lane, i| of(walkers, lane).start.as_slice()[i]);
+        gather(&mut start, |lane, i| {
+            of(walkers, lane).ends.start.value.as_slice()[i]
+        });
         gather(&mut self.rests, |lane, i| {
-            of(walkers, lane).rests[0].as_slice()[i]
+            of(walkers, lane).ends.start.rest.as_slice()[i]
         });
         gather(&mut self.expansion.firsts, |lane, i| {
             of(walkers, lane).expansion.firsts.as_slice()[i]
@@ -115,7 +117,9 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         let mut factors = F::Row::<L>::ZERO;
         gather(&mut factors, |lane, i| {
             let taylor = of(walkers, lane);
-            taylor.weights.allowed(i, &taylor.start, &taylor.start)
+            taylor
+                .weights
+                .allowed(i, &taylor.ends.start.value, &taylor.ends.start.value)
         });
         for factor in factors.as_mut_slice() {
             *factor = L::of(1.0) / *factor;
@@ -126,7 +130,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             let taylor = walker.taylor();
             let reach = taylor.reach_of(sizes.map(|size| size.lane(lane)));
             let reach = reach.min(LONGEST) * taylor.unit;
-            let (made, arrival) = landing(taylor.t[0], taylor.length(reach), walker.t_end());
+            let (made, arrival) = landing(taylor.ends.t[0], taylor.length(reach), walker.t_end());
             *plan = Plan {
                 reach,
                 arrival,
@@ -172,18 +176,17 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         scatter(&mut slope, &self.slope, lane);
         let firsts = self.expansion.firsts.as_slice();
         for i in 0..F::Row::<L>::LEN {
-            taylor.end.as_mut_slice()[i] = self.end.as_slice()[i].lane(lane);
-            taylor.rests[1].as_mut_slice()[i] = self.rests.as_slice()[i].lane(lane);
+            taylor.ends.end.value.as_mut_slice()[i] = self.end.as_slice()[i].lane(lane);
+            taylor.ends.end.rest.as_mut_slice()[i] = self.rests.as_slice()[i].lane(lane);
             taylor.rates[1].as_mut_slice()[i] = firsts[i].lane(lane);
         }
         let is_finite = not_finite(taylor.rates[1].as_slice()).is_none();
         if !(is_finite && taylor.is_motion(plan.made / taylor.unit, &slope)) {
-            taylor.end = taylor.start;
-            taylor.rests[1] = taylor.rests[0];
+            taylor.ends.end = taylor.ends.start;
             taylor.rates[1] = taylor.rates[0];
             return false;
         }
-        taylor.t[1] = plan.arrival;
+        taylor.ends.t[1] = plan.arrival;
         taylor.next_unit = power_of_two(taylor.length(plan.reach));
         scatter(&mut taylor.expansion.firsts, &self.expansion.firsts, lane);
         let rows = taylor.expansion.gaps.iter_mut().zip(&self.expansion.gaps);

@@ -30,6 +30,7 @@ use core::fmt;
 use expansion::{Expansion, row, state, sum};
 
 use super::controller::{Weights, least_step, least_trial, not_finite};
+use super::ends::Ends;
 use super::instant::Instant;
 use super::order::{LEAST_ORDER, PART_OF_TOLERANCE, order};
 use super::precise::Precise;
@@ -75,13 +76,7 @@ pub struct Taylor<F: TaylorField> {
     next_unit: f64,
     /// No step longer than this for now: after a jump, and at the start.
     limit: f64,
-    t: [Instant; 2],
-    start: F::State,
-    end: F::State,
-    /// What the states at both ends lack, since they are rounded.
-    rests: [F::State; 2],
-    /// Where the last step was cut, until the next begins.
-    cut: Option<Precise<F::State>>,
+    ends: Ends<F::State>,
     rates: [F::State; 2],
     expansion: Expansion<F, f64>,
     /// Whether the coefficients of the last step are at hand: they are not where it was made abreast of others.
@@ -101,8 +96,8 @@ impl<F: TaylorField> fmt::Debug for Taylor<F> {
         f.debug_struct("Taylor")
             .field("tolerance", &self.tolerance)
             .field("order", &self.order)
-            .field("t", &self.t)
-            .field("end", &self.end)
+            .field("t", &self.ends.t)
+            .field("end", &self.ends.end.value)
             .finish_non_exhaustive()
     }
 }
@@ -120,11 +115,7 @@ impl<F: TaylorField> Taylor<F> {
             unit: 1.0,
             next_unit: 1.0,
             limit: f64::INFINITY,
-            t: [Instant::default(); 2],
-            start: zeros,
-            end: zeros,
-            rests: [zeros; 2],
-            cut: None,
+            ends: Ends::new(),
             rates: [zeros; 2],
             expansion: Expansion::new(),
             is_expanded: true,
@@ -169,11 +160,7 @@ impl<F: TaylorField> Taylor<F> {
         precise: Precise<F::State>,
     ) -> Result<(), StepFailure> {
         let state = &precise.value;
-        self.t = [now; 2];
-        self.start = *state;
-        self.end = *state;
-        self.rests = [precise.rest; 2];
-        self.cut = None;
+        self.ends.place(now, precise);
         self.weights = Weights::new(self.tolerance, &field.scale(now.t, state));
         if let Some(component) = not_finite(state.as_slice()) {
             return Err(StepFailure::NonFinite { component });
@@ -184,8 +171,11 @@ impl<F: TaylorField> Taylor<F> {
     /// What is known at the end of the step, the rate among it.
     #[inline(always)]
     fn begin(&mut self, field: &F) -> Result<(), StepFailure> {
-        self.expansion
-            .begin(&field.parameters(), self.t[1].t, &row::<F>(&self.end))?;
+        self.expansion.begin(
+            &field.parameters(),
+            self.ends.t[1].t,
+            &row::<F>(&self.ends.end.value),
+        )?;
         self.rates[1] = state::<F>(self.expansion.rate());
         match not_finite(self.rates[1].as_slice()) {
             Some(component) => Err(StepFailure::NonFinite { component }),
@@ -198,7 +188,7 @@ impl<F: TaylorField> Taylor<F> {
         loop {
             counters.expansions += 1;
             counters.coefficients += self.order as u64;
-            let start = row::<F>(&self.start);
+            let start = row::<F>(&self.ends.start.value);
             self.expansion
                 .advance(&field.parameters(), self.unit, self.order, &start);
             let last = |j: usize| self.expansion.coefficients[self.order - j].as_slice();
@@ -207,7 +197,7 @@ impl<F: TaylorField> Taylor<F> {
             };
             counters.rejected += 1;
             self.unit *= SHRINK;
-            if self.unit < least_trial(self.t[0].t) {
+            if self.unit < least_trial(self.ends.t[0].t) {
                 return Err(StepFailure::NonFinite { component });
             }
         }
@@ -218,7 +208,10 @@ impl<F: TaylorField> Taylor<F> {
     fn reach(&self) -> f64 {
         let mut factors = F::Row::<f64>::ZERO;
         for (i, factor) in factors.as_mut_slice().iter_mut().enumerate() {
-            *factor = 1.0 / self.weights.allowed(i, &self.start, &self.start);
+            *factor = 1.0
+                / self
+                    .weights
+                    .allowed(i, &self.ends.start.value, &self.ends.start.value);
         }
         self.reach_of(self.expansion.sizes(self.order, &factors))
     }
@@ -234,9 +227,7 @@ impl<F: TaylorField> Taylor<F> {
     /// The end of the last step is the start of the next.
     #[inline(always)]
     fn set_out(&mut self) {
-        self.t[0] = self.t[1];
-        self.start = self.end;
-        self.rests[0] = self.rests[1];
+        self.ends.move_on();
         self.rates[0] = self.rates[1];
         self.unit = self.next_unit;
     }
@@ -244,7 +235,7 @@ impl<F: TaylorField> Taylor<F> {
     /// The length of the step that the coefficients reach, as far as it is wanted.
     #[inline(always)]
     fn length(&self, reach: f64) -> f64 {
-        let least = least_step(self.t[0].t);
+        let least = least_step(self.ends.t[0].t);
         reach.min(self.max_step).min(self.limit).max(least)
     }
 
@@ -264,13 +255,11 @@ impl<F: TaylorField> Taylor<F> {
     fn arrive(&mut self, theta: f64) -> F::Row<f64> {
         let [change, slope] = self.expansion.change(self.order, theta);
         for (i, change) in change.as_slice().iter().enumerate() {
-            let [end, rest] = sum(
-                self.start.as_slice()[i],
-                *change,
-                self.rests[0].as_slice()[i],
-            );
-            self.end.as_mut_slice()[i] = end;
-            self.rests[1].as_mut_slice()[i] = rest;
+            let Ends { start, end, .. } = &mut self.ends;
+            let (value, rest) = (start.value.as_slice()[i], start.rest.as_slice()[i]);
+            let [value, rest] = sum(value, *change, rest);
+            end.value.as_mut_slice()[i] = value;
+            end.rest.as_mut_slice()[i] = rest;
         }
         slope
     }
@@ -285,10 +274,10 @@ impl<F: TaylorField> Taylor<F> {
         counters: &mut Counters,
     ) -> Result<bool, StepFailure> {
         let slope = self.arrive(theta);
-        self.t[1] = arrival;
+        self.ends.t[1] = arrival;
         counters.rate_evaluations += 1;
         self.begin(field)?;
-        if let Some(component) = not_finite(self.end.as_slice()) {
+        if let Some(component) = not_finite(self.ends.end.value.as_slice()) {
             return Err(StepFailure::NonFinite { component });
         }
         Ok(self.is_motion(theta, &slope))
@@ -301,15 +290,20 @@ impl<F: TaylorField> Taylor<F> {
         (0..F::State::LEN).all(|i| {
             let rate = self.rates[1].as_slice()[i];
             let defect = (rate - slope.as_slice()[i] / self.unit).abs() * length;
-            let size = self.end.as_slice()[i].abs() + rate.abs() * length;
-            defect <= DEFECT * (self.weights.allowed(i, &self.start, &self.end) + NOISE * size)
+            let size = self.ends.end.value.as_slice()[i].abs() + rate.abs() * length;
+            defect
+                <= DEFECT
+                    * (self
+                        .weights
+                        .allowed(i, &self.ends.start.value, &self.ends.end.value)
+                        + NOISE * size)
         })
     }
 
     /// The state at a part of the step, and what it is rounded off.
     #[inline(always)]
     fn state_at(&self, theta: f64) -> Precise<F::State> {
-        let s = theta * (self.t[1].since(self.t[0]) / self.unit);
+        let s = theta * (self.ends.length() / self.unit);
         let mut change = F::State::zeros();
         for coefficient in self.expansion.coefficients[1..=self.order].iter().rev() {
             for (i, entry) in coefficient.as_slice().iter().enumerate() {
@@ -317,18 +311,15 @@ impl<F: TaylorField> Taylor<F> {
                 *sum = math::mul_add(*sum, s, *entry);
             }
         }
-        let start = Precise {
-            value: self.start,
-            rest: self.rests[0],
-        };
-        start.advanced(|i| change.as_slice()[i] * s)
+        self.ends.start.advanced(|i| change.as_slice()[i] * s)
     }
 
     /// The coefficients of the last step, which was made abreast of others.
     fn expand_again(&mut self, field: &F) -> Result<(), Fault> {
-        let (parameters, start) = (field.parameters(), row::<F>(&self.start));
+        let (parameters, start) = (field.parameters(), row::<F>(&self.ends.start.value));
         let end = self.expansion.firsts;
-        self.expansion.begin(&parameters, self.t[0].t, &start)?;
+        self.expansion
+            .begin(&parameters, self.ends.t[0].t, &start)?;
         self.expansion
             .advance(&parameters, self.unit, self.order, &start);
         self.expansion.firsts = end;
@@ -338,9 +329,7 @@ impl<F: TaylorField> Taylor<F> {
 
     /// Puts the last good state back in place after a failure.
     fn retract(&mut self, field: &F) -> Result<(), StepFailure> {
-        self.t[1] = self.t[0];
-        self.end = self.start;
-        self.rests[1] = self.rests[0];
+        self.ends.retract();
         self.begin(field)
     }
 }

@@ -50,14 +50,7 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         _: &mut Counters,
     ) -> Result<(), StepFailure> {
         self.limit = limit;
-        let precise = match &self.cut {
-            Some(cut) => cut.kept(state),
-            None => Precise {
-                value: self.end,
-                rest: self.rests[1],
-            }
-            .kept(state),
-        };
+        let precise = self.ends.kept(state);
         self.place(field, now, precise)
     }
 
@@ -65,12 +58,12 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure> {
         self.set_out();
         self.is_expanded = true;
-        let t = self.t[0].t;
+        let t = self.ends.t[0].t;
         let reach = self.expand(field, counters)?.min(LONGEST) * self.unit;
         let mut h = self.length(reach);
         self.next_unit = power_of_two(h);
         loop {
-            let (made, arrival) = landing(self.t[0], h, t_end);
+            let (made, arrival) = landing(self.ends.t[0], h, t_end);
             let attempt = self.attempt(field, made / self.unit, arrival, counters);
             if let Ok(true) = attempt {
                 self.accept(made, reach, counters);
@@ -91,34 +84,29 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         state: &F::State,
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
-        for i in 0..F::State::LEN {
-            if state.as_slice()[i] != self.end.as_slice()[i] {
-                self.rests[1].as_mut_slice()[i] = 0.0;
-            }
-        }
-        self.end = *state;
+        self.ends.end = self.ends.end.kept(state);
         counters.rate_evaluations += 1;
         self.begin(field)
     }
 
     #[inline(always)]
     fn start_time(&self) -> Instant {
-        self.t[0]
+        self.ends.t[0]
     }
 
     #[inline(always)]
     fn end_time(&self) -> Instant {
-        self.t[1]
+        self.ends.t[1]
     }
 
     #[inline(always)]
     fn start_state(&self) -> &F::State {
-        &self.start
+        &self.ends.start.value
     }
 
     #[inline(always)]
     fn end_state(&self) -> &F::State {
-        &self.end
+        &self.ends.end.value
     }
 
     #[inline(always)]
@@ -165,20 +153,10 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
 
     #[inline]
     fn cut(&mut self, theta: f64) -> (Instant, F::State) {
-        let (now, state) = match theta >= 1.0 {
-            true => {
-                let end = Precise {
-                    value: self.end,
-                    rest: self.rests[1],
-                };
-                (self.t[1], end)
-            }
-            false => (
-                self.t[0].after(theta * self.t[1].since(self.t[0])),
-                self.state_at(theta),
-            ),
+        let inside = match theta >= 1.0 {
+            true => self.ends.end,
+            false => self.state_at(theta),
         };
-        self.cut = Some(state);
-        (now, state.value)
+        self.ends.cut(theta, self.ends.length(), || inside)
     }
 }
