@@ -5,8 +5,8 @@ use core::ops::ControlFlow;
 use dalembert::contract::Variational;
 use dalembert::variations::Undefined;
 use dalembert::{
-    Described, Hold, Impacting, Law, Observer, Policies, Rest, Scene, SceneEffects, Simulation,
-    StateVector, System, Tangent, Taylor, Tolerance, Variations,
+    Described, Hold, Law, Observer, Policies, Rest, Scene, SceneEffects, Simulation, StateVector,
+    System, Tangent, Taylor, Tolerance, Variations,
 };
 use dalembert_tests::differences;
 

@@ -305,10 +305,6 @@ fn what_has_no_derivative_says_so() {
         panic!("the Lagrangian of a reduced mode changes")
     };
     assert!(t > 0.5 && t < 2.0);
-    // A slide begins at once, of neighbours on one side of the line later.
-    let field = FilippovField::default();
-    let held = undefined(&field, &state(&field, &[0.0, 0.0], &[]), 3.0);
-    assert_eq!(held.kind(), "held");
 }
 
 /// How often motion begins to be held, and ceases to be.

@@ -8,7 +8,9 @@ use super::dense::{Cubic, Polynomial};
 use super::dop853_tableau::*;
 use super::embedded::{Counted, Embedded, Scheme, Span};
 use super::precise::Precise;
-use super::tableau::{Term, combine, larger, rounding, subtract_first, sum, weigh_beyond_rounding};
+use super::tableau::{
+    Term, combine, larger, make_stages, rounding, subtract_first, sum, weigh_beyond_rounding,
+};
 use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::math;
@@ -58,14 +60,7 @@ impl Scheme for Dop853Scheme {
         stages: &mut [F::State],
         inside: &mut F::State,
     ) -> Result<(), Fault> {
-        macro_rules! stage {
-            ($($index:literal $row:ident)*) => {$(
-                combine(start, h, stages, (NODES[$index], &$row), inside);
-                field.rate(t + NODES[$index] * h, inside, &mut stages[$index])?;
-                subtract_first(stages, $index);
-            )*};
-        }
-        stage! { 1 A1 2 A2 3 A3 4 A4 5 A5 6 A6 7 A7 8 A8 9 A9 10 A10 11 A11 }
+        make_stages!(field, (t, h, start), stages, inside, NODES: 1 A1 2 A2 3 A3 4 A4 5 A5 6 A6 7 A7 8 A8 9 A9 10 A10 11 A11);
         Ok(())
     }
 
@@ -116,14 +111,7 @@ fn fill_dense<F: VectorField>(
 ) -> Result<(), Fault> {
     let Span { t, h, start, .. } = span;
     let mut inside = start.value;
-    macro_rules! stage {
-        ($($index:literal $row:ident)*) => {$(
-            combine(&start.value, h, stages, (NODES[$index], &$row), &mut inside);
-            field.rate(t + NODES[$index] * h, &inside, &mut stages[$index])?;
-            subtract_first(stages, $index);
-        )*};
-    }
-    stage! { 13 A13 14 A14 15 A15 }
+    make_stages!(field, (t, h, &start.value), stages, &mut inside, NODES: 13 A13 14 A14 15 A15);
     for i in 0..F::State::LEN {
         let mut gains = [0.0; STAGES];
         let mut size = (h * stages[0].as_slice()[i]).abs();

@@ -7,7 +7,9 @@ use super::controller::Control;
 use super::dense::{Cubic, Polynomial};
 use super::embedded::{Counted, Embedded, Scheme, Span};
 use super::precise::Precise;
-use super::tableau::{Term, combine, larger, rounding, subtract_first, sum, weigh_beyond_rounding};
+use super::tableau::{
+    Term, combine, larger, make_stages, rounding, subtract_first, sum, weigh_beyond_rounding,
+};
 use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::state::StateVector;
@@ -108,14 +110,7 @@ impl Scheme for DormandPrince5Scheme {
         stages: &mut [F::State],
         inside: &mut F::State,
     ) -> Result<(), Fault> {
-        macro_rules! stage {
-            ($($index:literal $row:ident)*) => {$(
-                combine(start, h, stages, (NODES[$index], &$row), inside);
-                field.rate(t + NODES[$index] * h, inside, &mut stages[$index])?;
-                subtract_first(stages, $index);
-            )*};
-        }
-        stage! { 1 A1 2 A2 3 A3 4 A4 5 A5 }
+        make_stages!(field, (t, h, start), stages, inside, NODES: 1 A1 2 A2 3 A3 4 A4 5 A5);
         Ok(())
     }
 

@@ -86,6 +86,16 @@ pub(super) fn larger(largest: f64, value: f64) -> f64 {
 }
 
 /// Checks of tables, for the tests of the schemes.
+/// Makes stages one after the other, each of its row of the tableau: `inside` is room for a state.
+macro_rules! make_stages {
+    ($field:ident, ($t:expr, $h:expr, $start:expr), $stages:ident, $inside:expr, $nodes:ident: $($index:literal $row:ident)*) => {$(
+        combine($start, $h, $stages, ($nodes[$index], &$row), $inside);
+        $field.rate($t + $nodes[$index] * $h, $inside, &mut $stages[$index])?;
+        subtract_first($stages, $index);
+    )*};
+}
+pub(super) use make_stages;
+
 #[cfg(test)]
 pub(super) mod check {
     use super::Term;

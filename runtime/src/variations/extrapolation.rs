@@ -14,6 +14,9 @@ use crate::state::StateVector;
 /// Midpoint rules of 2, 4, 6, .. parts that are combined.
 const RULES: usize = 8;
 
+/// Rules before this one are not asked whether they agree: they may by accident.
+const LEAST: usize = 3;
+
 /// What the last two combinations may differ by, in units of what varies: well above the rounding errors of the sums.
 const LAST: f64 = 512.0 * f64::EPSILON;
 
@@ -68,7 +71,7 @@ impl<Sys: Variational> Flow<Sys> {
         [t, length]: [f64; 2],
         state: &Sys::Row<Dual>,
     ) -> Result<Option<Sys::Row<Dual>>, Undefined> {
-        let first = self.rate(system, parameters, Some(holder), t, state)?;
+        let first = self.rate(system, parameters, holder, t, state)?;
         let mut combined = [Sys::Row::<Dual>::ZERO; RULES];
         for rule in 0..RULES {
             let parts = 2 * (rule + 1);
@@ -76,13 +79,7 @@ impl<Sys: Variational> Flow<Sys> {
             let (mut before, mut now) = (Sys::Row::ZERO, sum(&Sys::Row::ZERO, &first, h));
             for part in 1..parts {
                 let there = sum(state, &now, 1.0);
-                let rate = self.rate(
-                    system,
-                    parameters,
-                    Some(holder),
-                    t + part as f64 * h,
-                    &there,
-                )?;
+                let rate = self.rate(system, parameters, holder, t + part as f64 * h, &there)?;
                 (before, now) = (now, sum(&before, &rate, 2.0 * h));
             }
             // Aitken and Neville, in the square of the length of a part.
@@ -92,7 +89,7 @@ impl<Sys: Variational> Flow<Sys> {
                 (*entry, now) = (now, next);
             }
             combined[rule] = now;
-            if rule >= 2 && self.is_near(state, &combined[rule - 1], &now) {
+            if rule >= LEAST && self.is_near(state, &combined[rule - 1], &now) {
                 return Ok(Some(now));
             }
         }

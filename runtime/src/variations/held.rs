@@ -58,28 +58,22 @@ impl Holder {
 }
 
 impl<Sys: Variational> Flow<Sys> {
-    /// The rate of a state, with what holds it.
+    /// The rate of a state that is held.
     pub(super) fn rate(
         &mut self,
         system: &Sys,
         parameters: &Sys::Parameters<Dual>,
-        holder: Option<Holder>,
+        holder: Holder,
         t: f64,
         state: &Sys::Row<Dual>,
     ) -> Result<Sys::Row<Dual>, Undefined> {
         match holder {
-            None => {
-                self.expansion.begin(parameters, Dual::of(t), state)?;
-                let mut rate = Sys::Row::<Dual>::ZERO;
-                rate.as_mut_slice().copy_from_slice(self.expansion.rate());
-                Ok(rate)
-            }
-            Some(Holder::Surface(surface)) => self.pressed(system, parameters, surface, t, state),
-            Some(Holder::Slide { back, across }) => self.slid(parameters, [back, across], t, state),
+            Holder::Surface(surface) => self.pressed(system, parameters, surface, t, state),
+            Holder::Slide { back, across } => self.slid(parameters, [back, across], t, state),
         }
     }
 
-    /// As [`Flow::rate`], of a state alone.
+    /// The rate of a state alone, with what holds it if something does.
     pub(super) fn rate_of(
         &mut self,
         system: &Sys,
@@ -87,11 +81,11 @@ impl<Sys: Variational> Flow<Sys> {
         t: f64,
         state: &Sys::State,
     ) -> Result<Sys::State, Undefined> {
-        if holder.is_none() {
+        let Some(holder) = holder else {
             let mut rate = Sys::State::zeros();
             system.rate(t, state, &mut rate)?;
             return Ok(rate);
-        }
+        };
         let parameters = dual_parameters(system, &[]);
         let row = dual_state::<Sys>(state, &[]);
         let row = self.rate(system, &parameters, holder, t, &row)?;
@@ -164,9 +158,7 @@ impl<Sys: Variational> Flow<Sys> {
         }
         Ok(rate)
     }
-}
 
-impl<Sys: Variational> Flow<Sys> {
     /// Refuses an end of held motion where the field jumps, since something else than its force has ended it.
     pub(super) fn check_release(
         &mut self,

@@ -1,0 +1,145 @@
+//! The observer that carries first variations along a run.
+
+use core::ops::ControlFlow;
+
+use super::flow::Flow;
+use super::held::Holder;
+use super::transition::{self, Sequence};
+use super::{Tangent, Undefined};
+use crate::contract::Variational;
+use crate::record::{Event, Hold, Observer, Segment};
+
+/// Carries first variations along a run that it observes.
+///
+/// The directions are the caller's: any number of them, varied state and parameters in each. Observe one run, then ask for
+/// [`Variations::tangents`]. Any integrator will do; derivatives are those of the motion from the states that it gives.
+pub struct Variations<'a, Sys: Variational> {
+    system: &'a Sys,
+    tangents: &'a mut [Tangent<Sys>],
+    flow: Flow<Sys>,
+    /// What holds the motion.
+    holder: Option<Holder>,
+    /// Transitions at one moment, and what held the motion before. What holds it after is known when it goes on.
+    crossing: Option<(Sequence<Sys::State>, Option<Holder>)>,
+    /// The end of the last stretch of motion.
+    end: Option<Sys::State>,
+    undefined: Option<Undefined>,
+}
+
+impl<'a, Sys: Variational> Variations<'a, Sys> {
+    /// Variations of the run that comes, from these directions.
+    pub fn new(system: &'a Sys, tangents: &'a mut [Tangent<Sys>]) -> Self {
+        Self {
+            system,
+            tangents,
+            flow: Flow::new(),
+            holder: None,
+            crossing: None,
+            end: None,
+            undefined: None,
+        }
+    }
+
+    /// The derivatives at the end of what was observed.
+    ///
+    /// # Errors
+    /// [`Undefined`]: the first place where the run has none.
+    pub fn tangents(&mut self) -> Result<&[Tangent<Sys>], Undefined> {
+        self.go_on();
+        match self.undefined {
+            Some(undefined) => Err(undefined),
+            None => Ok(self.tangents),
+        }
+    }
+
+    /// Moves the directions from a fixed time to the surface that is met there.
+    pub(super) fn arrive(&mut self, event: &Event<Sys::State>) {
+        self.go_on();
+        if self.undefined.is_none() {
+            let (flow, holder) = (&mut self.flow, self.holder);
+            let arrived = transition::arrive(self.system, event, holder, flow, self.tangents);
+            self.undefined = arrived.err();
+        }
+    }
+
+    /// Carries the directions across the last transitions, unless derivatives have ended.
+    fn go_on(&mut self) {
+        if let Some((sequence, before)) = self.crossing.take()
+            && self.undefined.is_none()
+        {
+            self.undefined = self.cross(&sequence, [before, self.holder]).err();
+        }
+    }
+
+    fn cross(
+        &mut self,
+        sequence: &Sequence<Sys::State>,
+        holders: [Option<Holder>; 2],
+    ) -> Result<(), Undefined> {
+        let (system, last) = (self.system, sequence.last());
+        let t = last.t;
+        if let [Some(holder), Some(_)] = holders {
+            // What the impact makes of the motion depends on the surface that holds it.
+            return Err(holder.undefined(t));
+        }
+        transition::cross(system, sequence, holders, &mut self.flow, self.tangents)?;
+        match holders[1] {
+            Some(holder) => holder.check_along(system, t, &last.after, self.tangents),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes a beginning or an end of held motion.
+    fn turn(&mut self, hold: &Hold<Sys::State>) -> Result<(), Undefined> {
+        let (system, t) = (self.system, hold.t);
+        let holder = Holder::of(hold);
+        let held = core::mem::replace(&mut self.holder, hold.begins.then_some(holder));
+        let crosses = self.crossing.is_some();
+        match (held, hold.begins) {
+            (None, true) if hold.accumulation.is_some() => Err(holder.undefined(t)),
+            (None, true) if crosses => Ok(()),
+            // At the start of a run.
+            (None, true) if self.end.is_none() => {
+                holder.check_along(system, t, &hold.state, self.tangents)
+            }
+            (Some(held), false) if held == holder => match &self.end {
+                Some(end) if !crosses => {
+                    let ends = [end, &hold.state];
+                    self.flow.check_release(system, holder, t, ends)
+                }
+                _ => Ok(()),
+            },
+            _ => Err(holder.undefined(t)),
+        }
+    }
+}
+
+impl<Sys: Variational> Observer<Sys> for Variations<'_, Sys> {
+    fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
+        self.go_on();
+        if self.undefined.is_none() {
+            let followed = self
+                .flow
+                .follow(self.system, self.holder, segment, self.tangents);
+            self.undefined = followed.err();
+        }
+        self.end = Some(*segment.end());
+        ControlFlow::Continue(())
+    }
+
+    fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
+        let follows = |(sequence, _): &mut (Sequence<_>, _)| sequence.add(event);
+        if !self.crossing.as_mut().is_some_and(follows) {
+            self.go_on();
+            self.crossing = Some((Sequence::of(event), self.holder));
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
+        if self.undefined.is_none() {
+            self.undefined = self.turn(hold).err();
+        }
+        ControlFlow::Continue(())
+    }
+}
