@@ -3,6 +3,7 @@
 use dalembert::contract::Variational;
 use dalembert::describe::{Description, VariationalVisitor};
 use dalembert::impacts::law::Law;
+use dalembert::integrate::Chosen;
 use dalembert::variations::orbit::ITERATIONS;
 use dalembert::variations::{Orbit, OrbitError, Section, SectionError, Undefined};
 use dalembert::{
@@ -73,9 +74,10 @@ impl VariationalVisitor for Finder<'_> {
         qdot.as_mut_slice().copy_from_slice(self.qdot);
         let start = system.state_unchecked(0.0, &q, &qdot);
         let start = start.map_err(|fault| fault.to_string())?;
+        let mut stepper = Taylor::new(search.tolerance);
         let mut section = Section::new(
             system,
-            Taylor::new(search.tolerance),
+            Chosen::new(&mut stepper),
             effects,
             search.surface,
             search.horizon,

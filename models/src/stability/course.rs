@@ -3,11 +3,11 @@
 use core::ops::ControlFlow;
 
 use dalembert::impacts::law::Law;
-use dalembert::integrate::Counters;
+use dalembert::integrate::{Chosen, Counters};
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
     Dop853, DormandPrince5, Event, Hold, Observer, Outcome, Policies, Rest, Scene, SceneEffects,
-    Segment, Simulation, StateVector, Stepper, Taylor, TaylorField, Tolerance,
+    Segment, Simulation, StateVector, Taylor, TaylorField, Tolerance,
 };
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::Setting;
@@ -183,32 +183,21 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
         let [relative, absolute] = self.tolerance;
         let tolerance = Tolerance::of(relative, absolute).expect("a positive tolerance");
         let longest = setting.max_step.unwrap_or(f64::INFINITY);
+        macro_rules! step {
+            ($stepper:expr) => {{
+                let mut stepper = $stepper.with_max_step(longest);
+                self.step(Chosen::new(&mut stepper), setting, observer)
+            }};
+        }
         match setting.integrator {
-            Integrator::Dop853 => self.step(
-                Dop853::new(tolerance).with_max_step(longest),
-                setting,
-                observer,
-            ),
-            Integrator::Dopri5 => self.step(
-                DormandPrince5::new(tolerance).with_max_step(longest),
-                setting,
-                observer,
-            ),
-            Integrator::Taylor => self.step(
-                Taylor::new(tolerance).with_max_step(longest),
-                setting,
-                observer,
-            ),
+            Integrator::Dop853 => step!(Dop853::new(tolerance)),
+            Integrator::Dopri5 => step!(DormandPrince5::new(tolerance)),
+            Integrator::Taylor => step!(Taylor::new(tolerance)),
             other => unreachable!("the suite runs no integrator of fixed step: {other:?}"),
         }
     }
 
-    fn step(
-        self,
-        stepper: impl Stepper<M>,
-        setting: Setting,
-        observer: &mut impl Observer<M>,
-    ) -> End {
+    fn step(self, stepper: Chosen<'_, M>, setting: Setting, observer: &mut dyn Observer<M>) -> End {
         let Self {
             system,
             t0,
@@ -288,12 +277,12 @@ impl<M: Scene + TaylorField> Observer<M> for Log<'_, M> {
 }
 
 /// Reads the dense output in every step, if asked to, before it passes the step on.
-struct Reader<'a, O> {
+struct Reader<'a, M: Scene> {
     dense: bool,
-    observer: &'a mut O,
+    observer: &'a mut dyn Observer<M>,
 }
 
-impl<M: Scene + TaylorField, O: Observer<M>> Observer<M> for Reader<'_, O> {
+impl<M: Scene + TaylorField> Observer<M> for Reader<'_, M> {
     fn step(&mut self, segment: &mut Segment<'_, M::State>) -> ControlFlow<()> {
         if self.dense {
             let middle = 0.5 * (segment.t_start() + segment.t_end());

@@ -6,6 +6,7 @@
 //! [`Taylor`] sums power series whose coefficients are generated with the vector field
 //! ([`TaylorField`](crate::TaylorField)).
 
+mod chosen;
 pub(crate) mod controller;
 mod dense;
 mod dop853;
@@ -28,6 +29,7 @@ mod tableau;
 pub(crate) mod taylor;
 mod tolerance;
 
+pub use chosen::Chosen;
 pub use dense::Polynomial;
 pub use dop853::{Dop853, Dop853Scheme};
 pub use dopri5::{DormandPrince5, DormandPrince5Scheme};

@@ -160,9 +160,11 @@ where
             first: None,
             last: None,
         };
+        // NOTE: so that the driver is compiled once for every observer that comes like this.
+        let mut observer: &mut dyn Observer<Sys> = &mut passage;
         let run = self
             .simulation
-            .run(0.0, *state, self.horizon, &mut passage)
+            .run(0.0, *state, self.horizon, &mut observer)
             .map_err(SectionError::Start)?;
         let Some(last) = passage.last else {
             return Err(SectionError::Ended(run.outcome));

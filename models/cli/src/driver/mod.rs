@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use dalembert::describe::Description;
 use dalembert::impacts::law::Law;
 use dalembert::integrate::{
-    Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4, Gauss6, Method, Rk4, Stepper,
+    Chosen, Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4, Gauss6, Method, Rk4,
     Taylor, Tolerance,
 };
 use dalembert::simulation::STEP_BUDGET;
@@ -165,9 +165,10 @@ pub(crate) fn solve<M: Model>(
 ) -> Result<Solved<M::State>, String> {
     let tolerance = Tolerance::new(settings.tol).map_err(|error| error.to_string())?;
     macro_rules! run {
-        ($stepper:expr) => {
-            run(model, $stepper, state, settings, observer)
-        };
+        ($stepper:expr) => {{
+            let mut stepper = $stepper;
+            run(model, Chosen::new(&mut stepper), state, settings, observer)
+        }};
     }
     match settings.integrator {
         Integrator::Dop853 => run!(Dop853::new(tolerance)),
@@ -192,11 +193,11 @@ fn stepping<S: StateVector, M: Method>(
     }
 }
 
-/// NOTE: of the observer nothing but its trait is known, so that integrators are compiled once for a model, whatever
-/// watches them.
-fn run<M: Model, S: Stepper<M>>(
+/// NOTE: of the integrator and of the observer nothing but their traits are known, so that what watches impacts is compiled once
+/// for a model.
+fn run<M: Model>(
     model: &M,
-    stepper: S,
+    stepper: Chosen<'_, M>,
     state: &M::State,
     settings: &Settings,
     mut observer: &mut dyn Observer<M>,
