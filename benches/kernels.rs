@@ -261,7 +261,7 @@ fn step<S: Described, Step: Stepper<S>>(
     const UNTIL: f64 = 10.0;
     let state = start(system);
     let mut counters = Counters::default();
-    let name = format!("{}/{}", S::DESCRIPTION.name, Step::NAME);
+    let name = format!("{}/{}", S::DESCRIPTION.name, stepper.name());
     group.bench_function(name, |bencher| {
         stepper
             .start(system, Instant::default(), &state, UNTIL, &mut counters)

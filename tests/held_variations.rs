@@ -1,14 +1,12 @@
 //! First variations of runs that surfaces hold for a while, and of impacts with instantaneous constraints.
 
-use core::ops::ControlFlow;
-
 use dalembert::contract::Variational;
 use dalembert::variations::Undefined;
 use dalembert::{
-    Described, Hold, Law, Observer, Policies, Rest, Scene, SceneEffects, Simulation, StateVector,
-    System, Tangent, Taylor, Tolerance, Variations,
+    Described, Law, Observer, Policies, Rest, Scene, SceneEffects, Simulation, StateVector, System,
+    Tangent, Taylor, Tolerance, Variations,
 };
-use dalembert_tests::differences;
+use dalembert_tests::differences::{self, Turns};
 
 dalembert::model! {
     /// A point that lands on a hill which rises, slides along it, and leaves it where it would have to pull.
@@ -31,17 +29,6 @@ dalembert::model! {
             slope: y >= c*sin(x) => newton(e), instantaneous { no_slip: dot(x) + s*y*dot(y) = r*dot(a) + s; };
             lid: y <= 1;
         }
-    }
-}
-
-/// How often motion begins to be held, and ceases to be.
-#[derive(Default)]
-struct Turns([usize; 2]);
-
-impl<Sys: System> Observer<Sys> for Turns {
-    fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
-        self.0[usize::from(!hold.begins)] += 1;
-        ControlFlow::Continue(())
     }
 }
 

@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 use dalembert::contract::Variational;
 use dalembert::variations::{Orbit, Section, Undefined};
 use dalembert::{
-    Described, Event, Hold, Mode, Observer, Scene, SceneEffects, Simulation, StateVector, System,
+    Described, Event, Mode, Observer, Scene, SceneEffects, Simulation, StateVector, System,
     Tangent, Taylor, Tolerance, Variations,
 };
 use dalembert_cli::{Exit, models};
@@ -13,8 +13,9 @@ use dalembert_models::{
     BallOnSwitchingTable, FilippovField, RefractedParticle, RimlessWheelFive, RimlessWheelTen,
     SmoothAndRoughPlane, SphereInPlane, TentMap, TwoWheelsArrested,
 };
+use dalembert_tests::command;
+use dalembert_tests::differences::{self, Turns};
 use dalembert_tests::reference::{number, numbers, read};
-use dalembert_tests::{command, differences};
 use serde_json::Value;
 
 dalembert::model! {
@@ -298,17 +299,6 @@ fn refraction_of_reduced_modes_has_no_derivative() {
         panic!("the Lagrangian of a reduced mode changes")
     };
     assert!(t > 0.5 && t < 2.0);
-}
-
-/// How often motion begins to be held, and ceases to be.
-#[derive(Default)]
-struct Turns([usize; 2]);
-
-impl<Sys: System> Observer<Sys> for Turns {
-    fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
-        self.0[usize::from(!hold.begins)] += 1;
-        ControlFlow::Continue(())
-    }
 }
 
 #[test]

@@ -147,11 +147,12 @@ impl<'a, M: Scene + TaylorField + Lagrangian> Start<'a, M> {
         judge: &impl Fn(&str, Run<M::State>, &Log<M>),
     ) {
         let mut log = Log::<M>::new();
+        let name = stepper.name();
         let run = Simulation::new(self.system, stepper, self.system.effects())
             .with_step_budget(100_000)
             .run(0.0, self.state, self.until, &mut log)
             .expect("a start");
-        judge(&format!("{} with steps of {step}", S::NAME), run, &log);
+        judge(&format!("{name} with steps of {step}"), run, &log);
     }
 }
 

@@ -203,8 +203,8 @@ fn errors_at<Disk: Stepper<RollingDisk>, Sleigh: Stepper<ChaplyginSleigh>>(
 fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
     macro_rules! check {
         ($($method:ident $steps:literal $bound:literal)*) => {$(
+            let tolerance = Tolerance::new(1e-9).expect("a tolerance");
             let at = |h: f64| {
-                let tolerance = Tolerance::new(1e-9).expect("a tolerance");
                 let (first, second) = ($method::new(tolerance), $method::new(tolerance));
                 errors_at(first.with_step(h), second.with_step(h))
             };
@@ -212,7 +212,7 @@ fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
             let (coarse, fine) = (at(h), at(h / 8.0));
             let slope = (coarse / fine).log2() / 3.0;
             let order = $method::<<ChaplyginSleigh as dalembert::VectorField>::State>::ORDER as f64;
-            let name = <$method<_> as Stepper<ChaplyginSleigh>>::NAME;
+            let name = Stepper::<ChaplyginSleigh>::name(&$method::new(tolerance));
             println!("{name}: {coarse:.1e}, {fine:.1e}, slope {slope:.2}");
             assert!(fine < $bound, "{name}: {fine:e}");
             assert!(slope > order - 0.3, "{name}: {coarse:e}, {fine:e}");

@@ -77,7 +77,9 @@ where
     F: VectorField<State = Sys::State>,
     Step: Stepper<F>,
 {
-    const NAME: &'static str = Step::NAME;
+    fn name(&self) -> &'static str {
+        self.stepper.name()
+    }
 
     fn tolerance(&self) -> Tolerance {
         self.stepper.tolerance()

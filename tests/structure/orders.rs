@@ -101,7 +101,7 @@ impl Visitor for Orders {
                     reached.map_or(f64::NAN, |(reached, _)| difference(&reached, &reference))
                 };
                 let order = $method::<S::State>::ORDER;
-                let method = (<$method<S::State> as Stepper<S>>::NAME, order);
+                let method = (Stepper::<S>::name(&$method::new(tolerance)), order);
                 self.check(name, method, &slopes(error), true);
             )*};
         }
@@ -115,7 +115,7 @@ impl Visitor for Orders {
                     let reached = reached.filter(|(_, steps)| *steps == (TIME / h).round() as u64);
                     reached.map_or(f64::NAN, |(reached, _)| difference(&reached, &reference))
                 };
-                let method = (<$method<S> as Stepper<S>>::NAME, $order);
+                let method = (Stepper::<S>::name(&$method::<S>::new(tolerance)), $order);
                 self.check(name, method, &slopes(error), false);
             }};
         }

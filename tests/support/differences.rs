@@ -1,8 +1,10 @@
 //! Derivatives of runs against differences of runs.
 
+use core::ops::ControlFlow;
+
 use dalembert::contract::Variational;
 use dalembert::numbers::Row;
-use dalembert::{Described, Observer, StateVector, Tangent, Variations};
+use dalembert::{Described, Hold, Observer, StateVector, System, Tangent, Variations};
 
 /// The largest difference between a derivative and a difference of runs, in units of the largest entry of its column.
 const DIFFERENCE: f64 = 2e-9;
@@ -69,4 +71,15 @@ where
         }
     }
     impacts
+}
+
+/// How often motion begins to be held, and ceases to be.
+#[derive(Default)]
+pub struct Turns(pub [usize; 2]);
+
+impl<Sys: System> Observer<Sys> for Turns {
+    fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
+        self.0[usize::from(!hold.begins)] += 1;
+        ControlFlow::Continue(())
+    }
 }

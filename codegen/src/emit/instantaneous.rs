@@ -78,29 +78,36 @@ pub(super) fn emit_varied(context: &Context<'_>) -> TokenStream {
         let focus = emit_added(context, &own.focuses, &quote!(state));
         let trace = emit_added(context, &own.traces, &quote!(rate));
         let motion = context.dimension();
-        quote! {
-            fn focus<L: ::dalembert::numbers::Numbers>(
-                parameters: &Self::Parameters<L>,
-                surface: usize,
-                t: L,
-                state: &Self::Row<L>,
-            ) -> ::core::result::Result<::core::option::Option<Self::Row<L>>, ::dalembert::Fault> {
-                #focus
-            }
-
-            fn trace<L: ::dalembert::numbers::Numbers>(
-                parameters: &Self::Parameters<L>,
-                surface: usize,
-                t: L,
-                state: &Self::Row<L>,
-                rate: &Self::Row<L>,
-            ) -> ::core::result::Result<::core::option::Option<Self::Row<L>>, ::dalembert::Fault> {
-                let motion = &rate[#motion..];
-                #trace
-            }
-        }
+        over_numbers(&focus, &quote!(let motion = &rate[#motion..]; #trace))
     });
     emitted.collect()
+}
+
+/// Both functions of `Variational`, with these bodies.
+pub(super) fn over_numbers(focus: &TokenStream, trace: &TokenStream) -> TokenStream {
+    let result = quote! {
+        ::core::result::Result<::core::option::Option<Self::Row<L>>, ::dalembert::Fault>
+    };
+    quote! {
+        fn focus<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> #result {
+            #focus
+        }
+
+        fn trace<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+            rate: &Self::Row<L>,
+        ) -> #result {
+            #trace
+        }
+    }
 }
 
 /// `to` with what a surface's function adds to its momenta or quasi-velocities.

@@ -135,7 +135,7 @@ impl Point {
 }
 
 /// A model with values for its parameters. States are those of its global form, positions and momenta.
-pub(crate) trait AnyModel {
+pub(crate) trait AnyModel: Runs {
     fn description(&self) -> Description;
     /// The names of the inputs, whose values are the parameters after those of the description.
     fn inputs(&self) -> &'static [&'static str];
@@ -161,13 +161,17 @@ pub(crate) trait AnyModel {
     fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64>;
     /// The state after an impulse on its momenta.
     fn kick(&self, state: &[f64], impulse: &[f64]) -> Vec<f64>;
+}
+
+/// The runs of a model with values for its parameters.
+pub(crate) trait Runs {
     fn simulate(
         &self,
         origin: &Origin,
         settings: &Settings,
         watch: &mut dyn Watch,
     ) -> Result<Ending, String>;
-    /// As [`AnyModel::simulate`], with Taylor series, of several runs at once; `looks_inside` where watches look at
+    /// As [`Runs::simulate`], with Taylor series, of several runs at once; `looks_inside` where watches look at
     /// states inside steps.
     fn simulate_abreast(
         &self,
@@ -389,7 +393,9 @@ impl<M: Model> AnyModel for Typed<M> {
         self.0.global().kick(&mut state, 1.0, &vector(impulse));
         StateVector::as_slice(&state).to_vec()
     }
+}
 
+impl<M: Model> Runs for Typed<M> {
     fn simulate(
         &self,
         origin: &Origin,

@@ -107,8 +107,8 @@ impl Long<'_> {
             windows: 100,
             quantity: |t: f64, state: &S::State| system.energy(t, state).unwrap_or(f64::NAN),
         };
+        let name = format!("{}, {}, step {h}", S::DESCRIPTION.name, stepper.name());
         let series = follow(system, state, (stepper, effects), request).expect("a start");
-        let name = format!("{}, {}, step {h}", S::DESCRIPTION.name, Step::NAME);
         self.report.class(&series.outcome, "done");
         self.report
             .equal(format!("{name}: steps"), series.steps, self.steps);

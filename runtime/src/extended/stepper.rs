@@ -104,7 +104,9 @@ fn round_into<const PARTS: usize>(doubles: &mut [f64], numbers: &[Extended<PARTS
 }
 
 impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys, PARTS> {
-    const NAME: &'static str = "extended";
+    fn name(&self) -> &'static str {
+        "extended"
+    }
 
     fn tolerance(&self) -> Tolerance {
         Tolerance::LEAST

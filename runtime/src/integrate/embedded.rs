@@ -60,7 +60,7 @@ impl<S: StateVector> Span<'_, S> {
 
 /// The coefficients of an embedded pair, and what is computed from them. Implemented by the schemes here.
 pub trait Scheme {
-    /// See [`Stepper::NAME`].
+    /// See [`Stepper::name`].
     const NAME: &'static str;
     /// Order of the solution at the ends of steps.
     const ORDER: usize;
@@ -250,7 +250,9 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
 }
 
 impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
-    const NAME: &'static str = M::NAME;
+    fn name(&self) -> &'static str {
+        M::NAME
+    }
 
     fn tolerance(&self) -> Tolerance {
         self.tolerance

@@ -30,7 +30,7 @@ const PARTS: u32 = 1 << 10;
 
 /// A method of fixed step: its names and orders. Implemented by the methods here.
 pub trait Method {
-    /// See [`Stepper::NAME`].
+    /// See [`Stepper::name`].
     const NAME: &'static str;
     /// Order of the solution at the ends of steps.
     const ORDER: usize;
@@ -283,7 +283,9 @@ fn check_finite<S: StateVector>(state: &S, rate: &S) -> Result<(), StepFailure> 
 }
 
 impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
-    const NAME: &'static str = M::NAME;
+    fn name(&self) -> &'static str {
+        M::NAME
+    }
 
     fn tolerance(&self) -> Tolerance {
         self.tolerance

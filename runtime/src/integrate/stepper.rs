@@ -15,7 +15,7 @@ use crate::error::Fault;
 /// [`Stepper::prepare_dense`].
 pub trait Stepper<F: VectorField> {
     /// Name, as the command line writes it.
-    const NAME: &'static str;
+    fn name(&self) -> &'static str;
 
     /// The tolerance it was made with.
     fn tolerance(&self) -> Tolerance;

@@ -7,6 +7,7 @@ use super::Whole;
 use super::contract::emit_entries;
 use super::impacting::{is_rough, passage};
 use crate::emit::function::Body;
+use crate::emit::instantaneous::over_numbers;
 use crate::emit::variational::{Lengths, emit_counts};
 use crate::emit::{Context, attributes};
 use crate::model::Mode;
@@ -201,26 +202,7 @@ fn emit_instantaneous(whole: &Whole<'_>) -> TokenStream {
         whole,
         |_, own| quote!(::dalembert::__private::modes::trace_of::<#own, L, _>(parameters, surface, t, state, rate)),
     );
-    quote! {
-        fn focus<L: ::dalembert::numbers::Numbers>(
-            parameters: &Self::Parameters<L>,
-            surface: usize,
-            t: L,
-            state: &Self::Row<L>,
-        ) -> ::core::result::Result<::core::option::Option<Self::Row<L>>, ::dalembert::Fault> {
-            #focus
-        }
-
-        fn trace<L: ::dalembert::numbers::Numbers>(
-            parameters: &Self::Parameters<L>,
-            surface: usize,
-            t: L,
-            state: &Self::Row<L>,
-            rate: &Self::Row<L>,
-        ) -> ::core::result::Result<::core::option::Option<Self::Row<L>>, ::dalembert::Fault> {
-            #trace
-        }
-    }
+    over_numbers(&focus, &trace)
 }
 
 /// What positions and velocities do not tell without a mode.

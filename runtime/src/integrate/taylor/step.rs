@@ -14,7 +14,9 @@ use crate::numbers::Row;
 use crate::state::StateVector;
 
 impl<F: TaylorField> Stepper<F> for Taylor<F> {
-    const NAME: &'static str = TAYLOR;
+    fn name(&self) -> &'static str {
+        TAYLOR
+    }
 
     fn tolerance(&self) -> Tolerance {
         self.tolerance
