@@ -3,8 +3,8 @@
 use dalembert::contract::Variational;
 use dalembert::variations::Undefined;
 use dalembert::{
-    Described, Law, Observer, Policies, Rest, Scene, SceneEffects, Simulation, StateVector, System,
-    Tangent, Taylor, Tolerance, Variations,
+    Described, Dop853, Law, Observer, Policies, Rest, Scene, SceneEffects, Simulation, StateVector,
+    Stepper, System, Tangent, Taylor, Tolerance, Variations,
 };
 use dalembert_tests::differences::{self, Turns};
 
@@ -41,6 +41,17 @@ fn end<S: Scene + System + dalembert::TaylorField>(
     seen: &mut impl Observer<S>,
 ) -> (S::State, u64) {
     let stepper = Taylor::new(Tolerance::new(1e-15).expect("a tolerance"));
+    end_of(system, start, stepper, law, until, seen)
+}
+
+fn end_of<S: Scene + System>(
+    system: &S,
+    start: &S::State,
+    stepper: impl Stepper<S>,
+    law: Option<Law>,
+    until: f64,
+    seen: &mut impl Observer<S>,
+) -> (S::State, u64) {
     let mut effects = system.effects();
     effects.set_projection(false);
     effects.set_policies(Policies {
@@ -92,6 +103,27 @@ fn motion_along_a_surface_has_its_derivative() {
     let (hill, start) = on_hill([0.1, 0.3], [0.7, 0.2]);
     check_differences(hill, start, None, 1.5, [1, 0]);
     check_differences(hill, start, None, 4.0, [1, 1]);
+}
+
+#[test]
+fn loose_runs_have_derivatives_as_good_as_they_are() {
+    let (hill, start) = on_hill([0.1, 0.3], [0.7, 0.2]);
+    let columns = |tolerance: f64| {
+        let mut columns = [0, 1, 2, 3].map(Tangent::of_component);
+        let mut variations = Variations::new(&hill, &mut columns);
+        let stepper = Dop853::new(Tolerance::new(tolerance).expect("a tolerance"));
+        end_of(&hill, &start, stepper, None, 4.0, &mut variations);
+        variations.tangents().expect("derivatives");
+        columns.map(|column| column.state)
+    };
+    let sharp = columns(1e-13);
+    for tolerance in [1e-5, 1e-8] {
+        for (loose, sharp) in columns(tolerance).iter().zip(&sharp) {
+            let error = (loose - sharp).amax() / sharp.amax();
+            println!("{tolerance:e}: {error:e}");
+            assert!(error <= 0.1 * tolerance, "{tolerance:e}: {error:e}");
+        }
+    }
 }
 
 #[test]

@@ -4,7 +4,6 @@
 
 use super::flow::{Flow, dual_parameters, dual_state, take_slopes};
 use super::held::{Holder, sum};
-use super::transition::LAWFUL;
 use super::{DIRECTIONS, Dual, Tangent, Undefined};
 use crate::contract::Variational;
 use crate::integrate::controller::least_step;
@@ -19,6 +18,10 @@ const LEAST: usize = 3;
 
 /// What the last two combinations may differ by, in units of what varies: well above the rounding errors of the sums.
 const LAST: f64 = 512.0 * f64::EPSILON;
+
+/// How far the end of a stretch may be from where the run has come, in units of its largest component: what an integrator errs
+/// by in a step is smaller at any useful tolerance, what a force that is not known does is not.
+const KNOWN: f64 = 1e-2;
 
 impl<Sys: Variational> Flow<Sys> {
     /// Carries some directions along held motion, from a state at the first of two times to the other, where it is `end`.
@@ -55,7 +58,7 @@ impl<Sys: Variational> Flow<Sys> {
             .fold(0.0, |size: f64, own| size.max(own.abs()));
         let mut pairs = state.as_slice().iter().zip(end.as_slice());
         // Something else holds it as well.
-        if !pairs.all(|(own, end)| (own.value - end).abs() <= LAWFUL * size) {
+        if !pairs.all(|(own, end)| (own.value - end).abs() <= KNOWN * size) {
             return Err(holder.undefined(until));
         }
         take_slopes(&state, tangents);

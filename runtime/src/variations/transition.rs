@@ -13,7 +13,7 @@ use crate::state::StateVector;
 
 /// How far the state after a transition may be from what its law makes of the state before, in units of the largest
 /// component before and after: corrections of rounding errors are far smaller, anything else that happens there is not.
-pub(super) const LAWFUL: f64 = 1e-6;
+const LAWFUL: f64 = 1e-6;
 
 /// Transitions at one moment that are carried across: more than one are two modes that pass the motion to and fro.
 const SEQUENCE: usize = 8;
