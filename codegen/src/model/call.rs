@@ -174,11 +174,38 @@ impl<'s> Resolver<'s> {
             );
         }
         let directions = self.directions(&name.text, expr);
+        if let (true, [argument]) = (directions.is_empty(), arguments)
+            && !self.mentions_local(argument, scope)
+        {
+            let text = format!(
+                "`{}` of `{argument}`, which depends neither on coordinates nor on `t`",
+                name.text
+            );
+            return self.refuse(at, text, "parameters, inputs and numbers have no rate");
+        }
         let rate = self.pool.derivative_along(expr, &directions);
         Some(Value {
             expr: rate,
             level: Some(expr),
         })
+    }
+
+    /// Looks for a value that differs from case to case: some may be points that happen to be fixed.
+    fn mentions_local(&self, scalar: &Scalar, scope: &Scope) -> bool {
+        let within = |part: &Scalar| self.mentions_local(part, scope);
+        match &scalar.kind {
+            ScalarKind::Number(..) => false,
+            ScalarKind::Name(name) => scope.get(name).is_some(),
+            ScalarKind::Member(family, index) => {
+                let meaning = self.symbols.names.get(&family.text);
+                !matches!(meaning, Some((Meaning::Parameters(..), _))) && within(index)
+            }
+            ScalarKind::Negative(inner) | ScalarKind::SumOver(_, inner) => within(inner),
+            ScalarKind::Sum(terms) => terms.iter().any(|(_, term)| within(term)),
+            ScalarKind::Product(factors) => factors.iter().any(|(_, factor)| within(factor)),
+            ScalarKind::Power(base, _) => within(base),
+            ScalarKind::Call(_, arguments) => arguments.iter().any(within),
+        }
     }
 
     /// The symbols that `expr` depends on and that change, each with its rate or differential.

@@ -22,6 +22,7 @@ mod passages;
 mod regular;
 mod resets;
 mod scenes;
+mod start;
 mod surfaces;
 mod targets;
 mod transitions;
@@ -150,6 +151,7 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
     instantaneous::check_independent(resolver, &parts.surfaces, &parts.constraints);
     surfaces::check_distinct(resolver, &parts.surfaces);
+    start::check(resolver, &parts.initial, &parts.surfaces);
     resolver.within_budget(resolver.spec.name.at);
 }
 

@@ -37,6 +37,14 @@ fn diagnostics(source: &str) -> Diagnostics {
     }
 }
 
+#[track_caller]
+fn accepted(source: &str) {
+    let spec = spec::parse(source.parse().unwrap()).unwrap_or_else(|errors| panic!("{errors:?}"));
+    if let Err(errors) = check(&spec) {
+        panic!("{source}: {:?}", reported(source, &errors));
+    }
+}
+
 /// Exactly one error, with this message, at the marked place.
 #[track_caller]
 fn refused(source: &str, message: &str) {

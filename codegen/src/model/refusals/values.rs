@@ -1,6 +1,6 @@
 //! Parameters, initial values, views and outputs that are refused.
 
-use super::{refused, refused_in};
+use super::{accepted, particle, refused, refused_in};
 
 #[test]
 fn parameters_satisfy_their_assumptions() {
@@ -58,6 +58,48 @@ fn initial_values_are_given_for_coordinates() {
     let chart =
         "P { coordinates { u in (0, pi); } lagrangian = dot(u)^2; initial { u = «2*pi»; } }";
     refused(chart, "`2*pi` lies outside of the interval of `u`");
+}
+
+#[test]
+fn a_start_lies_in_front_of_every_wall() {
+    let message = "the start lies behind the surface `w`: its gap is -3";
+    refused_in("impacts { w: x >= 1; } initial { x = «-2»; }", message);
+    refused_in("impacts { w: x >= y; } initial { y = «3»; }", message);
+    refused_in(
+        "impacts { w: y >= x + 2*k; } initial { y = 1; x = «2*k»; }",
+        message,
+    );
+    refused_in(
+        "impacts { w: x >= 1 when y > 0; } initial { y = 1; x = «-2*m»; }",
+        message,
+    );
+    let on_the_wall = "impacts { w: 10*x >= 3; } initial { x = 3/10; }";
+    let beside = "impacts { w: x >= 1 when y > 0; } initial { y = -1; x = -2; }";
+    let undeclared = "impacts { w: x >= 1; } initial { y = 1; }";
+    for rest in [on_the_wall, beside, undeclared] {
+        accepted(&particle(rest));
+    }
+}
+
+#[test]
+fn rates_are_taken_of_what_changes() {
+    let message = "which depends neither on coordinates nor on `t`\nhelp: parameters, inputs and numbers have no rate";
+    refused_in("outputs { o: «dot(m)»; }", message);
+    refused_in("constraints { c: d(x) = «d(k*m)»; }", message);
+    refused_in("let l = 2*m; outputs { o: «dot(l)»; }", message);
+    refused_in("forces { f: (1 + «dot(3)»)*d(x); }", message);
+    let of_families = |term: &str| {
+        format!(
+            "P {{ coordinates {{ x[2]; }} parameters {{ l[2]; }} let X[0] = l[1]; let X[i in 1..=2] = x[i];
+                lagrangian = sum(i in 1..=2: {term}*dot(x[i])); }}"
+        )
+    };
+    refused(&of_families("(dot(x[i]) + «dot(l[i])»)"), message);
+    accepted(&of_families("(dot(X[i]) + dot(X[i - 1]))"));
+    accepted(&particle("outputs { o: dot(t) + dot(m*x); }"));
+    accepted(&particle(
+        "let rate(u) = dot(u); outputs { o: rate(x) + rate(m); }",
+    ));
 }
 
 #[test]
