@@ -21,6 +21,35 @@ pub(super) fn check_density(
     model: &mut Model,
     problem: &Problem,
     dynamics: &Dynamics,
+    stated: (ExprId, &str),
+    seed: u64,
+) -> Verdict {
+    let verdict = check_balance(model, problem, dynamics, stated, seed);
+    if !matches!(verdict, Verdict::Proved(_)) {
+        return verdict;
+    }
+    // Where a factor is 0 nothing is claimed.
+    let value = stated.0;
+    let factors: Vec<ExprId> = match model.pool.node(value) {
+        Node::Product(factors) => factors.iter().map(|(base, _)| *base).collect(),
+        _ => vec![value],
+    };
+    let place = factors
+        .into_iter()
+        .find_map(|factor| jump(model, dynamics, factor, seed));
+    match place {
+        Some(place) => Verdict::Undecided(format!(
+            "the balance holds wherever it can be written down, but the density may jump {place}"
+        )),
+        None => verdict,
+    }
+}
+
+/// The verdict on the rate of a density where it has one.
+pub(super) fn check_balance(
+    model: &mut Model,
+    problem: &Problem,
+    dynamics: &Dynamics,
     (value, written): (ExprId, &str),
     seed: u64,
 ) -> Verdict {
@@ -43,24 +72,7 @@ pub(super) fn check_density(
             String::new(),
         ],
     };
-    let verdict = evidence(model, &balance, seed).verdict(true, wording, seed);
-    if !matches!(verdict, Verdict::Proved(_)) {
-        return verdict;
-    }
-    // Where a factor is 0 nothing is claimed.
-    let factors: Vec<ExprId> = match model.pool.node(value) {
-        Node::Product(factors) => factors.iter().map(|(base, _)| *base).collect(),
-        _ => vec![value],
-    };
-    let place = factors
-        .into_iter()
-        .find_map(|factor| jump(model, dynamics, factor, seed));
-    match place {
-        Some(place) => Verdict::Undecided(format!(
-            "the balance holds wherever it can be written down, but the density may jump {place}"
-        )),
-        None => verdict,
-    }
+    evidence(model, &balance, seed).verdict(true, wording, seed)
 }
 
 /// `d ln(e)/dt + div`

@@ -116,6 +116,21 @@ impl Dynamics {
         }
     }
 
+    /// The equations with parameters replaced.
+    pub(super) fn substituted(&self, pool: &mut Pool, replacements: &[(SymbolId, ExprId)]) -> Self {
+        let mut replaced = |own: &Rows| {
+            let rows = own.rows.iter();
+            let rows = rows.map(|row| pool.substitute_all(row, replacements));
+            let rows = rows.collect();
+            Rows::new(pool, rows)
+        };
+        Self {
+            forms: replaced(&self.forms),
+            motion: replaced(&self.motion),
+            ..self.clone()
+        }
+    }
+
     /// All expressions that are evaluated.
     pub(super) fn roots(&self) -> Vec<ExprId> {
         let rows = self.forms.rows.iter().chain(&self.motion.rows);

@@ -2,10 +2,12 @@
 
 use dalembert_expr::{ExprId, Rational, SymbolId};
 
+use super::defaults::{Defaults, existence_at_defaults};
 use super::dynamics::Dynamics;
 use super::exactness::{Exactness, decide};
 use super::existence::{self, Decision};
 use super::finding::{self, Finding, Verdict};
+use super::global::Global;
 use super::problem::Problem;
 use super::undecided::Undecided;
 use super::volume::Volume;
@@ -95,8 +97,12 @@ pub fn examine_volume(
         return (Verdict::Undecided(reason), Vec::new(), None);
     }
     let (verdict, remarks) = examiner.existence(Existence::Global);
+    // A density for indeterminate parameters alone is none of the declared model.
+    let is_special = |own: &Exactness| {
+        !matches!(verdict, Verdict::Proved(_)) && own.global == Some(Global::Exists)
+    };
     let volume = match &examiner.decision {
-        Some(Ok(exactness)) => Volume::found(
+        Some(Ok(exactness)) if !is_special(exactness) => Volume::found(
             examiner.model,
             derivation,
             &examiner.problem,
@@ -178,9 +184,18 @@ impl<'e> Examiner<'e> {
             None => decide(self.model, &self.problem, self.seed),
         };
         let (problem, seed) = (&self.problem, self.seed);
-        let verdict = existence::check_existence(self.model, problem, &decision, existence, seed);
+        let generic = existence::check_existence(self.model, problem, &decision, existence, seed);
+        let is_generic = matches!(generic, Verdict::Proved(_));
+        let verdict = match &decision {
+            Ok(exactness) if is_generic => {
+                let claim = (existence, generic);
+                existence_at_defaults(self.model, problem, exactness, claim, seed)
+            }
+            _ => generic,
+        };
+        let is_special = is_generic && !matches!(verdict, Verdict::Proved(_));
         let remarks = match &decision {
-            Ok(exactness) if !matches!(verdict, Verdict::Undecided(_)) => {
+            Ok(exactness) if !is_special && !matches!(verdict, Verdict::Undecided(_)) => {
                 self.volume_remarks(exactness)
             }
             _ => Vec::new(),
@@ -192,7 +207,8 @@ impl<'e> Examiner<'e> {
     fn density(&mut self, value: ExprId, written: &str) -> (Verdict, Vec<String>) {
         let stated = (self.explicit(value), written);
         let (problem, dynamics) = (&self.problem, &self.dynamics);
-        let verdict = density::check_density(self.model, problem, dynamics, stated, self.seed);
+        let generic = density::check_density(self.model, problem, dynamics, stated, self.seed);
+        let verdict = self.stated_at_defaults(stated, generic);
         let remarks = match verdict {
             Verdict::Proved(_) => self.impacts(Some(stated)),
             _ => Vec::new(),
@@ -209,11 +225,68 @@ impl<'e> Examiner<'e> {
         let quantity = (self.explicit(value), written);
         let (derivation, dynamics, seed) = (self.derivation, &self.dynamics, self.seed);
         match under {
-            None => conserved::check_conserved(self.model, dynamics, quantity, holds, seed),
+            None => {
+                let generic =
+                    conserved::check_conserved(self.model, dynamics, quantity, holds, seed);
+                match holds {
+                    true => generic,
+                    false => self.changing_at_defaults(quantity, generic),
+                }
+            }
             Some(surface) => impact::check_conserved_under(
                 self.model, derivation, dynamics, surface, quantity, holds, seed,
             ),
         }
+    }
+
+    /// The verdict on a stated density, from the one for indeterminate parameters.
+    fn stated_at_defaults(
+        &mut self,
+        (value, written): (ExprId, &str),
+        generic: Verdict,
+    ) -> Verdict {
+        let Some((defaults, value, dynamics)) = self.at_defaults(value, &generic) else {
+            return generic;
+        };
+        let pool = &mut self.model.pool;
+        let problem = self.problem.substituted(pool, defaults.replacements());
+        let stated = (value, written);
+        let declared = density::check_balance(self.model, &problem, &dynamics, stated, self.seed);
+        defaults.confirmed(generic, declared)
+    }
+
+    /// The verdict on a quantity that changes for indeterminate parameters.
+    fn changing_at_defaults(
+        &mut self,
+        (value, written): (ExprId, &str),
+        generic: Verdict,
+    ) -> Verdict {
+        let Some((defaults, value, dynamics)) = self.at_defaults(value, &generic) else {
+            return generic;
+        };
+        let quantity = (value, written);
+        let declared =
+            conserved::check_conserved(self.model, &dynamics, quantity, false, self.seed);
+        defaults.confirmed(generic, declared)
+    }
+
+    /// An expression and the motion with the declared values of parameters; `None` if there are none, or nothing is
+    /// proved.
+    fn at_defaults(
+        &mut self,
+        value: ExprId,
+        generic: &Verdict,
+    ) -> Option<(Defaults, ExprId, Dynamics)> {
+        let mut roots = self.dynamics.roots();
+        roots.push(value);
+        let defaults = Defaults::of(self.model, &roots);
+        if defaults.is_empty() || !matches!(generic, Verdict::Proved(_)) {
+            return None;
+        }
+        let pool = &mut self.model.pool;
+        let value = pool.substitute(value, defaults.replacements());
+        let dynamics = self.dynamics.substituted(pool, defaults.replacements());
+        Some((defaults, value, dynamics))
     }
 
     /// What impacts do to the volume where there is one, and what there is instead where there is none.

@@ -10,6 +10,7 @@
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
 //! | `alternatives.rs` | both of these in words |
+//! | `defaults.rs` | claims at the declared values of parameters |
 //! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
 //! | `evidence.rs`, `continuity.rs` | does something vanish at all states? may it jump all the same? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
@@ -29,6 +30,7 @@ mod conditions;
 mod conserved;
 mod continuity;
 mod darboux;
+mod defaults;
 mod density;
 pub mod dynamics;
 mod elimination;

@@ -23,6 +23,17 @@ pub enum Term {
     Plain(ExprId),
 }
 
+impl Term {
+    /// The term with parameters replaced.
+    pub(super) fn substituted(self, pool: &mut Pool, replacements: &[(SymbolId, ExprId)]) -> Self {
+        match self {
+            Self::Logarithm(f) => Self::Logarithm(pool.substitute(f, replacements)),
+            Self::Plain(f) => Self::Plain(pool.substitute(f, replacements)),
+            determinant => determinant,
+        }
+    }
+}
+
 /// The logarithm of a density: a linear combination of terms with coefficients free of coordinates.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Potential {

@@ -67,14 +67,7 @@ impl Problem {
             variables: Vec::new(),
             coordinates,
         };
-        let roots = problem.roots();
-        let occurs = |symbol: SymbolId| roots.iter().any(|id| model.pool.depends_on(*id, symbol));
-        if !occurs(model.time) {
-            problem.symbols.pop();
-        }
-        problem.variables = (0..problem.symbols.len())
-            .filter(|i| occurs(problem.symbols[*i]))
-            .collect();
+        problem.settle(&model.pool);
         problem
     }
 
@@ -89,7 +82,20 @@ impl Problem {
             friction.at_rest.iter_mut().for_each(&mut replace);
             friction.slope.iter_mut().flatten().for_each(&mut replace);
         }
+        problem.settle(pool);
         problem
+    }
+
+    /// Leaves out time where it does not occur, and finds the variables.
+    fn settle(&mut self, pool: &Pool) {
+        let roots = self.roots();
+        let occurs = |symbol: &SymbolId| roots.iter().any(|id| pool.depends_on(*id, *symbol));
+        if !self.symbols.get(self.coordinates).is_some_and(occurs) {
+            self.symbols.truncate(self.coordinates);
+        }
+        self.variables = (0..self.symbols.len())
+            .filter(|i| occurs(&self.symbols[*i]))
+            .collect();
     }
 
     /// Whether the criterion covers the forces: a configuration density knows those that are quadratic in the velocities.

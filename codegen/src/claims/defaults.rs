@@ -1,0 +1,208 @@
+//! Claims at the declared values of parameters: what holds for indeterminate parameters may fail at special ones.
+//!
+//! A default is an exact number, so that the decision is taken once more with it: the claim is about the model that was
+//! declared. Of other special values nothing is said here.
+
+use dalembert_expr::{ExprId, Pool, SymbolId};
+
+use super::exactness::{Exactness, decide, sample_points, screen};
+use super::existence::{Decision, check_existence};
+use super::finding::Verdict;
+use super::fit::certify;
+use super::potential::Potential;
+use super::problem::Problem;
+use crate::model::{Existence, Model};
+
+/// Singular points after which a search for a regular one ends.
+const ATTEMPTS: usize = 128;
+
+/// Parameters and their declared values.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Defaults {
+    values: Vec<(SymbolId, ExprId)>,
+    text: String,
+}
+
+impl Defaults {
+    /// Those of the parameters on which `roots` depend, without inputs.
+    pub(super) fn of(model: &Model, roots: &[ExprId]) -> Self {
+        let mut values = Vec::new();
+        let mut texts = Vec::new();
+        for parameter in model.parameters.iter().filter(|own| !own.is_input) {
+            let occurs = |id: &ExprId| model.pool.depends_on(*id, parameter.symbol);
+            let Some(value) = parameter.default.filter(|_| roots.iter().any(occurs)) else {
+                continue;
+            };
+            texts.push(format!(
+                "{} = {}",
+                parameter.name.display,
+                model.pool.text(value)
+            ));
+            values.push((parameter.symbol, value));
+        }
+        Self {
+            values,
+            text: texts.join(", "),
+        }
+    }
+
+    /// Whether no parameter has one.
+    pub(super) fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// Parameters and what replaces them.
+    pub(super) fn replacements(&self) -> &[(SymbolId, ExprId)] {
+        &self.values
+    }
+
+    /// The verdict on a claim that is proved for indeterminate parameters, from the one at the defaults.
+    pub(super) fn confirmed(&self, generic: Verdict, declared: Verdict) -> Verdict {
+        let place = format!(
+            "it holds for indeterminate parameters; at the declared defaults {},",
+            self.text
+        );
+        match declared {
+            Verdict::Proved(_) => generic,
+            Verdict::Refuted(mut witness) => {
+                witness.reason = format!("{place} {}", witness.reason);
+                Verdict::Refuted(witness)
+            }
+            Verdict::Undecided(reason) => Verdict::Undecided(format!("{place} {reason}")),
+        }
+    }
+}
+
+/// The verdict on a claim of existence that is proved for indeterminate parameters.
+pub(super) fn existence_at_defaults(
+    model: &mut Model,
+    problem: &Problem,
+    exactness: &Exactness,
+    (claimed, generic): (Existence, Verdict),
+    seed: u64,
+) -> Verdict {
+    let defaults = Defaults::of(model, &problem.roots());
+    if defaults.is_empty() {
+        return generic;
+    }
+    let declared = problem.substituted(&mut model.pool, defaults.replacements());
+    if is_evident(model, &declared, exactness, (claimed, &defaults), seed) {
+        return generic;
+    }
+    let decision: Decision = decide(model, &declared, seed);
+    let verdict = check_existence(model, &declared, &decision, claimed, seed);
+    defaults.confirmed(generic, verdict)
+}
+
+/// Whether an obstruction is left at the defaults, or the closed form is one there too.
+fn is_evident(
+    model: &mut Model,
+    declared: &Problem,
+    exactness: &Exactness,
+    (claimed, defaults): (Existence, &Defaults),
+    seed: u64,
+) -> bool {
+    match (claimed, &exactness.density) {
+        (Existence::None, _) => is_obstructed(&model.pool, declared, seed),
+        (Existence::Global, Some((potential, _))) => {
+            let potential = at(&mut model.pool, potential, defaults);
+            certify(&model.pool, declared, &potential, seed).is_ok_and(|own| own.is_some())
+        }
+        _ => false,
+    }
+}
+
+fn is_obstructed(pool: &Pool, declared: &Problem, seed: u64) -> bool {
+    let roots = declared.roots();
+    let profile = pool.profile_of(&roots);
+    let Ok(mut points) = sample_points(pool, &roots, &profile, seed) else {
+        return false;
+    };
+    screen(pool, declared, &mut points, ATTEMPTS, &[]) == Some(false)
+}
+
+/// A closed form with the defaults in its coefficients; its terms are those of the problem with parameters replaced.
+fn at(pool: &mut Pool, potential: &Potential, defaults: &Defaults) -> Potential {
+    let terms = potential.terms.iter().map(|(coefficient, term)| {
+        let coefficient = pool.substitute(*coefficient, defaults.replacements());
+        (coefficient, term.substituted(pool, defaults.replacements()))
+    });
+    Potential {
+        terms: terms.collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::try_expand;
+
+    const PARTICLE: &str = "pub Particle {
+        coordinates { x; y; }
+        parameters { k >= 0 = DEFAULT; c > 0 = 1; }
+        lagrangian = dot(x)^2/2 + dot(y)^2/2;
+        constraints { belt: dot(x) = k; }
+        forces { drag: -c*dot(y)*d(y); }
+        claims { CLAIM; }
+    }";
+
+    /// The messages of a declaration that is refused; empty if it is accepted.
+    fn messages(declaration: &str) -> String {
+        let Err(refused) = try_expand(declaration.parse().expect("tokens")) else {
+            return String::new();
+        };
+        refused.iter().map(|own| own.message().to_owned()).collect()
+    }
+
+    fn particle(default: &str, claim: &str) -> String {
+        let declaration = PARTICLE.replace("DEFAULT", default);
+        messages(&declaration.replace("CLAIM", claim))
+    }
+
+    #[test]
+    fn a_density_that_has_a_pole_at_the_default_is_refused() {
+        assert_eq!(particle("1/3", "density: exact"), "");
+        let message = particle("0", "density: exact");
+        assert!(message.contains("`density: exact` is refuted"), "{message}");
+        assert!(message.contains("at the declared defaults"), "{message}");
+        assert!(message.contains("k = 0"), "{message}");
+        assert!(message.contains("delta"), "{message}");
+    }
+
+    #[test]
+    fn a_stated_density_without_value_at_the_default_is_no_theorem() {
+        assert_eq!(particle("1/3", "density = exp(c*x/k)"), "");
+        let message = particle("0", "density = exp(c*x/k)");
+        assert!(message.contains("at the declared defaults"), "{message}");
+    }
+
+    #[test]
+    fn an_obstruction_that_vanishes_at_the_defaults_is_refused() {
+        let sleigh = "pub Sleigh {
+            coordinates { x; y; theta: angle; }
+            parameters { m > 0 = 1; I > 0 = 1; a = 1/2; b = DEFAULT; }
+            let slip = -dot(x)*sin(theta) + dot(y)*cos(theta);
+            lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (I + m*(a+b)^2)/2*dot(theta)^2 + (a+b)*m*dot(theta)*slip;
+            constraints { blade: slip = 0; }
+            claims { density: none; }
+        }";
+        assert_eq!(messages(&sleigh.replace("DEFAULT", "1/3")), "");
+        let message = messages(&sleigh.replace("DEFAULT", "-1/2"));
+        assert!(message.contains("`density: none` is refuted"), "{message}");
+        assert!(message.contains("a = 1/2, b = -1/2"), "{message}");
+    }
+
+    #[test]
+    fn a_quantity_that_changes_for_other_parameters_alone_does_not_change() {
+        let spring = "pub Spring {
+            coordinates { x; }
+            parameters { k >= 0 = DEFAULT; }
+            lagrangian = dot(x)^2/2 - k*x^2/2;
+            claims { not conserved: dot(x); }
+        }";
+        assert_eq!(messages(&spring.replace("DEFAULT", "2")), "");
+        let message = messages(&spring.replace("DEFAULT", "0"));
+        let refuted = "`not conserved: dot(x)` is refuted";
+        assert!(message.contains(refuted), "{message}");
+        assert!(message.contains("k = 0"), "{message}");
+    }
+}
