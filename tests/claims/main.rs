@@ -6,7 +6,7 @@
 //! | `systems.rs`, `drift.rs`, `topology.rs`, `conditions.rs`, `momentum.rs` | existence on many systems |
 //! | `invariance.rs`, `atoms.rs` | what a verdict must not depend on; functions and their relations |
 //! | `visible.rs`, `contradicted.rs`, `impacts.rs` | claims of models, true ones and false ones; impacts |
-//! | `soundness.rs`, `soundness_models.rs` | nothing is proved by accident |
+//! | `soundness.rs`, `soundness_models.rs`, `proved_means_proved.rs` | nothing is proved by accident |
 //! | `volumes.rs`, `emitted_volumes.rs`, `singular_volumes.rs` | densities that are found, emitted, kept by the motion |
 
 mod atoms;
@@ -18,6 +18,7 @@ mod golden_verdicts;
 mod impacts;
 mod invariance;
 mod momentum;
+mod proved_means_proved;
 mod reference;
 mod singular_volumes;
 mod soundness;

@@ -12,7 +12,8 @@
 //! | `sign.rs` | what is known of signs and finiteness |
 //! | `diff.rs`, `subst.rs`, `eval.rs` | calculus and evaluation |
 //! | `taylor/` | truncated series, modulo a prime or in double precision |
-//! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and what it decides |
+//! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `branch.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and what it decides |
+//! | `interval.rs`, `enclose.rs` | certified ranges, and expressions that are never 0 |
 //! | `simplify.rs`, `expand.rs`, `print/` | presentation |
 //!
 //! ```
@@ -37,16 +38,19 @@
 // A test may stop at the first surprise.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod branch;
 mod call;
 mod construct;
 mod decimal;
 mod diff;
+mod enclose;
 mod eval;
 mod expand;
 mod field;
 #[cfg(test)]
 mod fixture;
 mod intern;
+mod interval;
 mod modular;
 mod node;
 mod point;
@@ -63,8 +67,11 @@ mod sum;
 mod taylor;
 mod zero;
 
+pub use branch::{Branches, Covered};
+pub use enclose::{Domain, Zeros};
 pub use field::Modulus;
 pub use intern::{WordHash, WordHasher};
+pub use interval::Interval;
 pub use node::{Assumption, ExprId, Function, Node, SymbolId};
 pub use point::{ModularFailure, ModularPoint};
 pub use pool::Pool;

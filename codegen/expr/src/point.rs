@@ -98,6 +98,42 @@ impl ModularPoint {
         }
     }
 
+    /// Replaces the value `x` of a symbol by `half_turns pi + x` or, reflected, `half_turns pi - x`; sines, cosines and, for
+    /// `-x`, exponentials of it are replaced to match.
+    ///
+    /// # Errors
+    /// If the angle is divided into parts of which half a turn has no multiple of `pi/12`.
+    pub fn move_symbol(
+        &mut self,
+        symbol: SymbolId,
+        assumption: Assumption,
+        half_turns: i64,
+        is_reflected: bool,
+    ) -> Result<(), ModularFailure> {
+        let field = self.modulus;
+        let x = self.value(symbol, assumption);
+        let (sine, cosine) = self.circle(x)?;
+        let (up, down) = self.exponential(x)?;
+        let units = 12 * half_turns;
+        if units % self.denominator != 0 {
+            return Err(ModularFailure::Denominator);
+        }
+        let turn = twelfths_of_pi(field, units / self.denominator)?;
+        let sign = |value| match is_reflected {
+            true => field.neg(value),
+            false => value,
+        };
+        let pi = field.mul(self.draw(Atom::Pi, 0, 0), field.integer(half_turns));
+        let image = field.add(pi, sign(x));
+        let angle = add_angles(field, turn, (sign(sine), cosine));
+        self.atoms.insert((Atom::Circle, image, 0), angle);
+        if half_turns == 0 && is_reflected {
+            self.atoms.insert((Atom::Exponential, image, 0), (down, up));
+        }
+        self.set(symbol, image);
+        Ok(())
+    }
+
     pub(crate) fn draw(&self, atom: Atom, first: u64, second: u64) -> u64 {
         draw(
             self.modulus,

@@ -2,13 +2,14 @@
 //!
 //! Values at random points modulo primes, see [`Pool::modular_eval`], decide:
 //! - 0 at enough points: [`Verdict::Proved`]. The chance of an accident is `degree / p` per point (Schwartz, Zippel),
-//!   kept below 2^-60 in all; where roots or absolute values occur, a zero may also be an accident of branches, with
-//!   chance 1/2 per point, and there are [`BRANCH_POINTS`] points;
+//!   kept below 2^-60 in all; where roots or absolute values occur, all their branches are gone through, see
+//!   [`crate::branch`], and if there are too many the answer is open;
 //! - not 0 at one point: [`Verdict::Refuted`] for rational functions of symbols, sin, cos, exp. No probability is
 //!   involved. With other functions the atoms may be related in ways the residues do not show, or the branches differ
 //!   from the real ones; then values in double precision must be clearly different from 0, else the answer is
 //!   [`Verdict::Undecided`].
 
+use crate::branch::Branches;
 use crate::field::{Modulus, mix};
 use crate::node::{Assumption, ExprId, SymbolId};
 use crate::point::ModularPoint;
@@ -26,8 +27,6 @@ pub enum Verdict {
     Undecided,
 }
 
-/// Points modulo primes at which an expression with roots must vanish.
-const BRANCH_POINTS: usize = 40;
 /// Points that are drawn before a value is given up, for each value wanted: every independent root refuses half of
 /// them. Small expressions get more, up to the second number.
 const DRAWS: (usize, usize) = (64, 1024);
@@ -35,8 +34,10 @@ const DRAWS: (usize, usize) = (64, 1024);
 const DRAW_WORK: usize = 1 << 18;
 /// Real points that are tried, wanted, and must be clearly different from 0.
 const REAL_DRAWS: u64 = 96;
-const REAL_POINTS: usize = 12;
+const REAL_POINTS: usize = 64;
 const REAL_WITNESSES: usize = 3;
+/// Scales of real points in turn.
+const SCALES: [f64; 6] = [1.0, 1.0, 1.0, 1.0, 8.0, 64.0];
 /// A value counts as different from 0 beyond this part of its size before cancellation: a factor 1e9 above rounding.
 pub(crate) const CLEAR: f64 = 1e-6;
 /// Expressions with more distinct parts are not tested.
@@ -59,7 +60,7 @@ impl Pool {
         match self.vanishes_modularly(id, &order, &profile) {
             Some(true) if profile.is_exact() => Verdict::Proved,
             Some(false) if profile.is_exact() => Verdict::Refuted,
-            // NOTE: also where all residues are 0, as branches may agree by accident.
+            // NOTE: also where all residues are 0: a last look at real values costs little.
             _ if self.is_clearly_nonzero(id) => Verdict::Refuted,
             Some(true) => Verdict::Proved,
             _ => Verdict::Undecided,
@@ -70,14 +71,18 @@ impl Pool {
     fn vanishes_modularly(&self, id: ExprId, order: &[ExprId], profile: &Profile) -> Option<bool> {
         let wanted = sample_count(profile);
         let mut points = SamplePoints::new(profile, order.len())?;
-        for _ in 0..wanted.unwrap_or(1) {
-            let value = points.find(|point| self.modular_eval_ordered(order, &[id], point).ok())?;
-            if value[0] != 0 {
-                return Some(false);
-            }
-        }
-        // A degree near the prime makes a zero worthless.
-        wanted.map(|_| true)
+        let branches = match profile.branches {
+            true => self.branches(&[id], &points),
+            false => Some(Branches::default()),
+        };
+        // A degree near the prime, or branches that are out of reach, make a zero worthless.
+        let is_worth = wanted.is_some() && branches.is_some();
+        let each = if is_worth { wanted? } else { 1 };
+        let covered = points.cover(self, &branches.unwrap_or_default(), each, |point| {
+            let value = self.modular_eval_ordered(order, &[id], point).ok()?;
+            Some(value[0] == 0)
+        })?;
+        (!covered.holds || is_worth).then_some(covered.holds)
     }
 
     /// Whether values at real points are different from 0 beyond any doubt of rounding.
@@ -97,13 +102,15 @@ impl Pool {
         witnesses == REAL_WITNESSES
     }
 
-    /// A value in `[-2, 2]` that satisfies the symbol's assumption; the same for the same seed.
+    /// A value that satisfies the symbol's assumption, in `[-2, 2]` for most seeds and further out for the others; the same
+    /// for the same seed.
     pub(crate) fn real_sample(&self, symbol: SymbolId, seed: u64) -> f64 {
         let word = mix(mix(seed + 1) ^ mix(symbol.index() as u64 + 1));
         let unit = ((word >> 11) as f64 + 0.5) / (1u64 << 53) as f64;
+        let scale = SCALES[(seed % SCALES.len() as u64) as usize];
         match self.symbol_assumption(symbol) {
-            Assumption::None | Assumption::NonZero => 4.0 * unit - 2.0,
-            Assumption::Positive | Assumption::NonNegative => 2.0 * unit,
+            Assumption::None | Assumption::NonZero => scale * (4.0 * unit - 2.0),
+            Assumption::Positive | Assumption::NonNegative => scale * 2.0 * unit,
         }
     }
 }
@@ -114,12 +121,7 @@ fn sample_count(profile: &Profile) -> Option<usize> {
     if bits < 10.0 {
         return None;
     }
-    let points = (60.0 / bits).ceil().max(3.0) as usize;
-    Some(if profile.branches {
-        points.max(BRANCH_POINTS)
-    } else {
-        points
-    })
+    Some((60.0 / bits).ceil().max(3.0) as usize)
 }
 
 /// Random points, each with the next prime.
@@ -283,6 +285,7 @@ mod tests {
                 "sqrt(x) - x",
                 "abs(x) - x",
                 "(sqrt(x^2) - x)*(sqrt(y^2) - y)",
+                "(abs(x) + x)*(abs(y) + y)*(abs(z) + z)",
                 "ln(m*l) - ln(m) + ln(l)",
                 "atan(x) - x",
                 "sin(k*t) - k*t",
@@ -305,6 +308,21 @@ mod tests {
                 "1/(x - x)",
             ],
         );
+    }
+
+    /// Ramps are 0 at half of all points each, their product almost everywhere.
+    #[test]
+    fn products_of_ramps_are_never_proved_to_be_zero() {
+        let ramp = |u: &str| format!("(abs({u}) + {u})");
+        let mut product = "1".to_owned();
+        for u in ["x - 5", "6 - x", "y - 5", "6 - y", "z", "1/2 - z"] {
+            product = format!("{product}*{}", ramp(u));
+            let mut fixture = Fixture::new();
+            let id = fixture.read(&product);
+            assert_ne!(fixture.pool.zero_test(id), Verdict::Proved, "{product}");
+            let twice = fixture.read(&format!("{product} + {product} - 2*{product}"));
+            assert_eq!(fixture.pool.zero_test(twice), Verdict::Proved, "{product}");
+        }
     }
 
     #[test]

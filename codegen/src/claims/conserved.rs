@@ -6,7 +6,7 @@ use super::continuity::{poles, possible_jump};
 use super::dynamics::{Dynamics, Motion, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::finding::Verdict;
-use super::sample::{ATTEMPTS, Sample, sample, uses};
+use super::sample::{ATTEMPTS, Sample, move_between_knots, sample, uses};
 use crate::model::Model;
 
 /// The verdict on `conserved: value` or `not conserved: value`; `written` is the value as written.
@@ -202,7 +202,8 @@ pub(super) fn state_on_d(
     roots: &[ExprId],
     attempt: usize,
 ) -> Option<(Sample, RealPoint)> {
-    let sample = sample(model, attempt, uses(&model.pool, roots));
+    let mut sample = sample(model, attempt, uses(&model.pool, roots));
+    move_between_knots(model, roots, attempt, &mut sample);
     with_velocities(model, dynamics, sample, attempt)
 }
 

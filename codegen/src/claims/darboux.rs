@@ -16,7 +16,7 @@ use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Modulus, Pool, Ration
 use super::ansatz::{combination, parameter_monomials};
 use super::dynamics::Dynamics;
 use super::elimination::{first_relation, independent_columns};
-use super::exactness::sample_points;
+use super::exactness::{branches_of, sample_points};
 use super::fit::{Certified, of_logarithm, reconstruct};
 use super::frame::frame;
 use super::problem::Problem;
@@ -33,9 +33,8 @@ const FEW: usize = 80;
 const UNKNOWNS: usize = 160;
 /// Equations beyond the number of unknowns.
 const SURPLUS: usize = 8;
-/// Fresh points at which a factor is certified; more where roots or absolute values occur, whose branches agree by
-/// accident with chance 1/2 per point.
-const CERTIFIED: (usize, usize) = (12, 40);
+/// Fresh points at which a factor is certified, and those of each branch where there are several.
+const CERTIFIED: (usize, usize) = (12, 3);
 /// Turns the seed of a search into that of a certificate: the fractional digits of the square root of 3.
 const FRESH: u64 = 0xbb67_ae85_84ca_a73b;
 
@@ -260,22 +259,24 @@ impl Search<'_> {
         let roots = self.roots(&[factor]);
         let profile = pool.profile_of(&roots);
         let mut points = sample_points(pool, &roots, &profile, self.seed ^ FRESH)?;
-        let count = if profile.branches {
-            CERTIFIED.1
-        } else {
+        let branches = branches_of(pool, &roots, &profile, &points).ok_or(Undecided::Branches)?;
+        let each = if branches.is_single() {
             CERTIFIED.0
+        } else {
+            CERTIFIED.1
         };
         let mut primes = Vec::new();
         let mut is_zero = true;
-        for _ in 0..count {
-            let seen = points
-                .find(|point| self.observation(pool, &[factor], point))
-                .ok_or(Undecided::Degenerate)?;
-            primes.push(seen.field.prime());
-            is_zero &= seen.terms[0][0] == 0;
-            if seen.row(shape) != Some(vec![0]) {
-                return Ok(None);
-            }
+        let covered = points
+            .cover(pool, &branches, each, |point| {
+                let seen = self.observation(pool, &[factor], point)?;
+                primes.push(seen.field.prime());
+                is_zero &= seen.terms[0][0] == 0;
+                Some(seen.row(shape) == Some(vec![0]))
+            })
+            .ok_or(Undecided::Degenerate)?;
+        if !covered.holds {
+            return Ok(None);
         }
         if is_zero {
             return Ok(None);
@@ -285,11 +286,10 @@ impl Search<'_> {
         // As for a density of the configuration; the motion adds as much as the demand.
         let sizes = (self.problem.coordinates + self.problem.forms.len()) as f64;
         let degree = 128.0 * sizes.powi(3) * profile.degree.max(1.0);
-        let accident = if profile.branches { 0.5 } else { 0.0 };
         Ok(Some(Certified {
-            points: count,
+            points: covered.points,
             primes,
-            error: (degree / 2f64.powi(60) + accident).powi(count as i32),
+            error: covered.error(&branches, degree / 2f64.powi(60)),
         }))
     }
 }

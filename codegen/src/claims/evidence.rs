@@ -1,18 +1,18 @@
 //! Does something vanish at all states? What residues at random states and values at real states say.
 
-use dalembert_expr::{ExpansionPoint, ExprId, ModularPoint, RealPoint};
+use dalembert_expr::{Branches, Covered, ExpansionPoint, ExprId, ModularPoint, Profile, RealPoint};
 
 use super::dynamics::Number;
-use super::exactness::sample_points;
+use super::exactness::{branches_of, sample_points};
 use super::finding::{Certificate, Verdict, Witness, digits};
 use super::sample::{self, Sample};
 use super::undecided::Undecided;
 use crate::model::Model;
 
-/// Random states at which a sum must vanish; more where roots may hide it by a choice of branches.
-const STATES: (usize, usize) = (12, 40);
+/// Random states at which a sum must vanish, and those of each branch where there are several.
+const STATES: (usize, usize) = (12, 3);
 /// Real states that are tried.
-const WITNESSES: usize = 24;
+const WITNESSES: usize = 48;
 /// A sum counts as different from 0 beyond this part of its scale: a factor 1e9 above rounding.
 const CLEAR: f64 = 1e-6;
 /// As [`CLEAR`], where residues have shown that it is not 0 and only a point to show it at is looked for.
@@ -51,8 +51,6 @@ pub(super) trait Vanishing {
 pub(super) struct Evidence {
     /// Whether all residues are 0, with the primes; `None` if there were too few.
     pub(super) vanishes: Option<bool>,
-    /// Whether residues alone decide.
-    pub(super) is_exact: bool,
     /// The number of random points.
     pub(super) points: usize,
     /// The primes.
@@ -95,7 +93,8 @@ impl Evidence {
             let text = "it has no value at any of the real points that were tried";
             return Verdict::Undecided(text.to_owned());
         }
-        let differs = self.witness.is_some() || (self.vanishes == Some(false) && self.is_exact);
+        // A point that satisfies everything that is declared is needed: residues know no inequality.
+        let differs = self.witness.is_some();
         let vanishes = self.vanishes == Some(true) && self.witness.is_none();
         match (holds, vanishes, differs) {
             (true, true, _) => Verdict::Proved(certificate(wording.vanishes, self.error)),
@@ -144,27 +143,9 @@ fn sentence(sample: &Sample, values: &[(String, f64)]) -> String {
 pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> Evidence {
     let roots = question.roots();
     let profile = model.pool.profile_of(&roots);
-    let wanted = if profile.branches { STATES.1 } else { STATES.0 };
     let mut primes = Vec::new();
-    let mut vanishes = None;
-    if let Ok(mut points) = sample_points(&model.pool, &roots, &profile, seed) {
-        vanishes = Some(true);
-        for _ in 0..wanted {
-            let sum = points.find(|point| {
-                question.settle(model, point)?;
-                let terms = question.terms(model, point)?;
-                primes.push(point.modulus().prime());
-                let field = point.modulus();
-                Some(terms.into_iter().fold(0, |sum, term| field.add(sum, term)))
-            });
-            match sum {
-                None => vanishes = None,
-                Some(0) => continue,
-                Some(_) => vanishes = Some(false),
-            }
-            break;
-        }
-    }
+    let residues = residues(model, question, &roots, &profile, seed, &mut primes);
+    let vanishes = residues.as_ref().map(|(covered, _)| covered.holds);
     primes.sort_unstable();
     primes.dedup();
     let is_exact = profile.is_exact() && !question.hides_relations(model);
@@ -176,13 +157,41 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
     let real = real_evidence(model, question, threshold);
     Evidence {
         vanishes,
-        is_exact,
-        points: wanted,
+        points: residues.as_ref().map_or(0, |(covered, _)| covered.points),
         primes,
-        error: chance_of_accident(model, profile.degree),
+        error: residues.map_or(1.0, |(covered, branches)| {
+            covered.error(&branches, chance_of_accident(model, profile.degree))
+        }),
         witness: real.witness,
         is_real: real.is_real,
     }
+}
+
+/// Whether a sum vanishes at states of all branches modulo primes, which are noted; `None` if a branch is out of reach.
+fn residues(
+    model: &Model,
+    question: &impl Vanishing,
+    roots: &[ExprId],
+    profile: &Profile,
+    seed: u64,
+    primes: &mut Vec<u64>,
+) -> Option<(Covered, Branches)> {
+    let mut points = sample_points(&model.pool, roots, profile, seed).ok()?;
+    let branches = branches_of(&model.pool, roots, profile, &points)?;
+    let each = if branches.is_single() {
+        STATES.0
+    } else {
+        STATES.1
+    };
+    let covered = points.cover(&model.pool, &branches, each, |point| {
+        question.settle(model, point)?;
+        let terms = question.terms(model, point)?;
+        primes.push(point.modulus().prime());
+        let field = point.modulus();
+        let sum = terms.into_iter().fold(0, |sum, term| field.add(sum, term));
+        Some(sum == 0)
+    })?;
+    Some((covered, branches))
 }
 
 /// What was seen at real points.
@@ -193,12 +202,12 @@ struct Real {
     is_real: bool,
 }
 
-/// The degree of a rate over the prime, for each of the states (Schwartz, Zippel): the saddle system of acceleration
+/// The degree of a rate over the prime (Schwartz, Zippel): the saddle system of acceleration
 /// and multipliers has N + M rows whose entries have the degree of the profile, over as many denominators.
 fn chance_of_accident(model: &Model, degree: f64) -> f64 {
     let sizes = (2 * model.coordinates.len() + model.constraints.len()) as f64;
     let degree = 64.0 * sizes.powi(3) * degree.max(1.0);
-    (degree / 2f64.powi(60)).powi(STATES.0 as i32)
+    degree / 2f64.powi(60)
 }
 
 fn real_evidence(model: &Model, question: &impl Vanishing, threshold: f64) -> Real {

@@ -3,7 +3,9 @@
 //! A rank at a point never exceeds the generic rank, so the largest of a few samples counts. With all components in
 //! the hull an obstruction at one point is a proof; everything else is wrong with a chance below the stated bound.
 
-use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, SamplePoints, SymbolId};
+use dalembert_expr::{
+    Branches, ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, SamplePoints, SymbolId,
+};
 
 use super::closure::{Hull, Until, close};
 use super::fit::{
@@ -17,9 +19,8 @@ use super::regularity;
 use super::undecided::Undecided;
 use crate::model::Model;
 
-/// Points that are sampled, each modulo the next prime; more where a zero may be an accident of branches: an absolute
-/// value is its argument at half of the points.
-const SAMPLES: (usize, usize) = (3, 40);
+/// Points of each branch that are sampled, each modulo the next prime.
+const SAMPLES: usize = 3;
 /// Monomials of a series beyond which no higher order is tried.
 const MONOMIALS: usize = 20_000;
 /// The order of the first attempt; most hulls are closed within three brackets.
@@ -112,28 +113,28 @@ fn decide_local_from(
     let mut points = sample_points(pool, &roots, &profile, seed)?;
     let mut best: Option<(Hull, Vec<usize>)> = None;
     let mut primes = Vec::new();
-    let (samples, accident) = match profile.branches {
-        false => (SAMPLES.0, 0.0),
-        true => (SAMPLES.1, 0.5),
-    };
-    for _ in 0..samples {
-        let (sample, prime) = points
-            .find(|point| {
-                fix(pool, point, conditions)?;
-                let sample = sample(pool, problem, point, dependent, Until::Closed)?;
-                Some((sample, point.modulus().prime()))
-            })
-            .ok_or(Undecided::Degenerate)?;
-        let sample = sample.map_err(Undecided::Depth)?;
-        primes.push(prime);
+    let branches = branches_of(pool, &roots, &profile, &points).ok_or(Undecided::Branches)?;
+    let mut failure = None;
+    let covered = points.cover(pool, &branches, SAMPLES, |point| {
+        fix(pool, point, conditions)?;
+        let found = match sample(pool, problem, point, dependent, Until::Closed)? {
+            Ok(found) => found,
+            Err(depth) => {
+                failure = Some(Undecided::Depth(depth));
+                return Some(false);
+            }
+        };
+        primes.push(point.modulus().prime());
         let ranks = |(hull, _): &(Hull, Vec<usize>)| (hull.rank, hull.extended_rank);
-        if best
-            .as_ref()
-            .is_none_or(|best| ranks(best) < ranks(&sample))
-        {
-            best = Some(sample);
+        if best.as_ref().is_none_or(|best| ranks(best) < ranks(&found)) {
+            best = Some(found);
         }
+        Some(true)
+    });
+    if let Some(failure) = failure {
+        return Err(failure);
     }
+    let covered = covered.ok_or(Undecided::Degenerate)?;
     let (hull, dependent) = best.ok_or(Undecided::Degenerate)?;
     primes.sort_unstable();
     primes.dedup();
@@ -148,9 +149,9 @@ fn decide_local_from(
         error: if is_proof {
             0.0
         } else {
-            (chance + accident).powi(samples as i32)
+            covered.error(&branches, chance)
         },
-        points: samples,
+        points: covered.points,
         primes,
         hull,
         dependent,
@@ -166,6 +167,19 @@ pub(super) fn sample_points(
 ) -> Result<SamplePoints, Undecided> {
     let nodes = pool.reachable(roots).len();
     SamplePoints::seeded(profile, nodes, seed).ok_or(Undecided::Denominators)
+}
+
+/// The branches of the expressions of a problem; `None` if there are too many.
+pub(super) fn branches_of(
+    pool: &Pool,
+    roots: &[ExprId],
+    profile: &Profile,
+    points: &SamplePoints,
+) -> Option<Branches> {
+    match profile.branches {
+        true => pool.branches(roots, points),
+        false => Some(Branches::default()),
+    }
 }
 
 /// Sets the symbols of conditions; `None` if the prime divides a denominator.
@@ -347,7 +361,7 @@ fn exists_for_each_parameter(
     seed: u64,
 ) -> bool {
     let terms = candidates.allowed(Allowed::Regular);
-    (0..SAMPLES.0 as u64).all(|k| {
+    (0..SAMPLES as u64).all(|k| {
         let seed = seed.wrapping_add(k);
         let mut frozen: Vec<Frozen> = parameters.iter().map(|own| (*own, None)).collect();
         solve_for_coefficients(&model.pool, problem, &terms, &mut frozen, seed).is_some()

@@ -6,7 +6,7 @@
 
 use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Modulus, Pool, Rational, SymbolId};
 
-use super::exactness::sample_points;
+use super::exactness::{branches_of, sample_points};
 use super::frame::{Demand, frame};
 use super::potential::{Allowed, Candidates, Potential, Term};
 use super::problem::Problem;
@@ -14,8 +14,8 @@ use super::undecided::Undecided;
 
 /// Numerators and denominators of coefficients up to this size are believed.
 const LARGEST: i64 = 50;
-/// Fresh points at which a density is certified.
-const CERTIFIED: usize = 12;
+/// Fresh points at which a density is certified, and those of each branch where there are several.
+const CERTIFIED: (usize, usize) = (12, 3);
 /// Equations beyond the number of unknowns.
 const SURPLUS: usize = 8;
 
@@ -300,28 +300,33 @@ pub(super) fn certify(
     let profile = pool.profile_of(&roots);
     // Points other than those of the search, for any seed of it.
     let mut points = sample_points(pool, &roots, &profile, seed ^ FRESH)?;
+    let branches = branches_of(pool, &roots, &profile, &points).ok_or(Undecided::Branches)?;
+    let each = if branches.is_single() {
+        CERTIFIED.0
+    } else {
+        CERTIFIED.1
+    };
     let mut primes = Vec::new();
-    for _ in 0..CERTIFIED {
-        let residuals = points
-            .find(|point| {
-                let rows = equations(pool, problem, &terms, point)?;
-                let values = pool.modular_eval(&coefficients, point).ok()?;
-                primes.push(point.modulus().prime());
-                Some(residuals(point.modulus(), &rows, &values))
-            })
-            .ok_or(Undecided::Degenerate)?;
-        if residuals.iter().any(|residual| *residual != 0) {
-            return Ok(None);
-        }
+    let covered = points
+        .cover(pool, &branches, each, |point| {
+            let rows = equations(pool, problem, &terms, point)?;
+            let values = pool.modular_eval(&coefficients, point).ok()?;
+            primes.push(point.modulus().prime());
+            let residuals = residuals(point.modulus(), &rows, &values);
+            Some(residuals.iter().all(|residual| *residual == 0))
+        })
+        .ok_or(Undecided::Degenerate)?;
+    if !covered.holds {
+        return Ok(None);
     }
     primes.sort_unstable();
     primes.dedup();
     let sizes = (problem.coordinates + problem.forms.len()) as f64;
     let degree = 64.0 * sizes.powi(3) * profile.degree.max(1.0);
     Ok(Some(Certified {
-        points: CERTIFIED,
+        points: covered.points,
         primes,
-        error: (degree / 2f64.powi(60)).powi(CERTIFIED as i32),
+        error: covered.error(&branches, degree / 2f64.powi(60)),
     }))
 }
 

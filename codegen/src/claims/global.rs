@@ -10,6 +10,7 @@ use super::frame::frame;
 use super::obstruction::{combine, elements_at};
 use super::potential::{Potential, Term};
 use super::problem::Problem;
+use super::reflection;
 use super::sample::{Sample, sample, uses};
 use crate::model::{Model, Topology};
 
@@ -39,6 +40,10 @@ const CONVERGED: f64 = 1e-10;
 const ROUNDING: f64 = 1e-12;
 /// Why a period was not found.
 const OPEN: &str = "a circle leaves the domain where the constraints are regular, or G varies too fast on it for its period to converge";
+/// The seed of the points at which symmetries are tested.
+const PERIODS: u64 = 7;
+/// Why a period that seems to be 0 leaves the question open.
+const NUMERIC: &str = "G was found in no closed form, and that its periods on the circles are 0 to rounding proves nothing: declare the angles of these circles as lines, or as intervals";
 /// Where between two multiples of the step the points lie.
 const SHIFT: f64 = 0.382;
 /// A period counts from this part of the integral of the absolute value on.
@@ -210,8 +215,11 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
         }
         is_open |= !is_known;
     }
+    let has_no_period =
+        |angle: &usize| reflection::has_no_period(model, problem, local, *angle, PERIODS);
     match (is_whole, is_open) {
-        (true, false) => Global::Exists,
+        (true, false) if angles.iter().all(has_no_period) => Global::Exists,
+        (true, false) => Global::Undecided(NUMERIC),
         (true, true) => Global::Undecided(OPEN),
         (false, _) => {
             Global::Undecided("no density was found, and D does not connect all configurations")

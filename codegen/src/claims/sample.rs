@@ -1,6 +1,6 @@
 //! Real points with short coordinates, at which a person can follow a computation.
 
-use dalembert_expr::{Assumption as Known, Pool, RealPoint, SymbolId};
+use dalembert_expr::{Assumption as Known, ExprId, Function, Node, Pool, RealPoint, SymbolId};
 
 use crate::model::{Assumption, Model, Topology};
 
@@ -126,6 +126,64 @@ pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> b
     sample
 }
 
+/// Moves coordinates between the places where arguments of absolute values change their signs, another choice for each
+/// attempt; the first attempts are left as they are.
+pub(super) fn move_between_knots(
+    model: &Model,
+    roots: &[ExprId],
+    attempt: usize,
+    sample: &mut Sample,
+) {
+    let parts = model.pool.reachable(roots);
+    let arguments: Vec<ExprId> = parts
+        .iter()
+        .filter_map(|id| match model.pool.node(*id) {
+            Node::Call(Function::Abs, argument) => Some(*argument),
+            _ => None,
+        })
+        .collect();
+    if arguments.is_empty() || attempt < DECLARED {
+        return;
+    }
+    for (i, coordinate) in model.coordinates.iter().enumerate() {
+        let knots = knots(model, &arguments, coordinate.q, sample);
+        let (Some(first), Some(last)) = (knots.first(), knots.last()) else {
+            continue;
+        };
+        let middles = knots.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
+        let mut places: Vec<f64> = middles.collect();
+        places.extend([first - 0.5, last + 0.5]);
+        // Every combination of places comes sooner or later: a step that no small number divides.
+        let place = places[(attempt * (2 * i + 1) + attempt / (7 + i)) % places.len()];
+        sample.set(coordinate.q, place);
+    }
+}
+
+/// The values of a coordinate at which an argument that is linear in it is 0, in order.
+fn knots(model: &Model, arguments: &[ExprId], symbol: SymbolId, sample: &Sample) -> Vec<f64> {
+    let at = |argument: ExprId, place: f64| {
+        let value = |own| match own == symbol {
+            true => place,
+            false => sample.value(own).unwrap_or(0.0),
+        };
+        model.pool.eval(&[argument], &value)[0]
+    };
+    let mut knots: Vec<f64> = arguments
+        .iter()
+        .filter(|argument| model.pool.depends_on(**argument, symbol))
+        .filter_map(|argument| {
+            let [start, middle, end] = [0.0, 1.0, 2.0].map(|place| at(*argument, place));
+            let slope = middle - start;
+            let is_linear = (end - middle - slope).abs() <= 1e-9 * (start.abs() + slope.abs());
+            (is_linear && slope != 0.0).then(|| -start / slope)
+        })
+        .filter(|knot| knot.is_finite())
+        .collect();
+    knots.sort_by(f64::total_cmp);
+    knots.dedup();
+    knots
+}
+
 /// To hundredths, where that leaves more than two digits.
 fn round(value: f64) -> f64 {
     if value.abs() > 0.1 && value.abs() < 1e6 {
@@ -136,9 +194,6 @@ fn round(value: f64) -> f64 {
 }
 
 /// Whether any expression below `roots` contains a symbol.
-pub(super) fn uses<'a>(
-    pool: &'a Pool,
-    roots: &'a [dalembert_expr::ExprId],
-) -> impl Fn(SymbolId) -> bool + 'a {
+pub(super) fn uses<'a>(pool: &'a Pool, roots: &'a [ExprId]) -> impl Fn(SymbolId) -> bool + 'a {
     move |symbol| roots.iter().any(|root| pool.depends_on(*root, symbol))
 }

@@ -17,6 +17,8 @@ pub enum Undecided {
     Forces,
     /// Coefficients inside sin, cos and exp without a common denominator.
     Denominators,
+    /// Roots and absolute values have more branches than are gone through.
+    Branches,
     /// The parts named may be related in ways that residues do not show.
     Relations(Vec<String>),
 }
@@ -47,6 +49,10 @@ impl fmt::Display for Undecided {
             Self::Denominators => write!(
                 f,
                 "the coefficients inside of sin, cos and exp have no common denominator in reach"
+            ),
+            Self::Branches => write!(
+                f,
+                "roots and absolute values have more combinations of signs than are gone through"
             ),
             Self::Relations(atoms) if atoms.is_empty() => {
                 write!(f, "values at real points do not confirm what residues say")

@@ -90,6 +90,30 @@ pub(super) fn without_hidden_zero(pool: &Pool, expr: ExprId) -> ExprId {
     }
 }
 
+/// Whether an expression has a value wherever others have: each part that may have none by itself is a part of them.
+pub(super) fn is_defined_with(pool: &Pool, expr: ExprId, others: &[ExprId]) -> bool {
+    let known = pool.reachable(others);
+    let is_known = |id: &ExprId| known.binary_search(id).is_ok();
+    let mut has_value: Vec<(ExprId, bool)> = Vec::new();
+    for id in pool.reachable(&[expr]) {
+        let of = |operand: &ExprId| {
+            let position = has_value.binary_search_by_key(operand, |(id, _)| *id);
+            position.is_ok_and(|position| has_value[position].1)
+        };
+        let is_sound = is_known(&id)
+            || pool.is_finite(id)
+            || match pool.node(id) {
+                Node::Sum { terms, .. } => terms.iter().all(|(_, term)| of(term)),
+                Node::Product(factors) => factors
+                    .iter()
+                    .all(|(base, power)| power.is_integer() && !power.is_negative() && of(base)),
+                _ => false,
+            };
+        has_value.push((id, is_sound));
+    }
+    has_value.last().is_some_and(|(_, is_sound)| *is_sound)
+}
+
 /// `expr` with every one of `symbols` set to 0.
 pub(super) fn at_zero(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) -> ExprId {
     if !pool.depends_on_any(expr, symbols) {

@@ -3,7 +3,7 @@
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
 use super::degree::{
-    at_zero, coefficients, degree_bound, has_degree, is_zero, without_hidden_zero,
+    at_zero, coefficients, degree_bound, has_degree, is_defined_with, is_zero, without_hidden_zero,
 };
 use super::resolve::{Resolver, Scope, Value};
 use crate::spec::{Equation, Quantity, Scalar, ScalarKind};
@@ -105,6 +105,12 @@ impl Resolver<'_> {
         let form = coefficients(&mut self.pool, value.expr, velocities);
         let affine = at_zero(&mut self.pool, value.expr, velocities);
         let affine = without_hidden_zero(&self.pool, affine);
+        // What has no value where the coefficients have none either may go as well.
+        let affine = match is_defined_with(&self.pool, affine, &form) && is_zero(&self.pool, affine)
+        {
+            true => self.pool.zero(),
+            false => affine,
+        };
         self.nonzero_form(
             OneForm {
                 form,

@@ -455,3 +455,18 @@ fn regular_gaps_are_accepted() {
         ));
     }
 }
+
+#[test]
+fn a_coefficient_that_is_zero_wherever_the_others_have_values_makes_no_constraint_affine() {
+    let source = "Ellipse { coordinates { x; y; z; } parameters { a > 0 = 1; b > 0 = 2; }
+        let s = sqrt(a^2*sin(z)^2 + b^2*cos(z)^2);
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { c: dot(x) = dot(z)*s + dot(y)*sin(z)*cos(z)/s; } }";
+    let spec = spec::parse(source.parse().unwrap()).unwrap();
+    let model = check(&spec).unwrap();
+    assert!(
+        model
+            .pool
+            .is_syntactic_zero(model.constraints[0].affine)
+    );
+}

@@ -1,0 +1,296 @@
+//! Sign patterns: the branches on which an expression with absolute values and roots must be looked at one by one.
+//!
+//! Modulo a prime that is 3 mod 4 a residue is a square or its opposite is, so that being a square stands for being
+//! positive. A random point realises one sign for the argument of every absolute value; an expression is 0 if it is 0
+//! under every pattern of signs. Patterns that occur form an affine space over GF(2) (signs of products follow from
+//! those of their factors), so that they are known to be complete once the space no longer grows.
+//!
+//! A root `sqrt(u)` of a `u` that is no square needs no cases: both roots are conjugate. Where a product of radicands is
+//! a square `w^2`, the product of their roots is `w` or `-w`, whichever is a square: a branch that is not seen from
+//! outside. There are as many as the signs of the radicands have relations, and each pattern is met often enough to meet
+//! all of them but for a stated chance.
+
+use std::collections::BTreeMap;
+
+use crate::node::{Assumption, ExprId, Function, Node};
+use crate::point::ModularPoint;
+use crate::pool::Pool;
+use crate::zero::SamplePoints;
+
+/// Absolute values with different arguments that are told apart, and hidden relations between radicands.
+const MOST_ARGUMENTS: usize = 24;
+const MOST_HIDDEN: usize = 5;
+/// Radicands whose relations are looked for.
+const MOST_RADICANDS: usize = 64;
+/// Bits of a chance that is neglected: of a relation that is none, of a pattern or a hidden branch that is missed.
+const BITS: usize = 60;
+/// Points at which one question is asked at most.
+const MOST_VISITS: usize = 1 << 15;
+
+/// The branches of some expressions.
+#[derive(Clone, Debug, Default)]
+pub struct Branches {
+    /// Arguments of absolute values.
+    arguments: Vec<ExprId>,
+    /// Independent relations between radicands.
+    hidden: usize,
+}
+
+/// The answer of [`SamplePoints::cover`].
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub struct Covered {
+    /// Whether the question was answered with yes at all points.
+    pub holds: bool,
+    /// The number of points.
+    pub points: usize,
+    /// The number of sign patterns.
+    pub patterns: usize,
+}
+
+impl Pool {
+    /// The branches of the expressions below some roots, seen at points for them; `None` if there are too many, or if
+    /// too few points have values.
+    pub fn branches(&self, roots: &[ExprId], points: &SamplePoints) -> Option<Branches> {
+        let order = self.reachable(roots);
+        let (mut arguments, mut radicands) = (Vec::new(), Vec::new());
+        for id in &order {
+            match self.node(*id) {
+                Node::Call(Function::Abs, argument) => arguments.push(*argument),
+                Node::Product(factors) => {
+                    let of_roots = factors.iter().filter(|(_, power)| !power.is_integer());
+                    radicands.extend(of_roots.map(|(base, _)| *base));
+                }
+                _ => {}
+            }
+        }
+        for list in [&mut arguments, &mut radicands] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        let hidden = self.hidden_relations(&radicands, points.clone())?;
+        let is_in_reach = arguments.len() <= MOST_ARGUMENTS && hidden <= MOST_HIDDEN;
+        is_in_reach.then_some(Branches { arguments, hidden })
+    }
+
+    /// The number of independent products of radicands that are squares, counted rather too high than too low.
+    fn hidden_relations(&self, radicands: &[ExprId], mut points: SamplePoints) -> Option<usize> {
+        if radicands.is_empty() {
+            return Some(0);
+        }
+        if radicands.len() > MOST_RADICANDS {
+            return None;
+        }
+        let order = self.reachable(radicands);
+        let symbols = order.iter().filter_map(|id| match self.node(*id) {
+            Node::Symbol(symbol) => Some(*symbol),
+            _ => None,
+        });
+        let symbols: Vec<_> = symbols.collect();
+        let mut patterns = Echelon::default();
+        for _ in 0..BITS + radicands.len() {
+            let pattern = points.find(|point| {
+                // A symbol that is known to be positive is no square here: its root is not one of its functions.
+                for symbol in &symbols {
+                    point.set(*symbol, point.value(*symbol, Assumption::None));
+                }
+                self.signs(radicands, point)
+            })?;
+            patterns.push(pattern);
+        }
+        Some(radicands.len() - patterns.rows.len())
+    }
+
+    /// The bits of the expressions that are no squares at a point.
+    fn signs(&self, ids: &[ExprId], point: &mut ModularPoint) -> Option<u64> {
+        let values = self.modular_eval(ids, point).ok()?;
+        let field = point.modulus();
+        let bit = |(i, value): (usize, &u64)| u64::from(!field.is_square(*value)) << i;
+        Some(values.iter().enumerate().map(bit).sum())
+    }
+}
+
+impl Branches {
+    /// Whether there is one branch only.
+    pub fn is_single(&self) -> bool {
+        self.arguments.is_empty() && self.hidden == 0
+    }
+
+    /// The sign pattern at a point.
+    pub fn pattern(&self, pool: &Pool, point: &mut ModularPoint) -> Option<u64> {
+        match self.arguments.as_slice() {
+            [] => Some(0),
+            arguments => pool.signs(arguments, point),
+        }
+    }
+
+    /// Points for each pattern at which every hidden branch is met, but for a chance of `2^-BITS` each.
+    fn points(&self) -> usize {
+        match self.hidden {
+            0 => 0,
+            hidden => {
+                let missed = 1.0 - 0.5f64.powi(hidden as i32);
+                (BITS as f64 * 2f64.ln() / -missed.ln()).ceil() as usize
+            }
+        }
+    }
+}
+
+impl Covered {
+    /// A bound of the chance of error, given that of an accident at one point.
+    pub fn error(&self, branches: &Branches, accident: f64) -> f64 {
+        let each = (self.points / self.patterns.max(1)).max(1);
+        let accidents = self.patterns as f64 * accident.powi(each.min(64) as i32);
+        if branches.is_single() {
+            return accidents;
+        }
+        let missed = self.patterns as f64 * 2f64.powi(branches.hidden as i32) + 1.0;
+        accidents + missed * 0.5f64.powi(BITS as i32)
+    }
+}
+
+impl SamplePoints {
+    /// Asks a question at `each` points of every branch, and stops at the first no. The question may set values of the
+    /// point; it answers `None` at a point that will not do. `None` if a branch is out of reach.
+    pub fn cover(
+        &mut self,
+        pool: &Pool,
+        branches: &Branches,
+        each: usize,
+        mut holds: impl FnMut(&mut ModularPoint) -> Option<bool>,
+    ) -> Option<Covered> {
+        let each = each.max(branches.points()).max(1);
+        let mut seen = Seen::default();
+        let covered = |holds: bool, seen: &Seen| Covered {
+            holds,
+            points: seen.visits,
+            patterns: seen.counts.len(),
+        };
+        while !seen.is_complete(branches, each) {
+            if seen.visits == MOST_VISITS {
+                return None;
+            }
+            let (is_so, pattern) = self.find(|point| {
+                if !branches.arguments.is_empty()
+                    && seen.is_full(branches.pattern(pool, point)?, each)
+                {
+                    return None;
+                }
+                let is_so = holds(point)?;
+                Some((is_so, branches.pattern(pool, point)?))
+            })?;
+            seen.add(pattern);
+            if !is_so {
+                return Some(covered(false, &seen));
+            }
+        }
+        Some(covered(true, &seen))
+    }
+}
+
+/// The patterns that were seen.
+#[derive(Default)]
+struct Seen {
+    counts: BTreeMap<u64, usize>,
+    /// Differences from the first pattern.
+    differences: Echelon,
+    visits: usize,
+    /// Visits since the space of patterns grew.
+    since: usize,
+}
+
+impl Seen {
+    fn add(&mut self, pattern: u64) {
+        let first = self
+            .counts
+            .first_key_value()
+            .map_or(pattern, |(own, _)| *own);
+        let grows = self.differences.push(pattern ^ first);
+        *self.counts.entry(pattern).or_default() += 1;
+        self.visits += 1;
+        self.since = if grows { 0 } else { self.since + 1 };
+    }
+
+    /// Whether a pattern needs no further point. Before the space of patterns is known none is refused, so that those
+    /// that are not seen are as likely as others.
+    fn is_full(&self, pattern: u64, each: usize) -> bool {
+        self.since >= BITS
+            && self
+                .counts
+                .get(&pattern)
+                .is_some_and(|count| *count >= each)
+    }
+
+    fn is_complete(&self, branches: &Branches, each: usize) -> bool {
+        let patterns = 1usize << self.differences.rows.len();
+        let full = self.counts.values().filter(|count| **count >= each).count();
+        let is_known = branches.arguments.is_empty() || self.since >= BITS;
+        self.visits > 0 && full == patterns && is_known
+    }
+}
+
+/// Vectors over GF(2) with different leading bits.
+#[derive(Default)]
+struct Echelon {
+    rows: Vec<u64>,
+}
+
+impl Echelon {
+    /// Adds a vector; whether it is independent of those before.
+    fn push(&mut self, vector: u64) -> bool {
+        let rest = self
+            .rows
+            .iter()
+            .fold(vector, |rest, row| rest.min(rest ^ row));
+        if rest != 0 {
+            self.rows.push(rest);
+            self.rows.sort_unstable_by(|a, b| b.cmp(a));
+        }
+        rest != 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::Fixture;
+
+    /// Patterns and hidden relations of an expression.
+    fn counted(text: &str) -> (usize, usize) {
+        let mut fixture = Fixture::new();
+        let id = fixture.read(text);
+        let pool = &fixture.pool;
+        let profile = pool.profile_of(&[id]);
+        let mut points = SamplePoints::seeded(&profile, 10, 1).unwrap();
+        let branches = pool.branches(&[id], &points).unwrap();
+        let covered = points.cover(pool, &branches, 3, |_| Some(true)).unwrap();
+        assert!(covered.points >= 3 * covered.patterns);
+        (covered.patterns, branches.hidden)
+    }
+
+    #[test]
+    fn every_sign_pattern_is_met_and_no_other() {
+        for (text, patterns) in [
+            ("x", 1),
+            ("abs(x) + abs(-x)", 2),
+            ("abs(x) + abs(y) + abs(x*y)", 4),
+            (
+                "abs(x - 5)*abs(6 - x)*abs(y - 5)*abs(6 - y)*abs(z)*abs(z - 1)",
+                64,
+            ),
+        ] {
+            assert_eq!(counted(text).0, patterns, "{text}");
+        }
+    }
+
+    #[test]
+    fn roots_hide_branches_where_products_of_radicands_are_squares() {
+        for (text, hidden) in [
+            ("sqrt(x) + sqrt(y)", 0),
+            ("sqrt(x)*sqrt(y) - sqrt(x*y)", 1),
+            ("sqrt(x^4 + 2*x^2 + 1)", 1),
+            ("sqrt(x^2 + 1) + sqrt(y^2 + 1)", 0),
+        ] {
+            assert_eq!(counted(text).1, hidden, "{text}");
+        }
+    }
+}
