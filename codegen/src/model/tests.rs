@@ -464,9 +464,5 @@ fn a_coefficient_that_is_zero_wherever_the_others_have_values_makes_no_constrain
         constraints { c: dot(x) = dot(z)*s + dot(y)*sin(z)*cos(z)/s; } }";
     let spec = spec::parse(source.parse().unwrap()).unwrap();
     let model = check(&spec).unwrap();
-    assert!(
-        model
-            .pool
-            .is_syntactic_zero(model.constraints[0].affine)
-    );
+    assert!(model.pool.is_syntactic_zero(model.constraints[0].affine));
 }
