@@ -5,6 +5,7 @@
 //! an enclosure of each by itself lets cancel.
 
 use std::collections::BTreeMap;
+use std::ops::{Add, Mul};
 
 use crate::interval::Interval;
 use crate::node::{ExprId, Function, Node, SymbolId};

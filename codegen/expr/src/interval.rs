@@ -5,6 +5,7 @@
 //! are widened by [`STEPS`]. Endpoints may be infinite.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::{Add, Mul};
 
 use crate::rational::Rational;
 
@@ -62,27 +63,6 @@ impl Interval {
         self.lo.abs().max(self.hi.abs())
     }
 
-    /// `a + b`
-    pub fn add(self, other: Self) -> Self {
-        let (lo, hi) = (self.lo + other.lo, self.hi + other.hi);
-        outwards(lo, hi, 1)
-    }
-
-    /// `a b`
-    pub fn mul(self, other: Self) -> Self {
-        let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
-        let ends = [
-            product(self.lo, other.lo),
-            product(self.lo, other.hi),
-            product(self.hi, other.lo),
-            product(self.hi, other.hi),
-        ];
-        let is_exact = self == Self::point(1.0) || other == Self::point(1.0);
-        let lo = ends.iter().copied().fold(f64::INFINITY, f64::min);
-        let hi = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        outwards(lo, hi, usize::from(!is_exact))
-    }
-
     /// `1 / a`; `None` if 0 is inside.
     pub fn inverse(self) -> Option<Self> {
         self.excludes_zero()
@@ -122,8 +102,8 @@ impl Interval {
         // Odd powers increase, and even ones do where the base is not negative.
         let (mut lo, mut hi) = (Self::point(1.0), Self::point(1.0));
         for _ in 0..steps.min(64) {
-            lo = lo.mul(Self::point(base.lo));
-            hi = hi.mul(Self::point(base.hi));
+            lo = lo * Self::point(base.lo);
+            hi = hi * Self::point(base.hi);
         }
         match steps > 64 {
             true => Self::WHOLE,
@@ -193,6 +173,33 @@ impl Interval {
     }
 }
 
+impl Add for Interval {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let (lo, hi) = (self.lo + other.lo, self.hi + other.hi);
+        outwards(lo, hi, 1)
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
+        let ends = [
+            product(self.lo, other.lo),
+            product(self.lo, other.hi),
+            product(self.hi, other.lo),
+            product(self.hi, other.hi),
+        ];
+        let is_exact = self == Self::point(1.0) || other == Self::point(1.0);
+        let lo = ends.iter().copied().fold(f64::INFINITY, f64::min);
+        let hi = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        outwards(lo, hi, usize::from(!is_exact))
+    }
+}
+
 fn outwards(mut lo: f64, mut hi: f64, steps: usize) -> Interval {
     if lo.is_nan() || hi.is_nan() {
         return Interval::WHOLE;
@@ -217,7 +224,8 @@ mod tests {
 
     #[test]
     fn values_inside_lie_in_the_ranges() {
-        let functions: [(fn(Interval) -> Interval, fn(f64) -> f64); 6] = [
+        type Enclosed = (fn(Interval) -> Interval, fn(f64) -> f64);
+        let functions: [Enclosed; 6] = [
             (Interval::sin, f64::sin),
             (Interval::cos, f64::cos),
             (Interval::cosh, f64::cosh),
@@ -250,7 +258,7 @@ mod tests {
     #[test]
     fn infinite_ends_are_carried() {
         let ray = Interval::new(2.0, f64::INFINITY);
-        assert_eq!(ray.mul(Interval::point(0.0)).magnitude(), f64::from_bits(1));
+        assert_eq!((ray * Interval::point(0.0)).magnitude(), f64::from_bits(1));
         let square = ray.power(&Rational::from(2)).unwrap();
         assert!(square.lo > 3.99 && square.hi == f64::INFINITY);
         assert!(ray.inverse().unwrap().lo <= 0.0);
