@@ -190,19 +190,4 @@ mod tests {
         assert!(message.contains("`density: none` is refuted"), "{message}");
         assert!(message.contains("a = 1/2, b = -1/2"), "{message}");
     }
-
-    #[test]
-    fn a_quantity_that_changes_for_other_parameters_alone_does_not_change() {
-        let spring = "pub Spring {
-            coordinates { x; }
-            parameters { k >= 0 = DEFAULT; }
-            lagrangian = dot(x)^2/2 - k*x^2/2;
-            claims { not conserved: dot(x); }
-        }";
-        assert_eq!(messages(&spring.replace("DEFAULT", "2")), "");
-        let message = messages(&spring.replace("DEFAULT", "0"));
-        let refuted = "`not conserved: dot(x)` is refuted";
-        assert!(message.contains(refuted), "{message}");
-        assert!(message.contains("k = 0"), "{message}");
-    }
 }

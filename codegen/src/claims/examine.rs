@@ -187,7 +187,8 @@ impl<'e> Examiner<'e> {
         let generic = existence::check_existence(self.model, problem, &decision, existence, seed);
         let is_generic = matches!(generic, Verdict::Proved(_));
         let verdict = match &decision {
-            Ok(exactness) if is_generic => {
+            // NOTE: a local density stays one where the periods of a default happen to vanish.
+            Ok(exactness) if is_generic && !matches!(existence, Existence::Local) => {
                 let claim = (existence, generic);
                 existence_at_defaults(self.model, problem, exactness, claim, seed)
             }
@@ -225,14 +226,7 @@ impl<'e> Examiner<'e> {
         let quantity = (self.explicit(value), written);
         let (derivation, dynamics, seed) = (self.derivation, &self.dynamics, self.seed);
         match under {
-            None => {
-                let generic =
-                    conserved::check_conserved(self.model, dynamics, quantity, holds, seed);
-                match holds {
-                    true => generic,
-                    false => self.changing_at_defaults(quantity, generic),
-                }
-            }
+            None => conserved::check_conserved(self.model, dynamics, quantity, holds, seed),
             Some(surface) => impact::check_conserved_under(
                 self.model, derivation, dynamics, surface, quantity, holds, seed,
             ),
@@ -252,21 +246,6 @@ impl<'e> Examiner<'e> {
         let problem = self.problem.substituted(pool, defaults.replacements());
         let stated = (value, written);
         let declared = density::check_balance(self.model, &problem, &dynamics, stated, self.seed);
-        defaults.confirmed(generic, declared)
-    }
-
-    /// The verdict on a quantity that changes for indeterminate parameters.
-    fn changing_at_defaults(
-        &mut self,
-        (value, written): (ExprId, &str),
-        generic: Verdict,
-    ) -> Verdict {
-        let Some((defaults, value, dynamics)) = self.at_defaults(value, &generic) else {
-            return generic;
-        };
-        let quantity = (value, written);
-        let declared =
-            conserved::check_conserved(self.model, &dynamics, quantity, false, self.seed);
         defaults.confirmed(generic, declared)
     }
 

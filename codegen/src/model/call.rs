@@ -195,7 +195,11 @@ impl<'s> Resolver<'s> {
         let within = |part: &Scalar| self.mentions_local(part, scope);
         match &scalar.kind {
             ScalarKind::Number(..) => false,
-            ScalarKind::Name(name) => scope.get(name).is_some(),
+            // A definition may be a constant in one use of a text and a point in another.
+            ScalarKind::Name(name) => {
+                let meaning = self.symbols.names.get(name);
+                scope.get(name).is_some() || matches!(meaning, Some((Meaning::Definition, _)))
+            }
             ScalarKind::Member(family, index) => {
                 let meaning = self.symbols.names.get(&family.text);
                 !matches!(meaning, Some((Meaning::Parameters(..), _))) && within(index)
