@@ -39,10 +39,12 @@ pub struct Branches {
 /// The answer of [`SamplePoints::cover`].
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub struct Covered {
-    /// Whether the question was answered with yes at all points.
+    /// True if the answer was yes at all points.
     pub holds: bool,
     /// The number of points.
     pub points: usize,
+    /// The least number of points of a pattern, if the answer was yes.
+    pub each: usize,
     /// The number of sign patterns.
     pub patterns: usize,
 }
@@ -110,9 +112,14 @@ impl Pool {
 }
 
 impl Branches {
-    /// Whether there is one branch only.
+    /// True if there is one branch only.
     pub fn is_single(&self) -> bool {
         self.arguments.is_empty() && self.hidden == 0
+    }
+
+    /// `alone` points where there is one branch, else `several` for each.
+    pub fn points_of_each(&self, (alone, several): (usize, usize)) -> usize {
+        if self.is_single() { alone } else { several }
     }
 
     /// The sign pattern at a point.
@@ -138,8 +145,7 @@ impl Branches {
 impl Covered {
     /// A bound of the chance of error, given that of an accident at one point.
     pub fn error(&self, branches: &Branches, accident: f64) -> f64 {
-        let each = (self.points / self.patterns.max(1)).max(1);
-        let accidents = self.patterns as f64 * accident.powi(each.min(64) as i32);
+        let accidents = self.patterns as f64 * accident.powi(self.each.min(64) as i32);
         if branches.is_single() {
             return accidents;
         }
@@ -163,6 +169,7 @@ impl SamplePoints {
         let covered = |holds: bool, seen: &Seen| Covered {
             holds,
             points: seen.visits,
+            each,
             patterns: seen.counts.len(),
         };
         while !seen.is_complete(branches, each) {
@@ -203,15 +210,15 @@ impl Seen {
         let first = self
             .counts
             .first_key_value()
-            .map_or(pattern, |(own, _)| *own);
+            .map_or(pattern, |(least, _)| *least);
         let grows = self.differences.push(pattern ^ first);
         *self.counts.entry(pattern).or_default() += 1;
         self.visits += 1;
         self.since = if grows { 0 } else { self.since + 1 };
     }
 
-    /// Whether a pattern needs no further point. Before the space of patterns is known none is refused, so that those
-    /// that are not seen are as likely as others.
+    /// True if a pattern needs no further point. Before the space of patterns is known none is refused, so that unseen
+    /// patterns are as likely as others.
     fn is_full(&self, pattern: u64, each: usize) -> bool {
         self.since >= BITS
             && self

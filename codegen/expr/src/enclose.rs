@@ -95,7 +95,7 @@ impl Pool {
                 let part = Interval::rational(coefficient).mul(rest);
                 let sum = powers
                     .get(&power)
-                    .map_or(part, |own: &Interval| own.add(part));
+                    .map_or(part, |sum: &Interval| sum.add(part));
                 powers.insert(power, sum);
             }
             if powers.len() > 1
@@ -114,7 +114,7 @@ impl Pool {
         term: ExprId,
         ranges: &[Option<Interval>],
     ) -> Option<(i64, Interval)> {
-        let is_symbol = |id: ExprId| matches!(self.node(id), Node::Symbol(own) if *own == symbol);
+        let is_symbol = |id: ExprId| matches!(self.node(id), Node::Symbol(name) if *name == symbol);
         if is_symbol(term) {
             return Some((1, Interval::point(1.0)));
         }
@@ -134,7 +134,7 @@ impl Pool {
         Some((power, rest))
     }
 
-    /// Whether an expression has a zero in a box; `slopes` are its derivatives by the symbols of the box, in order.
+    /// Looks for a zero of an expression in a box; `slopes` are its derivatives by the symbols of the box, in order.
     pub fn zeros_on(&self, id: ExprId, slopes: &[ExprId], domain: &Domain) -> Zeros {
         let mut roots = vec![id];
         roots.extend(slopes);
@@ -152,13 +152,13 @@ impl Pool {
 /// `sum of c_k x^k`, nested.
 fn nested(powers: &BTreeMap<i64, Interval>, x: Interval) -> Option<Interval> {
     let mut falling = powers.iter().rev();
-    let (mut power, mut sum) = falling.next().map(|(power, own)| (*power, *own))?;
-    for (lower, own) in falling {
+    let (mut power, mut sum) = falling.next().map(|(power, range)| (*power, *range))?;
+    for (lower, coefficient) in falling {
         let step = x.power(&Rational::from(power - lower))?;
         sum = sum.mul(step);
         // A coefficient 0 of the lowest power adds nothing, not even rounding.
-        if *own != Interval::point(0.0) {
-            sum = sum.add(*own);
+        if *coefficient != Interval::point(0.0) {
+            sum = sum.add(*coefficient);
         }
         power = *lower;
     }
@@ -209,11 +209,7 @@ impl Search<'_> {
             if self
                 .range_by_ends(&part)
                 .is_some_and(Interval::excludes_zero)
-                && is_continuous
             {
-                continue;
-            }
-            if !is_continuous && self.range(&part).is_some_and(Interval::excludes_zero) {
                 continue;
             }
             let middle: Domain = part

@@ -53,7 +53,7 @@ impl Interval {
         Self::new(PI, PI.next_up())
     }
 
-    /// Whether 0 is outside.
+    /// True if 0 is outside.
     pub fn excludes_zero(self) -> bool {
         self.lo > 0.0 || self.hi < 0.0
     }
@@ -167,7 +167,7 @@ impl Interval {
         Self::new(range.lo.max(1.0), range.hi)
     }
 
-    /// What both have in common, where that is something.
+    /// The part from `lo` to `hi`, which it meets.
     pub fn within(self, lo: f64, hi: f64) -> Self {
         Self::new(self.lo.clamp(lo, hi), self.hi.clamp(lo, hi))
     }

@@ -260,11 +260,7 @@ impl Search<'_> {
         let profile = pool.profile_of(&roots);
         let mut points = sample_points(pool, &roots, &profile, self.seed ^ FRESH)?;
         let branches = branches_of(pool, &roots, &profile, &points).ok_or(Undecided::Branches)?;
-        let each = if branches.is_single() {
-            CERTIFIED.0
-        } else {
-            CERTIFIED.1
-        };
+        let each = branches.points_of_each(CERTIFIED);
         let mut primes = Vec::new();
         let mut is_zero = true;
         let covered = points

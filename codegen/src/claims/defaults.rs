@@ -28,7 +28,11 @@ impl Defaults {
     pub(super) fn of(model: &Model, roots: &[ExprId]) -> Self {
         let mut values = Vec::new();
         let mut texts = Vec::new();
-        for parameter in model.parameters.iter().filter(|own| !own.is_input) {
+        for parameter in model
+            .parameters
+            .iter()
+            .filter(|parameter| !parameter.is_input)
+        {
             let occurs = |id: &ExprId| model.pool.depends_on(*id, parameter.symbol);
             let Some(value) = parameter.default.filter(|_| roots.iter().any(occurs)) else {
                 continue;
@@ -46,7 +50,7 @@ impl Defaults {
         }
     }
 
-    /// Whether no parameter has one.
+    /// True if no parameter has one.
     pub(super) fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
@@ -94,7 +98,7 @@ pub(super) fn existence_at_defaults(
     defaults.confirmed(generic, verdict)
 }
 
-/// Whether an obstruction is left at the defaults, or the closed form is one there too.
+/// True if an obstruction is left at the defaults, or the closed form is one there too.
 fn is_evident(
     model: &mut Model,
     declared: &Problem,
@@ -106,7 +110,8 @@ fn is_evident(
         (Existence::None, _) => is_obstructed(&model.pool, declared, seed),
         (Existence::Global, Some((potential, _))) => {
             let potential = at(&mut model.pool, potential, defaults);
-            certify(&model.pool, declared, &potential, seed).is_ok_and(|own| own.is_some())
+            certify(&model.pool, declared, &potential, seed)
+                .is_ok_and(|certified| certified.is_some())
         }
         _ => false,
     }
@@ -150,7 +155,10 @@ mod tests {
         let Err(refused) = try_expand(declaration.parse().expect("tokens")) else {
             return String::new();
         };
-        refused.iter().map(|own| own.message().to_owned()).collect()
+        refused
+            .iter()
+            .map(|refusal| refusal.message().to_owned())
+            .collect()
     }
 
     fn particle(default: &str, claim: &str) -> String {

@@ -178,11 +178,7 @@ fn residues(
 ) -> Option<(Covered, Branches)> {
     let mut points = sample_points(&model.pool, roots, profile, seed).ok()?;
     let branches = branches_of(&model.pool, roots, profile, &points)?;
-    let each = if branches.is_single() {
-        STATES.0
-    } else {
-        STATES.1
-    };
+    let each = branches.points_of_each(STATES);
     let covered = points.cover(&model.pool, &branches, each, |point| {
         question.settle(model, point)?;
         let terms = question.terms(model, point)?;

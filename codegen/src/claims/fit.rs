@@ -301,11 +301,7 @@ pub(super) fn certify(
     // Points other than those of the search, for any seed of it.
     let mut points = sample_points(pool, &roots, &profile, seed ^ FRESH)?;
     let branches = branches_of(pool, &roots, &profile, &points).ok_or(Undecided::Branches)?;
-    let each = if branches.is_single() {
-        CERTIFIED.0
-    } else {
-        CERTIFIED.1
-    };
+    let each = branches.points_of_each(CERTIFIED);
     let mut primes = Vec::new();
     let covered = points
         .cover(pool, &branches, each, |point| {

@@ -5,7 +5,7 @@
 //! such a loop to another one. If `beta` along the loop changes its sign under it, the growth is its own opposite: 0.
 //! Whether it does is an identity, tested modulo primes.
 
-use dalembert_expr::{ModularPoint, Modulus, SymbolId};
+use dalembert_expr::{ExprId, ModularPoint, Modulus, SymbolId};
 
 use super::elimination::first_relation;
 use super::exactness::{Local, sample_points};
@@ -25,24 +25,21 @@ struct Move {
     is_reflected: bool,
 }
 
-const STAYS: Move = Move {
-    half_turns: 0,
-    is_reflected: false,
-};
-const REFLECTED: Move = Move {
-    half_turns: 0,
-    is_reflected: true,
-};
-const SUPPLEMENT: Move = Move {
-    half_turns: 1,
-    is_reflected: true,
-};
-const OPPOSITE: Move = Move {
-    half_turns: 1,
-    is_reflected: false,
-};
+const STAYS: Move = Move::new(0, false);
+const REFLECTED: Move = Move::new(0, true);
+const SUPPLEMENT: Move = Move::new(1, true);
+const OPPOSITE: Move = Move::new(1, false);
 
-/// Whether the growth of `G` along the circle of a coordinate is 0 by a symmetry; D must connect all configurations.
+impl Move {
+    const fn new(half_turns: i64, is_reflected: bool) -> Self {
+        Self {
+            half_turns,
+            is_reflected,
+        }
+    }
+}
+
+/// True if the growth of `G` along the circle of a coordinate is 0 by a symmetry; D must connect all configurations.
 pub(super) fn has_no_period(
     model: &Model,
     problem: &Problem,
@@ -88,7 +85,7 @@ pub(super) fn has_no_period(
 fn maps(model: &Model, problem: &Problem, angle: usize) -> Vec<Vec<(SymbolId, Move)>> {
     let first = [REFLECTED, SUPPLEMENT, OPPOSITE, STAYS];
     let symbol = model.coordinates[angle].q;
-    let mut maps: Vec<Vec<_>> = first.iter().map(|own| vec![(symbol, *own)]).collect();
+    let mut maps: Vec<Vec<_>> = first.iter().map(|moved| vec![(symbol, *moved)]).collect();
     let others = problem.variables.iter().copied();
     for i in others.filter(|i| *i != angle && *i < problem.coordinates) {
         let moves: &[Move] = match model.coordinates[i].topology {
@@ -101,8 +98,8 @@ fn maps(model: &Model, problem: &Problem, angle: usize) -> Vec<Vec<(SymbolId, Mo
             },
         };
         let symbol = model.coordinates[i].q;
-        let longer = moves.iter().flat_map(|own| {
-            let with = |map: &Vec<_>| [map.clone(), vec![(symbol, *own)]].concat();
+        let longer = moves.iter().flat_map(|moved| {
+            let with = |map: &Vec<_>| [map.clone(), vec![(symbol, *moved)]].concat();
             maps.iter().map(with).collect::<Vec<_>>()
         });
         maps = longer.take(MAPS).collect();
@@ -110,20 +107,16 @@ fn maps(model: &Model, problem: &Problem, angle: usize) -> Vec<Vec<(SymbolId, Mo
     maps
 }
 
-fn is_half_circle(
-    model: &Model,
-    low: dalembert_expr::ExprId,
-    high: dalembert_expr::ExprId,
-) -> bool {
+fn is_half_circle(model: &Model, low: ExprId, high: ExprId) -> bool {
     model.pool.is_syntactic_zero(low) && high == model.pool.pi()
 }
 
 fn image(model: &Model, point: &ModularPoint, map: &[(SymbolId, Move)]) -> Option<ModularPoint> {
     let mut image = point.clone();
-    for (symbol, own) in map.iter().filter(|(_, own)| *own != STAYS) {
+    for (symbol, moved) in map.iter().filter(|(_, moved)| *moved != STAYS) {
         let assumption = model.pool.symbol_assumption(*symbol);
         image
-            .move_symbol(*symbol, assumption, own.half_turns, own.is_reflected)
+            .move_symbol(*symbol, assumption, moved.half_turns, moved.is_reflected)
             .ok()?;
     }
     Some(image)

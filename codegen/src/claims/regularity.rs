@@ -47,7 +47,7 @@ pub(super) fn is_real(model: &Model, problem: &Problem) -> bool {
     })
 }
 
-/// Whether a density has no zero and no pole anywhere: every term of which it is a logarithm is certified never to be 0,
+/// True if a density has no zero and no pole where the model has values: every term of which it is a logarithm is certified never to be 0,
 /// for all values of coordinates and parameters.
 pub(super) fn is_regular(
     model: &mut Model,
@@ -79,7 +79,7 @@ fn determinant(model: &mut Model, forms: &[Vec<ExprId>], columns: &[usize]) -> O
         let others: Vec<usize> = columns
             .iter()
             .copied()
-            .filter(|own| own != column)
+            .filter(|other| other != column)
             .collect();
         let minor = determinant(model, rest, &others)?;
         let term = model.pool.mul(first[*column], minor);
@@ -91,7 +91,7 @@ fn determinant(model: &mut Model, forms: &[Vec<ExprId>], columns: &[usize]) -> O
     Some(model.pool.sum(&terms))
 }
 
-/// Whether an expression is certified to be different from 0 wherever it is defined.
+/// True if an expression is certified to be different from 0 wherever it is defined.
 pub(super) fn is_never_zero(model: &mut Model, id: ExprId) -> bool {
     if model.pool.sign(id).is_nonzero() || is_positive_on_chart(model, id) {
         return true;
@@ -111,7 +111,7 @@ pub(super) fn is_never_zero(model: &mut Model, id: ExprId) -> bool {
     model.pool.zeros_on(id, &slopes, &domain) == Zeros::None
 }
 
-/// Whether it is the sine or cosine of a coordinate on a chart on which that is positive.
+/// True if it is the sine or cosine of a coordinate on a chart on which that is positive.
 fn is_positive_on_chart(model: &Model, id: ExprId) -> bool {
     let Node::Call(function, argument) = model.pool.node(id) else {
         return false;
@@ -145,6 +145,8 @@ fn is_positive_on_chart(model: &Model, id: ExprId) -> bool {
 /// The ranges of the symbols of an expression.
 fn domain(model: &Model, id: ExprId) -> Domain {
     let pool = &model.pool;
+    // A part of a declaration may have a longer period than the whole: that of its fractions of angles.
+    let turns = pool.profile_of(&[id]).denominator.unwrap_or(1) as f64;
     let mut domain = Domain::new();
     let ends = |low: ExprId, high: ExprId| {
         let ranges = pool.enclose(&pool.reachable(&[low, high]), &Domain::new());
@@ -154,7 +156,7 @@ fn domain(model: &Model, id: ExprId) -> Domain {
     for coordinate in &model.coordinates {
         let range = match coordinate.topology {
             Topology::Line => Interval::WHOLE,
-            Topology::Angle => Interval::new(0.0, Interval::pi().hi * 2.0),
+            Topology::Angle => Interval::new(0.0, (2.0 * turns * Interval::pi().hi).next_up()),
             Topology::Interval { low, high } => ends(low, high),
         };
         domain.push((coordinate.q, range));
