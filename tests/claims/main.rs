@@ -3,6 +3,7 @@
 //! | file | subject |
 //! |---|---|
 //! | `golden_verdicts.rs`, `reference.rs` | verdicts, frames, obstructions, densities of the reference files |
+//! | `gauge.rs` | symmetries of the equations that change the Lagrangian |
 //! | `systems.rs`, `drift.rs`, `topology.rs`, `conditions.rs`, `momentum.rs` | existence on many systems |
 //! | `invariance.rs`, `atoms.rs` | what a verdict must not depend on; functions and their relations |
 //! | `visible.rs`, `contradicted.rs`, `impacts.rs` | claims of models, true ones and false ones; impacts |
@@ -14,6 +15,7 @@ mod conditions;
 mod contradicted;
 mod drift;
 mod emitted_volumes;
+mod gauge;
 mod golden_verdicts;
 mod impacts;
 mod invariance;

@@ -132,18 +132,13 @@ fn computed(system: &dyn Numeric, claim: &str, name: &str, t: f64, state: &[f64]
         return at(system, quantity, &system.snapshot(t, &after), None);
     }
     let field = claim.strip_prefix("symmetry:").expect("a symmetry");
-    if name == "rate of L along its flow" {
-        // L = 2 T + A.qdot - (T + V)
-        return flow(system, field, t, state, &|own| {
-            let report = system.report(t, &system.state(t, &own.q, &own.qdot));
-            let n = own.q.len();
-            let lowered = report.0["metric"]
-                .chunks(n)
-                .map(|row| product(row, &own.qdot));
-            let lowered: Vec<f64> = lowered.collect();
-            let linear = product(&own.p, &own.qdot) - product(&lowered, &own.qdot);
-            product(&lowered, &own.qdot) + linear - own.energy
-        });
+    if let Some(pair) = inner("second derivative of this rate in dot(", ")") {
+        let (first, second) = pair.split_once(") and dot(").expect("two velocities");
+        let [i, j] = [first, second].map(|own| position(system, own));
+        return twice(system, field, t, state, [i, j]);
+    }
+    if let Some(coordinate) = name.strip_prefix("Euler-Lagrange expression of this rate for ") {
+        return euler_lagrange(system, field, t, state, position(system, coordinate));
     }
     let constraint = inner("rate of the left side of ", " along its flow").expect("a known number");
     let names = system.description().constraints.iter();
@@ -159,6 +154,63 @@ fn computed(system: &dyn Numeric, claim: &str, name: &str, t: f64, state: &[f64]
         let lowered: Vec<f64> = lowered.collect();
         product(&report.0["W"][a * n..(a + 1) * n], &lowered)
     })
+}
+
+/// The position of a coordinate.
+fn position(system: &dyn Numeric, name: &str) -> usize {
+    let mut names = system.description().coordinates.iter();
+    names
+        .position(|own| own.name == name)
+        .expect("a coordinate")
+}
+
+/// The rate of the Lagrangian along a field at a state with other positions and velocities.
+fn rate_of_lagrangian(system: &dyn Numeric, field: &str, t: f64, q: &[f64], qdot: &[f64]) -> f64 {
+    let state = system.state(t, q, qdot);
+    // L = 2 T + A.qdot - (T + V)
+    flow(system, field, t, &state, &|own| {
+        let report = system.report(t, &system.state(t, &own.q, &own.qdot));
+        let n = own.q.len();
+        let lowered = report.0["metric"]
+            .chunks(n)
+            .map(|row| product(row, &own.qdot));
+        let lowered: Vec<f64> = lowered.collect();
+        let linear = product(&own.p, &own.qdot) - product(&lowered, &own.qdot);
+        product(&lowered, &own.qdot) + linear - own.energy
+    })
+}
+
+/// The second derivative of that rate in two velocities, of which it is a polynomial of degree 2.
+fn twice(system: &dyn Numeric, field: &str, t: f64, state: &[f64], pair: [usize; 2]) -> f64 {
+    let here = system.snapshot(t, state);
+    let at = |[a, b]: [f64; 2]| {
+        let mut qdot = here.qdot.clone();
+        qdot[pair[0]] += a;
+        qdot[pair[1]] += b;
+        rate_of_lagrangian(system, field, t, &here.q, &qdot)
+    };
+    let corners = [[0.5, 0.5], [0.5, -0.5], [-0.5, 0.5], [-0.5, -0.5]].map(at);
+    corners[0] - corners[1] - corners[2] + corners[3]
+}
+
+/// `(qdot^j d_j + d_t) dR/dqdot^i - dR/dq^i` of that rate `R`.
+fn euler_lagrange(system: &dyn Numeric, field: &str, t: f64, state: &[f64], i: usize) -> f64 {
+    let here = system.snapshot(t, state);
+    let along = slope(&mut |s| {
+        let q = moved(&here.q, s, &here.qdot);
+        let [after, before] = [0.5, -0.5].map(|own| {
+            let mut qdot = here.qdot.clone();
+            qdot[i] += own;
+            rate_of_lagrangian(system, field, t + s, &q, &qdot)
+        });
+        after - before
+    });
+    let gradient = slope(&mut |s| {
+        let mut q = here.q.clone();
+        q[i] += s;
+        rate_of_lagrangian(system, field, t, &q, &here.qdot)
+    });
+    along - gradient
 }
 
 /// The rate of a function of position and velocity along a field that is lifted to velocities.

@@ -14,6 +14,7 @@
 //! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
 //! | `evidence.rs`, `continuity.rs` | does something vanish at all states? may it jump all the same? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
+//! | `gauge.rs` | total derivatives that a symmetry may add to the Lagrangian |
 //! | `wall.rs`, `reset.rs` | the map of an impact |
 //! | `collision.rs`, `hybrid.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume; do resets keep the constraints? |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
@@ -42,6 +43,7 @@ mod existence;
 mod finding;
 mod fit;
 mod frame;
+mod gauge;
 mod geometry;
 mod global;
 mod gradient;

@@ -1,12 +1,13 @@
 //! Symmetries: does the flow of a vector field keep the Lagrangian and the constraints, and what of its momentum?
 //!
 //! ```text
-//! lift      xi^i d_i L + (d_j xi^i qdot^j + d_t xi^i) dL/dqdot^i = 0
+//! lift      xi^i d_i L + (d_j xi^i qdot^j + d_t xi^i) dL/dqdot^i = df/dt
 //! D         the lift keeps eta^a(qdot) + eta^a_0 = 0 at all qdot that satisfy it
-//! momentum  J = xi^i dL/dqdot^i,   dJ/dt = lambda_a eta^a(xi) + F(xi)
+//! momentum  J = xi^i dL/dqdot^i,   d(J - f)/dt = lambda_a eta^a(xi) + F(xi)
 //! ```
 //!
-//! The momentum of a horizontal symmetry, `eta^a(xi) = 0`, is conserved (W. Clark, thesis, 3.3.4 and 5.2).
+//! The momentum of a horizontal symmetry, `eta^a(xi) = 0`, is conserved (W. Clark, thesis, 3.3.4 and 5.2). `f(q, t)` is 0 where the flow keeps
+//! the Lagrangian itself, see [`super::gauge`] elsewhere.
 
 use dalembert_expr::{
     ExpansionPoint, ExprId, ModularPoint, Pool, RealPoint, SymbolId, Verdict as Zero,
@@ -17,6 +18,7 @@ use super::continuity::possible_jump;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::finding::{Certificate, Verdict};
+use super::gauge;
 use super::sample::{Sample, sample, uses};
 use crate::model::Model;
 
@@ -27,7 +29,19 @@ pub(super) fn check_symmetry(
     field: &[ExprId],
     seed: u64,
 ) -> (Verdict, Vec<String>) {
-    let changes = changes(model, dynamics, field);
+    let directions = lifted(model, field);
+    let whole = model.lagrangian.whole;
+    let rate = model.pool.derivative_along(whole, &directions);
+    let kept = Change::of_lagrangian("rate of L along its flow".to_owned(), rate);
+    let is_kept = evidence(model, &kept, seed).shows_that_it_vanishes();
+    let mut changes = match is_kept {
+        true => vec![kept],
+        false => gauge::conditions(model, rate)
+            .into_iter()
+            .map(|(name, value)| Change::of_lagrangian(name, value))
+            .collect(),
+    };
+    changes.extend(of_constraints(model, dynamics, &directions));
     let mut whole: Option<Certificate> = None;
     for change in &changes {
         match evidence(model, change, seed).verdict(true, change.wording(), seed) {
@@ -39,9 +53,16 @@ pub(super) fn check_symmetry(
             refuted => return (refuted, Vec::new()),
         }
     }
-    let Some(certificate) = whole else {
-        return (Verdict::Undecided(String::new()), Vec::new());
-    };
+    let mut certificate = whole.unwrap_or_else(|| Certificate {
+        shown: KEPT.to_owned(),
+        points: 0,
+        primes: Vec::new(),
+        error: 0.0,
+        seed,
+    });
+    if !is_kept {
+        certificate.shown = GAUGE.to_owned();
+    }
     let jump = field
         .iter()
         .find_map(|own| possible_jump(model, *own, &[], &mut |_, _| false));
@@ -49,7 +70,8 @@ pub(super) fn check_symmetry(
         let text = format!("where it is smooth it is one, but it may jump {place}");
         return (Verdict::Undecided(text), Vec::new());
     }
-    let remarks = vec![momentum_equation(model, field)];
+    let gauge = (!is_kept).then_some(rate);
+    let remarks = vec![momentum_equation(model, field, gauge)];
     (Verdict::Proved(certificate), remarks)
 }
 
@@ -66,15 +88,13 @@ fn joined(first: Option<Certificate>, second: Certificate) -> Certificate {
     whole
 }
 
-/// What the flow changes, if anything: the Lagrangian, then the left side of each constraint at velocities in D.
-fn changes<'d>(model: &mut Model, dynamics: &'d Dynamics, field: &[ExprId]) -> Vec<Change<'d>> {
-    let directions = lifted(model, field);
-    let whole = model.lagrangian.whole;
-    let mut changes = vec![Change {
-        rate: model.pool.derivative_along(whole, &directions),
-        name: "rate of L along its flow".to_owned(),
-        on_d: None,
-    }];
+/// The change of the left side of each constraint at velocities in D.
+fn of_constraints<'d>(
+    model: &mut Model,
+    dynamics: &'d Dynamics,
+    directions: &[(SymbolId, ExprId)],
+) -> Vec<Change<'d>> {
+    let mut changes = Vec::new();
     for a in 0..model.constraints.len() {
         let mut terms = vec![model.constraints[a].affine];
         for i in 0..model.coordinates.len() {
@@ -86,12 +106,17 @@ fn changes<'d>(model: &mut Model, dynamics: &'d Dynamics, field: &[ExprId]) -> V
         let name = &model.constraints[a].name.display;
         changes.push(Change {
             name: format!("rate of the left side of {name} along its flow"),
-            rate: model.pool.derivative_along(left, &directions),
+            rate: model.pool.derivative_along(left, directions),
             on_d: Some(dynamics),
         });
     }
     changes
 }
+
+/// The certificates of a symmetry of the Lagrangian itself, and of one that changes it by a total derivative.
+const KEPT: &str = "its flow keeps the Lagrangian and the constraints";
+const GAUGE: &str =
+    "its flow changes the Lagrangian by a total time derivative and keeps the constraints";
 
 /// The rate of something along a flow.
 struct Change<'d> {
@@ -102,9 +127,18 @@ struct Change<'d> {
 }
 
 impl Change<'_> {
+    /// A change at all velocities.
+    fn of_lagrangian(name: String, rate: ExprId) -> Self {
+        Change {
+            name,
+            rate,
+            on_d: None,
+        }
+    }
+
     fn question(&self) -> &'static str {
         match self.on_d {
-            None => "whether its flow keeps the Lagrangian",
+            None => "whether its flow keeps the Lagrangian up to a total time derivative",
             Some(_) => "whether its flow keeps the constraints",
         }
     }
@@ -112,7 +146,7 @@ impl Change<'_> {
     fn wording(&self) -> Wording {
         let (differs, help) = match self.on_d {
             None => (
-                "its flow changes the Lagrangian",
+                "its flow changes the Lagrangian by more than a total time derivative",
                 "leave it out, or correct the field",
             ),
             Some(_) => (
@@ -121,7 +155,7 @@ impl Change<'_> {
             ),
         };
         Wording {
-            vanishes: "its flow keeps the Lagrangian and the constraints".to_owned(),
+            vanishes: KEPT.to_owned(),
             differs: differs.to_owned(),
             help: [help.to_owned(), String::new()],
         }
@@ -169,7 +203,7 @@ impl Vanishing for Change<'_> {
 
 /// The field, lifted to velocities.
 fn lifted(model: &mut Model, field: &[ExprId]) -> Vec<(SymbolId, ExprId)> {
-    let motion = motion(model);
+    let motion = gauge::motion(model);
     let mut directions = Vec::new();
     for (i, component) in field.iter().enumerate() {
         let (q, qdot) = (model.coordinates[i].q, model.coordinates[i].qdot);
@@ -178,16 +212,6 @@ fn lifted(model: &mut Model, field: &[ExprId]) -> Vec<(SymbolId, ExprId)> {
         directions.push((qdot, rate));
     }
     directions
-}
-
-/// `qdot` for q, 1 for t.
-fn motion(model: &mut Model) -> Vec<(SymbolId, ExprId)> {
-    let mut motion = Vec::new();
-    for coordinate in &model.coordinates {
-        motion.push((coordinate.q, model.pool.variable(coordinate.qdot)));
-    }
-    motion.push((model.time, model.pool.one()));
-    motion
 }
 
 /// A sample with free velocities.
@@ -206,15 +230,19 @@ fn with_velocities(model: &Model, attempt: usize, roots: &[ExprId]) -> Sample {
     sample
 }
 
-/// What the momentum of the field does, as a sentence.
-fn momentum_equation(model: &mut Model, field: &[ExprId]) -> String {
+/// What the momentum of the field does, as a sentence; `gauge` is the rate of the Lagrangian along the flow, a total derivative.
+fn momentum_equation(model: &mut Model, field: &[ExprId], gauge: Option<ExprId>) -> String {
     let whole = model.lagrangian.whole;
     let mut momentum = Vec::new();
     for (i, component) in field.iter().enumerate() {
         let own = model.pool.diff(whole, model.coordinates[i].qdot);
         momentum.push(model.pool.mul(*component, own));
     }
-    let momentum = model.pool.sum(&momentum);
+    let mut momentum = model.pool.sum(&momentum);
+    let lost = gauge.and_then(|rate| gauge::antiderivative(model, rate));
+    if let Some(lost) = lost {
+        momentum = model.pool.sub(momentum, lost);
+    }
     let momentum = readable(&mut model.pool, momentum);
     let mut terms = Vec::new();
     for a in 0..model.constraints.len() {
@@ -226,6 +254,9 @@ fn momentum_equation(model: &mut Model, field: &[ExprId]) -> String {
         }
     }
     let is_horizontal = terms.is_empty();
+    if lost.is_none() {
+        terms.extend(gauge);
+    }
     for force in 0..model.forces.len() {
         let form = model.forces[force].form.clone();
         let value = contract(&mut model.pool, &form, field);
@@ -240,10 +271,14 @@ fn momentum_equation(model: &mut Model, field: &[ExprId]) -> String {
         (false, true) => "horizontal; ",
         (false, false) => "not horizontal; ",
     };
+    let name = match lost {
+        Some(_) => "its momentum, less what the Lagrangian gains,",
+        None => "its momentum",
+    };
     if terms.is_empty() {
-        format!("{kind}its momentum {momentum} is conserved")
+        format!("{kind}{name} {momentum} is conserved")
     } else {
-        format!("{kind}its momentum {momentum} has the rate {torque}")
+        format!("{kind}{name} {momentum} has the rate {torque}")
     }
 }
 

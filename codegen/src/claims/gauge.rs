@@ -1,0 +1,105 @@
+//! Total time derivatives: a flow that changes the Lagrangian by one keeps the equations of motion.
+//!
+//! `R(q, qdot, t)` is `df/dt` for a function `f(q, t)`, near every configuration, iff its Euler-Lagrange expressions vanish at all positions,
+//! velocities and accelerations:
+//!
+//! ```text
+//! d^2R/dqdot^i dqdot^j = 0
+//! (qdot^j d_j + d_t) dR/dqdot^i - dR/dq^i = 0
+//! ```
+
+use dalembert_expr::{ExprId, Node, Pool, Rational, SymbolId, Verdict as Zero};
+
+use crate::model::Model;
+
+/// Expressions, each with its name, that all vanish iff a function of positions, velocities and time is a total derivative.
+pub(super) fn conditions(model: &mut Model, rate: ExprId) -> Vec<(String, ExprId)> {
+    let coordinates: Vec<(String, SymbolId, SymbolId)> = model
+        .coordinates
+        .iter()
+        .map(|own| (own.name.display.clone(), own.q, own.qdot))
+        .collect();
+    let motion = motion(model);
+    let pool = &mut model.pool;
+    let mut conditions = Vec::new();
+    for (i, (first, q, qdot)) in coordinates.iter().enumerate() {
+        let slope = pool.diff(rate, *qdot);
+        for (second, _, other) in &coordinates[i..] {
+            let name = format!("second derivative of this rate in dot({first}) and dot({second})");
+            conditions.push((name, pool.diff(slope, *other)));
+        }
+        let along = pool.derivative_along(slope, &motion);
+        let gradient = pool.diff(rate, *q);
+        let name = format!("Euler-Lagrange expression of this rate for {first}");
+        conditions.push((name, pool.sub(along, gradient)));
+    }
+    conditions.retain(|(_, value)| !pool.is_syntactic_zero(*value));
+    conditions
+}
+
+/// The function of positions and time that has a total derivative as its rate, if it is a polynomial.
+pub(super) fn antiderivative(model: &mut Model, rate: ExprId) -> Option<ExprId> {
+    let mut variables = vec![model.time];
+    let mut rest = rate;
+    let mut terms = Vec::new();
+    let pool = &mut model.pool;
+    for coordinate in &model.coordinates {
+        variables.push(coordinate.q);
+        let slope = pool.diff(rate, coordinate.qdot);
+        let [q, qdot] = [coordinate.q, coordinate.qdot].map(|own| pool.variable(own));
+        let part = pool.mul(slope, qdot);
+        rest = pool.sub(rest, part);
+        terms.push(pool.mul(slope, q));
+    }
+    let rest = pool.multiply_out(rest);
+    let time = pool.variable(model.time);
+    terms.push(pool.mul(rest, time));
+    let radial = pool.sum(&terms);
+    let radial = pool.multiply_out(radial);
+    // The homotopy operator: a monomial is divided by its degree.
+    let (number, parts) = pool.linear_form(radial);
+    if !number.is_zero() {
+        return None;
+    }
+    let mut terms = Vec::new();
+    for (coefficient, part) in parts {
+        let degree = degree(pool, part, &variables)?;
+        let share = coefficient.checked_div(&Rational::from(degree))?;
+        terms.push(pool.scale(&share, part));
+    }
+    let found = pool.sum(&terms);
+    let along = motion(model);
+    let back = model.pool.derivative_along(found, &along);
+    let error = model.pool.sub(back, rate);
+    (model.pool.zero_test(error) == Zero::Proved).then_some(found)
+}
+
+/// `qdot` for q, 1 for t.
+pub(super) fn motion(model: &mut Model) -> Vec<(SymbolId, ExprId)> {
+    let mut motion = Vec::new();
+    for coordinate in &model.coordinates {
+        motion.push((coordinate.q, model.pool.variable(coordinate.qdot)));
+    }
+    motion.push((model.time, model.pool.one()));
+    motion
+}
+
+/// The degree of a monomial in variables; `None` if it is none, or if the degree is 0.
+fn degree(pool: &Pool, monomial: ExprId, variables: &[SymbolId]) -> Option<i64> {
+    let one = Rational::ONE;
+    let factors = match pool.node(monomial) {
+        Node::Product(factors) => factors.to_vec(),
+        _ => vec![(monomial, one)],
+    };
+    let mut degree = 0;
+    for (base, exponent) in factors {
+        if !pool.depends_on_any(base, variables) {
+            continue;
+        }
+        let Node::Symbol(_) = pool.node(base) else {
+            return None;
+        };
+        degree += exponent.to_i64().filter(|own| *own > 0)?;
+    }
+    (degree > 0).then_some(degree)
+}
