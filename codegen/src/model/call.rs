@@ -208,7 +208,10 @@ impl<'s> Resolver<'s> {
             ScalarKind::Sum(terms) => terms.iter().any(|(_, term)| within(term)),
             ScalarKind::Product(factors) => factors.iter().any(|(_, factor)| within(factor)),
             ScalarKind::Power(base, _) => within(base),
-            ScalarKind::Call(_, arguments) => arguments.iter().any(within),
+            ScalarKind::Call(name, arguments) => {
+                let meaning = self.symbols.names.get(&name.text);
+                matches!(meaning, Some((Meaning::Definition, _))) || arguments.iter().any(within)
+            }
         }
     }
 

@@ -98,6 +98,9 @@ fn rates_are_taken_of_what_changes() {
     accepted(&of_families("(dot(X[i]) + dot(X[i - 1]))"));
     accepted(&particle("outputs { o: dot(t) + dot(m*x); }"));
     accepted(&particle(
+        "let turned(a) = a*sin(x); outputs { o: dot(turned(0)) + dot(turned(m - m)); }",
+    ));
+    accepted(&particle(
         "let rate(u) = dot(u); outputs { o: rate(x) + rate(m); }",
     ));
 }
