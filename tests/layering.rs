@@ -103,20 +103,22 @@ fn a_stage_uses_only_those_to_its_left() {
 
 #[test]
 fn the_runtime_is_bare() {
-    assert_absent(
-        "runtime/src",
-        &[
-            "extern crate alloc",
-            "alloc::",
-            "Vec<",
-            "Box<",
-            "String",
-            "unsafe {",
-        ],
-    );
-    let text = std::fs::read_to_string(root().join("runtime/src/lib.rs")).expect("text");
-    assert!(text.contains("#![forbid(unsafe_code)]"));
-    assert!(text.contains("no_std"));
+    for folder in ["runtime/src", "runtime/numbers/src"] {
+        assert_absent(
+            folder,
+            &[
+                "extern crate alloc",
+                "alloc::",
+                "Vec<",
+                "Box<",
+                "String",
+                "unsafe {",
+            ],
+        );
+        let text = std::fs::read_to_string(root().join(folder).join("lib.rs")).expect("text");
+        assert!(text.contains("#![forbid(unsafe_code)]"));
+        assert!(text.contains("no_std"));
+    }
 }
 
 #[test]

@@ -1,9 +1,7 @@
 //! Sums over Taylor coefficients, as generated code calls them.
 
 use crate::numbers::Numbers;
-
-/// Coefficients that a series may have: orders 0 to 32.
-pub const LENGTH: usize = 33;
+pub use crate::numbers::{INVERSES, LENGTH};
 
 /// What the expansions of a system take, in multiplications.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,17 +32,6 @@ impl<A: Jets, B: Jets> Jets for (A, B) {
 impl<L: Numbers, const W: usize, const H: usize> Jets for [[L; W]; H] {
     const ZERO: Self = [[L::ZERO; W]; H];
 }
-
-/// `1 / k`; 0 at 0.
-pub const INVERSES: [f64; LENGTH] = {
-    let mut inverses = [0.0; LENGTH];
-    let mut k = 1;
-    while k < LENGTH {
-        inverses[k] = 1.0 / k as f64;
-        k += 1;
-    }
-    inverses
-};
 
 /// `sum a_j b_(k-j)` for `j` in `1..k`, of `W` pairs of series side by side. Row `j` holds coefficient `j` of all
 /// series: the `a` from place `a` on, the `b` from place `b` on. Row `k - 1`, the newest, is given besides: it need not

@@ -123,10 +123,8 @@ pub mod jet;
 pub mod lanes;
 mod linalg;
 #[doc(hidden)]
-pub mod math;
 pub mod modes;
 mod nearest;
-pub mod numbers;
 pub mod outcome;
 pub mod projection;
 mod quadrature;
@@ -136,6 +134,8 @@ pub mod simulation;
 pub mod state;
 pub mod variations;
 pub mod work;
+
+pub use dalembert_numbers::{math, numbers};
 
 pub use contract::{
     Actuated, Constrained, Divergence, Impacting, InvariantVolume, Lagrangian, Powered, RankDrop,

@@ -117,6 +117,118 @@ fn densities_that_are_singular_far_out_are_not_proved() {
     not_refuted(regular, "density: exact");
 }
 
+/// The growth is minus the integral of `f'` over the circle.
+#[test]
+fn closed_leaves_refute_with_their_multipliers() {
+    let tau = std::f64::consts::TAU;
+    for (f, place, growth) in [
+        ("x", 0.0, -tau),
+        ("tanh(x - 40)", 40.0, -tau),
+        ("1/(1 + (x - 50)^2) - 1/2", 49.0, -tau / 2.0),
+        ("1/(1 + exp(-20*(x - 10))) - 1/2", 10.0, -5.0 * tau),
+        ("(x - 50)*(1 + x^2)", 50.0, -2501.0 * tau),
+        (
+            "x - 7 - 1/10*sqrt(1 + (x - 7)^2)",
+            7.0 + 1.0 / 99f64.sqrt(),
+            -tau * 0.99,
+        ),
+    ] {
+        let rolling = format!(
+            "coordinates {{ x; y: angle; }} lagrangian = (dot(x)^2 + dot(y)^2)/2;
+            constraints {{ roll: dot(x) = ({f})*dot(y); }}"
+        );
+        let found = finding("Sample", &rolling, "density: exact");
+        let Verdict::Refuted(witness) = found.verdict else {
+            panic!("{f}: {}", found.note());
+        };
+        let [(name, period)] = witness.values.as_slice() else {
+            panic!("{f}: {witness}");
+        };
+        assert_eq!(name, "period");
+        assert!(
+            (period - growth).abs() < 1e-9 * growth.abs(),
+            "{f}: {witness}"
+        );
+        let (_, x) = &witness.sample.expect("a point").values[0];
+        assert!((x - place).abs() < 1e-12 * (1.0 + place), "{f}: {x}");
+        let local = finding("Sample", &rolling, "density: locally_exact");
+        assert!(
+            matches!(local.verdict, Verdict::Proved(_)),
+            "{f}: {}",
+            local.note()
+        );
+    }
+}
+
+#[test]
+fn circles_without_growth_leave_the_question_open() {
+    for f in ["(x - 50)^2", "(x - 50)^3", "x*(x - 1)^2*0 + x^3"] {
+        let rolling = format!(
+            "coordinates {{ x; y: angle; }} lagrangian = (dot(x)^2 + dot(y)^2)/2;
+            constraints {{ roll: dot(x) = ({f})*dot(y); }}"
+        );
+        not_proved(&rolling, "density: exact");
+        not_proved(&rolling, "density: locally_exact");
+    }
+}
+
+#[test]
+fn roots_that_do_not_vanish_far_out_are_certified() {
+    let rolling = "coordinates { x; y: angle; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        constraints { roll: dot(x) = (sqrt(2 + (x - 40)^2) + x - 40)*dot(y); }";
+    let found = finding("Sample", rolling, "density: exact");
+    assert!(
+        matches!(found.verdict, Verdict::Proved(_)),
+        "{}",
+        found.note()
+    );
+}
+
+/// Forces that are far below rounding of the terms they are added to.
+#[test]
+fn small_forces_are_seen_at_a_point_of_47_digits() {
+    for size in ["1e-12", "1e-18", "1e-25"] {
+        let push = format!(
+            "coordinates {{ x; th: angle; s; }} lagrangian = (dot(x)^2 + dot(th)^2 + dot(s)^2)/2;
+            forces {{ push: {size}*sqrt(1 + sin(2*th)^2)*dot(s)*d(s) + dot(x)*d(th) - dot(th)*d(x); }}"
+        );
+        let found = finding("Sample", &push, "conserved: energy");
+        assert!(
+            matches!(found.verdict, Verdict::Refuted(_)),
+            "{size}: {}",
+            found.note()
+        );
+    }
+}
+
+/// The value is that of the reference: 40 digits, computed elsewhere.
+#[test]
+fn obstructions_are_printed_with_the_digits_they_have() {
+    let suslov = |i13: &str| {
+        format!(
+            "coordinates {{ phi: angle; th in (0, pi); psi: angle; }}
+            parameters {{ I11 > 0 = 1; I22 > 0 = 2; I33 > 0 = 3; I13 = {i13}; I23 = 0; }}
+            let o1 = dot(phi)*sin(th)*sin(psi) + dot(th)*cos(psi);
+            let o2 = dot(phi)*sin(th)*cos(psi) - dot(th)*sin(psi);
+            let o3 = dot(phi)*cos(th) + dot(psi);
+            lagrangian = (I11*o1^2 + I22*o2^2 + I33*o3^2)/2 + I13*o1*o3 + I23*o2*o3;
+            constraints {{ c: o3 = 0; }}"
+        )
+    };
+    let delta = |i13: &str| {
+        let found = finding("Sample", &suslov(i13), "density: exact");
+        let Verdict::Refuted(witness) = found.verdict else {
+            panic!("{}", found.note());
+        };
+        witness.values[0].1
+    };
+    // The obstruction is proportional to the product of inertia, up to its square.
+    let ratio = delta("1e-14") / delta("1e-4") * 1e10;
+    assert!((ratio - 1.0).abs() < 1e-7, "{ratio}");
+    let ratio = delta("1e-14") / delta("1e-12") * 1e2;
+    assert!((ratio - 1.0).abs() < 1e-11, "{ratio}");
+}
+
 #[test]
 fn small_and_narrow_periods_are_not_taken_for_none() {
     for slope in [

@@ -55,7 +55,7 @@ impl Pool {
                     sum = Some(sum.map_or(part, |sum| sum.add(part)));
                 }
                 let sum = sum.unwrap_or(Interval::point(0.0));
-                Some(self.far_out(constant, terms, ranges, domain, sum))
+                Some(self.far_out(constant, terms, ranges, sum))
             }
             Node::Product(factors) => {
                 let mut product = Interval::point(1.0);
@@ -76,20 +76,18 @@ impl Pool {
         }
     }
 
-    /// The range of a sum once more, by Horner's rule in every symbol without bounds: the largest power then decides.
+    /// The range of a sum once more, by Horner's rule in every base of powers without bounds: the largest power then decides.
     fn far_out(
         &self,
         constant: &Rational,
         terms: &[(Rational, ExprId)],
         ranges: &[Option<Interval>],
-        domain: &Domain,
         mut range: Interval,
     ) -> Interval {
-        let unbounded = domain.iter().filter(|(_, x)| x.magnitude().is_infinite());
-        for (symbol, x) in unbounded {
+        for (base, x) in self.unbounded_bases(terms, ranges) {
             let mut powers = BTreeMap::from([(0, Interval::rational(constant))]);
             for (coefficient, term) in terms {
-                let Some((power, rest)) = self.power_of(*symbol, *term, ranges) else {
+                let Some((power, rest)) = self.power_of(base, *term, ranges) else {
                     return range;
                 };
                 let part = Interval::rational(coefficient).mul(rest);
@@ -99,7 +97,7 @@ impl Pool {
                 powers.insert(power, sum);
             }
             if powers.len() > 1
-                && let Some(nested) = nested(&powers, *x)
+                && let Some(nested) = nested(&powers, x)
             {
                 range = Interval::new(range.lo.max(nested.lo), range.hi.min(nested.hi));
             }
@@ -107,29 +105,51 @@ impl Pool {
         range
     }
 
-    /// A term as a power of a symbol times the range of the rest.
+    /// Terms and factors of terms that have no bounds, with their ranges.
+    fn unbounded_bases(
+        &self,
+        terms: &[(Rational, ExprId)],
+        ranges: &[Option<Interval>],
+    ) -> Vec<(ExprId, Interval)> {
+        let mut bases = Vec::new();
+        for (_, term) in terms {
+            match self.node(*term) {
+                Node::Product(factors) => bases.extend(factors.iter().map(|(base, _)| *base)),
+                _ => bases.push(*term),
+            }
+        }
+        bases.sort_unstable();
+        bases.dedup();
+        let with_range = bases
+            .into_iter()
+            .filter_map(|base| Some((base, ranges[base.index()]?)));
+        with_range
+            .filter(|(_, range)| range.magnitude().is_infinite())
+            .collect()
+    }
+
+    /// A term as a power of a base times the range of the rest.
     fn power_of(
         &self,
-        symbol: SymbolId,
+        base: ExprId,
         term: ExprId,
         ranges: &[Option<Interval>],
     ) -> Option<(i64, Interval)> {
-        let is_symbol = |id: ExprId| matches!(self.node(id), Node::Symbol(name) if *name == symbol);
-        if is_symbol(term) {
+        if term == base {
             return Some((1, Interval::point(1.0)));
         }
         let whole = Some((0, ranges[term.index()]?));
         let Node::Product(factors) = self.node(term) else {
             return whole;
         };
-        let found = factors.iter().find(|(base, _)| is_symbol(*base));
+        let found = factors.iter().find(|(own, _)| *own == base);
         let power = found.and_then(|(_, power)| power.to_i64().filter(|power| *power > 0));
         let Some(power) = power else {
             return whole;
         };
         let mut rest = Interval::point(1.0);
-        for (base, exponent) in factors.iter().filter(|(base, _)| !is_symbol(*base)) {
-            rest = rest.mul(ranges[base.index()]?.power(exponent)?);
+        for (own, exponent) in factors.iter().filter(|(own, _)| *own != base) {
+            rest = rest.mul(ranges[own.index()]?.power(exponent)?);
         }
         Some((power, rest))
     }
@@ -341,6 +361,7 @@ mod tests {
             "exp(x) + 1/1000000",
             "x^6 - 3*x^2 + 3",
             "tanh(x) + 2",
+            "(x - 700)^4 - (x - 700)^3 + 2",
         ] {
             assert_eq!(zeros(text), Zeros::None, "{text}");
         }

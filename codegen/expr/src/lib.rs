@@ -11,7 +11,7 @@
 //! | `construct.rs`, `sum.rs`, `product.rs`, `call.rs` | the constructors and every rewrite they make |
 //! | `sign.rs` | what is known of signs and finiteness |
 //! | `diff.rs`, `subst.rs`, `eval.rs` | calculus and evaluation |
-//! | `taylor/` | truncated series, modulo a prime or in double precision |
+//! | `taylor/` | truncated series, modulo a prime, in double precision or with 47 digits |
 //! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `branch.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and what it decides |
 //! | `interval.rs`, `enclose.rs` | certified ranges, and expressions that are never 0 |
 //! | `simplify.rs`, `expand.rs`, `print/` | presentation |
@@ -79,5 +79,8 @@ pub use profile::Profile;
 pub use rank::RankReport;
 pub use rational::{MAX_BITS, Rational};
 pub use sign::Sign;
-pub use taylor::{Arithmetic, ExpansionPoint, JetSpace, Jets, RealPoint, Reals, Series};
+pub use taylor::{
+    Arithmetic, ExpansionPoint, ExtendedPoint, ExtendedReals, JetSpace, Jets, Real, RealPoint,
+    Reals, Series,
+};
 pub use zero::{SamplePoints, Verdict};

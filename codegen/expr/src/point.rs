@@ -98,7 +98,7 @@ impl ModularPoint {
         }
     }
 
-    /// Replaces the value `x` of a symbol by `half_turns pi + x` or, reflected, `half_turns pi - x`; sines, cosines and, for
+    /// Replaces the value `x` of a symbol by `twelfths pi/12 + x` or, reflected, `twelfths pi/12 - x`; sines, cosines and, for
     /// `-x`, exponentials of it are replaced to match.
     ///
     /// # Errors
@@ -107,27 +107,28 @@ impl ModularPoint {
         &mut self,
         symbol: SymbolId,
         assumption: Assumption,
-        half_turns: i64,
+        twelfths: i64,
         is_reflected: bool,
     ) -> Result<(), ModularFailure> {
         let field = self.modulus;
         let x = self.value(symbol, assumption);
         let (sine, cosine) = self.circle(x)?;
         let (up, down) = self.exponential(x)?;
-        let units = 12 * half_turns;
-        if units % self.denominator != 0 {
+        if twelfths % self.denominator != 0 {
             return Err(ModularFailure::Denominator);
         }
-        let turn = twelfths_of_pi(field, units / self.denominator)?;
+        let turn = twelfths_of_pi(field, twelfths / self.denominator)?;
         let sign = |value| match is_reflected {
             true => field.neg(value),
             false => value,
         };
-        let pi = field.mul(self.draw(Atom::Pi, 0, 0), field.integer(half_turns));
+        let twelfth = field.inv(12).ok_or(ModularFailure::DivisionByZero)?;
+        let angle = field.mul(field.integer(twelfths), twelfth);
+        let pi = field.mul(self.draw(Atom::Pi, 0, 0), angle);
         let image = field.add(pi, sign(x));
         let angle = add_angles(field, turn, (sign(sine), cosine));
         self.atoms.insert((Atom::Circle, image, 0), angle);
-        if half_turns == 0 && is_reflected {
+        if twelfths == 0 && is_reflected {
             self.atoms.insert((Atom::Exponential, image, 0), (down, up));
         }
         self.set(symbol, image);

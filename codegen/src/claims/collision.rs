@@ -1,6 +1,6 @@
 //! Questions about states before an impact, answered on every component of the surface.
 
-use dalembert_expr::{ExpansionPoint, ExprId, ModularPoint, RealPoint};
+use dalembert_expr::{ExpansionPoint, ExprId, ExtendedPoint, ModularPoint, RealPoint};
 
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Evidence, Vanishing, evidence};
@@ -128,7 +128,12 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
         self.question.scale(model, point, &after)
     }
 
-    fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+    /// A point of a surface is found in doubles, unless everything is looked at.
+    fn extended(&self, point: &RealPoint) -> Option<ExtendedPoint> {
+        (self.place == Place::Anywhere).then(|| ExtendedPoint::of(point))
+    }
+
+    fn shown(&self, _: &Model, terms: &[f64], _: f64) -> Vec<(String, f64)> {
         self.question.shown(terms)
     }
 }

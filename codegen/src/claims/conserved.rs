@@ -176,9 +176,8 @@ impl Vanishing for Rate<'_> {
         Some(rate_scale(&self.quantity, model, &motion, point))
     }
 
-    fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
-        let rate = terms.iter().sum();
-        vec![(format!("d/dt({})", self.written), rate)]
+    fn shown(&self, _: &Model, _: &[f64], sum: f64) -> Vec<(String, f64)> {
+        vec![(format!("d/dt({})", self.written), sum)]
     }
 }
 

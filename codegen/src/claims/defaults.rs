@@ -98,6 +98,28 @@ pub(super) fn existence_at_defaults(
     defaults.confirmed(generic, verdict)
 }
 
+/// The verdict on `density: none` where a density exists for indeterminate parameters: open if none exists at the defaults.
+pub(super) fn absence_at_defaults(
+    model: &mut Model,
+    problem: &Problem,
+    generic: Verdict,
+    seed: u64,
+) -> Verdict {
+    let defaults = Defaults::of(model, &problem.roots());
+    if defaults.is_empty() {
+        return generic;
+    }
+    let declared = problem.substituted(&mut model.pool, defaults.replacements());
+    if !is_obstructed(&model.pool, &declared, seed) {
+        return generic;
+    }
+    Verdict::Undecided(format!(
+        "there is none at the declared defaults {}, and one for almost all other values; write these numbers in place of the \
+         parameters to claim that there is none",
+        defaults.text
+    ))
+}
+
 /// True if an obstruction is left at the defaults, or the closed form is one there too.
 fn is_evident(
     model: &mut Model,
@@ -181,6 +203,18 @@ mod tests {
         assert_eq!(particle("1/3", "density = exp(c*x/k)"), "");
         let message = particle("0", "density = exp(c*x/k)");
         assert!(message.contains("at the declared defaults"), "{message}");
+    }
+
+    #[test]
+    fn that_there_is_none_at_the_defaults_alone_is_not_refuted() {
+        let message = particle("0", "density: none");
+        assert!(
+            message.contains("`density: none` is undecided"),
+            "{message}"
+        );
+        assert!(message.contains("k = 0"), "{message}");
+        let message = particle("1/3", "density: none");
+        assert!(message.contains("`density: none` is refuted"), "{message}");
     }
 
     #[test]

@@ -16,6 +16,9 @@ use super::problem::Problem;
 use super::sample::Sample;
 use crate::model::Model;
 
+/// Rate and divergence are printed alike where their sum is below this part of them.
+const ALIKE: f64 = 1e-9;
+
 /// The verdict on `density = value`; `written` is the value as written.
 pub(super) fn check_density(
     model: &mut Model,
@@ -138,11 +141,15 @@ impl Vanishing for Balance<'_> {
         Some(rate + velocity)
     }
 
-    fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+    fn shown(&self, _: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
         let names = [
             format!("d/dt(ln({}))", self.written),
             "divergence".to_owned(),
         ];
-        names.into_iter().zip(terms.iter().copied()).collect()
+        let mut shown: Vec<_> = names.into_iter().zip(terms.iter().copied()).collect();
+        if sum.abs() < ALIKE * terms[0].abs() {
+            shown.push(("their sum".to_owned(), sum));
+        }
+        shown
     }
 }

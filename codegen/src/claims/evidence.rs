@@ -1,6 +1,9 @@
 //! Does something vanish at all states? What residues at random states and values at real states say.
 
-use dalembert_expr::{Branches, Covered, ExpansionPoint, ExprId, ModularPoint, Profile, RealPoint};
+use dalembert_expr::{
+    Branches, Covered, ExpansionPoint, ExprId, ExtendedPoint, ExtendedReals, ModularPoint, Profile,
+    Real as Extended, RealPoint,
+};
 
 use super::dynamics::Number;
 use super::exactness::{branches_of, sample_points};
@@ -15,6 +18,14 @@ const STATES: (usize, usize) = (12, 3);
 const WITNESSES: usize = 48;
 /// A sum counts as different from 0 beyond this part of its scale: a factor 1e9 above rounding.
 const CLEAR: f64 = 1e-6;
+/// A sum below this part of its scale has lost digits that a message shows.
+const VISIBLE_DIGITS: f64 = 1e-3;
+/// Numbers below it have digits that are out of the range of doubles.
+const LEAST: f64 = 1e-200;
+/// States that are looked at with more digits.
+const EXTENDED: usize = 12;
+/// A factor of safety above the rounding of extended numbers.
+const ROOM: f64 = 1e12;
 /// As [`CLEAR`], where residues have shown that it is not 0 and only a point to show it at is looked for.
 const VISIBLE: f64 = 1e-10;
 
@@ -43,8 +54,13 @@ pub(super) trait Vanishing {
     /// room for the conditioning of metric and constraints.
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64>;
 
-    /// What a person is shown at a real state, given the terms.
-    fn shown(&self, model: &Model, terms: &[f64]) -> Vec<(String, f64)>;
+    /// The state with more digits; `None` if what makes it one is known to the digits of doubles only.
+    fn extended(&self, point: &RealPoint) -> Option<ExtendedPoint> {
+        Some(ExtendedPoint::of(point))
+    }
+
+    /// What a person is shown at a real state, given the terms and their sum.
+    fn shown(&self, model: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)>;
 }
 
 /// What residues and real numbers say about a quantity that is claimed to vanish.
@@ -219,12 +235,19 @@ fn real_evidence(model: &Model, question: &impl Vanishing, threshold: f64) -> Re
             continue;
         };
         is_real = true;
-        let sum: f64 = terms.iter().sum();
         let Some(scale) = question.scale(model, &mut point) else {
             continue;
         };
-        if sum.is_finite() && sum.abs() > threshold * scale {
-            let witness = Some((sample, question.shown(model, &terms)));
+        let sum: f64 = terms.iter().sum();
+        let is_clear = is_regular(sum) && sum.abs() > threshold * scale;
+        let found = match is_clear && sum.abs() > VISIBLE_DIGITS * scale {
+            true => Some((terms, sum)),
+            false if attempt >= EXTENDED => is_clear.then_some((terms, sum)),
+            false => beyond_doubles(model, question, &point, scale, threshold)
+                .or(is_clear.then_some((terms, sum))),
+        };
+        if let Some((terms, sum)) = found {
+            let witness = Some((sample, question.shown(model, &terms, sum)));
             return Real {
                 witness,
                 is_real: true,
@@ -235,4 +258,31 @@ fn real_evidence(model: &Model, question: &impl Vanishing, threshold: f64) -> Re
         witness: None,
         is_real,
     }
+}
+
+/// True if a number is in the range in which others of its size have all their digits.
+pub(super) fn is_regular(sum: f64) -> bool {
+    sum.is_finite() && sum.abs() > LEAST
+}
+
+/// The terms and their sum with more digits, where it is clearly not 0; nothing is looked for beyond an infinite threshold.
+fn beyond_doubles(
+    model: &Model,
+    question: &impl Vanishing,
+    point: &RealPoint,
+    scale: f64,
+    threshold: f64,
+) -> Option<(Vec<f64>, f64)> {
+    if threshold == f64::INFINITY {
+        return None;
+    }
+    let mut point = question.extended(point)?;
+    let terms = question.terms(model, &mut point)?;
+    let sum = terms
+        .iter()
+        .fold(Extended::from(0.0), |sum, term| sum + *term)
+        .nearest();
+    let is_clear = is_regular(sum) && sum.abs() > ROOM * ExtendedReals::ROUNDING * scale;
+    let terms = terms.iter().map(|term| term.nearest()).collect();
+    is_clear.then_some((terms, sum))
 }

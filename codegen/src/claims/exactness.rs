@@ -1,7 +1,9 @@
 //! Does a local density exist? Ranks of the hull of the demands at random points modulo primes.
 //!
-//! A rank at a point never exceeds the generic rank, so the largest of a few samples counts. With all components in
+//! A rank at a point never exceeds the generic rank of its branch, so the largest of a few samples of each branch counts. With all components in
 //! the hull an obstruction at one point is a proof; everything else is wrong with a chance below the stated bound.
+
+use std::collections::BTreeMap;
 
 use dalembert_expr::{
     Branches, ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, SamplePoints, SymbolId,
@@ -13,6 +15,7 @@ use super::fit::{
 };
 use super::frame::frame;
 use super::global::{self, Global};
+use super::leaf;
 use super::potential::{Allowed, Candidates, Potential};
 use super::problem::Problem;
 use super::regularity;
@@ -111,7 +114,7 @@ fn decide_local_from(
     let roots = problem.roots();
     let profile = pool.profile_of(&roots);
     let mut points = sample_points(pool, &roots, &profile, seed)?;
-    let mut best: Option<(Hull, Vec<usize>)> = None;
+    let mut found_in: BTreeMap<u64, (Hull, Vec<usize>)> = BTreeMap::new();
     let mut primes = Vec::new();
     let branches = branches_of(pool, &roots, &profile, &points).ok_or(Undecided::Branches)?;
     let mut failure = None;
@@ -125,9 +128,11 @@ fn decide_local_from(
             }
         };
         primes.push(point.modulus().prime());
+        let pattern = branches.pattern(pool, point)?;
         let ranks = |(hull, _): &(Hull, Vec<usize>)| (hull.rank, hull.extended_rank);
-        if best.as_ref().is_none_or(|best| ranks(best) < ranks(&found)) {
-            best = Some(found);
+        let best = found_in.get(&pattern);
+        if best.is_none_or(|best| ranks(best) < ranks(&found)) {
+            found_in.insert(pattern, found);
         }
         Some(true)
     });
@@ -135,7 +140,12 @@ fn decide_local_from(
         return Err(failure);
     }
     let covered = covered.ok_or(Undecided::Degenerate)?;
-    let (hull, dependent) = best.ok_or(Undecided::Degenerate)?;
+    // A density is one of all branches: an obstruction of any of them counts.
+    let is_obstructed = |hull: &Hull| hull.rank < hull.extended_rank;
+    let (hull, dependent) = found_in
+        .into_values()
+        .max_by_key(|(hull, _)| (is_obstructed(hull), hull.rank, hull.extended_rank))
+        .ok_or(Undecided::Degenerate)?;
     primes.sort_unstable();
     primes.dedup();
     let chance = chance_of_accident(&profile, problem, hull.growth.len());
@@ -299,7 +309,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
     let candidates = Candidates::of(&mut model.pool, problem, &model.coordinates);
     let positions = problem.parameters(model).into_iter();
     let parameters: Vec<SymbolId> = positions.map(|i| model.parameters[i].symbol).collect();
-    let mut singular = None;
+    let mut singular: Option<(Potential, Certified)> = None;
     for allowed in [Allowed::Regular, Allowed::SingleValued, Allowed::All] {
         let pool = &mut model.pool;
         // Each list contains the one before.
@@ -317,24 +327,33 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         };
         let is_regular =
             allowed == Allowed::Regular || regularity::is_regular(model, problem, &local, &found);
-        let density = Some((found, certified));
-        if is_regular {
-            let global = match &density {
-                Some((found, _)) if allowed == Allowed::All => {
-                    global::from_angles(model, problem, &local, found)
-                }
-                _ => Global::Exists,
-            };
-            return Ok(Exactness {
-                global: Some(regularity::restrict(model, problem, global)),
-                local,
-                density,
-            });
+        if !is_regular {
+            singular.get_or_insert((found, certified));
+            continue;
         }
-        singular.get_or_insert(density);
+        let global = match allowed {
+            Allowed::All => match global::from_angles(model, problem, &local, &found) {
+                Global::Undecided(reason) => {
+                    on_leaves(model, problem, &local, (singular.as_ref(), reason), seed)
+                }
+                decided => decided,
+            },
+            _ => Global::Exists,
+        };
+        return Ok(Exactness {
+            global: Some(regularity::restrict(model, problem, global)),
+            local,
+            density: Some((found, certified)),
+        });
     }
-    let global = match singular {
-        Some(_) => Global::Undecided(regularity::SINGULAR),
+    let global = match &singular {
+        Some(_) => on_leaves(
+            model,
+            problem,
+            &local,
+            (singular.as_ref(), regularity::SINGULAR),
+            seed,
+        ),
         None => match global::from_periods(model, problem, &local) {
             Global::Undecided(_)
                 if exists_for_each_parameter(model, problem, &candidates, &parameters, seed) =>
@@ -344,11 +363,26 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
             other => other,
         },
     };
+    // A density that grows on a leaf on which the closed form is singular is another one near it.
+    let density = singular.filter(|_| !matches!(global, Global::Many { .. }));
     Ok(Exactness {
         global: Some(regularity::restrict(model, problem, global)),
         local,
-        density: singular.flatten(),
+        density,
     })
+}
+
+/// The growth on a closed leaf where a singular density vanishes, else the reason why the question stays open.
+fn on_leaves(
+    model: &mut Model,
+    problem: &Problem,
+    local: &Local,
+    (singular, reason): (Option<&(Potential, Certified)>, &'static str),
+    seed: u64,
+) -> Global {
+    singular
+        .and_then(|(potential, _)| leaf::grown_on_leaf(model, problem, local, potential, seed))
+        .unwrap_or(Global::Undecided(reason))
 }
 
 /// Whether regular candidates give a density for each value of the parameters, with coefficients that depend on them

@@ -2,7 +2,7 @@
 
 use dalembert_expr::{ExprId, Rational, SymbolId};
 
-use super::defaults::{Defaults, existence_at_defaults};
+use super::defaults::{Defaults, absence_at_defaults, existence_at_defaults};
 use super::dynamics::Dynamics;
 use super::exactness::{Exactness, decide};
 use super::existence::{self, Decision};
@@ -186,11 +186,15 @@ impl<'e> Examiner<'e> {
         let (problem, seed) = (&self.problem, self.seed);
         let generic = existence::check_existence(self.model, problem, &decision, existence, seed);
         let is_generic = matches!(generic, Verdict::Proved(_));
-        let verdict = match &decision {
+        let verdict = match (&decision, existence) {
             // NOTE: a local density stays one where the periods of a default happen to vanish.
-            Ok(exactness) if is_generic && !matches!(existence, Existence::Local) => {
+            (Ok(_), Existence::Local) | (Err(_), _) => generic,
+            (Ok(exactness), _) if is_generic => {
                 let claim = (existence, generic);
                 existence_at_defaults(self.model, problem, exactness, claim, seed)
+            }
+            (Ok(_), Existence::None) if matches!(generic, Verdict::Refuted(_)) => {
+                absence_at_defaults(self.model, problem, generic, seed)
             }
             _ => generic,
         };

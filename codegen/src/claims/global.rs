@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use dalembert_expr::{JetSpace, Jets, Modulus, Pool};
+use dalembert_expr::{JetSpace, Jets, Modulus, Pool, Reals};
 
 use super::closure::{Until, close};
 use super::exactness::{Local, sample_points};
@@ -218,13 +218,24 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
     let has_no_period =
         |angle: &usize| reflection::has_no_period(model, problem, local, *angle, PERIODS);
     match (is_whole, is_open) {
-        (true, false) if angles.iter().all(has_no_period) => Global::Exists,
+        (true, _) if angles.iter().all(has_no_period) => Global::Exists,
         (true, false) => Global::Undecided(NUMERIC),
         (true, true) => Global::Undecided(OPEN),
         (false, _) => {
             Global::Undecided("no density was found, and D does not connect all configurations")
         }
     }
+}
+
+/// How much `G` grows along a loop in a leaf of the hull of D; `None` if the sum does not converge.
+pub(super) fn growth(
+    model: &Model,
+    problem: &Problem,
+    local: &Local,
+    sample: &Sample,
+    turns: &[(usize, i64)],
+) -> Option<f64> {
+    converged(model, problem, local, sample, turns).map(|(period, _)| period)
 }
 
 /// How much `G` grows along a loop of the hull of D, and the integral of the absolute values of what its rate is made of; `None` if they do
@@ -281,7 +292,7 @@ fn period(
         )?;
         let basis = || local.hull.basis.iter().map(|e| &elements[*e]);
         let vectors: Vec<&[f64]> = basis().map(|own| &own[..width]).collect();
-        let coefficients = combine(&vectors, &tangent)?;
+        let coefficients = combine(Reals, &vectors, &tangent)?;
         let demands = basis().map(|own| own[width]);
         for (demand, coefficient) in demands.zip(&coefficients) {
             sum += demand * coefficient;

@@ -5,7 +5,7 @@
 //! | `problem.rs` | what an invariant density depends on |
 //! | `linear.rs`, `frame.rs`, `closure.rs` | the frame of D as series, and its hull under brackets |
 //! | `exactness.rs` | does a local density exist? |
-//! | `potential.rs`, `fit.rs`, `global.rs`, `reflection.rs`, `regularity.rs` | the density in closed form; is it single-valued, and regular? |
+//! | `potential.rs`, `fit.rs`, `global.rs`, `reflection.rs`, `regularity.rs`, `leaf.rs` | the density in closed form; is it single-valued, and regular? |
 //! | `volume.rs`, `gradient.rs`, `trace.rs` | the volume with that density, or with an integral for it, as it is lowered |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
@@ -50,6 +50,7 @@ mod gradient;
 mod hybrid;
 mod impact;
 mod landing;
+mod leaf;
 mod linear;
 mod momentum;
 mod obstruction;

@@ -1,14 +1,17 @@
 //! Why there is no density, in real numbers: a bracket that is a combination of others as a vector field, and the
 //! demand that is not.
 
-use dalembert_expr::{ExpansionPoint, JetSpace, Jets, Pool, SymbolId};
+use dalembert_expr::{
+    Arithmetic, ExpansionPoint, ExtendedPoint, JetSpace, Jets, Pool, Real, SymbolId,
+};
 
 use super::closure::{Hull, Origin, bracket};
 use super::dynamics::Number;
+use super::evidence::is_regular;
 use super::exactness::Local;
 use super::frame::{Demand, frame};
 use super::problem::Problem;
-use super::sample::{Sample, sample, uses};
+use super::sample::{Sample, move_between_knots, sample, uses};
 use crate::model::Model;
 
 /// An obstruction at a real point.
@@ -30,21 +33,25 @@ pub struct Obstruction {
 
 /// Points that are tried.
 const ATTEMPTS: usize = 12;
-/// A delta counts from this part of its scale on.
-const CLEAR: f64 = 1e-7;
+/// A delta counts from this part of its scale on: 18 digits above the rounding of extended numbers.
+const CLEAR: f64 = 1e-30;
+/// Vectors whose elimination meets a smaller pivot count as dependent.
+const LEAST_PIVOT: f64 = 1e-9;
 
-/// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none, or, with
-/// roots whose branches residues do not tell, not at all points that are tried.
+/// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none. Where the hull does not span, a
+/// combination of its elements is only known on the branches that residues saw: with roots it must show at all points that are tried.
 pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Option<Obstruction> {
     let roots = problem.roots();
-    let has_branches = model.pool.profile_of(&roots).branches;
+    let spans = local.rank == problem.components();
+    let has_branches = model.pool.profile_of(&roots).branches && !spans;
     let mut shown = None;
     for attempt in 0..ATTEMPTS {
-        let sample = sample(model, attempt, uses(&model.pool, &roots));
+        let mut sample = sample(model, attempt, uses(&model.pool, &roots));
+        move_between_knots(model, &roots, attempt, &mut sample);
         let Some(found) = obstruction_at(model, problem, local, sample) else {
             continue;
         };
-        let is_clear = found.delta.abs() > CLEAR * found.scale;
+        let is_clear = is_regular(found.delta) && found.delta.abs() > CLEAR * found.scale;
         match (is_clear, has_branches) {
             (true, false) => return Some(found),
             (true, true) => {
@@ -81,7 +88,8 @@ fn obstruction_at(
     local: &Local,
     sample: Sample,
 ) -> Option<Obstruction> {
-    let mut point = sample.point();
+    let mut point = ExtendedPoint::of(&sample.point());
+    let field = point.field();
     let elements = elements_at(
         &model.pool,
         problem,
@@ -104,56 +112,56 @@ fn obstruction_at(
         .collect();
     let width = elements[position].len() - 1;
     let vector = |element: usize| &elements[element][..width];
-    let others: Vec<&[f64]> = before.iter().map(|e| vector(*e)).collect();
-    let coefficients = combine(&others, vector(position))?;
+    let others: Vec<&[Real]> = before.iter().map(|e| vector(*e)).collect();
+    let coefficients = combine(field, &others, vector(position))?;
     let size = elements.iter().map(|own| largest(own)).fold(0.0, f64::max);
     // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
     if largest(&remainder(&others, &coefficients, vector(position))) > CLEAR * size {
         return None;
     }
     let mut delta = elements[position][width];
-    // Where atoms may be related, what cancels is rounding of the size of everything.
-    let mut scale = match model.pool.profile_of(&problem.roots()).is_exact() {
-        true => delta.abs(),
-        false => size,
-    };
+    let mut scale = size + delta.nearest().abs();
     for (coefficient, element) in coefficients.iter().zip(&before) {
-        delta -= coefficient * elements[*element][width];
-        scale += (coefficient * elements[*element][width]).abs();
+        let part = *coefficient * elements[*element][width];
+        delta = delta - part;
+        scale += part.nearest().abs();
     }
     let relation = before
         .iter()
         .zip(&coefficients)
-        .filter(|(_, coefficient)| coefficient.abs() > 1e-12)
-        .map(|(element, coefficient)| (names[*element].clone(), *coefficient))
+        .filter(|(_, coefficient)| coefficient.nearest().abs() > CLEAR)
+        .map(|(element, coefficient)| (names[*element].clone(), coefficient.nearest()))
         .collect();
     let is_generator =
         |element: &usize| matches!(local.hull.elements[*element], Origin::Generator(_));
     Some(Obstruction {
         frame: (0..elements.len())
             .filter(is_generator)
-            .map(|element| (names[element].clone(), vector(element).to_vec()))
+            .map(|element| (names[element].clone(), nearest(vector(element))))
             .collect(),
         sample,
         bracket: names[position].clone(),
         relation,
-        delta,
+        delta: delta.nearest(),
         scale,
     })
 }
 
-fn largest(values: &[f64]) -> f64 {
-    values
-        .iter()
-        .fold(0.0, |size: f64, own| size.max(own.abs()))
+fn nearest(values: &[Real]) -> Vec<f64> {
+    values.iter().map(Real::nearest).collect()
+}
+
+fn largest(values: &[Real]) -> f64 {
+    let sizes = values.iter().map(|own| own.nearest().abs());
+    sizes.fold(0.0, f64::max)
 }
 
 /// `target` less a combination of vectors.
-fn remainder(vectors: &[&[f64]], coefficients: &[f64], target: &[f64]) -> Vec<f64> {
+fn remainder(vectors: &[&[Real]], coefficients: &[Real], target: &[Real]) -> Vec<Real> {
     let mut rest = target.to_vec();
     for (vector, coefficient) in vectors.iter().zip(coefficients) {
         for (own, entry) in rest.iter_mut().zip(*vector) {
-            *own -= coefficient * entry;
+            *own = *own - *coefficient * *entry;
         }
     }
     rest
@@ -209,35 +217,41 @@ fn names(hull: &Hull, count: usize, has_drift: bool) -> Vec<String> {
 
 /// The coefficients of `target` in independent vectors that span it, by elimination with pivots; `None` if they are
 /// dependent here.
-pub(super) fn combine(vectors: &[&[f64]], target: &[f64]) -> Option<Vec<f64>> {
-    let mut rows: Vec<Vec<f64>> = (0..target.len())
+pub(super) fn combine<A: Arithmetic>(
+    field: A,
+    vectors: &[&[A::Scalar]],
+    target: &[A::Scalar],
+) -> Option<Vec<A::Scalar>> {
+    let mut rows: Vec<Vec<A::Scalar>> = (0..target.len())
         .map(|i| {
-            let mut row: Vec<f64> = vectors.iter().map(|vector| vector[i]).collect();
+            let mut row: Vec<A::Scalar> = vectors.iter().map(|vector| vector[i]).collect();
             row.push(target[i]);
             row
         })
         .collect();
     let unknowns = vectors.len();
     for step in 0..unknowns {
-        let pivot = (step..rows.len())
-            .max_by(|a, b| rows[*a][step].abs().total_cmp(&rows[*b][step].abs()))?;
+        let size = |row: usize, rows: &[Vec<A::Scalar>]| field.size(rows[row][step]);
+        let pivot =
+            (step..rows.len()).max_by(|a, b| size(*a, &rows).total_cmp(&size(*b, &rows)))?;
         rows.swap(step, pivot);
         let pivot = rows[step].clone();
-        if pivot[step].abs() < 1e-9 {
+        if field.size(pivot[step]) < LEAST_PIVOT {
             return None;
         }
+        let inverse = field.inv(pivot[step])?;
         for (position, row) in rows.iter_mut().enumerate() {
             if position != step {
-                let factor = row[step] / pivot[step];
+                let factor = field.mul(row[step], inverse);
                 for (entry, pivot) in row.iter_mut().zip(&pivot) {
-                    *entry -= factor * pivot;
+                    *entry = field.sub(*entry, field.mul(factor, *pivot));
                 }
             }
         }
     }
-    Some(
-        (0..unknowns)
-            .map(|step| rows[step][unknowns] / rows[step][step])
-            .collect(),
-    )
+    let quotient = |step: usize| {
+        let inverse = field.inv(rows[step][step])?;
+        Some(field.mul(rows[step][unknowns], inverse))
+    };
+    (0..unknowns).map(quotient).collect()
 }

@@ -1,43 +1,64 @@
 //! Periods that are 0 by symmetry: exact where a converged sum would only be small.
 //!
 //! Let `beta` be the closed form with `beta(X_i) = c_i` and the circle of an angle a loop. The growth of `G` along it does not
-//! depend on the values of the other coordinates. A map that reflects coordinates, or turns angles by half a circle, takes
-//! such a loop to another one. If `beta` along the loop changes its sign under it, the growth is its own opposite: 0.
-//! Whether it does is an identity, tested modulo primes.
+//! depend on the values of the other coordinates. A map that reflects coordinates, or turns angles by a part of a circle, takes
+//! such a loop to another one, with the same growth but for the direction. If `beta` along the loop and its images under some maps add up
+//! to 0, so does the growth. Whether they do is an identity, tested modulo primes.
+//!
+//! Without roots the images are those of all turns by `pi/12` and their reflections: trigonometric polynomials of degree below 24
+//! are gone through whole. With roots, which have values at a few images only, one image is taken.
 
 use dalembert_expr::{ExprId, ModularPoint, Modulus, SymbolId};
 
 use super::elimination::first_relation;
-use super::exactness::{Local, sample_points};
+use super::exactness::{Local, branches_of, sample_points};
 use super::obstruction::elements_at;
 use super::problem::Problem;
 use crate::model::{Model, Topology};
 
-/// Points at which an identity must hold.
-const POINTS: usize = 3;
+/// Points at which an identity must hold, without roots and with them.
+const POINTS: (usize, usize) = (3, 64);
 /// Maps that are tried.
-const MAPS: usize = 256;
+const MAPS: usize = 64;
 
-/// `q -> half_turns pi + q` or, reflected, `half_turns pi - q`.
+/// Twelfths of pi in a circle.
+const CIRCLE: i64 = 24;
+
+/// `q -> twelfths pi/12 + q` or, reflected, `twelfths pi/12 - q`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Move {
-    half_turns: i64,
+    twelfths: i64,
     is_reflected: bool,
 }
 
 const STAYS: Move = Move::new(0, false);
 const REFLECTED: Move = Move::new(0, true);
-const SUPPLEMENT: Move = Move::new(1, true);
-const OPPOSITE: Move = Move::new(1, false);
+const SUPPLEMENT: Move = Move::new(12, true);
+const OPPOSITE: Move = Move::new(12, false);
+
+/// Moves of the angle of a loop whose images are not gone through.
+const ALONE: &[Move] = &[
+    STAYS,
+    REFLECTED,
+    SUPPLEMENT,
+    OPPOSITE,
+    Move::new(6, false),
+    Move::new(6, true),
+    Move::new(4, false),
+    Move::new(4, true),
+];
 
 impl Move {
-    const fn new(half_turns: i64, is_reflected: bool) -> Self {
+    const fn new(twelfths: i64, is_reflected: bool) -> Self {
         Self {
-            half_turns,
+            twelfths,
             is_reflected,
         }
     }
 }
+
+/// Moves of coordinates, each by itself.
+type Map = Vec<(SymbolId, Move)>;
 
 /// True if the growth of `G` along the circle of a coordinate is 0 by a symmetry; D must connect all configurations.
 pub(super) fn has_no_period(
@@ -47,31 +68,47 @@ pub(super) fn has_no_period(
     angle: usize,
     seed: u64,
 ) -> bool {
-    let maps = maps(model, problem, angle);
     let roots = problem.roots();
     let profile = model.pool.profile_of(&roots);
-    if profile.branches {
-        return false;
-    }
     let Ok(mut points) = sample_points(&model.pool, &roots, &profile, seed) else {
         return false;
     };
-    let mut left = maps;
-    for _ in 0..POINTS {
+    // An image may have another sign pattern of absolute values than its point; those of hidden squares are met at random.
+    let branches = branches_of(&model.pool, &roots, &profile, &points);
+    if !branches.is_some_and(|own| own.is_single()) {
+        return false;
+    }
+    let slope = |point: &mut ModularPoint| slope(model, problem, local, angle, point);
+    let turned = |point: &ModularPoint| {
+        let circle = match profile.branches {
+            true => vec![STAYS],
+            false => circle(profile.denominator.unwrap_or(1)),
+        };
+        let field = point.modulus();
+        let symbol = model.coordinates[angle].q;
+        circle.iter().try_fold(0, |sum, moved| {
+            let mut image = image(model, point, &[(symbol, *moved)])?;
+            Some(field.add(sum, slope(&mut image)?))
+        })
+    };
+    let count = match profile.branches {
+        true => POINTS.1,
+        false => POINTS.0,
+    };
+    let moves = match profile.branches {
+        true => ALONE,
+        false => &ALONE[..1],
+    };
+    let mut left = maps(model, problem, (angle, moves));
+    for _ in 0..count {
         let kept = points.find(|point| {
-            let slope = slope(model, problem, local, angle, &mut point.clone())?;
+            let sum = turned(point)?;
             let field = point.modulus();
-            let changes_sign = |map: &Vec<(SymbolId, Move)>| {
-                let image = image(model, point, map)
-                    .and_then(|mut point| self::slope(model, problem, local, angle, &mut point));
-                image.is_some_and(|image| field.add(slope, image) == 0)
+            let cancels = |map: &Map| {
+                let moved = image(model, point, map).and_then(|image| turned(&image));
+                moved.is_some_and(|moved| field.add(sum, moved) == 0)
             };
-            Some(
-                left.iter()
-                    .filter(|map| changes_sign(map))
-                    .cloned()
-                    .collect(),
-            )
+            Some(left.iter().filter(|map| cancels(map)).cloned().collect())
         });
         left = kept.unwrap_or_default();
         if left.is_empty() {
@@ -81,11 +118,19 @@ pub(super) fn has_no_period(
     true
 }
 
-/// The maps that move the angle, or leave it, and each of the other coordinates on which anything depends.
-fn maps(model: &Model, problem: &Problem, angle: usize) -> Vec<Vec<(SymbolId, Move)>> {
-    let first = [REFLECTED, SUPPLEMENT, OPPOSITE, STAYS];
+/// The turns of a circle by parts that residues know, and their reflections.
+fn circle(denominator: i64) -> Vec<Move> {
+    let step = denominator.clamp(1, CIRCLE);
+    let turns = (0..CIRCLE).step_by(step as usize);
+    turns
+        .flat_map(|twelfths| [false, true].map(|is_reflected| Move::new(twelfths, is_reflected)))
+        .collect()
+}
+
+/// The maps that move the angle by one of some moves and each of the other coordinates on which anything depends.
+fn maps(model: &Model, problem: &Problem, (angle, moves): (usize, &[Move])) -> Vec<Map> {
     let symbol = model.coordinates[angle].q;
-    let mut maps: Vec<Vec<_>> = first.iter().map(|moved| vec![(symbol, *moved)]).collect();
+    let mut maps: Vec<Map> = moves.iter().map(|moved| vec![(symbol, *moved)]).collect();
     let others = problem.variables.iter().copied();
     for i in others.filter(|i| *i != angle && *i < problem.coordinates) {
         let moves: &[Move] = match model.coordinates[i].topology {
@@ -99,7 +144,7 @@ fn maps(model: &Model, problem: &Problem, angle: usize) -> Vec<Vec<(SymbolId, Mo
         };
         let symbol = model.coordinates[i].q;
         let longer = moves.iter().flat_map(|moved| {
-            let with = |map: &Vec<_>| [map.clone(), vec![(symbol, *moved)]].concat();
+            let with = |map: &Map| [map.clone(), vec![(symbol, *moved)]].concat();
             maps.iter().map(with).collect::<Vec<_>>()
         });
         maps = longer.take(MAPS).collect();
@@ -116,7 +161,7 @@ fn image(model: &Model, point: &ModularPoint, map: &[(SymbolId, Move)]) -> Optio
     for (symbol, moved) in map.iter().filter(|(_, moved)| *moved != STAYS) {
         let assumption = model.pool.symbol_assumption(*symbol);
         image
-            .move_symbol(*symbol, assumption, moved.half_turns, moved.is_reflected)
+            .move_symbol(*symbol, assumption, moved.twelfths, moved.is_reflected)
             .ok()?;
     }
     Some(image)

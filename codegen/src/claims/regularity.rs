@@ -7,7 +7,8 @@
 use std::f64::consts::TAU;
 
 use dalembert_expr::{
-    Domain, ExprId, Function, Interval, JetSpace, Jets, Node, Rational, Reals, SymbolId, Zeros,
+    Domain, ExprId, Function, Interval, JetSpace, Jets, Node, Pool, Rational, Reals, SymbolId,
+    Zeros,
 };
 
 use super::exactness::Local;
@@ -55,12 +56,56 @@ pub(super) fn is_regular(
     local: &Local,
     found: &Potential,
 ) -> bool {
-    found.terms.iter().all(|(_, term)| match term {
-        Term::Logarithm(f) => is_never_zero(model, *f),
-        Term::DependentDeterminant => determinant(model, &problem.forms, local.dependent())
-            .is_some_and(|minor| is_never_zero(model, minor)),
-        Term::MassDeterminant | Term::MetricDeterminant | Term::Plain(_) => true,
-    })
+    logarithms(model, problem, local, found)
+        .is_some_and(|terms| terms.into_iter().all(|own| is_never_zero(model, own)))
+}
+
+/// The factors of a density in closed form that may be 0 somewhere.
+pub(super) fn factors_with_zeros(
+    model: &mut Model,
+    problem: &Problem,
+    local: &Local,
+    found: &Potential,
+) -> Vec<ExprId> {
+    let terms = logarithms(model, problem, local, found).unwrap_or_default();
+    let mut factors: Vec<ExprId> = terms
+        .into_iter()
+        .flat_map(|own| numerators(model, own))
+        .collect();
+    factors.retain(|own| !is_never_zero(model, *own));
+    factors
+}
+
+/// The terms of which a density is a logarithm and that may be 0; `None` if one is too large to be written out.
+fn logarithms(
+    model: &mut Model,
+    problem: &Problem,
+    local: &Local,
+    found: &Potential,
+) -> Option<Vec<ExprId>> {
+    let mut logarithms = Vec::new();
+    for (_, term) in &found.terms {
+        match term {
+            Term::Logarithm(f) => logarithms.push(*f),
+            Term::DependentDeterminant => {
+                logarithms.push(determinant(model, &problem.forms, local.dependent())?);
+            }
+            Term::MassDeterminant | Term::MetricDeterminant | Term::Plain(_) => {}
+        }
+    }
+    Some(logarithms)
+}
+
+/// The factors of a product that are not in a denominator.
+fn numerators(model: &Model, id: ExprId) -> Vec<ExprId> {
+    let (_, product) = model.pool.as_multiple(id);
+    match model.pool.node(product) {
+        Node::Product(factors) => {
+            let above = factors.iter().filter(|(_, power)| !power.is_negative());
+            above.map(|(base, _)| *base).collect()
+        }
+        _ => vec![id],
+    }
 }
 
 /// Constraints whose minor is written out.
@@ -96,19 +141,66 @@ pub(super) fn is_never_zero(model: &mut Model, id: ExprId) -> bool {
     if model.pool.sign(id).is_nonzero() || is_positive_on_chart(model, id) {
         return true;
     }
-    if let Node::Product(factors) = model.pool.node(id) {
-        let numerators = factors.iter().filter(|(_, power)| !power.is_negative());
-        let numerators: Vec<ExprId> = numerators.map(|(base, _)| *base).collect();
-        return numerators
-            .into_iter()
-            .all(|base| is_never_zero(model, base));
+    let factors = numerators(model, id);
+    if factors != [id] {
+        return factors.into_iter().all(|base| is_never_zero(model, base));
     }
     let domain = domain(model, id);
     let slopes: Vec<ExprId> = domain
         .iter()
         .map(|(symbol, _)| model.pool.diff(id, *symbol))
         .collect();
-    model.pool.zeros_on(id, &slopes, &domain) == Zeros::None
+    if model.pool.zeros_on(id, &slopes, &domain) == Zeros::None {
+        return true;
+    }
+    // What is 0 makes the product with its conjugate 0.
+    conjugate_product(model, id).is_some_and(|product| is_never_zero(model, product))
+}
+
+/// `a^2 - b^2 r` of a sum `a + b sqrt(r)`, with one root less.
+fn conjugate_product(model: &mut Model, id: ExprId) -> Option<ExprId> {
+    let (constant, terms) = model.pool.linear_form(id);
+    let root = |term: ExprId| {
+        let Node::Product(factors) = model.pool.node(term) else {
+            return None;
+        };
+        let half = factors.iter().find(|(_, power)| *power == Rational::HALF)?;
+        Some(half.0)
+    };
+    let radicand = terms.iter().find_map(|(_, term)| root(*term))?;
+    let has_root = |term: ExprId| root(term) == Some(radicand);
+    let (with, without): (Vec<_>, Vec<_>) = terms.into_iter().partition(|(_, t)| has_root(*t));
+    let pool = &mut model.pool;
+    let mut sum = |terms: Vec<(Rational, ExprId)>, constant: Rational| {
+        let mut parts = vec![pool.number(constant)];
+        for (coefficient, term) in terms {
+            parts.push(pool.scale(&coefficient, term));
+        }
+        let sum = pool.sum(&parts);
+        let square = pool.pow(sum, Rational::from(2));
+        pool.multiply_out(square)
+    };
+    let squares = [sum(without, constant), sum(with, Rational::ZERO)];
+    let product = model.pool.sub(squares[0], squares[1]);
+    let product = model.pool.multiply_out(product);
+    let product = model.pool.simplify(product);
+    // NOTE: a product without fewer roots would come back.
+    let count = |id: ExprId| {
+        model
+            .pool
+            .reachable(&[id])
+            .iter()
+            .filter(|part| root_below(&model.pool, **part))
+            .count()
+    };
+    (count(product) < count(id)).then_some(product)
+}
+
+fn root_below(pool: &Pool, id: ExprId) -> bool {
+    let Node::Product(factors) = pool.node(id) else {
+        return false;
+    };
+    factors.iter().any(|(_, power)| !power.is_integer())
 }
 
 /// True if it is the sine or cosine of a coordinate on a chart on which that is positive.
@@ -143,7 +235,7 @@ fn is_positive_on_chart(model: &Model, id: ExprId) -> bool {
 }
 
 /// The ranges of the symbols of an expression.
-fn domain(model: &Model, id: ExprId) -> Domain {
+pub(super) fn domain(model: &Model, id: ExprId) -> Domain {
     let pool = &model.pool;
     // A part of a declaration may have a longer period than the whole: that of its fractions of angles.
     let turns = pool.profile_of(&[id]).denominator.unwrap_or(1) as f64;

@@ -196,8 +196,8 @@ impl Vanishing for Change<'_> {
         Some(magnitude(model, point, self.rate))
     }
 
-    fn shown(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
-        vec![(self.name.clone(), terms[0])]
+    fn shown(&self, _: &Model, _: &[f64], sum: f64) -> Vec<(String, f64)> {
+        vec![(self.name.clone(), sum)]
     }
 }
 

@@ -1,6 +1,5 @@
 //! Motion between transitions in extended numbers, and where it meets a surface.
 
-use super::number::Extended;
 use super::{At, Impact};
 use crate::contract::Variational;
 use crate::error::Fault;
@@ -17,6 +16,7 @@ use crate::state::StateVector;
 use crate::variations::Undefined;
 use crate::variations::graze::Seen;
 use crate::variations::transition::{arrival, check_near, struck};
+use dalembert_numbers::Extended;
 
 /// How far the rate at the end of a step may be from the slope of the series, in rounding errors of the state.
 const DEFECT: f64 = 4096.0;

@@ -47,14 +47,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod decimal;
 mod flight;
-mod functions;
-mod number;
 mod simulation;
 mod stepper;
-mod sums;
 
-pub use decimal::NotDecimal;
-pub use number::{Extended, MOST_PARTS};
+pub use dalembert_numbers::{Extended, MOST_PARTS, NotDecimal};
 pub use simulation::{At, ExtendedRun, ExtendedSimulation, Impact};

@@ -4,7 +4,6 @@ use core::cell::RefCell;
 use core::ops::ControlFlow;
 
 use super::flight::{Flight, rounded, widened};
-use super::number::Extended;
 use super::stepper::Rounded;
 use crate::contract::{TaylorField, Variational};
 use crate::effects::Effect;
@@ -16,6 +15,7 @@ use crate::record::{Event, Hold, Observer, Segment};
 use crate::simulation::{STEP_BUDGET, Simulation};
 use crate::state::StateVector;
 use crate::variations::Undefined;
+use dalembert_numbers::Extended;
 
 /// A state at a time.
 #[derive(Debug)]

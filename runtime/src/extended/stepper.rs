@@ -3,7 +3,6 @@
 use core::cell::RefCell;
 
 use super::flight::{Flight, rounded};
-use super::number::Extended;
 use crate::contract::Variational;
 use crate::error::Fault;
 use crate::integrate::controller::{RETREAT, landing, least_step, least_trial};
@@ -13,6 +12,7 @@ use crate::jet::LENGTH;
 use crate::math;
 use crate::numbers::Row;
 use crate::state::StateVector;
+use dalembert_numbers::Extended;
 
 /// Largest factor between a step that was limited from outside and the next.
 const GROW: f64 = 8.0;

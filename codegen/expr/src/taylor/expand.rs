@@ -99,6 +99,11 @@ impl RealPoint {
         self.values[symbol.index()] = value;
     }
 
+    /// The values that were set, by symbol in order of creation.
+    pub(crate) fn coordinates(&self) -> &[f64] {
+        &self.values
+    }
+
     /// The value of a symbol; 0 if none was set.
     pub fn value(&self, symbol: SymbolId) -> f64 {
         self.values.get(symbol.index()).copied().unwrap_or(0.0)

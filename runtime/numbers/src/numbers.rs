@@ -6,7 +6,6 @@
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::jet::INVERSES;
 use crate::math;
 
 /// The circle constant, as [`Numbers::constant`] takes it.
@@ -16,6 +15,20 @@ pub const PI: [f64; 4] = [
     -2.9947698097183397e-33,
     1.1124542208633653e-49,
 ];
+
+/// Coefficients that a series may have: orders 0 to 32.
+pub const LENGTH: usize = 33;
+
+/// `1 / k`; 0 at 0.
+pub const INVERSES: [f64; LENGTH] = {
+    let mut inverses = [0.0; LENGTH];
+    let mut k = 1;
+    while k < LENGTH {
+        inverses[k] = 1.0 / k as f64;
+        k += 1;
+    }
+    inverses
+};
 
 /// One number, or one of each of several lanes.
 pub trait Numbers:

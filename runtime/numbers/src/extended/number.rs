@@ -23,13 +23,13 @@ pub const MOST_PARTS: usize = 4;
 /// infinite or no number in `f64` is so here.
 ///
 /// ```
-/// use dalembert::extended::Extended;
+/// use dalembert_numbers::Extended;
 ///
 /// let third = Extended::<3>::from(1.0) / Extended::from(3.0);
 /// let error = third * Extended::from(3.0) - Extended::from(1.0);
 /// assert!(error.nearest().abs() < 1e-47);
 /// assert_eq!("0.1".parse::<Extended<2>>()?.parts(), [0.1, -5.551115123125783e-18]);
-/// # Ok::<(), dalembert::extended::NotDecimal>(())
+/// # Ok::<(), dalembert_numbers::NotDecimal>(())
 /// ```
 #[derive(Clone, Copy, PartialEq)]
 pub struct Extended<const PARTS: usize> {

@@ -1,0 +1,145 @@
+//! Closed leaves on which no density is single-valued.
+//!
+//! A density in closed form that is 0 or infinite where a function `f` vanishes has `X(f) = 0` there for all fields of D: the
+//! surface `f = 0` is made of leaves of the hull of D. Where the hull has one dimension less than Q it is one leaf. Every
+//! density, regular or not, grows on a loop in it by the same factor, as the growth is the integral of demands that are regular.
+//! A circle of an angle that `f` does not contain is such a loop. That `f` vanishes somewhere, once, is certified by
+//! enclosures of `f` and of its derivative; the growth is a sum in double precision.
+
+use dalembert_expr::{Domain, ExprId, Interval, JetSpace, Jets, Reals, SymbolId, Zeros};
+
+use super::exactness::{Local, decide_local_in};
+use super::frame::frame;
+use super::global::{Global, growth};
+use super::potential::Potential;
+use super::problem::Problem;
+use super::regularity::{domain, factors_with_zeros};
+use super::sample::{Sample, sample, uses};
+use crate::model::{Model, Topology};
+
+/// Halvings of a segment on which a function changes its sign: to the last digit.
+const BISECTIONS: usize = 200;
+/// The part of a coordinate around a zero in which the derivative must keep its sign.
+const AROUND: f64 = 1e-7;
+/// A growth counts from this size on.
+const CLEAR: f64 = 1e-6;
+
+/// The growth on a closed leaf where a density in closed form is singular, if one is found.
+pub(super) fn grown_on_leaf(
+    model: &mut Model,
+    problem: &Problem,
+    local: &Local,
+    singular: &Potential,
+    seed: u64,
+) -> Option<Global> {
+    let is_surface = local.rank + 1 == problem.components();
+    if !is_surface || problem.is_time_dependent() {
+        return None;
+    }
+    let factors = factors_with_zeros(model, problem, local, singular);
+    factors.into_iter().find_map(|factor| {
+        let sample = zero_of(model, problem, factor)?;
+        let local = regular_there(model, problem, &sample, seed)?;
+        let is_loop = |i: &usize| {
+            let coordinate = &model.coordinates[*i];
+            coordinate.topology == Topology::Angle && !model.pool.depends_on(factor, coordinate.q)
+        };
+        let angles = (0..problem.coordinates).filter(is_loop);
+        let mut loops = angles.map(|i| vec![(i, 1)]);
+        loops.find_map(|turns| {
+            let period = growth(model, problem, &local, &sample, &turns)?;
+            (period.abs() > CLEAR).then(|| Global::Many {
+                turns,
+                period,
+                sample: sample.clone(),
+            })
+        })
+    })
+}
+
+/// The hull in a frame that is regular at a configuration.
+fn regular_there(model: &Model, problem: &Problem, sample: &Sample, seed: u64) -> Option<Local> {
+    let space = JetSpace::new(problem.variables.len(), 1, usize::MAX)?;
+    let jets = Jets::new(Reals, &space);
+    let frame = frame(&model.pool, problem, &jets, &mut sample.point(), None)?;
+    decide_local_in(&model.pool, problem, &frame.dependent, seed).ok()
+}
+
+/// A configuration where a function has a simple zero.
+fn zero_of(model: &mut Model, problem: &Problem, id: ExprId) -> Option<Sample> {
+    let domain = domain(model, id);
+    let slopes: Vec<ExprId> = domain
+        .iter()
+        .map(|(symbol, _)| model.pool.diff(id, *symbol))
+        .collect();
+    let Zeros::Between(above, below) = model.pool.zeros_on(id, &slopes, &domain) else {
+        return None;
+    };
+    let place = bisected(model, id, above, below);
+    let around: Domain = place
+        .iter()
+        .map(|(symbol, x)| {
+            let room = AROUND * x.abs().max(AROUND);
+            (*symbol, Interval::new(x - room, x + room))
+        })
+        .collect();
+    let ranges = model.pool.enclose(&model.pool.reachable(&slopes), &around);
+    let is_simple = |slope: &ExprId| ranges[slope.index()].is_some_and(Interval::excludes_zero);
+    if !slopes.iter().any(is_simple) {
+        return None;
+    }
+    let roots = problem.roots();
+    let mut sample = sample(model, 0, uses(&model.pool, &roots));
+    for (symbol, x) in shortened(model, id, place) {
+        sample.set(symbol, x);
+    }
+    Some(sample)
+}
+
+/// A zero with nine decimals, if it is one.
+fn shortened(model: &Model, id: ExprId, place: Vec<(SymbolId, f64)>) -> Vec<(SymbolId, f64)> {
+    // Adding 0 takes the sign off a zero.
+    let short = |x: f64| (x * 1e9).round() / 1e9 + 0.0;
+    let rounded: Vec<_> = place
+        .iter()
+        .map(|(symbol, x)| (*symbol, short(*x)))
+        .collect();
+    match value(model, id, &rounded) == 0.0 {
+        true => rounded,
+        false => place,
+    }
+}
+
+fn value(model: &Model, id: ExprId, place: &[(SymbolId, f64)]) -> f64 {
+    let value = |symbol: SymbolId| {
+        let found = place.iter().find(|(own, _)| *own == symbol);
+        found.map_or(0.0, |(_, x)| *x)
+    };
+    model.pool.eval(&[id], &value)[0]
+}
+
+/// Where a function changes its sign on the segment between two points.
+fn bisected(
+    model: &Model,
+    id: ExprId,
+    mut above: Vec<(SymbolId, f64)>,
+    mut below: Vec<(SymbolId, f64)>,
+) -> Vec<(SymbolId, f64)> {
+    let middle = |above: &[(SymbolId, f64)], below: &[(SymbolId, f64)]| -> Vec<(SymbolId, f64)> {
+        let pairs = above.iter().zip(below);
+        pairs
+            .map(|((symbol, a), (_, b))| (*symbol, f64::midpoint(*a, *b)))
+            .collect()
+    };
+    for _ in 0..BISECTIONS {
+        let place = middle(&above, &below);
+        if place == above || place == below {
+            break;
+        }
+        match value(model, id, &place) > 0.0 {
+            true => above = place,
+            false => below = place,
+        }
+    }
+    middle(&above, &below)
+}
