@@ -11,7 +11,6 @@ use crate::contract::{System, TaylorField};
 use crate::effects::Effect;
 use crate::integrate::lanes::{Abreast, MOST, Walker};
 use crate::integrate::{Counters, Stepper, Taylor};
-use crate::numbers::Numbers;
 use crate::outcome::{Outcome, Run, StartError};
 use crate::record::Observer;
 use crate::simulation::{Course, Next, Progress, STEP_BUDGET, Simulation, check_start};
@@ -21,53 +20,6 @@ const FEW: usize = 2;
 
 /// Largest room, in bytes, for the series of all lanes: it lies on the stack, and what no cache holds is not fast.
 const LARGEST: usize = 1 << 18;
-
-impl Numbers for f64x8 {
-    const LANES: usize = 8;
-    const ZERO: Self = Self::ZERO;
-
-    #[inline(always)]
-    fn of(number: f64) -> Self {
-        Self::splat(number)
-    }
-
-    #[inline(always)]
-    fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
-        Self::new(core::array::from_fn(of_lane))
-    }
-
-    #[inline(always)]
-    fn lane(&self, lane: usize) -> f64 {
-        self.as_array()[lane]
-    }
-
-    #[inline(always)]
-    fn mul_add(self, b: Self, c: Self) -> Self {
-        #[cfg(all(target_feature = "fma", feature = "std", not(feature = "strict")))]
-        {
-            Self::mul_add(self, b, c)
-        }
-        #[cfg(not(all(target_feature = "fma", feature = "std", not(feature = "strict"))))]
-        {
-            self * b + c
-        }
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self::sqrt(self)
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self::abs(self)
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self::fast_max(self, other)
-    }
-}
 
 /// A run to be made.
 pub struct Member<'a, Sys: TaylorField, Effects, O> {
