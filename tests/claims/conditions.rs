@@ -102,3 +102,46 @@ fn values_at_which_the_obstruction_vanishes_are_found() {
         Existence::None
     );
 }
+
+/// A sleigh whose blade stands off the centre of mass by a polynomial in parameters.
+fn off_by(offset: &str, parameters: &str) -> String {
+    let source = format!(
+        "Sleigh {{ coordinates {{ x; y; th: angle; }} parameters {{ m > 0 = 1; J > 0 = 1; {parameters} }}
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + J/2*dot(th)^2;
+        constraints {{ blade: -sin(th)*d(x) + cos(th)*d(y) - ({offset})*d(th) = 0; }}
+        claims {{ density: none; }} }}"
+    );
+    dalembert_tests::claim::verdict(&source).remarks.join("; ")
+}
+
+#[test]
+fn conditions_are_polynomials_in_the_parameters() {
+    for (offset, parameters, condition) in [
+        ("a + b", "a = 1; b = 2;", "a + b = 0"),
+        ("a - 2*b", "a = 1; b = 2;", "2*b - a = 0"),
+        ("a^2 - b", "a = 1; b = 2;", "a^2 - b = 0"),
+        ("a*b - 1", "a = 1; b = 2;", "a*b - 1 = 0"),
+        ("J - m*a^2", "a = 1/2;", "m*a^2 - J = 0"),
+        ("a + b + c", "a = 1; b = 2; c = 3;", "a + b + c = 0"),
+    ] {
+        let remarks = off_by(offset, parameters);
+        let expected = format!("a density exists where {condition}, among the conditions scanned");
+        assert!(remarks.contains(&expected), "{offset}: {remarks}");
+    }
+}
+
+#[test]
+fn conditions_that_assumptions_exclude_are_not_named() {
+    let remarks = off_by("a + b", "a > 0 = 1; b > 0 = 2;");
+    assert!(remarks.contains("none of the conditions"), "{remarks}");
+}
+
+#[test]
+fn the_values_at_which_a_closed_form_fails_are_named() {
+    let source = "Particle { coordinates { x; y; } parameters { k >= 0 = 1; c > 0 = 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        constraints { belt: dot(x) = k; } forces { drag: -c*dot(y)*d(y); }
+        claims { density: exact; } }";
+    let note = dalembert_tests::claim::verdict(source).note();
+    assert!(note.contains("G = c/k*x, where k != 0"), "{note}");
+}

@@ -97,6 +97,14 @@ fn existence_agrees() {
             match equation {
                 Equation::Value(p, expected) => value(p) == expected.to_f64(),
                 Equation::Equal(p, q) => value(p) == value(q),
+                Equation::Zero(polynomial) => {
+                    let of_symbol = |symbol| {
+                        let mut all = decided.model.parameters.iter();
+                        let position = all.position(|own| own.symbol == symbol);
+                        value(&position.expect("a parameter"))
+                    };
+                    decided.model.pool.eval(&[*polynomial], &of_symbol)[0] == 0.0
+                }
             }
         };
         let found = scan.expect("a scan").found;

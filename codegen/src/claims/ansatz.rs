@@ -103,7 +103,7 @@ pub(super) fn parameter_monomials(pool: &mut Pool, parameters: &[SymbolId]) -> V
 }
 
 /// The monomials in some symbols by degree: 1, the symbols, their products, ..
-fn monomials(pool: &mut Pool, symbols: &[SymbolId], degree: usize) -> Vec<ExprId> {
+pub(super) fn monomials(pool: &mut Pool, symbols: &[SymbolId], degree: usize) -> Vec<ExprId> {
     let mut all = vec![pool.one()];
     // The monomials of one degree, each with its last symbol: only later ones are multiplied on.
     let mut last = vec![(pool.one(), 0)];

@@ -1,16 +1,18 @@
 //! Conditions on parameters under which a density exists that does not exist for indeterminate parameters.
 //!
 //! Tried are, within the declared assumptions: one parameter 0; two equal; two 0; one a small fraction, where the
-//! obstruction has a root or a pole; one 0 and two others equal. Every trial is the rank test of [`super::exactness`] with the
+//! obstruction has a root or a pole; one 0 and two others equal; polynomials of degree 3 in three parameters. Every trial is the rank test of [`super::exactness`] with the
 //! parameters fixed; conditions at which the model is degenerate, and those that imply a simpler one that was found, are
 //! left out. There may be others: the answer is about the conditions scanned.
 
-use dalembert_expr::{Rational, SamplePoints, SymbolId};
+use dalembert_expr::{ExprId, Rational, SamplePoints, SymbolId, Verdict as Zero};
 
 use super::exactness::{Exactness, Fixed, decide, decide_local_where, sample_points, screen};
 use super::exceptional::exceptional_values;
 use super::global::Global;
+use super::hypersurfaces::hypersurfaces;
 use super::problem::Problem;
+use super::regularity::is_never_zero;
 use super::undecided::Undecided;
 use crate::model::{Assumption, Model, Parameter};
 
@@ -30,6 +32,8 @@ pub enum Equation {
     Value(usize, Rational),
     /// Both parameters are equal.
     Equal(usize, usize),
+    /// A polynomial in the parameters is 0.
+    Zero(ExprId),
 }
 
 /// What a scan found.
@@ -104,6 +108,7 @@ impl Condition {
         let equation = |own: &Equation| match own {
             Equation::Value(p, value) => format!("{} = {value}", name(p)),
             Equation::Equal(p, q) => format!("{} = {}", name(p), name(q)),
+            Equation::Zero(polynomial) => format!("{} = 0", model.pool.text(*polynomial)),
         };
         let equations: Vec<String> = self.equations.iter().map(equation).collect();
         equations.join(" and ")
@@ -185,6 +190,14 @@ impl Scanner<'_> {
                 self.try_condition(model, vec![first.clone(), second.clone()], found)?;
             }
         }
+        let parameters = self.parameters.clone();
+        let (problem, local) = (self.problem, &exactness.local);
+        let (seed, left) = (self.seed, &mut self.left);
+        for polynomial in hypersurfaces(model, problem, local, &parameters, seed, left)? {
+            if !is_never_zero(model, polynomial) {
+                self.try_polynomial(model, polynomial, found);
+            }
+        }
         Some(())
     }
 
@@ -210,12 +223,17 @@ impl Scanner<'_> {
         equations: Vec<Equation>,
         found: &mut Vec<Condition>,
     ) -> Option<()> {
-        let is_known = found.iter().any(|own| implies(&equations, &own.equations));
+        let is_known = found
+            .iter()
+            .any(|own| implies(model, &equations, &own.equations));
         if is_known || !is_admitted(&model.parameters, &equations) {
             return Some(());
         }
         self.left = self.left.checked_sub(1)?;
-        let fixed: Vec<_> = equations.iter().map(|own| fixed(model, own)).collect();
+        let fixed: Option<Vec<_>> = equations.iter().map(|own| fixed(model, own)).collect();
+        let Some(fixed) = fixed else {
+            return Some(());
+        };
         let (pool, problem) = (&model.pool, self.problem);
         let screened = screen(pool, problem, &mut self.points, self.attempts, &fixed);
         if screened != Some(true) {
@@ -235,35 +253,85 @@ impl Scanner<'_> {
         Some(())
     }
 
+    /// Adds the zeros of a polynomial to those found, unless the density that exists there at random points is none after all.
+    fn try_polynomial(&self, model: &mut Model, polynomial: ExprId, found: &mut Vec<Condition>) {
+        let equations = vec![Equation::Zero(polynomial)];
+        let is_global = match self.solved(model, polynomial) {
+            None => false,
+            Some(replacement) => {
+                let problem = self.problem.substituted(&mut model.pool, &[replacement]);
+                match decide(model, &problem, self.seed) {
+                    Ok(decided) if decided.local.exists => decided.global == Some(Global::Exists),
+                    _ => return,
+                }
+            }
+        };
+        found.retain(|own| !implies(model, &own.equations, &equations));
+        found.push(Condition {
+            equations,
+            is_global,
+        });
+    }
+
+    /// A parameter in which a polynomial is linear, and the value at which it is 0.
+    fn solved(&self, model: &mut Model, polynomial: ExprId) -> Option<(SymbolId, ExprId)> {
+        self.parameters.iter().find_map(|position| {
+            let symbol = model.parameters[*position].symbol;
+            let pool = &mut model.pool;
+            let slope = pool.diff(polynomial, symbol);
+            if pool.is_syntactic_zero(slope) || pool.depends_on(slope, symbol) {
+                return None;
+            }
+            let zero = pool.zero();
+            let rest = pool.substitute(polynomial, &[(symbol, zero)]);
+            let quotient = pool.div(rest, slope);
+            Some((symbol, pool.neg(quotient)))
+        })
+    }
+
     /// Whether the density exists on all of Q under a condition.
     fn is_global(&self, model: &mut Model, equations: &[Equation]) -> bool {
-        let mut replacements = Vec::new();
-        for equation in equations {
-            let (position, replacement) = match equation {
-                Equation::Value(p, value) => (*p, model.pool.number(value.clone())),
-                Equation::Equal(p, q) => (*p, model.pool.variable(model.parameters[*q].symbol)),
-            };
-            replacements.push((model.parameters[position].symbol, replacement));
-        }
+        let replacements = replacements(model, equations);
         let problem = self.problem.substituted(&mut model.pool, &replacements);
         let exactness = decide(model, &problem, self.seed);
         exactness.is_ok_and(|own| own.global == Some(Global::Exists))
     }
 }
 
-fn fixed(model: &Model, equation: &Equation) -> (SymbolId, Fixed) {
+/// What replaces parameters that are numbers or equal others.
+fn replacements(model: &mut Model, equations: &[Equation]) -> Vec<(SymbolId, ExprId)> {
+    let mut replacements = Vec::new();
+    for equation in equations {
+        let (position, replacement) = match equation {
+            Equation::Value(p, value) => (*p, model.pool.number(value.clone())),
+            Equation::Equal(p, q) => (*p, model.pool.variable(model.parameters[*q].symbol)),
+            Equation::Zero(_) => continue,
+        };
+        replacements.push((model.parameters[position].symbol, replacement));
+    }
+    replacements
+}
+
+/// A parameter that is fixed, and to which value.
+fn fixed(model: &Model, equation: &Equation) -> Option<(SymbolId, Fixed)> {
     let symbol = |position: usize| model.parameters[position].symbol;
     match equation {
         Equation::Value(p, value) => {
-            let (n, d) = value.to_small().unwrap_or((0, 1));
-            (symbol(*p), Fixed::Value(n, d))
+            let (n, d) = value.to_small()?;
+            Some((symbol(*p), Fixed::Value(n, d)))
         }
-        Equation::Equal(p, q) => (symbol(*p), Fixed::Same(symbol(*q))),
+        Equation::Equal(p, q) => Some((symbol(*p), Fixed::Same(symbol(*q)))),
+        Equation::Zero(_) => None,
     }
 }
 
 /// Whether `known` follows from `equations`.
-fn implies(equations: &[Equation], known: &[Equation]) -> bool {
+fn implies(model: &mut Model, equations: &[Equation], known: &[Equation]) -> bool {
+    if let [Equation::Zero(polynomial)] = known {
+        let replacements = replacements(model, equations);
+        let value = model.pool.substitute(*polynomial, &replacements);
+        return model.pool.zero_test(value) == Zero::Proved;
+    }
     let value = |position: usize| {
         equations.iter().find_map(|own| match own {
             Equation::Value(p, value) if *p == position => Some(value),
@@ -290,6 +358,7 @@ fn is_admitted(parameters: &[Parameter], equations: &[Equation]) -> bool {
             let [p, q] = [p, q].map(|own| Range::of(&parameters[*own].assumption));
             p.meets(&q)
         }
+        Equation::Zero(_) => true,
     })
 }
 

@@ -137,7 +137,7 @@ impl Evidence {
                 })
             }
             (false, true, _) => Verdict::Refuted(Witness {
-                reason: wording.vanishes,
+                reason: certificate(wording.vanishes, self.error).to_string(),
                 sample: None,
                 values: Vec::new(),
                 help: wording.help[1].clone(),

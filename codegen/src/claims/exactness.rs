@@ -230,6 +230,12 @@ pub(super) fn screen(
         .map(|(hull, _)| hull.rank == hull.extended_rank)
 }
 
+/// Whether the demands at a point are those of a function; `None` at a singular point, or where the hull is not closed within reach.
+pub(super) fn exists_at(pool: &Pool, problem: &Problem, point: &mut ModularPoint) -> Option<bool> {
+    let (hull, _) = sample(pool, problem, point, None, Until::Obstructed)?.ok()?;
+    Some(hull.rank == hull.extended_rank)
+}
+
 /// The hull at a point, with series of increasing order until it is closed, and the dependent velocities; or the depth
 /// that was reached. `None` at a singular point.
 fn sample(
@@ -395,6 +401,14 @@ fn exists_for_each_parameter(
     seed: u64,
 ) -> bool {
     let terms = candidates.allowed(Allowed::Regular);
+    let roots = problem.roots();
+    let profile = model.pool.profile_of(&roots);
+    let branches = sample_points(&model.pool, &roots, &profile, seed)
+        .ok()
+        .and_then(|points| branches_of(&model.pool, &roots, &profile, &points));
+    if !branches.is_some_and(|own| own.is_single()) {
+        return false;
+    }
     (0..SAMPLES as u64).all(|k| {
         let seed = seed.wrapping_add(k);
         let mut frozen: Vec<Frozen> = parameters.iter().map(|own| (*own, None)).collect();

@@ -9,6 +9,7 @@ use dalembert_expr::{ExprId, ModularPoint, Node, Pool, Rational, SymbolId};
 use super::elimination::first_relation;
 use super::exactness::{Local, sample_points};
 use super::fit::reconstruct;
+use super::hypersurfaces::PRIME;
 use super::obstruction::elements_at;
 use super::polynomial::{Polynomial, rational_function, roots};
 use super::problem::Problem;
@@ -54,17 +55,18 @@ pub(super) fn exceptional_values(
 }
 
 /// Delta as a function of one parameter.
-struct Column<'c> {
-    pool: &'c Pool,
-    problem: &'c Problem,
-    local: &'c Local,
-    obstruction: usize,
-    parameter: SymbolId,
+pub(super) struct Column<'c> {
+    pub(super) pool: &'c Pool,
+    pub(super) problem: &'c Problem,
+    pub(super) local: &'c Local,
+    /// The element of the hull that is obstructed.
+    pub(super) obstruction: usize,
+    pub(super) parameter: SymbolId,
 }
 
 impl Column<'_> {
     /// Whether the parameter occurs outside of roots and functions only.
-    fn is_rational(&self) -> bool {
+    pub(super) fn is_rational(&self) -> bool {
         let depends = |id: ExprId| self.pool.depends_on(id, self.parameter);
         let order = self.pool.reachable(&self.problem.roots());
         order.into_iter().all(|id| match self.pool.node(id) {
@@ -78,10 +80,11 @@ impl Column<'_> {
     }
 
     /// A point where delta has a value, and the value.
-    fn base(&self, seed: u64) -> Option<(ModularPoint, u64)> {
+    pub(super) fn base(&self, seed: u64) -> Option<(ModularPoint, u64)> {
         let roots = self.problem.roots();
         let profile = self.pool.profile_of(&roots);
-        let mut points = sample_points(self.pool, &roots, &profile, seed).ok()?;
+        let points = sample_points(self.pool, &roots, &profile, seed).ok()?;
+        let mut points = points.modulo(PRIME);
         points.find(|point| {
             let delta = self.delta(&mut point.clone())?;
             Some((point.clone(), delta))
@@ -93,7 +96,7 @@ impl Column<'_> {
         clippy::option_option,
         reason = "no function of low degree is not the end of the trials"
     )]
-    fn functions(
+    pub(super) fn functions(
         &self,
         base: &ModularPoint,
         first: u64,

@@ -1,13 +1,13 @@
 //! `density: exact`, `locally_exact`, `none`: the verdict on the existence of a density, in words.
 
-use dalembert_expr::{Pool, Verdict as Zero};
+use dalembert_expr::{Node, Pool, Verdict as Zero};
 
 use super::exactness::Exactness;
 use super::finding::{Certificate, Verdict, Witness, digits};
 use super::fit::Certified;
 use super::global::Global;
 use super::obstruction::{Obstruction, find_obstruction};
-use super::potential::potential_text;
+use super::potential::{Potential, potential_text};
 use super::problem::Problem;
 use super::undecided::Undecided;
 use crate::model::{Existence, Model};
@@ -74,7 +74,9 @@ impl Writer<'_> {
         match &self.exactness.density {
             Some((potential, certified)) => {
                 let text = potential_text(&self.model.pool, potential);
-                let shown = format!("{cover}exp(G)*mu_C is invariant{depends} with G = {text}");
+                let place = self.exceptions(potential);
+                let shown =
+                    format!("{cover}exp(G)*mu_C is invariant{depends} with G = {text}{place}");
                 self.certificate(shown, certified)
             }
             None => Certificate {
@@ -87,6 +89,32 @@ impl Writer<'_> {
                 error: self.exactness.local.error,
                 seed: self.seed,
             },
+        }
+    }
+
+    /// `, where k != 0`: the parameters that a closed form divides by and that may be 0.
+    fn exceptions(&self, potential: &Potential) -> String {
+        let pool = &self.model.pool;
+        let mut divisors = Vec::new();
+        for (coefficient, _) in &potential.terms {
+            let (_, product) = pool.as_multiple(*coefficient);
+            let factors = match pool.node(product) {
+                Node::Product(factors) => factors,
+                _ => continue,
+            };
+            for (base, _) in factors.iter().filter(|(_, power)| power.is_negative()) {
+                if !pool.sign(*base).is_nonzero() && !divisors.contains(base) {
+                    divisors.push(*base);
+                }
+            }
+        }
+        let texts: Vec<String> = divisors
+            .iter()
+            .map(|own| format!("{} != 0", pool.text(*own)))
+            .collect();
+        match texts.is_empty() {
+            true => String::new(),
+            false => format!(", where {}", texts.join(" and ")),
         }
     }
 
@@ -210,7 +238,7 @@ impl Writer<'_> {
             _ => "write `density: locally_exact;`",
         };
         Verdict::Refuted(Witness {
-            reason: format!("{what}: {}", certificate.shown),
+            reason: format!("{what}: {certificate}"),
             sample: None,
             values: Vec::new(),
             help: help.to_owned(),

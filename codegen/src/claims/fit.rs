@@ -16,6 +16,8 @@ use super::undecided::Undecided;
 const LARGEST: i64 = 50;
 /// Fresh points at which a density is certified, and those of each branch where there are several.
 const CERTIFIED: (usize, usize) = (12, 3);
+/// Points at which a solution must hold that were not used to find it.
+const FRESH_POINTS: usize = 3;
 /// Equations beyond the number of unknowns.
 const SURPLUS: usize = 8;
 
@@ -155,20 +157,42 @@ pub(super) fn solve_for_coefficients(
     let mut points = sample_points(pool, &roots, &profile, seed).ok()?.modulo(1);
     let mut rows: Vec<Vec<u64>> = Vec::new();
     let mut modulus = None;
-    while rows.len() < terms.len() + SURPLUS {
-        let more = points.find(|point| {
+    let mut at_next = |modulus: &mut Option<Modulus>| {
+        points.find(|point| {
             for (symbol, value) in frozen.iter_mut() {
                 let own = point.value(*symbol, pool.symbol_assumption(*symbol));
                 point.set(*symbol, *value.get_or_insert(own));
             }
-            modulus = Some(point.modulus());
+            *modulus = Some(point.modulus());
             equations(pool, problem, terms, point)
-        })?;
-        rows.extend(more);
+        })
+    };
+    while rows.len() < terms.len() + SURPLUS {
+        rows.extend(at_next(&mut modulus)?);
     }
     let field = modulus?;
-    let solution = solve_rows(field, rows, terms.len())?;
-    Some(solution.into_iter().map(|k| (k, field)).collect())
+    // Equations of one point may be trivial, so that as many as there are unknowns do not determine them.
+    loop {
+        let solution = solve_rows(field, rows.clone(), terms.len())?;
+        let mut is_solved = true;
+        for _ in 0..FRESH_POINTS {
+            let more = at_next(&mut modulus)?;
+            is_solved &= more.iter().all(|row| is_satisfied(field, row, &solution));
+            rows.extend(more);
+        }
+        if is_solved {
+            return Some(solution.into_iter().map(|k| (k, field)).collect());
+        }
+    }
+}
+
+/// Whether a row `(unknowns.. | right)` holds for a solution.
+fn is_satisfied(field: Modulus, row: &[u64], solution: &[u64]) -> bool {
+    let mut left = 0;
+    for (entry, unknown) in row.iter().zip(solution) {
+        left = field.add(left, field.mul(*entry, *unknown));
+    }
+    row.last() == Some(&left)
 }
 
 fn roots(problem: &Problem, terms: &[Term]) -> Vec<ExprId> {

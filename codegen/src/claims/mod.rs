@@ -8,7 +8,7 @@
 //! | `potential.rs`, `fit.rs`, `global.rs`, `reflection.rs`, `regularity.rs`, `leaf.rs` | the density in closed form; is it single-valued, and regular? |
 //! | `volume.rs`, `gradient.rs`, `trace.rs` | the volume with that density, or with an integral for it, as it is lowered |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
-//! | `conditions.rs`, `exceptional.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
+//! | `conditions.rs`, `exceptional.rs`, `hypersurfaces.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
 //! | `alternatives.rs` | both of these in words |
 //! | `defaults.rs` | claims at the declared values of parameters |
 //! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
@@ -48,6 +48,7 @@ mod geometry;
 mod global;
 mod gradient;
 mod hybrid;
+mod hypersurfaces;
 mod impact;
 mod landing;
 mod leaf;

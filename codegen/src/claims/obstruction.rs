@@ -32,7 +32,7 @@ pub struct Obstruction {
 }
 
 /// Points that are tried.
-const ATTEMPTS: usize = 12;
+const ATTEMPTS: usize = 64;
 /// A delta counts from this part of its scale on: 18 digits above the rounding of extended numbers.
 const CLEAR: f64 = 1e-30;
 /// Vectors whose elimination meets a smaller pivot count as dependent.

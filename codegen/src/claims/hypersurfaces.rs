@@ -1,0 +1,227 @@
+//! Polynomial conditions on parameters under which an obstruction vanishes.
+//!
+//! At a random point modulo a prime delta (see [`super::obstruction`]) is a rational function of one parameter. A root or pole of it that is one at
+//! other configurations too lies on a hypersurface of parameters over which there is a density. Such points, found for
+//! other values of the parameters too, determine the polynomial of low degree that vanishes at all of them.
+
+use dalembert_expr::{ExprId, ModularPoint, Rational, SymbolId};
+
+use super::ansatz::{combination, monomials};
+use super::elimination::first_relation;
+use super::exactness::{Local, exists_at, sample_points};
+use super::exceptional::Column;
+use super::fit::reconstruct;
+use super::polynomial::roots;
+use super::problem::Problem;
+use crate::model::Model;
+
+/// Degrees of polynomials that are looked for.
+const DEGREE: usize = 3;
+/// Points beyond the number of coefficients.
+const SURPLUS: usize = 2;
+/// Parameters that a condition may relate.
+const RELATED: usize = 3;
+/// Parameters up to which conditions are looked for.
+const PARAMETERS: usize = 6;
+
+/// The polynomials, each once. `trials` is how many values of delta may be computed, and what is left of them; `None` if they did not suffice.
+pub(super) fn hypersurfaces(
+    model: &mut Model,
+    problem: &Problem,
+    local: &Local,
+    positions: &[usize],
+    seed: u64,
+    trials: &mut usize,
+) -> Option<Vec<ExprId>> {
+    let mut found: Vec<ExprId> = Vec::new();
+    if positions.len() > PARAMETERS {
+        return Some(found);
+    }
+    let symbols: Vec<SymbolId> = positions
+        .iter()
+        .map(|position| model.parameters[*position].symbol)
+        .collect();
+    let Some(obstruction) = local.hull.obstruction else {
+        return Some(found);
+    };
+    for parameter in &symbols {
+        let column = Column {
+            pool: &model.pool,
+            problem,
+            local,
+            obstruction,
+            parameter: *parameter,
+        };
+        let search = Search {
+            column,
+            symbols: &symbols,
+            known: &found,
+        };
+        let points = search.points(seed, trials)?;
+        let Some((related, points)) = points else {
+            continue;
+        };
+        let polynomial = polynomial(model, &related, &points);
+        found.extend(polynomial.filter(|own| !found.contains(own)));
+    }
+    Some(found)
+}
+
+/// A search for roots of delta in one parameter.
+struct Search<'s> {
+    column: Column<'s>,
+    symbols: &'s [SymbolId],
+    /// Polynomials that were found.
+    known: &'s [ExprId],
+}
+
+impl Search<'_> {
+    /// Points of a hypersurface, and the parameters that it relates.
+    #[expect(
+        clippy::option_option,
+        reason = "no hypersurface is not the end of the trials"
+    )]
+    fn points(
+        &self,
+        seed: u64,
+        trials: &mut usize,
+    ) -> Option<Option<(Vec<SymbolId>, Vec<ModularPoint>)>> {
+        if !self.column.is_rational() {
+            return Some(None);
+        }
+        let Some(first) = self.roots(seed, trials)?.into_iter().next() else {
+            return Some(None);
+        };
+        let related = self.related(&first, seed);
+        if related.len() > RELATED {
+            return Some(None);
+        }
+        let mut points = vec![first.clone()];
+        let mut drawn = seed;
+        while points.len() < needed(related.len(), DEGREE) {
+            drawn = drawn.wrapping_add(1);
+            let roots = self.roots(drawn, trials)?;
+            if roots.is_empty() {
+                return Some(None);
+            }
+            points.extend(roots);
+        }
+        Some(Some((related, points)))
+    }
+
+    /// Points over which a density exists: a base with the parameter at a root of delta.
+    fn roots(&self, seed: u64, trials: &mut usize) -> Option<Vec<ModularPoint>> {
+        let Some((base, delta)) = self.column.base(seed) else {
+            return Some(Vec::new());
+        };
+        let Some(functions) = self.column.functions(&base, delta, trials)? else {
+            return Some(Vec::new());
+        };
+        let field = base.modulus();
+        let mut points = Vec::new();
+        for root in functions.iter().flat_map(|own| roots(field, own)) {
+            let is_simple = reconstruct(field, root).is_some()
+                || self.others().any(|own| self.value(&base, own) == root);
+            if is_simple {
+                continue;
+            }
+            let mut point = base.clone();
+            point.set(self.column.parameter, root);
+            if !self.is_known(&point) && self.has_density(&point, seed) {
+                points.push(point);
+            }
+        }
+        Some(points)
+    }
+
+    /// True if a polynomial that was found is 0 at a point.
+    fn is_known(&self, point: &ModularPoint) -> bool {
+        let values = self
+            .column
+            .pool
+            .modular_eval(self.known, &mut point.clone());
+        values.is_ok_and(|values| values.contains(&0))
+    }
+
+    fn others(&self) -> impl Iterator<Item = SymbolId> {
+        let parameter = self.column.parameter;
+        self.symbols
+            .iter()
+            .copied()
+            .filter(move |own| *own != parameter)
+    }
+
+    fn value(&self, point: &ModularPoint, symbol: SymbolId) -> u64 {
+        point.value(symbol, self.column.pool.symbol_assumption(symbol))
+    }
+
+    /// The parameters that cannot change alone, the one whose roots are looked for among them.
+    fn related(&self, point: &ModularPoint, seed: u64) -> Vec<SymbolId> {
+        let field = point.modulus();
+        let cannot_change = |own: &SymbolId| {
+            let mut changed = point.clone();
+            // By a square factor: what is positive stays so.
+            changed.set(*own, field.mul(self.value(point, *own), field.integer(9)));
+            !self.has_density(&changed, seed)
+        };
+        let symbols = self.symbols.iter().copied();
+        symbols
+            .filter(|own| *own == self.column.parameter || cannot_change(own))
+            .collect()
+    }
+
+    /// True if a density exists at another configuration, with the parameters of a point.
+    fn has_density(&self, point: &ModularPoint, seed: u64) -> bool {
+        let (pool, problem) = (self.column.pool, self.column.problem);
+        let roots = problem.roots();
+        let profile = pool.profile_of(&roots);
+        let Ok(points) = sample_points(pool, &roots, &profile, seed ^ OTHER) else {
+            return false;
+        };
+        let at = |other: &mut ModularPoint| {
+            for symbol in self.symbols {
+                other.set(*symbol, self.value(point, *symbol));
+            }
+            exists_at(pool, problem, other)
+        };
+        points.modulo(PRIME).find(at) == Some(true)
+    }
+}
+
+/// The prime of all points, by its position.
+pub(super) const PRIME: usize = 1;
+/// Turns the seed of a point into that of another configuration: the fractional digits of the square root of 5.
+const OTHER: u64 = 0x3c6e_f372_fe94_f82b;
+
+/// Points that determine a polynomial of a degree.
+fn needed(parameters: usize, degree: usize) -> usize {
+    let monomials = (1..=parameters).fold(1, |count, k| count * (degree + k) / k);
+    monomials + SURPLUS
+}
+
+/// The polynomial of lowest degree that vanishes at points, if its coefficients are small numbers.
+fn polynomial(model: &mut Model, related: &[SymbolId], points: &[ModularPoint]) -> Option<ExprId> {
+    let field = points.first()?.modulus();
+    let pool = &mut model.pool;
+    (1..=DEGREE).find_map(|degree| {
+        let monomials = monomials(pool, related, degree);
+        if points.len() < monomials.len() + SURPLUS {
+            return None;
+        }
+        let rows: Option<Vec<Vec<u64>>> = points
+            .iter()
+            .map(|point| pool.modular_eval(&monomials, &mut point.clone()).ok())
+            .collect();
+        let relation = first_relation(field, rows?)?;
+        let one = pool.one();
+        let parts: Option<Vec<(Rational, ExprId, ExprId)>> = monomials
+            .iter()
+            .zip(&relation)
+            .filter(|(_, coefficient)| **coefficient != 0)
+            .map(|(monomial, own)| Some((reconstruct(field, *own)?, one, *monomial)))
+            .collect();
+        let mut parts = parts?;
+        parts.reverse();
+        Some(combination(pool, &parts))
+    })
+}
