@@ -6,7 +6,7 @@ use crate::contract::{RankDrop, System};
 use crate::effects::{Change, Effect, Moment, StepView};
 use crate::error::Fault;
 use crate::forces::{Along, Driven};
-use crate::integrate::{Counters, Dop853, Instant, Stepper};
+use crate::integrate::{Counters, Dop853, Instant, Rebound, Stepper};
 use crate::outcome::{Outcome, Run, StartError};
 use crate::record::{Observer, Segment};
 use crate::state::StateVector;
@@ -264,11 +264,19 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             return Ok(Next::Forces);
         }
         let now = self.progress.now();
+        let (system, motion_start) = (self.system, self.system.motion_start(&self.progress.state));
         let Progress {
             state, counters, ..
         } = &mut *self.progress;
-        self.stepper
-            .restart(self.system, now, state, limit, counters)?;
+        if system.conserves_energy() {
+            let rebound = Rebound {
+                limit,
+                motion_start,
+                energy: &|t, state| system.energy(t, state),
+            };
+            self.stepper.rebound(system, &rebound, state, counters);
+        }
+        self.stepper.restart(system, now, state, limit, counters)?;
         Ok(Next::Step)
     }
 

@@ -241,6 +241,7 @@ pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
     };
     let derived = emit_derived_functions(context);
     let chart = emit_chart(context);
+    let conserves = emit_conserves_energy(context);
     let coefficients = super::impact::emit_coefficient_checks(context);
     let constrained = match context.program.constrained {
         Some(_) => super::constraint::emit_system_hooks(context),
@@ -275,8 +276,30 @@ pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
                 ::core::result::Result::Ok(())
             }
 
+            #conserves
             #chart
             #constrained
+        }
+    }
+}
+
+/// That the energy is kept between impacts: where nothing but a Lagrangian without time moves the system.
+fn emit_conserves_energy(context: &Context<'_>) -> TokenStream {
+    let model = context.model;
+    let lagrangian = model.lagrangian.whole;
+    let is_free =
+        model.forces.is_empty() && model.constraints.is_empty() && !model.is_first_order();
+    let is_steady = !model.pool.depends_on(lagrangian, model.time)
+        && model
+            .inputs()
+            .all(|(_, input)| !model.pool.depends_on(lagrangian, input.symbol));
+    if context.program.impacting.is_none() || !(is_free && is_steady) {
+        return TokenStream::new();
+    }
+    quote! {
+        #[inline]
+        fn conserves_energy(&self) -> bool {
+            true
         }
     }
 }

@@ -61,6 +61,12 @@ pub trait System: VectorField {
     /// [`Fault::MetricNotPositive`].
     fn energy(&self, t: f64, state: &Self::State) -> Result<f64, Fault>;
 
+    /// Whether smooth motion is known to keep [`System::energy`]: no force does work, and time occurs nowhere. Methods that
+    /// keep a discrete energy carry it across elastic impacts then. False unless known.
+    fn conserves_energy(&self) -> bool {
+        false
+    }
+
     /// Adds `size * direction` to what the state holds of the motion: an impulse.
     fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse);
 

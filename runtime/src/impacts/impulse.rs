@@ -460,6 +460,7 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<Option<f64>, Outcome> {
         match self.watch.look(step) {
+            Ok(Some(theta)) if self.resting.is_none() => Ok(Some(self.watch.meet(theta, step))),
             Ok(hit) if self.resting.is_none() => Ok(hit),
             Ok(hit) => self.resting.look(hit, step),
             Err(Outcome::Contact { surface }) => self.press(surface, step),

@@ -80,6 +80,41 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
+    /// Has the integrator solve for the hit at `theta`, if it can: the step ends there then. Returns the part of the step to
+    /// cut it at.
+    pub(super) fn meet<Step: Stepper<Sys>>(
+        &mut self,
+        theta: f64,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> f64 {
+        let parts = self.parts.as_slice();
+        let Some(surface) = parts.iter().position(|&part| part == theta) else {
+            return theta;
+        };
+        if theta <= 0.0 || self.is_passable(surface) || self.grazes.as_slice()[surface] != 0.0 {
+            return theta;
+        }
+        let system = step.system;
+        let gap = |t: f64, state: &Sys::State| {
+            let rates = system.gap_rates(t, state)?;
+            let gaps = system.gaps(t, state);
+            Ok((gaps.as_slice()[surface], rates.as_slice()[surface]))
+        };
+        if !step.stepper.meet(system, theta, &gap, step.counters) {
+            return theta;
+        }
+        let longer = self.length / step.length();
+        for part in self.parts.as_mut_slice() {
+            *part = if *part == theta {
+                1.0
+            } else {
+                (*part * longer).max(1.0)
+            };
+        }
+        (self.length, self.proposed) = (step.length(), Some(1.0));
+        1.0
+    }
+
     /// The first fall of this gap that is an impact: the surface counts there, and is approached.
     fn first_hit<Step: Stepper<Sys>>(
         &mut self,

@@ -2,7 +2,7 @@
 
 use super::instant::Instant;
 use super::stats::Counters;
-use super::stepper::{Series, StepFailure, Stepper};
+use super::stepper::{GapAt, Rebound, Series, StepFailure, Stepper};
 use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
@@ -113,6 +113,26 @@ impl<F: VectorField> Stepper<F> for Chosen<'_, F> {
 
     fn interpolate(&self, theta: f64) -> F::State {
         self.stepper.interpolate(theta)
+    }
+
+    fn meet(
+        &mut self,
+        field: &F,
+        theta: f64,
+        gap: &GapAt<'_, F::State>,
+        counters: &mut Counters,
+    ) -> bool {
+        self.stepper.meet(field, theta, gap, counters)
+    }
+
+    fn rebound(
+        &mut self,
+        field: &F,
+        rebound: &Rebound<'_, F::State>,
+        state: &mut F::State,
+        counters: &mut Counters,
+    ) {
+        self.stepper.rebound(field, rebound, state, counters);
     }
 
     fn cut(&mut self, theta: f64) -> (Instant, F::State) {

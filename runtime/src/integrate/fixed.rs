@@ -5,6 +5,7 @@
 //! allows; a step in which the vector field does not exist is shortened until it does; and an implicit step that is
 //! not solved is made in 2, 4, 8, .. equal parts, which keeps the grid and what the method preserves.
 
+use super::collision;
 use super::controller::{RETREAT, Weights, first_step, least_step, least_trial, not_finite};
 use super::dense::{Cubic, INNER, Polynomial};
 use super::embedded::Counted;
@@ -12,7 +13,7 @@ use super::ends::Ends;
 use super::instant::Instant;
 use super::precise::Precise;
 use super::stats::Counters;
-use super::stepper::{StepFailure, Stepper};
+use super::stepper::{EnergyAt, GapAt, Rebound, StepFailure, Stepper};
 use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
@@ -29,7 +30,7 @@ const SLIVER: f64 = 1e-6;
 const PARTS: u32 = 1 << 10;
 
 /// A method of fixed step: its names and orders. Implemented by the methods here.
-pub trait Method {
+pub trait Method: Copy {
     /// See [`Stepper::name`].
     const NAME: &'static str;
     /// Order of the solution at the ends of steps.
@@ -41,6 +42,25 @@ pub trait Method {
 
     /// What the method keeps from one step for the next besides the state.
     type Memory<S: StateVector>: Copy;
+
+    /// Whether impacts are solved for inside the step.
+    const MEETS: bool = false;
+
+    /// Whether the method has [`Method::mean_energy`].
+    const KEEPS_ENERGY: bool = false;
+
+    /// The mean of an energy over the stages of the step that was made from `start` over `h`: minus the derivative of the
+    /// step's action by `h`. Of methods that come from a discrete action and keep their stages.
+    #[doc(hidden)]
+    fn mean_energy<S: StateVector>(
+        (t, h): (f64, f64),
+        start: &Precise<S>,
+        memory: &Self::Memory<S>,
+        energy: &EnergyAt<'_, S>,
+    ) -> Option<f64> {
+        let _ = (t, h, start, memory, energy);
+        None
+    }
 
     /// Nothing kept.
     fn memory<S: StateVector>() -> Self::Memory<S>;
@@ -74,19 +94,33 @@ pub struct FixedStep<S: StateVector, M: Method> {
     tolerance: Tolerance,
     given: Option<f64>,
     /// The size of the run.
-    step: f64,
+    pub(super) step: f64,
     /// The size of the next step: that of the run, or less after an impact.
     next: f64,
     /// The length of the last step.
-    made: f64,
+    pub(super) made: f64,
+    /// In how many parts the last step was made.
+    pub(super) parts: u32,
+    /// Whether the last step ends where it was solved to meet a surface.
+    pub(super) has_met: bool,
+    /// The point of the grid that is to be reached after an impact inside a step.
+    pub(super) target: Option<Instant>,
+    /// The same as it was before the last step.
+    pub(super) pending: Option<Instant>,
+    /// Whether several impacts fell into one step, until a whole step passes without any.
+    pub(super) is_crowded: bool,
+    /// Whether the last step leads to the end of the run.
+    pub(super) is_at_end: bool,
+    /// The length of the step that it is the end of.
+    pub(super) span: f64,
     /// The grid: since this time, this many steps of the run's size.
     grid: (Instant, f64),
-    units: S,
-    ends: Ends<S>,
-    rates: [S; 2],
-    memory: M::Memory<S>,
+    pub(super) units: S,
+    pub(super) ends: Ends<S>,
+    pub(super) rates: [S; 2],
+    pub(super) memory: M::Memory<S>,
     dense: Polynomial<S, 5>,
-    dense_ready: bool,
+    pub(super) dense_ready: bool,
 }
 
 impl<S: StateVector, M: Method> FixedStep<S, M> {
@@ -103,6 +137,13 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
             step: 0.0,
             next: 0.0,
             made: 0.0,
+            parts: 1,
+            has_met: false,
+            target: None,
+            pending: None,
+            is_at_end: false,
+            is_crowded: false,
+            span: 0.0,
             grid: (Instant::default(), 0.0),
             units: zeros,
             ends: Ends::new(),
@@ -130,7 +171,10 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         let (t, state) = (now.t, &precise.value);
         self.ends.place(now, precise);
         self.made = 0.0;
-        self.grid = (now, 0.0);
+        if !self.has_met {
+            (self.grid, self.target) = ((now, 0.0), None);
+        }
+        self.has_met = false;
         self.dense_ready = false;
         self.memory = M::memory();
         self.units = usable(field.field.scale(t, state));
@@ -165,8 +209,10 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     /// The end of the last step becomes the start of the next.
     fn move_on(&mut self) {
         self.ends.move_on();
+        self.is_crowded &= self.made == 0.0 || self.pending.is_some();
         self.rates[0] = self.rates[1];
         self.dense_ready = false;
+        self.has_met = false;
     }
 
     /// Puts the last good state back in place after a failure.
@@ -179,14 +225,33 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     fn aim(&self, h: f64, t_end: f64) -> (f64, Instant) {
         let end = Instant::new(t_end);
         let rest = end.since(self.ends.t[0]);
-        if rest <= h + SLIVER * h {
+        let (made, arrival) = self.aim_within_run(h);
+        if rest <= made + SLIVER * made {
             (rest, end)
-        } else if h == self.step {
-            // NOTE: the number of steps times their size does not add up rounding, and the length of a step does not
-            // depend on the time at which it is made.
-            (h, self.grid.0.after((self.grid.1 + 1.0) * h))
         } else {
-            (h, self.ends.t[0].after(h))
+            (made, arrival)
+        }
+    }
+
+    /// As [`Self::aim`], as if the run had no end.
+    pub(super) fn aim_within_run(&self, h: f64) -> (f64, Instant) {
+        let now = self.ends.t[0];
+        // NOTE: the number of steps times their size does not add up rounding, and the length of a step does not
+        // depend on the time at which it is made.
+        let next = self.grid.0.after((self.grid.1 + 1.0) * self.step);
+        match self.target {
+            None if h == self.step => (h, next),
+            None => (h, now.after(h)),
+            Some(target) => {
+                let rest = target.since(now);
+                if rest <= SLIVER * self.step && h == self.step {
+                    (next.since(now), next)
+                } else if rest > 0.0 && rest <= h + SLIVER * h {
+                    (rest, target)
+                } else {
+                    (h, now.after(h))
+                }
+            }
         }
     }
 
@@ -195,10 +260,17 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         &mut self,
         field: &mut Counted<'_, F>,
         h: f64,
-    ) -> Result<(), StepFailure>
+    ) -> Result<u32, StepFailure>
     where
         M: Advance<F>,
     {
+        if M::KEEPS_ENERGY && self.target.is_some() {
+            let memory = self.memory;
+            match self.cross_pieces(field, self.departing(h)) {
+                Err(StepFailure::NotConverged { .. }) => self.memory = memory,
+                outcome => return outcome.map(|()| 1),
+            }
+        }
         let mut parts = 1;
         loop {
             let memory = self.memory;
@@ -208,12 +280,12 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
                     self.memory = memory;
                     parts *= 2;
                 }
-                outcome => return outcome,
+                outcome => return outcome.map(|()| parts),
             }
         }
     }
 
-    fn cross_in<F: VectorField<State = S>>(
+    pub(super) fn cross_in<F: VectorField<State = S>>(
         &mut self,
         field: &mut Counted<'_, F>,
         h: f64,
@@ -240,16 +312,63 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         Ok(())
     }
 
+    /// Makes the step in pieces of these lengths.
+    pub(super) fn cross_pieces<F: VectorField<State = S>>(
+        &mut self,
+        field: &mut Counted<'_, F>,
+        pieces: [f64; 2],
+    ) -> Result<(), StepFailure>
+    where
+        M: Advance<F>,
+    {
+        (self.ends.end, self.rates[1]) = (self.ends.start, self.rates[0]);
+        let mut t = self.ends.t[0].t;
+        for piece in pieces.into_iter().filter(|piece| *piece != 0.0) {
+            let departure = Departure {
+                t,
+                state: &self.ends.end,
+                rate: &self.rates[1],
+                units: &self.units,
+            };
+            let end = M::advance(field, piece, &departure, &mut self.memory)?;
+            t += piece;
+            self.ends.end = end;
+            evaluate(field, t, &end.value, &mut self.rates[1])?;
+            check_finite(&end.value, &self.rates[1])?;
+        }
+        Ok(())
+    }
+
     /// Takes in a step that was made.
-    fn accept(&mut self, made: f64, arrival: Instant) {
+    fn accept(&mut self, made: f64, arrival: Instant, parts: u32) {
         self.ends.t[1] = arrival;
         self.made = made;
+        self.parts = parts;
+        self.pending = self.target;
         self.next = (GROW * made).min(self.step);
-        if made == self.step {
+        if let Some(target) = self.target
+            && self.reaches_grid(arrival, target)
+        {
+            self.next = self.step;
+        } else if made == self.step && self.target.is_none() {
             self.grid.1 += 1.0;
-        } else {
-            self.grid = (arrival, 0.0);
+        } else if self.target.is_none_or(|target| arrival.since(target) > 0.0) {
+            (self.grid, self.target) = ((arrival, 0.0), None);
         }
+    }
+
+    /// Takes note that a step after an impact ends on the grid again, if it does: at the end of the step that was cut, or
+    /// one further on.
+    fn reaches_grid(&mut self, arrival: Instant, target: Instant) -> bool {
+        let next = self.grid.0.after((self.grid.1 + 1.0) * self.step);
+        let reaches = arrival == target || arrival == next;
+        if arrival == next {
+            self.grid.1 += 1.0;
+        }
+        if reaches {
+            self.target = None;
+        }
+        reaches
     }
 }
 
@@ -335,9 +454,10 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
                 false => Err(StepFailure::StepUnderflow { t }),
             };
             let failure = match attempt {
-                Ok(()) => {
+                Ok(parts) => {
                     field.counters.accepted += 1;
-                    self.accept(made, arrival);
+                    self.accept(made, arrival, parts);
+                    self.is_at_end = arrival == Instant::new(t_end);
                     return Ok(());
                 }
                 Err(failure) => failure,
@@ -437,6 +557,30 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
         }
         self.dense_ready = true;
         Ok(())
+    }
+
+    fn meet(
+        &mut self,
+        field: &F,
+        theta: f64,
+        gap: &GapAt<'_, F::State>,
+        counters: &mut Counters,
+    ) -> bool {
+        M::MEETS && collision::meet(self, field, theta, gap, counters)
+    }
+
+    fn rebound(
+        &mut self,
+        field: &F,
+        rebound: &Rebound<'_, F::State>,
+        state: &mut F::State,
+        counters: &mut Counters,
+    ) {
+        if self.has_met
+            && let Some(solved) = collision::rebound(self, field, rebound, state, counters)
+        {
+            *state = solved;
+        }
     }
 
     #[inline(always)]

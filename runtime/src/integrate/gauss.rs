@@ -12,7 +12,7 @@ use super::embedded::Counted;
 use super::fixed::{Advance, Departure, FixedStep, Method, evaluate};
 use super::iteration::{Iteration, Verdict};
 use super::precise::Precise;
-use super::stepper::StepFailure;
+use super::stepper::{EnergyAt, StepFailure};
 use crate::contract::VectorField;
 use crate::state::StateVector;
 
@@ -31,6 +31,12 @@ use crate::state::StateVector;
 /// (steered knife edge of `models/src/stability/structure.rs`, `h = 0.05`, `H = 0.5`: 1.8e-10, drift 1e-14). In global form it
 /// keeps D to order 4 only and leaves it further and further (energy error 6e-2, like `t^2`); the effect `Projection`
 /// returns to D, but is not symmetric, and the energy drifts steadily (5e-6). Prefer [`Dla4`](super::Dla4) there.
+///
+/// An impact is solved for inside the step, and the step completed to the grid. Where nothing but a Lagrangian without time
+/// moves the system, single elastic impacts keep the discrete energy, and the step across is symplectic: a quartic well with
+/// a wall (`h = 0.05`) errs by 1.7e-7 at most over a million units of time, without drift beyond 3e-12. The velocity after the
+/// impact is that of the law to the order of the method. With several impacts in a step, other laws, forces or constraints
+/// the law alone acts.
 ///
 /// Each step takes one evaluation of the rate and two for each of about 5 to 12 iterations. Use it for long runs of
 /// smooth conservative systems; for a given error over a short time [`Dop853`](super::Dop853) takes less work. Where the
@@ -88,6 +94,46 @@ impl<const STAGES: usize> Table<STAGES> {
             couplings,
             guess: extrapolation(&nodes),
         }
+    }
+}
+
+impl<const STAGES: usize> Table<STAGES> {
+    /// The state at a stage; `weights` are those of the table times the length of the step.
+    #[inline(always)]
+    fn inside<S: StateVector>(
+        &self,
+        stage: usize,
+        weights: &[f64; STAGES],
+        start: &Precise<S>,
+        slopes: &[S; STAGES],
+    ) -> S {
+        let mut inside = start.value;
+        for i in 0..S::LEN {
+            let increment: f64 = (0..STAGES)
+                .map(|j| self.couplings[stage][j] * (weights[j] * slopes[j].as_slice()[i]))
+                .sum();
+            inside.as_mut_slice()[i] = start.plus(i, increment);
+        }
+        inside
+    }
+
+    /// `sum_i b_i H(Y_i)`. The action of a step from `q0` to `q1` is `h sum_i b_i L(Q_i, V_i)` at its stationary `V_i`, and
+    /// this is minus its derivative by `h`.
+    fn mean_energy<S: StateVector>(
+        &self,
+        (t, h): (f64, f64),
+        start: &Precise<S>,
+        slopes: &[S; STAGES],
+        energy: &EnergyAt<'_, S>,
+    ) -> Option<f64> {
+        let weights = self.weights.map(|weight| h * weight);
+        let mut mean = 0.0;
+        for stage in 0..STAGES {
+            let inside = self.inside(stage, &weights, start, slopes);
+            let here = energy(t + self.nodes[stage] * h, &inside).ok()?;
+            mean += self.weights[stage] * here;
+        }
+        Some(mean)
     }
 }
 
@@ -195,13 +241,7 @@ fn advance<F: VectorField, const STAGES: usize>(
     loop {
         let (mut change, mut size) = (0.0_f64, 0.0_f64);
         for stage in 0..STAGES {
-            let mut inside = state.value;
-            for i in 0..F::State::LEN {
-                let increment: f64 = (0..STAGES)
-                    .map(|j| table.couplings[stage][j] * (weights[j] * stages[j].as_slice()[i]))
-                    .sum();
-                inside.as_mut_slice()[i] = state.plus(i, increment);
-            }
+            let inside = table.inside(stage, &weights, state, stages);
             let before = stages[stage];
             evaluate(
                 field,
@@ -244,7 +284,19 @@ macro_rules! collocation {
             const DENSE_ORDER: usize = $dense;
             const REFINEMENTS: u32 = $refinements;
 
+            const MEETS: bool = true;
+            const KEEPS_ENERGY: bool = true;
+
             type Memory<S: StateVector> = Slopes<S, $stages>;
+
+            fn mean_energy<S: StateVector>(
+                place: (f64, f64),
+                start: &Precise<S>,
+                memory: &Self::Memory<S>,
+                energy: &EnergyAt<'_, S>,
+            ) -> Option<f64> {
+                $table.mean_energy(place, start, &memory.stages, energy)
+            }
 
             fn memory<S: StateVector>() -> Self::Memory<S> {
                 Slopes::none()

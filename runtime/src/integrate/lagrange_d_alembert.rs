@@ -81,6 +81,7 @@ macro_rules! principle {
             const ORDER: usize = $order;
             const DENSE_ORDER: usize = $order;
             const REFINEMENTS: u32 = $refinements;
+            const MEETS: bool = true;
 
             /// What was rounded off the positions: N numbers, for which a state has room.
             type Memory<S: StateVector> = S;

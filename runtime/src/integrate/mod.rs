@@ -7,6 +7,7 @@
 //! ([`TaylorField`](crate::TaylorField)).
 
 mod chosen;
+mod collision;
 pub(crate) mod controller;
 mod dense;
 mod dop853;
@@ -40,7 +41,7 @@ pub use instant::Instant;
 pub use lagrange_d_alembert::{ComposedPrinciple, Dla2, Dla4, MidpointPrinciple};
 pub use rk4::{ClassicalRungeKutta, Rk4};
 pub use stats::Counters;
-pub use stepper::{Series, StepFailure, Stepper};
+pub use stepper::{EnergyAt, GapAt, Rebound, Series, StepFailure, Stepper};
 #[cfg(feature = "lanes")]
 pub(crate) use taylor::lanes;
 pub use taylor::{TAYLOR, Taylor};

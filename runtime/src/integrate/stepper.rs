@@ -134,6 +134,32 @@ pub trait Stepper<F: VectorField> {
     /// Meaningful only while [`Stepper::dense_ready`].
     fn interpolate(&self, theta: f64) -> F::State;
 
+    /// Makes the last step again with the length at which its end has gap 0, near this part of it. `gap` gives a gap and its
+    /// rate. Returns whether that is done; the step is as it was otherwise. Only methods that solve for impacts do it.
+    fn meet(
+        &mut self,
+        field: &F,
+        theta: f64,
+        gap: &GapAt<'_, F::State>,
+        counters: &mut Counters,
+    ) -> bool {
+        let _ = (field, theta, gap, counters);
+        false
+    }
+
+    /// Scales the jump from the end of the step that [`Stepper::meet`] made to `state`, so that the discrete energy of the
+    /// step that arrives is that of the step that departs. Without such a step, or where the jump is no elastic impact,
+    /// `state` stays as it is.
+    fn rebound(
+        &mut self,
+        field: &F,
+        rebound: &Rebound<'_, F::State>,
+        state: &mut F::State,
+        counters: &mut Counters,
+    ) {
+        let _ = (field, rebound, state, counters);
+    }
+
     /// Time and state at a part of the step where the motion is cut; after [`Stepper::prepare_dense`], unless it is the end.
     /// [`Stepper::restart`] follows. What the state is rounded off is kept until then by integrators that carry it.
     fn cut(&mut self, theta: f64) -> (Instant, F::State) {
@@ -145,6 +171,22 @@ pub trait Stepper<F: VectorField> {
             ),
         }
     }
+}
+
+/// A gap and its rate at a time and a state.
+pub type GapAt<'a, S> = dyn Fn(f64, &S) -> Result<(f64, f64), Fault> + 'a;
+
+/// The energy at a time and a state.
+pub type EnergyAt<'a, S> = dyn Fn(f64, &S) -> Result<f64, Fault> + 'a;
+
+/// An elastic impact in a step of fixed size, and the energy that motion keeps.
+pub struct Rebound<'a, S> {
+    /// The longest step to go on with.
+    pub limit: f64,
+    /// Components of the state before those that hold its motion.
+    pub motion_start: usize,
+    /// The energy at a time and a state.
+    pub energy: &'a EnergyAt<'a, S>,
 }
 
 /// That a step is a power series in `s`, at time `t_start + unit s`.
