@@ -283,7 +283,7 @@ pub(super) fn emit_system(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// That the energy is kept between impacts: where nothing but a Lagrangian without time moves the system.
+/// The hook that says that the energy is kept between impacts: where nothing but a Lagrangian without time moves the system.
 fn emit_conserves_energy(context: &Context<'_>) -> TokenStream {
     let model = context.model;
     let lagrangian = model.lagrangian.whole;

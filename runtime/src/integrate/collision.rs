@@ -115,8 +115,9 @@ impl Pieces {
     /// Up to an impact, `length` after the start of a step of length `span`.
     fn arriving(length: f64, span: f64) -> Self {
         let beta = 1.0 - length / span;
-        let back = span * (beta - beta.powi(4));
-        let slope = 4.0 * beta.powi(3);
+        let cube = beta * beta * beta;
+        let back = span * (beta - beta * cube);
+        let slope = 4.0 * cube;
         Self {
             lengths: [length + back, -back],
             slopes: [slope, 1.0 - slope],
