@@ -136,11 +136,15 @@ fn logarithms_that_are_related_refute_no_density() {
 fn densities_depend_on_what_roots_and_absolute_values_are_in_real_numbers() {
     let blade = "constraints { c: d(z) - y*d(x) = 0; }";
     let friction = |force: &str| particle(&format!("{blade} forces {{ f: {force}; }}"));
-    // Without friction for x > 0: what is so in places only is left open.
+    // Without friction for x > 0: a density there, and none elsewhere.
     let half = friction("(abs(x) - x)*dot(y)*d(y)");
-    for claim in ["density: exact", "density: none"] {
-        check(&half, claim, Undecided("as these may be related: abs(x)"));
-    }
+    check(&half, "density: exact", Refuted("at x = -"));
+    check(&half, "density: locally_exact", Refuted("at x = -"));
+    check(
+        &half,
+        "density: none",
+        Undecided("near some configurations"),
+    );
     check(
         &friction("-sqrt(1 + x^2)*dot(y)*d(y)"),
         "density: none",

@@ -2,6 +2,7 @@
 
 use dalembert_expr::{ExpansionPoint, ExprId, ExtendedPoint, ModularPoint, RealPoint};
 
+use super::conserved::extended_on_d;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Evidence, Vanishing, evidence};
 use super::reset::ResetMap;
@@ -129,8 +130,11 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
     }
 
     /// A point of a surface is found in doubles, unless everything is looked at.
-    fn extended(&self, point: &RealPoint) -> Option<ExtendedPoint> {
-        (self.place == Place::Anywhere).then(|| ExtendedPoint::of(point))
+    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint> {
+        match self.place {
+            Place::Anywhere => extended_on_d(model, self.dynamics, point),
+            _ => None,
+        }
     }
 
     fn shown(&self, _: &Model, terms: &[f64], _: f64) -> Vec<(String, f64)> {

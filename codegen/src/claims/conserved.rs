@@ -1,6 +1,8 @@
 //! Conserved quantities: the rate of an expression along the motion on D, `d_i e qdot^i + de/dqdot^i qddot^i + d_t e`.
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, ModularPoint, RealPoint, SymbolId};
+use dalembert_expr::{
+    Arithmetic, ExpansionPoint, ExprId, ExtendedPoint, ModularPoint, RealPoint, SymbolId,
+};
 
 use super::continuity::{poles, possible_jump};
 use super::dynamics::{Dynamics, Motion, Number};
@@ -164,6 +166,10 @@ impl Vanishing for Rate<'_> {
         state_on_d(model, self.dynamics, &self.roots(), attempt)
     }
 
+    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint> {
+        extended_on_d(model, self.dynamics, point)
+    }
+
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
         let motion = self.dynamics.motion(&model.pool, point, None)?;
         self.quantity
@@ -204,6 +210,17 @@ pub(super) fn state_on_d(
     let mut sample = sample(model, attempt, uses(&model.pool, roots));
     move_between_knots(model, roots, attempt, &mut sample);
     with_velocities(model, dynamics, sample, attempt)
+}
+
+/// A real state with the digits of extended numbers: the dependent velocities follow from the others once more.
+pub(super) fn extended_on_d(
+    model: &Model,
+    dynamics: &Dynamics,
+    point: &RealPoint,
+) -> Option<ExtendedPoint> {
+    let mut point = ExtendedPoint::of(point);
+    dynamics.motion(&model.pool, &mut point, None)?;
+    Some(point)
 }
 
 /// The sample with velocities on D, and its point.

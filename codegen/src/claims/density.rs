@@ -4,10 +4,11 @@
 //! A factor `abs(l)^s` counts as `l^s` where `l` is not 0: its logarithmic derivative is the same.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Node, RealPoint,
+    Arithmetic, ExpansionPoint, ExprId, ExtendedPoint, JetSpace, Jets, ModularPoint, Node,
+    RealPoint,
 };
 
-use super::conserved::{Quantity, jump, rate_scale, state_on_d};
+use super::conserved::{Quantity, extended_on_d, jump, rate_scale, state_on_d};
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::finding::Verdict;
@@ -100,6 +101,10 @@ impl Vanishing for Balance<'_> {
 
     fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
         state_on_d(model, self.dynamics, &self.roots(), attempt)
+    }
+
+    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint> {
+        extended_on_d(model, self.dynamics, point)
     }
 
     /// The rate of `ln e`, then the divergence.

@@ -54,10 +54,8 @@ pub(super) trait Vanishing {
     /// room for the conditioning of metric and constraints.
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64>;
 
-    /// The state with more digits; `None` if what makes it one is known to the digits of doubles only.
-    fn extended(&self, point: &RealPoint) -> Option<ExtendedPoint> {
-        Some(ExtendedPoint::of(point))
-    }
+    /// The state with more digits, settled anew; `None` if what makes it one is known to the digits of doubles only.
+    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint>;
 
     /// What a person is shown at a real state, given the terms and their sum.
     fn shown(&self, model: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)>;
@@ -276,7 +274,7 @@ fn beyond_doubles(
     if threshold == f64::INFINITY {
         return None;
     }
-    let mut point = question.extended(point)?;
+    let mut point = question.extended(model, point)?;
     let terms = question.terms(model, &mut point)?;
     let sum = terms
         .iter()

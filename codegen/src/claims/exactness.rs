@@ -52,6 +52,8 @@ pub struct Local {
     pub extended_rank: usize,
     /// The rank after each depth of brackets, D itself first.
     pub growth: Vec<usize>,
+    /// Whether there is an obstruction on some branches only.
+    pub is_partial: bool,
     /// Whether an obstruction is certain, not only overwhelmingly likely.
     pub is_proof: bool,
     /// A bound of the chance that the answer is wrong.
@@ -117,7 +119,7 @@ fn decide_local_from(
     let mut found_in: BTreeMap<u64, (Hull, Vec<usize>)> = BTreeMap::new();
     let mut primes = Vec::new();
     let branches = branches_of(pool, &roots, &profile, &points).ok_or(Undecided::Branches)?;
-    let mut failure = None;
+    let (mut failure, mut is_free) = (None, false);
     let covered = points.cover(pool, &branches, SAMPLES, |point| {
         fix(pool, point, conditions)?;
         let found = match sample(pool, problem, point, dependent, Until::Closed)? {
@@ -129,6 +131,7 @@ fn decide_local_from(
         };
         primes.push(point.modulus().prime());
         let pattern = branches.pattern(pool, point)?;
+        is_free |= found.0.rank == found.0.extended_rank;
         let ranks = |(hull, _): &(Hull, Vec<usize>)| (hull.rank, hull.extended_rank);
         let best = found_in.get(&pattern);
         if best.is_none_or(|best| ranks(best) < ranks(&found)) {
@@ -155,6 +158,7 @@ fn decide_local_from(
         rank: hull.rank,
         extended_rank: hull.extended_rank,
         growth: hull.growth.clone(),
+        is_partial: is_free && is_obstructed(&hull),
         is_proof,
         error: if is_proof {
             0.0

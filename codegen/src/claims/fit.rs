@@ -183,6 +183,10 @@ pub(super) fn solve_for_coefficients(
         if is_solved {
             return Some(solution.into_iter().map(|k| (k, field)).collect());
         }
+        let wanted = rows.len() + terms.len() / 2;
+        while rows.len() < wanted {
+            rows.extend(at_next(&mut modulus)?);
+        }
     }
 }
 

@@ -8,7 +8,7 @@
 //! Without roots the images are those of all turns by `pi/12` and their reflections: trigonometric polynomials of degree below 24
 //! are gone through whole. With roots, which have values at a few images only, one image is taken.
 
-use dalembert_expr::{ExprId, ModularPoint, Modulus, SymbolId};
+use dalembert_expr::{ExprId, ModularPoint, Modulus, SamplePoints, SymbolId};
 
 use super::elimination::first_relation;
 use super::exactness::{Local, branches_of, sample_points};
@@ -70,7 +70,7 @@ pub(super) fn has_no_period(
 ) -> bool {
     let roots = problem.roots();
     let profile = model.pool.profile_of(&roots);
-    let Ok(mut points) = sample_points(&model.pool, &roots, &profile, seed) else {
+    let Ok(points) = sample_points(&model.pool, &roots, &profile, seed) else {
         return false;
     };
     // An image may have another sign pattern of absolute values than its point; those of hidden squares are met at random.
@@ -78,48 +78,75 @@ pub(super) fn has_no_period(
     if !branches.is_some_and(|own| own.is_single()) {
         return false;
     }
-    let slope = |point: &mut ModularPoint| slope(model, problem, local, angle, point);
-    let turned = |point: &ModularPoint| {
-        let circle = match profile.branches {
-            true => vec![STAYS],
-            false => circle(profile.denominator.unwrap_or(1)),
-        };
-        let field = point.modulus();
-        let symbol = model.coordinates[angle].q;
-        circle.iter().try_fold(0, |sum, moved| {
-            let mut image = image(model, point, &[(symbol, *moved)])?;
-            Some(field.add(sum, slope(&mut image)?))
-        })
+    let circle = Circle {
+        model,
+        problem,
+        local,
+        angle,
+        points,
     };
-    let count = match profile.branches {
-        true => POINTS.1,
-        false => POINTS.0,
-    };
-    let moves = match profile.branches {
-        true => ALONE,
-        false => &ALONE[..1],
-    };
-    let mut left = maps(model, problem, (angle, moves));
-    for _ in 0..count {
-        let kept = points.find(|point| {
-            let sum = turned(point)?;
-            let field = point.modulus();
-            let cancels = |map: &Map| {
-                let moved = image(model, point, map).and_then(|image| turned(&image));
-                moved.is_some_and(|moved| field.add(sum, moved) == 0)
-            };
-            Some(left.iter().filter(|map| cancels(map)).cloned().collect())
-        });
-        left = kept.unwrap_or_default();
-        if left.is_empty() {
-            return false;
+    let turns = turns(profile.denominator.unwrap_or(1));
+    match profile.branches {
+        true => circle.cancels(&[STAYS], ALONE, POINTS.1),
+        false => {
+            circle.cancels(&[STAYS], ALONE, POINTS.0) || circle.cancels(&turns, &[STAYS], POINTS.0)
         }
     }
-    true
+}
+
+/// The circle of an angle.
+struct Circle<'c> {
+    model: &'c Model,
+    problem: &'c Problem,
+    local: &'c Local,
+    angle: usize,
+    points: SamplePoints,
+}
+
+impl Circle<'_> {
+    /// True if `beta` along the circle, summed over its images under turns, changes its sign under a map: of the angle by one of some moves, and
+    /// of each of the other coordinates.
+    fn cancels(&self, turns: &[Move], moves: &[Move], count: usize) -> bool {
+        let (model, problem) = (self.model, self.problem);
+        let mut points = self.points.clone();
+        let mut left = maps(model, problem, (self.angle, moves));
+        for _ in 0..count {
+            let kept = points.find(|point| {
+                let sum = self.summed(turns, point)?;
+                let field = point.modulus();
+                let is_opposite = |map: &Map| {
+                    let moved =
+                        image(model, point, map).and_then(|image| self.summed(turns, &image));
+                    moved.is_some_and(|moved| field.add(sum, moved) == 0)
+                };
+                Some(
+                    left.iter()
+                        .filter(|map| is_opposite(map))
+                        .cloned()
+                        .collect(),
+                )
+            });
+            left = kept.unwrap_or_default();
+            if left.is_empty() {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn summed(&self, turns: &[Move], point: &ModularPoint) -> Option<u64> {
+        let field = point.modulus();
+        let symbol = self.model.coordinates[self.angle].q;
+        turns.iter().try_fold(0, |sum, moved| {
+            let mut image = image(self.model, point, &[(symbol, *moved)])?;
+            let slope = slope(self.model, self.problem, self.local, self.angle, &mut image)?;
+            Some(field.add(sum, slope))
+        })
+    }
 }
 
 /// The turns of a circle by parts that residues know, and their reflections.
-fn circle(denominator: i64) -> Vec<Move> {
+fn turns(denominator: i64) -> Vec<Move> {
     let step = denominator.clamp(1, CIRCLE);
     let turns = (0..CIRCLE).step_by(step as usize);
     turns

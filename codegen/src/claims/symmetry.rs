@@ -10,10 +10,10 @@
 //! the Lagrangian itself, see [`super::gauge`] elsewhere.
 
 use dalembert_expr::{
-    ExpansionPoint, ExprId, ModularPoint, Pool, RealPoint, SymbolId, Verdict as Zero,
+    ExpansionPoint, ExprId, ExtendedPoint, ModularPoint, Pool, RealPoint, SymbolId, Verdict as Zero,
 };
 
-use super::conserved::{magnitude, state_on_d};
+use super::conserved::{extended_on_d, magnitude, state_on_d};
 use super::continuity::possible_jump;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
@@ -184,6 +184,13 @@ impl Vanishing for Change<'_> {
                 Some((sample, point))
             }
             Some(dynamics) => state_on_d(model, dynamics, &self.roots(), attempt),
+        }
+    }
+
+    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint> {
+        match self.on_d {
+            None => Some(ExtendedPoint::of(point)),
+            Some(dynamics) => extended_on_d(model, dynamics, point),
         }
     }
 

@@ -1,0 +1,103 @@
+//! Declarations that try to get a false theorem proved, or a true one refuted: their answers are known by construction.
+//!
+//! | family | what is planted |
+//! |---|---|
+//! | `potential` | drags that are differentials of a known function, with periods, curls in a box, curls of 1e-15 |
+//! | `leaf` | curves that wind towards a circle, anywhere, or to none |
+//! | `quantity` | forces that are 0 by an identity, act in a box, or are far below rounding |
+//! | `systems` | known systems in other coordinates |
+//! | `gauge` | translations of Lagrangians with an exact form, or another one, added |
+//! | `exceptional` | parameters whose default is an exception |
+//! | `wall` | impacts on a part of a curve |
+//!
+//! The quick test draws from fixed seeds. `ADVERSARY_SEED` begins elsewhere, `ADVERSARY_CASES` asks for another number; a wrong verdict is
+//! printed with its declaration.
+
+mod draw;
+mod families;
+mod function;
+
+use std::collections::BTreeMap;
+
+use dalembert_codegen::claims::Verdict;
+use dalembert_tests::claim::verdict;
+
+use draw::Draw;
+use families::{Case, case};
+
+/// Largest part of the decidable cases that may stay open.
+const OPEN: f64 = 0.05;
+
+/// Verdicts on cases of one family.
+#[derive(Debug, Default)]
+struct Tally {
+    right: usize,
+    open: usize,
+    /// Open although decidable.
+    missed: usize,
+}
+
+/// What is wrong with the verdict on a case, if anything; else it is counted.
+fn judged(seed: u64, case: &Case, tally: &mut Tally) -> Result<(), String> {
+    let source = format!(
+        "Case{seed} {{ {} claims {{ {}; }} }}",
+        case.declarations, case.claim
+    );
+    let finding = verdict(&source);
+    let is_right = match finding.verdict {
+        Verdict::Proved(_) => case.is_true,
+        Verdict::Refuted(_) => !case.is_true,
+        Verdict::Undecided(_) => {
+            tally.open += 1;
+            tally.missed += usize::from(case.is_decidable);
+            return Ok(());
+        }
+    };
+    tally.right += 1;
+    match is_right {
+        true => Ok(()),
+        false => Err(format!("seed {seed}: {source}\n{}", finding.note())),
+    }
+}
+
+/// Judges as many cases as asked for, and prints what became of them.
+fn judge(cases: u64) {
+    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
+    let first = asked("ADVERSARY_SEED").unwrap_or(0_u64);
+    let cases = asked("ADVERSARY_CASES").unwrap_or(cases);
+    let mut tallies: BTreeMap<&str, Tally> = BTreeMap::new();
+    let mut wrong = Vec::new();
+    for seed in first..first + cases {
+        let case = case(&mut Draw::new(seed));
+        let tally = tallies.entry(case.family).or_default();
+        wrong.extend(judged(seed, &case, tally).err());
+    }
+    println!("{cases} declarations from seed {first} on");
+    for (family, tally) in &tallies {
+        println!(
+            "{family:12} {:6} right, {:5} open, {:5} of them decidable",
+            tally.right, tally.open, tally.missed
+        );
+    }
+    assert!(
+        wrong.is_empty(),
+        "{} wrong:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
+    let missed: usize = tallies.values().map(|own| own.missed).sum();
+    let part = missed as f64 / cases as f64;
+    println!("{:.2} % undecided though decidable", 100.0 * part);
+    assert!(part < OPEN, "{missed} of {cases} are undecided");
+}
+
+#[test]
+fn no_verdict_is_wrong() {
+    judge(400);
+}
+
+#[test]
+#[ignore = "nightly: minutes of claims"]
+fn no_verdict_of_twenty_thousand_is_wrong() {
+    judge(20_000);
+}
