@@ -344,8 +344,50 @@ fn inputs_act_in_forces_and_rates_alone() {
     );
     let text = refused(&format!("{natural} claims {{ density: exact; }}"));
     assert!(text.contains("`u` may depend on the state"), "{text}");
-    let text = refused(&format!("{natural} scenes {{ a: volume; }}"));
+    let push = "forces { push: u*d(x); }";
+    let text = refused(&format!("{natural} {push} scenes {{ a: push, volume; }}"));
     assert!(text.contains("no volume is known beside inputs"), "{text}");
+}
+
+dalembert::model! {
+    /// A particle that an input drives in proportion to its velocity.
+    pub Pumped {
+        coordinates { x; y; }
+        inputs { u; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        forces { motor: u*dot(x)*d(x); }
+    }
+}
+
+#[test]
+fn the_divergence_beside_inputs_is_that_of_held_ones() {
+    let mut pumped = Pumped::default();
+    let state = pumped
+        .state(0.0, &[0.1, 0.2].into(), &[0.3, 0.4].into())
+        .expect("a state");
+    for u in [0.0, 3.0, -1.5] {
+        pumped.u = u;
+        let divergence = dalembert::contract::Divergence::divergence(&pumped, 0.0, &state);
+        assert_eq!(divergence, Ok(u));
+    }
+}
+
+/// Without the motor nothing depends on its torque.
+#[test]
+fn scenes_without_an_input_have_densities() {
+    let model = |scene: &str, claim: &str| {
+        format!(
+            "P {{ coordinates {{ x; y; }} inputs {{ u; }} lagrangian = dot(x)^2/2 + dot(y)^2/2;
+             forces {{ motor: u*dot(x)*d(x); drag: -dot(y)*d(y); }}
+             scenes {{ {scene}; }} claims for a {{ {claim} }} }}"
+        )
+    };
+    let compile = |scene: &str, claim: &str| compile(model(scene, claim).parse().expect("tokens"));
+    assert!(compile("a", "density: exact;").is_ok());
+    assert!(compile("a: volume", "density: exact;").is_ok());
+    assert!(compile("a: drag", "density: none;").is_ok());
+    assert!(compile("a: motor", "density: exact;").is_err());
+    assert!(compile("a: motor, volume", "conserved: dot(y);").is_err());
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use dalembert_expr::ExprId;
 
 use super::super::resolve::{Resolver, Scope};
+use super::super::{Force, Parameter, Parts, Scene};
 use crate::spec::{Scalar, Statement};
 
 impl Resolver<'_> {
@@ -20,24 +21,60 @@ impl Resolver<'_> {
     }
 }
 
-/// Refuses what holds for inputs that are held, and need not for those that depend on the state.
-pub(super) fn check_claims(resolver: &mut Resolver<'_>) {
+/// Refuses what holds for inputs that are held, and need not for those that depend on the state: in the model, and in scenes with
+/// a force that an input acts in.
+pub(super) fn check_claims(resolver: &mut Resolver<'_>, forces: &[Force], scenes: &[Scene]) {
     let spec = resolver.spec;
     let Some(first) = spec.inputs.first() else {
         return;
     };
-    let because = format!("`{}` may depend on the state", first.declared.name.text);
+    let may_depend = |name: &str| format!("`{name}` may depend on the state");
     for claim in &spec.claims {
-        if !matches!(claim.statement, Statement::Conserved { .. }) {
+        if matches!(claim.statement, Statement::Conserved { .. }) {
+            continue;
+        }
+        let input = match &claim.scene {
+            None => Some(first.declared.name.text.clone()),
+            Some(name) => scenes
+                .iter()
+                .find(|scene| scene.name == name.text)
+                .and_then(|scene| resolver.acting_input(forces, &scene.parts)),
+        };
+        if let Some(input) = input {
+            let because = may_depend(&input);
             let text = format!("{because}: only conserved quantities are claimed beside inputs");
-            let at = spec.location(claim.item);
-            resolver.refuse::<()>(at, text, "write `conserved: ..;`");
+            resolver.refuse::<()>(spec.location(claim.item), text, "write `conserved: ..;`");
         }
     }
-    for part in spec.scenes.iter().flat_map(|scene| &scene.parts) {
-        if part.name.text == "volume" {
-            let text = format!("{because}: no volume is known beside inputs");
-            resolver.refuse::<()>(part.name.at, text, "leave it out");
+    for scene in scenes.iter().filter(|scene| scene.parts.extras.volume) {
+        let Some(input) = resolver.acting_input(forces, &scene.parts) else {
+            continue;
+        };
+        let declared = spec.scenes.iter().find(|own| own.name.text == scene.name);
+        let volume = declared.map(|own| {
+            let mut parts = own.parts.iter();
+            let part = parts.find(|part| part.name.text == "volume");
+            part.map_or(own.name.at, |part| part.name.at)
+        });
+        if let Some(at) = volume {
+            let text = format!("{}: no volume is known beside inputs", may_depend(&input));
+            resolver.refuse::<()>(at, text, "leave it out");
         }
+    }
+}
+
+impl Resolver<'_> {
+    /// The first input that acts in one of the forces that a scene uses.
+    fn acting_input(&self, forces: &[Force], parts: &Parts) -> Option<String> {
+        let inputs = self.symbols.parameters.iter().filter(|own| own.is_input);
+        let acts = |input: &&Parameter| {
+            let mut used = parts.forces.iter().filter_map(|force| forces.get(*force));
+            used.any(|force| {
+                let mut form = force.form.iter();
+                form.any(|own| self.pool.depends_on(*own, input.symbol))
+            })
+        };
+        let mut acting = inputs.filter(acts);
+        acting.next().map(|input| input.name.display.clone())
     }
 }

@@ -145,7 +145,7 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     field::check_alone(resolver);
     field::check_surfaces(resolver);
     nonlinear::check_alone(resolver, &parts.constraints);
-    inputs::check_claims(resolver);
+    inputs::check_claims(resolver, &parts.forces, &parts.scenes);
     constraints::check_independent(resolver, &parts.constraints);
     frame::check_coframe(resolver, &parts.frame, &parts.constraints);
     surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
@@ -170,7 +170,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
             ..Extras::default()
         },
         None => Extras {
-            volume: !nonlinear && spec.inputs.is_empty(),
+            volume: !nonlinear,
             ..Extras::ALL
         },
     };
