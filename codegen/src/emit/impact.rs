@@ -135,7 +135,14 @@ fn emit_conditions(context: &Context<'_>, functions: &Impacting) -> TokenStream 
                 statements,
                 outputs,
             } = context.state_body(function.as_ref()?);
-            Some(quote!(#s => { #statements #(#outputs > 0.0)&&* }))
+            let conditions = context.model.surfaces[s].conditions.iter();
+            let holds = conditions
+                .zip(&outputs)
+                .map(|(own, margin)| match own.is_closed {
+                    true => quote!(#margin >= 0.0),
+                    false => quote!(#margin > 0.0),
+                });
+            Some(quote!(#s => { #statements #(#holds)&&* }))
         });
     quote! {
         #[inline]

@@ -76,7 +76,11 @@ pub(super) fn derive_surfaces(
                 rate,
                 curvature: model.pool.derivative_along(gap_rate, &motion),
                 gap_rate,
-                conditions: model.surfaces[s].conditions.clone(),
+                conditions: model.surfaces[s]
+                    .conditions
+                    .iter()
+                    .map(|own| own.margin)
+                    .collect(),
                 instantaneous: derive_instantaneous(model, coordinates, s),
             }
         })

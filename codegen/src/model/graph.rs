@@ -400,8 +400,10 @@ fn check_surfaces(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagn
     let mut diagnostics = Diagnostics::new();
     let text = |model: &Model, surface: usize| {
         let own = &model.surfaces[surface];
-        let conditions = own.conditions.iter().map(|own| model.pool.text(*own));
-        let conditions: Vec<String> = conditions.collect();
+        let conditions = own.conditions.iter();
+        let conditions: Vec<(String, bool)> = conditions
+            .map(|own| (model.pool.text(own.margin), own.is_closed))
+            .collect();
         (
             model.pool.text(own.gap),
             conditions,

@@ -261,6 +261,15 @@ pub struct QuasiForm {
     pub item: ItemId,
 }
 
+/// A condition on time and position: that a function of them is positive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Condition {
+    /// The function.
+    pub margin: ExprId,
+    /// Whether it may be 0, too.
+    pub is_closed: bool,
+}
+
 /// An impact surface `h = 0`; motion is allowed where `h >= 0`.
 #[derive(Debug, Clone)]
 pub struct Surface {
@@ -270,8 +279,8 @@ pub struct Surface {
     pub documentation: Vec<String>,
     /// `h(t, q)`.
     pub gap: ExprId,
-    /// Functions of `(t, q)` that must all be positive for the surface to count.
-    pub conditions: Vec<ExprId>,
+    /// What must hold for the surface to count.
+    pub conditions: Vec<Condition>,
     /// Its law.
     pub law: Law,
     /// The map of the law `reset`.

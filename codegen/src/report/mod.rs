@@ -199,8 +199,10 @@ fn transitions(graph: &ModeGraph) -> Vec<Item> {
                 (None, false) => "refracted, or reflected where there is not enough energy",
             };
             let conditions = surface.conditions.iter();
-            let conditions =
-                conditions.map(|own| format!(" when {} > 0", mode.model.pool.text(*own)));
+            let conditions = conditions.map(|own| {
+                let sign = if own.is_closed { ">=" } else { ">" };
+                format!(" when {} {sign} 0", mode.model.pool.text(own.margin))
+            });
             items.push(Item::Words(format!(
                 "{}: {} {} when {} <= 0{}, {kind}",
                 surface.name.display,

@@ -363,6 +363,8 @@ pub struct Comparison {
     pub greater: Scalar,
     /// The side that is not greater.
     pub less: Scalar,
+    /// Whether both may be equal.
+    pub is_closed: bool,
     /// The whole.
     pub at: Location,
 }

@@ -53,7 +53,7 @@ pub trait Impacting: System {
         Ok(None)
     }
 
-    /// Whether the surface counts here: all its `when` conditions are positive.
+    /// Whether the surface counts here: all its `when` conditions hold.
     fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         let _ = (surface, t, state);
         true

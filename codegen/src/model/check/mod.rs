@@ -248,8 +248,8 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
             surface
                 .conditions
                 .iter()
-                .chain([&surface.gap])
-                .copied()
+                .map(|own| own.margin)
+                .chain([surface.gap])
                 .chain(surface.law.coefficient())
                 .chain(surface.reset.iter().flat_map(Reset::expressions))
                 .chain(surface.transition.iter().flat_map(Transition::expressions))

@@ -25,7 +25,7 @@ pub(super) fn check(resolver: &mut Resolver<'_>, initial: &Initial, surfaces: &[
         let counts = surface
             .conditions
             .iter()
-            .all(|condition| clear_sign(pool, *condition, &point) == Some(1.0));
+            .all(|condition| clear_sign(pool, condition.margin, &point) == Some(1.0));
         if !counts || clear_sign(pool, surface.gap, &point) != Some(-1.0) {
             continue;
         }

@@ -4,7 +4,7 @@ use dalembert_expr::{ExprId, Pool, SymbolId};
 
 use super::super::degree::is_zero;
 use super::super::resolve::{Resolver, Scope};
-use super::super::{Constraint, Law, Surface};
+use super::super::{Condition, Constraint, Law, Surface};
 use super::names::Names;
 use crate::diagnostics::listed;
 use crate::spec::{self, Comparison, SURFACES};
@@ -25,10 +25,16 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
         for (name, mut scope) in members {
             names.add(resolver, &name, &surface.declared.name);
             let gap = resolver.gap(surface, &mut scope);
-            let conditions: Vec<Option<ExprId>> = surface
+            let conditions: Vec<Option<Condition>> = surface
                 .conditions
                 .iter()
-                .map(|condition| resolver.difference(condition, &mut scope, "conditions"))
+                .map(|condition| {
+                    let margin = resolver.difference(condition, &mut scope, "conditions")?;
+                    Some(Condition {
+                        margin,
+                        is_closed: condition.is_closed,
+                    })
+                })
                 .collect();
             let (law, reset, transition) = match surface.enters {
                 Some(_) => (
@@ -44,7 +50,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
             };
             let instantaneous = resolver.instantaneous(surface, &scope);
             resolver.within_budget(surface.gap.at);
-            let conditions: Option<Vec<ExprId>> = conditions.into_iter().collect();
+            let conditions: Option<Vec<Condition>> = conditions.into_iter().collect();
             let (Some(law), Some(reset), Some(transition), Some(instantaneous)) =
                 (law, reset, transition, instantaneous)
             else {

@@ -35,7 +35,7 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
 pub(super) fn conditions(cursor: &mut Cursor<'_>, form: &str) -> Read<Vec<Comparison>> {
     let mut conditions = Vec::new();
     while cursor.eat_word("when") {
-        conditions.push(comparison(cursor, Strictness::Strict, form)?);
+        conditions.push(comparison(cursor, Strictness::Either, form)?);
         if cursor.is_operator("&&") || cursor.is_operator(",") {
             return Err(cursor.unexpected("expected `when`", "write `when a > 0 when b > 0`"));
         }
@@ -48,8 +48,8 @@ pub(super) fn conditions(cursor: &mut Cursor<'_>, form: &str) -> Read<Vec<Compar
 pub(super) enum Strictness {
     /// `>=`, `<=`
     Weak,
-    /// `>`, `<`
-    Strict,
+    /// `>`, `<`, `>=`, `<=`
+    Either,
 }
 
 /// Reads `a >= b`, `a <= b`, or the same without equality. `form` is how the whole entry is written.
@@ -58,34 +58,37 @@ pub(super) fn comparison(
     strictness: Strictness,
     form: &str,
 ) -> Read<Comparison> {
-    let (greater, less, wrong) = match strictness {
-        Strictness::Weak => (">=", "<=", [">", "<", "==", "!=", "=>", "=<", "="]),
-        Strictness::Strict => (">", "<", [">=", "<=", "==", "!=", "=>", "=<", "="]),
+    let (signs, wrong): (&[&str], &[&str]) = match strictness {
+        Strictness::Weak => (&[">=", "<="], &[">", "<", "==", "!=", "=>", "=<", "="]),
+        Strictness::Either => (&[">=", "<=", ">", "<"], &["==", "!=", "=>", "=<", "="]),
     };
     let left = cursor.scalar()?;
-    if let Some(sign) = wrong.into_iter().find(|sign| cursor.is_operator(sign)) {
-        let text = format!("expected `{greater}` or `{less}`, found `{sign}`");
+    let expected = listed_with_or(signs);
+    if let Some(sign) = wrong.iter().find(|sign| cursor.is_operator(sign)) {
+        let text = format!("expected {expected}, found `{sign}`");
         return Err(cursor.refuse_operator(sign, text, &format!("write `{form}`")));
     }
-    let turned = if cursor.eat_operator(greater).is_some() {
-        false
-    } else if cursor.eat_operator(less).is_some() {
-        true
-    } else {
-        let text = format!("expected `{greater}` or `{less}`");
+    let Some(sign) = signs
+        .iter()
+        .find(|sign| cursor.eat_operator(sign).is_some())
+    else {
+        let text = format!("expected {expected}");
         return Err(cursor.unexpected(&text, &format!("write `{form}`")));
     };
     let right = cursor.scalar()?;
-    if let Some(sign) = cursor.comparison() {
-        return Err(chained(
-            cursor,
-            [&left, &right],
-            sign,
-            if turned { less } else { greater },
-            strictness,
-        ));
+    if let Some(second) = cursor.comparison() {
+        return Err(chained(cursor, [&left, &right], second, sign, strictness));
     }
-    Ok(oriented(left, right, turned))
+    Ok(oriented(left, right, sign))
+}
+
+/// `` `a`, `b` or `c` ``
+fn listed_with_or(signs: &[&str]) -> String {
+    let quoted: Vec<String> = signs.iter().map(|sign| format!("`{sign}`")).collect();
+    match quoted.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => quoted.concat(),
+    }
 }
 
 /// A second comparison behind the first: `0 <= x <= 1`, or two of them joined.
@@ -104,7 +107,7 @@ fn chained(
     if matches!(second, "&&" | "||" | "&" | "|") {
         let help = match strictness {
             Strictness::Weak => "write a surface for each, or a condition: `x >= 0 when y > 0`",
-            Strictness::Strict => "several conditions are written `when a > 0 when b > 0`",
+            Strictness::Either => "several conditions are written `when a > 0 when b > 0`",
         };
         return cursor.refuse(
             at,
@@ -119,17 +122,25 @@ fn chained(
         Strictness::Weak => {
             format!("write two surfaces, `{left} {first} {middle}` and `{middle} {second} {right}`")
         }
-        Strictness::Strict => {
+        Strictness::Either => {
             format!("write `when {left} {first} {middle} when {middle} {second} {right}`")
         }
     };
     cursor.refuse(at, "one comparison is expected, found two", &help)
 }
 
-fn oriented(left: Scalar, right: Scalar, turned: bool) -> Comparison {
+fn oriented(left: Scalar, right: Scalar, sign: &str) -> Comparison {
     let at = left.at.to(right.at);
-    let (greater, less) = if turned { (right, left) } else { (left, right) };
-    Comparison { greater, less, at }
+    let (greater, less) = match sign.starts_with('<') {
+        true => (right, left),
+        false => (left, right),
+    };
+    Comparison {
+        greater,
+        less,
+        is_closed: sign.ends_with('='),
+        at,
+    }
 }
 
 /// Reads `=> LAW`, if it is there. `form` is how the whole entry is written.

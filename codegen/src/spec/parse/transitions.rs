@@ -141,7 +141,12 @@ fn transition(
     if !cursor.eat_word("when") {
         return Err(cursor.unexpected("expected `when`", &help));
     }
-    let Comparison { greater, less, at } = comparison(cursor, Strictness::Weak, FORM)?;
+    let Comparison {
+        greater,
+        less,
+        is_closed,
+        at,
+    } = comparison(cursor, Strictness::Weak, FORM)?;
     let conditions = conditions(cursor, FORM)?;
     let law = law(cursor, spec, FORM)?;
     let item = spec.item(at);
@@ -149,6 +154,7 @@ fn transition(
     let gap = Comparison {
         greater: less,
         less: greater,
+        is_closed,
         at,
     };
     let surface = Surface {

@@ -235,8 +235,8 @@ fn sections_keep_their_forms() {
         "expected `>=` or `<=`, found `>`",
     );
     refused_in(
-        "impacts { w: x >= 0 when y «>=» 0; }",
-        "expected `>` or `<`, found `>=`",
+        "impacts { w: x >= 0 when y «==» 0; }",
+        "expected `>=`, `<=`, `>` or `<`, found `==`",
     );
     refused_in(
         "impacts { w: x >= 0 when y > 0 «and» z > 0; }",
