@@ -2,13 +2,15 @@
 
 use std::io::Write;
 
+use dalembert::Policies;
 use dalembert::describe::{Description, Report, Topology};
 use dalembert_codegen::claims::{Finding, Verdict};
 use dalembert_codegen::report::{self, Item, Section};
 use serde_json::{Value, json};
 
-use crate::args::{CheckArgs, Format};
-use crate::entry::{AnyModel, Entry};
+use crate::args::{CheckArgs, Form, Format, Integrator};
+use crate::driver::{Contact, Impact, Piece, Settings, Watch};
+use crate::entry::{AnyModel, Entry, Origin};
 use crate::error::{CliError, fault_text};
 use crate::exit::Exit;
 use crate::json::{Document, number};
@@ -83,7 +85,10 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
         return checks;
     }
     let initial = declared_state(model);
-    let failure = initial.as_ref().err().map(CliError::to_string);
+    let failure = match &initial {
+        Err(error) => Some(error.to_string()),
+        Ok(origin) => behind_wall(model, origin),
+    };
     checks.push(Check {
         subject: "the initial state is admissible",
         failure,
@@ -102,6 +107,35 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
         });
     }
     checks
+}
+
+/// The surface that a state lies behind, if there is one: a first step says so.
+fn behind_wall(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
+    let settings = Settings {
+        form: Form::Global,
+        integrator: Integrator::Dop853,
+        tol: 1e-9,
+        step: None,
+        steps: Some(1),
+        until: 1e-3,
+        impacts: None,
+        laws: Vec::new(),
+        policies: Policies::default(),
+        projection: None,
+    };
+    let ending = model.simulate(origin, &settings, &mut Silent).ok()?;
+    let detail = |name: &str| {
+        let mut details = ending.details.iter();
+        details
+            .find(|(key, _)| *key == name)
+            .map(|(_, value)| value)
+    };
+    (ending.kind == "starts_inside").then(|| match (detail("surface"), detail("gap")) {
+        (Some(Value::String(surface)), Some(gap)) => {
+            format!("it lies behind the surface `{surface}`: its gap is {gap}")
+        }
+        _ => "it lies behind a surface".to_owned(),
+    })
 }
 
 fn defaults_against_assumptions(model: &dyn AnyModel) -> Option<String> {
@@ -373,6 +407,12 @@ fn topology_json(topology: Topology) -> Value {
 
 /// Takes a report without keeping anything: only whether it could be made matters.
 struct Silent;
+
+impl Watch for Silent {
+    fn step(&mut self, _piece: &dyn Piece) {}
+    fn impact(&mut self, _impact: Impact) {}
+    fn contact(&mut self, _contact: Contact) {}
+}
 
 impl Report for Silent {
     fn scalar(&mut self, _name: &str, _value: f64) {}
