@@ -229,6 +229,8 @@ pub struct Initial<V> {
     pub q: V,
     /// Velocities, meaningful where `named` is 1.
     pub qdot: V,
+    /// 1 where the position was named, 0 where equations of positions among the constraints may choose it.
+    pub placed: V,
     /// 1 where the velocity was named, 0 where the constraints may choose it.
     pub named: V,
     /// The declared `until`, if any.

@@ -148,6 +148,16 @@ pub enum StateError {
         /// The sum of the absolute values of the terms of `residual`.
         scale: f64,
     },
+    /// The positions violate an equation of positions among the constraints by more than 1e-9 of the sum of the absolute
+    /// values of its terms.
+    OffPosition {
+        /// Index of the constraint.
+        constraint: usize,
+        /// Left side minus right side.
+        residual: f64,
+        /// The sum of the absolute values of the terms of `residual`.
+        scale: f64,
+    },
     /// A coordinate lies outside the open interval of its chart.
     OutsideChart {
         /// Index of the coordinate.
@@ -177,6 +187,15 @@ impl fmt::Display for StateError {
                 f,
                 "constraint {constraint} is violated: residual {residual:e} against terms of size {scale:e}; \
                  use `state_projected` to project or `state_unchecked` to keep it"
+            ),
+            Self::OffPosition {
+                constraint,
+                residual,
+                scale,
+            } => write!(
+                f,
+                "the positions violate constraint {constraint}: its sides differ by {residual:e} against terms of size \
+                 {scale:e}; use `complete_position` to solve for some of them, or `state_projected` to move all"
             ),
             Self::OutsideChart { coordinate } => {
                 write!(f, "coordinate {coordinate} lies outside its interval")

@@ -183,16 +183,17 @@ pub fn inspect_globally<S: Described>(
     global.inspect(t, &state, report)
 }
 
-/// Refuses velocities off the constraints.
+/// Refuses positions and velocities off the constraints.
 ///
 /// # Errors
-/// [`StateError::OffConstraint`].
+/// [`StateError::OffPosition`], [`StateError::OffConstraint`].
 pub fn admit<S: Constrained>(
     system: &S,
     t: f64,
     q: &S::Vector,
     qdot: &S::Vector,
 ) -> Result<(), StateError> {
+    check_positions(system, t, q)?;
     let (residuals, scales) = system.residuals(t, q, qdot);
     let pairs = residuals.as_slice().iter().zip(scales.as_slice());
     for (constraint, (&residual, &scale)) in pairs.enumerate() {
@@ -200,6 +201,33 @@ pub fn admit<S: Constrained>(
         if !holds {
             return Err(StateError::OffConstraint {
                 constraint,
+                residual,
+                scale,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses positions off the equations of positions among the constraints.
+///
+/// # Errors
+/// [`StateError::OffPosition`].
+pub(crate) fn check_positions<S: Constrained>(
+    system: &S,
+    t: f64,
+    q: &S::Vector,
+) -> Result<(), StateError> {
+    if !S::LEVELS.iter().any(|level| level.is_zero) {
+        return Ok(());
+    }
+    let (values, scales) = (system.levels(t, q), system.level_scales(t, q));
+    let sizes = values.as_slice().iter().zip(scales.as_slice());
+    for (level, (&residual, &scale)) in S::LEVELS.iter().zip(sizes) {
+        let holds = residual.abs() <= ADMITTED_RESIDUAL * scale;
+        if level.is_zero && !holds {
+            return Err(StateError::OffPosition {
+                constraint: level.constraint,
                 residual,
                 scale,
             });
@@ -217,6 +245,7 @@ pub mod arguments {
     pub fn state() {}
     pub fn rate() {}
     pub fn q() {}
+    pub fn placed() {}
     pub fn qdot() {}
     pub fn p() {}
     pub fn excess() {}

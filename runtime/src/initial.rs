@@ -1,7 +1,9 @@
-//! Completing initial velocities: what the constraints leave open is chosen as small as possible.
+//! Completing initial states: positions from the equations of positions among the constraints, then velocities as small as
+//! the constraints allow.
 
 use crate::contract::Constrained;
 use crate::error::StateError;
+use crate::generated::check_positions;
 use crate::linalg::qr::least_norm;
 use crate::state::StateVector;
 
@@ -12,8 +14,96 @@ const ENTRIES: usize = 64 * 64;
 /// [`System::state`](crate::System::state).
 const ACCEPTED: f64 = 1e-9;
 
-/// Newton's steps where constraints are not linear in the velocities.
+/// Newton's steps where constraints are not linear in the velocities, and for positions.
 const STEPS: u32 = 48;
+
+/// What the free positions begin at, in this order, where Newton's steps from the given ones lead nowhere: at 0, the usual
+/// beginning, a square has no slope.
+const BEGINNINGS: [f64; 6] = [1.0, -1.0, 0.25, -0.25, 4.0, -4.0];
+
+/// The positions of `q` where `placed` is not 0, and elsewhere those to which Newton's steps of least norm lead from `q`, or,
+/// if these lead nowhere or out of a chart, from 1, -1, 1/4, -1/4, 4 or -4: of several solutions one that is positive where it
+/// can be. With everything placed, `q` is only checked.
+///
+/// # Errors
+/// [`StateError::OffPosition`], of `q` as given, if no solution was found; [`StateError::NotFinite`] for a position that is not
+/// finite; [`StateError::TooLarge`] beyond 64 coordinates.
+pub fn complete_positions<Sys: Constrained>(
+    system: &Sys,
+    t: f64,
+    q: &Sys::Vector,
+    placed: &Sys::Vector,
+) -> Result<Sys::Vector, StateError> {
+    if let Some(component) = q.as_slice().iter().position(|value| !value.is_finite()) {
+        return Err(StateError::NotFinite { component });
+    }
+    let refused = match check_positions(system, t, q) {
+        Ok(()) => return Ok(*q),
+        Err(error) => error,
+    };
+    if Sys::Vector::LEN * Sys::Multipliers::LEN > ENTRIES {
+        return Err(StateError::TooLarge { limit: 64 });
+    }
+    let is_free = |i: usize| placed.as_slice()[i] == 0.0;
+    if !(0..Sys::Vector::LEN).any(is_free) {
+        return Err(refused);
+    }
+    if let Some(found) = solved_from(system, t, *q, &is_free) {
+        return Ok(found);
+    }
+    let found = BEGINNINGS.iter().find_map(|&value| {
+        let mut start = *q;
+        for (i, entry) in start.as_mut_slice().iter_mut().enumerate() {
+            if is_free(i) {
+                *entry = value;
+            }
+        }
+        solved_from(system, t, start, &is_free)
+    });
+    found.ok_or(refused)
+}
+
+/// Where Newton's steps lead from `q`, if that satisfies the equations of positions and lies in the chart.
+fn solved_from<Sys: Constrained>(
+    system: &Sys,
+    t: f64,
+    mut q: Sys::Vector,
+    is_free: &dyn Fn(usize) -> bool,
+) -> Option<Sys::Vector> {
+    let n = Sys::Vector::LEN;
+    let mut buffer = [0.0; ENTRIES];
+    for _ in 0..STEPS {
+        let values = system.levels(t, &q);
+        let forms = &mut buffer[..n * Sys::Multipliers::LEN];
+        system.constraint_forms(t, &q, forms, &mut Sys::Multipliers::zeros());
+        let (mut rows, mut wanted) = (0, Sys::Levels::zeros());
+        for (level, value) in Sys::LEVELS.iter().zip(values.as_slice()) {
+            if !level.is_zero {
+                continue;
+            }
+            // Rows are moved to the front; each comes from its place or further back.
+            for i in 0..n {
+                let entry = forms[level.constraint * n + i];
+                forms[rows * n + i] = if is_free(i) { entry } else { 0.0 };
+            }
+            wanted.as_mut_slice()[rows] = -value;
+            rows += 1;
+        }
+        let mut change = Sys::Vector::zeros();
+        let wanted = &wanted.as_slice()[..rows];
+        least_norm(&mut forms[..rows * n], n, wanted, change.as_mut_slice());
+        let before = q;
+        for (entry, change) in q.as_mut_slice().iter_mut().zip(change.as_slice()) {
+            *entry += change;
+        }
+        if q == before {
+            break;
+        }
+    }
+    let state = system.state_unchecked(t, &q, &Sys::Vector::zeros()).ok()?;
+    let is_inside = system.outside_chart(&state).is_none();
+    (is_inside && check_positions(system, t, &q).is_ok()).then_some(q)
+}
 
 /// The velocities with the components of `qdot` where `named` is not 0, and elsewhere those of least norm that
 /// satisfy every constraint `eta(qdot) + eta_0 = 0`. Where constraints are not linear in the velocities, they are those to which

@@ -1,6 +1,8 @@
 //! A system with inputs that are functions of time and state.
 
-use crate::contract::{Actuated, Constrained, Impacting, Powered, RankDrop, System, VectorField};
+use crate::contract::{
+    Actuated, Constrained, Impacting, Level, Powered, RankDrop, System, VectorField,
+};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::impacts::law::{Blow, Contact, Jump, Law};
 
@@ -113,6 +115,15 @@ impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> System for Steered<S
         self.system.state_nearest(t, q, qdot)
     }
 
+    fn complete_position(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        placed: &Self::Vector,
+    ) -> Result<Self::Vector, StateError> {
+        self.system.complete_position(t, q, placed)
+    }
+
     fn complete_velocity(
         &self,
         t: f64,
@@ -171,6 +182,12 @@ where
 
     fn restore(&self, t: f64, state: &mut Self::State) -> Result<(), Fault> {
         self.system.restore(t, state)
+    }
+
+    const LEVELS: &'static [Level] = Sys::LEVELS;
+
+    fn level_scales(&self, t: f64, q: &Self::Vector) -> Self::Levels {
+        self.system.level_scales(t, q)
     }
 
     fn levels(&self, t: f64, q: &Self::Vector) -> Self::Levels {

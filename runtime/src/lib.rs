@@ -138,8 +138,8 @@ pub mod work;
 pub use dalembert_numbers::{math, numbers};
 
 pub use contract::{
-    Actuated, Constrained, Divergence, Impacting, InvariantVolume, Lagrangian, Powered, RankDrop,
-    System, TaylorField, Variational, VectorField,
+    Actuated, Constrained, Divergence, Impacting, InvariantVolume, Lagrangian, Level, Powered,
+    RankDrop, System, TaylorField, Variational, VectorField,
 };
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
@@ -148,7 +148,7 @@ pub use forces::{Forces, NoForces};
 pub use impacts::Impacts;
 pub use impacts::law::{Blow, Contact, Jump, Landing, Law};
 pub use impacts::policy::{Corner, Penetration, Policies, Rest};
-pub use initial::complete_velocities;
+pub use initial::{complete_positions, complete_velocities};
 pub use inputs::Steered;
 pub use integrate::{
     Counters, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Stepper, Taylor, Tolerance,
@@ -170,7 +170,7 @@ pub use dalembert_macros::model;
 #[doc(hidden)]
 pub mod __private {
     pub use crate::generated::*;
-    pub use crate::initial::complete_velocities;
+    pub use crate::initial::{complete_positions, complete_velocities};
     pub use crate::math;
     pub use crate::modes;
     pub use crate::nearest::nearest_by_steps;

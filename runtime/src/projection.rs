@@ -1,13 +1,15 @@
 //! Projection: brings the state back to the constraints that integration has drifted from.
 //!
 //! After a step, if a constraint is violated by more than rounding: positions first, by Newton's iteration
-//! `q -= correction(f(q) - f(q_0))` towards the levels at the start of the run (integrable constraints), then
+//! `q -= correction(f(q) - f(q_0))` towards the levels at the start of the run (integrable constraints; 0 where the
+//! constraint is an equation of positions, unless the run was made to start off it), then
 //! velocities, orthogonally in the metric. A state reduced to D has nothing but positions to bring back.
 
 use crate::contract::Constrained;
 use crate::effects::{Change, Effect, Moment, SceneEffects};
 use crate::error::Fault;
 use crate::forces::NoForces;
+use crate::generated::check_positions;
 use crate::outcome::Outcome;
 use crate::record::Observer;
 use crate::state::StateVector;
@@ -65,14 +67,11 @@ impl<Sys: Constrained> Projection<Sys> {
     /// How far the levels are off, and the first that is off by more than the threshold.
     fn excess(&self, now: &Moment<'_, Sys>, q: &Sys::Vector) -> (Sys::Levels, Option<usize>) {
         let mut excess = now.system.levels(now.t, q);
+        let sizes = now.system.level_scales(now.t, q);
         let mut worst = None;
-        for (k, (value, level)) in excess
-            .as_mut_slice()
-            .iter_mut()
-            .zip(self.levels.as_slice())
-            .enumerate()
-        {
-            let scale = value.abs().max(level.abs());
+        let kept = self.levels.as_slice().iter().zip(sizes.as_slice());
+        for (k, (value, (level, size))) in excess.as_mut_slice().iter_mut().zip(kept).enumerate() {
+            let scale = value.abs().max(level.abs()).max(*size);
             *value -= level;
             let holds = value.abs() <= THRESHOLD * scale;
             if worst.is_none() && !holds {
@@ -151,7 +150,15 @@ impl<Sys: Constrained> Effect<Sys> for Projection<Sys> {
         now: &mut Moment<'_, Sys>,
         _: &mut O,
     ) -> Result<(), Outcome> {
-        self.levels = now.system.levels(now.t, &now.system.position(now.state));
+        let q = now.system.position(now.state);
+        self.levels = now.system.levels(now.t, &q);
+        if check_positions(now.system, now.t, &q).is_ok() {
+            for (value, level) in self.levels.as_mut_slice().iter_mut().zip(Sys::LEVELS) {
+                if level.is_zero {
+                    *value = 0.0;
+                }
+            }
+        }
         Ok(())
     }
 

@@ -23,6 +23,7 @@ pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
     };
     let restore = emit_restore(context, functions);
     let positions = emit_levels(context, functions);
+    let declared = emit_declared_levels(context, functions);
     let attributes = super::attributes();
     quote! {
         #attributes
@@ -34,6 +35,7 @@ pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
             #forms
             #restore
             #positions
+            #declared
         }
     }
 }
@@ -155,6 +157,33 @@ fn emit_levels(context: &Context<'_>, functions: &Constrained) -> TokenStream {
     }
 }
 
+/// Which constraint each level belongs to, and the sizes of those that are declared to be 0.
+fn emit_declared_levels(context: &Context<'_>, functions: &Constrained) -> TokenStream {
+    let Some(scales) = &functions.level_scales else {
+        return TokenStream::new();
+    };
+    let constraints = context.model.constraints.iter().enumerate();
+    let levels = constraints
+        .filter(|(_, own)| own.level.is_some())
+        .map(|(constraint, own)| {
+            let is_zero = own.is_of_positions;
+            quote!(::dalembert::Level { constraint: #constraint, is_zero: #is_zero })
+        });
+    let Body {
+        statements,
+        outputs,
+    } = context.position_body(scales);
+    quote! {
+        const LEVELS: &'static [::dalembert::Level] = &[#(#levels),*];
+
+        #[inline]
+        fn level_scales(&self, t: f64, q: &Self::Vector) -> Self::Levels {
+            #statements
+            ::dalembert::__private::vector([#(#outputs),*])
+        }
+    }
+}
+
 /// `state_nearest` in global form, if there are constraints.
 pub(super) fn emit_nearest(context: &Context<'_>) -> TokenStream {
     let constrained = context.program.constrained.as_ref();
@@ -194,8 +223,21 @@ pub(super) fn emit_system_hooks(context: &Context<'_>) -> TokenStream {
         return TokenStream::new();
     };
     let drop = functions.can_lose_rank.then(|| emit_rank_drop(context));
+    let positions = functions.level_scales.is_some().then(|| {
+        quote! {
+            fn complete_position(
+                &self,
+                t: f64,
+                q: &Self::Vector,
+                placed: &Self::Vector,
+            ) -> ::core::result::Result<Self::Vector, ::dalembert::StateError> {
+                ::dalembert::__private::complete_positions(self, t, q, placed)
+            }
+        }
+    });
     quote! {
         #drop
+        #positions
 
         fn admit(
             &self,

@@ -1,5 +1,6 @@
 //! `Described` and `Scene`: what the model says of itself, and the effects it comes with.
 
+use dalembert_expr::ExprId;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
@@ -248,11 +249,13 @@ fn emit_initial(context: &Context<'_>) -> TokenStream {
         outputs,
     } = emit_body(&program.initial, &context.names);
     let (q, qdot) = outputs.split_at(context.dimension());
-    let named = model
-        .initial
-        .qdot
-        .iter()
-        .map(|value| number(f64::from(u8::from(value.is_some()))));
+    let declared = |values: &[Option<ExprId>]| -> Vec<_> {
+        let marks = values
+            .iter()
+            .map(|value| f64::from(u8::from(value.is_some())));
+        marks.map(number).collect()
+    };
+    let (placed, named) = (declared(&model.initial.q), declared(&model.initial.qdot));
     let until = match &program.until {
         Some(function) => {
             let Body {
@@ -269,6 +272,7 @@ fn emit_initial(context: &Context<'_>) -> TokenStream {
             ::dalembert::describe::Initial {
                 q: ::dalembert::__private::vector([#(#q),*]),
                 qdot: ::dalembert::__private::vector([#(#qdot),*]),
+                placed: ::dalembert::__private::vector([#(#placed),*]),
                 named: ::dalembert::__private::vector([#(#named),*]),
                 until: #until,
             }

@@ -33,6 +33,8 @@ pub struct ConstraintForm {
     pub form_rate: Vec<Entry<1>>,
     /// `f(t, q)` kept by the motion, when the form is exact with a known function.
     pub level: Option<ExprId>,
+    /// The natural size of `level`, as `scale` is that of `residual`, of an equation of positions `level = 0`.
+    pub level_scale: Option<ExprId>,
 }
 
 /// Differentiates every constraint.
@@ -58,12 +60,19 @@ pub(super) fn derive_constraints(
                 affine_gradient: gradient(model, affine, &coordinates.q),
                 form_rate: derive_form_rate(model, coordinates, &form),
                 level: model.constraints[a].level,
+                level_scale: level_scale(model, a),
                 residual,
                 form,
                 affine,
             }
         })
         .collect()
+}
+
+fn level_scale(model: &mut Model, a: usize) -> Option<ExprId> {
+    let constraint = &model.constraints[a];
+    let level = constraint.level.filter(|_| constraint.is_of_positions)?;
+    Some(amplitude(&mut model.pool, level))
 }
 
 fn primitive(pool: &mut Pool, form: &[ExprId], curvature: ExprId) -> (Vec<ExprId>, ExprId) {

@@ -19,6 +19,8 @@ pub(super) struct OneForm {
     pub(super) level: Option<ExprId>,
     /// What vanishes, where that is not linear in the velocities; then the form is its derivative by them.
     pub(super) nonlinear: Option<ExprId>,
+    /// Whether the equation is one of positions: `level = 0` itself is declared.
+    pub(super) is_of_positions: bool,
 }
 
 /// How a constraint may depend on velocities.
@@ -56,7 +58,10 @@ impl Resolver<'_> {
             (true, true) => self.refuse_mixture(&sides, &differentials, &velocities, scope),
             (true, false) => self.differential_form(&sides, value, &differentials, scope),
             (false, true) => self.velocity_form(&sides, value, &velocities, scope, dependence),
-            (false, false) => self.refuse_without_differential(equation, scope),
+            (false, false) => match dependence {
+                Dependence::Any => self.position_form(equation, value.expr),
+                Dependence::Linear(what) => self.refuse_positions(equation, what),
+            },
         }
     }
 
@@ -79,6 +84,7 @@ impl Resolver<'_> {
                 affine,
                 level: value.level,
                 nonlinear: None,
+                is_of_positions: false,
             },
             sides,
         )
@@ -117,9 +123,42 @@ impl Resolver<'_> {
                 affine,
                 level: value.level,
                 nonlinear: None,
+                is_of_positions: false,
             },
             sides,
         )
+    }
+
+    /// `df` of an equation of positions `f = 0`.
+    fn position_form(&mut self, equation: &Equation, f: ExprId) -> Option<OneForm> {
+        let at = equation.left.at.to(equation.right.at);
+        if mentions_rate(&equation.left) || mentions_rate(&equation.right) {
+            let help = "a constraint restricts the velocities";
+            return self.refuse(at, "this form is zero", help);
+        }
+        let positions = self.symbols.positions();
+        let form = (positions.iter())
+            .map(|position| self.pool.diff(f, *position))
+            .collect::<Vec<_>>();
+        if form.iter().all(|entry| is_zero(&self.pool, *entry)) {
+            let text = "this equation has no coordinates";
+            let help = "a constraint restricts positions, `x^2 + y^2 = l^2`, or velocities, `dot(x) = R*dot(theta)`";
+            return self.refuse(at, text, help);
+        }
+        Some(OneForm {
+            form,
+            affine: self.pool.diff(f, self.symbols.time),
+            level: Some(f),
+            nonlinear: None,
+            is_of_positions: true,
+        })
+    }
+
+    /// Refuses an equation of positions where one of velocities is wanted.
+    fn refuse_positions<T>(&mut self, equation: &Equation, what: &str) -> Option<T> {
+        let at = equation.left.at.to(equation.right.at);
+        let text = format!("{what} restrict velocities, and this equation has none");
+        self.refuse(at, text, "write `dot(x) = R*dot(theta)`")
     }
 
     /// The form of virtual displacements of `phi = 0`, `eta = dphi/dqdot`, with `eta_0 = phi - eta(qdot)`.
@@ -142,6 +181,7 @@ impl Resolver<'_> {
             form,
             level: None,
             nonlinear: Some(phi),
+            is_of_positions: false,
         }
     }
 
@@ -244,37 +284,6 @@ impl Resolver<'_> {
             text,
             "use either `d(..)` or `dot(..)` throughout",
         )
-    }
-
-    fn refuse_without_differential<T>(&mut self, equation: &Equation, scope: &Scope) -> Option<T> {
-        let at = equation.left.at.to(equation.right.at);
-        if mentions_rate(&equation.left) || mentions_rate(&equation.right) {
-            return self.refuse(
-                at,
-                "this form is zero",
-                "a constraint restricts the velocities",
-            );
-        }
-        let sides = [&equation.left, &equation.right];
-        let moves = sides.into_iter().any(|side| {
-            let value = self.expression(side, &mut scope.clone());
-            value.is_some_and(|value| !self.is_constant(value))
-        });
-        if !moves {
-            let text = "a constraint is a one-form, and this equation has no coordinates";
-            return self.refuse(
-                at,
-                text,
-                "write `d(x) - R*d(theta) = 0` or `dot(x) = R*dot(theta)`",
-            );
-        }
-        let help = match &equation.right.kind {
-            ScalarKind::Number(value, _) if value.is_zero() => {
-                format!("write `d({}) = 0`", equation.left)
-            }
-            _ => format!("write `d({} - ({})) = 0`", equation.left, equation.right),
-        };
-        self.refuse(at, "a constraint is a one-form", &help)
     }
 
     /// The one-form of a force: linear in differentials, without `d(t)`.

@@ -226,6 +226,8 @@ pub struct Constraint {
     /// `phi(t, q, qdot)` of a constraint `phi = 0` that is not linear in the velocities. Its form is `dphi/dqdot`, its affine
     /// part `phi - eta(qdot)`, both functions of the velocities.
     pub nonlinear: Option<ExprId>,
+    /// Whether the equation itself is one of positions, `f = 0` with `f` the level.
+    pub is_of_positions: bool,
     /// Where it was declared.
     pub item: ItemId,
 }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
 
-use dalembert_expr::{Pool, SymbolId};
+use dalembert_expr::{ExprId, Pool, SymbolId};
 
 use super::{Assumption, Law, Model, Topology, check};
 use crate::diagnostics::Diagnostics;
@@ -225,6 +225,24 @@ fn constraints_written_as_a_derivative_keep_their_level() {
     let (value, [x, _, v, _, t]) = level("d(x)/2 = v*d(t)");
     assert_eq!(value, Some(x / 2.0 - v * t));
     assert_eq!(level("x*dot(x) + y*dot(y) = 0").0, None);
+}
+
+#[test]
+fn equations_of_positions_are_constraints() {
+    let model = constrained("circle + t = l^2");
+    let own = &model.constraints[0];
+    let values = |symbol: SymbolId| 2.0 + symbol.index() as f64;
+    let at = |id: ExprId| model.pool.eval(&[id], &values)[0];
+    let [x, y, _] = [0, 1, 2].map(|index: usize| values(model.coordinates[index].q));
+    let (l, t) = (values(model.parameters[2].symbol), values(model.time));
+    assert!(own.is_of_positions);
+    assert_eq!(own.level.map(at), Some(x * x + y * y + t - l * l));
+    assert_eq!(
+        own.form.iter().map(|entry| at(*entry)).collect::<Vec<_>>(),
+        [2.0 * x, 2.0 * y, 0.0]
+    );
+    assert_eq!(at(own.affine), 1.0);
+    assert!(!constrained("d(circle) = 0").constraints[0].is_of_positions);
 }
 
 #[test]

@@ -387,6 +387,8 @@ pub struct Constrained {
     pub return_to_constraints: Option<Return>,
     /// `(t, q) -> f`, one per integrable constraint.
     pub levels: Function,
+    /// `(t, q) -> size of f`, one per integrable constraint, 0 where its value is not declared; `None` if none is.
+    pub level_scales: Option<Function>,
     /// `(t, q, excess) -> change of q`
     pub level_correction: Function,
     /// `(t, q, lambda) -> lambda_a eta^a`
@@ -404,11 +406,13 @@ impl Constrained {
             forms,
             return_to_constraints,
             levels,
+            level_scales,
             level_correction,
             reaction_force,
             constrained_velocity,
         } = self;
         let mut functions = vec![multipliers, residuals, forms, levels, level_correction];
+        functions.extend(level_scales);
         functions.extend([reaction_force, constrained_velocity]);
         functions.extend(return_to_constraints.iter().flat_map(Return::functions));
         functions

@@ -187,12 +187,12 @@ pub struct ModelArgs {
     pub mode: Option<String>,
 }
 
-/// What to do with a velocity that violates the constraints.
+/// What to do with positions or a velocity that violate the constraints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum OffConstraint {
-    /// Refuse it, beyond 1e-9 of the sum of the absolute values of the constraint's terms.
+    /// Refuse them, beyond 1e-9 of the sum of the absolute values of the constraint's terms.
     Error,
-    /// Replace it by the nearest allowed velocity in the metric.
+    /// Replace them by allowed positions near by and the nearest allowed velocity in the metric.
     Project,
     /// Start there; the motion keeps the residual.
     Keep,
@@ -202,7 +202,7 @@ pub enum OffConstraint {
 #[derive(Debug, Args)]
 pub struct StateArgs {
     /// Change the model's initial state by name: `x=..`, `theta.3=..`, `x_dot=..`, `theta_dot.3=..`;
-    /// velocities that nobody names follow from the constraints.
+    /// what nobody names follows from the constraints.
     #[arg(long, value_name = "NAME=VALUE,..", allow_hyphen_values = true, conflicts_with_all = ["q", "qdot", "p"])]
     pub initial: Vec<String>,
     /// All positions, in the order of the coordinates; needs --qdot or --p.
@@ -219,7 +219,7 @@ pub struct StateArgs {
     /// All momenta; needs --q.
     #[arg(long, value_name = "V,..", allow_hyphen_values = true)]
     pub p: Option<String>,
-    /// What to do with a velocity that violates the constraints.
+    /// What to do with positions or a velocity that violate the constraints.
     #[arg(long, value_enum, default_value_t = OffConstraint::Error)]
     pub off_constraint: OffConstraint,
 }

@@ -100,6 +100,8 @@ pub(crate) struct Origin {
 pub(crate) struct Start {
     pub q: Vec<f64>,
     pub qdot: Vec<f64>,
+    /// Whether the position is given; equations of positions among the constraints may choose the others.
+    pub placed: Vec<bool>,
     /// Whether the velocity is given; the constraints may choose the others.
     pub named: Vec<bool>,
     pub until: Option<f64>,
@@ -145,6 +147,8 @@ pub(crate) trait AnyModel: Runs {
     fn set_mode(&mut self, mode: usize);
     fn check_parameters(&self) -> Result<(), ParameterError>;
     fn initial(&self) -> Start;
+    /// The positions with those that are not `placed` chosen by equations of positions among the constraints.
+    fn complete_position(&self, q: &[f64], placed: &[bool]) -> Result<Vec<f64>, StateError>;
     /// The velocities with those that are not `named` chosen by the constraints.
     fn complete_velocity(
         &self,
@@ -260,7 +264,10 @@ impl<M: Model> Typed<M> {
         t: f64,
         origin: &Origin,
     ) -> Result<S::State, StateError> {
-        let q = vector(&origin.q);
+        let mut q = vector(&origin.q);
+        if origin.policy == OffConstraint::Project {
+            q = system.complete_position(t, &q, &M::Vector::zeros())?;
+        }
         let qdot = self.checked_velocity(t, &q, &origin.rates)?;
         if origin.policy == OffConstraint::Error {
             system.admit(t, &q, &qdot)?;
@@ -272,6 +279,16 @@ impl<M: Model> Typed<M> {
             _ => system.state_unchecked(t, &q, &qdot)?,
         })
     }
+}
+
+/// Whether a mark of [`Initial`](dalembert::describe::Initial) is set.
+fn is_marked(mark: &f64) -> bool {
+    *mark != 0.0
+}
+
+fn marks(marked: &[bool]) -> Vec<f64> {
+    let mark = |&marked: &bool| f64::from(u8::from(marked));
+    marked.iter().map(mark).collect()
 }
 
 /// What is to be done with the model in the form that the settings ask for, and the state in it.
@@ -323,14 +340,16 @@ impl<M: Model> AnyModel for Typed<M> {
         Start {
             q: initial.q.as_slice().to_vec(),
             qdot: initial.qdot.as_slice().to_vec(),
-            named: initial
-                .named
-                .as_slice()
-                .iter()
-                .map(|&named| named != 0.0)
-                .collect(),
+            placed: initial.placed.as_slice().iter().map(is_marked).collect(),
+            named: initial.named.as_slice().iter().map(is_marked).collect(),
             until: initial.until,
         }
+    }
+
+    fn complete_position(&self, q: &[f64], placed: &[bool]) -> Result<Vec<f64>, StateError> {
+        let (q, placed) = (vector(q), vector(&marks(placed)));
+        let completed = self.0.complete_position(0.0, &q, &placed)?;
+        Ok(completed.as_slice().to_vec())
     }
 
     fn complete_velocity(
@@ -339,13 +358,8 @@ impl<M: Model> AnyModel for Typed<M> {
         qdot: &[f64],
         named: &[bool],
     ) -> Result<Vec<f64>, StateError> {
-        let marks: Vec<f64> = named
-            .iter()
-            .map(|&named| f64::from(u8::from(named)))
-            .collect();
-        let completed =
-            self.0
-                .complete_velocity(0.0, &vector(q), &vector(qdot), &vector(&marks))?;
+        let (q, qdot, named) = (vector(q), vector(qdot), vector(&marks(named)));
+        let completed = self.0.complete_velocity(0.0, &q, &qdot, &named)?;
         Ok(completed.as_slice().to_vec())
     }
 

@@ -195,6 +195,22 @@ pub fn state_text(description: &Description, error: &StateError) -> String {
                 constraint
             )
         ),
+        StateError::OffPosition {
+            constraint,
+            residual,
+            scale,
+        } => format!(
+            "the positions violate the constraint `{}`: its sides differ by {residual:e}, where the absolute values of \
+             its terms add up to {scale:e}; leave one of the positions out of --initial or `initial` (it is then solved \
+             for), or use --off-constraint project (allowed positions near by) or --off-constraint keep (as it is)",
+            name(
+                description
+                    .constraints
+                    .iter()
+                    .map(|constraint| constraint.name),
+                constraint
+            )
+        ),
         StateError::NotFinite { component } => {
             let n = description.coordinates.len().max(1);
             let kind = if component < n {

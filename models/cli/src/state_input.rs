@@ -106,7 +106,7 @@ pub fn initial_state(model: &dyn AnyModel, args: &StateArgs) -> Result<Origin, C
     beginning.settle(model, args.off_constraint).map_err(refuse)
 }
 
-/// The model's own `initial`; velocities that it does not name follow from the constraints.
+/// The model's own `initial`; what it does not name follows from the constraints.
 ///
 /// # Errors
 /// Why the system refuses the state.
@@ -122,7 +122,7 @@ const DECLARED: &str = "the model's `initial`";
 /// A state before it is checked; single numbers of it may still be changed.
 #[derive(Debug, Clone)]
 pub enum Beginning {
-    /// The model's `initial`, with changes; velocities that nobody named follow from the constraints.
+    /// The model's `initial`, with changes; what nobody named follows from the constraints.
     Named(Start),
     /// Every number is given.
     Given {
@@ -188,7 +188,10 @@ impl Beginning {
     /// Sets a coordinate.
     pub fn set_position(&mut self, index: usize, value: f64) {
         match self {
-            Self::Named(start) => start.q[index] = value,
+            Self::Named(start) => {
+                start.q[index] = value;
+                start.placed[index] = true;
+            }
             Self::Given { q, .. } => q[index] = value,
         }
     }
@@ -218,9 +221,10 @@ impl Beginning {
         policy: OffConstraint,
     ) -> Result<Origin, StateError> {
         let (q, rates, policy) = match self {
-            Self::Given { q, rates } => (q, rates.clone(), policy),
+            Self::Given { q, rates } => (q.clone(), rates.clone(), policy),
             Self::Named(start) => {
-                let completed = model.complete_velocity(&start.q, &start.qdot, &start.named);
+                let q = Self::placed(model, start, policy)?;
+                let completed = model.complete_velocity(&q, &start.qdot, &start.named);
                 let (qdot, policy) = match completed {
                     // Completed velocities satisfy the constraints; a residual of the state is rounding on the way
                     // through the momenta, which can be all there is of a constraint whose terms vanish here.
@@ -229,15 +233,26 @@ impl Beginning {
                     // The named velocities contradict the constraints, and that is for the policy to settle.
                     Err(_) => (start.qdot.clone(), policy),
                 };
-                (&start.q, Rates::Velocities(qdot), policy)
+                (q, Rates::Velocities(qdot), policy)
             }
         };
-        let origin = Origin {
-            q: q.clone(),
-            rates,
-            policy,
-        };
+        let origin = Origin { q, rates, policy };
         model.state(0.0, &origin).map(|_| origin)
+    }
+
+    /// The positions of a start, as far as they are open solved for.
+    fn placed(
+        model: &dyn AnyModel,
+        start: &Start,
+        policy: OffConstraint,
+    ) -> Result<Vec<f64>, StateError> {
+        match (model.complete_position(&start.q, &start.placed), policy) {
+            (Err(StateError::OffPosition { .. }), OffConstraint::Keep) => Ok(start.q.clone()),
+            (Err(StateError::OffPosition { .. }), OffConstraint::Project) => {
+                model.complete_position(&start.q, &vec![false; start.q.len()])
+            }
+            (placed, _) => placed,
+        }
     }
 
     /// The flags it comes from, for messages.
@@ -277,6 +292,7 @@ fn apply_change(model: &dyn AnyModel, start: &mut Start, change: &str) -> Result
     let n = coordinates.len();
     if index < n {
         start.q[index] = number;
+        start.placed[index] = true;
     } else {
         start.qdot[index - n] = number;
         start.named[index - n] = true;

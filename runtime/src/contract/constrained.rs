@@ -4,6 +4,15 @@ use super::System;
 use crate::error::Fault;
 use crate::state::StateVector;
 
+/// What a level belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Level {
+    /// Index of the constraint.
+    pub constraint: usize,
+    /// Whether the constraint is an equation of positions, so that the level of every state is 0.
+    pub is_zero: bool,
+}
+
 /// A system with constraints `eta^a(qdot) + eta^a_0 = 0`, or `phi^a(t, q, qdot) = 0` that are not linear in the velocities:
 /// then `eta^a = dphi^a/dqdot`, and `phi^a` stands for `eta^a(qdot) + eta^a_0`.
 #[diagnostic::on_unimplemented(
@@ -69,6 +78,17 @@ pub trait Constrained: System {
     /// # Errors
     /// [`Fault`]; the state is unchanged then.
     fn restore(&self, t: f64, state: &mut Self::State) -> Result<(), Fault>;
+
+    /// Which constraint each level belongs to, and whether it is declared to be 0. Empty where none is: then every motion
+    /// keeps the levels that it starts with.
+    const LEVELS: &'static [Level] = &[];
+
+    /// The natural sizes of the levels that are declared to be 0: the sum of the absolute values of their terms, sines and
+    /// cosines counted as 1. 0 for the others.
+    fn level_scales(&self, t: f64, q: &Self::Vector) -> Self::Levels {
+        let _ = (t, q);
+        Self::Levels::zeros()
+    }
 
     /// The position-level values `f^k(t, q)` of the integrable constraints; the motion keeps them.
     fn levels(&self, t: f64, q: &Self::Vector) -> Self::Levels;

@@ -11,7 +11,7 @@ mod variational;
 mod volume;
 
 pub use actuated::{Actuated, Powered};
-pub use constrained::Constrained;
+pub use constrained::{Constrained, Level};
 pub use field::{TaylorField, VectorField};
 pub use impacting::Impacting;
 pub use system::{Lagrangian, RankDrop, System};

@@ -109,11 +109,11 @@ pub trait System: VectorField {
         None
     }
 
-    /// Refuses velocities off the constraints by more than 1e-9 of the sum of absolute terms. Systems without
-    /// constraints accept all.
+    /// Refuses positions that an equation among the constraints forbids, and velocities off the constraints, both by more
+    /// than 1e-9 of the sum of absolute terms. Systems without constraints accept all.
     ///
     /// # Errors
-    /// [`StateError::OffConstraint`].
+    /// [`StateError::OffPosition`], [`StateError::OffConstraint`].
     fn admit(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<(), StateError> {
         let _ = (t, q, qdot);
         Ok(())
@@ -131,6 +131,21 @@ pub trait System: VectorField {
         qdot: &Self::Vector,
     ) -> Result<Self::State, Fault> {
         self.state_unchecked(t, q, qdot)
+    }
+
+    /// The positions with those whose `placed` is not 1 moved to where they satisfy the equations of positions among the
+    /// constraints; without such equations, `q` as it is. With nothing left to move it is a check of `q`.
+    ///
+    /// # Errors
+    /// [`StateError::OffPosition`] where no such positions were found.
+    fn complete_position(
+        &self,
+        t: f64,
+        q: &Self::Vector,
+        placed: &Self::Vector,
+    ) -> Result<Self::Vector, StateError> {
+        let _ = (t, placed);
+        Ok(*q)
     }
 
     /// The velocities with those whose `named` is not 1 replaced by what the constraints make of the named
@@ -154,7 +169,8 @@ pub trait System: VectorField {
     ///
     /// # Errors
     /// [`StateError`]: a parameter against its declaration, a number that is not finite, a coordinate
-    /// outside its chart, a constraint violated by more than 1e-9 of the sum of its absolute terms.
+    /// outside its chart, a constraint (of positions or velocities) violated by more than 1e-9 of the sum of its absolute
+    /// terms.
     fn state(
         &self,
         t: f64,
@@ -166,24 +182,26 @@ pub trait System: VectorField {
         Ok(state)
     }
 
-    /// As [`System::state`], but moves an off-constraint velocity to the nearest allowed one in the metric.
+    /// As [`System::state`], but moves positions to a place near by that the constraints allow, and then the velocity to
+    /// the nearest allowed one in the metric.
     ///
     /// # Errors
-    /// As [`System::state`], without `OffConstraint`.
+    /// As [`System::state`], without `OffConstraint`; `OffPosition` if no allowed place was found near by.
     fn state_projected(
         &self,
         t: f64,
         q: &Self::Vector,
         qdot: &Self::Vector,
     ) -> Result<Self::State, StateError> {
-        self.checked(t, q, qdot)?;
-        Ok(self.state_nearest(t, q, qdot)?)
+        let q = self.complete_position(t, q, &Self::Vector::zeros())?;
+        self.checked(t, &q, qdot)?;
+        Ok(self.state_nearest(t, &q, qdot)?)
     }
 
     /// The state after every check but that of the constraints.
     ///
     /// # Errors
-    /// As [`System::state`], without `OffConstraint`.
+    /// As [`System::state`], without `OffConstraint` and `OffPosition`.
     fn checked(
         &self,
         t: f64,

@@ -33,7 +33,10 @@ pub(crate) fn after_reset<Sys: Impacting + ?Sized>(
         return Err(Outcome::LeftChart { coordinate });
     }
     match system.admit(t, &q, &qdot) {
-        Err(StateError::OffConstraint { constraint, .. }) => Err(Outcome::ResetOffConstraint {
+        Err(
+            StateError::OffConstraint { constraint, .. }
+            | StateError::OffPosition { constraint, .. },
+        ) => Err(Outcome::ResetOffConstraint {
             surface,
             constraint,
         }),

@@ -271,6 +271,21 @@ pub fn admit<M: Mode, V: StateVector>(
     M::of(model).admit(t, &q, &qdot)
 }
 
+/// As [`System::complete_position`](crate::System::complete_position), in this mode.
+///
+/// # Errors
+/// That of the mode.
+pub fn complete_position<M: Mode, V: StateVector>(
+    model: &M::Model,
+    t: f64,
+    q: &V,
+    placed: &V,
+) -> Result<V, StateError> {
+    let [q, placed] = [q, placed].map(|values| gathered(values, M::COORDINATES));
+    let own = M::of(model).complete_position(t, &q, &placed)?;
+    Ok(scattered(own.as_slice(), M::COORDINATES))
+}
+
 /// As [`System::complete_velocity`](crate::System::complete_velocity), in this mode.
 ///
 /// # Errors
@@ -464,11 +479,12 @@ pub fn landing<M: Mode + Impacting>(
 /// As [`Described::initial`](crate::Described::initial), of this mode.
 pub fn initial<M: Mode, V: StateVector>(model: &M::Model) -> Initial<V> {
     let own = M::of(model).initial();
-    let [q, qdot, named] =
-        [own.q, own.qdot, own.named].map(|values| scattered(values.as_slice(), M::COORDINATES));
+    let [q, qdot, placed, named] = [own.q, own.qdot, own.placed, own.named]
+        .map(|values| scattered(values.as_slice(), M::COORDINATES));
     Initial {
         q,
         qdot,
+        placed,
         named,
         until: own.until,
     }

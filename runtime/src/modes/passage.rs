@@ -64,10 +64,10 @@ where
         Passage::Declared => declared(&left, &entered, [surface, place], t, &own)?,
         Passage::Kept => converted(&own),
         Passage::Focused => focused(&left, &entered, t, &own)?,
-        Passage::Refracted => return refracted(&left, &entered, surface, t, &own),
+        Passage::Refracted => return refracted(&left, &entered, [surface, place], t, &own),
     };
     Ok(Landing {
-        state: checked(&entered, after)?,
+        state: checked(&entered, place, t, after)?,
         is_graze: false,
         is_one_of_several: false,
     })
@@ -82,18 +82,27 @@ fn converted<V: StateVector, W: StateVector>(values: &V) -> W {
     converted
 }
 
-/// The state of the model, if it is finite and inside the chart.
-fn checked<T: Mode>(entered: &T, after: T::State) -> Result<StateOf<T>, Outcome> {
+/// The state of the model, if it is finite, inside the chart, and where the equations of positions among the constraints hold.
+fn checked<T: Mode>(
+    entered: &T,
+    place: usize,
+    t: f64,
+    after: T::State,
+) -> Result<StateOf<T>, Outcome> {
     let components = after.as_slice();
     if let Some(component) = components.iter().position(|value| !value.is_finite()) {
         return Err(Outcome::NonFinite { component });
     }
-    match entered.outside_chart(&after) {
-        Some(coordinate) => Err(Outcome::LeftChart {
+    if let Some(coordinate) = entered.outside_chart(&after) {
+        return Err(Outcome::LeftChart {
             coordinate: T::COORDINATES[coordinate],
-        }),
-        None => Ok(placed::<T>(&after)),
+        });
     }
+    let mut fixed = T::Vector::zeros();
+    fixed.as_mut_slice().fill(1.0);
+    let kept = entered.complete_position(t, &entered.position(&after), &fixed);
+    kept.map_err(|error| off(error, place))?;
+    Ok(placed::<T>(&after))
 }
 
 /// The declared state; its velocities satisfy the constraints of the mode.
@@ -108,12 +117,22 @@ fn declared<M: Mode + Impacting, T: Mode>(
     left.entry(surface, t, own, q.as_mut_slice(), qdot.as_mut_slice())?;
     let after = entered.state_unchecked(t, &q, &qdot)?;
     match entered.admit(t, &q, &qdot) {
-        Err(StateError::OffConstraint { constraint, .. }) => Err(Outcome::ResetOffConstraint {
-            surface: place,
+        Err(error) => Err(off(error, place)),
+        Ok(()) => Ok(after),
+    }
+}
+
+/// How a run ends where the mode that is entered refuses the state.
+fn off(error: StateError, surface: usize) -> Outcome {
+    match error {
+        StateError::OffConstraint { constraint, .. }
+        | StateError::OffPosition { constraint, .. } => Outcome::ResetOffConstraint {
+            surface,
             constraint,
-        }),
-        // `admit` refuses nothing else.
-        _ => Ok(after),
+        },
+        StateError::Fault(fault) => fault.into(),
+        // Constraints refuse nothing else.
+        _ => Outcome::NonFinite { component: 0 },
     }
 }
 
@@ -137,7 +156,7 @@ fn focused<M: Mode, T: Mode>(
 fn refracted<M, T>(
     left: &M,
     entered: &T,
-    surface: usize,
+    [surface, place]: [usize; 2],
     t: f64,
     own: &M::State,
 ) -> Result<Landing<StateOf<M>>, Outcome>
@@ -184,7 +203,7 @@ where
         false => entered.state_from_momenta(t, &q, &z)?,
     };
     Ok(Landing {
-        state: checked(entered, after)?,
+        state: checked(entered, place, t, after)?,
         is_graze,
         is_one_of_several: true,
     })

@@ -3,7 +3,7 @@ dalembert::model! {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 1; k > 0 = 1; }
         lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(theta)^2);
-        constraints { c: x + y = 1; }
+        impacts { w: x >= 0 => elastic, instantaneous { c: x + y = 1; }; }
     }
 }
 

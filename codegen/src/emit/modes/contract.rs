@@ -338,6 +338,7 @@ fn emit_makers(whole: &Whole<'_>) -> TokenStream {
     let from_momenta = make(quote!(state_from_momenta), quote!(t, q, p));
     let nearest = make(quote!(state_nearest), quote!(t, q, qdot));
     let admit = make(quote!(admit), quote!(t, q, qdot));
+    let place = make(quote!(complete_position), quote!(t, q, placed));
     let complete = make(quote!(complete_velocity), quote!(t, q, qdot, named));
     let fault = quote!(::core::result::Result<Self::State, ::dalembert::Fault>);
     quote! {
@@ -354,6 +355,15 @@ fn emit_makers(whole: &Whole<'_>) -> TokenStream {
             qdot: &Self::Vector,
         ) -> ::core::result::Result<(), ::dalembert::StateError> {
             #admit
+        }
+
+        fn complete_position(
+            &self,
+            t: f64,
+            q: &Self::Vector,
+            placed: &Self::Vector,
+        ) -> ::core::result::Result<Self::Vector, ::dalembert::StateError> {
+            #place
         }
 
         fn complete_velocity(

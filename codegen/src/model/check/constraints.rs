@@ -32,6 +32,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
                 affine,
                 level,
                 nonlinear,
+                is_of_positions,
             } = parts;
             constraints.push(Constraint {
                 name,
@@ -40,6 +41,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
                 affine,
                 level,
                 nonlinear,
+                is_of_positions,
                 item: equation.item,
             });
         }
@@ -67,6 +69,9 @@ impl Resolver<'_> {
         scope: &Scope,
     ) {
         let sides = [&equation.left, &equation.right];
+        if let (true, Some(level)) = (parts.is_of_positions, parts.level) {
+            self.check_periodic(&sides, scope, level);
+        }
         for coefficient in parts.form.iter().chain([&parts.affine]) {
             self.check_periodic(&sides, scope, *coefficient);
         }

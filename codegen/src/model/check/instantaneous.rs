@@ -36,6 +36,7 @@ impl Resolver<'_> {
                     affine,
                     level: None,
                     nonlinear: None,
+                    is_of_positions: false,
                     item: equation.item,
                 });
             }

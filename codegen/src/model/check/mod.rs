@@ -151,7 +151,12 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);
     instantaneous::check_independent(resolver, &parts.surfaces, &parts.constraints);
     surfaces::check_distinct(resolver, &parts.surfaces);
-    start::check(resolver, &parts.initial, &parts.surfaces);
+    start::check(
+        resolver,
+        &parts.initial,
+        &parts.surfaces,
+        &parts.constraints,
+    );
     resolver.within_budget(resolver.spec.name.at);
 }
 

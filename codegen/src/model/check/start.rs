@@ -1,81 +1,190 @@
-//! The declared start lies in front of every wall.
+//! The declared start lies in front of every wall and on the constraints.
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
 use super::super::resolve::Resolver;
-use super::super::{Initial, Law, Surface};
+use super::super::{Constraint, Initial, Law, Surface};
 use crate::diagnostics::Location;
 use crate::spec::InitialTarget;
 
-/// Gaps smaller than this part of their terms may be rounding.
+/// Numbers smaller than this part of their terms may be rounding.
 const MARGIN: f64 = 1e-9;
 
-/// Refuses a start behind a wall, at the defaults of the parameters; walls whose gap names no declared position are left
-/// to the caller, and so are parameters without defaults.
-pub(super) fn check(resolver: &mut Resolver<'_>, initial: &Initial, surfaces: &[Surface]) {
-    for surface in surfaces {
-        if matches!(surface.law, Law::Reset | Law::Transition) {
-            continue;
+/// Refuses a start behind a wall or off the constraints, at the defaults of the parameters. What follows from no declared
+/// value is left to the caller, and so are parameters without defaults.
+pub(super) fn check(
+    resolver: &mut Resolver<'_>,
+    initial: &Initial,
+    surfaces: &[Surface],
+    constraints: &[Constraint],
+) {
+    if resolver.spec.initial.is_empty() {
+        return;
+    }
+    let mut start = Start::new(resolver, initial, constraints);
+    let mut refused = start.behind_walls(surfaces);
+    refused.extend(start.off_constraints(constraints));
+    for Refused { at, text, help } in refused {
+        resolver.refuse::<()>(at, text, help);
+    }
+}
+
+/// An error to be told.
+struct Refused {
+    at: Location,
+    text: String,
+    help: &'static str,
+}
+
+/// The declared start, as far as it is known while building.
+struct Start<'a, 'b> {
+    resolver: &'a Resolver<'b>,
+    /// Residuals of constraints are made in a copy: the check adds nothing to the model.
+    pool: Pool,
+    initial: &'a Initial,
+    /// Coordinates without a declared value that an equation of positions gives one, at run time.
+    solved_for: Vec<SymbolId>,
+}
+
+impl<'a, 'b> Start<'a, 'b> {
+    fn new(resolver: &'a Resolver<'b>, initial: &'a Initial, constraints: &[Constraint]) -> Self {
+        let equations = constraints.iter().filter(|own| own.is_of_positions);
+        let involved: Vec<SymbolId> = equations
+            .filter_map(|own| own.level)
+            .flat_map(|level| resolver.pool.symbols(level))
+            .collect();
+        let coordinates = resolver.symbols.coordinates.iter().zip(&initial.q);
+        let open = coordinates.filter(|(own, value)| value.is_none() && involved.contains(&own.q));
+        Self {
+            resolver,
+            pool: resolver.pool.clone(),
+            initial,
+            solved_for: open.map(|(own, _)| own.q).collect(),
         }
-        let Some(at) = declared_at(resolver, initial, surface.gap) else {
-            continue;
-        };
-        let point = |symbol: SymbolId| start(resolver, initial, symbol);
-        let pool = &resolver.pool;
-        let counts = surface
-            .conditions
+    }
+
+    /// Walls whose gap names a declared position, and is negative.
+    fn behind_walls(&self, surfaces: &[Surface]) -> Vec<Refused> {
+        let walls = surfaces
             .iter()
-            .all(|condition| clear_sign(pool, condition.margin, &point) == Some(1.0));
-        if !counts || clear_sign(pool, surface.gap, &point) != Some(-1.0) {
-            continue;
+            .filter(|surface| !matches!(surface.law, Law::Reset | Law::Transition));
+        let behind = walls.filter_map(|surface| {
+            let at = self.declared_at(surface.gap)?;
+            let mut margins = surface.conditions.iter().map(|condition| condition.margin);
+            let counts = margins.all(|margin| self.clear_sign(margin) == Some(1.0));
+            if !counts || self.clear_sign(surface.gap) != Some(-1.0) {
+                return None;
+            }
+            let (name, gap) = (&surface.name.display, self.shown(surface.gap));
+            Some(Refused {
+                at,
+                text: format!("the start lies behind the surface `{name}`: its gap is {gap}"),
+                help: "a motion starts where every gap is 0 or more",
+            })
+        });
+        behind.collect()
+    }
+
+    /// Constraints that declared positions and velocities alone violate.
+    fn off_constraints(&mut self, constraints: &[Constraint]) -> Vec<Refused> {
+        let off = constraints.iter().filter_map(|constraint| {
+            let residual = self.residual(constraint)?;
+            let at = self.declared_at(residual)?;
+            self.clear_sign(residual)?;
+            let (name, value) = (&constraint.name.display, self.shown(residual));
+            let text = format!(
+                "the start is off the constraint `{name}`: left side minus right side is {value}"
+            );
+            Some(Refused {
+                at,
+                text,
+                help: "leave one of them out of `initial`; it is then solved for",
+            })
+        });
+        off.collect()
+    }
+
+    /// What vanishes on the constraint.
+    fn residual(&mut self, constraint: &Constraint) -> Option<ExprId> {
+        if constraint.is_of_positions {
+            return constraint.level;
         }
-        let gap = pool.eval(&[surface.gap], &point)[0];
-        let name = &surface.name.display;
-        let text = format!("the start lies behind the surface `{name}`: its gap is {gap}");
-        resolver.refuse::<()>(at, text, "a motion starts where every gap is 0 or more");
+        if constraint.nonlinear.is_some() {
+            return constraint.nonlinear;
+        }
+        let mut terms = vec![constraint.affine];
+        for (entry, velocity) in constraint
+            .form
+            .iter()
+            .zip(self.resolver.symbols.velocities())
+        {
+            let velocity = self.pool.variable(velocity);
+            terms.push(self.pool.mul(*entry, velocity));
+        }
+        Some(self.pool.sum(&terms))
     }
-}
 
-/// The last value in `initial` that the gap depends on.
-fn declared_at(resolver: &Resolver<'_>, initial: &Initial, gap: ExprId) -> Option<Location> {
-    let symbols = resolver.pool.symbols(gap);
-    let coordinates = resolver.symbols.coordinates.iter().zip(&initial.q);
-    let named: Vec<&str> = coordinates
-        .filter(|(coordinate, value)| value.is_some() && symbols.contains(&coordinate.q))
-        .map(|(coordinate, _)| coordinate.name.field.as_str())
-        .collect();
-    let mut entries = resolver.spec.initial.iter().rev();
-    let entry = entries.find(|entry| {
-        entry.target == InitialTarget::Position
-            && named.contains(&entry.declared.name.text.as_str())
-    })?;
-    Some(entry.value.at)
-}
+    /// The last entry of `initial` that an expression depends on.
+    fn declared_at(&self, id: ExprId) -> Option<Location> {
+        let symbols = self.pool.symbols(id);
+        let coordinates = self.resolver.symbols.coordinates.iter();
+        let values = coordinates.zip(self.initial.q.iter().zip(&self.initial.qdot));
+        let mut named: Vec<(InitialTarget, &str)> = Vec::new();
+        for (own, (q, qdot)) in values {
+            let field = own.name.field.as_str();
+            if q.is_some() && symbols.contains(&own.q) {
+                named.push((InitialTarget::Position, field));
+            }
+            if qdot.is_some() && symbols.contains(&own.qdot) {
+                named.push((InitialTarget::Velocity, field));
+            }
+        }
+        let mut entries = self.resolver.spec.initial.iter().rev();
+        let entry = entries
+            .find(|entry| named.contains(&(entry.target, entry.declared.name.text.as_str())))?;
+        Some(entry.value.at)
+    }
 
-/// The value of a symbol at the start; not a number where nothing declares it.
-fn start(resolver: &Resolver<'_>, initial: &Initial, symbol: SymbolId) -> f64 {
-    if let Some(index) = resolver.symbols.coordinate_of(symbol) {
-        let Some(value) = initial.q[index] else {
+    /// The value of an expression, without the digits that rounding makes.
+    fn shown(&self, id: ExprId) -> String {
+        let value = self.pool.eval(&[id], &|symbol| self.at(symbol))[0];
+        let rounded = format!("{value:.11e}").parse::<f64>();
+        rounded.unwrap_or(value).to_string()
+    }
+
+    /// 1 or -1 where rounding leaves no doubt about the sign.
+    fn clear_sign(&self, id: ExprId) -> Option<f64> {
+        let (value, magnitude) = self.pool.eval_magnitude(id, &|symbol| self.at(symbol));
+        (value.abs() > MARGIN * magnitude).then(|| value.signum())
+    }
+
+    /// The value of a symbol at the start; not a number where it is known at run time only.
+    fn at(&self, symbol: SymbolId) -> f64 {
+        let coordinates = &self.resolver.symbols.coordinates;
+        if self.solved_for.contains(&symbol) {
+            return f64::NAN;
+        }
+        if symbol == self.resolver.symbols.time {
             return 0.0;
-        };
-        let parameter = |symbol: SymbolId| default(resolver, symbol);
-        return resolver.pool.eval(&[value], &parameter)[0];
+        }
+        if let Some(index) = coordinates.iter().position(|own| own.q == symbol) {
+            return self.initial.q[index].map_or(0.0, |value| self.of_parameters(value));
+        }
+        if let Some(index) = coordinates.iter().position(|own| own.qdot == symbol) {
+            return self.initial.qdot[index].map_or(f64::NAN, |value| self.of_parameters(value));
+        }
+        self.default(symbol)
     }
-    if symbol == resolver.symbols.time {
-        return 0.0;
+
+    fn of_parameters(&self, value: ExprId) -> f64 {
+        let default = |symbol: SymbolId| self.default(symbol);
+        self.resolver.pool.eval(&[value], &default)[0]
     }
-    default(resolver, symbol)
-}
 
-fn default(resolver: &Resolver<'_>, symbol: SymbolId) -> f64 {
-    let mut parameters = resolver.symbols.parameters.iter();
-    let found = parameters.find(|parameter| parameter.symbol == symbol);
-    let value = found.and_then(|parameter| parameter.default);
-    value.map_or(f64::NAN, |value| resolver.constant_value(value))
-}
-
-/// 1 or -1 where rounding leaves no doubt about the sign.
-fn clear_sign(pool: &Pool, id: ExprId, point: &dyn Fn(SymbolId) -> f64) -> Option<f64> {
-    let (value, magnitude) = pool.eval_magnitude(id, point);
-    (value.abs() > MARGIN * magnitude).then(|| value.signum())
+    fn default(&self, symbol: SymbolId) -> f64 {
+        let mut parameters = self.resolver.symbols.parameters.iter();
+        let found = parameters.find(|parameter| parameter.symbol == symbol);
+        let value = found.and_then(|parameter| parameter.default);
+        value.map_or(f64::NAN, |value| self.resolver.constant_value(value))
+    }
 }

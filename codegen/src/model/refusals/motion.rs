@@ -99,17 +99,21 @@ fn angles_are_used_periodically() {
         "forces { f: «-k*a*d(a)»; }",
         "`a` is an angle but `-k*a*d(a)` is not periodic",
     );
+    refused_in(
+        "constraints { c: x = «k*a»; }",
+        "`a` is an angle but `k*a` is not periodic",
+    );
 }
 
 #[test]
 fn one_forms_are_linear() {
     refused_in(
-        "constraints { c: «x + y = 1»; }",
-        "a constraint is a one-form\nhelp: write `d(x + y - (1)) = 0`",
+        "constraints { c: «1 = k»; }",
+        "this equation has no coordinates\nhelp: a constraint restricts positions, `x^2 + y^2 = l^2`, or velocities",
     );
     refused_in(
-        "constraints { c: «1 = k»; }",
-        "a constraint is a one-form, and this equation has no coordinates\nhelp: write `d(x) - R*d(theta) = 0`",
+        "impacts { w: x >= 0 => elastic, instantaneous { c: «x + y = 1»; }; }",
+        "instantaneous constraints restrict velocities, and this equation has none\nhelp: write `dot(x) = R*dot(theta)`",
     );
     refused_in(
         "constraints { c: «d(x)*d(y)» = 0; }",

@@ -106,6 +106,31 @@ fn rates_are_taken_of_what_changes() {
 }
 
 #[test]
+fn starts_are_on_the_constraints() {
+    let at_rest = "constraints { c: x^2 + y^2 = 1; } initial { x = 3/5; y = «4/5 + 1/100»; }";
+    let message = "the start is off the constraint `c`: left side minus right side is 0.0161\nhelp: leave one of them out";
+    refused_in(at_rest, message);
+    for accepted_start in [
+        "constraints { c: x^2 + y^2 = 1; } initial { x = 3/5; y = 4/5; }",
+        "constraints { c: x^2 + y^2 = 1; } initial { y = 4/5; }",
+        "constraints { c: d(x^2 + y^2) = 0; } initial { y = 4/5; dot(y) = 0; }",
+        "constraints { c: dot(x) = y*dot(a); } initial { y = 4/5; dot(a) = 5; dot(x) = 4; }",
+        // Where `x` is solved for, nobody knows yet what the rate has to be.
+        "constraints { c: x^2 + y^2 = 1; } initial { y = 4/5; dot(y) = 3; dot(x) = 3; }",
+    ] {
+        accepted(&particle(accepted_start));
+    }
+    refused_in(
+        "constraints { c: dot(x) = y*dot(a); } initial { y = 4/5; dot(a) = 5; dot(x) = «3»; }",
+        "the start is off the constraint `c`: left side minus right side is -1\nhelp: leave one of them out",
+    );
+    refused_in(
+        "constraints { c: dot(x)^2 + dot(y)^2 = 25; } initial { dot(x) = 3; dot(y) = «5»; }",
+        "the start is off the constraint `c`: left side minus right side is 9",
+    );
+}
+
+#[test]
 fn outputs_and_views_name_known_quantities() {
     refused_in(
         "outputs { o: multiplier(«c»); }",

@@ -20,6 +20,7 @@ pub fn constrained(model: &Model, derivation: &Derivation, form: Form) -> Option
             restore: restore(model, derivation),
         }),
         levels: levels(model, derivation),
+        level_scales: level_scales(model, derivation),
         level_correction: level_correction(model, derivation),
         reaction_force: reaction_force(model, derivation),
         constrained_velocity: constrained_velocity(model, derivation),
@@ -157,6 +158,22 @@ fn levels(model: &Model, derivation: &Derivation) -> Function {
         .collect();
     let outputs = kernel.values(&levels);
     kernel.finish(outputs)
+}
+
+/// The natural sizes of levels that are declared to be 0, and 0 for the others.
+fn level_scales(model: &Model, derivation: &Derivation) -> Option<Function> {
+    let mut levelled = derivation
+        .constraints
+        .iter()
+        .filter(|own| own.level.is_some());
+    levelled.clone().find_map(|own| own.level_scale)?;
+    let mut kernel = Kernel::new(model, derivation, Arguments::Position);
+    let zero = kernel.builder.zero();
+    let outputs = levelled
+        .by_ref()
+        .map(|own| own.level_scale.map_or(zero, |scale| kernel.value(scale)))
+        .collect();
+    Some(kernel.finish(outputs))
 }
 
 /// `g^{-1} nu_k eta^k` with `m nu = -excess`, over the integrable constraints with a known function.

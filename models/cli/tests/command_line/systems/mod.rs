@@ -184,6 +184,7 @@ impl Described for BouncingBall {
         Initial {
             q,
             qdot,
+            placed: SVector::repeat(1.0),
             named,
             until: None,
         }
@@ -295,6 +296,7 @@ impl Described for Oscillator {
         Initial {
             q,
             qdot,
+            placed: SVector::repeat(1.0),
             named,
             until: Some(20.0),
         }
@@ -469,6 +471,7 @@ impl Described for Bead {
         Initial {
             q,
             qdot,
+            placed: SVector::repeat(1.0),
             named,
             until: Some(2.0),
         }
