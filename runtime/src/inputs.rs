@@ -241,6 +241,10 @@ where
         self.system.surface_active(surface, t, state)
     }
 
+    fn takes(&self, surface: usize, t: f64, state: &Self::State) -> bool {
+        self.system.takes(surface, t, state)
+    }
+
     fn law(&self, surface: usize) -> Law {
         self.system.law(surface)
     }

@@ -54,6 +54,11 @@ pub enum Outcome {
         /// The surface.
         surface: usize,
     },
+    /// A surface of several transitions was reached where the conditions of none of them hold.
+    Untaken {
+        /// The last of these transitions.
+        surface: usize,
+    },
     /// Modes lead to each other at one time, and no state goes on into one of them.
     Trapped {
         /// The surface reached last.
@@ -151,6 +156,7 @@ impl Outcome {
             Self::ResetOffConstraint { .. } => "reset_off_constraint",
             Self::NoReset { .. } => "no_reset",
             Self::LeftMode { .. } => "left_mode",
+            Self::Untaken { .. } => "untaken",
             Self::Trapped { .. } => "trapped",
             Self::Contact { .. } => "contact",
             Self::TangentialCrossing { .. } => "tangential_crossing",
@@ -213,6 +219,10 @@ impl fmt::Display for Outcome {
             Self::LeftMode { surface } => write!(
                 f,
                 "surface {surface} leads to another mode, and this one is run by itself"
+            ),
+            Self::Untaken { surface } => write!(
+                f,
+                "the conditions of none of the transitions at surface {surface} hold"
             ),
             Self::Trapped { surface } => write!(
                 f,

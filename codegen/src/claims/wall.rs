@@ -26,7 +26,7 @@ use super::linear::{Matrix, dot, solve};
 use super::reset::ResetMap;
 use super::sample::{Sample, sample, uses};
 use crate::mechanics::Derivation;
-use crate::model::{Law, Model};
+use crate::model::{Beside, Law, Model, Surface};
 
 /// An impact surface with everything that its map is made of.
 #[derive(Debug)]
@@ -46,7 +46,9 @@ pub(super) struct Wall {
     velocities: Vec<SymbolId>,
     constraints: usize,
     /// Functions that are positive where the surface counts.
-    conditions: Vec<ExprId>,
+    margins: Vec<ExprId>,
+    /// How many of them are the wall's own, and how many those of each other surface that must not count.
+    lists: (usize, Vec<usize>),
     polynomials: Vec<Polynomial>,
 }
 
@@ -109,6 +111,16 @@ pub(super) enum Place {
     Second,
 }
 
+/// How many margins are the surface's own, and how many belong to each surface that must not count.
+fn lists(surface: &Surface) -> (usize, Vec<usize>) {
+    let others = match &surface.beside {
+        Beside::Otherwise(others) => others.iter().map(Vec::len).collect(),
+        // The last of several transitions has a law by its own conditions.
+        Beside::Last(_) | Beside::Independent => Vec::new(),
+    };
+    (surface.conditions.len(), others)
+}
+
 impl Wall {
     /// The surface of an index.
     pub(super) fn of(model: &mut Model, derivation: &Derivation, surface: usize) -> Self {
@@ -136,7 +148,8 @@ impl Wall {
             gap_rate: own.gap_rate,
             slope: own.form.clone(),
             rate: own.rate,
-            conditions: own.conditions.clone(),
+            margins: own.margins.clone(),
+            lists: lists(&model.surfaces[surface]),
             polynomials: polynomials(model, own.gap, &coordinates),
             coordinates,
             velocities: model.coordinates.iter().map(|own| own.qdot).collect(),
@@ -246,14 +259,24 @@ impl Wall {
         attempt: usize,
         mut roots: Vec<ExprId>,
     ) -> Option<(Sample, RealPoint)> {
-        roots.extend(&self.conditions);
+        roots.extend(&self.margins);
         let mut sample = sample(model, attempt, uses(&model.pool, &roots));
         self.settle_sample(model, &mut sample)?;
         let (sample, point) = with_velocities(model, dynamics, sample, attempt)?;
         let rate = model.pool.eval(&[self.gap_rate], &|s| point.value(s))[0];
-        let conditions = model.pool.eval(&self.conditions, &|s| point.value(s));
-        let counts = rate < 0.0 && conditions.iter().all(|own| *own > 0.0);
-        counts.then_some((sample, point))
+        let margins = model.pool.eval(&self.margins, &|s| point.value(s));
+        (rate < 0.0 && self.counts(&margins)).then_some((sample, point))
+    }
+
+    /// Whether the surface counts where its margins have these values, away from the ends of where it does.
+    fn counts(&self, margins: &[f64]) -> bool {
+        let (own, mut rest) = margins.split_at(self.lists.0);
+        own.iter().all(|value| *value > 0.0)
+            && self.lists.1.iter().all(|&length| {
+                let (other, behind) = rest.split_at(length);
+                rest = behind;
+                other.iter().any(|value| *value < 0.0)
+            })
     }
 
     /// A coordinate that follows from the others on the surface, and how.

@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::function::{Body, emit_body, joined};
 use super::{Context, doc};
-use crate::model::Law;
+use crate::model::{Beside, Condition, Law};
 use crate::program::{Function, Impacting};
 
 /// `impl Impacting`, if there are surfaces.
@@ -126,33 +126,65 @@ fn emit_conditions(context: &Context<'_>, functions: &Impacting) -> TokenStream 
     if functions.conditions.iter().all(Option::is_none) {
         return TokenStream::new();
     }
-    let arms = functions
-        .conditions
-        .iter()
-        .enumerate()
-        .filter_map(|(s, function)| {
-            let Body {
-                statements,
-                outputs,
-            } = context.state_body(function.as_ref()?);
-            let conditions = context.model.surfaces[s].conditions.iter();
-            let holds = conditions
-                .zip(&outputs)
-                .map(|(own, margin)| match own.is_closed {
-                    true => quote!(#margin >= 0.0),
-                    false => quote!(#margin > 0.0),
-                });
-            Some(quote!(#s => { #statements #(#holds)&&* }))
-        });
+    let (mut counts, mut takes) = (Vec::new(), Vec::new());
+    for (s, function) in functions.conditions.iter().enumerate() {
+        let Some(function) = function else {
+            continue;
+        };
+        let Body {
+            statements,
+            outputs,
+        } = context.state_body(function);
+        let surface = &context.model.surfaces[s];
+        let mut margins = outputs.iter();
+        let holds = all_hold(&surface.conditions, &mut margins);
+        let others = surface.beside.others().iter();
+        let others: Vec<_> = others.map(|own| all_hold(own, &mut margins)).collect();
+        let counts_here = match &surface.beside {
+            Beside::Independent => holds.clone(),
+            Beside::Otherwise(_) => quote!(!(#((#others))||*)),
+            Beside::Last(_) => quote!((#holds) || !(#((#others))||*)),
+        };
+        counts.push(quote!(#s => { #statements #counts_here }));
+        if matches!(surface.beside, Beside::Last(_)) {
+            takes.push(quote!(#s => { #statements #holds }));
+        }
+    }
+    let takes = (!takes.is_empty()).then(|| {
+        quote! {
+            #[inline]
+            fn takes(&self, surface: usize, t: f64, state: &Self::State) -> bool {
+                match surface {
+                    #(#takes)*
+                    _ => true,
+                }
+            }
+        }
+    });
     quote! {
         #[inline]
         fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
             match surface {
-                #(#arms)*
+                #(#counts)*
                 _ => true,
             }
         }
+
+        #takes
     }
+}
+
+/// That every condition of a list holds, of which the margins come next.
+fn all_hold<'a>(
+    conditions: &[Condition],
+    margins: &mut impl Iterator<Item = &'a TokenStream>,
+) -> TokenStream {
+    let holds = conditions.iter().zip(margins);
+    let holds = holds.map(|(own, margin)| match own.is_closed {
+        true => quote!(#margin >= 0.0),
+        false => quote!(#margin > 0.0),
+    });
+    quote!(#(#holds)&&*)
 }
 
 fn emit_laws(context: &Context<'_>, functions: &Impacting) -> TokenStream {

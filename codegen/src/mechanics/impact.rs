@@ -40,8 +40,8 @@ pub struct SurfaceForm {
     pub gap_rate: ExprId,
     /// The rate of `gap_rate` at fixed velocity: what `d^2h/dt^2` is besides `dh(qddot)`.
     pub curvature: ExprId,
-    /// The functions that must be positive for the surface to count.
-    pub conditions: Vec<ExprId>,
+    /// The functions whose signs say where the surface counts, see [`Surface::margins`](crate::model::Surface::margins).
+    pub margins: Vec<ExprId>,
     /// The constraints that hold in the moment of an impact only.
     pub instantaneous: Vec<InstantaneousForm>,
     /// Of a wall that stands still, `dh` without what is never zero in all its entries.
@@ -76,11 +76,7 @@ pub(super) fn derive_surfaces(
                 rate,
                 curvature: model.pool.derivative_along(gap_rate, &motion),
                 gap_rate,
-                conditions: model.surfaces[s]
-                    .conditions
-                    .iter()
-                    .map(|own| own.margin)
-                    .collect(),
+                margins: model.surfaces[s].margins().collect(),
                 instantaneous: derive_instantaneous(model, coordinates, s),
             }
         })

@@ -8,7 +8,7 @@ use dalembert_expr::Pool;
 use super::check::{check_mode, peer};
 use super::scene::{Extras, Parts, Scene};
 use super::transition::Peer;
-use super::{Coordinate, Model, Name, Topology};
+use super::{Beside, Coordinate, Model, Name, Topology};
 use crate::diagnostics::Diagnostics;
 use crate::spec::{self, STEPS};
 
@@ -404,9 +404,10 @@ fn check_surfaces(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagn
         let conditions: Vec<(String, bool)> = conditions
             .map(|own| (model.pool.text(own.margin), own.is_closed))
             .collect();
+        let is_otherwise = matches!(own.beside, Beside::Otherwise(_));
         (
             model.pool.text(own.gap),
-            conditions,
+            (conditions, is_otherwise),
             model.law_text(surface),
         )
     };

@@ -272,6 +272,37 @@ pub struct Condition {
     pub is_closed: bool,
 }
 
+/// How a surface goes with others of the same gap. A list of conditions holds where all of them hold.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub enum Beside {
+    /// It counts by its own conditions.
+    #[default]
+    Independent,
+    /// `otherwise`: it counts where none of these lists, those of the others, holds.
+    Otherwise(Vec<Vec<Condition>>),
+    /// The last of several transitions of one gap: where neither its own conditions nor one of these lists holds, a motion
+    /// that comes to the surface ends.
+    Last(Vec<Vec<Condition>>),
+}
+
+impl Beside {
+    /// The conditions of the others.
+    pub fn others(&self) -> &[Vec<Condition>] {
+        match self {
+            Self::Independent => &[],
+            Self::Otherwise(others) | Self::Last(others) => others,
+        }
+    }
+}
+
+impl Surface {
+    /// All functions whose signs say where the surface counts: its own first, then those of the others, list after list.
+    pub fn margins(&self) -> impl Iterator<Item = ExprId> {
+        let others = self.beside.others().iter().flatten();
+        self.conditions.iter().chain(others).map(|own| own.margin)
+    }
+}
+
 /// An impact surface `h = 0`; motion is allowed where `h >= 0`.
 #[derive(Debug, Clone)]
 pub struct Surface {
@@ -283,6 +314,8 @@ pub struct Surface {
     pub gap: ExprId,
     /// What must hold for the surface to count.
     pub conditions: Vec<Condition>,
+    /// What is said of the other surfaces of the same gap.
+    pub beside: Beside,
     /// Its law.
     pub law: Law,
     /// The map of the law `reset`.

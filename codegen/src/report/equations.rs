@@ -4,7 +4,7 @@ use dalembert_expr::ExprId;
 
 use super::{Item, Section};
 use crate::mechanics::Derivation;
-use crate::model::{self, Model, Topology};
+use crate::model::{self, Beside, Model, Topology};
 
 /// Prints parts of a model.
 pub(super) struct Writer<'a> {
@@ -219,7 +219,8 @@ impl Writer<'_> {
             let law = self.model.law_text(s);
             let surface = &self.derivation.surfaces[s];
             let (gap, form, rate) = (surface.gap, surface.form.clone(), surface.rate);
-            let conditions = surface.conditions.clone();
+            let conditions = self.model.surfaces[s].conditions.clone();
+            let is_otherwise = matches!(self.model.surfaces[s].beside, Beside::Otherwise(_));
             items.push(Item::Words(format!("surface {name}: {law}")));
             let subscript = format!("_{{\\text{{{}}}}}", escape(&name));
             items.push(self.formula(format!("h[{name}]"), format!("h{subscript}"), gap));
@@ -239,8 +240,12 @@ impl Writer<'_> {
                 items.push(self.formula(
                     format!("when[{name}]"),
                     format!("\\text{{when}}{subscript}"),
-                    condition,
+                    condition.margin,
                 ));
+            }
+            if is_otherwise {
+                let text = format!("{name} counts where no other surface of this gap does");
+                items.push(Item::Words(text));
             }
             items.extend(self.reset(s, &name, &subscript));
             items.extend(self.instantaneous(s));

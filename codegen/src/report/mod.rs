@@ -27,7 +27,7 @@ use equations::Writer;
 use crate::claims::Finding;
 use crate::diagnostics::Diagnostics;
 use crate::emit::text;
-use crate::model::{Mode, ModeGraph, Model};
+use crate::model::{Beside, Mode, ModeGraph, Model};
 use crate::program::{Cost, Program};
 use crate::spec::{self, Declaration, Modes};
 use crate::{Compiled, CompiledModes, compile_modes, compile_spec, read};
@@ -209,7 +209,10 @@ fn transitions(graph: &ModeGraph) -> Vec<Item> {
                 mode.scene.name,
                 mode.model.law_text(index),
                 mode.model.pool.text(surface.gap),
-                conditions.collect::<String>(),
+                match surface.beside {
+                    Beside::Otherwise(_) => " otherwise".to_owned(),
+                    _ => conditions.collect::<String>(),
+                },
             )));
         }
     }

@@ -380,6 +380,8 @@ pub struct Surface {
     pub gap: Comparison,
     /// Where the surface counts.
     pub conditions: Vec<Comparison>,
+    /// Whether it counts where no other surface of the same gap does.
+    pub is_otherwise: bool,
     /// Its law; elastic if there is none.
     pub law: Option<Law>,
     /// The mode that is entered here, of a transition.

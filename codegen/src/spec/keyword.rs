@@ -129,6 +129,9 @@ pub const LAWS: [(&str, usize); 7] = [
 /// The law that is a map: `reset { x = ..; dot(x) = ..; }`.
 pub const RESET: &str = "reset";
 
+/// In place of `when`: where no other surface of the same gap counts.
+pub const OTHERWISE: &str = "otherwise";
+
 /// The word before the constraints that hold in the moment of an impact only: `=> LAW, instantaneous { .. }`.
 pub const INSTANTANEOUS: &str = "instantaneous";
 
@@ -140,7 +143,7 @@ pub const EXTRAS: [&str; 3] = ["projection", "volume", "variations"];
 pub const WHOLE: &str = "all";
 
 /// Words with a meaning of their own in expressions.
-const RESERVED: [&str; 11] = [
+const RESERVED: [&str; 12] = [
     "t",
     "pi",
     "d",
@@ -152,6 +155,7 @@ const RESERVED: [&str; 11] = [
     "partial",
     "until",
     "when",
+    OTHERWISE,
 ];
 
 /// Words that Rust does not accept as the name of a field.

@@ -24,7 +24,9 @@ impl Cursor<'_> {
     pub(super) fn scalar(&mut self) -> Read<Scalar> {
         let sum = self.sum()?;
         match self.peek() {
-            Some(TokenTree::Ident(word)) if *word == "when" => Ok(sum),
+            Some(TokenTree::Ident(word)) if *word == "when" || *word == keyword::OTHERWISE => {
+                Ok(sum)
+            }
             Some(TokenTree::Ident(_) | TokenTree::Literal(_)) => Err(self.missing_operator()),
             Some(TokenTree::Group(group)) if group.delimiter() != Delimiter::Brace => {
                 Err(self.missing_operator())

@@ -53,8 +53,16 @@ pub trait Impacting: System {
         Ok(None)
     }
 
-    /// Whether the surface counts here: all its `when` conditions hold.
+    /// Whether the surface counts here: all its `when` conditions hold. The last of several transitions of one gap counts also
+    /// where the conditions of none hold; see [`Impacting::takes`].
     fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
+        let _ = (surface, t, state);
+        true
+    }
+
+    /// Whether a surface that counts has a law here; where it has none, the run ends as
+    /// [`Outcome::Untaken`](crate::Outcome::Untaken).
+    fn takes(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         let _ = (surface, t, state);
         true
     }

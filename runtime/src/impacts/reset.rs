@@ -14,7 +14,10 @@ pub(crate) fn after_reset<Sys: Impacting + ?Sized>(
     before: &Sys::State,
 ) -> Result<Sys::State, Outcome> {
     if system.law(surface) == Law::Transition {
-        return Err(Outcome::LeftMode { surface });
+        return Err(match system.takes(surface, t, before) {
+            true => Outcome::LeftMode { surface },
+            false => Outcome::Untaken { surface },
+        });
     }
     let Some(jump) = system.reset(surface, t, before)? else {
         return Err(Outcome::NoReset { surface });

@@ -60,6 +60,9 @@ where
 {
     let (left, entered) = (M::of(model), T::of(model));
     let own = taken::<M>(state);
+    if !left.takes(surface, t, &own) {
+        return Err(Outcome::Untaken { surface: place });
+    }
     let after = match passage {
         Passage::Declared => declared(&left, &entered, [surface, place], t, &own)?,
         Passage::Kept => converted(&own),

@@ -3,6 +3,7 @@
 //! Every declaration is resolved and checked by itself first; what concerns several of them (ranks, surfaces against
 //! constraints) follows for those without a fault. So independent mistakes are all reported.
 
+mod beside;
 mod cancellation;
 mod claims;
 mod constraints;
@@ -101,8 +102,9 @@ pub(in crate::model) fn check_mode(
     };
     parts.scenes = scenes::resolve(&mut resolver, &parts.forces, &parts.surfaces);
     parts.claims = claims::resolve(&mut resolver, &parts.surfaces, &parts.scenes);
-    together(&mut resolver, &parts);
     transitions::mark_sides(&mut resolver, &mut parts.surfaces);
+    beside::resolve(&mut resolver, &mut parts.surfaces);
+    together(&mut resolver, &parts);
     if let Some(at) = resolver.exhausted {
         return Err(diagnostics::too_many_steps(at));
     }
@@ -217,6 +219,7 @@ fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec
         &parts.surfaces,
         parts.field.as_deref(),
     ));
+    notes.extend(beside::notes(resolver, &parts.surfaces));
     notes.extend(initial::notes(resolver, &parts.initial));
     notes.extend(parameters::unused(
         resolver,
@@ -251,9 +254,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
     for surface in surfaces {
         used.extend(
             surface
-                .conditions
-                .iter()
-                .map(|own| own.margin)
+                .margins()
                 .chain([surface.gap])
                 .chain(surface.law.coefficient())
                 .chain(surface.reset.iter().flat_map(Reset::expressions))

@@ -3,7 +3,7 @@
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
 use super::super::resolve::Resolver;
-use super::super::{Constraint, Initial, Law, Surface};
+use super::super::{Condition, Constraint, Initial, Law, Surface};
 use crate::diagnostics::Location;
 use crate::spec::InitialTarget;
 
@@ -70,9 +70,7 @@ impl<'a, 'b> Start<'a, 'b> {
             .filter(|surface| !matches!(surface.law, Law::Reset | Law::Transition));
         let behind = walls.filter_map(|surface| {
             let at = self.declared_at(surface.gap)?;
-            let mut margins = surface.conditions.iter().map(|condition| condition.margin);
-            let counts = margins.all(|margin| self.clear_sign(margin) == Some(1.0));
-            if !counts || self.clear_sign(surface.gap) != Some(-1.0) {
+            if !self.counts(surface) || self.clear_sign(surface.gap) != Some(-1.0) {
                 return None;
             }
             let (name, gap) = (&surface.name.display, self.shown(surface.gap));
@@ -83,6 +81,18 @@ impl<'a, 'b> Start<'a, 'b> {
             })
         });
         behind.collect()
+    }
+
+    /// Whether a surface counts at the start, clearly.
+    fn counts(&self, surface: &Surface) -> bool {
+        let has_sign = |own: &Condition, sign: f64| self.clear_sign(own.margin) == Some(sign);
+        let mut own = surface.conditions.iter();
+        own.all(|own| has_sign(own, 1.0))
+            && surface
+                .beside
+                .others()
+                .iter()
+                .all(|other| other.iter().any(|own| has_sign(own, -1.0)))
     }
 
     /// Constraints that declared positions and velocities alone violate.

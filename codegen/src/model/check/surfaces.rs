@@ -4,7 +4,7 @@ use dalembert_expr::{ExprId, Pool, SymbolId};
 
 use super::super::degree::is_zero;
 use super::super::resolve::{Resolver, Scope};
-use super::super::{Condition, Constraint, Law, Surface};
+use super::super::{Beside, Condition, Constraint, Law, Surface};
 use super::names::Names;
 use crate::diagnostics::listed;
 use crate::spec::{self, Comparison, SURFACES};
@@ -64,6 +64,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
                 documentation: surface.documentation.clone(),
                 gap,
                 conditions,
+                beside: Beside::Independent,
                 law,
                 reset,
                 transition,
@@ -167,6 +168,9 @@ pub(super) fn check_distinct(resolver: &mut Resolver<'_>, surfaces: &[Surface]) 
     for (index, second) in surfaces.iter().enumerate() {
         for first in &surfaces[..index] {
             if first.conditions != second.conditions
+                || first.beside != second.beside
+                || is_otherwise(first)
+                || is_otherwise(second)
                 || !is_proportional(resolver, first.gap, second.gap)
                 || count_both_ways(&resolver.pool, first, second)
             {
@@ -186,6 +190,11 @@ pub(super) fn check_distinct(resolver: &mut Resolver<'_>, surfaces: &[Surface]) 
     }
 }
 
+/// Whether a surface counts where others do not; those it goes with are checked elsewhere.
+fn is_otherwise(surface: &Surface) -> bool {
+    matches!(surface.beside, Beside::Otherwise(_))
+}
+
 /// Whether a transition has the opposite gap of another, under the same conditions.
 pub(super) fn are_opposite(resolver: &mut Resolver<'_>, first: &Surface, second: &Surface) -> bool {
     first.conditions == second.conditions
@@ -198,9 +207,23 @@ pub(super) fn are_opposite(resolver: &mut Resolver<'_>, first: &Surface, second:
 fn count_both_ways(pool: &Pool, first: &Surface, second: &Surface) -> bool {
     let passes = |own: &Surface| matches!(own.law, Law::Reset | Law::Transition);
     let are_resets = passes(first) && passes(second);
-    let point = |symbol: SymbolId| 0.3 + (symbol.index() as f64 * 0.618_033_988_749_894_9).fract();
-    let gaps = pool.eval(&[first.gap, second.gap], &point);
+    let gaps = pool.eval(&[first.gap, second.gap], &generic);
     are_resets && gaps[0] * gaps[1] < 0.0
+}
+
+/// Whether two gaps are the same up to a positive factor.
+pub(super) fn have_same_gap(
+    resolver: &mut Resolver<'_>,
+    first: &Surface,
+    second: &Surface,
+) -> bool {
+    let gaps = resolver.pool.eval(&[first.gap, second.gap], &generic);
+    gaps[0] * gaps[1] > 0.0 && is_proportional(resolver, first.gap, second.gap)
+}
+
+/// A point that no declaration has in mind.
+fn generic(symbol: SymbolId) -> f64 {
+    0.3 + (symbol.index() as f64 * 0.618_033_988_749_894_9).fract()
 }
 
 /// Whether the quotient of two functions is constant: `f d(g) - g d(f) = 0`.

@@ -193,8 +193,8 @@ pub(super) fn motion_rates(kernel: &mut Kernel<'_>, form: Form) -> Vec<Value> {
 }
 
 fn conditions(model: &Model, derivation: &Derivation, s: usize) -> Option<Function> {
-    let conditions = &derivation.surfaces[s].conditions;
-    (!conditions.is_empty()).then(|| position_function(model, derivation, conditions))
+    let margins = &derivation.surfaces[s].margins;
+    (!margins.is_empty()).then(|| position_function(model, derivation, margins))
 }
 
 fn contact(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Function {

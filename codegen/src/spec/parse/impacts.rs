@@ -4,7 +4,7 @@ use proc_macro2::{Delimiter, TokenTree};
 
 use super::super::ast::{Comparison, Law, Scalar, Spec, Surface, Word};
 use super::super::cursor::{Cursor, Read, Refused, tokens_of};
-use super::super::keyword::{LAWS, RESET};
+use super::super::keyword::{LAWS, OTHERWISE, RESET};
 use super::{instantaneous, labelled, reset};
 use crate::diagnostics::listed;
 
@@ -14,7 +14,7 @@ const FORM: &str = "name: h >= 0 when g > 0 => LAW;";
 pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let (documentation, declared) = labelled(cursor, "a surface", FORM)?;
     let gap = comparison(cursor, Strictness::Weak, FORM)?;
-    let conditions = conditions(cursor, FORM)?;
+    let (conditions, is_otherwise) = conditions(cursor, FORM)?;
     let law = law(cursor, spec, FORM)?;
     let instantaneous = instantaneous::equations(cursor, spec, law.as_ref())?;
     let item = spec.item(gap.at);
@@ -23,6 +23,7 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         documentation,
         gap,
         conditions,
+        is_otherwise,
         law,
         enters: None,
         instantaneous,
@@ -31,16 +32,32 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     Ok(())
 }
 
-/// Reads `when a > 0 when b > 0`, if it is there.
-pub(super) fn conditions(cursor: &mut Cursor<'_>, form: &str) -> Read<Vec<Comparison>> {
+/// Reads `when a > 0 when b > 0` or `otherwise`, if it is there, and says whether it is the latter.
+pub(super) fn conditions(cursor: &mut Cursor<'_>, form: &str) -> Read<(Vec<Comparison>, bool)> {
+    const ALONE: &str =
+        "`otherwise` is the only condition: the surface counts where no other of the same gap does";
     let mut conditions = Vec::new();
+    if cursor.eat_word(OTHERWISE) {
+        if cursor.is_word("when") {
+            return Err(cursor.unexpected("expected `=>` or `;`", ALONE));
+        }
+        return Ok((conditions, true));
+    }
     while cursor.eat_word("when") {
+        if cursor.is_word(OTHERWISE) {
+            return Err(
+                cursor.unexpected("expected a comparison", "write `otherwise` without `when`")
+            );
+        }
         conditions.push(comparison(cursor, Strictness::Either, form)?);
+        if cursor.is_word(OTHERWISE) {
+            return Err(cursor.unexpected("expected `=>` or `;`", ALONE));
+        }
         if cursor.is_operator("&&") || cursor.is_operator(",") {
             return Err(cursor.unexpected("expected `when`", "write `when a > 0 when b > 0`"));
         }
     }
-    Ok(conditions)
+    Ok((conditions, false))
 }
 
 /// Whether equality is allowed.

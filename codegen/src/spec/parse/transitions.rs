@@ -147,7 +147,7 @@ fn transition(
         is_closed,
         at,
     } = comparison(cursor, Strictness::Weak, FORM)?;
-    let conditions = conditions(cursor, FORM)?;
+    let (conditions, is_otherwise) = conditions(cursor, FORM)?;
     let law = law(cursor, spec, FORM)?;
     let item = spec.item(at);
     // A transition happens when what is compared becomes true; the gap of a surface is positive before.
@@ -165,6 +165,7 @@ fn transition(
         documentation,
         gap,
         conditions,
+        is_otherwise,
         law,
         enters: Some(to.clone()),
         instantaneous: Vec::new(),

@@ -324,6 +324,7 @@ pub(crate) fn details(description: &Description, outcome: &Outcome) -> Vec<(&'st
         Outcome::Contact { surface: index }
         | Outcome::LeftMode { surface: index }
         | Outcome::Trapped { surface: index }
+        | Outcome::Untaken { surface: index }
         | Outcome::NoReset { surface: index }
         | Outcome::TangentialCrossing { surface: index }
         | Outcome::SingularSurface { surface: index } => vec![surface(index)],

@@ -1,0 +1,109 @@
+//! Several surfaces of one gap: `otherwise`, and transitions that leave a motion without one.
+
+use dalembert_expr::Pool;
+
+use super::super::resolve::Resolver;
+use super::super::{Beside, Condition, Surface};
+use super::surfaces::have_same_gap;
+use crate::spec::Spec;
+
+/// Finds for each surface those of the same gap, where it matters: for `otherwise`, and for the last of several transitions.
+pub(super) fn resolve(resolver: &mut Resolver<'_>, surfaces: &mut [Surface]) {
+    let spec = resolver.spec;
+    let otherwise: Vec<bool> = surfaces.iter().map(|own| is_otherwise(spec, own)).collect();
+    for index in 0..surfaces.len() {
+        let is_transition = surfaces[index].transition.is_some();
+        if !otherwise[index] && !is_transition {
+            continue;
+        }
+        let same: Vec<usize> = (0..surfaces.len())
+            .filter(|&other| other != index)
+            .filter(|&other| have_same_gap(resolver, &surfaces[other], &surfaces[index]))
+            .collect();
+        let others = || -> Vec<Vec<Condition>> {
+            let others = same.iter().map(|&other| surfaces[other].conditions.clone());
+            others.collect()
+        };
+        if otherwise[index] {
+            check_otherwise(resolver, surfaces, index, &same, &otherwise);
+            surfaces[index].beside = Beside::Otherwise(others());
+            continue;
+        }
+        let is_last = same
+            .iter()
+            .all(|&other| surfaces[other].transition.is_none() || other < index);
+        let passes = |own: &Surface| own.transition.as_ref().is_some_and(|own| own.has_no_side);
+        let is_open = !passes(&surfaces[index])
+            && !same.iter().any(|&other| otherwise[other])
+            && !surfaces[index].conditions.is_empty()
+            && !others().iter().any(Vec::is_empty);
+        if is_last && is_open && !same.is_empty() {
+            surfaces[index].beside = Beside::Last(others());
+        }
+    }
+}
+
+/// Remarks on pairs of surfaces that leave out exactly the points between them.
+pub(super) fn notes(resolver: &Resolver<'_>, surfaces: &[Surface]) -> Vec<String> {
+    let mut pool = resolver.pool.clone();
+    let mut notes = Vec::new();
+    for (index, second) in surfaces.iter().enumerate() {
+        for first in &surfaces[..index] {
+            let Some(between) = left_out(&mut pool, first, second) else {
+                continue;
+            };
+            if first.gap != second.gap || !second.beside.others().is_empty() {
+                continue;
+            }
+            let (first, second) = (&first.name.display, &second.name.display);
+            notes.push(format!(
+                "a motion that meets the surface of `{first}` and `{second}` where {between} = 0 passes: neither counts there; \
+                 write `>=` or `<=` in one of the two conditions, or `otherwise`"
+            ));
+        }
+    }
+    notes
+}
+
+/// The margin of which one surface counts on one side and the other on the other side.
+fn left_out(pool: &mut Pool, first: &Surface, second: &Surface) -> Option<String> {
+    let ([one], [other]) = (&*first.conditions, &*second.conditions) else {
+        return None;
+    };
+    let sum = pool.add(one.margin, other.margin);
+    let are_opposite = !one.is_closed && !other.is_closed && pool.is_syntactic_zero(sum);
+    are_opposite.then(|| pool.text(other.margin))
+}
+
+fn is_otherwise(spec: &Spec, surface: &Surface) -> bool {
+    let mut declared = spec.surfaces.iter();
+    declared.any(|own| own.item == surface.item && own.is_otherwise)
+}
+
+/// Refuses `otherwise` where there is nothing else, nothing left, or two of them.
+fn check_otherwise(
+    resolver: &mut Resolver<'_>,
+    surfaces: &[Surface],
+    index: usize,
+    same: &[usize],
+    otherwise: &[bool],
+) {
+    let at = resolver.spec.location(surfaces[index].item);
+    let name = &surfaces[index].name.display;
+    let every = same
+        .iter()
+        .find(|&&other| !otherwise[other] && surfaces[other].conditions.is_empty());
+    if let Some(twin) = same.iter().find(|&&other| otherwise[other]) {
+        let twin = &surfaces[*twin].name.display;
+        let text = format!("`{name}` and `{twin}` are both `otherwise` of one gap");
+        resolver.refuse::<()>(at, text, "write the conditions of one of them");
+    } else if let Some(every) = every {
+        let every = &surfaces[*every].name.display;
+        let text = format!("`{every}` has no condition: nothing is left for `{name}`");
+        resolver.refuse::<()>(at, text, "write `when ..` there");
+    } else if same.is_empty() {
+        let text = format!("no other surface has the gap of `{name}`");
+        let help = "leave `otherwise` out, or write the same comparison as in the others";
+        resolver.refuse::<()>(at, text, help);
+    }
+}
