@@ -112,6 +112,10 @@ where
         self.stepper.step(self.field, t_end, counters)
     }
 
+    fn error(&self) -> f64 {
+        self.stepper.error()
+    }
+
     fn fixed_step(&self) -> Option<f64> {
         self.stepper.fixed_step()
     }

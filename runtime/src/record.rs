@@ -21,7 +21,8 @@ pub struct Event<S> {
     pub after: S,
     /// Whether another surface was hit at the same time; such impacts are carried out in order of index.
     pub simultaneous: bool,
-    /// Whether the surface was touched so lightly that rounding may have decided it.
+    /// Whether the surface was touched so lightly that rounding, or the error of the integrator as far as it estimates one, may
+    /// have decided it.
     pub graze: bool,
 }
 

@@ -5,6 +5,7 @@
 //! same: on their boundary rounding decides.
 
 use crate::contract::Impacting;
+use crate::integrate::Tolerance;
 use crate::state::StateVector;
 
 /// The part by which a component is moved: half the digits, where difference quotients are best.
@@ -23,18 +24,48 @@ pub(crate) fn resolution<Sys: Impacting>(
     sizes: &Sys::State,
     evaluations: &mut u64,
 ) -> f64 {
-    let mut gap = |t: f64, state: &Sys::State| {
-        *evaluations += 1;
-        system.gaps(t, state).as_slice()[surface]
-    };
-    let here = gap(t, state);
-    let mut sum = (gap(t + PART * t, state) - here).abs();
+    *evaluations += 1;
+    let here = system.gaps(t, state).as_slice()[surface];
+    let later = system.gaps(t + PART * t, state).as_slice()[surface];
+    let sum = sum_of_terms(system, surface, (t, state), here, sizes, evaluations);
+    UNITS * (sum + (later - here).abs() / PART)
+}
+
+/// `sum_i |dh/dx_i| sizes_i`, with `here` the gap.
+fn sum_of_terms<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    (t, state): (f64, &Sys::State),
+    here: f64,
+    sizes: &Sys::State,
+    evaluations: &mut u64,
+) -> f64 {
+    let mut sum = 0.0;
     for i in 0..Sys::State::LEN {
         let mut moved = *state;
         moved.as_mut_slice()[i] += PART * sizes.as_slice()[i].abs();
-        sum += (gap(t, &moved) - here).abs();
+        sum += (system.gaps(t, &moved).as_slice()[surface] - here).abs();
     }
-    UNITS * sum / PART
+    *evaluations += 1 + Sys::State::LEN as u64;
+    sum / PART
+}
+
+/// How far a surface's gap moves when every component of the state errs by the tolerance: `unit` holds the sizes of the
+/// components, their scale, and the tolerance. Costs what [`resolution`] costs.
+pub(crate) fn error_within<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    (t, state): (f64, &Sys::State),
+    (sizes, scale, tolerance): (&Sys::State, &Sys::State, Tolerance),
+    evaluations: &mut u64,
+) -> f64 {
+    let share = tolerance.absolute() / tolerance.relative();
+    let mut units = *sizes;
+    for (own, scale) in units.as_mut_slice().iter_mut().zip(scale.as_slice()) {
+        *own = own.abs() + share * scale;
+    }
+    let here = system.gaps(t, state).as_slice()[surface];
+    tolerance.relative() * sum_of_terms(system, surface, (t, state), here, &units, evaluations)
 }
 
 /// Whether a surface counts, and would if rounding had moved the state: a component of one of these sizes, or time,

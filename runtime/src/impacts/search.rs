@@ -10,9 +10,10 @@ use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::events::crossing::{NODES, SAMPLES, Signs};
 use crate::events::locate::{Bracket, Search, Start};
-use crate::events::resolution::resolution;
+use crate::events::resolution::{error_within, resolution};
 use crate::integrate::Stepper;
 use crate::integrate::controller::least_trial;
+use crate::math;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -21,6 +22,9 @@ const FALLS: u32 = 1024;
 
 /// A gap rate this small a part of those at the ends of the step may belong to a graze.
 const SLOW: f64 = 1.0 / (1 << 10) as f64;
+
+/// What the errors of steps may grow to in a flight, over their sum.
+const SAFETY: f64 = 8.0;
 
 /// The first hit of one surface in a step.
 enum Found {
@@ -242,7 +246,7 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Marks a hit so slow that the gap's lowest value would be within its rounding.
+    /// Marks a hit so slow that the gap's lowest value would be within its rounding, or within what the integrator may err by.
     fn note_graze<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -262,11 +266,22 @@ impl<Sys: Impacting> Watch<Sys> {
         };
         self.bends.as_mut_slice()[surface] = (other - rate).abs() / (apart * self.length);
         let mut graze = 0.0;
-        if rate.abs() <= SLOW * ends[0].abs().max(ends[1].abs()) {
+        let tolerance = step.stepper.tolerance();
+        let missed = SAFETY * self.errors * tolerance.relative().max(tolerance.absolute());
+        let slow = SLOW.max(2.0 * math::sqrt(missed));
+        if rate.abs() <= slow * ends[0].abs().max(ends[1].abs()) {
             let mut evaluations = 0;
-            let rounding = || rounding_along(surface, step, &self.sizes, &mut evaluations);
-            if self.is_slow(surface, rate, rounding) {
+            let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
+            if self.is_slow(surface, rate, || rounding) {
                 graze = 1.0;
+            } else if self.errors > 0.0 {
+                let scale = step.system.scale(step.t_end(), step.end());
+                let unit = (&self.sizes, &scale, tolerance);
+                let end = (step.t_end(), step.end());
+                let error = error_within(step.system, surface, end, unit, &mut evaluations);
+                if self.is_slow(surface, rate, || SAFETY * self.errors * error) {
+                    graze = 3.0;
+                }
             }
             step.counters.event_evaluations += evaluations;
         }

@@ -34,7 +34,8 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) proposed: Option<f64>,
     /// Per surface, the part of the last step at which it is hit; meaningful while something is proposed.
     pub(super) parts: Sys::Gaps,
-    /// 1 where that hit is a graze, 2 where the surface is crossed there although the gap rate vanishes.
+    /// 1 where that hit is a graze within rounding, 2 where the surface is crossed there although the gap rate vanishes, 3 where
+    /// it is a graze as far as the integrator's error tells.
     pub(super) grazes: Sys::Gaps,
     /// How fast the gap rate changes about that hit.
     pub(super) bends: Sys::Gaps,
@@ -48,6 +49,8 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) sizes: Sys::State,
     /// Steps since then: each has rounded the state.
     steps: u32,
+    /// The sum of their estimated errors, in units of the tolerance.
+    pub(super) errors: f64,
     /// Surfaces that the motion is held on: their gaps are 0, and are not watched.
     held: Held<Sys::Gaps>,
 }
@@ -68,6 +71,7 @@ impl<Sys: Impacting> Watch<Sys> {
             here: None,
             sizes: Sys::State::zeros(),
             steps: 0,
+            errors: 0.0,
             held: Held::none(),
         }
     }
@@ -149,7 +153,7 @@ impl<Sys: Impacting> Watch<Sys> {
         rates: Sys::Gaps,
     ) -> Result<(), Outcome> {
         self.rates = rates;
-        self.steps = 0;
+        (self.steps, self.errors) = (0, 0.0);
         let (held, here) = (self.held, self.here.take());
         let is_at_hand =
             |surface: usize| hits.at_hand.as_slice()[surface] == 1.0 || held.is_held(surface);
@@ -246,10 +250,10 @@ impl<Sys: Impacting> Watch<Sys> {
 
     /// Whether the hit on this surface is a graze.
     pub(super) fn is_graze(&self, surface: usize) -> bool {
-        self.grazes.as_slice()[surface] == 1.0
+        matches!(self.grazes.as_slice()[surface], 1.0 | 3.0)
     }
 
-    /// Whether a gap rate at the last hit is so slow that the gap's rounding errors may have decided its sign.
+    /// Whether a gap rate at the last hit is so slow that an error of the gap, such as its rounding, may have decided its sign.
     pub(super) fn is_slow(
         &self,
         surface: usize,
@@ -279,6 +283,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let glance = glance(step)?;
         self.proposed = None;
         self.steps = self.steps.saturating_add(1);
+        self.errors += step.stepper.error();
         for (size, value) in self
             .sizes
             .as_mut_slice()

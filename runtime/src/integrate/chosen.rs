@@ -58,6 +58,10 @@ impl<F: VectorField> Stepper<F> for Chosen<'_, F> {
         self.stepper.step(field, t_end, counters)
     }
 
+    fn error(&self) -> f64 {
+        self.stepper.error()
+    }
+
     fn fixed_step(&self) -> Option<f64> {
         self.stepper.fixed_step()
     }

@@ -129,6 +129,8 @@ pub struct Embedded<S: StateVector, M: Scheme> {
     memory: Memory,
     /// The step size for the next trial.
     next: f64,
+    /// The error of the last step over what is allowed.
+    error: f64,
     ends: Ends<S>,
     stages: M::Stages<S>,
     dense: M::Dense<S>,
@@ -146,6 +148,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
             weights: Weights::new(tolerance, &zeros),
             memory: Memory::new(),
             next: 0.0,
+            error: 0.0,
             ends: Ends::new(),
             stages: M::stages(),
             dense: M::dense(),
@@ -321,6 +324,7 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
             {
                 field.counters.accepted += 1;
                 self.ends.t[1] = arrival;
+                self.error = error;
                 self.next = made * self.memory.accept(&M::CONTROL, error);
                 return Ok(());
             }
@@ -335,6 +339,10 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
                 return Err(attempt.err().unwrap_or(StepFailure::StepUnderflow { t }));
             }
         }
+    }
+
+    fn error(&self) -> f64 {
+        self.error
     }
 
     fn replace_end(

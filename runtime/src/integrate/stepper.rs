@@ -55,6 +55,11 @@ pub trait Stepper<F: VectorField> {
     /// [`StepFailure`]; the last good state is still [`Stepper::end_state`].
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure>;
 
+    /// The error that the last step is estimated to have made, as a part of the tolerance; 0 where it is not estimated.
+    fn error(&self) -> f64 {
+        0.0
+    }
+
     /// The size this integrator keeps in the run at hand; `None` if it chooses every step anew.
     fn fixed_step(&self) -> Option<f64> {
         None

@@ -76,6 +76,8 @@ pub struct Taylor<F: TaylorField> {
     next_unit: f64,
     /// No step longer than this for now: after a jump, and at the start.
     limit: f64,
+    /// At least the error of the last step over what is allowed.
+    error: f64,
     ends: Ends<F::State>,
     rates: [F::State; 2],
     expansion: Expansion<F, f64>,
@@ -115,6 +117,7 @@ impl<F: TaylorField> Taylor<F> {
             unit: 1.0,
             next_unit: 1.0,
             limit: f64::INFINITY,
+            error: 0.0,
             ends: Ends::new(),
             rates: [zeros; 2],
             expansion: Expansion::new(),
@@ -243,6 +246,9 @@ impl<F: TaylorField> Taylor<F> {
     #[inline(always)]
     fn accept(&mut self, made: f64, reach: f64, counters: &mut Counters) {
         counters.accepted += 1;
+        // The error grows with a power of the step that is the order and more.
+        let part = made / reach;
+        self.error = (part * part) * (part * part);
         self.limit = if made < reach {
             GROW * made.max(self.limit.min(reach))
         } else {

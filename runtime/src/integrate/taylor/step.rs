@@ -80,6 +80,10 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         }
     }
 
+    fn error(&self) -> f64 {
+        self.error
+    }
+
     fn replace_end(
         &mut self,
         field: &F,
