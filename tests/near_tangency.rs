@@ -2,8 +2,8 @@
 //! flagged.
 
 use dalembert::{
-    Described, Dop853, DormandPrince5, EventLog, Outcome, Scene, Simulation, Stepper, System,
-    Taylor, Tolerance,
+    Described, Dop853, DormandPrince5, EventLog, Outcome, Scene, Simulation, Stepper, Taylor,
+    Tolerance,
 };
 
 dalembert::model! {

@@ -1,6 +1,9 @@
 //! Starts that the declaration leaves open: what `check` says of them, and how equations of positions complete them.
 
-use dalembert::{Described, Dop853, Outcome, Scene, Simulation, StateError, System, Tolerance};
+use dalembert::{
+    Described, Dop853, Keep, Outcome, ParameterError, Scene, Simulation, StateError, System,
+    Tolerance,
+};
 use dalembert_cli::{Exit, models};
 use dalembert_tests::command::{self, Finished};
 
@@ -173,4 +176,97 @@ fn the_command_line_solves_for_positions_or_refuses_them() {
     let given = "simulate rod --until 1 --q 0.8,-0.8 --qdot 1,1";
     let Finished { errors, .. } = run(given);
     assert!(errors.contains("the positions violate"), "{errors}");
+}
+
+dalembert::model! {
+    /// A skate whose blade stands off its centre of mass, in the state (q, u).
+    pub Skate {
+        coordinates { x; y; theta: angle; }
+        parameters { m > 0 = 1; J > 0 = 1; a = 1/2; }
+        let c = sin(theta)*dot(x) - cos(theta)*dot(y);
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + J/2*dot(theta)^2;
+        constraints { blade: c = a*dot(theta); }
+    }
+}
+
+dalembert::model! {
+    /// A mass that becomes another one's burden at x = 1.
+    pub Loaded {
+        coordinates { x; }
+        parameters { m > 0 = 1; load > 0 = 3; }
+        modes {
+            free { lagrangian = m/2*dot(x)^2; initial { dot(x) = 2; until = 3; } }
+            both { lagrangian = (m + load)/2*dot(x)^2; }
+        }
+        transitions { taken: free -> both when x >= 1 => reset { dot(x) = dot(x); }; }
+    }
+}
+
+#[test]
+fn what_stays_is_said_where_parameters_change() {
+    let (light, heavy) = (
+        Skate::default(),
+        Skate {
+            m: 4.0,
+            J: 2.0,
+            a: 0.5,
+        },
+    );
+    let (q, qdot) = ([0.0, 0.0, 0.3].into(), |u: f64, w: f64, a: f64| {
+        let (sin, cos) = 0.3_f64.sin_cos();
+        [u * cos + a * w * sin, u * sin - a * w * cos, w].into()
+    });
+    let state = light.state(0.0, &q, &qdot(2.0, 1.0, 0.5)).unwrap();
+    let as_fast = heavy
+        .carried(&light, 0.0, &state, Keep::Velocities)
+        .unwrap();
+    let velocity = heavy.velocity(0.0, &as_fast).unwrap();
+    assert!(
+        (velocity - qdot(2.0, 1.0, 0.5))
+            .iter()
+            .all(|own| own.abs() < 1e-15)
+    );
+    let as_heavy = heavy.carried(&light, 0.0, &state, Keep::Momenta).unwrap();
+    // The momentum along the blade is that of the mass, so the speed along it is a quarter.
+    let slower = heavy.velocity(0.0, &as_heavy).unwrap();
+    let along = slower[0] * 0.3_f64.cos() + slower[1] * 0.3_f64.sin();
+    assert!((along - 0.5).abs() < 1e-15, "{along}");
+    let turned = Skate { a: 0.25, ..light };
+    let refused = turned.carried(&light, 0.0, &state, Keep::Velocities);
+    assert!(
+        matches!(
+            refused,
+            Err(StateError::OffConstraint { constraint: 0, .. })
+        ),
+        "{refused:?}"
+    );
+    let hollow = Skate { m: -1.0, ..light };
+    let refused = hollow.carried(&light, 0.0, &state, Keep::Momenta);
+    assert!(
+        matches!(
+            refused,
+            Err(StateError::Parameter(ParameterError { name: "m", .. }))
+        ),
+        "{refused:?}"
+    );
+}
+
+#[test]
+fn a_motion_is_carried_on_in_the_mode_that_it_is_in() {
+    let system = Loaded::default();
+    let state = system.state(0.0, &[0.0].into(), &[2.0].into()).unwrap();
+    let stepper = Dop853::new(Tolerance::new(1e-9).unwrap());
+    let run = Simulation::new(&system, stepper, system.effects())
+        .run(0.0, state, 3.0, &mut ())
+        .unwrap();
+    assert_eq!(system.mode(&run.state), loaded::Mode::Both as usize);
+    let heavier = Loaded {
+        load: 7.0,
+        ..system
+    };
+    let carried = heavier
+        .carried(&system, 3.0, &run.state, Keep::Momenta)
+        .unwrap();
+    assert_eq!(heavier.mode(&carried), loaded::Mode::Both as usize);
+    assert_eq!(heavier.velocity(3.0, &carried).unwrap()[0], 1.0);
 }

@@ -246,6 +246,8 @@ pub mod arguments {
     pub fn rate() {}
     pub fn q() {}
     pub fn placed() {}
+    pub fn from() {}
+    pub fn keep() {}
     pub fn qdot() {}
     pub fn p() {}
     pub fn excess() {}

@@ -138,8 +138,8 @@ pub mod work;
 pub use dalembert_numbers::{math, numbers};
 
 pub use contract::{
-    Actuated, Constrained, Divergence, Impacting, InvariantVolume, Lagrangian, Level, Powered,
-    RankDrop, System, TaylorField, Variational, VectorField,
+    Actuated, Constrained, Divergence, Impacting, InvariantVolume, Keep, Lagrangian, Level,
+    Powered, RankDrop, System, TaylorField, Variational, VectorField,
 };
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};

@@ -14,6 +14,6 @@ pub use actuated::{Actuated, Powered};
 pub use constrained::{Constrained, Level};
 pub use field::{TaylorField, VectorField};
 pub use impacting::Impacting;
-pub use system::{Lagrangian, RankDrop, System};
+pub use system::{Keep, Lagrangian, RankDrop, System};
 pub use variational::Variational;
 pub use volume::{Divergence, InvariantVolume};

@@ -4,6 +4,16 @@ use super::VectorField;
 use crate::error::{Fault, ParameterError, StateError};
 use crate::state::StateVector;
 
+/// What of a motion stays where parameters change: a state holds momenta or quasi-velocities, whose velocities are others with
+/// other parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// The velocities: a mass that is exchanged goes on as fast.
+    Velocities,
+    /// The momenta: a mass that grows becomes slower.
+    Momenta,
+}
+
 /// A mechanical system: a state with positions, velocities, momenta and an energy.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a mechanical system: declare a `lagrangian` in its `model!`"
@@ -196,6 +206,30 @@ pub trait System: VectorField {
         let q = self.complete_position(t, q, &Self::Vector::zeros())?;
         self.checked(t, &q, qdot)?;
         Ok(self.state_nearest(t, &q, qdot)?)
+    }
+
+    /// The state of this system that goes on where a state of `from`, the system with other parameters, ends. A state that is
+    /// merely handed on keeps its components: momenta in the global form, so that velocities jump with the masses, and
+    /// quasi-velocities on D.
+    ///
+    /// # Errors
+    /// As [`System::state`]; [`Fault::FirstOrder`] for momenta of a first-order system.
+    fn carried(
+        &self,
+        from: &Self,
+        t: f64,
+        state: &Self::State,
+        keep: Keep,
+    ) -> Result<Self::State, StateError> {
+        let q = from.position(state);
+        match keep {
+            Keep::Velocities => self.state(t, &q, &from.velocity(t, state)?),
+            Keep::Momenta => {
+                let carried = self.state_from_momenta(t, &q, &from.momentum(t, state)?)?;
+                self.state(t, &q, &self.velocity(t, &carried)?)?;
+                Ok(carried)
+            }
+        }
     }
 
     /// The state after every check but that of the constraints.

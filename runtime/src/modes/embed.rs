@@ -4,7 +4,7 @@
 //! rates 0, so that they are neither met nor neared.
 
 use super::{Mode, StateOf};
-use crate::contract::{Impacting, RankDrop};
+use crate::contract::{Impacting, Keep, RankDrop};
 use crate::describe::{Initial, Report};
 use crate::error::{Fault, StateError};
 use crate::impacts::law::{Blow, Contact, Landing};
@@ -269,6 +269,21 @@ pub fn admit<M: Mode, V: StateVector>(
 ) -> Result<(), StateError> {
     let [q, qdot] = [q, qdot].map(|values| gathered(values, M::COORDINATES));
     M::of(model).admit(t, &q, &qdot)
+}
+
+/// As [`System::carried`](crate::System::carried), of a state in this mode.
+///
+/// # Errors
+/// That of the mode.
+pub fn carried<M: Mode>(
+    model: &M::Model,
+    from: &M::Model,
+    t: f64,
+    state: &StateOf<M>,
+    keep: Keep,
+) -> Result<StateOf<M>, StateError> {
+    let own = M::of(model).carried(&M::of(from), t, &taken::<M>(state), keep)?;
+    Ok(placed::<M>(&own))
 }
 
 /// As [`System::complete_position`](crate::System::complete_position), in this mode.

@@ -274,6 +274,9 @@ fn emit_readings(whole: &Whole<'_>) -> TokenStream {
         |_, mode| quote!(::dalembert::__private::modes::outside_chart::<#mode>(self, state)),
     );
     let drop = emit_rank_drop(whole);
+    let carried = whole.of_state(
+        |_, mode| quote!(::dalembert::__private::modes::carried::<#mode>(self, from, t, state, keep)),
+    );
     let motion = whole.of_state(
         |_, mode| quote!(<<#mode as ::dalembert::System>::Vector as ::dalembert::StateVector>::LEN),
     );
@@ -292,6 +295,16 @@ fn emit_readings(whole: &Whole<'_>) -> TokenStream {
 
         #[inline]
         fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse) { #kick }
+
+        fn carried(
+            &self,
+            from: &Self,
+            t: f64,
+            state: &Self::State,
+            keep: ::dalembert::Keep,
+        ) -> ::core::result::Result<Self::State, ::dalembert::StateError> {
+            #carried
+        }
 
         fn motion_start(&self, state: &Self::State) -> usize { #motion }
 
