@@ -93,11 +93,14 @@ impl Numbers {
 }
 
 /// Names that generated functions use for their own arguments and locals; `dalembert::__private::arguments` has each of them.
-const ARGUMENTS: [&str; 31] = [
+const ARGUMENTS: [&str; 34] = [
     "t",
     "state",
     "rate",
     "q",
+    "placed",
+    "from",
+    "keep",
     "qdot",
     "p",
     "excess",
