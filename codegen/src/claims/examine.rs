@@ -6,7 +6,7 @@ use super::defaults::{Defaults, absence_at_defaults, existence_at_defaults};
 use super::dynamics::Dynamics;
 use super::exactness::{Exactness, decide};
 use super::existence::{self, Decision};
-use super::finding::{self, Finding, Verdict};
+use super::finding::{self, ClosedForm, Finding, Verdict};
 use super::global::Global;
 use super::problem::Problem;
 use super::undecided::Undecided;
@@ -122,6 +122,7 @@ fn open(claim: &Claim, reason: Undecided) -> Finding {
         item: claim.item,
         verdict: Verdict::Undecided(reason.to_string()),
         remarks: Vec::new(),
+        density: None,
     }
 }
 
@@ -173,9 +174,25 @@ impl<'e> Examiner<'e> {
             claim: claim.text.clone(),
             is_assumed: claim.is_assumed,
             item: claim.item,
+            density: self.closed_form(&claim.statement, &verdict),
             verdict,
             remarks,
         }
+    }
+
+    /// The density that a proof of existence is about, if it has a closed form.
+    fn closed_form(&self, statement: &Statement, verdict: &Verdict) -> Option<ClosedForm> {
+        let (Statement::Existence(Existence::Global | Existence::Local), Verdict::Proved(_)) =
+            (statement, verdict)
+        else {
+            return None;
+        };
+        let exactness = self.decision.as_ref()?.as_ref().ok()?;
+        let (potential, _) = exactness.density.as_ref()?;
+        Some(ClosedForm {
+            potential: potential.clone(),
+            dependent: exactness.local.dependent.clone(),
+        })
     }
 
     fn existence(&mut self, existence: Existence) -> (Verdict, Vec<String>) {

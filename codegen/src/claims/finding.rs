@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::potential::Potential;
 use super::sample::Sample;
 use crate::spec::ItemId;
 
@@ -18,6 +19,17 @@ pub struct Finding {
     pub verdict: Verdict,
     /// What else was found out: a momentum equation, what impacts do to the volume.
     pub remarks: Vec<String>,
+    /// The density in closed form that a proof is about.
+    pub density: Option<ClosedForm>,
+}
+
+/// A density `exp(G) mu_C` in closed form.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClosedForm {
+    /// `G`
+    pub potential: Potential,
+    /// The dependent velocities, one for each constraint: the columns of [`Term::DependentDeterminant`](super::Term).
+    pub dependent: Vec<usize>,
 }
 
 /// Whether a claim holds.

@@ -73,7 +73,7 @@ pub use dynamics::{Dynamics, Motion};
 pub use exactness::{Exactness, Local, decide, decide_local};
 pub use examine::{Examined, examine, examine_scene, examine_volume};
 pub use existence::Decision;
-pub use finding::{Certificate, Finding, Verdict, Witness};
+pub use finding::{Certificate, ClosedForm, Finding, Verdict, Witness};
 pub use fit::Certified;
 pub use geometry::{Geometry, geometry_at};
 pub use global::Global;

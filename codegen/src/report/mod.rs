@@ -9,8 +9,10 @@
 //! | `mod.rs` | what a report is, and its order |
 //! | `equations.rs` | declaration, Lagrangian, motion, constraints, surfaces, outputs |
 //! | `frame.rs` | the motion reduced to D |
+//! | `certificate.rs` | what the claims are about and rest on, for a program that checks them |
 //! | `volume.rs`, `density_form.rs` | the invariant volume; the density form written out |
 
+pub mod certificate;
 mod density_form;
 mod equations;
 mod frame;
@@ -22,6 +24,7 @@ use proc_macro2::{LexError, TokenStream};
 
 pub use density_form::density_form;
 
+use certificate::Tree;
 use equations::Writer;
 
 use crate::claims::Finding;
@@ -43,6 +46,8 @@ pub struct Report {
     pub sections: Vec<Section>,
     /// The verdicts on its claims, in order.
     pub findings: Vec<Finding>,
+    /// What the claims are about and what the verdicts rest on.
+    pub certificate: Tree,
     /// Those of its scenes, in order.
     pub scenes: Vec<Report>,
 }
@@ -178,6 +183,7 @@ fn report_of_modes(declared: &Modes) -> Result<Report, ReportError> {
         documentation,
         sections: sections.into(),
         findings: Vec::new(),
+        certificate: Tree::Absent,
         scenes: scenes.collect(),
     })
 }
@@ -251,11 +257,13 @@ fn report_of(compiled: Compiled, name: String) -> Report {
     sections.push(work(&model, &programs.main));
     sections.push(notes(&model));
     sections.retain(|section| !section.items.is_empty());
+    let certificate = certificate::certificate(&model, &model.own_claims(), &findings);
     Report {
         name,
         documentation: text(&model.documentation),
         sections,
         findings,
+        certificate,
         scenes: Vec::new(),
     }
 }

@@ -79,7 +79,8 @@ const DERIVE_EXAMPLES: &str = "Examples:
 
 const CHECK_EXAMPLES: &str = "Examples:
   dalembert check rolling_disk
-  dalembert check rolling_disk --format json";
+  dalembert check rolling_disk --format json
+  dalembert check rolling_disk --certificate proofs.json && python3 python/check_certificate.py proofs.json";
 
 const SIMULATE_EXAMPLES: &str =
     "Numbers may be multiples of pi: pi/2, -3*pi/4, 2pi. A repeated name takes its last value.
@@ -169,6 +170,9 @@ pub struct CheckArgs {
     /// How to print.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+    /// Write what the claims are about and what their proofs rest on, as JSON; `python/check_certificate.py` checks it.
+    #[arg(long, value_name = "FILE")]
+    pub certificate: Option<PathBuf>,
 }
 
 /// The model, its scene and its parameters.

@@ -136,7 +136,7 @@ fn dispatch(
     match &line.command {
         Command::List(args) => command::list::run(models, args, streams.output),
         Command::Derive(args) => command::derive::run(models, args, streams.output),
-        Command::Check(args) => command::check::run(models, args, streams.output),
+        Command::Check(args) => command::check::run(models, args, streams),
         Command::Simulate(args) => command::simulate::run(models, args, streams),
         Command::Ensemble(args) => command::ensemble::run(models, args, streams),
         Command::Accuracy(args) => command::accuracy::run(models, args, streams),

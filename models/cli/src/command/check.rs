@@ -1,5 +1,7 @@
 //! `check`: what a model declares, what became of its claims, and whether its defaults and its initial state hold up.
 
+mod certificate;
+
 use std::io::Write;
 
 use dalembert::Policies;
@@ -8,6 +10,7 @@ use dalembert_codegen::claims::{Finding, Verdict};
 use dalembert_codegen::report::{self, Item, Section};
 use serde_json::{Value, json};
 
+use crate::Streams;
 use crate::args::{CheckArgs, Form, Format, Integrator};
 use crate::driver::{Contact, Impact, Piece, Settings, Watch};
 use crate::entry::{AnyModel, Entry, Origin};
@@ -15,6 +18,7 @@ use crate::error::{CliError, fault_text};
 use crate::exit::Exit;
 use crate::json::{Document, number};
 use crate::names;
+use crate::sink::Sink;
 use crate::state_input::{declared_state, find_model};
 
 /// One thing that was looked at: what, and what is wrong with it.
@@ -35,7 +39,12 @@ struct Examined {
 ///
 /// # Errors
 /// An unknown model, or an output that fails.
-pub fn run(models: &[Entry], args: &CheckArgs, output: &mut dyn Write) -> Result<Exit, CliError> {
+pub fn run(
+    models: &[Entry],
+    args: &CheckArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    let sink = Sink::open_given("--certificate", args.certificate.as_deref())?;
     let model = find_model(models, &args.model)?.with_defaults(0);
     let model = model.as_ref();
     let mut checks = checks(model);
@@ -49,6 +58,12 @@ pub fn run(models: &[Entry], args: &CheckArgs, output: &mut dyn Write) -> Result
         });
     }
     let derived = derived.ok().flatten();
+    if let Some(sink) = sink {
+        sink.write(streams, |output| {
+            certificate::write(output, derived.as_ref())
+        })?;
+    }
+    let output = &mut *streams.output;
     let examined = Examined {
         checks,
         notes: notes(model, derived.as_ref()),

@@ -1,0 +1,276 @@
+//! What claims are about and what their proofs rest on, for a program that checks them: the declaration written out in
+//! coordinates, and each verdict with its grounds.
+//!
+//! Expressions are texts of the language: `+ - * / ^`, the functions of `docs/language.md`, names of coordinates and parameters,
+//! velocities `dot(x)`, `energy`, `momentum(x)` and `t`. Nothing here is derived but the density that was found: whoever checks a
+//! claim derives the motion anew.
+
+use dalembert_expr::ExprId;
+
+use crate::claims::{ClosedForm, Finding, Term, Verdict};
+use crate::model::{
+    Assumption, Beside, Claim, Constraint, Coordinate, Existence, Model, Parameter, Statement,
+    Surface, Topology,
+};
+
+/// The version of the format.
+pub const FORMAT: &str = "dalembert certificate 1";
+
+/// A value of a certificate.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Tree {
+    /// Nothing.
+    Absent,
+    /// Yes or no.
+    Flag(bool),
+    /// A number.
+    Number(f64),
+    /// An integer.
+    Integer(u64),
+    /// Words, or an expression.
+    Text(String),
+    /// Several values.
+    List(Vec<Tree>),
+    /// Values with names.
+    Record(Vec<(&'static str, Tree)>),
+}
+
+impl Tree {
+    fn text(text: impl Into<String>) -> Self {
+        Self::Text(text.into())
+    }
+
+    fn list(values: impl Iterator<Item = Tree>) -> Self {
+        Self::List(values.collect())
+    }
+}
+
+/// The certificate of a model, a scene or a mode: with the verdicts on `claims`, in order.
+pub(super) fn certificate(model: &Model, claims: &[Claim], findings: &[Finding]) -> Tree {
+    let writer = Writer { model };
+    Tree::Record(vec![
+        ("coordinates", writer.coordinates()),
+        ("parameters", writer.parameters()),
+        ("motion", writer.motion()),
+        ("constraints", writer.constraints(&model.constraints)),
+        ("surfaces", writer.surfaces()),
+        ("claims", writer.claims(claims, findings)),
+    ])
+}
+
+struct Writer<'m> {
+    model: &'m Model,
+}
+
+impl Writer<'_> {
+    fn expression(&self, id: ExprId) -> Tree {
+        Tree::Text(self.model.pool.text(id))
+    }
+
+    fn expressions(&self, ids: &[ExprId]) -> Tree {
+        Tree::list(ids.iter().map(|own| self.expression(*own)))
+    }
+
+    fn optional(&self, id: Option<ExprId>) -> Tree {
+        id.map_or(Tree::Absent, |own| self.expression(own))
+    }
+
+    fn coordinates(&self) -> Tree {
+        let entry = |own: &Coordinate| {
+            let (kind, low, high) = match own.topology {
+                Topology::Line => ("line", None, None),
+                Topology::Angle => ("angle", None, None),
+                Topology::Interval { low, high } => ("interval", Some(low), Some(high)),
+            };
+            Tree::Record(vec![
+                ("name", Tree::text(self.model.pool.symbol_name(own.q))),
+                ("kind", Tree::text(kind)),
+                ("low", self.optional(low)),
+                ("high", self.optional(high)),
+            ])
+        };
+        Tree::list(self.model.coordinates.iter().map(entry))
+    }
+
+    fn parameters(&self) -> Tree {
+        let entry = |own: &Parameter| {
+            let assumption = match &own.assumption {
+                Assumption::Finite => Tree::text("finite"),
+                Assumption::Positive => Tree::text("positive"),
+                Assumption::NonNegative => Tree::text("nonnegative"),
+                Assumption::NonZero => Tree::text("nonzero"),
+                Assumption::Within { low, high } => Tree::List(vec![
+                    Tree::text(low.to_string()),
+                    Tree::text(high.to_string()),
+                ]),
+            };
+            Tree::Record(vec![
+                ("name", Tree::text(self.model.pool.symbol_name(own.symbol))),
+                ("assumption", assumption),
+                ("default", self.optional(own.default)),
+                ("is_input", Tree::Flag(own.is_input)),
+            ])
+        };
+        Tree::list(self.model.parameters.iter().map(entry))
+    }
+
+    /// `rates` of a first-order system; else `1/2 g(qdot, qdot) + A(qdot) - V` and the forces.
+    fn motion(&self) -> Tree {
+        let own = &self.model.lagrangian;
+        if let Some(rates) = &self.model.field {
+            return Tree::Record(vec![("rates", self.expressions(rates))]);
+        }
+        let forces = self
+            .model
+            .forces
+            .iter()
+            .map(|own| self.expressions(&own.form));
+        Tree::Record(vec![
+            (
+                "metric",
+                Tree::list(own.metric.iter().map(|row| self.expressions(row))),
+            ),
+            ("linear", self.expressions(&own.linear)),
+            ("potential", self.expression(own.potential)),
+            ("forces", Tree::list(forces)),
+        ])
+    }
+
+    fn constraints(&self, constraints: &[Constraint]) -> Tree {
+        let entry = |own: &Constraint| {
+            Tree::Record(vec![
+                ("name", Tree::text(own.name.display.clone())),
+                ("form", self.expressions(&own.form)),
+                ("affine", self.expression(own.affine)),
+                ("nonlinear", self.optional(own.nonlinear)),
+                (
+                    "position",
+                    self.optional(own.level.filter(|_| own.is_of_positions)),
+                ),
+            ])
+        };
+        Tree::list(constraints.iter().map(entry))
+    }
+
+    fn surfaces(&self) -> Tree {
+        let entry = |own: &Surface| {
+            let symbols = self.model.coordinates.iter();
+            let reset = own.reset.as_ref().map(|reset| {
+                let mut after: Vec<Tree> = Vec::new();
+                for (given, symbol) in reset.q.iter().zip(symbols.clone().map(|own| own.q)) {
+                    after.push(self.after(*given, symbol));
+                }
+                for (given, symbol) in reset.qdot.iter().zip(symbols.clone().map(|own| own.qdot)) {
+                    after.push(self.after(*given, symbol));
+                }
+                Tree::List(after)
+            });
+            let margins = own.conditions.iter().map(|own| self.expression(own.margin));
+            Tree::Record(vec![
+                ("name", Tree::text(own.name.display.clone())),
+                ("gap", self.expression(own.gap)),
+                ("when", Tree::list(margins)),
+                (
+                    "otherwise",
+                    Tree::Flag(matches!(own.beside, Beside::Otherwise(_))),
+                ),
+                ("law", Tree::text(own.law.name())),
+                ("coefficient", self.optional(own.law.coefficient())),
+                ("reset", reset.unwrap_or(Tree::Absent)),
+                ("instantaneous", self.constraints(&own.instantaneous)),
+                ("is_transition", Tree::Flag(own.transition.is_some())),
+            ])
+        };
+        Tree::list(self.model.surfaces.iter().map(entry))
+    }
+
+    fn after(&self, given: Option<ExprId>, symbol: dalembert_expr::SymbolId) -> Tree {
+        match given {
+            Some(value) => self.expression(value),
+            None => Tree::text(self.model.pool.symbol_name(symbol)),
+        }
+    }
+
+    fn claims(&self, claims: &[Claim], findings: &[Finding]) -> Tree {
+        let entries = claims.iter().zip(findings).map(|(claim, finding)| {
+            let mut entry = vec![
+                ("claim", Tree::text(finding.claim.clone())),
+                ("verdict", Tree::text(finding.word())),
+                ("grounds", Tree::text(finding.grounds())),
+            ];
+            entry.extend(self.statement(&claim.statement));
+            if let Verdict::Proved(own) = &finding.verdict {
+                let primes = own.primes.iter().map(|prime| Tree::Integer(*prime));
+                entry.push(("points", Tree::Integer(own.points as u64)));
+                entry.push(("primes", Tree::list(primes)));
+                entry.push(("chance_of_error", Tree::Number(own.error)));
+                entry.push(("seed", Tree::text(format!("{:#018x}", own.seed))));
+            }
+            if let Some(density) = &finding.density {
+                entry.push(("density", self.density(density)));
+            }
+            Tree::Record(entry)
+        });
+        Tree::list(entries)
+    }
+
+    fn statement(&self, statement: &Statement) -> Vec<(&'static str, Tree)> {
+        match statement {
+            Statement::Existence(existence) => {
+                let kind = match existence {
+                    Existence::Global => "exact",
+                    Existence::Local => "locally_exact",
+                    Existence::None => "no_density",
+                };
+                vec![("kind", Tree::text(kind))]
+            }
+            Statement::Density(value) => vec![
+                ("kind", Tree::text("density")),
+                ("value", self.expression(*value)),
+            ],
+            Statement::Conserved {
+                value,
+                under,
+                holds,
+            } => vec![
+                ("kind", Tree::text("conserved")),
+                ("value", self.expression(*value)),
+                (
+                    "under",
+                    under.map_or(Tree::Absent, |own| Tree::Integer(own as u64)),
+                ),
+                ("holds", Tree::Flag(*holds)),
+            ],
+            Statement::Symmetry(field) => vec![
+                ("kind", Tree::text("symmetry")),
+                ("field", self.expressions(field)),
+            ],
+        }
+    }
+
+    /// The terms of G, and the columns whose determinant one of them may name.
+    fn density(&self, density: &ClosedForm) -> Tree {
+        let terms = density.potential.terms.iter().map(|(coefficient, term)| {
+            let (kind, of) = match term {
+                Term::MassDeterminant => ("mass_determinant", None),
+                Term::MetricDeterminant => ("metric_determinant", None),
+                Term::DependentDeterminant => ("dependent_determinant", None),
+                Term::Logarithm(of) => ("logarithm", Some(*of)),
+                Term::Plain(of) => ("plain", Some(*of)),
+            };
+            Tree::Record(vec![
+                ("coefficient", self.expression(*coefficient)),
+                ("kind", Tree::text(kind)),
+                ("of", self.optional(of)),
+            ])
+        });
+        let dependent = density
+            .dependent
+            .iter()
+            .map(|own| Tree::Integer(*own as u64));
+        Tree::Record(vec![
+            ("terms", Tree::list(terms)),
+            ("dependent", Tree::list(dependent)),
+        ])
+    }
+}
