@@ -102,6 +102,7 @@ impl Evidence {
             primes: self.primes.clone(),
             error,
             seed,
+            at: None,
         };
         if !self.is_real {
             let text = "it has no value at any of the real points that were tried";
@@ -122,6 +123,7 @@ impl Evidence {
                 let shown = format!("{}{at}", wording.differs);
                 Verdict::Proved(Certificate {
                     points,
+                    at: self.witness.as_ref().map(|(sample, _)| sample.clone()),
                     ..certificate(shown, 0.0)
                 })
             }

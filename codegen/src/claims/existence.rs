@@ -88,6 +88,7 @@ impl Writer<'_> {
                 primes: self.exactness.local.primes.clone(),
                 error: self.exactness.local.error,
                 seed: self.seed,
+                at: None,
             },
         }
     }
@@ -125,6 +126,7 @@ impl Writer<'_> {
             primes: certified.primes.clone(),
             error: certified.error,
             seed: self.seed,
+            at: None,
         }
     }
 
@@ -147,6 +149,7 @@ impl Writer<'_> {
             primes: local.primes.clone(),
             error: local.error,
             seed: self.seed,
+            at: obstruction.map(|own| own.sample),
         })
     }
 

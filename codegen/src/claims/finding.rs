@@ -56,6 +56,8 @@ pub struct Certificate {
     pub error: f64,
     /// The seed of the points.
     pub seed: u64,
+    /// A state that shows it, where one does.
+    pub at: Option<Sample>,
 }
 
 /// Why a claim fails, at a point that a person can follow.

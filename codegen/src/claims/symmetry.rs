@@ -59,6 +59,7 @@ pub(super) fn check_symmetry(
         primes: Vec::new(),
         error: 0.0,
         seed,
+        at: None,
     });
     if !is_kept {
         certificate.shown = GAUGE.to_owned();

@@ -7,7 +7,7 @@
 
 use dalembert_expr::ExprId;
 
-use crate::claims::{ClosedForm, Finding, Term, Verdict};
+use crate::claims::{ClosedForm, Finding, Sample, Term, Verdict};
 use crate::model::{
     Assumption, Beside, Claim, Constraint, Coordinate, Existence, Model, Parameter, Statement,
     Surface, Topology,
@@ -56,6 +56,14 @@ pub(super) fn certificate(model: &Model, claims: &[Claim], findings: &[Finding])
         ("surfaces", writer.surfaces()),
         ("claims", writer.claims(claims, findings)),
     ])
+}
+
+/// Names and values of a state.
+fn point(sample: &Sample) -> Tree {
+    let pair = |(name, value): &(String, f64)| {
+        Tree::List(vec![Tree::text(name.clone()), Tree::Number(*value)])
+    };
+    Tree::list(sample.values.iter().map(pair))
 }
 
 struct Writer<'m> {
@@ -204,6 +212,7 @@ impl Writer<'_> {
                 entry.push(("points", Tree::Integer(own.points as u64)));
                 entry.push(("primes", Tree::list(primes)));
                 entry.push(("chance_of_error", Tree::Number(own.error)));
+                entry.push(("at", own.at.as_ref().map_or(Tree::Absent, point)));
                 entry.push(("seed", Tree::text(format!("{:#018x}", own.seed))));
             }
             if let Some(density) = &finding.density {

@@ -1,0 +1,1101 @@
+#!/usr/bin/env python3
+"""Checks certificates of dalembert: `dalembert check MODEL --certificate FILE`, then `check_certificate.py FILE ..`.
+
+A certificate holds a declaration written out in coordinates, and the verdicts on its claims. Nothing of the generator is
+used here. Equations of motion are set up from the Lagrangian and the constraints by numerical differentiation, with as many
+digits as that takes, and every claim that was proved is tested at random states:
+
+  conserved          d/dt of the quantity along the motion is 0 (or, if it is claimed to change, is not)
+  conserved under    the quantity is the same before and after an impact
+  density            the density times mu_C satisfies Liouville's equation
+  exact              the same for the closed form exp(G); what G takes logarithms of is enclosed away from 0
+  no_density         brackets of the fields of D: one of them is a combination of others, and its demand is not
+  locally_exact      all demands of brackets are those of a function, as far as the brackets are independent
+  symmetry           the flow keeps the Lagrangian (up to a total derivative) and the constraints
+
+States that are random cannot prove an identity, but a false one passes only where it holds to some forty digits. Only the
+standard library of Python is used.
+
+A claim is said to be `holds`, `FAILED`, `partly` (what can be checked holds), `unchecked` (of a kind that is not) or `open` (it was
+not proved). Exit status: 0 if nothing failed, 1 if a claim failed, 2 if a file cannot be read.
+"""
+
+import argparse
+import json
+import random
+import re
+import sys
+from decimal import (
+    ROUND_CEILING, ROUND_FLOOR, Context, Decimal, DivisionByZero, InvalidOperation, Overflow, localcontext,
+)
+from functools import lru_cache
+
+FORMAT = "dalembert certificate 1"
+# What can be checked of a claim holds, and something is left.
+PARTLY = "partly"
+STATES = 3
+ATTEMPTS = 200
+
+
+class Unsuitable(Exception):
+    """A state at which something does not exist; another one is tried."""
+
+
+class NotChecked(Exception):
+    """A claim of a kind that this program does not check."""
+
+
+# Numbers ---------------------------------------------------------------------------------------------------------------
+
+class Precision:
+    """Digits of numbers, and the step of difference quotients."""
+
+    def __init__(self, digits, step):
+        self.digits, self.h = digits, Decimal(10) ** -step
+
+
+SIMPLE = Precision(120, 25)
+NESTED = Precision(220, 28)
+
+
+def here():
+    """The digits of the context."""
+    from decimal import getcontext
+    return getcontext().prec
+
+
+@lru_cache(maxsize=None)
+def pi_of(digits):
+    """Machin's formula."""
+    with localcontext(Context(prec=digits + 10)):
+        def arctangent(n):
+            term = total = Decimal(1) / n
+            k = 1
+            while abs(term) > Decimal(10) ** -(digits + 9):
+                term = -term / (n * n)
+                k += 2
+                total += term / k
+            return total
+        return 4 * (4 * arctangent(5) - arctangent(239))
+
+
+@lru_cache(maxsize=65536)
+def sine_and_cosine(x, digits):
+    with localcontext(Context(prec=digits + 15)):
+        turn = 2 * pi_of(digits + 10 + max(0, x.adjusted()))
+        x = x - turn * (x / turn).to_integral_value()
+        # Eight halvings, then the series of both.
+        x /= 256
+        square, sine, cosine = x * x, x, Decimal(1)
+        term_s, term_c, k = x, Decimal(1), 1
+        while abs(term_c) > Decimal(10) ** -(digits + 14):
+            term_c = -term_c * square / (k * (k + 1))
+            term_s = -term_s * square / ((k + 1) * (k + 2))
+            cosine, sine, k = cosine + term_c, sine + term_s, k + 2
+        for _ in range(8):
+            sine, cosine = 2 * sine * cosine, cosine * cosine - sine * sine
+    return +sine, +cosine
+
+
+def sin(x):
+    return sine_and_cosine(x, here())[0]
+
+
+def cos(x):
+    return sine_and_cosine(x, here())[1]
+
+
+def tan(x):
+    sine, cosine = sine_and_cosine(x, here())
+    return sine / cosine
+
+
+@lru_cache(maxsize=4096)
+def arctangent_of(x, digits):
+    with localcontext(Context(prec=digits + 15)):
+        for _ in range(8):
+            x = x / (1 + (1 + x * x).sqrt())
+        square, term, total, k = x * x, x, x, 1
+        while abs(term) > Decimal(10) ** -(digits + 14):
+            term = -term * square
+            k += 2
+            total += term / k
+        return total * 256
+
+
+def atan(x):
+    return +arctangent_of(x, here())
+
+
+def atan2(y, x):
+    if x == 0 and y == 0:
+        raise Unsuitable("atan2(0, 0)")
+    pi = pi_of(here())
+    if abs(x) >= abs(y):
+        angle = atan(y / x)
+        return angle if x > 0 else angle + (pi if y >= 0 else -pi)
+    return (pi / 2 if y > 0 else -pi / 2) - atan(x / y)
+
+
+def sqrt(x):
+    if x < 0:
+        raise Unsuitable("the root of a negative number")
+    return x.sqrt()
+
+
+def ln(x):
+    if x <= 0:
+        raise Unsuitable("the logarithm of a number that is not positive")
+    return x.ln()
+
+
+def exp(x):
+    return x.exp()
+
+
+def asin(x):
+    return atan2(x, sqrt(1 - x * x))
+
+
+def acos(x):
+    return atan2(sqrt(1 - x * x), x)
+
+
+def sinh(x):
+    return (exp(x) - exp(-x)) / 2
+
+
+def cosh(x):
+    return (exp(x) + exp(-x)) / 2
+
+
+def tanh(x):
+    return sinh(x) / cosh(x)
+
+
+def power(base, numerator, denominator):
+    """A power with a rational exponent."""
+    if denominator != 1:
+        if base < 0:
+            raise Unsuitable("a power of a negative number")
+        if base == 0:
+            return Decimal(0)
+        base = base.sqrt() if denominator == 2 else (base.ln() / denominator).exp()
+    if base == 0 and numerator < 0:
+        raise Unsuitable("a division by 0")
+    return base ** numerator
+
+
+FUNCTIONS = {own.__name__: own for own in (
+    sin, cos, tan, asin, acos, atan, atan2, sqrt, ln, exp, sinh, cosh, tanh, abs)}
+
+
+# Expressions -----------------------------------------------------------------------------------------------------------
+
+TOKEN = re.compile(r"\s*(?:(\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)|([^\W\d]\w*(?:\.\d+)*)|(.))")
+
+
+class Parser:
+    """Reads an expression into nested tuples."""
+
+    def __init__(self, text):
+        self.tokens = [match.groups() for match in TOKEN.finditer(text) if match.group().strip()]
+        self.at = 0
+        self.text = text
+
+    def peek(self):
+        return self.tokens[self.at] if self.at < len(self.tokens) else (None, None, None)
+
+    def eat(self, sign):
+        if self.peek()[2] == sign:
+            self.at += 1
+            return True
+        return False
+
+    def expect(self, sign):
+        if not self.eat(sign):
+            raise ValueError(f"expected {sign!r} in {self.text!r}")
+
+    def whole(self):
+        tree = self.sum()
+        if self.at != len(self.tokens):
+            raise ValueError(f"cannot read {self.text!r}")
+        return tree
+
+    def sum(self):
+        tree = self.product()
+        while True:
+            if self.eat("+"):
+                tree = ("+", tree, self.product())
+            elif self.eat("-"):
+                tree = ("-", tree, self.product())
+            else:
+                return tree
+
+    def product(self):
+        tree = self.unary()
+        while True:
+            if self.eat("*"):
+                tree = ("*", tree, self.unary())
+            elif self.eat("/"):
+                tree = ("/", tree, self.unary())
+            else:
+                return tree
+
+    def unary(self):
+        if self.eat("-"):
+            return ("neg", self.unary())
+        return self.power()
+
+    def power(self):
+        base = self.atom()
+        return ("^", base, self.unary()) if self.eat("^") else base
+
+    def atom(self):
+        number, name, _ = self.peek()
+        if number is not None:
+            self.at += 1
+            return ("number", number)
+        if name is not None:
+            self.at += 1
+            if name in ("dot", "momentum"):
+                self.expect("(")
+                inner = self.peek()[1]
+                self.at += 1
+                self.expect(")")
+                return ("name", f"{name}({inner})")
+            if self.eat("("):
+                arguments = [self.sum()]
+                while self.eat(","):
+                    arguments.append(self.sum())
+                self.expect(")")
+                if name not in FUNCTIONS:
+                    raise ValueError(f"unknown function {name!r} in {self.text!r}")
+                return ("call", name, arguments)
+            return ("name", name)
+        self.expect("(")
+        tree = self.sum()
+        self.expect(")")
+        return tree
+
+
+def rational(tree):
+    """An exponent as two integers."""
+    kind = tree[0]
+    if kind == "number" and re.fullmatch(r"\d+", tree[1]):
+        return int(tree[1]), 1
+    if kind == "neg":
+        n, d = rational(tree[1])
+        return -n, d
+    if kind == "/":
+        (a, b), (c, d) = rational(tree[1]), rational(tree[2])
+        return a * d, b * c
+    raise ValueError("an exponent that is not rational")
+
+
+class Names:
+    """The places of names in the list of values that expressions are evaluated at."""
+
+    def __init__(self, names):
+        self.places = {name: index for index, name in enumerate(names)}
+
+    def compile(self, text):
+        """The expression as a function of the list of values."""
+        tree = Parser(text).whole()
+        scope = dict(FUNCTIONS, D=Decimal, P=power, pi=lambda: pi_of(here()))
+        return eval(f"lambda E: {self.code(tree)}", {"__builtins__": {}, **scope})
+
+    def code(self, tree):
+        kind = tree[0]
+        if kind == "number":
+            return f"D('{tree[1]}')"
+        if kind == "name":
+            if tree[1] == "pi":
+                return "pi()"
+            if tree[1] not in self.places:
+                raise ValueError(f"unknown name {tree[1]!r}")
+            return f"E[{self.places[tree[1]]}]"
+        if kind == "neg":
+            return f"(-{self.code(tree[1])})"
+        if kind == "^":
+            numerator, denominator = rational(tree[2])
+            return f"P({self.code(tree[1])},{numerator},{denominator})"
+        if kind == "call":
+            return f"{tree[1]}({','.join(self.code(own) for own in tree[2])})"
+        return f"({self.code(tree[1])}{kind}{self.code(tree[2])})"
+
+
+# Linear algebra --------------------------------------------------------------------------------------------------------
+
+def eliminated(rows, columns):
+    """Rows after Gauss-Jordan elimination with pivots in the first `columns`; the pivots' places, and the determinant."""
+    rows = [list(row) for row in rows]
+    places, determinant, done = [], Decimal(1), 0
+    size = max((abs(entry) for row in rows for entry in row[:columns]), default=Decimal(0))
+    for column in range(columns):
+        best = max(range(done, len(rows)), key=lambda i: abs(rows[i][column]), default=None)
+        if best is None or abs(rows[best][column]) <= size * Decimal(10) ** -18:
+            determinant *= 0
+            continue
+        if best != done:
+            rows[best], rows[done] = rows[done], rows[best]
+            determinant = -determinant
+        pivot = rows[done][column]
+        determinant *= pivot
+        rows[done] = [entry / pivot for entry in rows[done]]
+        for i, row in enumerate(rows):
+            if i != done and row[column] != 0:
+                factor = row[column]
+                rows[i] = [own - factor * other for own, other in zip(row, rows[done])]
+        places.append(column)
+        done += 1
+    return rows, places, determinant
+
+
+def solve(matrix, right):
+    rows, places, _ = eliminated([row + [own] for row, own in zip(matrix, right)], len(matrix))
+    if len(places) < len(matrix):
+        raise Unsuitable("a singular matrix")
+    return [row[-1] for row in rows]
+
+
+def determinant(matrix):
+    return eliminated(matrix, len(matrix))[2] if matrix else Decimal(1)
+
+
+def dot(a, b):
+    return sum((x * y for x, y in zip(a, b)), Decimal(0))
+
+
+def moved(point, direction, h):
+    return [own + h * by for own, by in zip(point, direction)]
+
+
+# The motion ------------------------------------------------------------------------------------------------------------
+
+class Model:
+    """A declaration, and what follows from it. A state is a list `[t, q.., v.., parameters..]`."""
+
+    def __init__(self, content):
+        self.q = [own["name"] for own in content["coordinates"]]
+        self.v = [f"dot({name})" for name in self.q]
+        self.n = len(self.q)
+        self.coordinates, self.parameters = content["coordinates"], content["parameters"]
+        names = ["t", *self.q, *self.v, *(own["name"] for own in self.parameters)]
+        self.names = Names(names)
+        extended = Names([*names, "energy", *(f"momentum({name})" for name in self.q)])
+        self.compile_claimed = extended.compile
+        motion = content["motion"]
+        compile_all = lambda texts: [self.names.compile(own) for own in texts]
+        self.rates = compile_all(motion["rates"]) if "rates" in motion else None
+        if self.rates is None:
+            self.metric = [compile_all(row) for row in motion["metric"]]
+            self.linear = compile_all(motion["linear"])
+            self.potential = self.names.compile(motion["potential"])
+            self.forces = [compile_all(own) for own in motion["forces"]]
+        self.constraints = [self.constraint(own) for own in content["constraints"]]
+        self.is_nonlinear = any(own["nonlinear"] is not None for own in content["constraints"])
+        self.surfaces = content["surfaces"]
+        self.precision = SIMPLE
+
+    def constraint(self, entry):
+        form = [self.names.compile(own) for own in entry["form"]]
+        return form, self.names.compile(entry["affine"])
+
+    # Places of a state.
+    def positions(self, state):
+        return state[1:1 + self.n]
+
+    def velocities(self, state):
+        return state[1 + self.n:1 + 2 * self.n]
+
+    def with_velocities(self, state, v):
+        return [*state[:1 + self.n], *v, *state[1 + 2 * self.n:]]
+
+    def along(self, state, dt=0, dq=None, dv=None):
+        """A direction in which states are moved."""
+        zeros = [Decimal(0)] * self.n
+        rest = len(state) - 1 - 2 * self.n
+        return [Decimal(dt), *(dq or zeros), *(dv or zeros), *([Decimal(0)] * rest)]
+
+    def derivative(self, f, state, direction):
+        """The derivative of a number or of a list of numbers."""
+        h = self.precision.h
+        after, before = f(moved(state, direction, h)), f(moved(state, direction, -h))
+        if isinstance(after, list):
+            return [(a - b) / (2 * h) for a, b in zip(after, before)]
+        return (after - before) / (2 * h)
+
+    def axis(self, i):
+        return [Decimal(int(k == i)) for k in range(self.n)]
+
+    # Quantities at a state.
+    def metric_at(self, state):
+        return [[own(state) for own in row] for row in self.metric]
+
+    def momentum_at(self, state):
+        v, g = self.velocities(state), self.metric_at(state)
+        return [dot(row, v) + own(state) for row, own in zip(g, self.linear)]
+
+    def kinetic_at(self, state):
+        v, g = self.velocities(state), self.metric_at(state)
+        return dot(v, [dot(row, v) for row in g]) / 2
+
+    def energy_at(self, state):
+        return self.kinetic_at(state) + self.potential(state)
+
+    def lagrangian_at(self, state):
+        linear = dot([own(state) for own in self.linear], self.velocities(state))
+        return self.kinetic_at(state) + linear - self.potential(state)
+
+    def forms_at(self, state):
+        return [[own(state) for own in form] for form, _ in self.constraints]
+
+    def affine_at(self, state):
+        return [affine(state) for _, affine in self.constraints]
+
+    def residuals_at(self, state):
+        v = self.velocities(state)
+        return [dot([own(state) for own in form], v) + affine(state) for form, affine in self.constraints]
+
+    def acceleration(self, state):
+        """From `d/dt dL/dv - dL/dq = F + lambda eta` and the rates of the constraints."""
+        v, zeros = self.velocities(state), [Decimal(0)] * self.n
+        drift = self.along(state, 1, v)
+        slopes = [self.derivative(self.lagrangian_at, state, self.along(state, 0, self.axis(i))) for i in range(self.n)]
+        rates = self.derivative(self.momentum_at, state, drift)
+        right = [slope - rate for slope, rate in zip(slopes, rates)]
+        for force in self.forces:
+            right = [own + part(state) for own, part in zip(right, force)]
+        forms, m = self.forms_at(state), len(self.constraints)
+        bends = self.derivative(self.residuals_at, state, drift) if m else []
+        g = self.metric_at(state)
+        matrix = [[*row, *(-forms[a][i] for a in range(m))] for i, row in enumerate(g)]
+        matrix += [[*form, *([Decimal(0)] * m)] for form in forms]
+        del zeros
+        return solve(matrix, right + [-own for own in bends])[:self.n]
+
+    def direction_of_motion(self, state):
+        if self.rates is not None:
+            rates = [own(state) for own in self.rates]
+            return self.along(state, 1, rates)
+        return self.along(state, 1, self.velocities(state), self.acceleration(state))
+
+    def claimed(self, text):
+        """A quantity that a claim names, as a function of the state."""
+        compiled = self.compile_claimed(text)
+        uses_motion = "energy" in text or "momentum" in text
+
+        def value(state):
+            if uses_motion and self.rates is None:
+                return compiled([*state, self.energy_at(state), *self.momentum_at(state)])
+            return compiled([*state, *([Decimal(0)] * (self.n + 1))])
+        return value
+
+    # Random states.
+    def number(self, source, low, high):
+        return Decimal(source.randint(1, 9999)) / 10000 * (high - low) + low
+
+    def random_state(self, source, given):
+        """A random state on the constraints, with the given values where there are some."""
+        state = [self.number(source, Decimal(-1), Decimal(1))]
+        for own in self.coordinates:
+            low, high = Decimal("-1.6"), Decimal("1.6")
+            if own["kind"] == "angle":
+                low, high = Decimal(-3), Decimal(3)
+            if own["kind"] == "interval":
+                low, high = (constant(own[end]) for end in ("low", "high"))
+                if high - low > 8:
+                    middle = min(max(Decimal(1), low + 1), high - 1)
+                    low, high = max(low, middle - 4), min(high, middle + 4)
+            state.append(self.number(source, low, high))
+        state += [self.number(source, Decimal(-1), Decimal(1)) for _ in range(self.n)]
+        state += [self.parameter(source, own) for own in self.parameters]
+        for name, value in given.items():
+            state[self.names.places[name]] = Decimal(repr(value))
+        return self.on_constraints(state)
+
+    def parameter(self, source, own):
+        assumption, default = own["assumption"], own["default"]
+        if default is not None and source.random() < 0.5:
+            return constant(default)
+        if isinstance(assumption, list):
+            return self.number(source, *(constant(end) for end in assumption))
+        if assumption in ("positive", "nonnegative"):
+            return self.number(source, Decimal("0.3"), Decimal(2))
+        return self.number(source, Decimal("0.2"), Decimal("1.4")) * source.choice((1, -1))
+
+    def on_constraints(self, state):
+        """With velocities changed as little as possible."""
+        if self.rates is not None or not self.constraints:
+            return state
+        forms = self.forms_at(state)
+        square = [[dot(a, b) for b in forms] for a in forms]
+        by = solve(square, [-own for own in self.residuals_at(state)])
+        v = self.velocities(state)
+        for factor, form in zip(by, forms):
+            v = moved(v, form, factor)
+        return self.with_velocities(state, v)
+
+    # The volume mu_C.
+    def dependent(self, state):
+        """The places of dependent velocities that are safe here."""
+        if not self.constraints:
+            return []
+        rows, chosen = [list(own) for own in self.forms_at(state)], []
+        for a in range(len(rows)):
+            best = max((j for j in range(self.n) if j not in chosen), key=lambda j: abs(rows[a][j]))
+            if abs(rows[a][best]) < Decimal("1e-6"):
+                raise Unsuitable("dependent constraints")
+            chosen.append(best)
+            for b in range(a + 1, len(rows)):
+                factor = rows[b][best] / rows[a][best]
+                rows[b] = [x - factor * y for x, y in zip(rows[b], rows[a])]
+        return sorted(chosen)
+
+    def completed(self, state, u, dependent):
+        """The state with these independent velocities and the dependent ones that follow."""
+        independent = [i for i in range(self.n) if i not in dependent]
+        v = [Decimal(0)] * self.n
+        for place, value in zip(independent, u):
+            v[place] = value
+        if dependent:
+            forms, affine = self.forms_at(state), self.affine_at(state)
+            matrix = [[form[j] for j in dependent] for form in forms]
+            right = [-(dot(form, v) + own) for form, own in zip(forms, affine)]
+            for place, value in zip(dependent, solve(matrix, right)):
+                v[place] = value
+        return self.with_velocities(state, v)
+
+    def weight(self, state, dependent):
+        minor = [[form[j] for j in dependent] for form in self.forms_at(state)]
+        return determinant(self.metric_at(state)) / abs(determinant(minor))
+
+    def divergence(self, state, u, dependent, density):
+        """`div(density mu_C X) / (density mu_C)` in the coordinates q and u."""
+        independent = [i for i in range(self.n) if i not in dependent]
+        base = self.completed(state, u, dependent)
+        whole = lambda s: density(s) * self.weight(s, dependent)
+
+        def flux(i):
+            return lambda s: (lambda own: whole(own) * self.velocities(own)[i])(self.completed(s, u, dependent))
+        total = self.derivative(lambda s: whole(self.completed(s, u, dependent)), base, self.along(base, 1))
+        for i in range(self.n):
+            total += self.derivative(flux(i), base, self.along(base, 0, self.axis(i)))
+        h = self.precision.h
+        for k, place in enumerate(independent):
+            ends = []
+            for sign in (1, -1):
+                shifted = [own + (sign * h if j == k else 0) for j, own in enumerate(u)]
+                end = self.completed(base, shifted, dependent)
+                ends.append(whole(end) * self.acceleration(end)[place])
+            total += (ends[0] - ends[1]) / (2 * h)
+        return total / whole(base)
+
+
+def constant(text):
+    return Names([]).compile(text)([])
+
+
+# Intervals -------------------------------------------------------------------------------------------------------------
+
+DOWN, UP = Context(prec=30, rounding=ROUND_FLOOR), Context(prec=30, rounding=ROUND_CEILING)
+EVERYTHING = (Decimal("-Infinity"), Decimal("Infinity"))
+
+
+def enclosure(tree, box):
+    """An interval that holds the values of an expression over a box of intervals by name."""
+    kind = tree[0]
+    if kind == "number":
+        value = Decimal(tree[1])
+        return value, value
+    if kind == "name":
+        if tree[1] == "pi":
+            with localcontext(Context(prec=40)):
+                pi = pi_of(40)
+            return DOWN.plus(pi), UP.plus(pi)
+        return box[tree[1]]
+    if kind == "neg":
+        low, high = enclosure(tree[1], box)
+        return -high, -low
+    if kind in "+-":
+        (a, b), (c, d) = enclosure(tree[1], box), enclosure(tree[2], box)
+        return (DOWN.add(a, c), UP.add(b, d)) if kind == "+" else (DOWN.subtract(a, d), UP.subtract(b, c))
+    if kind == "*":
+        return times(enclosure(tree[1], box), enclosure(tree[2], box))
+    if kind == "/":
+        return times(enclosure(tree[1], box), reciprocal(enclosure(tree[2], box)))
+    if kind == "^":
+        return raised(enclosure(tree[1], box), *rational(tree[2]))
+    return called(tree[1], [enclosure(own, box) for own in tree[2]])
+
+
+def times(x, y):
+    zero = Decimal(0)
+    product = lambda context, a, b: zero if a == 0 or b == 0 else context.multiply(a, b)
+    pairs = [(a, b) for a in x for b in y]
+    return min(product(DOWN, *own) for own in pairs), max(product(UP, *own) for own in pairs)
+
+
+def reciprocal(x):
+    low, high = x
+    if low <= 0 <= high:
+        return EVERYTHING
+    return DOWN.divide(1, high), UP.divide(1, low)
+
+
+def raised(x, numerator, denominator):
+    if numerator < 0:
+        return reciprocal(raised(x, -numerator, denominator))
+    low, high = x
+    if denominator == 2:
+        if low < 0:
+            return (Decimal(0), EVERYTHING[1]) if numerator == 1 else EVERYTHING
+        x = DOWN.sqrt(low), UP.sqrt(high)
+    elif denominator != 1:
+        return EVERYTHING
+    result, base = (Decimal(1), Decimal(1)), x
+    if numerator % 2 == 0:
+        low, high = base
+        largest = max(abs(low), abs(high))
+        smallest = Decimal(0) if low <= 0 <= high else min(abs(low), abs(high))
+        base = (smallest, largest)
+    for _ in range(numerator):
+        result = times(result, base)
+    return result
+
+
+def called(name, arguments):
+    low, high = arguments[0]
+    wide = lambda a, b: (DOWN.subtract(a, abs(a) * Decimal("1e-25") + Decimal("1e-40")),
+                         UP.add(b, abs(b) * Decimal("1e-25") + Decimal("1e-40")))
+    if name in ("sin", "cos"):
+        if not (low.is_finite() and high.is_finite()) or high - low >= 6:
+            return Decimal(-1), Decimal(1)
+        with localcontext(Context(prec=40)):
+            f = sin if name == "sin" else cos
+            ends = [f(low), f(high)]
+            quarter = pi_of(40) / 2
+            # Extremes lie at odd multiples of a quarter turn for the sine, at even ones for the cosine.
+            first, last = int((low / quarter).to_integral_value(ROUND_FLOOR)), int((high / quarter).to_integral_value(ROUND_CEILING))
+            for k in range(first, last + 1):
+                if k % 2 == (1 if name == "sin" else 0):
+                    at = k * quarter
+                    if low - Decimal("1e-30") <= at <= high + Decimal("1e-30"):
+                        ends.append(Decimal(1) if k % 4 == (1 if name == "sin" else 0) else Decimal(-1))
+        low, high = wide(min(ends), max(ends))
+        return max(low, Decimal(-1)), min(high, Decimal(1))
+    if name == "abs":
+        return raised((low, high), 2, 1) and (
+            (Decimal(0) if low <= 0 <= high else min(abs(low), abs(high))), max(abs(low), abs(high)))
+    if name == "sqrt":
+        return raised((low, high), 1, 2)
+    if name in ("exp", "sinh", "tanh", "atan") and low.is_finite() and high.is_finite():
+        if high > 1000 and name != "atan":
+            return EVERYTHING if name != "tanh" else (Decimal(-1), Decimal(1))
+        with localcontext(Context(prec=40)):
+            f = FUNCTIONS[name]
+            return wide(f(low), f(high))
+    if name == "exp":
+        return Decimal(0), EVERYTHING[1]
+    return EVERYTHING
+
+
+def is_exponential(tree):
+    """Whether an expression is a product of exponentials and numbers, which is never 0."""
+    kind = tree[0]
+    if kind == "number":
+        return Decimal(tree[1]) != 0
+    if kind == "call":
+        return tree[1] in ("exp", "cosh")
+    return kind in ("neg", "*", "/", "^") and all(is_exponential(own) for own in tree[1:3] if kind != "^" or own is tree[1])
+
+
+def excludes_zero(tree, box, depth):
+    """Whether an expression is not 0 anywhere in a box, by halving its longest side."""
+    if is_exponential(tree):
+        return True
+    low, high = enclosure(tree, box)
+    if low > 0 or high < 0:
+        return True
+    if depth == 0:
+        return False
+    name = max(box, key=lambda own: box[own][1] - box[own][0])
+    low, high = box[name]
+    if high == low:
+        return False
+    if high.is_infinite() and low.is_infinite():
+        middle = Decimal(0)
+    elif high.is_infinite():
+        middle = 2 * abs(low) + 1
+    elif low.is_infinite():
+        middle = -2 * abs(high) - 1
+    else:
+        middle = (low + high) / 2
+    return all(excludes_zero(tree, dict(box, **{name: half}), depth - 1) for half in ((low, middle), (middle, high)))
+
+
+# Claims ----------------------------------------------------------------------------------------------------------------
+
+def states(model, source, test, count=STATES, at=None):
+    """Calls `test` at random states until it has worked at `count` of them, or at one that is given; gives its answers."""
+    answers = []
+    for _ in range(ATTEMPTS):
+        try:
+            answers.append(test(model.random_state(source, dict(at or []))))
+        except (Unsuitable, InvalidOperation, DivisionByZero, Overflow, ZeroDivisionError):
+            continue
+        if len(answers) == count:
+            return answers
+    raise NotChecked("no state was found at which everything exists")
+
+
+def is_small(value, size, digits=28):
+    return abs(value) <= (abs(size) + 1) * Decimal(10) ** -digits
+
+
+def check_conserved(model, claim, source):
+    quantity, at = model.claimed(claim["value"]), claim.get("at")
+    count = STATES if at is None else 1
+    if claim["under"] is not None:
+        surface = model.surfaces[claim["under"]]
+        pairs = states(model, source, lambda state: across(model, surface, quantity, state), count, at)
+        changes = [(after - before, before) for before, after in pairs]
+    else:
+        def rate(state):
+            return model.derivative(quantity, state, model.direction_of_motion(state)), quantity(state)
+        changes = states(model, source, rate, count, at)
+    is_kept = all(is_small(change, size) for change, size in changes)
+    return is_kept == claim["holds"], f"changes by {', '.join(f'{float(own):.1e}' for own, _ in changes)}"
+
+
+def across(model, surface, quantity, state):
+    """The quantity before and after an impact at a state near this one."""
+    gap = model.names.compile(surface["gap"])
+    if surface["otherwise"] or surface["is_transition"] or surface["instantaneous"]:
+        raise NotChecked("surfaces with `otherwise`, transitions and instantaneous constraints are not checked")
+    gradient = lambda s: [model.derivative(gap, s, model.along(s, 0, model.axis(i))) for i in range(model.n)]
+    for _ in range(60):
+        value, slope = gap(state), gradient(state)
+        square = dot(slope, slope)
+        if square == 0:
+            raise Unsuitable("a gap without a slope")
+        if abs(value) < Decimal(10) ** -(model.precision.digits - 30):
+            break
+        q = moved(model.positions(state), slope, -value / square)
+        state = [state[0], *q, *state[1 + model.n:]]
+    else:
+        raise Unsuitable("the surface was not reached")
+    state = model.on_constraints(state)
+    if any(model.names.compile(own)(state) <= 0 for own in surface["when"]):
+        raise Unsuitable("the surface does not count here")
+    moves = model.derivative(gap, state, model.along(state, 1))
+    if model.rates is not None:
+        if surface["reset"] is None:
+            raise NotChecked("the law of a first-order system is a reset")
+        after = [model.names.compile(own)(state) for own in surface["reset"][:model.n]]
+        return quantity(state), quantity([state[0], *after, *state[1 + model.n:]])
+    rate = dot(slope, model.velocities(state)) + moves
+    if rate >= 0:
+        raise Unsuitable("the surface is not approached")
+    if surface["reset"] is not None:
+        after = [model.names.compile(own)(state) for own in surface["reset"]]
+        return quantity(state), quantity([state[0], *after, *state[1 + 2 * model.n:]])
+    return quantity(state), quantity(struck(model, surface, slope, rate, state))
+
+
+def struck(model, surface, slope, rate, state):
+    """The state after an impulse along the projected gradient of the gap."""
+    g, forms, m = model.metric_at(state), model.forms_at(state), len(model.constraints)
+    if any(own != 0 for own in model.affine_at(state)) and surface["law"] not in ("newton",):
+        raise NotChecked("impacts beside affine constraints are not checked")
+    matrix = [[*row, *(-forms[a][i] for a in range(m))] for i, row in enumerate(g)]
+    matrix += [[*form, *([Decimal(0)] * m)] for form in forms]
+    projected = solve(matrix, [*slope, *([Decimal(0)] * m)])[:model.n]
+    e = Decimal(1) if surface["coefficient"] is None else model.names.compile(surface["coefficient"])(state)
+    if surface["law"] in ("elastic", "newton", "restitution"):
+        after = -e * rate
+        if surface["law"] == "restitution":
+            raise NotChecked("the law `restitution` is not checked")
+    else:
+        raise NotChecked(f"the law `{surface['law']}` is not checked")
+    size = (after - rate) / dot(slope, projected)
+    return model.with_velocities(state, moved(model.velocities(state), projected, size))
+
+
+def check_density(model, claim, source):
+    stated = model.claimed(claim["value"])
+    return balanced(model, source, lambda state: stated(state))
+
+
+def balanced(model, source, density):
+    """Liouville's equation at random states."""
+    if model.rates is not None or model.is_nonlinear:
+        raise NotChecked("densities belong to mechanical systems with linear constraints")
+
+    def defect(state):
+        dependent = model.dependent(state)
+        u = [own for i, own in enumerate(model.velocities(state)) if i not in dependent]
+        return model.divergence(state, u, dependent, density)
+    defects = states(model, source, defect)
+    return all(is_small(own, 1) for own in defects), f"defects {', '.join(f'{float(own):.1e}' for own in defects)}"
+
+
+def check_exact(model, claim, source):
+    closed = claim.get("density")
+    if closed is None:
+        holds, text = check_hull(model, source, exists=True)
+        # The demands are those of a function locally; whether it is one on Q is left.
+        is_local = claim["kind"] == "locally_exact"
+        return (holds if is_local or not holds else PARTLY), f"{text}; no closed form, periods are not checked"
+    terms = [(model.names.compile(own["coefficient"]), own) for own in closed["terms"]]
+    logarithms = []
+
+    def density(state):
+        total = Decimal(0)
+        for coefficient, own in terms:
+            total += coefficient(state) * summand(own, state)
+        return exp(total)
+
+    def summand(own, state):
+        kind = own["kind"]
+        if kind == "plain":
+            return model.names.compile(own["of"])(state)
+        if kind == "logarithm":
+            return ln(abs(model.names.compile(own["of"])(state)))
+        if kind == "metric_determinant":
+            return ln(abs(determinant(model.metric_at(state))))
+        forms = model.forms_at(state)
+        if kind == "dependent_determinant":
+            return ln(abs(determinant([[form[j] for j in closed["dependent"]] for form in forms])))
+        g = model.metric_at(state)
+        raised_forms = [solve(g, form) for form in forms]
+        return ln(abs(determinant([[dot(a, b) for b in raised_forms] for a in forms])))
+
+    holds, text = balanced(model, source, density)
+    if claim["kind"] == "exact":
+        logarithms = [own["of"] for own in closed["terms"] if own["kind"] == "logarithm"]
+        open_ones = [own for own in logarithms if not is_regular(model, own)]
+        if open_ones:
+            return False, f"0 could not be excluded for {', '.join(open_ones)} at the declared parameters"
+        if not is_single_valued(model, density, source):
+            return False, "the density is not periodic in an angle"
+    return holds, text
+
+
+def is_regular(model, text):
+    """Whether the function is nowhere 0, at the declared parameters where there are some."""
+    box = {}
+    for own in model.coordinates:
+        low, high = EVERYTHING
+        if own["kind"] == "angle":
+            low, high = Decimal("-3.2"), Decimal("3.2")
+        if own["kind"] == "interval":
+            low, high = constant(own["low"]), constant(own["high"])
+        box[own["name"]] = (low, high)
+    for own in model.parameters:
+        if own["default"] is not None:
+            value = constant(own["default"])
+            box[own["name"]] = (value, value)
+        elif isinstance(own["assumption"], list):
+            box[own["name"]] = tuple(constant(end) for end in own["assumption"])
+        else:
+            box[own["name"]] = (Decimal("1e-6"), EVERYTHING[1]) if own["assumption"] == "positive" else EVERYTHING
+    tree = Parser(text).whole()
+    used = set(re.findall(r"[^\W\d]\w*(?:\.\d+)*", text))
+    box = {name: own for name, own in box.items() if name in used}
+    box["t"] = EVERYTHING
+    return excludes_zero(tree, {name: own for name, own in box.items() if name in used}, 14)
+
+
+def is_single_valued(model, density, source):
+    def ratios(state):
+        turn, found = 2 * pi_of(model.precision.digits), []
+        for i, own in enumerate(model.coordinates):
+            if own["kind"] == "angle":
+                found.append(density(moved(state, model.along(state, 0, model.axis(i)), turn)) / density(state) - 1)
+        return found
+    return all(is_small(own, 1) for found in states(model, source, ratios, 1) for own in found)
+
+
+def check_hull(model, source, exists, at=None):
+    """Brackets of the fields of D with what a density demands of them."""
+    if model.rates is not None or model.is_nonlinear:
+        raise NotChecked("densities belong to mechanical systems with linear constraints")
+    model.precision = NESTED
+    with localcontext(Context(prec=NESTED.digits)):
+        ranks = states(model, source, lambda state: hull_ranks(model, state), 1, at)[0]
+    model.precision = SIMPLE
+    return (ranks[0] == ranks[1]) == exists, f"brackets have rank {ranks[0]}, with their demands {ranks[1]}"
+
+
+def hull_ranks(model, state):
+    dependent = model.dependent(state)
+    count = model.n - len(dependent)
+    zero = [Decimal(0)] * count
+    one = lambda own: Decimal(1)
+
+    def demand(s, u):
+        return -model.divergence(s, u, dependent, one)
+
+    def drift(s):
+        return [Decimal(1), *model.velocities(model.completed(s, zero, dependent)), demand(s, zero)]
+
+    def generator(k):
+        u = [Decimal(int(j == k)) for j in range(count)]
+
+        def field(s):
+            base = drift(s)
+            ends = [*model.velocities(model.completed(s, u, dependent)), demand(s, u)]
+            return [Decimal(0), *(own - other for own, other in zip(ends, base[1:]))]
+        return field
+    start = drift(state)
+    depends_on_time = not is_small(sum(abs(own) for own in model.derivative(drift, state, model.along(state, 1))), 1, 20)
+    generators = [generator(k) for k in range(count)]
+    if depends_on_time or not is_small(sum(abs(own) for own in start[1:]), 0, 20):
+        generators.append(drift if depends_on_time else (lambda s: [Decimal(0), *drift(s)[1:]]))
+
+    def bracket(x, y):
+        def field(s):
+            a, b = x(s), y(s)
+            into = lambda own: model.along(s, own[0], own[1:1 + model.n])
+            forth, back = model.derivative(y, s, into(a)), model.derivative(x, s, into(b))
+            return [p - q for p, q in zip(forth, back)]
+        return field
+    elements, newest = [own(state) for own in generators], generators
+    ranks = both_ranks(elements)
+    while newest:
+        found = []
+        for x in generators:
+            for y in newest:
+                if x is y:
+                    continue
+                own = bracket(x, y)
+                value = own(state)
+                after = both_ranks([*elements, value])
+                if after != ranks:
+                    elements.append(value)
+                    ranks = after
+                    found.append(own)
+                if ranks[1] > ranks[0]:
+                    return ranks
+        newest = found
+    return ranks
+
+
+def both_ranks(elements):
+    width = len(elements[0])
+    rank = lambda columns: len(eliminated([own[:columns] for own in elements], columns)[1])
+    return rank(width - 1), rank(width)
+
+
+def check_symmetry(model, claim, source):
+    field = [model.names.compile(own) for own in claim["field"]]
+    at = lambda state: [own(state) for own in field]
+
+    def change(state):
+        """The derivative of L along the lifted flow."""
+        spread = model.derivative(at, state, model.along(state, 0, model.velocities(state)))
+        return model.derivative(model.lagrangian_at, state, model.along(state, 0, at(state), spread))
+
+    def gauge_at(state):
+        """Coefficients of the change, which has to be linear in the velocities and closed."""
+        rest = change(model.with_velocities(state, [Decimal(0)] * model.n))
+        return [change(model.with_velocities(state, model.axis(i))) - rest for i in range(model.n)]
+
+    def defects(state):
+        found, linear = [], gauge_at(state)
+        found.append(change(state) - dot(linear, model.velocities(state)) - change(
+            model.with_velocities(state, [Decimal(0)] * model.n)))
+        slopes = [model.derivative(gauge_at, state, model.along(state, 0, model.axis(i))) for i in range(model.n)]
+        found += [slopes[i][j] - slopes[j][i] for i in range(model.n) for j in range(i)]
+        forms, m = model.forms_at(state), len(model.constraints)
+        if not m:
+            return found
+        spreads = [model.derivative(at, state, model.along(state, 0, model.axis(i))) for i in range(model.n)]
+        along = model.along(state, 0, at(state))
+        for a in range(m):
+            row = lambda s: [*(own(s) for own in model.constraints[a][0]), model.constraints[a][1](s)]
+            turned = model.derivative(row, state, along)
+            turned = [turned[i] + dot(forms[a], spreads[i]) for i in range(model.n)] + turned[model.n:]
+            rows = [[*form, own] for form, own in zip(forms, model.affine_at(state))]
+            whole = eliminated([*rows, turned], model.n + 1)[1]
+            found.append(Decimal(len(whole) - m))
+        return found
+    found = [own for state in states(model, source, defects) for own in state]
+    return all(is_small(own, 1, 20) for own in found), f"largest defect {float(max(map(abs, found))):.1e}"
+
+
+CHECKS = {
+    "conserved": check_conserved,
+    "density": check_density,
+    "exact": check_exact,
+    "locally_exact": check_exact,
+    "no_density": lambda model, claim, source: check_hull(model, source, False, claim.get("at")),
+    "symmetry": check_symmetry,
+}
+
+
+def is_prime(n):
+    """Miller and Rabin, with bases that decide below 3e24."""
+    if n < 2:
+        return False
+    odd, twos = n - 1, 0
+    while odd % 2 == 0:
+        odd, twos = odd // 2, twos + 1
+    for base in (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41):
+        if n % base == 0:
+            return n == base
+        x = pow(base, odd, n)
+        if x not in (1, n - 1) and all((x := x * x % n) != n - 1 for _ in range(twos - 1)):
+            return False
+    return True
+
+
+def judged(model, claim, source):
+    """The word for a claim, and why."""
+    if claim["verdict"] != "proved":
+        return "open", claim["verdict"]
+    if not all(is_prime(own) and own > 2 ** 60 for own in claim["primes"]):
+        return "FAILED", "a modulus is no prime of 61 bits"
+    if claim["points"] > 0 and not claim["chance_of_error"] < 1e-12:
+        return "FAILED", "the chance of error is not small"
+    if model.is_nonlinear:
+        return "unchecked", "constraints are not linear in the velocities"
+    try:
+        with localcontext(Context(prec=SIMPLE.digits)):
+            holds, text = CHECKS[claim["kind"]](model, claim, source)
+    except NotChecked as reason:
+        return "unchecked", str(reason)
+    finally:
+        model.precision = SIMPLE
+    return {True: "holds", False: "FAILED", PARTLY: "partly"}[holds], text
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", nargs="+", metavar="FILE")
+    parser.add_argument("--seed", type=int, default=1, help="of the random states (default 1)")
+    options = parser.parse_args(arguments)
+    tally = {}
+    for path in options.files:
+        try:
+            with open(path, encoding="utf-8") as file:
+                document = json.load(file)
+            if document["format"] != FORMAT:
+                raise ValueError(f"its format is {document['format']!r}, expected {FORMAT!r}")
+            parts = [(own["name"], own["content"], Model(own["content"])) for own in document["parts"]]
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            print(f"{path}: {error}", file=sys.stderr)
+            return 2
+        for name, content, model in parts:
+            for claim in content["claims"]:
+                word, why = judged(model, claim, random.Random(f"{options.seed} {name} {claim['claim']}"))
+                tally[word] = tally.get(word, 0) + 1
+                print(f"{word:10} {name}: {claim['claim']} ({why})", flush=True)
+    print(", ".join(f"{count} {word}" for word, count in sorted(tally.items())) or "no claims")
+    return 1 if tally.get("FAILED") else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,153 @@
+//! Certificates of all shipped models, checked by a program in another language that shares nothing with the generator.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use dalembert_cli::{Exit, models};
+use dalembert_tests::command;
+use serde_json::{Value, json};
+
+dalembert::model! {
+    /// A density with a logarithm, regular on lines that reach to infinity.
+    pub Spiral {
+        coordinates { x; y; th: angle; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(th)^2)/2;
+        constraints { c: dot(x) = (x^2 + 1)*dot(th); }
+        claims { density: exact; conserved: energy; }
+    }
+}
+
+dalembert::model! {
+    /// A density on the universal cover alone, and one that grows along a belt that moves.
+    pub Belt {
+        coordinates { x; y; }
+        parameters { c > 0 = 1; k > 0 = 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        constraints { belt: dot(x) = k; }
+        forces { drag: -c*dot(y)*d(y); }
+        claims { density: exact; not conserved: energy; }
+    }
+}
+
+dalembert::model! {
+    pub Winding {
+        coordinates { x; y; th: angle; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(th)^2)/2;
+        constraints { c: dot(x) = x*dot(th); }
+        claims { density: locally_exact; }
+    }
+}
+
+dalembert::model! {
+    /// A charge in a magnetic field, whose translations change the Lagrangian by a total derivative.
+    pub Charge {
+        coordinates { x; y; }
+        parameters { e > 0 = 1/2; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 + x*dot(y);
+        impacts { floor: y >= 0 => newton(e); side: x >= -1; }
+        claims {
+            symmetry: partial(x);
+            conserved: dot(x) - y;
+            conserved under side: energy;
+            conserved under floor: dot(x) - y;
+            not conserved under floor: energy;
+        }
+    }
+}
+
+/// A folder for certificates.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// Writes the certificate of a model, and gives its path.
+fn certificate(model: &str, folder: &Path) -> PathBuf {
+    let path = folder.join(format!("{model}.json"));
+    let place = path.to_str().expect("a path");
+    let mut models = dalembert_models::all();
+    models.extend(models![Spiral, Belt, Winding, Charge]);
+    let finished = command::run(models, &["check", model, "--certificate", place], "");
+    assert_eq!(finished.exit, Exit::Reached, "{}", finished.output);
+    path
+}
+
+fn checked(files: &[PathBuf]) -> Output {
+    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("../python/check_certificate.py");
+    let output = Command::new("python3").arg(program).args(files).output();
+    output.expect("python3, whose standard library is enough, on the path")
+}
+
+#[test]
+fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
+    let folder = folder("certificates");
+    let models = dalembert_models::all();
+    let names: Vec<&str> = models.iter().map(|own| own.description().name).collect();
+    let others = ["spiral", "belt", "winding", "charge"];
+    let names = names.iter().chain(&others);
+    let files: Vec<PathBuf> = names.map(|own| certificate(own, &folder)).collect();
+    let output = checked(&files);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let count = |word: &str| text.lines().filter(|line| line.starts_with(word)).count();
+    assert!(count("holds ") >= 60, "{text}");
+    assert_eq!(count("unchecked "), 0, "{text}");
+}
+
+/// The program is no rubber stamp: each of these changes makes a true claim of a certificate false, and is found.
+#[test]
+fn a_certificate_that_was_tampered_with_fails() {
+    let folder = folder("tampered_certificates");
+    let cases = [
+        (
+            "double_pendulum",
+            "/claims/0/value",
+            json!("energy + theta1/1000000000000"),
+        ),
+        ("double_pendulum", "/claims/0/holds", json!(false)),
+        (
+            "double_pendulum",
+            "/claims/0/primes/0",
+            json!(2_305_843_009_213_577_281_u64),
+        ),
+        (
+            "holonomic_bead_on_ellipses",
+            "/claims/0/density/terms/0/coefficient",
+            json!("1/2"),
+        ),
+        (
+            "holonomic_bead_on_ellipses",
+            "/claims/0/kind",
+            json!("no_density"),
+        ),
+        ("chaplygin_sleigh", "/claims/0/kind", json!("locally_exact")),
+        (
+            "chaplygin_sleigh",
+            "/claims/1/value",
+            json!("1/abs(dot(theta))^2"),
+        ),
+        ("chaplygin_sleigh", "/claims/3/value", json!("dot(x)")),
+        ("chaplygin_sleigh", "/claims/5/field/0", json!("y")),
+    ];
+    for (model, place, value) in cases {
+        let path = certificate(model, &folder);
+        let text = std::fs::read_to_string(&path).expect("a file");
+        let mut document: Value = serde_json::from_str(&text).expect("JSON");
+        let content = &mut document["parts"][0]["content"];
+        *content.pointer_mut(place).expect(place) = value;
+        std::fs::write(&path, document.to_string()).expect("a file");
+        let output = checked(&[path]);
+        let told = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(1), "{model} {place}: {told}");
+        let failed = told
+            .lines()
+            .filter(|line| line.starts_with("FAILED"))
+            .count();
+        assert_eq!(failed, 1, "{model} {place}: {told}");
+    }
+}
