@@ -259,12 +259,13 @@ impl<Sys: Impacting> Watch<Sys> {
             self.rates.as_slice()[surface],
             glance.rates.as_slice()[surface],
         ];
-        let (other, apart) = if part > 0.5 {
-            (ends[0], part)
+        // The change of the rate per part of the step, forwards.
+        let (change, apart) = if part > 0.5 {
+            (rate - ends[0], part)
         } else {
-            (ends[1], 1.0 - part)
+            (ends[1] - rate, 1.0 - part)
         };
-        self.bends.as_mut_slice()[surface] = (other - rate).abs() / (apart * self.length);
+        self.bends.as_mut_slice()[surface] = change.abs() / (apart * self.length);
         let mut graze = 0.0;
         let tolerance = step.stepper.tolerance();
         let missed = SAFETY * self.errors * tolerance.relative().max(tolerance.absolute());
@@ -274,7 +275,8 @@ impl<Sys: Impacting> Watch<Sys> {
             let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
             if self.is_slow(surface, rate, || rounding) {
                 graze = 1.0;
-            } else if self.errors > 0.0 {
+            } else if self.errors > 0.0 && change > 0.0 {
+                // NOTE: only a gap that bends upwards would have turned before the surface.
                 let scale = step.system.scale(step.t_end(), step.end());
                 let unit = (&self.sizes, &scale, tolerance);
                 let end = (step.t_end(), step.end());
