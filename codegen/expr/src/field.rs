@@ -129,7 +129,11 @@ impl Modulus {
 
     /// The residue of an integer.
     pub fn integer(self, value: i64) -> u64 {
-        value.rem_euclid(self.prime() as i64) as u64
+        let prime = self.prime() as i64;
+        match 0 <= value && value < prime {
+            true => value as u64,
+            false => value.rem_euclid(prime) as u64,
+        }
     }
 
     /// The residue of a rational number; `None` if `p` divides its denominator.

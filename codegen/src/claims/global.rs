@@ -6,7 +6,7 @@ use dalembert_expr::{JetSpace, Jets, Modulus, Pool, Reals};
 
 use super::closure::{Until, close};
 use super::exactness::{Local, sample_points};
-use super::frame::frame;
+use super::frame::{Demand, frame};
 use super::obstruction::{combine, elements_at};
 use super::potential::{Potential, Term};
 use super::problem::Problem;
@@ -36,6 +36,10 @@ pub enum Global {
 /// until the period changes by no more than this part of the integral of the absolute value.
 const POINTS: (usize, usize) = (32, 1024);
 const CONVERGED: f64 = 1e-10;
+/// Points of a loop at a first look.
+const PROBES: usize = 12;
+/// A sum over few points is small below this part of the integral of the absolute value.
+const SMALL: f64 = 5e-2;
 /// What is rounding where everything else vanishes.
 const ROUNDING: f64 = 1e-12;
 /// Why a period was not found.
@@ -83,6 +87,13 @@ pub(super) fn from_angles(
         (sample, values)
     });
     let is_whole = local.rank == problem.components();
+    let leaves = (!is_whole)
+        .then(|| Leaves::of(&model.pool, problem))
+        .flatten();
+    let holds = |turns: &[(usize, i64)]| {
+        let leaves = leaves.as_ref();
+        is_whole || leaves.is_some_and(|own| own.hold(problem, turns))
+    };
     for turns in loops(&angles(model, problem)) {
         let grown = samples.iter().find_map(|(sample, values)| {
             let weight = |((i, _), value): (&(usize, _), &f64)| {
@@ -95,7 +106,7 @@ pub(super) fn from_angles(
             (period.is_finite() && period.abs() > PERIOD * size).then_some((period, sample))
         });
         if let Some((period, sample)) = grown
-            && (is_whole || is_in_hull(&model.pool, problem, &turns))
+            && holds(&turns)
         {
             return Global::Many {
                 turns,
@@ -144,18 +155,25 @@ fn loops(angles: &[usize]) -> Vec<Vec<(usize, i64)>> {
     all
 }
 
-/// Whether the field with constant components `turns` lies in the hull of D.
-fn is_in_hull(pool: &Pool, problem: &Problem, turns: &[(usize, i64)]) -> bool {
-    let roots = problem.roots();
-    let profile = pool.profile_of(&roots);
-    let Ok(mut points) = sample_points(pool, &roots, &profile, 3) else {
-        return false;
-    };
-    let verdict = points.find(|point| {
-        let rank = |with: bool, point: &mut dalembert_expr::ModularPoint| {
+/// The hull of D at a random point, to ask which loops lie in its leaves.
+struct Leaves {
+    field: Modulus,
+    space: JetSpace,
+    demands: Vec<Demand<Modulus>>,
+    rank: usize,
+}
+
+impl Leaves {
+    /// `None` if the hull is not closed within reach.
+    fn of(pool: &Pool, problem: &Problem) -> Option<Self> {
+        let roots = problem.roots();
+        let profile = pool.profile_of(&roots);
+        let mut points = sample_points(pool, &roots, &profile, 3).ok()?;
+        points.find(|point| {
+            let field = point.modulus();
             let order = problem.forms.len() + 2;
             let space = JetSpace::new(problem.variables.len(), order, 1 << 14)?;
-            let jets: Jets<'_, Modulus> = Jets::new(point.modulus(), &space);
+            let jets: Jets<'_, Modulus> = Jets::new(field, &space);
             let mut demands = frame(pool, problem, &jets, point, None)?.demands;
             // Only the vector parts matter here.
             demands.iter_mut().for_each(|demand| {
@@ -164,23 +182,28 @@ fn is_in_hull(pool: &Pool, problem: &Problem, turns: &[(usize, i64)]) -> bool {
                 }
             });
             let closed = close(jets.lower(), &problem.variables, &demands, Until::Closed);
-            if !closed.is_closed {
-                return None;
-            }
-            if !with {
-                return Some(closed.rank);
-            }
-            let mut turn = vec![Vec::new(); problem.components() + 1];
-            for (i, count) in turns {
-                turn[*i] = jets.constant(jets.field.integer(*count));
-            }
-            demands.push(turn);
-            let closed = close(jets.lower(), &problem.variables, &demands, Until::Closed);
-            closed.is_closed.then_some(closed.rank)
-        };
-        Some(rank(false, point)? == rank(true, point)?)
-    });
-    verdict.unwrap_or(false)
+            closed.is_closed.then_some(())?;
+            Some(Self {
+                field,
+                demands,
+                rank: closed.rank,
+                space,
+            })
+        })
+    }
+
+    /// Whether the field with constant components `turns` lies in the hull.
+    fn hold(&self, problem: &Problem, turns: &[(usize, i64)]) -> bool {
+        let jets = Jets::new(self.field, &self.space);
+        let mut turn = vec![Vec::new(); problem.components() + 1];
+        for (i, count) in turns {
+            turn[*i] = jets.constant(self.field.integer(*count));
+        }
+        let mut demands = self.demands.clone();
+        demands.push(turn);
+        let closed = close(jets.lower(), &problem.variables, &demands, Until::Closed);
+        closed.is_closed && closed.rank == self.rank
+    }
 }
 
 /// What the growth of `G` along loops says, in double precision: with all components in the hull of D along each circle,
@@ -192,11 +215,28 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
         true => angles.iter().map(|i| vec![(*i, 1)]).collect(),
         false => loops(&angles),
     };
+    let leaves = (!is_whole)
+        .then(|| Leaves::of(&model.pool, problem))
+        .flatten();
     let roots = problem.roots();
+    let has_no_period =
+        |angle: usize| reflection::has_no_period(model, problem, local, angle, PERIODS);
     let mut is_open = false;
+    // Circles along which the growth is 0 by symmetry, or may be.
+    let (mut proved, mut left) = (0, Vec::new());
     for turns in loops {
-        if !is_whole && !is_in_hull(&model.pool, problem, &turns) {
+        if !is_whole && !leaves.as_ref().is_some_and(|own| own.hold(problem, &turns)) {
             continue;
+        }
+        if let [(angle, _)] = turns[..]
+            && is_whole
+        {
+            // A proof takes less than a sum that converges to nothing.
+            if seems_closed(model, problem, local, &turns) && has_no_period(angle) {
+                proved += 1;
+                continue;
+            }
+            left.push(angle);
         }
         let mut is_known = false;
         for attempt in ATTEMPTS {
@@ -215,16 +255,23 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
         }
         is_open |= !is_known;
     }
-    let has_no_period =
-        |angle: &usize| reflection::has_no_period(model, problem, local, *angle, PERIODS);
     match (is_whole, is_open) {
-        (true, _) if angles.iter().all(has_no_period) => Global::Exists,
+        (true, _) if proved + left.len() == angles.len() && left.into_iter().all(has_no_period) => {
+            Global::Exists
+        }
         (true, false) => Global::Undecided(NUMERIC),
         (true, true) => Global::Undecided(OPEN),
         (false, _) => {
             Global::Undecided("no density was found, and D does not connect all configurations")
         }
     }
+}
+
+/// Whether a few points of a loop add up to little, so that it is worth looking for a proof that `G` does not grow along it.
+fn seems_closed(model: &Model, problem: &Problem, local: &Local, turns: &[(usize, i64)]) -> bool {
+    let sample = sample(model, ATTEMPTS[0], uses(&model.pool, &problem.roots()));
+    period(model, problem, local, &sample, turns, PROBES)
+        .is_none_or(|(sum, size)| sum.abs() <= SMALL * size + ROUNDING)
 }
 
 /// How much `G` grows along a loop in a leaf of the hull of D; `None` if the sum does not converge.

@@ -40,8 +40,13 @@ pub(super) fn solve<A: Arithmetic>(
             if row == step || matrix[row][step].is_empty() {
                 continue;
             }
-            let factor = matrix[row][step].clone();
-            subtract(jets, &mut matrix[row][step..], &factor, &pivot[step..]);
+            let factor = std::mem::take(&mut matrix[row][step]);
+            subtract(
+                jets,
+                &mut matrix[row][step + 1..],
+                &factor,
+                &pivot[step + 1..],
+            );
             subtract(jets, &mut right[row], &factor, &pivot_right);
         }
         matrix[step] = pivot;

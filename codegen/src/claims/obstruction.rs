@@ -35,8 +35,30 @@ pub struct Obstruction {
 const ATTEMPTS: usize = 64;
 /// A delta counts from this part of its scale on: 18 digits above the rounding of extended numbers.
 const CLEAR: f64 = 1e-30;
+/// The same in doubles, which are tried first where series have more monomials than [`LARGE`].
+const CLEAR_IN_DOUBLES: f64 = 1e-4;
+const LARGE: usize = 200;
+/// A combination that leaves more than this part, or [`CLEAR`], is none.
+const REMAINDER: f64 = 1e-9;
 /// Vectors whose elimination meets a smaller pivot count as dependent.
 const LEAST_PIVOT: f64 = 1e-9;
+
+/// A number as a double.
+trait Nearest: Copy {
+    fn nearest(self) -> f64;
+}
+
+impl Nearest for f64 {
+    fn nearest(self) -> f64 {
+        self
+    }
+}
+
+impl Nearest for Real {
+    fn nearest(self) -> f64 {
+        Real::nearest(&self)
+    }
+}
 
 /// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none. Where the hull does not span, a
 /// combination of its elements is only known on the branches that residues saw: with roots it must show at all points that are tried.
@@ -80,6 +102,20 @@ impl Obstruction {
         }
         obstruction_at(model, problem, local, sample)
     }
+
+    /// The same with numbers of which doubles are sure.
+    fn with_eight_digits(mut self) -> Self {
+        self.delta = eight_digits(self.delta);
+        for (_, value) in &mut self.relation {
+            *value = eight_digits(*value);
+        }
+        for (_, components) in &mut self.frame {
+            for value in components {
+                *value = eight_digits(*value);
+            }
+        }
+        self
+    }
 }
 
 fn obstruction_at(
@@ -88,14 +124,45 @@ fn obstruction_at(
     local: &Local,
     sample: Sample,
 ) -> Option<Obstruction> {
+    let monomials =
+        JetSpace::new(problem.variables.len(), local.hull.growth.len(), usize::MAX)?.len();
+    if monomials > LARGE {
+        let mut point = sample.point();
+        let found = obstruction_with(
+            model,
+            problem,
+            local,
+            sample.clone(),
+            &mut point,
+            CLEAR_IN_DOUBLES,
+        );
+        if let Some(found) = found.filter(|own| own.delta.abs() > CLEAR_IN_DOUBLES * own.scale) {
+            return Some(found.with_eight_digits());
+        }
+    }
     let mut point = ExtendedPoint::of(&sample.point());
+    obstruction_with(model, problem, local, sample, &mut point, CLEAR)
+}
+
+/// The obstruction in the numbers of a point; what is below a part `clear` of its scale counts as 0.
+fn obstruction_with<P: ExpansionPoint>(
+    model: &Model,
+    problem: &Problem,
+    local: &Local,
+    sample: Sample,
+    point: &mut P,
+    clear: f64,
+) -> Option<Obstruction>
+where
+    Number<P>: Nearest,
+{
     let field = point.field();
     let elements = elements_at(
         &model.pool,
         problem,
         &local.hull,
         Some(&local.dependent),
-        &mut point,
+        point,
     )?;
     let names = names(
         &local.hull,
@@ -112,24 +179,25 @@ fn obstruction_at(
         .collect();
     let width = elements[position].len() - 1;
     let vector = |element: usize| &elements[element][..width];
-    let others: Vec<&[Real]> = before.iter().map(|e| vector(*e)).collect();
+    let others: Vec<&[Number<P>]> = before.iter().map(|e| vector(*e)).collect();
     let coefficients = combine(field, &others, vector(position))?;
     let size = elements.iter().map(|own| largest(own)).fold(0.0, f64::max);
     // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
-    if largest(&remainder(&others, &coefficients, vector(position))) > CLEAR * size {
+    let rest = remainder(field, &others, &coefficients, vector(position));
+    if largest(&rest) > clear.min(REMAINDER) * size {
         return None;
     }
     let mut delta = elements[position][width];
     let mut scale = size + delta.nearest().abs();
     for (coefficient, element) in coefficients.iter().zip(&before) {
-        let part = *coefficient * elements[*element][width];
-        delta = delta - part;
+        let part = field.mul(*coefficient, elements[*element][width]);
+        delta = field.sub(delta, part);
         scale += part.nearest().abs();
     }
     let relation = before
         .iter()
         .zip(&coefficients)
-        .filter(|(_, coefficient)| coefficient.nearest().abs() > CLEAR)
+        .filter(|(_, coefficient)| coefficient.nearest().abs() > clear.min(REMAINDER))
         .map(|(element, coefficient)| (names[*element].clone(), coefficient.nearest()))
         .collect();
     let is_generator =
@@ -147,24 +215,34 @@ fn obstruction_at(
     })
 }
 
-fn nearest(values: &[Real]) -> Vec<f64> {
-    values.iter().map(Real::nearest).collect()
+fn nearest<T: Nearest>(values: &[T]) -> Vec<f64> {
+    values.iter().map(|own| own.nearest()).collect()
 }
 
-fn largest(values: &[Real]) -> f64 {
+fn largest<T: Nearest>(values: &[T]) -> f64 {
     let sizes = values.iter().map(|own| own.nearest().abs());
     sizes.fold(0.0, f64::max)
 }
 
 /// `target` less a combination of vectors.
-fn remainder(vectors: &[&[Real]], coefficients: &[Real], target: &[Real]) -> Vec<Real> {
+fn remainder<A: Arithmetic>(
+    field: A,
+    vectors: &[&[A::Scalar]],
+    coefficients: &[A::Scalar],
+    target: &[A::Scalar],
+) -> Vec<A::Scalar> {
     let mut rest = target.to_vec();
     for (vector, coefficient) in vectors.iter().zip(coefficients) {
         for (own, entry) in rest.iter_mut().zip(*vector) {
-            *own = *own - *coefficient * *entry;
+            *own = field.sub(*own, field.mul(*coefficient, *entry));
         }
     }
     rest
+}
+
+/// A number rounded to eight digits, of which doubles are sure.
+fn eight_digits(value: f64) -> f64 {
+    format!("{value:.7e}").parse().unwrap_or(value)
 }
 
 /// Whether the first generator is the drift.

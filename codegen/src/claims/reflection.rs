@@ -109,29 +109,26 @@ impl Circle<'_> {
     fn cancels(&self, turns: &[Move], moves: &[Move], count: usize) -> bool {
         let (model, problem) = (self.model, self.problem);
         let mut points = self.points.clone();
-        let mut left = maps(model, problem, (self.angle, moves));
-        for _ in 0..count {
-            let kept = points.find(|point| {
-                let sum = self.summed(turns, point)?;
-                let field = point.modulus();
-                let is_opposite = |map: &Map| {
-                    let moved =
-                        image(model, point, map).and_then(|image| self.summed(turns, &image));
-                    moved.is_some_and(|moved| field.add(sum, moved) == 0)
+        // Points with the sums there; more of them as maps get on.
+        let mut known: Vec<(ModularPoint, u64)> = Vec::new();
+        let maps = maps(model, problem, (self.angle, moves));
+        maps.iter().any(|map| {
+            (0..count).all(|k| {
+                if known.len() == k {
+                    let found =
+                        points.find(|point| Some((point.clone(), self.summed(turns, point)?)));
+                    known.extend(found);
+                }
+                let Some((point, sum)) = known.get(k) else {
+                    return false;
                 };
-                Some(
-                    left.iter()
-                        .filter(|map| is_opposite(map))
-                        .cloned()
-                        .collect(),
-                )
-            });
-            left = kept.unwrap_or_default();
-            if left.is_empty() {
-                return false;
-            }
-        }
-        true
+                let moved = match map.iter().all(|(_, own)| *own == STAYS) {
+                    true => Some(*sum),
+                    false => image(model, point, map).and_then(|own| self.summed(turns, &own)),
+                };
+                moved.is_some_and(|moved| point.modulus().add(*sum, moved) == 0)
+            })
+        })
     }
 
     fn summed(&self, turns: &[Move], point: &ModularPoint) -> Option<u64> {

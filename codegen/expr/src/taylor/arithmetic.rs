@@ -82,6 +82,10 @@ impl Arithmetic for Modulus {
         Modulus::inv(self, a)
     }
 
+    fn is_zero(self, a: u64) -> bool {
+        a == 0
+    }
+
     fn size(self, a: u64) -> f64 {
         if a == 0 { 0.0 } else { 1.0 }
     }
@@ -145,6 +149,10 @@ impl Arithmetic for Reals {
 
     fn inv(self, a: f64) -> Option<f64> {
         (a != 0.0 && a.is_finite()).then(|| 1.0 / a)
+    }
+
+    fn is_zero(self, a: f64) -> bool {
+        a == 0.0
     }
 
     fn size(self, a: f64) -> f64 {

@@ -61,6 +61,10 @@ impl Arithmetic for ExtendedReals {
         is_regular.then(|| Real::from(1.0) / a)
     }
 
+    fn is_zero(self, a: Real) -> bool {
+        a == Real::from(0.0)
+    }
+
     fn size(self, a: Real) -> f64 {
         a.nearest().abs()
     }

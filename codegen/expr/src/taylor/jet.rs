@@ -84,25 +84,39 @@ impl<'s, A: Arithmetic> Jets<'s, A> {
 
     /// `a + factor b`
     pub fn add_multiple(&self, a: &[A::Scalar], factor: A::Scalar, b: &[A::Scalar]) -> Series<A> {
+        let field = self.field;
+        self.combined(a, b, |a, b| field.add(a, field.mul(factor, b)))
+    }
+
+    /// `a + b`
+    pub fn add(&self, a: &[A::Scalar], b: &[A::Scalar]) -> Series<A> {
+        self.combined(a, b, |a, b| self.field.add(a, b))
+    }
+
+    /// `a - b`
+    pub fn sub(&self, a: &[A::Scalar], b: &[A::Scalar]) -> Series<A> {
+        self.combined(a, b, |a, b| self.field.sub(a, b))
+    }
+
+    /// `a` with its coefficients combined with those that `b` has.
+    fn combined(
+        &self,
+        a: &[A::Scalar],
+        b: &[A::Scalar],
+        combine: impl Fn(A::Scalar, A::Scalar) -> A::Scalar,
+    ) -> Series<A> {
         let mut sum = a[..a.len().min(self.limit())].to_vec();
         let b = &b[..b.len().min(self.limit())];
         if sum.len() < b.len() {
             sum.resize(b.len(), self.field.integer(0));
         }
-        for (entry, b) in sum.iter_mut().zip(b) {
-            *entry = self.field.add(*entry, self.field.mul(factor, *b));
+        // NOTE: indices, not iterators: the generator of a user's build is not optimised.
+        let mut i = 0;
+        while i < b.len() {
+            sum[i] = combine(sum[i], b[i]);
+            i += 1;
         }
         self.trim(sum)
-    }
-
-    /// `a + b`
-    pub fn add(&self, a: &[A::Scalar], b: &[A::Scalar]) -> Series<A> {
-        self.add_multiple(a, self.field.integer(1), b)
-    }
-
-    /// `a - b`
-    pub fn sub(&self, a: &[A::Scalar], b: &[A::Scalar]) -> Series<A> {
-        self.add_multiple(a, self.field.integer(-1), b)
     }
 
     /// `factor a`
@@ -147,33 +161,43 @@ impl<'s, A: Arithmetic> Jets<'s, A> {
 
     fn accumulate(&self, sums: &mut [A::Sum], a: &[A::Scalar], b: &[A::Scalar]) {
         let terms = self.terms(b);
-        for (i, factor) in a.iter().enumerate().take(self.limit()) {
-            if !self.field.is_zero(*factor) {
-                self.field.scatter(sums, self.row(i), *factor, &terms);
+        let length = a.len().min(self.limit());
+        let mut i = 0;
+        while i < length {
+            if !self.field.is_zero(a[i]) {
+                self.field.scatter(sums, self.row(i), a[i], &terms);
             }
+            i += 1;
         }
     }
 
     /// The part of a row of products that stays within the order.
     fn row(&self, i: usize) -> &'s [u32] {
-        let row = self.space.row(i);
-        let limit = self.limit() as u32;
-        &row[..row.partition_point(|k| *k < limit)]
+        let left = self.order - self.space.degree(i);
+        &self.space.row(i)[..self.space.size(left)]
     }
 
     /// The coefficients other than 0 with their positions.
     fn terms(&self, a: &[A::Scalar]) -> Vec<(u32, A::Scalar)> {
         let mut terms = Vec::with_capacity(a.len());
-        for (i, value) in a.iter().enumerate() {
-            if !self.field.is_zero(*value) {
-                terms.push((i as u32, *value));
+        let mut i = 0;
+        while i < a.len() {
+            if !self.field.is_zero(a[i]) {
+                terms.push((i as u32, a[i]));
             }
+            i += 1;
         }
         terms
     }
 
     fn settle(&self, sums: &[A::Sum]) -> Series<A> {
-        self.trim(sums.iter().map(|sum| self.field.settle(*sum)).collect())
+        let mut series = Vec::with_capacity(sums.len());
+        let mut i = 0;
+        while i < sums.len() {
+            series.push(self.field.settle(sums[i]));
+            i += 1;
+        }
+        self.trim(series)
     }
 
     fn trim(&self, mut a: Series<A>) -> Series<A> {

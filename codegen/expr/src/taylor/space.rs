@@ -13,6 +13,8 @@ pub struct JetSpace {
     starts: Vec<usize>,
     /// Exponents, `variables` for each monomial.
     exponents: Vec<u8>,
+    /// The degree of each monomial.
+    degrees: Vec<usize>,
     /// A monomial of one degree less and the variable that makes it this one.
     parents: Vec<(u32, u32)>,
     /// `raised[i * variables + v]`: the position of monomial i times variable v, below the last degree.
@@ -29,6 +31,7 @@ impl JetSpace {
             order,
             starts: vec![0, 1],
             exponents: vec![0; variables],
+            degrees: vec![0],
             parents: vec![(0, 0)],
             raised: Vec::new(),
             rows: Vec::new(),
@@ -46,6 +49,7 @@ impl JetSpace {
                     let last = space.parents.len() * variables + v;
                     space.exponents[last] += 1;
                     space.parents.push((i as u32, v as u32));
+                    space.degrees.push(degree);
                     highest.push(v);
                 }
             }
@@ -100,6 +104,11 @@ impl JetSpace {
         self.starts[order + 1]
     }
 
+    /// The degree of monomial i.
+    pub(super) fn degree(&self, i: usize) -> usize {
+        self.degrees[i]
+    }
+
     /// The positions of the monomials of a degree.
     pub(super) fn grade(&self, degree: usize) -> std::ops::Range<usize> {
         self.starts[degree]..self.starts[degree + 1]
@@ -118,8 +127,7 @@ impl JetSpace {
     /// The positions of the products of monomial i with the monomials `0, 1, ..`, as far as they are in the space.
     pub(super) fn row(&self, i: usize) -> &[u32] {
         self.rows[i].get_or_init(|| {
-            let degree = self.starts.partition_point(|start| *start <= i) - 1;
-            let length = self.size(self.order - degree);
+            let length = self.size(self.order - self.degrees[i]);
             let mut row = Vec::with_capacity(length);
             row.push(i as u32);
             for (parent, v) in &self.parents[1..length] {
