@@ -192,18 +192,18 @@ fn a_train_of_five_is_decided_or_says_how_far_it_was_followed() {
 fn claims_of_bodies_and_trains_are_examined_in_time() {
     let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";
     let bodies = [
-        (ball("l, 0, k", triaxial, ""), "none", (300, 3000)),
+        (ball("l, 0, k", triaxial, ""), "none", (1000, 4000)),
         (
             ball("l, 0, k", triaxial, "rubber: s3 = 0;"),
             "none",
-            (300, 3500),
+            (1000, 4000),
         ),
         (
             ball("0, 0, l", "A*(b1^2 + b2^2) + C*b3^2", ""),
             "exact",
-            (300, 3000),
+            (1000, 4000),
         ),
-        (train(5), "none", (1000, 7000)),
+        (train(5), "none", (2000, 9000)),
     ];
     for (source, claim, (optimised, unoptimised)) in bodies {
         let (declarations, end) = source.split_at(source.rfind('}').expect("an end"));
