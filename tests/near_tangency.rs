@@ -36,11 +36,11 @@ where
     Step: Stepper<S>,
 {
     let start = system.initial();
-    let state = system.state(0.0, &start.q, &start.qdot).unwrap();
+    let state = system.state(0.0, &start.q, &start.qdot).expect("a state");
     let mut log = EventLog::<_, 64>::new();
     let run = Simulation::new(system, stepper, system.effects())
-        .run(0.0, state, start.until.unwrap(), &mut log)
-        .unwrap();
+        .run(0.0, state, start.until.expect("an end"), &mut log)
+        .expect("a run");
     assert_eq!(run.outcome, Outcome::Done);
     log.iter().map(|event| event.graze).collect()
 }
@@ -49,7 +49,7 @@ where
 fn a_motion_that_tends_to_tangency_has_no_impact_or_a_graze_first() {
     let system = Tangent::with_defaults();
     for exponent in 3..=14 {
-        let tolerance = Tolerance::new(10_f64.powi(-exponent)).unwrap();
+        let tolerance = Tolerance::new(10_f64.powi(-exponent)).expect("a tolerance");
         for (name, found) in [
             ("dop853", grazes(&system, Dop853::new(tolerance))),
             ("dopri5", grazes(&system, DormandPrince5::new(tolerance))),
@@ -68,7 +68,7 @@ fn a_motion_that_tends_to_tangency_has_no_impact_or_a_graze_first() {
 fn depth_beyond_the_error_is_no_graze() {
     for exponent in 4..=12 {
         let size = 10_f64.powi(-exponent);
-        let tolerance = Tolerance::new(size).unwrap();
+        let tolerance = Tolerance::new(size).expect("a tolerance");
         let shallow = Turned { depth: 0.1 * size };
         let deep = Turned { depth: 1e3 * size };
         let flags = |system: &Turned| {

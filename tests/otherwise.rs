@@ -67,18 +67,18 @@ where
     S: System<Vector = dalembert::__private::SVector<f64, 2>> + Described + Scene,
     Step: Stepper<S>,
 {
-    let until = system.initial().until.unwrap();
-    let state = system.state(0.0, &q.into(), &qdot.into()).unwrap();
+    let until = system.initial().until.expect("an end");
+    let state = system.state(0.0, &q.into(), &qdot.into()).expect("a state");
     let run = Simulation::new(system, stepper, system.effects())
         .run(0.0, state, until, &mut ())
-        .unwrap();
+        .expect("a run");
     (run.t, run.outcome, run.state)
 }
 
 #[test]
 fn a_state_that_no_transition_takes_ends_the_run() {
     let tent = OpenTent::with_defaults();
-    let tolerance = Tolerance::new(1e-10).unwrap();
+    let tolerance = Tolerance::new(1e-10).expect("a tolerance");
     let (dop853, taylor) = (Dop853::new(tolerance), Taylor::new(tolerance));
     let untaken = Outcome::Untaken {
         surface: open_tent::surface::up,
@@ -108,10 +108,10 @@ fn a_state_that_no_transition_takes_ends_the_run() {
     let alone = open_tent::First(tent);
     let state = alone
         .state(0.0, &[0.0, 0.5].into(), &[0.0; 2].into())
-        .unwrap();
+        .expect("a state");
     let run = Simulation::new(&alone, Dop853::new(tolerance), alone.effects())
         .run(0.0, state, 4.0, &mut ())
-        .unwrap();
+        .expect("a run");
     assert!(
         matches!(run.outcome, Outcome::Untaken { .. }),
         "{:?}",
@@ -122,7 +122,7 @@ fn a_state_that_no_transition_takes_ends_the_run() {
 #[test]
 fn otherwise_takes_what_is_left() {
     let tent = ClosedTent::with_defaults();
-    let dop853 = Dop853::new(Tolerance::new(1e-10).unwrap());
+    let dop853 = Dop853::new(Tolerance::new(1e-10).expect("a tolerance"));
     let (_, outcome, state) = run_of(&tent, dop853, [0.0, 0.125], [0.0; 2]);
     assert_eq!(outcome, Outcome::Done);
     assert!(state[0] <= 1.0 && state[1] == 0.0, "{state:?}");
@@ -130,10 +130,10 @@ fn otherwise_takes_what_is_left() {
     let mut log = EventLog::<_, 8>::new();
     let state = tent
         .state(0.0, &[0.0, -4.0].into(), &[0.0; 2].into())
-        .unwrap();
+        .expect("a state");
     let run = Simulation::new(&tent, dop853, tent.effects())
         .run(0.0, state, 3.5, &mut log)
-        .unwrap();
+        .expect("a run");
     assert_eq!(run.outcome, Outcome::Done);
     let up = closed_tent::surface::up;
     assert_eq!(log.iter().filter(|event| event.surface == up).count(), 2);
@@ -143,7 +143,7 @@ fn otherwise_takes_what_is_left() {
 #[test]
 fn otherwise_divides_a_wall() {
     let wall = Patched::with_defaults();
-    let tolerance = Tolerance::new(1e-10).unwrap();
+    let tolerance = Tolerance::new(1e-10).expect("a tolerance");
     let dop853 = Dop853::new(tolerance);
     let cases = [
         (0.5, 1.0),
@@ -165,14 +165,14 @@ fn otherwise_divides_a_wall() {
             assert_eq!(outcome, Outcome::Done, "y = {y}");
             assert!((gauss.2[2] - speed).abs() < 1e-12, "{gauss:?} at y = {y}");
         }
-        let velocity = wall.velocity(0.0, &state).unwrap();
+        let velocity = wall.velocity(0.0, &state).expect("a state");
         assert!(
             (velocity[0] - speed).abs() < 1e-12,
             "{velocity:?} at y = {y}"
         );
         let at = wall
             .state_unchecked(0.0, &[0.0, y].into(), &[-1.0, 0.0].into())
-            .unwrap();
+            .expect("a state");
         let counting = (0..3)
             .filter(|&own| wall.surface_active(own, 0.0, &at))
             .count();

@@ -90,15 +90,17 @@ dalembert::model! {
 /// The declared start, solved for, and the same run to `end`.
 fn start<S: Described + Scene>(system: &S, end: f64) -> ([S::Vector; 2], Outcome) {
     let own = system.initial();
-    let q = system.complete_position(0.0, &own.q, &own.placed).unwrap();
+    let q = system
+        .complete_position(0.0, &own.q, &own.placed)
+        .expect("positions");
     let qdot = system
         .complete_velocity(0.0, &q, &own.qdot, &own.named)
-        .unwrap();
-    let state = system.state(0.0, &q, &qdot).unwrap();
-    let stepper = Dop853::new(Tolerance::new(1e-6).unwrap());
+        .expect("velocities");
+    let state = system.state(0.0, &q, &qdot).expect("a state");
+    let stepper = Dop853::new(Tolerance::new(1e-6).expect("a tolerance"));
     let run = Simulation::new(system, stepper, system.effects())
         .run(0.0, state, end, &mut ())
-        .unwrap();
+        .expect("a run");
     ([q, system.position(&run.state)], run.outcome)
 }
 
@@ -141,7 +143,7 @@ fn places_off_the_equations_are_refused() {
         "{refused:?}"
     );
     let near = rod.state_projected(0.0, &[0.5, 1e-3].into(), &[1.0, 1.0].into());
-    let q = rod.position(&near.unwrap());
+    let q = rod.position(&near.expect("a state"));
     assert!((q[0].hypot(q[1]) - 0.5).abs() < 1e-15 && (q[1] - 1e-3).abs() < 1e-6);
 }
 
@@ -216,19 +218,21 @@ fn what_stays_is_said_where_parameters_change() {
         let (sin, cos) = 0.3_f64.sin_cos();
         [u * cos + a * w * sin, u * sin - a * w * cos, w].into()
     });
-    let state = light.state(0.0, &q, &qdot(2.0, 1.0, 0.5)).unwrap();
+    let state = light.state(0.0, &q, &qdot(2.0, 1.0, 0.5)).expect("a state");
     let as_fast = heavy
         .carried(&light, 0.0, &state, Keep::Velocities)
-        .unwrap();
-    let velocity = heavy.velocity(0.0, &as_fast).unwrap();
+        .expect("a state");
+    let velocity = heavy.velocity(0.0, &as_fast).expect("a state");
     assert!(
         (velocity - qdot(2.0, 1.0, 0.5))
             .iter()
             .all(|own| own.abs() < 1e-15)
     );
-    let as_heavy = heavy.carried(&light, 0.0, &state, Keep::Momenta).unwrap();
+    let as_heavy = heavy
+        .carried(&light, 0.0, &state, Keep::Momenta)
+        .expect("a state");
     // The momentum along the blade is that of the mass, so the speed along it is a quarter.
-    let slower = heavy.velocity(0.0, &as_heavy).unwrap();
+    let slower = heavy.velocity(0.0, &as_heavy).expect("a state");
     let along = slower[0] * 0.3_f64.cos() + slower[1] * 0.3_f64.sin();
     assert!((along - 0.5).abs() < 1e-15, "{along}");
     let turned = Skate { a: 0.25, ..light };
@@ -254,11 +258,13 @@ fn what_stays_is_said_where_parameters_change() {
 #[test]
 fn a_motion_is_carried_on_in_the_mode_that_it_is_in() {
     let system = Loaded::default();
-    let state = system.state(0.0, &[0.0].into(), &[2.0].into()).unwrap();
-    let stepper = Dop853::new(Tolerance::new(1e-9).unwrap());
+    let state = system
+        .state(0.0, &[0.0].into(), &[2.0].into())
+        .expect("a state");
+    let stepper = Dop853::new(Tolerance::new(1e-9).expect("a tolerance"));
     let run = Simulation::new(&system, stepper, system.effects())
         .run(0.0, state, 3.0, &mut ())
-        .unwrap();
+        .expect("a run");
     assert_eq!(system.mode(&run.state), loaded::Mode::Both as usize);
     let heavier = Loaded {
         load: 7.0,
@@ -266,7 +272,7 @@ fn a_motion_is_carried_on_in_the_mode_that_it_is_in() {
     };
     let carried = heavier
         .carried(&system, 3.0, &run.state, Keep::Momenta)
-        .unwrap();
+        .expect("a state");
     assert_eq!(heavier.mode(&carried), loaded::Mode::Both as usize);
-    assert_eq!(heavier.velocity(3.0, &carried).unwrap()[0], 1.0);
+    assert_eq!(heavier.velocity(3.0, &carried).expect("a state")[0], 1.0);
 }
