@@ -149,7 +149,7 @@ impl Writer<'_> {
             primes: local.primes.clone(),
             error: local.error,
             seed: self.seed,
-            at: obstruction.map(|own| own.sample),
+            at: obstruction.map(|found| found.sample),
         })
     }
 

@@ -92,7 +92,7 @@ pub(super) fn from_angles(
         .flatten();
     let holds = |turns: &[(usize, i64)]| {
         let leaves = leaves.as_ref();
-        is_whole || leaves.is_some_and(|own| own.hold(problem, turns))
+        is_whole || leaves.is_some_and(|leaves| leaves.hold(problem, turns))
     };
     for turns in loops(&angles(model, problem)) {
         let grown = samples.iter().find_map(|(sample, values)| {
@@ -192,7 +192,7 @@ impl Leaves {
         })
     }
 
-    /// Whether the field with constant components `turns` lies in the hull.
+    /// True if the field with constant components `turns` lies in the hull.
     fn hold(&self, problem: &Problem, turns: &[(usize, i64)]) -> bool {
         let jets = Jets::new(self.field, &self.space);
         let mut turn = vec![Vec::new(); problem.components() + 1];
@@ -225,7 +225,11 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
     // Circles along which the growth is 0 by symmetry, or may be.
     let (mut proved, mut left) = (0, Vec::new());
     for turns in loops {
-        if !is_whole && !leaves.as_ref().is_some_and(|own| own.hold(problem, &turns)) {
+        if !is_whole
+            && !leaves
+                .as_ref()
+                .is_some_and(|leaves| leaves.hold(problem, &turns))
+        {
             continue;
         }
         if let [(angle, _)] = turns[..]
@@ -267,7 +271,7 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
     }
 }
 
-/// Whether a few points of a loop add up to little, so that it is worth looking for a proof that `G` does not grow along it.
+/// True if a few points of a loop add up to little: then a proof that `G` does not grow along it is worth looking for.
 fn seems_closed(model: &Model, problem: &Problem, local: &Local, turns: &[(usize, i64)]) -> bool {
     let sample = sample(model, ATTEMPTS[0], uses(&model.pool, &problem.roots()));
     period(model, problem, local, &sample, turns, PROBES)

@@ -136,7 +136,9 @@ fn obstruction_at(
             &mut point,
             CLEAR_IN_DOUBLES,
         );
-        if let Some(found) = found.filter(|own| own.delta.abs() > CLEAR_IN_DOUBLES * own.scale) {
+        if let Some(found) =
+            found.filter(|found| found.delta.abs() > CLEAR_IN_DOUBLES * found.scale)
+        {
             return Some(found.with_eight_digits());
         }
     }

@@ -47,7 +47,7 @@ pub(super) struct Wall {
     constraints: usize,
     /// Functions that are positive where the surface counts.
     margins: Vec<ExprId>,
-    /// How many of them are the wall's own, and how many those of each other surface that must not count.
+    /// The number of the wall's margins, and the numbers of those of each other surface that must not count.
     lists: (usize, Vec<usize>),
     polynomials: Vec<Polynomial>,
 }
@@ -111,7 +111,7 @@ pub(super) enum Place {
     Second,
 }
 
-/// How many margins are the surface's own, and how many belong to each surface that must not count.
+/// The number of margins of the surface itself, and the numbers of those of each surface that must not count.
 fn lists(surface: &Surface) -> (usize, Vec<usize>) {
     let others = match &surface.beside {
         Beside::Otherwise(others) => others.iter().map(Vec::len).collect(),
@@ -268,7 +268,7 @@ impl Wall {
         (rate < 0.0 && self.counts(&margins)).then_some((sample, point))
     }
 
-    /// Whether the surface counts where its margins have these values, away from the ends of where it does.
+    /// True if the surface counts where its margins have these values, away from the ends of where it does.
     fn counts(&self, margins: &[f64]) -> bool {
         let (own, mut rest) = margins.split_at(self.lists.0);
         own.iter().all(|value| *value > 0.0)

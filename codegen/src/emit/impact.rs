@@ -174,7 +174,7 @@ fn emit_conditions(context: &Context<'_>, functions: &Impacting) -> TokenStream 
     }
 }
 
-/// That every condition of a list holds, of which the margins come next.
+/// The test that every condition of a list holds, of which the margins come next.
 fn all_hold<'a>(
     conditions: &[Condition],
     margins: &mut impl Iterator<Item = &'a TokenStream>,

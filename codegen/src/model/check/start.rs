@@ -83,7 +83,7 @@ impl<'a, 'b> Start<'a, 'b> {
         behind.collect()
     }
 
-    /// Whether a surface counts at the start, clearly.
+    /// True if a surface clearly counts at the start.
     fn counts(&self, surface: &Surface) -> bool {
         let has_sign = |own: &Condition, sign: f64| self.clear_sign(own.margin) == Some(sign);
         let mut own = surface.conditions.iter();
@@ -114,7 +114,7 @@ impl<'a, 'b> Start<'a, 'b> {
         off.collect()
     }
 
-    /// What vanishes on the constraint.
+    /// The expression that vanishes on the constraint.
     fn residual(&mut self, constraint: &Constraint) -> Option<ExprId> {
         if constraint.is_of_positions {
             return constraint.level;
