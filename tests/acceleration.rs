@@ -76,9 +76,9 @@ fn check<S: Described + Scene>(file: &str) {
 /// The rates of expressions on D modulo a prime.
 fn rates_modulo_a_prime(model: &Model, dynamics: &Dynamics, expressions: &[ExprId]) -> Vec<u64> {
     let profile = model.pool.profile_of(expressions);
-    SamplePoints::seeded(&profile, 1, 7)
+    SamplePoints::seeded(&model.pool, expressions, &profile, 7)
         .expect("points")
-        .find(|point| {
+        .find(&model.pool, |point| {
             let motion = dynamics.motion(&model.pool, point, None)?;
             dynamics.rates(&model.pool, expressions, &motion, point)
         })

@@ -264,3 +264,39 @@ fn parts_of_a_surface_that_do_not_count_refute_nothing() {
     not_refuted(declared, "conserved under v: (x - 3)*dot(x)");
     not_proved(declared, "not conserved under v: (x - 3)*dot(x)");
 }
+
+/// Coordinates that each lie in a well of their own, whose force has a root and a logarithm; `energy` is conserved.
+fn wells(count: usize) -> String {
+    format!(
+        "coordinates {{ x[{count}]; }}
+        lagrangian = sum(i in 1..={count}: dot(x[i])^2/2 - sqrt(1 + x[i]^2) - x[i]^2*ln(2 + x[i]^2));"
+    )
+}
+
+/// Bodies in the plane that attract each other, and their moment.
+const BODIES: &str = "const N = 5;
+    coordinates { x[N]; y[N]; }
+    parameters { m[N] > 0 = 1; }
+    lagrangian = sum(i in 1..=N: m[i]*(dot(x[i])^2 + dot(y[i])^2)/2)
+        + sum(i in 1..=N - 1: sum(j in i + 1..=N: m[i]*m[j]/sqrt((x[i] - x[j])^2 + (y[i] - y[j])^2)));
+    let moment = sum(i in 1..=N: m[i]*(x[i]*dot(y[i]) - y[i]*dot(x[i])));";
+
+#[test]
+fn many_roots_and_logarithms_are_no_obstacle() {
+    let proved = |declared: &str, claim: &str| {
+        let found = finding("Sample", declared, claim);
+        let is_proved = matches!(found.verdict, Verdict::Proved(_));
+        assert!(is_proved, "{claim} of {declared}: {}", found.note());
+    };
+    for count in [9, 12] {
+        proved(&wells(count), "conserved: energy");
+        proved(&wells(count), "density: exact");
+        let pushed = format!("{} forces {{ push: 1e-30*d(x[1]); }}", wells(count));
+        not_proved(&pushed, "conserved: energy");
+    }
+    proved(BODIES, "conserved: energy");
+    proved(BODIES, "conserved: moment");
+    not_proved(BODIES, "not conserved: moment");
+    let pushed = format!("{BODIES} forces {{ push: 1e-30*d(x[1]); }}");
+    not_proved(&pushed, "conserved: moment");
+}

@@ -54,22 +54,15 @@ impl Pool {
     /// too few points have values.
     pub fn branches(&self, roots: &[ExprId], points: &SamplePoints) -> Option<Branches> {
         let order = self.reachable(roots);
-        let (mut arguments, mut radicands) = (Vec::new(), Vec::new());
-        for id in &order {
-            match self.node(*id) {
-                Node::Call(Function::Abs, argument) => arguments.push(*argument),
-                Node::Product(factors) => {
-                    let of_roots = factors.iter().filter(|(_, power)| !power.is_integer());
-                    radicands.extend(of_roots.map(|(base, _)| *base));
-                }
-                _ => {}
-            }
-        }
-        for list in [&mut arguments, &mut radicands] {
-            list.sort_unstable();
-            list.dedup();
-        }
-        let hidden = self.hidden_relations(&radicands, points.clone())?;
+        let arguments = order.iter().filter_map(|id| match self.node(*id) {
+            Node::Call(Function::Abs, argument) => Some(*argument),
+            _ => None,
+        });
+        let mut arguments: Vec<ExprId> = arguments.collect();
+        arguments.sort_unstable();
+        arguments.dedup();
+        let radicands = self.radicands(&order);
+        let hidden = self.hidden_relations(&radicands, points.clone().unsettled())?;
         let is_in_reach = arguments.len() <= MOST_ARGUMENTS && hidden <= MOST_HIDDEN;
         is_in_reach.then_some(Branches { arguments, hidden })
     }
@@ -90,7 +83,7 @@ impl Pool {
         let symbols: Vec<_> = symbols.collect();
         let mut patterns = Echelon::default();
         for _ in 0..BITS + radicands.len() {
-            let pattern = points.find(|point| {
+            let pattern = points.find(self, |point| {
                 // A symbol that is known to be positive is no square here: its root is not one of its functions.
                 for symbol in &symbols {
                     point.set(*symbol, point.value(*symbol, Assumption::None));
@@ -176,7 +169,7 @@ impl SamplePoints {
             if seen.visits == MOST_VISITS {
                 return None;
             }
-            let (is_so, pattern) = self.find(|point| {
+            let (is_so, pattern) = self.find(pool, |point| {
                 if !branches.arguments.is_empty()
                     && seen.is_full(branches.pattern(pool, point)?, each)
                 {
@@ -267,7 +260,7 @@ mod tests {
         let id = fixture.read(text);
         let pool = &fixture.pool;
         let profile = pool.profile_of(&[id]);
-        let mut points = SamplePoints::seeded(&profile, 10, 1).unwrap();
+        let mut points = SamplePoints::seeded(pool, &[id], &profile, 1).unwrap();
         let branches = pool.branches(&[id], &points).unwrap();
         let covered = points.cover(pool, &branches, 3, |_| Some(true)).unwrap();
         assert!(covered.points >= 3 * covered.patterns);

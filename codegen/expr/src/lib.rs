@@ -62,6 +62,7 @@ mod rank;
 mod rational;
 mod sign;
 mod simplify;
+mod squares;
 mod subst;
 mod sum;
 mod taylor;
@@ -83,4 +84,4 @@ pub use taylor::{
     Arithmetic, ExpansionPoint, ExtendedPoint, ExtendedReals, JetSpace, Jets, Real, RealPoint,
     Reals, Series,
 };
-pub use zero::{SamplePoints, Verdict};
+pub use zero::{Frozen, SamplePoints, Verdict};

@@ -86,6 +86,11 @@ impl ModularPoint {
         self.values[symbol.index()] = Some(residue);
     }
 
+    /// True if the value of a symbol was set.
+    pub(crate) fn is_set(&self, symbol: SymbolId) -> bool {
+        matches!(self.values.get(symbol.index()), Some(Some(_)))
+    }
+
     /// The value of a symbol; a square if the symbol is assumed not to be negative.
     pub fn value(&self, symbol: SymbolId, assumption: Assumption) -> u64 {
         if let Some(Some(value)) = self.values.get(symbol.index()) {

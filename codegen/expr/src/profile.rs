@@ -54,6 +54,8 @@ impl Residue {
     }
 }
 
+/// Beyond this number of roots and logarithms a degree is too large to prove anything.
+const MOST_HALVINGS: usize = 1 << 7;
 /// Beyond this common denominator the multiples of base angles are refused.
 const MAX_DENOMINATOR: i64 = 1 << 40;
 
@@ -82,6 +84,8 @@ impl Pool {
             }
         }
         profile.degree = self.degree_bound(order, profile.denominator.unwrap_or(1));
+        // An accident is more likely among the points at which roots and logarithms have values, as they are fewer.
+        profile.degree *= 2f64.powi(self.positives(order).len().min(MOST_HALVINGS) as i32);
         profile
     }
 

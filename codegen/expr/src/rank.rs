@@ -26,7 +26,8 @@ pub struct RankReport {
     pub decided: bool,
 }
 
-const SAMPLES: usize = 3;
+/// Points, without roots and with them: a hidden sign of theirs may be such that rows are dependent.
+const SAMPLES: (usize, usize) = (3, 24);
 const REAL_SAMPLES: u64 = 12;
 
 impl Pool {
@@ -36,15 +37,23 @@ impl Pool {
         let order = self.reachable(&roots);
         let profile = self.profile(&order);
         let mut best: Option<RankReport> = None;
-        let mut samples = SamplePoints::new(&profile, order.len());
-        for _ in 0..SAMPLES {
+        let mut samples = SamplePoints::new(self, &order, &profile, 0);
+        let count = if profile.branches {
+            SAMPLES.1
+        } else {
+            SAMPLES.0
+        };
+        for _ in 0..count {
             let report = samples.as_mut().and_then(|samples| {
-                samples.find(|point| {
+                samples.find(self, |point| {
                     let values = self.modular_eval_ordered(&order, &roots, point).ok()?;
                     Some(eliminate(point.modulus(), rows, values))
                 })
             });
             best = better(best, report);
+            if best.as_ref().is_some_and(|best| best.rank == rows.len()) {
+                break;
+            }
         }
         let Some(mut report) = best else {
             return undecided();

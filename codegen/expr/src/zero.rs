@@ -15,6 +15,7 @@ use crate::node::{Assumption, ExprId, SymbolId};
 use crate::point::ModularPoint;
 use crate::pool::Pool;
 use crate::profile::Profile;
+use crate::squares::Squares;
 
 /// The answer of a zero test.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
@@ -70,7 +71,7 @@ impl Pool {
     /// Whether all sampled residues are 0; `None` if there were not enough.
     fn vanishes_modularly(&self, id: ExprId, order: &[ExprId], profile: &Profile) -> Option<bool> {
         let wanted = sample_count(profile);
-        let mut points = SamplePoints::new(profile, order.len())?;
+        let mut points = SamplePoints::new(self, order, profile, 0)?;
         let branches = match profile.branches {
             true => self.branches(&[id], &points),
             false => Some(Branches::default()),
@@ -124,6 +125,9 @@ fn sample_count(profile: &Profile) -> Option<usize> {
     Some((60.0 / bits).ceil().max(3.0) as usize)
 }
 
+/// A symbol and the residue that it has at all points, once that is known.
+pub type Frozen = (SymbolId, Option<u64>);
+
 /// Random points, each with the next prime.
 #[derive(Clone, Debug)]
 pub struct SamplePoints {
@@ -132,18 +136,19 @@ pub struct SamplePoints {
     moduli: &'static [Modulus],
     drawn: usize,
     limit: usize,
+    squares: Squares,
 }
 
 impl SamplePoints {
-    /// For expressions of a profile and size; `None` if their coefficients have no common denominator in reach.
-    pub(crate) fn new(profile: &Profile, nodes: usize) -> Option<Self> {
-        Self::seeded(profile, nodes, 0)
+    /// Points of a seed at which the expressions below some roots, whose profile is given, are likely to have values;
+    /// `None` if the coefficients inside sin, cos and exp have no common denominator in reach.
+    pub fn seeded(pool: &Pool, roots: &[ExprId], profile: &Profile, seed: u64) -> Option<Self> {
+        Self::new(pool, &pool.reachable(roots), profile, seed)
     }
 
-    /// As points for expressions of a profile and size, drawn with a seed; `None` if the coefficients inside sin,
-    /// cos and exp have no common denominator in reach.
-    pub fn seeded(profile: &Profile, nodes: usize, seed: u64) -> Option<Self> {
-        let limit = (DRAW_WORK / nodes.max(1)).clamp(DRAWS.0, DRAWS.1);
+    /// As [`SamplePoints::seeded`] for the expressions in `order`, which is [`Pool::reachable`] of the roots.
+    pub(crate) fn new(pool: &Pool, order: &[ExprId], profile: &Profile, seed: u64) -> Option<Self> {
+        let limit = (DRAW_WORK / order.len().max(1)).clamp(DRAWS.0, DRAWS.1);
         let moduli: &[Modulus] = if profile.branches {
             &Modulus::POSITIVE
         } else {
@@ -155,6 +160,7 @@ impl SamplePoints {
             moduli,
             drawn: 0,
             limit,
+            squares: Squares::of(pool, order),
         })
     }
 
@@ -170,17 +176,43 @@ impl SamplePoints {
         self
     }
 
+    /// The same points, whether or not roots have values there.
+    pub(crate) fn unsettled(mut self) -> Self {
+        self.squares = Squares::default();
+        self
+    }
+
     /// The first result that is not `None` at the next points; `None` if all that may be drawn for one value fail.
-    pub fn find<T>(&mut self, mut f: impl FnMut(&mut ModularPoint) -> Option<T>) -> Option<T> {
+    pub fn find<T>(
+        &mut self,
+        pool: &Pool,
+        f: impl FnMut(&mut ModularPoint) -> Option<T>,
+    ) -> Option<T> {
+        self.find_frozen(pool, &mut [], f)
+    }
+
+    /// As [`SamplePoints::find`] with points of one prime, see [`SamplePoints::modulo`], at which some symbols have the
+    /// values that are given; those of the point that is found where there are none yet.
+    pub fn find_frozen<T>(
+        &mut self,
+        pool: &Pool,
+        frozen: &mut [Frozen],
+        mut f: impl FnMut(&mut ModularPoint) -> Option<T>,
+    ) -> Option<T> {
         (0..self.limit).find_map(|_| {
             let modulus = self.moduli[self.drawn % self.moduli.len()];
             self.drawn += 1;
             let seed = mix(mix(self.seed).wrapping_add(self.drawn as u64));
-            f(&mut ModularPoint::with_denominator(
-                modulus,
-                seed,
-                self.denominator,
-            ))
+            let mut point = ModularPoint::with_denominator(modulus, seed, self.denominator);
+            for (symbol, value) in frozen.iter() {
+                value.map(|value| point.set(*symbol, value));
+            }
+            self.squares.settle(pool, &mut point, seed)?;
+            let found = f(&mut point)?;
+            for (symbol, value) in frozen.iter_mut() {
+                value.get_or_insert_with(|| point.value(*symbol, pool.symbol_assumption(*symbol)));
+            }
+            Some(found)
         })
     }
 }

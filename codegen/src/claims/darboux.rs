@@ -11,7 +11,9 @@
 //! or momentum`, at random points of D with parameters frozen. Coefficients are reconstructed as rational numbers, or as
 //! polynomials in the parameters. What was found is certified from itself alone at fresh points modulo other primes.
 
-use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Modulus, Pool, Rational, SymbolId};
+use dalembert_expr::{
+    ExprId, Frozen, JetSpace, Jets, ModularPoint, Modulus, Pool, Rational, SymbolId,
+};
 
 use super::ansatz::{combination, parameter_monomials};
 use super::dynamics::Dynamics;
@@ -133,14 +135,10 @@ impl Search<'_> {
         let roots = self.roots(terms);
         let profile = pool.profile_of(&roots);
         let mut points = sample_points(pool, &roots, &profile, self.seed)?.modulo(1);
-        let mut values: Vec<Option<u64>> = vec![None; frozen.len()];
+        let mut frozen: Vec<Frozen> = frozen.iter().map(|symbol| (*symbol, None)).collect();
         let mut seen = Vec::with_capacity(count);
         while seen.len() < count {
-            let next = points.find(|point| {
-                for (symbol, value) in frozen.iter().zip(&mut values) {
-                    let own = point.value(*symbol, pool.symbol_assumption(*symbol));
-                    point.set(*symbol, *value.get_or_insert(own));
-                }
+            let next = points.find_frozen(pool, &mut frozen, |point| {
                 self.observation(pool, terms, point)
             });
             seen.push(next.ok_or(Undecided::Degenerate)?);

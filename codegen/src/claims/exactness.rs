@@ -6,12 +6,12 @@
 use std::collections::BTreeMap;
 
 use dalembert_expr::{
-    Branches, ExprId, JetSpace, Jets, ModularPoint, Pool, Profile, SamplePoints, SymbolId,
+    Branches, ExprId, Frozen, JetSpace, Jets, ModularPoint, Pool, Profile, SamplePoints, SymbolId,
 };
 
 use super::closure::{Hull, Until, close};
 use super::fit::{
-    Certified, Frozen, certify, fit, fit_with_parameters, has_points, solve_for_coefficients,
+    Certified, certify, fit, fit_with_parameters, has_points, solve_for_coefficients,
 };
 use super::frame::frame;
 use super::global::{self, Global};
@@ -179,8 +179,7 @@ pub(super) fn sample_points(
     profile: &Profile,
     seed: u64,
 ) -> Result<SamplePoints, Undecided> {
-    let nodes = pool.reachable(roots).len();
-    SamplePoints::seeded(profile, nodes, seed).ok_or(Undecided::Denominators)
+    SamplePoints::seeded(pool, roots, profile, seed).ok_or(Undecided::Denominators)
 }
 
 /// The branches of the expressions of a problem; `None` if there are too many.
@@ -220,7 +219,7 @@ pub(super) fn screen(
 ) -> Option<bool> {
     let mut left = attempts;
     points
-        .find(|point| {
+        .find(pool, |point| {
             left -= 1;
             let found = fix(pool, point, conditions)
                 .and_then(|()| sample(pool, problem, point, None, Until::Obstructed));

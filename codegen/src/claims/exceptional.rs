@@ -85,7 +85,7 @@ impl Column<'_> {
         let profile = self.pool.profile_of(&roots);
         let points = sample_points(self.pool, &roots, &profile, seed).ok()?;
         let mut points = points.modulo(PRIME);
-        points.find(|point| {
+        points.find(self.pool, |point| {
             let delta = self.delta(&mut point.clone())?;
             Some((point.clone(), delta))
         })

@@ -4,7 +4,9 @@
 //! reconstructed as rational numbers. What was found is then certified from itself alone, at fresh points modulo other
 //! primes: the certificate does not depend on how it was found.
 
-use dalembert_expr::{ExprId, JetSpace, Jets, ModularPoint, Modulus, Pool, Rational, SymbolId};
+use dalembert_expr::{
+    ExprId, Frozen, JetSpace, Jets, ModularPoint, Modulus, Pool, Rational, SymbolId,
+};
 
 use super::exactness::{branches_of, sample_points};
 use super::frame::{Demand, frame};
@@ -67,7 +69,7 @@ pub(super) fn has_points(
     points.is_ok_and(|points| {
         let mut points = points.modulo(1);
         points
-            .find(|point| equations(pool, problem, &terms, point))
+            .find(pool, |point| equations(pool, problem, &terms, point))
             .is_some()
     })
 }
@@ -141,9 +143,6 @@ fn power_of_two(field: Modulus, before: u64, after: u64) -> Option<i64> {
     })
 }
 
-/// A symbol that has the same value at all points: the one given, or that of the first point.
-pub(super) type Frozen = (SymbolId, Option<u64>);
-
 /// The coefficients modulo a prime, later candidates only where earlier ones do not suffice; `None` if there are none.
 pub(super) fn solve_for_coefficients(
     pool: &Pool,
@@ -158,11 +157,7 @@ pub(super) fn solve_for_coefficients(
     let mut rows: Vec<Vec<u64>> = Vec::new();
     let mut modulus = None;
     let mut at_next = |modulus: &mut Option<Modulus>| {
-        points.find(|point| {
-            for (symbol, value) in frozen.iter_mut() {
-                let own = point.value(*symbol, pool.symbol_assumption(*symbol));
-                point.set(*symbol, *value.get_or_insert(own));
-            }
+        points.find_frozen(pool, frozen, |point| {
             *modulus = Some(point.modulus());
             equations(pool, problem, terms, point)
         })

@@ -169,7 +169,7 @@ impl Leaves {
         let roots = problem.roots();
         let profile = pool.profile_of(&roots);
         let mut points = sample_points(pool, &roots, &profile, 3).ok()?;
-        points.find(|point| {
+        points.find(pool, |point| {
             let field = point.modulus();
             let order = problem.forms.len() + 2;
             let space = JetSpace::new(problem.variables.len(), order, 1 << 14)?;

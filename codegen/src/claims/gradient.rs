@@ -71,7 +71,7 @@ pub(super) fn gradient(
     let mut points = sample_points(pool, &roots, &pool.profile_of(&roots), seed).ok()?;
     let trace = RefCell::new(Trace::default());
     let (hull, dependent) = (&local.hull, local.dependent());
-    let elements = points.find(|point| {
+    let elements = points.find(pool, |point| {
         let mut traced = TracedPoint::new(point.clone(), &trace);
         elements_at(pool, problem, hull, Some(dependent), &mut traced)
     })?;

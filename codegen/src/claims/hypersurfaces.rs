@@ -184,7 +184,7 @@ impl Search<'_> {
             }
             exists_at(pool, problem, other)
         };
-        points.modulo(PRIME).find(at) == Some(true)
+        points.modulo(PRIME).find(pool, at) == Some(true)
     }
 }
 

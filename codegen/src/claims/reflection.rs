@@ -115,8 +115,9 @@ impl Circle<'_> {
         maps.iter().any(|map| {
             (0..count).all(|k| {
                 if known.len() == k {
-                    let found =
-                        points.find(|point| Some((point.clone(), self.summed(turns, point)?)));
+                    let found = points.find(&model.pool, |point| {
+                        Some((point.clone(), self.summed(turns, point)?))
+                    });
                     known.extend(found);
                 }
                 let Some((point, sum)) = known.get(k) else {

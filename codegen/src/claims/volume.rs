@@ -104,7 +104,7 @@ fn almost_nowhere_singular(pool: &Pool, problem: &Problem, seed: u64) -> Option<
     let roots = problem.roots();
     let mut points = sample_points(pool, &roots, &pool.profile_of(&roots), seed).ok()?;
     let space = JetSpace::new(problem.variables.len(), 1, usize::MAX)?;
-    points.find(|point| {
+    points.find(pool, |point| {
         let jets = Jets::new(point.modulus(), &space);
         frame(pool, problem, &jets, point, None).map(|frame| frame.dependent)
     })

@@ -3,6 +3,7 @@
 //! Every declaration is resolved and checked by itself first; what concerns several of them (ranks, surfaces against
 //! constraints) follows for those without a fault. So independent mistakes are all reported.
 
+mod at_defaults;
 mod beside;
 mod cancellation;
 mod claims;
@@ -141,6 +142,7 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
         &resolver.spec.field,
     ) {
         natural::check_metric(resolver, &written.value, lagrangian);
+        at_defaults::check(resolver, lagrangian, &parts.constraints);
         resolver.within_budget(written.value.at);
     }
     // Rules broken by some of the constraints are broken by all of them: those that were refused may be missing.

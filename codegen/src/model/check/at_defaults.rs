@@ -1,0 +1,84 @@
+//! A metric and constraints that are regular for indeterminate parameters are regular with the declared defaults too.
+
+use dalembert_expr::{ExprId, Pool, SymbolId};
+
+use super::super::resolve::Resolver;
+use super::super::{Constraint, Lagrangian};
+
+/// A parameter by its position, and what replaces it.
+type Default = (usize, (SymbolId, ExprId));
+
+/// Refuses defaults with which the metric is singular or the constraints are dependent, where they are neither for
+/// indeterminate parameters.
+pub(super) fn check(
+    resolver: &mut Resolver<'_>,
+    lagrangian: &Lagrangian,
+    constraints: &[Constraint],
+) {
+    let forms: Vec<Vec<ExprId>> = constraints.iter().map(|own| own.form.clone()).collect();
+    refuse_singular(resolver, &lagrangian.metric, "the metric is singular");
+    refuse_singular(resolver, &forms, "the constraints are dependent");
+}
+
+fn refuse_singular(resolver: &mut Resolver<'_>, rows: &[Vec<ExprId>], what: &str) {
+    let defaults = defaults(resolver, rows);
+    if defaults.is_empty() {
+        return;
+    }
+    // What is replaced is replaced in a copy: the check adds nothing to the model.
+    let mut pool = resolver.pool.clone();
+    if pool.rank(rows).rank < rows.len() || !is_singular(&mut pool, rows, &defaults) {
+        return;
+    }
+    // Defaults that can be left indeterminate are not to blame.
+    let mut guilty = defaults.clone();
+    for own in &defaults {
+        let others: Vec<Default> = guilty
+            .iter()
+            .filter(|other| *other != own)
+            .copied()
+            .collect();
+        if is_singular(&mut pool, rows, &others) {
+            guilty = others;
+        }
+    }
+    let parameters = &resolver.symbols.parameters;
+    let texts: Vec<String> = guilty
+        .iter()
+        .map(|(position, (_, value))| {
+            let name = &parameters[*position].name.display;
+            format!("`{name} = {}`", pool.text(*value))
+        })
+        .collect();
+    let Some((last, _)) = guilty.last() else {
+        return;
+    };
+    let at = resolver.spec.location(parameters[*last].item);
+    let text = format!("with {} {what} everywhere", texts.join(" and "));
+    let help = "change the default, or declare the model without what has no effect then";
+    resolver.refuse::<()>(at, text, help);
+}
+
+/// The defaults of the parameters that occur.
+fn defaults(resolver: &Resolver<'_>, rows: &[Vec<ExprId>]) -> Vec<Default> {
+    let occurs = |symbol: SymbolId| {
+        let mut entries = rows.iter().flatten();
+        entries.any(|entry| resolver.pool.depends_on(*entry, symbol))
+    };
+    let parameters = resolver.symbols.parameters.iter().enumerate();
+    parameters
+        .filter(|(_, own)| occurs(own.symbol))
+        .filter_map(|(position, own)| Some((position, (own.symbol, own.default?))))
+        .collect()
+}
+
+/// True if the rows are surely dependent with these defaults.
+fn is_singular(pool: &mut Pool, rows: &[Vec<ExprId>], defaults: &[Default]) -> bool {
+    let replacements: Vec<(SymbolId, ExprId)> = defaults.iter().map(|(_, own)| *own).collect();
+    let replaced: Vec<Vec<ExprId>> = rows
+        .iter()
+        .map(|row| pool.substitute_all(row, &replacements))
+        .collect();
+    let report = pool.rank(&replaced);
+    report.decided && report.rank < rows.len()
+}
