@@ -245,6 +245,67 @@ fn small_and_narrow_periods_are_not_taken_for_none() {
 }
 
 #[test]
+fn periods_count_where_an_enclosure_excludes_0() {
+    let drag = |slope: &str| {
+        format!(
+            "coordinates {{ x; th: angle; s; }} lagrangian = (dot(x)^2 + dot(th)^2 + dot(s)^2)/2;
+            forces {{ drag: -dot(x)*(({slope})*dot(th) + exp(-s^2)*dot(s))*d(x); }}"
+        )
+    };
+    for slope in [
+        "exp(sin(th)^3)",
+        "1/10 + cos(th)*exp(sin(th)^3)",
+        "exp(-100*(1 - cos(th)))",
+    ] {
+        let found = finding("Sample", &drag(slope), "density: locally_exact");
+        let is_proved = matches!(found.verdict, Verdict::Proved(_));
+        assert!(is_proved, "{slope}: {}", found.note());
+    }
+    // What is printed are digits of the period, not of the sums that cancel.
+    let small = drag("1e-7 + cos(th)*exp(sin(th)^3)");
+    let found = finding("Sample", &small, "density: locally_exact");
+    assert!(
+        found.note().contains("exp(6.28318530718e-7)"),
+        "{}",
+        found.note()
+    );
+    let narrow = drag("1e-14 + cos(th)*exp(sin(th)^3)");
+    not_proved(&narrow, "density: locally_exact");
+    not_proved(&narrow, "density: exact");
+}
+
+/// Drags whose density may grow along a loop around what is left out of Q, or around an end of its domain.
+#[test]
+fn loops_around_what_is_left_out_are_not_forgotten() {
+    for slope in [
+        "(x*dot(y) - y*dot(x))/(x^2 + y^2)",
+        "(x*dot(y) - y*dot(x))/((x - 3)^2 + y^2 + x^2 - (x - 3)^2)",
+        "(x*dot(y) - y*dot(x))/(x^2 + y^2)*sqrt(x^2 + y^2 - 1)/sqrt(x^2 + y^2 - 1)",
+    ] {
+        let declared = format!(
+            "coordinates {{ x; y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+            forces {{ drag: -dot(z)*({slope})*d(z); }}"
+        );
+        not_proved(&declared, "density: exact");
+        not_refuted(&declared, "density: locally_exact");
+    }
+    // Nothing is left out of a plane, or of a line, around which a loop leads.
+    for slope in [
+        "exp(-x^2)*dot(x)",
+        "exp(-x^2)*dot(x)/x",
+        "exp(-x^2)/(1 + x^2)*dot(x) + exp(-y^2)*dot(y)",
+    ] {
+        let declared = format!(
+            "coordinates {{ x; y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+            forces {{ drag: -dot(z)*({slope})*d(z); }}"
+        );
+        let found = finding("Sample", &declared, "density: exact");
+        let is_proved = matches!(found.verdict, Verdict::Proved(_));
+        assert!(is_proved, "{slope}: {}", found.note());
+    }
+}
+
+#[test]
 fn periods_that_vanish_by_symmetry_are_proved_to() {
     let declared = "coordinates { x; th: angle; s; }
         lagrangian = (dot(x)^2 + dot(th)^2 + dot(s)^2)/2;

@@ -201,10 +201,7 @@ fn call_range(function: Function, x: Interval) -> Option<Interval> {
         Function::Abs => x.abs(),
         Function::Ln if x.lo > 0.0 => x.increasing(libm::log),
         Function::Asin if x.lo >= -1.0 && x.hi <= 1.0 => x.increasing(libm::asin),
-        Function::Acos if x.lo >= -1.0 && x.hi <= 1.0 => {
-            let turned = Interval::new(-x.hi, -x.lo);
-            turned.increasing(|x| libm::acos(-x))
-        }
+        Function::Acos if x.lo >= -1.0 && x.hi <= 1.0 => (-x).increasing(|x| libm::acos(-x)),
         Function::Ln | Function::Asin | Function::Acos => return None,
     })
 }

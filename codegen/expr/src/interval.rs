@@ -5,7 +5,7 @@
 //! are widened by [`STEPS`]. Endpoints may be infinite.
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::ops::{Add, Mul};
+use std::ops::{Add, Mul, Neg};
 
 use crate::rational::Rational;
 
@@ -29,6 +29,9 @@ impl Interval {
         lo: f64::NEG_INFINITY,
         hi: f64::INFINITY,
     };
+
+    /// The number 0.
+    pub const ZERO: Self = Self { lo: 0.0, hi: 0.0 };
 
     /// From one number to another.
     pub fn new(lo: f64, hi: f64) -> Self {
@@ -61,6 +64,14 @@ impl Interval {
     /// The largest absolute value.
     pub fn magnitude(self) -> f64 {
         self.lo.abs().max(self.hi.abs())
+    }
+
+    /// The smallest absolute value.
+    pub fn mignitude(self) -> f64 {
+        match self.excludes_zero() {
+            true => self.lo.abs().min(self.hi.abs()),
+            false => 0.0,
+        }
     }
 
     /// `1 / a`; `None` if 0 is inside.
@@ -115,7 +126,7 @@ impl Interval {
     pub fn abs(self) -> Self {
         match (self.lo >= 0.0, self.hi <= 0.0) {
             (true, _) => self,
-            (_, true) => Self::new(-self.hi, -self.lo),
+            (_, true) => -self,
             _ => Self::new(0.0, self.magnitude()),
         }
     }
@@ -177,8 +188,19 @@ impl Add for Interval {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        let (lo, hi) = (self.lo + other.lo, self.hi + other.hi);
-        outwards(lo, hi, 1)
+        match (self == Self::ZERO, other == Self::ZERO) {
+            (true, _) => other,
+            (_, true) => self,
+            _ => outwards(self.lo + other.lo, self.hi + other.hi, 1),
+        }
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self::new(-self.hi, -self.lo)
     }
 }
 
@@ -186,6 +208,9 @@ impl Mul for Interval {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
+        if self == Self::ZERO || other == Self::ZERO {
+            return Self::ZERO;
+        }
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let ends = [
             product(self.lo, other.lo),
@@ -193,7 +218,8 @@ impl Mul for Interval {
             product(self.hi, other.lo),
             product(self.hi, other.hi),
         ];
-        let is_exact = self == Self::point(1.0) || other == Self::point(1.0);
+        let is_unit = |own: Self| own == Self::point(1.0) || own == Self::point(-1.0);
+        let is_exact = is_unit(self) || is_unit(other);
         let lo = ends.iter().copied().fold(f64::INFINITY, f64::min);
         let hi = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         outwards(lo, hi, usize::from(!is_exact))
@@ -258,7 +284,7 @@ mod tests {
     #[test]
     fn infinite_ends_are_carried() {
         let ray = Interval::new(2.0, f64::INFINITY);
-        assert_eq!((ray * Interval::point(0.0)).magnitude(), f64::from_bits(1));
+        assert_eq!(ray * Interval::ZERO, Interval::ZERO);
         let square = ray.power(&Rational::from(2)).unwrap();
         assert!(square.lo > 3.99 && square.hi == f64::INFINITY);
         assert!(ray.inverse().unwrap().lo <= 0.0);

@@ -81,7 +81,7 @@ pub use rank::RankReport;
 pub use rational::{MAX_BITS, Rational};
 pub use sign::Sign;
 pub use taylor::{
-    Arithmetic, ExpansionPoint, ExtendedPoint, ExtendedReals, JetSpace, Jets, Real, RealPoint,
-    Reals, Series,
+    Arithmetic, EnclosedPoint, Enclosures, ExpansionPoint, ExtendedPoint, ExtendedReals, JetSpace,
+    Jets, Real, RealPoint, Reals, Series,
 };
 pub use zero::{Frozen, SamplePoints, Verdict};

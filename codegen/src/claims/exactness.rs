@@ -19,6 +19,7 @@ use super::leaf;
 use super::potential::{Allowed, Candidates, Potential};
 use super::problem::Problem;
 use super::regularity;
+use super::smoothness::{HOLES, is_smooth};
 use super::undecided::Undecided;
 use crate::model::Model;
 
@@ -369,6 +370,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
             {
                 Global::Exists
             }
+            Global::Exists if !is_smooth(model, problem, seed) => Global::Undecided(HOLES),
             other => other,
         },
     };

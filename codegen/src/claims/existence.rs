@@ -81,8 +81,7 @@ impl Writer<'_> {
             }
             None => Certificate {
                 shown: format!(
-                    "{cover}an invariant exp(G)*mu_C exists{depends}; G was found in no closed form, its periods \
-                     on the circles are numeric, loops around singular configurations are not examined"
+                    "{cover}an invariant exp(G)*mu_C exists{depends}; G was found in no closed form"
                 ),
                 points: self.exactness.local.points,
                 primes: self.exactness.local.primes.clone(),

@@ -151,6 +151,9 @@ fn identity<A: Arithmetic>(jets: &Jets<'_, A>, size: usize) -> Matrix<A> {
         .collect()
 }
 
+/// A pivot below this part of the largest entry may be rounding.
+const PIVOT: f64 = 1e-9;
+
 /// The greedy choice of columns with an invertible minor, from the last column to the first.
 ///
 /// NOTE: coordinates that place a body are mostly declared first and its shape last, yet a wheel's angle often has
@@ -165,12 +168,17 @@ pub(super) fn choose_dependent<A: Arithmetic>(
         .map(|form| form.iter().map(|entry| jets.value(entry)).collect())
         .collect();
     let columns = forms.first().map_or(0, Vec::len);
+    let entries = rows.iter().flatten();
+    let least = PIVOT * entries.fold(0.0, |size: f64, own| size.max(field.size(*own)));
     let mut chosen = Vec::new();
     for column in (0..columns).rev() {
         let free = chosen.len()..rows.len();
         let Some(pivot) = largest(free, |row| field.size(rows[*row][column])) else {
             continue;
         };
+        if field.size(rows[pivot][column]) < least {
+            continue;
+        }
         rows.swap(chosen.len(), pivot);
         let pivot_row = rows[chosen.len()].clone();
         let inverse = field.inv(pivot_row[column])?;

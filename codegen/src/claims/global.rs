@@ -2,12 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use dalembert_expr::{JetSpace, Jets, Modulus, Pool, Reals};
+use dalembert_expr::{Domain, ExprId, Interval, JetSpace, Jets, Modulus, Pool};
 
 use super::closure::{Until, close};
 use super::exactness::{Local, sample_points};
 use super::frame::{Demand, frame};
-use super::obstruction::{combine, elements_at};
+use super::growth::Loop;
 use super::potential::{Potential, Term};
 use super::problem::Problem;
 use super::reflection;
@@ -32,10 +32,6 @@ pub enum Global {
     Undecided(&'static str),
 }
 
-/// Points on a circle for the trapezoidal rule, which converges geometrically for periodic functions: they are doubled
-/// until the period changes by no more than this part of the integral of the absolute value.
-const POINTS: (usize, usize) = (32, 1024);
-const CONVERGED: f64 = 1e-10;
 /// Points of a loop at a first look.
 const PROBES: usize = 12;
 /// A sum over few points is small below this part of the integral of the absolute value.
@@ -44,14 +40,14 @@ const SMALL: f64 = 5e-2;
 const ROUNDING: f64 = 1e-12;
 /// Why a period was not found.
 const OPEN: &str = "a circle leaves the domain where the constraints are regular, or G varies too fast on it for its period to converge";
+/// Why a period that is not 0 in double precision leaves the question open.
+const GROWS: &str = "G seems to grow along a circle, but so little beside its variation that no enclosure of the period excludes 0";
 /// The seed of the points at which symmetries are tested.
 const PERIODS: u64 = 7;
 /// Why a period that seems to be 0 leaves the question open.
 const NUMERIC: &str = "G was found in no closed form, and that its periods on the circles are 0 to rounding proves nothing: declare the angles of these circles as lines, or as intervals";
-/// Where between two multiples of the step the points lie.
-const SHIFT: f64 = 0.382;
 /// A period counts from this part of the integral of the absolute value on.
-const PERIOD: f64 = 1e-9;
+const PERIOD: f64 = 1e-12;
 /// Samples at which periods are computed: the declared defaults, which may hide what depends on a parameter, and others.
 const ATTEMPTS: [usize; 2] = [0, 9];
 
@@ -62,7 +58,7 @@ pub(super) fn from_angles(
     local: &Local,
     found: &Potential,
 ) -> Global {
-    let slopes: Vec<(usize, dalembert_expr::ExprId)> = found
+    let slopes: Vec<(usize, ExprId)> = found
         .terms
         .iter()
         .filter_map(|(coefficient, term)| {
@@ -80,10 +76,12 @@ pub(super) fn from_angles(
         return Global::Exists;
     }
     let coefficients: Vec<_> = slopes.iter().map(|(_, k)| *k).collect();
+    let order = model.pool.reachable(&coefficients);
     let samples = ATTEMPTS.map(|attempt| {
         let sample = sample(model, attempt, uses(&model.pool, &coefficients));
-        let value = |symbol| sample.value(symbol).unwrap_or(0.0);
-        let values = model.pool.eval(&coefficients, &value);
+        let ranges = model.pool.enclose(&order, &sample.ranges());
+        let own = |id: &ExprId| ranges[id.index()].unwrap_or(Interval::WHOLE);
+        let values: Vec<Interval> = coefficients.iter().map(own).collect();
         (sample, values)
     });
     let is_whole = local.rank == problem.components();
@@ -96,14 +94,16 @@ pub(super) fn from_angles(
     };
     for turns in loops(&angles(model, problem)) {
         let grown = samples.iter().find_map(|(sample, values)| {
-            let weight = |((i, _), value): (&(usize, _), &f64)| {
+            let weight = |((i, _), value): (&(usize, _), &Interval)| {
                 let turn = turns.iter().find(|(own, _)| own == i);
-                turn.map_or(0.0, |(_, count)| TAU * value * *count as f64)
+                turn.map_or(Interval::ZERO, |(_, count)| {
+                    *value * Interval::point(*count as f64)
+                })
             };
-            let weights: Vec<f64> = slopes.iter().zip(values).map(weight).collect();
-            let period = weights.iter().sum::<f64>();
-            let size = weights.iter().map(|own| own.abs()).sum::<f64>();
-            (period.is_finite() && period.abs() > PERIOD * size).then_some((period, sample))
+            let weights = slopes.iter().zip(values).map(weight);
+            let sum = weights.fold(Interval::ZERO, |a, b| a + b);
+            let period = TAU * f64::midpoint(sum.lo, sum.hi);
+            (period.is_finite() && sum.excludes_zero()).then_some((period, sample))
         });
         if let Some((period, sample)) = grown
             && holds(&turns)
@@ -206,7 +206,7 @@ impl Leaves {
     }
 }
 
-/// What the growth of `G` along loops says, in double precision: with all components in the hull of D along each circle,
+/// What the growth of `G` along loops says, certified by enclosures: with all components in the hull of D along each circle,
 /// else along the combinations of circles that lie in leaves.
 pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> Global {
     let is_whole = local.rank == problem.components();
@@ -221,7 +221,7 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
     let roots = problem.roots();
     let has_no_period =
         |angle: usize| reflection::has_no_period(model, problem, local, angle, PERIODS);
-    let mut is_open = false;
+    let (mut is_open, mut uncertain) = (false, None);
     // Circles along which the growth is 0 by symmetry, or may be.
     let (mut proved, mut left) = (0, Vec::new());
     for turns in loops {
@@ -245,19 +245,27 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
         let mut is_known = false;
         for attempt in ATTEMPTS {
             let sample = sample(model, attempt, uses(&model.pool, &roots));
-            let Some((period, size)) = converged(model, problem, local, &sample, &turns) else {
+            let mut path = Loop::new(model, problem, local, &turns);
+            let Some((period, size)) = path.converged(&sample) else {
                 continue;
             };
             is_known = true;
-            if period.abs() > PERIOD * size + ROUNDING {
+            if period.abs() <= PERIOD * size + ROUNDING {
+                continue;
+            }
+            if let Some(period) = path.certified(&sample, &Domain::new()) {
                 return Global::Many {
                     turns,
                     period,
                     sample,
                 };
             }
+            uncertain.get_or_insert(GROWS);
         }
         is_open |= !is_known;
+    }
+    if let Some(reason) = uncertain {
+        return Global::Undecided(reason);
     }
     match (is_whole, is_open) {
         (true, _) if proved + left.len() == angles.len() && left.into_iter().all(has_no_period) => {
@@ -274,82 +282,7 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
 /// True if a few points of a loop add up to little: then a proof that `G` does not grow along it is worth looking for.
 fn seems_closed(model: &Model, problem: &Problem, local: &Local, turns: &[(usize, i64)]) -> bool {
     let sample = sample(model, ATTEMPTS[0], uses(&model.pool, &problem.roots()));
-    period(model, problem, local, &sample, turns, PROBES)
+    Loop::new(model, problem, local, turns)
+        .sum(&sample, PROBES)
         .is_none_or(|(sum, size)| sum.abs() <= SMALL * size + ROUNDING)
-}
-
-/// How much `G` grows along a loop in a leaf of the hull of D; `None` if the sum does not converge.
-pub(super) fn growth(
-    model: &Model,
-    problem: &Problem,
-    local: &Local,
-    sample: &Sample,
-    turns: &[(usize, i64)],
-) -> Option<f64> {
-    converged(model, problem, local, sample, turns).map(|(period, _)| period)
-}
-
-/// How much `G` grows along a loop of the hull of D, and the integral of the absolute values of what its rate is made of; `None` if they do
-/// not converge.
-fn converged(
-    model: &Model,
-    problem: &Problem,
-    local: &Local,
-    sample: &Sample,
-    turns: &[(usize, i64)],
-) -> Option<(f64, f64)> {
-    let mut points = POINTS.0;
-    let mut coarse = period(model, problem, local, sample, turns, points)?;
-    while points < POINTS.1 {
-        points *= 2;
-        let fine = period(model, problem, local, sample, turns, points)?;
-        if (fine.0 - coarse.0).abs() <= CONVERGED * fine.1 + ROUNDING {
-            return Some(fine);
-        }
-        coarse = fine;
-    }
-    None
-}
-
-/// The same with a number of points; the loop is written by the hull's elements; `None` where they are
-/// dependent.
-fn period(
-    model: &Model,
-    problem: &Problem,
-    local: &Local,
-    sample: &Sample,
-    turns: &[(usize, i64)],
-    points: usize,
-) -> Option<(f64, f64)> {
-    let width = problem.components();
-    let mut tangent = vec![0.0; width];
-    for (i, count) in turns {
-        tangent[*i] = *count as f64;
-    }
-    let (mut sum, mut size) = (0.0, 0.0);
-    for k in 0..points {
-        // NOTE: off the fractions of pi, where frames of D often have poles that the density does not have.
-        let turn = (k as f64 + SHIFT) / points as f64;
-        let mut point = sample.point();
-        for (i, count) in turns {
-            point.set(model.coordinates[*i].q, TAU * turn * *count as f64);
-        }
-        let elements = elements_at(
-            &model.pool,
-            problem,
-            &local.hull,
-            Some(&local.dependent),
-            &mut point,
-        )?;
-        let basis = || local.hull.basis.iter().map(|e| &elements[*e]);
-        let vectors: Vec<&[f64]> = basis().map(|own| &own[..width]).collect();
-        let coefficients = combine(Reals, &vectors, &tangent)?;
-        let demands = basis().map(|own| own[width]);
-        for (demand, coefficient) in demands.zip(&coefficients) {
-            sum += demand * coefficient;
-            size += (demand * coefficient).abs();
-        }
-    }
-    let step = TAU / points as f64;
-    sum.is_finite().then_some((sum * step, size * step))
 }

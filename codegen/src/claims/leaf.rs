@@ -4,13 +4,14 @@
 //! surface `f = 0` is made of leaves of the hull of D. Where the hull has one dimension less than Q it is one leaf. Every
 //! density, regular or not, grows on a loop in it by the same factor, as the growth is the integral of demands that are regular.
 //! A circle of an angle that `f` does not contain is such a loop. That `f` vanishes somewhere, once, is certified by
-//! enclosures of `f` and of its derivative; the growth is a sum in double precision.
+//! enclosures of `f` and of its derivative; that the growth is not 0 by one of the growth over all places where the zero may be.
 
 use dalembert_expr::{Domain, ExprId, Interval, JetSpace, Jets, Reals, SymbolId, Zeros};
 
 use super::exactness::{Local, decide_local_in};
 use super::frame::frame;
-use super::global::{Global, growth};
+use super::global::Global;
+use super::growth::Loop;
 use super::potential::Potential;
 use super::problem::Problem;
 use super::regularity::{domain, factors_with_zeros};
@@ -21,8 +22,6 @@ use crate::model::{Model, Topology};
 const BISECTIONS: usize = 200;
 /// The part of a coordinate around a zero in which the derivative must keep its sign.
 const AROUND: f64 = 1e-7;
-/// A growth counts from this size on.
-const CLEAR: f64 = 1e-6;
 
 /// The growth on a closed leaf where a density in closed form is singular, if one is found.
 pub(super) fn grown_on_leaf(
@@ -38,7 +37,7 @@ pub(super) fn grown_on_leaf(
     }
     let factors = factors_with_zeros(model, problem, local, singular);
     factors.into_iter().find_map(|factor| {
-        let sample = zero_of(model, problem, factor)?;
+        let (sample, zero) = zero_of(model, problem, factor)?;
         let local = regular_there(model, problem, &sample, seed)?;
         let is_loop = |i: &usize| {
             let coordinate = &model.coordinates[*i];
@@ -47,8 +46,8 @@ pub(super) fn grown_on_leaf(
         let angles = (0..problem.coordinates).filter(is_loop);
         let mut loops = angles.map(|i| vec![(i, 1)]);
         loops.find_map(|turns| {
-            let period = growth(model, problem, &local, &sample, &turns)?;
-            (period.abs() > CLEAR).then(|| Global::Many {
+            let period = Loop::new(model, problem, &local, &turns).certified(&sample, &zero)?;
+            Some(Global::Many {
                 turns,
                 period,
                 sample: sample.clone(),
@@ -65,8 +64,8 @@ fn regular_there(model: &Model, problem: &Problem, sample: &Sample, seed: u64) -
     decide_local_in(&model.pool, problem, &frame.dependent, seed).ok()
 }
 
-/// A configuration where a function has a simple zero.
-fn zero_of(model: &mut Model, problem: &Problem, id: ExprId) -> Option<Sample> {
+/// A configuration where a function has a simple zero, but for one coordinate, and the range of that.
+fn zero_of(model: &mut Model, problem: &Problem, id: ExprId) -> Option<(Sample, Domain)> {
     let domain = domain(model, id);
     let slopes: Vec<ExprId> = domain
         .iter()
@@ -76,24 +75,36 @@ fn zero_of(model: &mut Model, problem: &Problem, id: ExprId) -> Option<Sample> {
         return None;
     };
     let place = bisected(model, id, above, below);
-    let around: Domain = place
-        .iter()
-        .map(|(symbol, x)| {
-            let room = AROUND * x.abs().max(AROUND);
-            (*symbol, Interval::new(x - room, x + room))
-        })
-        .collect();
-    let ranges = model.pool.enclose(&model.pool.reachable(&slopes), &around);
-    let is_simple = |slope: &ExprId| ranges[slope.index()].is_some_and(Interval::excludes_zero);
-    if !slopes.iter().any(is_simple) {
-        return None;
-    }
+    let place = shortened(model, id, place);
+    let around = |x: f64| {
+        let room = AROUND * x.abs().max(AROUND);
+        Interval::new(x - room, x + room)
+    };
+    let pool = &model.pool;
+    let all: Domain = place.iter().map(|(s, x)| (*s, around(*x))).collect();
+    let ranges = pool.enclose(&pool.reachable(&slopes), &all);
+    let order = pool.reachable(&[id]);
+    // A function that changes its sign along one direction, where all other symbols have their values.
+    let zero = (0..place.len()).find_map(|i| {
+        ranges[slopes[i].index()].filter(|slope| slope.excludes_zero())?;
+        let (symbol, range) = all[i];
+        let mut line: Domain = place
+            .iter()
+            .map(|(s, x)| (*s, Interval::point(*x)))
+            .collect();
+        let [low, high] = [range.lo, range.hi].map(|end| {
+            line[i].1 = Interval::point(end);
+            pool.enclose(&order, &line)[id.index()].unwrap_or(Interval::WHOLE)
+        });
+        let changes = (low.hi < 0.0 && high.lo > 0.0) || (low.lo > 0.0 && high.hi < 0.0);
+        changes.then_some((symbol, range))
+    })?;
     let roots = problem.roots();
     let mut sample = sample(model, 0, uses(&model.pool, &roots));
-    for (symbol, x) in shortened(model, id, place) {
+    for (symbol, x) in place {
         sample.set(symbol, x);
     }
-    Some(sample)
+    Some((sample, vec![zero]))
 }
 
 /// A zero with nine decimals, if it is one.

@@ -5,7 +5,7 @@
 //! | `problem.rs` | what an invariant density depends on |
 //! | `linear.rs`, `frame.rs`, `closure.rs` | the frame of D as series, and its hull under brackets |
 //! | `exactness.rs` | does a local density exist? |
-//! | `potential.rs`, `fit.rs`, `global.rs`, `reflection.rs`, `regularity.rs`, `leaf.rs` | the density in closed form; is it single-valued, and regular? |
+//! | `potential.rs`, `fit.rs`, `global.rs`, `growth.rs`, `reflection.rs`, `regularity.rs`, `smoothness.rs`, `leaf.rs` | the density in closed form; is it single-valued, and regular? |
 //! | `volume.rs`, `gradient.rs`, `trace.rs` | the volume with that density, or with an integral for it, as it is lowered |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `conditions.rs`, `exceptional.rs`, `hypersurfaces.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
@@ -47,6 +47,7 @@ mod gauge;
 mod geometry;
 mod global;
 mod gradient;
+mod growth;
 mod hybrid;
 mod hypersurfaces;
 mod impact;
@@ -62,6 +63,7 @@ mod reflection;
 mod regularity;
 mod reset;
 mod sample;
+mod smoothness;
 mod symmetry;
 mod trace;
 mod undecided;

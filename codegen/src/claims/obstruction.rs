@@ -260,17 +260,29 @@ pub(super) fn elements_at<P: ExpansionPoint>(
     dependent: Option<&[usize]>,
     point: &mut P,
 ) -> Option<Vec<Vec<Number<P>>>> {
-    let order = hull.growth.len();
-    let space = JetSpace::new(problem.variables.len(), order, usize::MAX)?;
+    let space = JetSpace::new(problem.variables.len(), hull.growth.len(), usize::MAX)?;
     let jets = Jets::new(point.field(), &space);
-    let frame = frame(pool, problem, &jets, point, dependent)?;
+    let elements = elements_in(pool, problem, &jets, (hull, dependent), point)?;
+    let values = |element: &Demand<P::Field>| element.iter().map(|own| jets.value(own)).collect();
+    Some(elements.iter().map(values).collect())
+}
+
+/// A hull's elements at a point, the demand last: series of the order by which that of `jets` exceeds the depth of the hull.
+pub(super) fn elements_in<P: ExpansionPoint>(
+    pool: &Pool,
+    problem: &Problem,
+    jets: &Jets<'_, P::Field>,
+    (hull, dependent): (&Hull, Option<&[usize]>),
+    point: &mut P,
+) -> Option<Vec<Demand<P::Field>>> {
+    let frame = frame(pool, problem, jets, point, dependent)?;
     let mut elements: Vec<Demand<P::Field>> = Vec::new();
     for origin in &hull.elements {
         let element = match origin {
             Origin::Generator(i) => frame.demands[*i].clone(),
             // NOTE: brackets are cut off by no order of their own; coefficients beyond their validity reach no value.
             Origin::Bracket(i, position) => bracket(
-                &jets,
+                jets,
                 &problem.variables,
                 &frame.demands[*i],
                 &elements[*position],
@@ -278,8 +290,7 @@ pub(super) fn elements_at<P: ExpansionPoint>(
         };
         elements.push(element);
     }
-    let values = |element: &Demand<P::Field>| element.iter().map(|own| jets.value(own)).collect();
-    Some(elements.iter().map(values).collect())
+    Some(elements)
 }
 
 /// `X1`, `[X1,X2]`, .. for the first elements of a hull; the drift is `X0`.

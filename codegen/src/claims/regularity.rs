@@ -112,7 +112,11 @@ fn numerators(model: &Model, id: ExprId) -> Vec<ExprId> {
 const LARGEST_MINOR: usize = 4;
 
 /// The determinant of some columns of the constraint forms, written out; `None` for many constraints.
-fn determinant(model: &mut Model, forms: &[Vec<ExprId>], columns: &[usize]) -> Option<ExprId> {
+pub(super) fn determinant(
+    model: &mut Model,
+    forms: &[Vec<ExprId>],
+    columns: &[usize],
+) -> Option<ExprId> {
     let Some((first, rest)) = forms.split_first() else {
         return Some(model.pool.one());
     };

@@ -1,6 +1,8 @@
 //! Real points with short coordinates, at which a person can follow a computation.
 
-use dalembert_expr::{Assumption as Known, ExprId, Function, Node, Pool, RealPoint, SymbolId};
+use dalembert_expr::{
+    Assumption as Known, Domain, ExprId, Function, Interval, Node, Pool, RealPoint, SymbolId,
+};
 
 use crate::model::{Assumption, Model, Topology};
 
@@ -26,6 +28,15 @@ impl Sample {
     pub(super) fn point_values(&self) -> Vec<(SymbolId, f64)> {
         let values = self.values.iter().map(|(_, value)| *value);
         self.symbols.iter().copied().zip(values).collect()
+    }
+
+    /// Ranges of one unit in the last place around the values: what is printed is in them, and so is an exact default.
+    pub(super) fn ranges(&self) -> Domain {
+        let near = |value: f64| Interval::new(value.next_down(), value.next_up());
+        let values = self.point_values().into_iter();
+        values
+            .map(|(symbol, value)| (symbol, near(value)))
+            .collect()
     }
 
     /// The value of a symbol.

@@ -240,7 +240,7 @@ impl<P: ExpansionPoint> Expansion<'_, '_, P> {
             Some((1, _)) => Some(base.to_vec()),
             Some((2, _)) => Some(self.jets.mul(base, base)),
             // The recurrence divides by the base, which a natural power need not.
-            Some((n @ 3.., _)) if self.jets.field.is_zero(self.jets.value(base)) => {
+            Some((n @ 3.., _)) if self.jets.field.size(self.jets.value(base)) == 0.0 => {
                 let mut power = base.to_vec();
                 for _ in 1..n {
                     power = self.jets.mul(&power, base);

@@ -18,6 +18,11 @@ pub struct ExtendedReals;
 impl ExtendedReals {
     /// Half of a unit in the last place of 1.
     pub const ROUNDING: f64 = Real::ROUNDING;
+
+    /// The circle's half circumference.
+    pub fn pi() -> Real {
+        Real::constant(dalembert_numbers::numbers::PI)
+    }
 }
 
 impl Arithmetic for ExtendedReals {
@@ -114,7 +119,7 @@ impl ExtendedPoint {
         let field = ExtendedReals;
         Some(match pool.node(id) {
             Node::Number(number) => field.rational(number)?,
-            Node::Pi => Real::constant(dalembert_numbers::numbers::PI),
+            Node::Pi => ExtendedReals::pi(),
             Node::Symbol(symbol) => self.value(*symbol),
             Node::Sum { constant, terms } => {
                 let mut sum = field.rational(constant)?;

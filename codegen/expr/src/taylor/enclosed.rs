@@ -1,0 +1,177 @@
+//! Boxes in place of points: series whose coefficients are intervals that contain those at every point of the box.
+
+use super::arithmetic::Arithmetic;
+use super::expand::ExpansionPoint;
+use crate::enclose::Domain;
+use crate::interval::Interval;
+use crate::node::{ExprId, Function, SymbolId};
+use crate::pool::Pool;
+use crate::rational::Rational;
+
+/// Intervals of doubles, rounded outwards.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub struct Enclosures;
+
+impl Arithmetic for Enclosures {
+    type Scalar = Interval;
+    type Sum = Interval;
+
+    fn integer(self, value: i64) -> Interval {
+        Interval::rational(&Rational::from(value))
+    }
+
+    fn rational(self, value: &Rational) -> Option<Interval> {
+        Some(Interval::rational(value))
+    }
+
+    fn add(self, a: Interval, b: Interval) -> Interval {
+        a + b
+    }
+
+    fn sub(self, a: Interval, b: Interval) -> Interval {
+        a + -b
+    }
+
+    fn mul(self, a: Interval, b: Interval) -> Interval {
+        a * b
+    }
+
+    fn inv(self, a: Interval) -> Option<Interval> {
+        a.inverse()
+    }
+
+    /// 0 also for an interval that contains 0: it is no pivot.
+    fn size(self, a: Interval) -> f64 {
+        a.mignitude()
+    }
+
+    fn empty(self) -> Interval {
+        Interval::ZERO
+    }
+
+    fn settle(self, sum: Interval) -> Interval {
+        sum
+    }
+
+    fn scatter(
+        self,
+        sums: &mut [Interval],
+        row: &[u32],
+        factor: Interval,
+        terms: &[(u32, Interval)],
+    ) {
+        for (j, b) in terms {
+            let Some(k) = row.get(*j as usize) else {
+                return;
+            };
+            let sum = &mut sums[*k as usize];
+            *sum = *sum + factor * *b;
+        }
+    }
+}
+
+/// A box: a range for each symbol. Symbols without one are any real numbers.
+#[derive(Clone, Debug, Default)]
+pub struct EnclosedPoint {
+    ranges: Domain,
+}
+
+impl EnclosedPoint {
+    /// The box of these ranges.
+    pub fn new(ranges: Domain) -> Self {
+        Self { ranges }
+    }
+}
+
+impl ExpansionPoint for EnclosedPoint {
+    type Field = Enclosures;
+
+    fn field(&self) -> Enclosures {
+        Enclosures
+    }
+
+    fn symbol(&self, _: &Pool, symbol: SymbolId) -> Interval {
+        let found = self.ranges.iter().find(|(own, _)| *own == symbol);
+        found.map_or(Interval::WHOLE, |(_, range)| *range)
+    }
+
+    fn set_symbol(&mut self, symbol: SymbolId, value: Interval) {
+        match self.ranges.iter_mut().find(|(own, _)| *own == symbol) {
+            Some((_, range)) => *range = value,
+            None => self.ranges.push((symbol, value)),
+        }
+    }
+
+    fn values(&mut self, pool: &Pool, order: &[ExprId]) -> Option<Vec<Interval>> {
+        let ranges = pool.enclose(order, &self.ranges);
+        let is_known = |id: &ExprId| ranges[id.index()].is_some();
+        order.iter().all(is_known).then(|| {
+            let values = ranges.into_iter();
+            values.map(|own| own.unwrap_or(Interval::WHOLE)).collect()
+        })
+    }
+
+    fn pair(
+        &mut self,
+        _: &Pool,
+        function: Function,
+        argument: ExprId,
+        values: &[Interval],
+    ) -> Option<(Interval, Interval)> {
+        let x = values[argument.index()];
+        Some(match function {
+            Function::Sinh | Function::Cosh => (x.increasing(libm::sinh), x.cosh()),
+            _ => (x.sin(), x.cos()),
+        })
+    }
+
+    fn power(&self, value: Interval, exponent: &Rational) -> Option<Interval> {
+        value.power(exponent)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::Fixture;
+    use crate::taylor::{JetSpace, Jets, RealPoint, Reals};
+
+    #[test]
+    fn series_at_points_of_a_box_lie_in_that_of_the_box() {
+        let mut fixture = Fixture::new();
+        let texts = [
+            "sin(x)*exp(y)/(2 + cos(x))",
+            "sqrt(1 + x^2)*ln(3 + y) + atan(x*y)",
+            "tanh(x) - 1/(4 + x)^3",
+        ];
+        let roots: Vec<ExprId> = texts.iter().map(|text| fixture.read(text)).collect();
+        let symbols = ["x", "y"].map(|name| fixture.symbol(name));
+        let space = JetSpace::new(2, 3, usize::MAX).unwrap();
+        let ranges: Domain = symbols
+            .into_iter()
+            .zip([Interval::new(0.2, 0.3), Interval::new(-0.1, 0.1)])
+            .collect();
+        let mut all = EnclosedPoint::new(ranges.clone());
+        let enclosures = Jets::new(Enclosures, &space);
+        let pool = &fixture.pool;
+        let wide = pool
+            .taylor(&roots, &symbols, &enclosures, &mut all)
+            .unwrap();
+        for k in 0..=10 {
+            let part = f64::from(k) / 10.0;
+            let mut point = RealPoint::default();
+            for (symbol, range) in &ranges {
+                point.set(*symbol, range.lo + part * (range.hi - range.lo));
+            }
+            let reals = Jets::new(Reals, &space);
+            let thin = pool.taylor(&roots, &symbols, &reals, &mut point).unwrap();
+            for (thin, wide) in thin.iter().zip(&wide) {
+                for (i, value) in thin.iter().enumerate() {
+                    let range = wide.get(i).copied().unwrap_or(Interval::ZERO);
+                    let slack = 1e-13 * (1.0 + value.abs());
+                    assert!(range.lo <= value + slack && value - slack <= range.hi);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,345 @@
+//! How much `G` grows along a loop: as a sum over points, which tells where to look, and enclosed, which is a proof.
+//!
+//! The tangent of a loop in a leaf of the hull of D is a combination of the hull's elements, and `dG` of it is that combination of
+//! their demands. The enclosure parts the loop into cells, on which all coordinates of the loop are intervals, and in their
+//! middles; cells are halved until the sum of their parts excludes 0. Elements are those of a frame of D that may have poles on the loop: there
+//! another frame takes its place.
+
+use std::f64::consts::TAU;
+
+use dalembert_expr::{
+    Arithmetic, Domain, EnclosedPoint, Enclosures, ExpansionPoint, ExtendedPoint, ExtendedReals,
+    Interval, JetSpace, Jets, Real, Reals, Series,
+};
+
+use super::exactness::{Local, decide_local_in};
+use super::frame::{choose_dependent, frame};
+use super::linear::{Matrix, solve};
+use super::obstruction::elements_in;
+use super::problem::Problem;
+use super::sample::Sample;
+use crate::model::Model;
+
+/// Points on a circle for the trapezoidal rule, which converges geometrically for periodic functions: they are doubled
+/// until the growth changes by no more than this part of the integral of the absolute value.
+const POINTS: (usize, usize) = (32, 1024);
+const CONVERGED: f64 = 1e-10;
+/// Below this part of that integral doubles lack digits that are printed.
+const CANCELLED: f64 = 1e-2;
+/// What is rounding where everything else vanishes.
+const ROUNDING: f64 = 1e-12;
+/// Where between two multiples of the step the points lie.
+const SHIFT: f64 = 0.382;
+/// Cells of an enclosure at first, and the number of enclosures after which the question is left open.
+const CELLS: usize = 32;
+const ENCLOSURES: usize = 1024;
+/// Orders of the series in cells: the second one for growths that are small beside the variation of `G`.
+const ORDERS: [usize; 2] = [2, 8];
+/// Monomials beyond which a series is not computed.
+const MONOMIALS: usize = 2000;
+/// The seed of the hull in other frames.
+const SEED: u64 = 7;
+/// Frames among which a regular one is looked for.
+const FRAMES: usize = 4;
+
+/// A loop: of some coordinates, around their circles.
+pub(super) struct Loop<'l> {
+    model: &'l Model,
+    problem: &'l Problem,
+    /// The coordinates and their numbers of turns.
+    turns: &'l [(usize, i64)],
+    /// The hull in frames that are regular on parts of the loop.
+    frames: Vec<Local>,
+}
+
+/// A part of a loop, from one fraction of it to another, with what it adds to the growth.
+struct Cell {
+    ends: [f64; 2],
+    part: Option<Interval>,
+}
+
+/// A box around a part of a loop, and one around its middle.
+struct Places {
+    whole: EnclosedPoint,
+    middle: EnclosedPoint,
+    /// The middle, as a fraction of the loop.
+    fraction: f64,
+    /// The length of the part, where the loop has length 2 pi.
+    length: Interval,
+}
+
+impl<'l> Loop<'l> {
+    /// A loop in a leaf of a hull.
+    pub(super) fn new(
+        model: &'l Model,
+        problem: &'l Problem,
+        local: &Local,
+        turns: &'l [(usize, i64)],
+    ) -> Self {
+        Self {
+            model,
+            problem,
+            turns,
+            frames: vec![local.clone()],
+        }
+    }
+
+    /// The growth, if it is certified not to be 0: in double precision, for what is printed, where all symbols of a sample have
+    /// a value next to its own, or one in a range that is given.
+    pub(super) fn certified(&mut self, sample: &Sample, ranges: &Domain) -> Option<f64> {
+        let (growth, size, points) = self.converged_by(sample)?;
+        let mut domain = sample.ranges();
+        for (symbol, range) in &mut domain {
+            if let Some((_, given)) = ranges.iter().find(|(own, _)| own == symbol) {
+                *range = *given;
+            }
+        }
+        if !self.is_certain(sample, &domain, growth) {
+            return None;
+        }
+        // The digits that are printed are those of the growth.
+        match growth.abs() < CANCELLED * size {
+            true => self.precise(sample, 2 * points),
+            false => Some(growth),
+        }
+    }
+
+    /// How much `G` grows, and the integral of the absolute values of what its rate is made of; `None` if they do not converge.
+    pub(super) fn converged(&self, sample: &Sample) -> Option<(f64, f64)> {
+        let (growth, size, _) = self.converged_by(sample)?;
+        Some((growth, size))
+    }
+
+    /// The same, and the number of points.
+    fn converged_by(&self, sample: &Sample) -> Option<(f64, f64, usize)> {
+        let mut points = POINTS.0;
+        let mut coarse = self.sum(sample, points)?;
+        while points < POINTS.1 {
+            points *= 2;
+            let fine = self.sum(sample, points)?;
+            if (fine.0 - coarse.0).abs() <= CONVERGED * fine.1 + ROUNDING {
+                return Some((fine.0, fine.1, points));
+            }
+            coarse = fine;
+        }
+        None
+    }
+
+    /// The same by a number of points.
+    pub(super) fn sum(&self, sample: &Sample, points: usize) -> Option<(f64, f64)> {
+        let (mut sum, mut size) = (0.0, 0.0);
+        for k in 0..points {
+            // NOTE: off the fractions of pi, where frames of D often have poles that the density does not have.
+            let turn = (k as f64 + SHIFT) / points as f64;
+            let mut point = sample.point();
+            for (i, count) in self.turns {
+                point.set(self.model.coordinates[*i].q, TAU * turn * *count as f64);
+            }
+            for part in self.parts(&self.frames[0], 0, &mut point)? {
+                let part = part.first().copied().unwrap_or(0.0);
+                sum += part;
+                size += part.abs();
+            }
+        }
+        let step = TAU / points as f64;
+        sum.is_finite().then_some((sum * step, size * step))
+    }
+
+    /// The sum by a number of points, computed with 47 digits.
+    fn precise(&self, sample: &Sample, points: usize) -> Option<f64> {
+        let whole = ExtendedReals::pi() * Real::from(2.0);
+        let mut point = ExtendedPoint::of(&sample.point());
+        let mut sum = Real::from(0.0);
+        for k in 0..points {
+            let turn = (Real::from(k as f64) + Real::from(SHIFT)) / Real::from(points as f64);
+            for (i, count) in self.turns {
+                let angle = whole * turn * Real::from(*count as f64);
+                point.set_symbol(self.model.coordinates[*i].q, angle);
+            }
+            for part in self.parts(&self.frames[0], 0, &mut point)? {
+                sum = sum + part.first().copied().unwrap_or(Real::from(0.0));
+            }
+        }
+        Some((sum * whole / Real::from(points as f64)).nearest())
+    }
+
+    /// What the derivative of `G` along the loop is the sum of, as series of an order; `None` where the elements of the hull
+    /// are dependent.
+    fn parts<P: ExpansionPoint>(
+        &self,
+        local: &Local,
+        order: usize,
+        point: &mut P,
+    ) -> Option<Vec<Series<P::Field>>> {
+        let (pool, problem, hull) = (&self.model.pool, self.problem, &local.hull);
+        let space = self.space(local, order)?;
+        let jets = Jets::new(point.field(), &space);
+        let given = Some(local.dependent.as_slice());
+        let elements = elements_in(pool, problem, &jets, (hull, given), point)?;
+        let width = problem.components();
+        let basis = || hull.basis.iter().map(|e| &elements[*e]);
+        let vectors: Matrix<P::Field> = basis().map(|own| own[..width].to_vec()).collect();
+        // The tangent is a combination of the basis: as many components as vectors determine it.
+        let components = choose_dependent(&jets, &vectors)?;
+        let (mut rows, mut tangent) = (Matrix::<P::Field>::new(), Matrix::<P::Field>::new());
+        for i in components {
+            rows.push(vectors.iter().map(|vector| vector[i].clone()).collect());
+            let turns = self.turns.iter().find(|(own, _)| *own == i);
+            let count = turns.map_or(0, |(_, count)| *count);
+            tangent.push(vec![jets.constant(jets.field.integer(count))]);
+        }
+        let coefficients = solve(&jets, rows, tangent)?.unknowns;
+        let demands = basis().map(|own| &own[width]);
+        let parts = demands.zip(&coefficients);
+        Some(parts.map(|(demand, c)| jets.mul(demand, &c[0])).collect())
+    }
+
+    /// The monomials of series of an order in front of the brackets of a hull.
+    fn space(&self, local: &Local, order: usize) -> Option<JetSpace> {
+        let order = local.hull.growth.len() + order;
+        JetSpace::new(self.problem.variables.len(), order, MONOMIALS)
+    }
+
+    /// True if an enclosure of the growth excludes 0.
+    fn is_certain(&mut self, sample: &Sample, domain: &Domain, growth: f64) -> bool {
+        let mut orders = ORDERS.into_iter();
+        orders.any(|order| self.is_certain_by(order, sample, domain, growth))
+    }
+
+    /// The same by series of an order.
+    fn is_certain_by(
+        &mut self,
+        order: usize,
+        sample: &Sample,
+        domain: &Domain,
+        growth: f64,
+    ) -> bool {
+        let ends = |k: usize| [k, k + 1].map(|own| own as f64 / CELLS as f64);
+        let mut cells: Vec<Cell> = (0..CELLS)
+            .map(|k| self.cell(ends(k), order, sample, domain))
+            .collect();
+        let mut count = CELLS;
+        loop {
+            let parts: Option<Vec<Interval>> = cells.iter().map(|cell| cell.part).collect();
+            let total = parts.map(|parts| parts.into_iter().fold(Interval::ZERO, |a, b| a + b));
+            if total.is_some_and(Interval::excludes_zero) {
+                return true;
+            }
+            let width = total.map_or(f64::INFINITY, |own| own.hi - own.lo);
+            // NOTE: a power of the length of cells: so many would be needed.
+            let excess = (width / growth.abs()).powf(1.0 / order as f64);
+            let needed = excess * cells.len() as f64;
+            let is_beyond = |count: f64| count > ENCLOSURES as f64;
+            if is_beyond((count + cells.len()) as f64) || (width.is_finite() && is_beyond(needed)) {
+                return false;
+            }
+            let wide = width / (2 * cells.len()) as f64;
+            let mut finer = Vec::with_capacity(2 * cells.len());
+            for cell in cells {
+                if cell.part.is_some_and(|own| own.hi - own.lo < wide) {
+                    finer.push(cell);
+                    continue;
+                }
+                let [start, end] = cell.ends;
+                let middle = f64::midpoint(start, end);
+                for ends in [[start, middle], [middle, end]] {
+                    finer.push(self.cell(ends, order, sample, domain));
+                    count += 1;
+                }
+            }
+            cells = finer;
+        }
+    }
+
+    fn cell(&mut self, ends: [f64; 2], order: usize, sample: &Sample, domain: &Domain) -> Cell {
+        let turn = Interval::pi() * Interval::point(2.0);
+        let place = |from: f64, to: f64| {
+            let mut place = EnclosedPoint::new(domain.clone());
+            for (i, count) in self.turns {
+                let angle = turn * Interval::point(*count as f64) * Interval::new(from, to);
+                place.set_symbol(self.model.coordinates[*i].q, angle);
+            }
+            place
+        };
+        let fraction = f64::midpoint(ends[0], ends[1]);
+        let places = Places {
+            whole: place(ends[0], ends[1]),
+            middle: place(fraction, fraction),
+            fraction,
+            length: turn * Interval::point(ends[1] - ends[0]),
+        };
+        let part = self.integral(&places, order, sample);
+        Cell { ends, part }
+    }
+
+    /// The growth along a part of the loop, in the first frame that is regular there.
+    fn integral(&mut self, places: &Places, order: usize, sample: &Sample) -> Option<Interval> {
+        let mut frames = self.frames.iter();
+        let found = frames.find_map(|local| self.integral_in(local, places, order));
+        if found.is_some() || self.frames.len() == FRAMES {
+            return found;
+        }
+        let local = self.regular_at(places.fraction, sample)?;
+        let found = self.integral_in(&local, places, order);
+        self.frames.push(local);
+        found
+    }
+
+    /// The integral of `r = dG/ds` over a part of length `h`: what is in both `h r` and Taylor's formula about the middle,
+    /// `sum of h^(j+1) / (2^j (j+1)!) r^(j)` over even `j`, with the last derivative anywhere in the part.
+    fn integral_in(&self, local: &Local, places: &Places, order: usize) -> Option<Interval> {
+        let space = self.space(local, order)?;
+        let jets = Jets::new(Enclosures, &space);
+        let sum = |place: &EnclosedPoint, order: usize| {
+            let parts = self.parts(local, order, &mut place.clone())?.into_iter();
+            parts.reduce(|a, b| jets.add(&a, &b))
+        };
+        let (mut whole, mut middle) = (sum(&places.whole, order)?, sum(&places.middle, order - 2)?);
+        let direct = jets.value(&whole) * places.length;
+        let mut weight = places.length;
+        let mut centred = Interval::ZERO;
+        for j in (0..=order).step_by(2) {
+            let derivative = if j == order { &whole } else { &middle };
+            centred = centred + weight * jets.value(derivative);
+            [whole, middle] =
+                [whole, middle].map(|own| self.along(&jets, &self.along(&jets, &own)));
+            let factorial = Interval::point(((j + 2) * (j + 3) * 4) as f64).inverse()?;
+            weight = weight * places.length * places.length * factorial;
+        }
+        Some(Interval::new(
+            direct.lo.max(centred.lo),
+            direct.hi.min(centred.hi),
+        ))
+    }
+
+    /// The derivative of a series along the loop.
+    fn along(&self, jets: &Jets<'_, Enclosures>, series: &[Interval]) -> Series<Enclosures> {
+        let mut sum = Vec::new();
+        for (i, count) in self.turns {
+            if let Ok(v) = self.problem.variables.binary_search(i) {
+                let turns = Interval::point(*count as f64);
+                sum = jets.add_multiple(&sum, turns, &jets.derivative(series, v));
+            }
+        }
+        sum
+    }
+
+    /// The hull in a frame that is regular at a fraction of the loop, if it is not known yet.
+    fn regular_at(&self, turn: f64, sample: &Sample) -> Option<Local> {
+        let mut point = sample.point();
+        for (i, count) in self.turns {
+            point.set(self.model.coordinates[*i].q, TAU * turn * *count as f64);
+        }
+        let (pool, problem) = (&self.model.pool, self.problem);
+        let space = JetSpace::new(problem.variables.len(), 1, usize::MAX)?;
+        let frame = frame(pool, problem, &Jets::new(Reals, &space), &mut point, None)?;
+        if self
+            .frames
+            .iter()
+            .any(|own| own.dependent == frame.dependent)
+        {
+            return None;
+        }
+        decide_local_in(pool, problem, &frame.dependent, SEED).ok()
+    }
+}

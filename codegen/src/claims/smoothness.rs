@@ -1,0 +1,148 @@
+//! Is a problem smooth on all of Q? Then its loops are those of the declared circles; a configuration that is left out, as the
+//! origin of a plane by `1/(x^2 + y^2)`, may have others around it.
+
+use dalembert_expr::{ExprId, Function, JetSpace, Jets, Node, Pool, Rational, SymbolId};
+
+use super::exactness::{branches_of, sample_points};
+use super::frame::frame;
+use super::problem::Problem;
+use super::regularity::{determinant, is_never_zero};
+use crate::model::Model;
+
+/// Why a declaration that is not smooth leaves the question open.
+pub(super) const HOLES: &str = "G was found in no closed form, and G may grow along loops around configurations where the declaration is singular";
+
+/// Points of each branch.
+const SAMPLES: usize = 3;
+/// Minors of the constraint forms that are written out.
+const MOST_MINORS: usize = 64;
+
+/// True if no configurations are left out of Q but those where one coordinate has certain values: what is left of lines and circles has
+/// no other loops than whole circles. What depends on several coordinates is certified to be regular everywhere.
+pub(super) fn is_smooth(model: &mut Model, problem: &Problem, seed: u64) -> bool {
+    let Some(mut divisors) = divisors(&mut model.pool, problem) else {
+        return false;
+    };
+    let Some(dependence) = determinants_by_component(&model.pool, problem, seed) else {
+        return false;
+    };
+    for (components, write) in dependence.into_iter().zip([blocks_of_metric, gramian]) {
+        if components > 1 {
+            let Some(written) = write(model, problem) else {
+                return false;
+            };
+            divisors.extend(written);
+        }
+    }
+    divisors.retain(|own| {
+        let depends = |symbol: &&SymbolId| model.pool.depends_on(*own, **symbol);
+        problem.symbols.iter().filter(depends).count() > 1
+    });
+    divisors.sort_unstable();
+    divisors.dedup();
+    divisors.into_iter().all(|own| is_never_zero(model, own))
+}
+
+/// The numbers of components on which `det g` and `det m^{ab}` depend; `None` if it is not known.
+fn determinants_by_component(pool: &Pool, problem: &Problem, seed: u64) -> Option<[usize; 2]> {
+    let roots = problem.roots();
+    let profile = pool.profile_of(&roots);
+    let mut points = sample_points(pool, &roots, &profile, seed).ok()?;
+    let branches = branches_of(pool, &roots, &profile, &points)?;
+    let count = problem.variables.len();
+    let space = JetSpace::new(count, 1, usize::MAX)?;
+    let mut depends = vec![[false; 2]; count];
+    points.cover(pool, &branches, SAMPLES, |point| {
+        let jets = Jets::new(point.modulus(), &space);
+        let frame = frame(pool, problem, &jets, point, None)?;
+        for (v, depends) in depends.iter_mut().enumerate() {
+            let determinants = [&frame.metric_determinant, &frame.mass_determinant];
+            for (depends, determinant) in depends.iter_mut().zip(determinants) {
+                *depends |= jets.value(&jets.derivative(determinant, v)) != 0;
+            }
+        }
+        Some(true)
+    })?;
+    Some([0, 1].map(|k| depends.iter().filter(|depends| depends[k]).count()))
+}
+
+/// What must not be 0 for all expressions to be smooth; `None` where one of them jumps.
+fn divisors(pool: &mut Pool, problem: &Problem) -> Option<Vec<ExprId>> {
+    let mut divisors = Vec::new();
+    for id in pool.reachable(&problem.roots()) {
+        match pool.node(id).clone() {
+            Node::Product(factors) => {
+                let is_singular = |power: &Rational| power.is_negative() || !power.is_integer();
+                let singular = factors.iter().filter(|(_, power)| is_singular(power));
+                divisors.extend(singular.map(|(base, _)| *base));
+            }
+            Node::Call(Function::Ln, argument) => divisors.push(argument),
+            Node::Call(Function::Tan, argument) => {
+                divisors.push(pool.call(Function::Cos, argument))
+            }
+            Node::Call(Function::Asin | Function::Acos, argument) => {
+                let square = pool.mul(argument, argument);
+                let one = pool.one();
+                divisors.push(pool.sub(one, square));
+            }
+            Node::Atan2(..) => return None,
+            _ => {}
+        }
+    }
+    Some(divisors)
+}
+
+/// The determinants of the blocks of the metric; `None` where one is too large to be written out.
+fn blocks_of_metric(model: &mut Model, problem: &Problem) -> Option<Vec<ExprId>> {
+    let mut determinants = Vec::new();
+    for block in blocks(&model.pool, &problem.metric) {
+        let rows: Vec<_> = block.iter().map(|i| problem.metric[*i].clone()).collect();
+        determinants.push(determinant(model, &rows, &block)?);
+    }
+    Some(determinants)
+}
+
+/// Sets of coordinates that a symmetric matrix connects.
+fn blocks(pool: &Pool, matrix: &[Vec<ExprId>]) -> Vec<Vec<usize>> {
+    let mut blocks: Vec<Vec<usize>> = Vec::new();
+    for i in 0..matrix.len() {
+        let is_connected =
+            |block: &Vec<usize>| block.iter().any(|j| !pool.is_syntactic_zero(matrix[i][*j]));
+        let (joined, mut others): (Vec<_>, Vec<_>) = blocks.into_iter().partition(is_connected);
+        let mut block = joined.concat();
+        block.push(i);
+        block.sort_unstable();
+        others.push(block);
+        blocks = others;
+    }
+    blocks
+}
+
+/// The sum of the squares of all minors of the constraint forms, which is 0 where they are dependent; `None` where there are
+/// too many.
+fn gramian(model: &mut Model, problem: &Problem) -> Option<Vec<ExprId>> {
+    let mut squares = Vec::new();
+    for columns in choices(problem.coordinates, problem.forms.len())? {
+        let minor = determinant(model, &problem.forms, &columns)?;
+        squares.push(model.pool.mul(minor, minor));
+    }
+    Some(vec![model.pool.sum(&squares)])
+}
+
+/// All choices of `count` columns; `None` if there are too many.
+fn choices(columns: usize, count: usize) -> Option<Vec<Vec<usize>>> {
+    let mut choices = vec![Vec::new()];
+    for _ in 0..count {
+        let mut longer = Vec::new();
+        for choice in &choices {
+            let first = choice.last().map_or(0, |last| last + 1);
+            longer.extend((first..columns).map(|column| [choice.as_slice(), &[column]].concat()));
+        }
+        choices = longer;
+        // Early choices leave no room for the rest: each has at most `columns` of them.
+        if choices.len() > MOST_MINORS * columns {
+            return None;
+        }
+    }
+    (choices.len() <= MOST_MINORS).then_some(choices)
+}
