@@ -201,6 +201,36 @@ fn small_forces_are_seen_at_a_point_of_47_digits() {
     }
 }
 
+/// What an impact changes by a part below rounding, on surfaces whose points are no decimals.
+#[test]
+fn small_changes_in_impacts_are_seen_with_their_digits() {
+    let energy = |wall: &str| {
+        let declared = format!(
+            "coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2; impacts {{ w: {wall}; }}"
+        );
+        finding("Sample", &declared, "conserved under w: energy")
+    };
+    for gap in ["sqrt(x^2 + y^2) - 1", "x^3 + y + x", "y + sin(x)"] {
+        let lossy = energy(&format!("{gap} >= 0 => restitution(1 - 1e-20)"));
+        assert!(
+            matches!(lossy.verdict, Verdict::Refuted(_)),
+            "{gap}: {}",
+            lossy.note()
+        );
+        assert!(
+            lossy.note().contains("difference = -"),
+            "{gap}: {}",
+            lossy.note()
+        );
+        let elastic = energy(&format!("{gap} >= 0"));
+        assert!(
+            matches!(elastic.verdict, Verdict::Proved(_)),
+            "{gap}: {}",
+            elastic.note()
+        );
+    }
+}
+
 /// The value is that of the reference: 40 digits, computed elsewhere.
 #[test]
 fn obstructions_are_printed_with_the_digits_they_have() {

@@ -2,13 +2,15 @@
 
 use dalembert_expr::{ExpansionPoint, ExprId, ExtendedPoint, ModularPoint, RealPoint};
 
-use super::conserved::extended_on_d;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Evidence, Vanishing, evidence};
 use super::reset::ResetMap;
 use super::sample::Sample;
 use super::wall::{Place, Wall};
 use crate::model::Model;
+
+/// Numbers that differ by a smaller part look alike in a message.
+const ALIKE: f64 = 1e-9;
 
 /// A sum of terms that may vanish at all states before an impact; see [`Vanishing`].
 pub(super) trait AtImpact {
@@ -26,8 +28,8 @@ pub(super) trait AtImpact {
     /// The size of what the terms were computed from.
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64>;
 
-    /// What a person is shown.
-    fn shown(&self, terms: &[f64]) -> Vec<(String, f64)>;
+    /// What a person is shown, given the terms and their sum.
+    fn shown(&self, terms: &[f64], sum: f64) -> Vec<(String, f64)>;
 }
 
 /// The evidence on a sum at the states before an impact at a wall. What vanishes everywhere does so on the surface;
@@ -57,6 +59,19 @@ pub(super) fn evidence_at_impact(
         return first;
     }
     at(Place::Second)
+}
+
+/// Two values with their names, and what they differ by where they look alike.
+pub(super) fn with_difference(
+    names: [String; 2],
+    values: [f64; 2],
+    difference: f64,
+) -> Vec<(String, f64)> {
+    let mut shown: Vec<(String, f64)> = names.into_iter().zip(values).collect();
+    if difference.abs() < ALIKE * values[0].abs() {
+        shown.push(("difference".to_owned(), difference));
+    }
+    shown
 }
 
 /// The value of an expression at a point with other velocities, which are the point's afterwards.
@@ -129,15 +144,14 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
         self.question.scale(model, point, &after)
     }
 
-    /// A point of a surface is found in doubles, unless everything is looked at.
     fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint> {
-        match self.place {
-            Place::Anywhere => extended_on_d(model, self.dynamics, point),
-            _ => None,
-        }
+        let mut point = ExtendedPoint::of(point);
+        self.wall.settle_extended(model, &mut point)?;
+        self.dynamics.motion(&model.pool, &mut point, None)?;
+        Some(point)
     }
 
-    fn shown(&self, _: &Model, terms: &[f64], _: f64) -> Vec<(String, f64)> {
-        self.question.shown(terms)
+    fn shown(&self, _: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
+        self.question.shown(terms, sum)
     }
 }

@@ -2,7 +2,7 @@
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint};
 
-use super::collision::{AtImpact, after_and_before, evidence_at_impact};
+use super::collision::{AtImpact, after_and_before, evidence_at_impact, with_difference};
 use super::dynamics::{Dynamics, Number};
 use super::evidence::Wording;
 use super::finding::{Verdict, Witness};
@@ -163,7 +163,7 @@ impl AtImpact for Volume<'_> {
         Some(terms.iter().map(|term| term.abs()).sum())
     }
 
-    fn shown(&self, terms: &[f64]) -> Vec<(String, f64)> {
+    fn shown(&self, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
         let names = match self.stated {
             Some((_, written)) => [
                 format!("{written} after times the Jacobian"),
@@ -172,6 +172,6 @@ impl AtImpact for Volume<'_> {
             None => ["Jacobian".to_owned(), "1".to_owned()],
         };
         let sizes = [terms[0].abs().sqrt(), terms[1].abs().sqrt()];
-        names.into_iter().zip(sizes).collect()
+        with_difference(names, sizes, sum / (sizes[0] + sizes[1]))
     }
 }

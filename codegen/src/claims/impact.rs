@@ -2,7 +2,9 @@
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint, SymbolId};
 
-use super::collision::{AtImpact, after_and_before, evidence_at_impact, value_with};
+use super::collision::{
+    AtImpact, after_and_before, evidence_at_impact, value_with, with_difference,
+};
 use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::Wording;
@@ -134,11 +136,8 @@ impl AtImpact for Jump<'_> {
         Some(before + new + by_velocity)
     }
 
-    fn shown(&self, terms: &[f64]) -> Vec<(String, f64)> {
-        let names = [
-            format!("{} after", self.written),
-            format!("{} before", self.written),
-        ];
-        names.into_iter().zip([terms[0], -terms[1]]).collect()
+    fn shown(&self, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
+        let names = ["after", "before"].map(|when| format!("{} {when}", self.written));
+        with_difference(names, [terms[0], -terms[1]], sum)
     }
 }

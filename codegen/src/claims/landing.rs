@@ -160,7 +160,7 @@ impl AtImpact for Vanished {
         Some(magnitude(model, point, self.change) + largest)
     }
 
-    fn shown(&self, terms: &[f64]) -> Vec<(String, f64)> {
+    fn shown(&self, terms: &[f64], _: f64) -> Vec<(String, f64)> {
         vec![(self.shown.clone(), terms[0])]
     }
 }

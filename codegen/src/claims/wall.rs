@@ -16,8 +16,8 @@
 //! `elastic` and `restitution e` where constraints are affine: there it is e.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Node, Pool, Rational,
-    RealPoint, Series, SymbolId, Verdict as Zero,
+    Arithmetic, ExpansionPoint, ExprId, ExtendedPoint, JetSpace, Jets, ModularPoint, Node, Pool,
+    Rational, Real, RealPoint, Series, SymbolId, Verdict as Zero,
 };
 
 use super::conserved::with_velocities;
@@ -27,6 +27,9 @@ use super::reset::ResetMap;
 use super::sample::{Sample, sample, uses};
 use crate::mechanics::Derivation;
 use crate::model::{Beside, Law, Model, Surface};
+
+/// Newton steps from 16 digits to 47, and one more.
+const EXTENDED_STEPS: usize = 3;
 
 /// An impact surface with everything that its map is made of.
 #[derive(Debug)]
@@ -342,6 +345,26 @@ impl Wall {
             point.set(polynomial.symbol, solution);
             Some(())
         })
+    }
+
+    /// Moves a point near the surface onto it with 47 digits, in the coordinate in which the gap is steepest; where the gap has no
+    /// slope, `None`.
+    pub(super) fn settle_extended(&self, model: &Model, point: &mut ExtendedPoint) -> Option<()> {
+        let mut roots = vec![self.gap];
+        roots.extend(&self.slope);
+        let order = model.pool.reachable(&roots);
+        for _ in 0..EXTENDED_STEPS {
+            let values = point.values(&model.pool, &order)?;
+            let slopes = self.slope.iter().map(|own| values[own.index()]).enumerate();
+            let size = |slope: &(usize, Real)| slope.1.nearest().abs();
+            let (steepest, slope) = slopes.max_by(|a, b| size(a).total_cmp(&size(b)))?;
+            let symbol = self.coordinates[steepest];
+            let field = point.field();
+            let step = field.mul(values[self.gap.index()], field.inv(slope)?);
+            let value = point.symbol(&model.pool, symbol);
+            point.set_symbol(symbol, field.sub(value, step));
+        }
+        Some(())
     }
 
     /// Moves a real sample onto the surface by Newton's method in the coordinate in which the gap is steepest.
