@@ -66,20 +66,15 @@ impl Pool {
             let value = value_at_turns(function, &turns)?;
             return Some(self.number(value));
         }
-        let argument = self.as_number(argument)?.to_i64()?;
-        let pi_times = |numer, denom| (Rational::new(numer, denom), self.pi());
-        let (coefficient, factor) = match (function, argument) {
-            (Function::Exp | Function::Cosh, 0) => (Rational::ONE, self.one()),
-            (Function::Ln | Function::Acos, 1) => (Rational::ZERO, self.one()),
-            (_, 0) if Parity::of(function) == Parity::Odd => (Rational::ZERO, self.one()),
-            (Function::Asin, 1) | (Function::Acos, 0) => pi_times(1, 2),
-            (Function::Asin, -1) => pi_times(-1, 2),
-            (Function::Acos, -1) => pi_times(1, 1),
-            (Function::Atan, 1) => pi_times(1, 4),
-            (Function::Atan, -1) => pi_times(-1, 4),
-            _ => return None,
-        };
-        Some(self.scale(&coefficient, factor))
+        if let Some(angle) = self.exact_angle(function, argument) {
+            return Some(angle);
+        }
+        match (function, self.as_number(argument)?.to_i64()?) {
+            (Function::Exp | Function::Cosh, 0) => Some(self.one()),
+            (Function::Ln, 1) => Some(self.zero()),
+            (_, 0) if Parity::of(function) == Parity::Odd => Some(self.zero()),
+            _ => None,
+        }
     }
 
     /// `r` if the expression is `r pi`.

@@ -8,11 +8,11 @@
 //! |---|---|
 //! | `rational.rs`, `decimal.rs` | exact numbers; from text, to doubles |
 //! | `node.rs`, `pool.rs`, `intern.rs` | what an expression is, and where it is kept |
-//! | `construct.rs`, `sum.rs`, `product.rs`, `call.rs` | the constructors and every rewrite they make |
+//! | `construct.rs`, `sum.rs`, `product.rs`, `call.rs`, `constants.rs` | the constructors and every rewrite they make |
 //! | `sign.rs` | what is known of signs and finiteness |
 //! | `diff.rs`, `subst.rs`, `eval.rs` | calculus and evaluation |
-//! | `taylor/` | truncated series, modulo a prime, in double precision or with 47 digits |
-//! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `branch.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and what it decides |
+//! | `taylor/` | truncated series, modulo a prime, in double precision, with 47 digits or in intervals |
+//! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `branch.rs`, `squares.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and what it decides |
 //! | `interval.rs`, `enclose.rs` | certified ranges, and expressions that are never 0 |
 //! | `simplify.rs`, `expand.rs`, `print/` | presentation |
 //!
@@ -40,6 +40,7 @@
 
 mod branch;
 mod call;
+mod constants;
 mod construct;
 mod decimal;
 mod diff;

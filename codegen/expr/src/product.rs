@@ -106,6 +106,14 @@ impl Pool {
             let one = self.one();
             return self.add(one, vanishing);
         }
+        if exponent.abs() == Rational::HALF
+            && let Some(root) = self.denested_root(base)
+        {
+            return match exponent.is_negative() {
+                true => self.power_product(&[(root, Rational::MINUS_ONE)]),
+                false => root,
+            };
+        }
         self.power_product(&[(base, exponent)])
     }
 
