@@ -922,11 +922,23 @@ def check_hull(model, source, exists, at=None):
     """Brackets of the fields of D with what a density demands of them."""
     if model.rates is not None or model.is_nonlinear:
         raise NotChecked("densities belong to mechanical systems with linear constraints")
+    bends = states(model, source, lambda state: bend(model, state), 1, at)[0]
+    if not is_small(bends, 1):
+        return not exists, f"three states in a row have divergences whose second difference is {float(bends):.1e}"
     model.precision = NESTED
     with localcontext(Context(prec=NESTED.digits)):
         ranks = states(model, source, lambda state: hull_ranks(model, state), 1, at)[0]
     model.precision = SIMPLE
     return (ranks[0] == ranks[1]) == exists, f"brackets have rank {ranks[0]}, with their demands {ranks[1]}"
+
+
+def bend(model, state):
+    """The second difference of the divergence along a line of independent velocities: 0 if it is linear in them."""
+    dependent = model.dependent(state)
+    u = [own for i, own in enumerate(model.velocities(state)) if i not in dependent]
+    step = [Decimal(i + 1) * (-1) ** i for i in range(len(u))]
+    rates = [model.divergence(state, moved(u, step, k), dependent, lambda own: Decimal(1)) for k in range(3)]
+    return rates[0] - 2 * rates[1] + rates[2]
 
 
 def hull_ranks(model, state):

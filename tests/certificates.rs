@@ -55,6 +55,28 @@ dalembert::model! {
     }
 }
 
+dalembert::model! {
+    /// Forces that change volumes at a rate that is not linear in the velocities.
+    pub Cubic {
+        coordinates { x; y; th: angle; }
+        parameters { c > 0 = 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(th)^2)/2;
+        constraints { roll: dot(y) = dot(th); }
+        forces { drag: -c*dot(x)^3*d(x); lift: dot(th)^3*d(x); }
+        claims { density: none; }
+    }
+}
+
+dalembert::model! {
+    /// A density that depends on velocities, under a cubic force.
+    pub Slowed {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        forces { drag: -dot(x)^3*d(x); }
+        claims { density: none; density = 1/abs(dot(x))^3; }
+    }
+}
+
 /// A folder for certificates.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -67,7 +89,7 @@ fn certificate(model: &str, folder: &Path) -> PathBuf {
     let path = folder.join(format!("{model}.json"));
     let place = path.to_str().expect("a path");
     let mut models = dalembert_models::all();
-    models.extend(models![Spiral, Belt, Winding, Charge]);
+    models.extend(models![Spiral, Belt, Winding, Charge, Cubic, Slowed]);
     let finished = command::run(models, &["check", model, "--certificate", place], "");
     assert_eq!(finished.exit, Exit::Reached, "{}", finished.output);
     path
@@ -84,7 +106,7 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
     let folder = folder("certificates");
     let models = dalembert_models::all();
     let names: Vec<&str> = models.iter().map(|own| own.description().name).collect();
-    let others = ["spiral", "belt", "winding", "charge"];
+    let others = ["spiral", "belt", "winding", "charge", "cubic", "slowed"];
     let names = names.iter().chain(&others);
     let files: Vec<PathBuf> = names.map(|own| certificate(own, &folder)).collect();
     let output = checked(&files);

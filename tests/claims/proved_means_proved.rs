@@ -372,6 +372,56 @@ const BODIES: &str = "const N = 5;
         + sum(i in 1..=N - 1: sum(j in i + 1..=N: m[i]*m[j]/sqrt((x[i] - x[j])^2 + (y[i] - y[j])^2)));
     let moment = sum(i in 1..=N: m[i]*(x[i]*dot(y[i]) - y[i]*dot(x[i])));";
 
+/// Forces of any degree in the velocities: the divergence of those that have a density is linear, and stated densities balance any.
+#[test]
+fn forces_of_higher_degree_are_decided() {
+    let pushed = |default: &str, forces: &str| {
+        format!(
+            "coordinates {{ x; y; }} parameters {{ c >= 0 = {default}; }}
+            lagrangian = (dot(x)^2 + dot(y)^2)/2; forces {{ push: {forces}; }}"
+        )
+    };
+    let (cubic, lift, fluid, across) = (
+        "-c*dot(x)^3*d(x)",
+        "c*dot(x)^2*dot(y)*d(x) - c*dot(x)^3*d(y)",
+        "-c*sqrt(dot(x)^2 + dot(y)^2)*(dot(x)*d(x) + dot(y)*d(y))",
+        "c*dot(y)^3*d(x) + c*dot(x)^5*d(y)",
+    );
+    for (forces, claim) in [
+        (cubic, "density: none"),
+        (cubic, "density = 1/abs(dot(x))^3"),
+        (lift, "density: none"),
+        (lift, "density = 1/dot(x)^2"),
+        (fluid, "density: none"),
+        (fluid, "density = (dot(x)^2 + dot(y)^2)^(-3/2)"),
+        (across, "density: exact"),
+        (across, "density = 1"),
+    ] {
+        let found = finding("Sample", &pushed("1", forces), claim);
+        let is_proved = matches!(found.verdict, Verdict::Proved(_));
+        assert!(is_proved, "{claim} of {forces}: {}", found.note());
+    }
+    for (forces, claim) in [
+        (cubic, "density: exact"),
+        (cubic, "density = 1/abs(dot(x))^2"),
+        (across, "density: none"),
+        (fluid, "density = 1/(dot(x)^2 + dot(y)^2)"),
+    ] {
+        let found = finding("Sample", &pushed("1", forces), claim);
+        let is_refuted = matches!(found.verdict, Verdict::Refuted(_));
+        assert!(is_refuted, "{claim} of {forces}: {}", found.note());
+    }
+    // Where the force vanishes at the default there is a density.
+    not_proved(&pushed("0", cubic), "density: none");
+    not_refuted(&pushed("0", cubic), "density: exact");
+    // On the wheel's path the cube of the velocity is that of the independent one.
+    let wheel = "coordinates { x; th: angle; } parameters { c > 0 = 1; } lagrangian = (dot(x)^2 + dot(th)^2)/2;
+        constraints { roll: dot(x) = dot(th); } forces { drag: -c*dot(x)^3*d(th) + c*dot(th)^3*d(x); }";
+    let found = finding("Sample", wheel, "density: none");
+    let is_proved = matches!(found.verdict, Verdict::Proved(_));
+    assert!(!is_proved, "{}", found.note());
+}
+
 #[test]
 fn many_roots_and_logarithms_are_no_obstacle() {
     let proved = |declared: &str, claim: &str| {

@@ -5,6 +5,8 @@
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
+use super::contraction::{Dependence, dependence};
+use super::dynamics::Dynamics;
 use super::exactness::{Exactness, decide, sample_points, screen};
 use super::existence::{Decision, check_existence};
 use super::finding::Verdict;
@@ -118,6 +120,32 @@ pub(super) fn absence_at_defaults(
          parameters to claim that there is none",
         defaults.text
     ))
+}
+
+/// The verdict where forces that are not linear in the velocities leave no density: open if they do at the defaults.
+pub(super) fn curvature_at_defaults(
+    model: &mut Model,
+    problem: &Problem,
+    dynamics: &Dynamics,
+    generic: Verdict,
+    seed: u64,
+) -> Verdict {
+    let mut roots = dynamics.roots();
+    roots.extend(problem.force_slopes());
+    let defaults = Defaults::of(model, &roots);
+    if defaults.is_empty() {
+        return generic;
+    }
+    let declared = problem.substituted(&mut model.pool, defaults.replacements());
+    let dynamics = dynamics.substituted(&mut model.pool, defaults.replacements());
+    match dependence(model, &declared, &dynamics, seed) {
+        Dependence::Curved(..) => generic,
+        Dependence::Linear | Dependence::Unknown => Verdict::Undecided(format!(
+            "the forces change volumes at a rate that is not linear in the velocities for almost all parameters, which was not \
+             seen at the declared defaults {}; write these numbers in place of the parameters",
+            defaults.text
+        )),
+    }
 }
 
 /// True if an obstruction is left at the defaults, or the closed form is one there too.

@@ -9,6 +9,7 @@ use dalembert_expr::{
 };
 
 use super::conserved::{Quantity, extended_on_d, jump, rate_scale, state_on_d};
+use super::contraction::contraction;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::finding::Verdict;
@@ -57,11 +58,9 @@ pub(super) fn check_balance(
     (value, written): (ExprId, &str),
     seed: u64,
 ) -> Verdict {
-    if let Err(undecided) = problem.check_forces() {
-        return Verdict::Undecided(undecided.to_string());
-    }
     let balance = Balance {
         quantity: Quantity::of(model, value),
+        without_forces: problem.without_forces(),
         problem,
         dynamics,
         written,
@@ -83,6 +82,7 @@ pub(super) fn check_balance(
 struct Balance<'b> {
     quantity: Quantity,
     problem: &'b Problem,
+    without_forces: Problem,
     dynamics: &'b Dynamics,
     written: &'b str,
 }
@@ -91,7 +91,8 @@ impl Vanishing for Balance<'_> {
     fn roots(&self) -> Vec<ExprId> {
         let mut roots = self.dynamics.roots();
         roots.extend(self.quantity.roots());
-        roots.extend(self.problem.roots());
+        roots.extend(self.without_forces.roots());
+        roots.extend(self.problem.force_slopes());
         roots
     }
 
@@ -117,14 +118,14 @@ impl Vanishing for Balance<'_> {
         let mut balance = vec![field.mul(rate, field.inv(value)?)];
         let space = JetSpace::new(self.problem.variables.len(), 1, usize::MAX)?;
         let jets = Jets::new(field, &space);
-        let frame = frame(&model.pool, self.problem, &jets, point, None)?;
+        let frame = frame(&model.pool, &self.without_forces, &jets, point, None)?;
         // Independent velocities are the coefficients of the frame's fields; the drift, if any, comes first.
         let independent: Vec<_> = (0..self.problem.coordinates)
             .filter(|i| !frame.dependent.contains(i))
             .map(|i| motion.qdot[i])
             .collect();
         let drifts = frame.demands.len() - independent.len();
-        let mut divergence = field.integer(0);
+        let mut divergence = contraction(model, self.problem, point)?;
         for (i, demand) in frame.demands.iter().enumerate() {
             let weight = match i.checked_sub(drifts) {
                 Some(i) => independent[i],

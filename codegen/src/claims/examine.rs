@@ -2,7 +2,9 @@
 
 use dalembert_expr::{ExprId, Rational, SymbolId};
 
-use super::defaults::{Defaults, absence_at_defaults, existence_at_defaults};
+use super::defaults::{
+    Defaults, absence_at_defaults, curvature_at_defaults, existence_at_defaults,
+};
 use super::dynamics::Dynamics;
 use super::exactness::{Exactness, decide};
 use super::existence::{self, Decision};
@@ -205,7 +207,11 @@ impl<'e> Examiner<'e> {
         let is_generic = matches!(generic, Verdict::Proved(_));
         let verdict = match (&decision, existence) {
             // NOTE: a local density stays one where the periods of a default happen to vanish.
-            (Ok(_), Existence::Local) | (Err(_), _) => generic,
+            (Ok(_), Existence::Local) => generic,
+            (Err(_), _) if problem.curved().is_some() => {
+                curvature_at_defaults(self.model, problem, &self.dynamics, generic, seed)
+            }
+            (Err(_), _) => generic,
             (Ok(exactness), _) if is_generic => {
                 let claim = (existence, generic);
                 existence_at_defaults(self.model, problem, exactness, claim, seed)

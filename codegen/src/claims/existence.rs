@@ -2,6 +2,7 @@
 
 use dalembert_expr::{Node, Pool, Verdict as Zero};
 
+use super::contraction::real_step;
 use super::exactness::Exactness;
 use super::finding::{Certificate, Verdict, Witness, digits};
 use super::fit::Certified;
@@ -9,6 +10,7 @@ use super::global::Global;
 use super::obstruction::{Obstruction, find_obstruction};
 use super::potential::{Potential, potential_text};
 use super::problem::Problem;
+use super::sample::Sample;
 use super::undecided::Undecided;
 use crate::model::{Existence, Model};
 
@@ -23,6 +25,9 @@ pub(super) fn check_existence(
     claimed: Existence,
     seed: u64,
 ) -> Verdict {
+    if let Some(curved) = problem.curved() {
+        return curved_forces(model, curved, claimed, seed);
+    }
     let exactness = match decision {
         Ok(exactness) => exactness,
         Err(undecided) => return Verdict::Undecided(undecided.to_string()),
@@ -47,6 +52,49 @@ pub(super) fn check_existence(
             Verdict::Undecided(format!("a density exists locally; on all of Q, {reason}"))
         }
     }
+}
+
+/// Why forces whose divergence is not linear in the velocities leave no density of the configuration.
+const CURVED: &str = "no density depends on q alone: the forces change volumes at a rate that is not linear in the velocities";
+
+/// The verdict where forces change volumes in a way that no function of the configuration balances, as states in a row show.
+fn curved_forces(
+    model: &Model,
+    (sample, values): (&Sample, &[(String, f64)]),
+    claimed: Existence,
+    seed: u64,
+) -> Verdict {
+    let steps: Vec<String> = model
+        .coordinates
+        .iter()
+        .enumerate()
+        .map(|(i, own)| format!("dot({}) {:+}", own.name.display, real_step(i)))
+        .collect();
+    let steps = format!(
+        "a step is {}, where these are independent",
+        steps.join(", ")
+    );
+    if claimed != Existence::None {
+        return Verdict::Refuted(Witness {
+            reason: format!("{CURVED}; {steps}"),
+            sample: Some(sample.clone()),
+            values: values.to_vec(),
+            help: "write `density: none;`".to_owned(),
+        });
+    }
+    let values: Vec<String> = values
+        .iter()
+        .map(|(name, value)| format!("{name} = {}", digits(*value)))
+        .collect();
+    let place = format!("{} at {}; {steps}", values.join(", "), sample.text());
+    Verdict::Proved(Certificate {
+        shown: format!("{CURVED}: {place}"),
+        points: 0,
+        primes: Vec::new(),
+        error: 0.0,
+        seed,
+        at: Some(sample.clone()),
+    })
 }
 
 struct Writer<'w> {

@@ -14,9 +14,9 @@
 //!
 //! Clark and Bloch, Theorem 2.8; W. Clark, thesis, Definition V.23, without its factor n.
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, Jets, Pool, Series};
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Jets, Pool, Series};
 
-use super::linear::{Matrix, dot, largest, solve, transpose};
+use super::linear::{Matrix, Solution, dot, largest, solve, transpose};
 use super::problem::{Friction, Problem};
 
 /// A vector field with the demand on the derivative of G along it, as the last component.
@@ -73,12 +73,7 @@ pub(super) fn frame<P: ExpansionPoint>(
     let raised = solve(jets, expanded.metric.clone(), columns)?;
     // W^{a,j} as rows; without constraints there are none.
     let duals = transpose(&raised.unknowns);
-    let mass: Matrix<P::Field> = expanded
-        .forms
-        .iter()
-        .map(|form| duals.iter().map(|dual| dot(jets, form, dual)).collect())
-        .collect();
-    let inverse = solve(jets, mass, identity(jets, duals.len()))?;
+    let inverse = inverse_mass(jets, &expanded.forms, &duals)?;
     let theta = calculus.theta(&expanded.forms, &duals, &inverse.unknowns);
     let dependent = match dependent {
         Some(given) => given.to_vec(),
@@ -255,11 +250,7 @@ impl<A: Arithmetic> Calculus<'_, '_, A> {
     }
 
     /// `A_dep^{-1} (A | eta_0)`
-    fn solved_forms(
-        &self,
-        expanded: &Expanded<A>,
-        dependent: &[usize],
-    ) -> Option<super::linear::Solution<A>> {
+    fn solved_forms(&self, expanded: &Expanded<A>, dependent: &[usize]) -> Option<Solution<A>> {
         let minor = expanded
             .forms
             .iter()
@@ -311,6 +302,59 @@ impl<A: Arithmetic> Calculus<'_, '_, A> {
 /// A column.
 pub(super) fn column<T: Clone>(rows: &[Vec<T>], j: usize) -> Vec<T> {
     rows.iter().map(|row| row[j].clone()).collect()
+}
+
+/// `K = g^{-1} - W^a m_ab W^b`, given the dual fields and the inverse of the constraint mass matrix; `None` if the metric is singular.
+fn projected<A: Arithmetic>(
+    jets: &Jets<'_, A>,
+    metric: &Matrix<A>,
+    (duals, inverse_mass): (&Matrix<A>, &Matrix<A>),
+) -> Option<Matrix<A>> {
+    let mut projected = solve(jets, metric.clone(), identity(jets, metric.len()))?.unknowns;
+    for (a, dual) in duals.iter().enumerate() {
+        for (b, other) in duals.iter().enumerate() {
+            for (i, row) in projected.iter_mut().enumerate() {
+                let factor = jets.mul(&inverse_mass[a][b], &dual[i]);
+                for (entry, w) in row.iter_mut().zip(other) {
+                    *entry = jets.sub(entry, &jets.mul(&factor, w));
+                }
+            }
+        }
+    }
+    Some(projected)
+}
+
+/// `K` at a point; `None` if metric or constraints are singular there.
+pub(super) fn projected_cometric<P: ExpansionPoint>(
+    pool: &Pool,
+    problem: &Problem,
+    jets: &Jets<'_, P::Field>,
+    point: &mut P,
+) -> Option<Matrix<P::Field>> {
+    let rows = [&problem.metric, &problem.forms].map(|rows| rows.iter().flatten().copied());
+    let roots: Vec<ExprId> = rows.into_iter().flatten().collect();
+    let values = point.values(pool, &pool.reachable(&roots))?;
+    let constant = |id: &ExprId| jets.constant(values[id.index()]);
+    let matrix = |rows: &[Vec<ExprId>]| -> Matrix<P::Field> {
+        let rows = rows.iter();
+        rows.map(|row| row.iter().map(constant).collect()).collect()
+    };
+    let (metric, forms) = (matrix(&problem.metric), matrix(&problem.forms));
+    let columns = (0..problem.coordinates).map(|j| column(&forms, j));
+    let duals = transpose(&solve(jets, metric.clone(), columns.collect())?.unknowns);
+    let inverse = inverse_mass(jets, &forms, &duals)?;
+    projected(jets, &metric, (&duals, &inverse.unknowns))
+}
+
+/// The inverse of `m^{ab} = eta^a(W^b)`, and its determinant; `None` if it is singular.
+fn inverse_mass<A: Arithmetic>(
+    jets: &Jets<'_, A>,
+    forms: &Matrix<A>,
+    duals: &Matrix<A>,
+) -> Option<Solution<A>> {
+    let along = |form: &Vec<Series<A>>| duals.iter().map(|dual| dot(jets, form, dual)).collect();
+    let mass = forms.iter().map(along).collect();
+    solve(jets, mass, identity(jets, duals.len()))
 }
 
 /// Everything that the demand of the drift is made of.
@@ -373,18 +417,8 @@ impl<A: Arithmetic> Geometry<'_, '_, A> {
             });
         };
         let jets = &self.calculus.jets;
-        let cometric = solve(jets, self.expanded.metric.clone(), identity(jets, n))?.unknowns;
-        let mut projected = cometric;
-        for (a, dual) in self.duals.iter().enumerate() {
-            for (b, other) in self.duals.iter().enumerate() {
-                for (i, row) in projected.iter_mut().enumerate() {
-                    let factor = jets.mul(&self.inverse_mass[a][b], &dual[i]);
-                    for (entry, w) in row.iter_mut().zip(other) {
-                        *entry = jets.sub(entry, &jets.mul(&factor, w));
-                    }
-                }
-            }
-        }
+        let raised = (self.duals, self.inverse_mass);
+        let projected = projected(jets, &self.expanded.metric, raised)?;
         let trace = |matrix: &dyn Fn(usize, usize) -> Series<A>| {
             let mut sum = Vec::new();
             for (i, row) in projected.iter().enumerate() {

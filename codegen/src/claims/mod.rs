@@ -2,7 +2,7 @@
 //!
 //! | file | job |
 //! |---|---|
-//! | `problem.rs` | what an invariant density depends on |
+//! | `problem.rs`, `contraction.rs` | what an invariant density depends on; what forces do to volumes |
 //! | `linear.rs`, `frame.rs`, `closure.rs` | the frame of D as series, and its hull under brackets |
 //! | `exactness.rs` | does a local density exist? |
 //! | `potential.rs`, `fit.rs`, `global.rs`, `growth.rs`, `reflection.rs`, `regularity.rs`, `smoothness.rs`, `leaf.rs` | the density in closed form; is it single-valued, and regular? |
@@ -30,6 +30,7 @@ mod collision;
 mod conditions;
 mod conserved;
 mod continuity;
+mod contraction;
 mod darboux;
 mod defaults;
 mod density;

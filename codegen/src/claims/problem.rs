@@ -2,6 +2,10 @@
 
 use dalembert_expr::{ExprId, Node, Pool, SymbolId, Verdict};
 
+use super::contraction::{Dependence, ForceSlope, dependence};
+use super::dynamics::Dynamics;
+use super::finding::seed_of;
+use super::sample::Sample;
 use super::undecided::Undecided;
 use crate::mechanics::Derivation;
 use crate::model::Model;
@@ -33,10 +37,12 @@ pub struct Problem {
 pub(super) struct Friction {
     /// `dF_i/dqdot^j` at `qdot = 0`.
     pub(super) at_rest: Vec<Vec<ExprId>>,
-    /// `d^2F_i/dqdot^j dqdot^k`, which is free of velocities if [`Friction::is_quadratic`].
+    /// `d^2F_i/dqdot^j dqdot^k` at rest.
     pub(super) slope: Vec<Vec<Vec<ExprId>>>,
-    /// Whether the forces are polynomials of degree 2 in the velocities.
-    pub(super) is_quadratic: bool,
+    /// `dF_i/dqdot^j`, as far as they are not 0.
+    pub(super) entries: Vec<ForceSlope>,
+    /// How the divergence of the forces depends on the velocities of D.
+    pub(super) dependence: Dependence,
 }
 
 impl Problem {
@@ -68,7 +74,47 @@ impl Problem {
             coordinates,
         };
         problem.settle(&model.pool);
+        problem.examine_forces(model, derivation);
         problem
+    }
+
+    /// Finds out how the divergence of forces that are not quadratic depends on the velocities.
+    fn examine_forces(&mut self, model: &mut Model, derivation: &Derivation) {
+        let is_open = |own: &Friction| own.dependence == Dependence::Unknown;
+        if !self.friction.as_ref().is_some_and(is_open) {
+            return;
+        }
+        let seed = seed_of(&model.snake_name);
+        let dynamics = Dynamics::of(model, derivation);
+        let found = dependence(model, self, &dynamics, seed);
+        // What is linear is known from its derivatives at rest, if rest is on D and they exist there.
+        let has_rest = self
+            .affine
+            .iter()
+            .all(|own| model.pool.is_syntactic_zero(*own));
+        let Some(friction) = &mut self.friction else {
+            return;
+        };
+        let velocities: Vec<_> = model.coordinates.iter().map(|own| own.qdot).collect();
+        let is_known = has_rest && friction.is_smooth_at_rest(&model.pool, &velocities);
+        friction.dependence = match found {
+            Dependence::Linear if !is_known => Dependence::Unknown,
+            other => other,
+        };
+    }
+
+    /// `dF_i/dqdot^j` of all forces, as far as they are not 0.
+    pub(super) fn force_slopes(&self) -> impl Iterator<Item = ExprId> {
+        let entries = self.friction.iter().flat_map(|own| &own.entries);
+        entries.map(|(_, slope)| *slope)
+    }
+
+    /// The problem without forces.
+    pub(super) fn without_forces(&self) -> Self {
+        Self {
+            friction: None,
+            ..self.clone()
+        }
     }
 
     /// The problem with parameters replaced.
@@ -81,6 +127,9 @@ impl Problem {
         if let Some(friction) = &mut problem.friction {
             friction.at_rest.iter_mut().for_each(&mut replace);
             friction.slope.iter_mut().flatten().for_each(&mut replace);
+            for (_, slope) in &mut friction.entries {
+                *slope = pool.substitute(*slope, replacements);
+            }
         }
         problem.settle(pool);
         problem
@@ -98,14 +147,22 @@ impl Problem {
             .collect();
     }
 
-    /// Whether the criterion covers the forces: a configuration density knows those that are quadratic in the velocities.
+    /// Whether the criterion covers the forces: their divergence is linear in the velocities.
     ///
     /// # Errors
     /// [`Undecided::Forces`].
     pub(super) fn check_forces(&self) -> Result<(), Undecided> {
         match &self.friction {
-            Some(own) if !own.is_quadratic => Err(Undecided::Forces),
+            Some(own) if own.dependence != Dependence::Linear => Err(Undecided::Forces),
             _ => Ok(()),
+        }
+    }
+
+    /// A state from which steps show that the divergence of the forces is not linear in the velocities, with what is seen there.
+    pub(super) fn curved(&self) -> Option<(&Sample, &[(String, f64)])> {
+        match &self.friction.as_ref()?.dependence {
+            Dependence::Curved(sample, values) => Some((sample, values)),
+            Dependence::Linear | Dependence::Unknown => None,
         }
     }
 
@@ -154,6 +211,21 @@ impl Problem {
     }
 }
 
+impl Friction {
+    /// Whether the derivatives of the forces are polynomials in the velocities.
+    fn is_smooth_at_rest(&self, pool: &Pool, velocities: &[SymbolId]) -> bool {
+        let is_pole = |id: &ExprId| match pool.node(*id) {
+            Node::Product(factors) => factors
+                .iter()
+                .any(|(base, power)| power.is_negative() && pool.depends_on_any(*base, velocities)),
+            _ => false,
+        };
+        self.entries.iter().all(|(_, slope)| {
+            is_rational(pool, *slope, velocities) && !pool.reachable(&[*slope]).iter().any(is_pole)
+        })
+    }
+}
+
 /// Whether velocities stand in sums, products and integer powers alone: `abs(v)*v` is smooth in pieces and none of this.
 fn is_rational(pool: &Pool, value: ExprId, velocities: &[SymbolId]) -> bool {
     let parts = pool.reachable(&[value]);
@@ -192,9 +264,14 @@ fn friction(
             slope[i][j][k] = model.pool.substitute(second, &rest);
         }
     }
+    let entries = derivation.density.force_velocity.iter();
     Some(Friction {
         at_rest,
         slope,
-        is_quadratic,
+        entries: entries.map(|own| (own.index, own.value)).collect(),
+        dependence: match is_quadratic {
+            true => Dependence::Linear,
+            false => Dependence::Unknown,
+        },
     })
 }

@@ -13,7 +13,7 @@ pub enum Undecided {
     Nonlinear,
     /// Brackets up to this depth did not close the hull, and deeper ones are out of reach.
     Depth(usize),
-    /// Forces whose dependence on velocities is neither absent, linear nor quadratic.
+    /// Forces whose divergence is not known to be linear in the velocities.
     Forces,
     /// Coefficients inside sin, cos and exp without a common denominator.
     Denominators,
@@ -44,7 +44,7 @@ impl fmt::Display for Undecided {
             ),
             Self::Forces => write!(
                 f,
-                "a force is no polynomial of degree 2 or less in the velocities"
+                "it is not known whether the forces change volumes at a rate that is linear in the velocities"
             ),
             Self::Denominators => write!(
                 f,

@@ -3,10 +3,10 @@ dalembert::model! {
         coordinates { x; y; z; }
         parameters { m > 0 = 1; k > 0 = 2; }
         lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(z)^2) - m*k*y;
-        forces { drag: -k*abs(dot(x))*dot(x)*d(x); }
+        forces { vortex: -k*dot(z)*(x*dot(y) - y*dot(x))/(x^2 + y^2)*d(z); }
         claims {
-            density: none;
             density: exact;
+            density: locally_exact;
         }
     }
 }
