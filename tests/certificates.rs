@@ -77,6 +77,26 @@ dalembert::model! {
     }
 }
 
+dalembert::model! {
+    /// Two constraints that are not linear in the velocities, and one that is.
+    pub Bent {
+        coordinates { x; y; z; u; w; s; }
+        parameters { k > 0 = 1; g = 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(u)^2 + dot(w)^2 + dot(s)^2)/2 - g*z;
+        constraints {
+            cone: dot(x)^2 + dot(y)^2 = k^2*dot(z)^2;
+            speed: dot(u)^2 + dot(w)^2 = k^2;
+            slide: dot(s) = w*dot(w);
+        }
+        claims {
+            conserved: (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 + g*z;
+            conserved: dot(x)/dot(y);
+            conserved: dot(u)^2 + dot(w)^2;
+            not conserved: energy;
+        }
+    }
+}
+
 /// A folder for certificates.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -89,7 +109,7 @@ fn certificate(model: &str, folder: &Path) -> PathBuf {
     let path = folder.join(format!("{model}.json"));
     let place = path.to_str().expect("a path");
     let mut models = dalembert_models::all();
-    models.extend(models![Spiral, Belt, Winding, Charge, Cubic, Slowed]);
+    models.extend(models![Spiral, Belt, Winding, Charge, Cubic, Slowed, Bent]);
     let finished = command::run(models, &["check", model, "--certificate", place], "");
     assert_eq!(finished.exit, Exit::Reached, "{}", finished.output);
     path
@@ -106,7 +126,9 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
     let folder = folder("certificates");
     let models = dalembert_models::all();
     let names: Vec<&str> = models.iter().map(|own| own.description().name).collect();
-    let others = ["spiral", "belt", "winding", "charge", "cubic", "slowed"];
+    let others = [
+        "spiral", "belt", "winding", "charge", "cubic", "slowed", "bent",
+    ];
     let names = names.iter().chain(&others);
     let files: Vec<PathBuf> = names.map(|own| certificate(own, &folder)).collect();
     let output = checked(&files);

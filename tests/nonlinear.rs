@@ -397,16 +397,27 @@ fn refused(declarations: &str) -> String {
 }
 
 #[test]
-fn claims_stay_open_and_what_needs_linear_constraints_is_refused() {
+fn quantities_are_examined_and_what_needs_linear_constraints_is_refused() {
     let open = "is undecided: claims are examined where constraints are linear in the velocities";
-    for claim in [
-        "conserved: energy;",
-        "not conserved: x;",
-        "conserved: dot(z);",
+    for (claim, reason) in [
+        (
+            "not conserved: energy;",
+            "is refuted: the rate of `energy` along the motion on D is 0",
+        ),
+        ("conserved: x;", "is refuted: `x` changes along the motion"),
+        (
+            "not conserved: dot(z);",
+            "is refuted: the rate of `dot(z)` along the motion on D is 0",
+        ),
     ] {
         let text = refused(&format!("claims {{ {claim} }}"));
-        assert!(text.contains(open), "{text}");
+        assert!(text.contains(reason), "{text}");
     }
+    // A constraint that is of degree 3 in all velocities is solved for none of them.
+    let text = refused(
+        "constraints { c: dot(x)^3 + dot(y)^3 + dot(z)^3 = 1; } claims { conserved: dot(z); }",
+    );
+    assert!(text.contains(open), "{text}");
     let text =
         refused("impacts { w: x >= 0 => reset { x = 1; }; } claims { conserved under w: y; }");
     assert!(text.contains(open), "{text}");

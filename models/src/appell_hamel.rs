@@ -18,6 +18,7 @@ dalembert::model! {
         }
         lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(z)^2) - m*g*z;
         constraints { machine: dot(x)^2 + dot(y)^2 = k^2*dot(z)^2; }
+        claims { conserved: energy; conserved: dot(x)/dot(y); not conserved: dot(z); }
         initial { dot(y) = 1/2; dot(z) = -1/2; until = 5; }
         view { path: (x, z); }
         outputs { ground_speed: sqrt(dot(x)^2 + dot(y)^2); }

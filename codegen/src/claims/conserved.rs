@@ -6,24 +6,21 @@ use dalembert_expr::{
 
 use super::continuity::{poles, possible_jump};
 use super::dynamics::{Dynamics, Motion, Number};
-use super::evidence::{Vanishing, Wording, evidence};
+use super::evidence::{Evidence, Vanishing, Wording, evidence, in_arguments};
 use super::finding::Verdict;
 use super::sample::{ATTEMPTS, Sample, move_between_knots, sample, uses};
+use super::undecided::Undecided;
 use crate::model::Model;
 
-/// The verdict on `conserved: value` or `not conserved: value`; `written` is the value as written.
+/// The verdict on `conserved: value` or `not conserved: value`; `written` is the value as written. The motion is given on each part of
+/// D.
 pub(super) fn check_conserved(
     model: &mut Model,
-    dynamics: &Dynamics,
+    parts: &[Dynamics],
     (value, written): (ExprId, &str),
     holds: bool,
     seed: u64,
 ) -> Verdict {
-    let rate = Rate {
-        quantity: Quantity::of(model, value),
-        dynamics,
-        written,
-    };
     let wording = Wording {
         vanishes: format!("the rate of `{written}` along the motion on D is 0"),
         differs: format!("`{written}` changes along the motion"),
@@ -32,10 +29,29 @@ pub(super) fn check_conserved(
             format!("write `conserved: {written};`"),
         ],
     };
-    let verdict = evidence(model, &rate, seed).verdict(holds, wording, seed);
+    let mut found: Option<Evidence> = None;
+    for dynamics in parts {
+        let rate = Rate {
+            quantity: Quantity::of(model, value),
+            dynamics,
+            written,
+        };
+        let own = evidence(model, &rate, seed);
+        found = Some(match found {
+            Some(others) => others.and(own),
+            None => own,
+        });
+    }
+    let Some(found) = found else {
+        return Verdict::Undecided(Undecided::Nonlinear.to_string());
+    };
+    let verdict = found.verdict(holds, wording, seed);
+    let mut jumps = parts
+        .iter()
+        .map(|dynamics| jump(model, dynamics, value, seed));
     if holds
         && matches!(verdict, Verdict::Proved(_))
-        && let Some(place) = jump(model, dynamics, value, seed)
+        && let Some(place) = jumps.find_map(|place| place)
     {
         let text = format!("its rate is 0 wherever it has one, but it may jump {place}");
         return Verdict::Undecided(text);
@@ -156,6 +172,11 @@ impl Vanishing for Rate<'_> {
         let mut roots = self.dynamics.roots();
         roots.extend(self.quantity.roots());
         roots
+    }
+
+    fn hides_relations(&self, model: &Model) -> bool {
+        let solved: Vec<SymbolId> = self.dynamics.roots_of_branches().collect();
+        in_arguments(&model.pool, &self.roots(), &solved)
     }
 
     fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {

@@ -11,6 +11,7 @@
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Pool, Series, SymbolId};
 
+use super::branches::{Branch, branches};
 use super::frame::{choose_dependent, column};
 use super::linear::{Matrix, dot, solve, transpose};
 use crate::mechanics::{ConstraintForm, Derivation};
@@ -24,6 +25,10 @@ pub(super) type Number<P> = <<P as ExpansionPoint>::Field as Arithmetic>::Scalar
 pub struct Dynamics {
     /// `eta^a` and `eta^a_0` at the end, M rows of N + 1, with the order in which they are evaluated.
     forms: Rows,
+    /// The rows that the velocities satisfy: those of linear constraints.
+    linear: Vec<usize>,
+    /// Constraints that are not linear, see [`Dynamics::on_branches`].
+    branches: Vec<Branch>,
     /// `g` and `f - drift` at the end, N rows of N + 1, then one row of the M curvatures.
     motion: Rows,
     q: Vec<SymbolId>,
@@ -107,7 +112,13 @@ impl Dynamics {
             row.push(model.pool.sub(*force, *drift));
         }
         motion.push(curvatures);
+        let is_linear = |own: &usize| match model.constraints.get(*own) {
+            Some(constraint) => constraint.nonlinear.is_none(),
+            None => true,
+        };
         Self {
+            linear: (0..forms.len()).filter(is_linear).collect(),
+            branches: Vec::new(),
             forms: Rows::new(&model.pool, forms),
             motion: Rows::new(&model.pool, motion),
             q: model.coordinates.iter().map(|own| own.q).collect(),
@@ -116,8 +127,39 @@ impl Dynamics {
         }
     }
 
+    /// The equations on each part of D that a choice of roots of constraints gives that are not linear; `None` if one of these cannot
+    /// be solved, see [`branches()`].
+    pub(super) fn on_branches(
+        self,
+        model: &mut Model,
+        derivation: &Derivation,
+    ) -> Option<Vec<Self>> {
+        let branches = branches(model, derivation)?;
+        let with = |choice: usize| {
+            let mut chosen = branches.clone();
+            for (a, branch) in chosen.iter_mut().enumerate() {
+                branch.is_second = choice >> a & 1 == 1;
+            }
+            Self {
+                branches: chosen,
+                ..self.clone()
+            }
+        };
+        Some((0..1 << branches.len()).map(with).collect())
+    }
+
+    /// The velocities that constraints that are not linear are solved for.
+    pub(super) fn roots_of_branches(&self) -> impl Iterator<Item = SymbolId> {
+        self.branches.iter().map(|own| own.velocity)
+    }
+
     /// The equations with parameters replaced.
     pub(super) fn substituted(&self, pool: &mut Pool, replacements: &[(SymbolId, ExprId)]) -> Self {
+        let branches: Vec<Branch> = self
+            .branches
+            .iter()
+            .map(|own| own.substituted(pool, replacements))
+            .collect();
         let mut replaced = |own: &Rows| {
             let rows = own.rows.iter();
             let rows = rows.map(|row| pool.substitute_all(row, replacements));
@@ -127,6 +169,7 @@ impl Dynamics {
         Self {
             forms: replaced(&self.forms),
             motion: replaced(&self.motion),
+            branches,
             ..self.clone()
         }
     }
@@ -134,7 +177,10 @@ impl Dynamics {
     /// All expressions that are evaluated.
     pub(super) fn roots(&self) -> Vec<ExprId> {
         let rows = self.forms.rows.iter().chain(&self.motion.rows);
-        rows.flatten().copied().collect()
+        let roots = rows.flatten().copied();
+        roots
+            .chain(self.branches.iter().flat_map(Branch::roots))
+            .collect()
     }
 
     /// The motion at the state on D with the point's coordinates and independent velocities; the dependent velocities
@@ -151,8 +197,21 @@ impl Dynamics {
             let row = |row: Vec<_>| row.into_iter().map(|own| jets.constant(own)).collect();
             rows.into_iter().map(row).collect()
         };
-        let forms = constants(self.forms.at(pool, point)?);
-        let qdot = self.settle(pool, point, &jets, &forms, dependent)?;
+        let mut forms = constants(self.forms.at(pool, point)?);
+        let linear: Matrix<P::Field> = self.linear.iter().map(|a| forms[*a].clone()).collect();
+        self.settle(pool, point, &jets, &linear, dependent)?;
+        for branch in &self.branches {
+            branch.settle(pool, point)?;
+        }
+        if !self.branches.is_empty() {
+            // Their derivatives by the velocities depend on these.
+            forms = constants(self.forms.at(pool, point)?);
+        }
+        let qdot = self
+            .qdot
+            .iter()
+            .map(|own| point.symbol(pool, *own))
+            .collect();
         let mut rows = self.motion.at(pool, point)?;
         let curvature = constants(vec![rows.pop()?]).pop()?;
         let rows = constants(rows);
@@ -166,7 +225,7 @@ impl Dynamics {
         })
     }
 
-    /// Sets the dependent velocities, and gives all velocities.
+    /// Sets the dependent velocities of linear constraints.
     fn settle<P: ExpansionPoint>(
         &self,
         pool: &Pool,
@@ -174,7 +233,7 @@ impl Dynamics {
         jets: &Jets<'_, P::Field>,
         forms: &Matrix<P::Field>,
         dependent: Option<&[usize]>,
-    ) -> Option<Vec<Number<P>>> {
+    ) -> Option<()> {
         let n = self.q.len();
         let dependent = match dependent {
             Some(given) => given.to_vec(),
@@ -201,12 +260,7 @@ impl Dynamics {
         for (j, row) in dependent.iter().zip(&solved) {
             point.set_symbol(self.qdot[*j], jets.value(&row[0]));
         }
-        Some(
-            self.qdot
-                .iter()
-                .map(|own| point.symbol(pool, *own))
-                .collect(),
-        )
+        Some(())
     }
 
     /// The rates of expressions of coordinates, velocities and time along a motion, at the point it was computed at.

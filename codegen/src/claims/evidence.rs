@@ -1,8 +1,8 @@
 //! Does something vanish at all states? What residues at random states and values at real states say.
 
 use dalembert_expr::{
-    Branches, Covered, ExpansionPoint, ExprId, ExtendedPoint, ExtendedReals, ModularPoint, Profile,
-    Real as Extended, RealPoint,
+    Branches, Covered, ExpansionPoint, ExprId, ExtendedPoint, ExtendedReals, ModularPoint, Node,
+    Pool, Profile, Real as Extended, RealPoint, SymbolId,
 };
 
 use super::dynamics::Number;
@@ -89,6 +89,25 @@ pub(super) struct Wording {
 }
 
 impl Evidence {
+    /// What is known of two parts of the states together.
+    pub(super) fn and(mut self, other: Self) -> Self {
+        self.primes.extend(&other.primes);
+        self.primes.sort_unstable();
+        self.primes.dedup();
+        Self {
+            vanishes: match (self.vanishes, other.vanishes) {
+                (Some(true), Some(true)) => Some(true),
+                (Some(false), _) | (_, Some(false)) => Some(false),
+                _ => None,
+            },
+            points: self.points + other.points,
+            primes: self.primes,
+            error: self.error + other.error,
+            witness: self.witness.or(other.witness),
+            is_real: self.is_real || other.is_real,
+        }
+    }
+
     /// Whether the sum is 0 at all states, of which there are some.
     pub(super) fn shows_that_it_vanishes(&self) -> bool {
         self.is_real && self.vanishes == Some(true) && self.witness.is_none()
@@ -258,6 +277,17 @@ fn real_evidence(model: &Model, question: &impl Vanishing, threshold: f64) -> Re
         witness: None,
         is_real,
     }
+}
+
+/// True if a function has an argument that depends on one of some symbols.
+pub(super) fn in_arguments(pool: &Pool, roots: &[ExprId], symbols: &[SymbolId]) -> bool {
+    let ties = |id: ExprId| pool.depends_on_any(id, symbols);
+    let nodes = pool.reachable(roots).into_iter();
+    nodes.map(|id| pool.node(id)).any(|node| match node {
+        Node::Call(_, argument) => ties(*argument),
+        Node::Atan2(y, x) => ties(*y) || ties(*x),
+        _ => false,
+    })
 }
 
 /// True if a number is in the range in which others of its size have all their digits.

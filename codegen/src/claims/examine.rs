@@ -34,9 +34,8 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
         return Examined::default();
     }
     if model.is_nonlinear() {
-        let findings = claims.iter().map(|claim| open(claim, Undecided::Nonlinear));
         return Examined {
-            findings: findings.collect(),
+            findings: examine_nonlinear(model, derivation, &claims),
             volume: None,
         };
     }
@@ -65,6 +64,33 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
         }
     }
     Examined { findings, volume }
+}
+
+/// The verdicts on claims beside constraints that are not linear in the velocities: quantities are examined.
+fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim]) -> Vec<Finding> {
+    let seed = finding::seed_of(&model.snake_name);
+    let parts = Dynamics::of(model, derivation).on_branches(model, derivation);
+    let parts = parts.unwrap_or_default();
+    let verdict = |claim: &Claim| match &claim.statement {
+        Statement::Conserved {
+            value,
+            under: None,
+            holds,
+        } => {
+            let written = claim.text.split_once(": ").map_or("", |(_, value)| value);
+            let value = explicit(model, *value);
+            conserved::check_conserved(model, &parts, (value, written), *holds, seed)
+        }
+        _ => Verdict::Undecided(Undecided::Nonlinear.to_string()),
+    };
+    let verdicts: Vec<Verdict> = claims.iter().map(verdict).collect();
+    let findings = claims.iter().zip(verdicts);
+    findings
+        .map(|(claim, verdict)| Finding {
+            verdict,
+            ..open(claim, Undecided::Nonlinear)
+        })
+        .collect()
 }
 
 /// As [`examine()`], for a scene: with `volume` a density is looked for where no claim is about one.
@@ -233,7 +259,7 @@ impl<'e> Examiner<'e> {
     }
 
     fn density(&mut self, value: ExprId, written: &str) -> (Verdict, Vec<String>) {
-        let stated = (self.explicit(value), written);
+        let stated = (explicit(self.model, value), written);
         let (problem, dynamics) = (&self.problem, &self.dynamics);
         let generic = density::check_density(self.model, problem, dynamics, stated, self.seed);
         let verdict = self.stated_at_defaults(stated, generic);
@@ -250,10 +276,13 @@ impl<'e> Examiner<'e> {
         under: Option<usize>,
         holds: bool,
     ) -> Verdict {
-        let quantity = (self.explicit(value), written);
+        let quantity = (explicit(self.model, value), written);
         let (derivation, dynamics, seed) = (self.derivation, &self.dynamics, self.seed);
         match under {
-            None => conserved::check_conserved(self.model, dynamics, quantity, holds, seed),
+            None => {
+                let parts = std::slice::from_ref(dynamics);
+                conserved::check_conserved(self.model, parts, quantity, holds, seed)
+            }
             Some(surface) => impact::check_conserved_under(
                 self.model, derivation, dynamics, surface, quantity, holds, seed,
             ),
@@ -341,7 +370,7 @@ impl<'e> Examiner<'e> {
             let Statement::Density(value) = statement else {
                 continue;
             };
-            let density = self.explicit(*value);
+            let density = explicit(self.model, *value);
             let (derivation, problem) = (self.derivation, &self.problem);
             let stated = Volume::stated(self.model, derivation, problem, density, self.seed);
             if stated.is_some() {
@@ -364,20 +393,19 @@ impl<'e> Examiner<'e> {
             self.seed,
         )
     }
+}
 
-    /// The expression with energy and momenta written out.
-    fn explicit(&mut self, value: ExprId) -> ExprId {
-        let model = &mut *self.model;
-        let whole = model.lagrangian.whole;
-        let mut replacements: Vec<(SymbolId, ExprId)> = Vec::new();
-        for i in 0..model.coordinates.len() {
-            let momentum = model.pool.diff(whole, model.coordinates[i].qdot);
-            replacements.push((model.derived.momenta[i], momentum));
-        }
-        let energy = energy(model);
-        replacements.push((model.derived.energy, energy));
-        model.pool.substitute(value, &replacements)
+/// The expression with energy and momenta written out.
+fn explicit(model: &mut Model, value: ExprId) -> ExprId {
+    let whole = model.lagrangian.whole;
+    let mut replacements: Vec<(SymbolId, ExprId)> = Vec::new();
+    for i in 0..model.coordinates.len() {
+        let momentum = model.pool.diff(whole, model.coordinates[i].qdot);
+        replacements.push((model.derived.momenta[i], momentum));
     }
+    let energy = energy(model);
+    replacements.push((model.derived.energy, energy));
+    model.pool.substitute(value, &replacements)
 }
 
 /// `1/2 g(qdot, qdot) + V`

@@ -11,7 +11,7 @@
 //! | `conditions.rs`, `exceptional.rs`, `hypersurfaces.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
 //! | `alternatives.rs` | both of these in words |
 //! | `defaults.rs` | claims at the declared values of parameters |
-//! | `geometry.rs`, `dynamics.rs` | frame and theta, and the motion on D, at a point |
+//! | `geometry.rs`, `dynamics.rs`, `branches.rs` | frame and theta, and the motion on D, at a point |
 //! | `evidence.rs`, `continuity.rs` | does something vanish at all states? may it jump all the same? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
 //! | `gauge.rs` | total derivatives that a symmetry may add to the Lagrangian |
@@ -25,6 +25,7 @@
 
 mod alternatives;
 mod ansatz;
+mod branches;
 mod closure;
 mod collision;
 mod conditions;

@@ -16,12 +16,13 @@
 //! `elastic` and `restitution e` where constraints are affine: there it is e.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, ExtendedPoint, JetSpace, Jets, ModularPoint, Node, Pool,
+    Arithmetic, ExpansionPoint, ExprId, ExtendedPoint, JetSpace, Jets, ModularPoint, Pool,
     Rational, Real, RealPoint, Series, SymbolId, Verdict as Zero,
 };
 
 use super::conserved::with_velocities;
 use super::dynamics::{Dynamics, Number};
+use super::evidence::in_arguments;
 use super::linear::{Matrix, dot, solve};
 use super::reset::ResetMap;
 use super::sample::{Sample, sample, uses};
@@ -293,13 +294,7 @@ impl Wall {
     /// they say nothing.
     pub(super) fn hides(&self, pool: &Pool, roots: &[ExprId]) -> bool {
         let solved: Vec<SymbolId> = self.polynomials.iter().map(|own| own.symbol).collect();
-        let ties = |id: ExprId| pool.depends_on_any(id, &solved);
-        let nodes = pool.reachable(roots).into_iter();
-        nodes.map(|id| pool.node(id)).any(|node| match node {
-            Node::Call(_, argument) => ties(*argument),
-            Node::Atan2(y, x) => ties(*y) || ties(*x),
-            _ => false,
-        })
+        in_arguments(pool, roots, &solved)
     }
 
     /// Whether there is a coordinate in which every component of the surface is reached.

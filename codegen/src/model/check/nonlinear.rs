@@ -38,7 +38,7 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint
         if !matches!(claim.statement, Statement::Conserved { .. }) {
             let text = format!("{because}: only conserved quantities are claimed of it");
             let at = spec.location(claim.item);
-            resolver.refuse::<()>(at, text, "write `assume conserved: ..;`");
+            resolver.refuse::<()>(at, text, "claim `conserved: ..;` or nothing");
         }
     }
 }
