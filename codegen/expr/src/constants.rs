@@ -23,7 +23,7 @@ impl Pool {
             _ => return None,
         };
         let (square, is_negative) = self.signed_square(argument)?;
-        let is_found = |own: &&((i64, i64), i64)| Rational::new(own.0.0, own.0.1) == square;
+        let is_found = |row: &&((i64, i64), i64)| Rational::new(row.0.0, row.0.1) == square;
         let (_, angle) = table.iter().find(is_found)?;
         let angle = if is_negative { -angle } else { *angle };
         let twelfths = match function {
@@ -66,8 +66,8 @@ impl Pool {
             return None;
         }
         let c = (&(&a * &a) - &square).exact_root(2)?;
-        let [larger, smaller] = [&a + &c, &a - &c].map(|own| &own * &Rational::HALF);
-        let [larger, smaller] = [larger, smaller].map(|own| self.number(own));
+        let [larger, smaller] = [&a + &c, &a - &c].map(|sum| &sum * &Rational::HALF);
+        let [larger, smaller] = [larger, smaller].map(|half| self.number(half));
         let (larger, smaller) = (self.sqrt(larger), self.sqrt(smaller));
         Some(match is_negative != coefficient.is_negative() {
             true => self.sub(larger, smaller),

@@ -29,28 +29,32 @@ pub(super) fn branches(model: &mut Model, derivation: &Derivation) -> Option<Vec
     let nonlinear: Vec<ExprId> = model
         .constraints
         .iter()
-        .filter_map(|own| own.nonlinear)
+        .filter_map(|constraint| constraint.nonlinear)
         .collect();
     if nonlinear.len() > MOST {
         return None;
     }
     let linear = derivation.constraints.iter().zip(&model.constraints);
     let linear: Vec<ExprId> = linear
-        .filter(|(_, own)| own.nonlinear.is_none())
-        .map(|(own, _)| own.residual)
+        .filter(|(_, constraint)| constraint.nonlinear.is_none())
+        .map(|(form, _)| form.residual)
         .collect();
-    let velocities: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+    let velocities: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.qdot)
+        .collect();
     let mut branches = Vec::new();
     for (a, phi) in nonlinear.iter().enumerate() {
         let others = nonlinear.iter().enumerate().filter(|(b, _)| *b != a);
-        let others: Vec<ExprId> = others.map(|(_, own)| *own).chain(linear.clone()).collect();
+        let others: Vec<ExprId> = others.map(|(_, phi)| *phi).chain(linear.clone()).collect();
         let is_own = |velocity: &&SymbolId| {
-            let is_free = |own: &ExprId| !model.pool.depends_on(*own, **velocity);
+            let is_free = |phi: &ExprId| !model.pool.depends_on(*phi, **velocity);
             others.iter().all(is_free) && !is_free(phi)
         };
-        let own: Vec<SymbolId> = velocities.iter().filter(is_own).copied().collect();
-        let mut own = own.into_iter();
-        branches.push(own.find_map(|velocity| branch(&mut model.pool, *phi, velocity))?);
+        let candidates: Vec<SymbolId> = velocities.iter().filter(is_own).copied().collect();
+        let mut candidates = candidates.into_iter();
+        branches.push(candidates.find_map(|velocity| branch(&mut model.pool, *phi, velocity))?);
     }
     Some(branches)
 }
@@ -67,7 +71,7 @@ fn branch(pool: &mut Pool, phi: ExprId, velocity: SymbolId) -> Option<Branch> {
     }
     let half = pool.scale(&Rational::HALF, second);
     let zero = pool.zero();
-    let coefficients = [phi, first, half].map(|own| pool.substitute(own, &[(velocity, zero)]));
+    let coefficients = [phi, first, half].map(|part| pool.substitute(part, &[(velocity, zero)]));
     Some(Branch {
         velocity,
         coefficients,
@@ -85,7 +89,7 @@ impl Branch {
     pub(super) fn substituted(&self, pool: &mut Pool, replacements: &[(SymbolId, ExprId)]) -> Self {
         let coefficients = self.coefficients;
         Self {
-            coefficients: coefficients.map(|own| pool.substitute(own, replacements)),
+            coefficients: coefficients.map(|part| pool.substitute(part, replacements)),
             ..self.clone()
         }
     }
@@ -94,7 +98,7 @@ impl Branch {
     pub(super) fn settle<P: ExpansionPoint>(&self, pool: &Pool, point: &mut P) -> Option<()> {
         let field = point.field();
         let values = point.values(pool, &pool.reachable(&self.coefficients))?;
-        let [c, b, a] = self.coefficients.map(|own| values[own.index()]);
+        let [c, b, a] = self.coefficients.map(|part| values[part.index()]);
         let solution = match field.is_zero(a) {
             true => field.neg(field.mul(c, field.inv(b)?)),
             false => self.root(point, [c, b, a])?,

@@ -28,7 +28,7 @@ pub(super) trait AtImpact {
     /// The size of what the terms were computed from.
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64>;
 
-    /// What a person is shown, given the terms and their sum.
+    /// Names and values for a message, given the terms and their sum.
     fn shown(&self, terms: &[f64], sum: f64) -> Vec<(String, f64)>;
 }
 

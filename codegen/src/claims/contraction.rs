@@ -1,4 +1,4 @@
-//! What forces add to the divergence of the motion on D,
+//! The part of the divergence of the motion on D that forces add,
 //!
 //! ```text
 //! P(qdot) = K^{ij} dF_i/dqdot^j,   K = g^{-1} - W^a m_ab W^b   (see frame.rs)
@@ -46,7 +46,7 @@ pub(super) fn contraction<P: ExpansionPoint>(
     Some(sum)
 }
 
-/// How `P` depends on the velocities of D.
+/// The dependence of `P` on the velocities of D.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Dependence {
     /// It is linear in them, with a constant part.
@@ -57,7 +57,7 @@ pub(super) enum Dependence {
     Unknown,
 }
 
-/// How `P` depends on velocities, by its values at three states in a row.
+/// The dependence of `P` on velocities, from its values at three states in a row.
 pub(super) fn dependence(
     model: &mut Model,
     problem: &Problem,
@@ -88,7 +88,7 @@ pub(super) fn dependence(
 
 /// `P(v) - 2 P(v + w) + P(v + 2 w)`
 struct Row<'r> {
-    /// What independent velocities are changed by: any numbers.
+    /// Changes of independent velocities: any numbers.
     steps: Vec<SymbolId>,
     problem: &'r Problem,
     dynamics: &'r Dynamics,
@@ -121,25 +121,29 @@ impl Vanishing for Row<'_> {
 
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
         let (pool, field) = (&model.pool, point.field());
-        let velocities: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+        let velocities: Vec<SymbolId> = model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.qdot)
+            .collect();
         let first: Vec<_> = velocities
             .iter()
-            .map(|own| point.symbol(pool, *own))
+            .map(|velocity| point.symbol(pool, *velocity))
             .collect();
         let start = contraction(model, self.problem, point)?;
-        for (velocity, (own, step)) in velocities.iter().zip(first.iter().zip(&self.steps)) {
+        for (velocity, (start, step)) in velocities.iter().zip(first.iter().zip(&self.steps)) {
             let step = point.symbol(pool, *step);
-            point.set_symbol(*velocity, field.add(*own, step));
+            point.set_symbol(*velocity, field.add(*start, step));
         }
         let second = self.dynamics.motion(pool, point, None)?.qdot;
         let middle = contraction(model, self.problem, point)?;
-        for ((velocity, own), next) in velocities.iter().zip(&first).zip(&second) {
-            let third = field.sub(field.add(*next, *next), *own);
+        for ((velocity, start), next) in velocities.iter().zip(&first).zip(&second) {
+            let third = field.sub(field.add(*next, *next), *start);
             point.set_symbol(*velocity, third);
         }
         let end = contraction(model, self.problem, point)?;
-        for (velocity, own) in velocities.iter().zip(&first) {
-            point.set_symbol(*velocity, *own);
+        for (velocity, start) in velocities.iter().zip(&first) {
+            point.set_symbol(*velocity, *start);
         }
         let twice = field.mul(field.integer(-2), middle);
         Some(vec![start, twice, end])
@@ -147,7 +151,7 @@ impl Vanishing for Row<'_> {
 
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
         let terms = self.terms(model, point)?;
-        Some(terms.iter().map(|own| own.abs()).sum())
+        Some(terms.iter().map(|term| term.abs()).sum())
     }
 
     fn shown(&self, _: &Model, terms: &[f64], _: f64) -> Vec<(String, f64)> {
@@ -157,7 +161,7 @@ impl Vanishing for Row<'_> {
     }
 }
 
-/// What the velocity of a coordinate is changed by at real states.
+/// The change of the velocity of a coordinate at real states.
 pub(super) fn real_step(coordinate: usize) -> f64 {
     let size = coordinate as f64 + 1.0;
     if coordinate.is_multiple_of(2) {

@@ -89,7 +89,7 @@ pub(super) struct Wording {
 }
 
 impl Evidence {
-    /// What is known of two parts of the states together.
+    /// The evidence on two parts of the states together.
     pub(super) fn and(mut self, other: Self) -> Self {
         self.primes.extend(&other.primes);
         self.primes.sort_unstable();

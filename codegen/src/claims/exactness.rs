@@ -364,15 +364,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
             (singular.as_ref(), regularity::SINGULAR),
             seed,
         ),
-        None => match global::from_periods(model, problem, &local) {
-            Global::Undecided(_)
-                if exists_for_each_parameter(model, problem, &candidates, &parameters, seed) =>
-            {
-                Global::Exists
-            }
-            Global::Exists if !is_smooth(model, problem, seed) => Global::Undecided(HOLES),
-            other => other,
-        },
+        None => without_closed_form(model, problem, &local, (&candidates, &parameters), seed),
     };
     // A density that grows on a leaf on which the closed form is singular is another one near it.
     let density = singular.filter(|_| !matches!(global, Global::Many { .. }));
@@ -381,6 +373,25 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         local,
         density,
     })
+}
+
+/// Whether a density exists on all of Q, where none is a sum of candidates.
+fn without_closed_form(
+    model: &mut Model,
+    problem: &Problem,
+    local: &Local,
+    (candidates, parameters): (&Candidates, &[SymbolId]),
+    seed: u64,
+) -> Global {
+    let global = match global::from_periods(model, problem, local) {
+        Global::Exists if !is_smooth(model, problem, seed) => Global::Undecided(HOLES),
+        other => other,
+    };
+    let is_open = matches!(global, Global::Undecided(_));
+    match is_open && exists_for_each_parameter(model, problem, candidates, parameters, seed) {
+        true => Global::Exists,
+        false => global,
+    }
 }
 
 /// The growth on a closed leaf where a singular density vanishes, else the reason why the question stays open.

@@ -36,7 +36,7 @@ pub enum Global {
 const PROBES: usize = 12;
 /// A sum over few points is small below this part of the integral of the absolute value.
 const SMALL: f64 = 5e-2;
-/// What is rounding where everything else vanishes.
+/// Rounding, where everything else vanishes.
 const ROUNDING: f64 = 1e-12;
 /// Why a period was not found.
 const OPEN: &str = "a circle leaves the domain where the constraints are regular, or G varies too fast on it for its period to converge";
@@ -51,7 +51,7 @@ const PERIOD: f64 = 1e-12;
 /// Samples at which periods are computed: the declared defaults, which may hide what depends on a parameter, and others.
 const ATTEMPTS: [usize; 2] = [0, 9];
 
-/// What a density that was found in closed form with multiples of angles says.
+/// The answer of a density that was found in closed form with multiples of angles.
 pub(super) fn from_angles(
     model: &Model,
     problem: &Problem,
@@ -206,7 +206,7 @@ impl Leaves {
     }
 }
 
-/// What the growth of `G` along loops says, certified by enclosures: with all components in the hull of D along each circle,
+/// The answer of the growth of `G` along loops, certified by enclosures: with all components in the hull of D along each circle,
 /// else along the combinations of circles that lie in leaves.
 pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> Global {
     let is_whole = local.rank == problem.components();

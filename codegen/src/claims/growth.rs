@@ -1,4 +1,4 @@
-//! How much `G` grows along a loop: as a sum over points, which tells where to look, and enclosed, which is a proof.
+//! The growth of `G` along a loop: as a sum over points, which tells where to look, and enclosed, which is a proof.
 //!
 //! The tangent of a loop in a leaf of the hull of D is a combination of the hull's elements, and `dG` of it is that combination of
 //! their demands. The enclosure parts the loop into cells, on which all coordinates of the loop are intervals, and in their
@@ -26,7 +26,7 @@ const POINTS: (usize, usize) = (32, 1024);
 const CONVERGED: f64 = 1e-10;
 /// Below this part of that integral doubles lack digits that are printed.
 const CANCELLED: f64 = 1e-2;
-/// What is rounding where everything else vanishes.
+/// Rounding, where everything else vanishes.
 const ROUNDING: f64 = 1e-12;
 /// Where between two multiples of the step the points lie.
 const SHIFT: f64 = 0.382;
@@ -90,7 +90,7 @@ impl<'l> Loop<'l> {
         let (growth, size, points) = self.converged_by(sample)?;
         let mut domain = sample.ranges();
         for (symbol, range) in &mut domain {
-            if let Some((_, given)) = ranges.iter().find(|(own, _)| own == symbol) {
+            if let Some((_, given)) = ranges.iter().find(|(name, _)| name == symbol) {
                 *range = *given;
             }
         }
@@ -104,7 +104,7 @@ impl<'l> Loop<'l> {
         }
     }
 
-    /// How much `G` grows, and the integral of the absolute values of what its rate is made of; `None` if they do not converge.
+    /// The growth of `G`, and the integral of the absolute values of what its rate is made of; `None` if they do not converge.
     pub(super) fn converged(&self, sample: &Sample) -> Option<(f64, f64)> {
         let (growth, size, _) = self.converged_by(sample)?;
         Some((growth, size))
@@ -163,7 +163,7 @@ impl<'l> Loop<'l> {
         Some((sum * whole / Real::from(points as f64)).nearest())
     }
 
-    /// What the derivative of `G` along the loop is the sum of, as series of an order; `None` where the elements of the hull
+    /// The terms of the derivative of `G` along the loop, as series of an order; `None` where the elements of the hull
     /// are dependent.
     fn parts<P: ExpansionPoint>(
         &self,
@@ -178,18 +178,18 @@ impl<'l> Loop<'l> {
         let elements = elements_in(pool, problem, &jets, (hull, given), point)?;
         let width = problem.components();
         let basis = || hull.basis.iter().map(|e| &elements[*e]);
-        let vectors: Matrix<P::Field> = basis().map(|own| own[..width].to_vec()).collect();
+        let vectors: Matrix<P::Field> = basis().map(|element| element[..width].to_vec()).collect();
         // The tangent is a combination of the basis: as many components as vectors determine it.
         let components = choose_dependent(&jets, &vectors)?;
         let (mut rows, mut tangent) = (Matrix::<P::Field>::new(), Matrix::<P::Field>::new());
         for i in components {
             rows.push(vectors.iter().map(|vector| vector[i].clone()).collect());
-            let turns = self.turns.iter().find(|(own, _)| *own == i);
+            let turns = self.turns.iter().find(|(turning, _)| *turning == i);
             let count = turns.map_or(0, |(_, count)| *count);
             tangent.push(vec![jets.constant(jets.field.integer(count))]);
         }
         let coefficients = solve(&jets, rows, tangent)?.unknowns;
-        let demands = basis().map(|own| &own[width]);
+        let demands = basis().map(|element| &element[width]);
         let parts = demands.zip(&coefficients);
         Some(parts.map(|(demand, c)| jets.mul(demand, &c[0])).collect())
     }
@@ -214,7 +214,7 @@ impl<'l> Loop<'l> {
         domain: &Domain,
         growth: f64,
     ) -> bool {
-        let ends = |k: usize| [k, k + 1].map(|own| own as f64 / CELLS as f64);
+        let ends = |k: usize| [k, k + 1].map(|cell| cell as f64 / CELLS as f64);
         let mut cells: Vec<Cell> = (0..CELLS)
             .map(|k| self.cell(ends(k), order, sample, domain))
             .collect();
@@ -225,7 +225,7 @@ impl<'l> Loop<'l> {
             if total.is_some_and(Interval::excludes_zero) {
                 return true;
             }
-            let width = total.map_or(f64::INFINITY, |own| own.hi - own.lo);
+            let width = total.map_or(f64::INFINITY, |total| total.hi - total.lo);
             // NOTE: a power of the length of cells: so many would be needed.
             let excess = (width / growth.abs()).powf(1.0 / order as f64);
             let needed = excess * cells.len() as f64;
@@ -236,7 +236,7 @@ impl<'l> Loop<'l> {
             let wide = width / (2 * cells.len()) as f64;
             let mut finer = Vec::with_capacity(2 * cells.len());
             for cell in cells {
-                if cell.part.is_some_and(|own| own.hi - own.lo < wide) {
+                if cell.part.is_some_and(|part| part.hi - part.lo < wide) {
                     finer.push(cell);
                     continue;
                 }
@@ -302,7 +302,7 @@ impl<'l> Loop<'l> {
             let derivative = if j == order { &whole } else { &middle };
             centred = centred + weight * jets.value(derivative);
             [whole, middle] =
-                [whole, middle].map(|own| self.along(&jets, &self.along(&jets, &own)));
+                [whole, middle].map(|series| self.along(&jets, &self.along(&jets, &series)));
             let factorial = Interval::point(((j + 2) * (j + 3) * 4) as f64).inverse()?;
             weight = weight * places.length * places.length * factorial;
         }
@@ -336,7 +336,7 @@ impl<'l> Loop<'l> {
         if self
             .frames
             .iter()
-            .any(|own| own.dependent == frame.dependent)
+            .any(|known| known.dependent == frame.dependent)
         {
             return None;
         }

@@ -34,13 +34,15 @@ pub(super) fn is_smooth(model: &mut Model, problem: &Problem, seed: u64) -> bool
             divisors.extend(written);
         }
     }
-    divisors.retain(|own| {
-        let depends = |symbol: &&SymbolId| model.pool.depends_on(*own, **symbol);
+    divisors.retain(|divisor| {
+        let depends = |symbol: &&SymbolId| model.pool.depends_on(*divisor, **symbol);
         problem.symbols.iter().filter(depends).count() > 1
     });
     divisors.sort_unstable();
     divisors.dedup();
-    divisors.into_iter().all(|own| is_never_zero(model, own))
+    divisors
+        .into_iter()
+        .all(|divisor| is_never_zero(model, divisor))
 }
 
 /// The numbers of components on which `det g` and `det m^{ab}` depend; `None` if it is not known.
@@ -66,7 +68,7 @@ fn determinants_by_component(pool: &Pool, problem: &Problem, seed: u64) -> Optio
     Some([0, 1].map(|k| depends.iter().filter(|depends| depends[k]).count()))
 }
 
-/// What must not be 0 for all expressions to be smooth; `None` where one of them jumps.
+/// Expressions that must not be 0 for all others to be smooth; `None` where one of them jumps.
 fn divisors(pool: &mut Pool, problem: &Problem) -> Option<Vec<ExprId>> {
     let mut divisors = Vec::new();
     for id in pool.reachable(&problem.roots()) {

@@ -91,12 +91,12 @@ impl ExpansionPoint for EnclosedPoint {
     }
 
     fn symbol(&self, _: &Pool, symbol: SymbolId) -> Interval {
-        let found = self.ranges.iter().find(|(own, _)| *own == symbol);
+        let found = self.ranges.iter().find(|(name, _)| *name == symbol);
         found.map_or(Interval::WHOLE, |(_, range)| *range)
     }
 
     fn set_symbol(&mut self, symbol: SymbolId, value: Interval) {
-        match self.ranges.iter_mut().find(|(own, _)| *own == symbol) {
+        match self.ranges.iter_mut().find(|(name, _)| *name == symbol) {
             Some((_, range)) => *range = value,
             None => self.ranges.push((symbol, value)),
         }
@@ -107,7 +107,9 @@ impl ExpansionPoint for EnclosedPoint {
         let is_known = |id: &ExprId| ranges[id.index()].is_some();
         order.iter().all(is_known).then(|| {
             let values = ranges.into_iter();
-            values.map(|own| own.unwrap_or(Interval::WHOLE)).collect()
+            values
+                .map(|range| range.unwrap_or(Interval::WHOLE))
+                .collect()
         })
     }
 

@@ -15,7 +15,10 @@ pub(super) fn check(
     lagrangian: &Lagrangian,
     constraints: &[Constraint],
 ) {
-    let forms: Vec<Vec<ExprId>> = constraints.iter().map(|own| own.form.clone()).collect();
+    let forms: Vec<Vec<ExprId>> = constraints
+        .iter()
+        .map(|constraint| constraint.form.clone())
+        .collect();
     refuse_singular(resolver, &lagrangian.metric, "the metric is singular");
     refuse_singular(resolver, &forms, "the constraints are dependent");
 }
@@ -32,10 +35,10 @@ fn refuse_singular(resolver: &mut Resolver<'_>, rows: &[Vec<ExprId>], what: &str
     }
     // Defaults that can be left indeterminate are not to blame.
     let mut guilty = defaults.clone();
-    for own in &defaults {
+    for default in &defaults {
         let others: Vec<Default> = guilty
             .iter()
-            .filter(|other| *other != own)
+            .filter(|other| *other != default)
             .copied()
             .collect();
         if is_singular(&mut pool, rows, &others) {
@@ -67,14 +70,17 @@ fn defaults(resolver: &Resolver<'_>, rows: &[Vec<ExprId>]) -> Vec<Default> {
     };
     let parameters = resolver.symbols.parameters.iter().enumerate();
     parameters
-        .filter(|(_, own)| occurs(own.symbol))
-        .filter_map(|(position, own)| Some((position, (own.symbol, own.default?))))
+        .filter(|(_, parameter)| occurs(parameter.symbol))
+        .filter_map(|(position, parameter)| {
+            Some((position, (parameter.symbol, parameter.default?)))
+        })
         .collect()
 }
 
 /// True if the rows are surely dependent with these defaults.
 fn is_singular(pool: &mut Pool, rows: &[Vec<ExprId>], defaults: &[Default]) -> bool {
-    let replacements: Vec<(SymbolId, ExprId)> = defaults.iter().map(|(_, own)| *own).collect();
+    let replacements: Vec<(SymbolId, ExprId)> =
+        defaults.iter().map(|(_, default)| *default).collect();
     let replaced: Vec<Vec<ExprId>> = rows
         .iter()
         .map(|row| pool.substitute_all(row, &replacements))
