@@ -247,14 +247,15 @@ fn real_evidence(model: &Model, question: &impl Vanishing, threshold: f64) -> Re
         if is_real && (attempt >= WITNESSES || threshold == f64::INFINITY) {
             break;
         }
-        let Some((sample, mut point)) = question.sample(model, attempt) else {
+        let Some((sample, point)) = question.sample(model, attempt) else {
             continue;
         };
-        let Some(terms) = question.terms(model, &mut point) else {
+        // Questions about impacts move their point.
+        let Some(terms) = question.terms(model, &mut point.clone()) else {
             continue;
         };
         is_real = true;
-        let Some(scale) = question.scale(model, &mut point) else {
+        let Some(scale) = question.scale(model, &mut point.clone()) else {
             continue;
         };
         let sum: f64 = terms.iter().sum();
