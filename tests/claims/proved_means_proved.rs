@@ -304,6 +304,28 @@ fn periods_count_where_an_enclosure_excludes_0() {
     not_proved(&narrow, "density: exact");
 }
 
+/// A potential that is infinite on the way around a circle: nothing makes the turn, and the density that grows with it is no other one.
+#[test]
+fn circles_that_no_motion_can_go_around_prove_nothing() {
+    let charged = |potential: &str| {
+        format!(
+            "coordinates {{ x; y; th: angle; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(th)^2)/2 - {potential};
+            forces {{ drag: -dot(y)*dot(th)*d(y); }}"
+        )
+    };
+    for potential in ["1/sin(th)^2", "1/(1 - cos(3*th))", "ln(1 + sin(th))"] {
+        not_proved(&charged(potential), "density: locally_exact");
+        not_refuted(&charged(potential), "density: exact");
+    }
+    let found = finding(
+        "Sample",
+        &charged("1/(3 + sin(th))"),
+        "density: locally_exact",
+    );
+    let is_proved = matches!(found.verdict, Verdict::Proved(_));
+    assert!(is_proved, "{}", found.note());
+}
+
 /// Drags whose density may grow along a loop around what is left out of Q, or around an end of its domain.
 #[test]
 fn loops_around_what_is_left_out_are_not_forgotten() {

@@ -7,10 +7,11 @@ use dalembert_expr::{Domain, ExprId, Interval, JetSpace, Jets, Modulus, Pool};
 use super::closure::{Until, close};
 use super::exactness::{Local, sample_points};
 use super::frame::{Demand, frame};
-use super::growth::Loop;
+use super::growth::{Loop, Uncertain};
 use super::potential::{Potential, Term};
 use super::problem::Problem;
 use super::reflection;
+use super::regularity::LEAVES;
 use super::sample::{Sample, sample, uses};
 use crate::model::{Model, Topology};
 
@@ -92,6 +93,7 @@ pub(super) fn from_angles(
         let leaves = leaves.as_ref();
         is_whole || leaves.is_some_and(|leaves| leaves.hold(problem, turns))
     };
+    let mut uncertain = None;
     for turns in loops(&angles(model, problem)) {
         let grown = samples.iter().find_map(|(sample, values)| {
             let weight = |((i, _), value): (&(usize, _), &Interval)| {
@@ -105,19 +107,41 @@ pub(super) fn from_angles(
             let period = TAU * f64::midpoint(sum.lo, sum.hi);
             (period.is_finite() && sum.excludes_zero()).then_some((period, sample))
         });
-        if let Some((period, sample)) = grown
-            && holds(&turns)
-        {
-            return Global::Many {
-                turns,
-                period,
-                sample: sample.clone(),
-            };
+        let Some((period, sample)) = grown.filter(|_| holds(&turns)) else {
+            continue;
+        };
+        // The circle lies in the domain of the declaration.
+        let roots = problem.roots();
+        let circles =
+            ATTEMPTS.map(|attempt| self::sample(model, attempt, uses(&model.pool, &roots)));
+        let certified = circles
+            .iter()
+            .map(|place| Loop::new(model, problem, local, &turns).certified(place, &Domain::new()));
+        match certified.reduce(|first, second| first.or(second)) {
+            Some(Err(reason)) => uncertain = Some(reason_of(reason)),
+            _ => {
+                return Global::Many {
+                    turns,
+                    period,
+                    sample: sample.clone(),
+                };
+            }
         }
+    }
+    if let Some(reason) = uncertain {
+        return Global::Undecided(reason);
     }
     Global::Undecided(
         "the density found is not single-valued, and another one, which differs by a function that D does not see, may be",
     )
+}
+
+/// The reason that is printed.
+fn reason_of(uncertain: Uncertain) -> &'static str {
+    match uncertain {
+        Uncertain::Leaves => LEAVES,
+        Uncertain::Small => GROWS,
+    }
 }
 
 /// The coordinates on circles.
@@ -253,14 +277,16 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
             if period.abs() <= PERIOD * size + ROUNDING {
                 continue;
             }
-            if let Some(period) = path.certified(&sample, &Domain::new()) {
-                return Global::Many {
-                    turns,
-                    period,
-                    sample,
-                };
-            }
-            uncertain.get_or_insert(GROWS);
+            match path.certified(&sample, &Domain::new()) {
+                Ok(period) => {
+                    return Global::Many {
+                        turns,
+                        period,
+                        sample,
+                    };
+                }
+                Err(reason) => uncertain.get_or_insert(reason_of(reason)),
+            };
         }
         is_open |= !is_known;
     }

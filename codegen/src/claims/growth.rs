@@ -8,16 +8,17 @@
 use std::f64::consts::TAU;
 
 use dalembert_expr::{
-    Arithmetic, Domain, EnclosedPoint, Enclosures, ExpansionPoint, ExtendedPoint, ExtendedReals,
-    Interval, JetSpace, Jets, Real, Reals, Series,
+    Arithmetic, Domain, EnclosedPoint, Enclosures, ExpansionPoint, ExprId, ExtendedPoint,
+    ExtendedReals, Interval, JetSpace, Jets, Real, Reals, Series,
 };
 
+use super::contraction::real_step;
 use super::exactness::{Local, decide_local_in};
 use super::frame::{choose_dependent, frame};
 use super::linear::{Matrix, solve};
 use super::obstruction::elements_in;
 use super::problem::Problem;
-use super::sample::Sample;
+use super::sample::{self, Sample};
 use crate::model::Model;
 
 /// Points on a circle for the trapezoidal rule, which converges geometrically for periodic functions: they are doubled
@@ -50,6 +51,17 @@ pub(super) struct Loop<'l> {
     turns: &'l [(usize, i64)],
     /// The hull in frames that are regular on parts of the loop.
     frames: Vec<Local>,
+    /// Everything below the rest of the Lagrangian and the forces: a motion exists where they have values.
+    defined: Vec<ExprId>,
+}
+
+/// Why the growth along a loop is not certified to differ from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Uncertain {
+    /// The loop may leave the domain of the declaration.
+    Leaves,
+    /// The growth is too small beside the variation of `G`, or its sum does not converge.
+    Small,
 }
 
 /// A part of a loop, from one fraction of it to another, with what it adds to the growth.
@@ -76,31 +88,41 @@ impl<'l> Loop<'l> {
         local: &Local,
         turns: &'l [(usize, i64)],
     ) -> Self {
+        let mut roots = model.lagrangian.linear.clone();
+        roots.push(model.lagrangian.potential);
+        roots.extend(model.forces.iter().flat_map(|force| &force.form));
         Self {
             model,
             problem,
             turns,
             frames: vec![local.clone()],
+            defined: model.pool.reachable(&roots),
         }
     }
 
-    /// The growth, if it is certified not to be 0: in double precision, for what is printed, where all symbols of a sample have
-    /// a value next to its own, or one in a range that is given.
-    pub(super) fn certified(&mut self, sample: &Sample, ranges: &Domain) -> Option<f64> {
-        let (growth, size, points) = self.converged_by(sample)?;
+    /// The growth with all digits that are printed, certified not to be 0 where all symbols of a sample have a value next to their own, or
+    /// one in a range that is given.
+    ///
+    /// # Errors
+    /// If it is not certified.
+    pub(super) fn certified(&mut self, sample: &Sample, ranges: &Domain) -> Result<f64, Uncertain> {
+        let (growth, size, points) = self.converged_by(sample).ok_or(Uncertain::Small)?;
         let mut domain = sample.ranges();
+        let others = sample::sample(self.model, 0, |symbol| sample.value(symbol).is_none());
+        domain.extend(others.ranges());
+        for (i, coordinate) in self.model.coordinates.iter().enumerate() {
+            let velocity = Interval::point(real_step(i));
+            domain.push((coordinate.qdot, velocity));
+        }
         for (symbol, range) in &mut domain {
             if let Some((_, given)) = ranges.iter().find(|(name, _)| name == symbol) {
                 *range = *given;
             }
         }
-        if !self.is_certain(sample, &domain, growth) {
-            return None;
-        }
-        // The digits that are printed are those of the growth.
+        self.certify(sample, &domain, growth)?;
         match growth.abs() < CANCELLED * size {
-            true => self.precise(sample, 2 * points),
-            false => Some(growth),
+            true => self.precise(sample, 2 * points).ok_or(Uncertain::Small),
+            false => Ok(growth),
         }
     }
 
@@ -200,20 +222,26 @@ impl<'l> Loop<'l> {
         JetSpace::new(self.problem.variables.len(), order, MONOMIALS)
     }
 
-    /// True if an enclosure of the growth excludes 0.
-    fn is_certain(&mut self, sample: &Sample, domain: &Domain, growth: f64) -> bool {
-        let mut orders = ORDERS.into_iter();
-        orders.any(|order| self.is_certain_by(order, sample, domain, growth))
+    /// Looks for an enclosure of the growth that excludes 0.
+    fn certify(&mut self, sample: &Sample, domain: &Domain, growth: f64) -> Result<(), Uncertain> {
+        let mut found = Err(Uncertain::Small);
+        for order in ORDERS {
+            found = self.certify_by(order, sample, domain, growth);
+            if found != Err(Uncertain::Small) {
+                break;
+            }
+        }
+        found
     }
 
     /// The same by series of an order.
-    fn is_certain_by(
+    fn certify_by(
         &mut self,
         order: usize,
         sample: &Sample,
         domain: &Domain,
         growth: f64,
-    ) -> bool {
+    ) -> Result<(), Uncertain> {
         let ends = |k: usize| [k, k + 1].map(|cell| cell as f64 / CELLS as f64);
         let mut cells: Vec<Cell> = (0..CELLS)
             .map(|k| self.cell(ends(k), order, sample, domain))
@@ -223,7 +251,7 @@ impl<'l> Loop<'l> {
             let parts: Option<Vec<Interval>> = cells.iter().map(|cell| cell.part).collect();
             let total = parts.map(|parts| parts.into_iter().fold(Interval::ZERO, |a, b| a + b));
             if total.is_some_and(Interval::excludes_zero) {
-                return true;
+                return Ok(());
             }
             let width = total.map_or(f64::INFINITY, |total| total.hi - total.lo);
             // NOTE: a power of the length of cells: so many would be needed.
@@ -231,7 +259,10 @@ impl<'l> Loop<'l> {
             let needed = excess * cells.len() as f64;
             let is_beyond = |count: f64| count > ENCLOSURES as f64;
             if is_beyond((count + cells.len()) as f64) || (width.is_finite() && is_beyond(needed)) {
-                return false;
+                return Err(match total {
+                    Some(_) => Uncertain::Small,
+                    None => Uncertain::Leaves,
+                });
             }
             let wide = width / (2 * cells.len()) as f64;
             let mut finer = Vec::with_capacity(2 * cells.len());
@@ -268,8 +299,20 @@ impl<'l> Loop<'l> {
             fraction,
             length: turn * Interval::point(ends[1] - ends[0]),
         };
-        let part = self.integral(&places, order, sample);
+        let part = match self.is_defined(&places.whole) {
+            true => self.integral(&places, order, sample),
+            false => None,
+        };
         Cell { ends, part }
+    }
+
+    /// True if the rest of the Lagrangian and the forces have values all over a box.
+    fn is_defined(&self, place: &EnclosedPoint) -> bool {
+        let values = place.clone().values(&self.model.pool, &self.defined);
+        values.is_some_and(|values| {
+            let mut ranges = self.defined.iter().map(|id| values[id.index()]);
+            ranges.all(|range| range.magnitude().is_finite())
+        })
     }
 
     /// The growth along a part of the loop, in the first frame that is regular there.

@@ -46,7 +46,9 @@ pub(super) fn grown_on_leaf(
         let angles = (0..problem.coordinates).filter(is_loop);
         let mut loops = angles.map(|i| vec![(i, 1)]);
         loops.find_map(|turns| {
-            let period = Loop::new(model, problem, &local, &turns).certified(&sample, &zero)?;
+            let period = Loop::new(model, problem, &local, &turns)
+                .certified(&sample, &zero)
+                .ok()?;
             Some(Global::Many {
                 turns,
                 period,

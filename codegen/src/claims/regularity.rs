@@ -24,7 +24,7 @@ use crate::model::{Assumption, Model, Topology};
 pub(super) const SINGULAR: &str =
     "the density found is 0 or infinite at configurations where metric and constraints are regular";
 /// Why a circle without a regular turn does.
-pub(super) const LEAVES: &str = "a circle leaves the domain where the constraints are regular";
+pub(super) const LEAVES: &str = "a circle leaves the domain where the constraints are regular and forces and Lagrangian have values";
 
 /// Points on a circle.
 const POINTS: usize = 64;
