@@ -448,10 +448,11 @@ fn forces_of_higher_degree_are_decided() {
 fn many_roots_and_logarithms_are_no_obstacle() {
     let proved = |declared: &str, claim: &str| {
         let found = finding("Sample", declared, claim);
-        let is_proved = matches!(found.verdict, Verdict::Proved(_));
+        // As many roots as there are: a chance of error that is worth nothing proves nothing.
+        let is_proved = matches!(&found.verdict, Verdict::Proved(own) if own.error < 1e-12);
         assert!(is_proved, "{claim} of {declared}: {}", found.note());
     };
-    for count in [9, 12] {
+    for count in [9, 12, 30] {
         proved(&wells(count), "conserved: energy");
         proved(&wells(count), "density: exact");
         let pushed = format!("{} forces {{ push: 1e-30*d(x[1]); }}", wells(count));

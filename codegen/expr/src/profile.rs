@@ -3,6 +3,7 @@
 use crate::node::{ExprId, Function, Node};
 use crate::pool::Pool;
 use crate::rational::Rational;
+use crate::squares::Squares;
 
 /// The properties of the expressions below some roots.
 #[derive(Clone, Debug)]
@@ -54,8 +55,6 @@ impl Residue {
     }
 }
 
-/// Beyond this number of roots and logarithms a degree is too large to prove anything.
-const MOST_HALVINGS: usize = 1 << 7;
 /// Beyond this common denominator the multiples of base angles are refused.
 const MAX_DENOMINATOR: i64 = 1 << 40;
 
@@ -84,8 +83,7 @@ impl Pool {
             }
         }
         profile.degree = self.degree_bound(order, profile.denominator.unwrap_or(1));
-        // An accident is more likely among the points at which roots and logarithms have values, as they are fewer.
-        profile.degree *= 2f64.powi(self.positives(order).len().min(MOST_HALVINGS) as i32);
+        profile.degree *= Squares::odds(self, order);
         profile
     }
 

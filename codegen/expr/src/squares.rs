@@ -11,8 +11,11 @@ use crate::pool::Pool;
 
 /// So many arguments are left to chance.
 const BY_CHANCE: usize = 4;
-/// Draws of the symbols of a step.
-const DRAWS: u64 = 256;
+/// Arguments of one step beyond which a degree is too large to prove anything.
+const MOST_ARGUMENTS: usize = 64;
+/// Arguments of one step for which points are looked for, and draws of its symbols for each that is expected.
+const MOST_IN_STEP: usize = 12;
+const DRAWS: u64 = 8;
 
 /// The arguments of roots and logarithms in some expressions, in steps.
 #[derive(Clone, Debug, Default)]
@@ -70,12 +73,32 @@ impl Pool {
 }
 
 impl Squares {
-    /// The steps for the expressions in `order`.
+    /// The steps for the expressions in `order`; none for a few arguments.
     pub(crate) fn of(pool: &Pool, order: &[ExprId]) -> Self {
         let positives = pool.positives(order);
-        if positives.len() <= BY_CHANCE {
-            return Self::default();
+        match positives.len() {
+            0..=BY_CHANCE => Self::default(),
+            _ => Self::in_steps(pool, positives),
         }
+    }
+
+    /// The factor by which an accident is more likely than the degree of an expression over the prime: roots multiply the degree of what
+    /// may vanish, and leave fewer points for it to vanish at, both by `2^k` in a step of `k` arguments. An expression that has not
+    /// vanished identically in one step may do so in the next, so that the chances of all steps add up.
+    pub(crate) fn odds(pool: &Pool, order: &[ExprId]) -> f64 {
+        let positives = pool.positives(order);
+        let of_step = |count: usize| 4f64.powi(count.min(MOST_ARGUMENTS) as i32);
+        match positives.len() {
+            count @ 0..=BY_CHANCE => of_step(count),
+            _ => {
+                let steps = Self::in_steps(pool, positives).steps;
+                let each = steps.iter().map(|step| of_step(step.positives.len()));
+                1.0 + each.sum::<f64>()
+            }
+        }
+    }
+
+    fn in_steps(pool: &Pool, positives: Vec<ExprId>) -> Self {
         let mut open: Vec<Open> = positives
             .into_iter()
             .map(|positive| (positive, pool.symbols_below(positive)))
@@ -107,7 +130,10 @@ impl Squares {
         for step in &self.steps {
             let mut free = step.symbols.clone();
             free.retain(|symbol| !point.is_set(*symbol));
-            (0..DRAWS).find(|draw| {
+            if step.positives.len() > MOST_IN_STEP {
+                return None;
+            }
+            (0..DRAWS << step.positives.len()).find(|draw| {
                 let other = ModularPoint::new(point.modulus(), mix(seed ^ mix(*draw)));
                 for symbol in &free {
                     let value = other.value(*symbol, pool.symbol_assumption(*symbol));

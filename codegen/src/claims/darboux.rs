@@ -22,7 +22,7 @@ use super::exactness::{branches_of, sample_points};
 use super::fit::{Certified, of_logarithm, reconstruct};
 use super::frame::frame;
 use super::problem::Problem;
-use super::undecided::Undecided;
+use super::undecided::{LARGEST_CHANCE, Undecided};
 use crate::model::Model;
 
 /// Exponents of the factor as numerator and denominator; the first is that of an inverse Jacobi multiplier.
@@ -280,10 +280,14 @@ impl Search<'_> {
         // As for a density of the configuration; the motion adds as much as the demand.
         let sizes = (self.problem.coordinates + self.problem.forms.len()) as f64;
         let degree = 128.0 * sizes.powi(3) * profile.degree.max(1.0);
+        let error = covered.error(&branches, degree / 2f64.powi(60));
+        if error > LARGEST_CHANCE {
+            return Err(Undecided::Chance);
+        }
         Ok(Some(Certified {
             points: covered.points,
             primes,
-            error: covered.error(&branches, degree / 2f64.powi(60)),
+            error,
         }))
     }
 }

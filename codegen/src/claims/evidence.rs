@@ -9,7 +9,7 @@ use super::dynamics::Number;
 use super::exactness::{branches_of, sample_points};
 use super::finding::{Certificate, Verdict, Witness, digits};
 use super::sample::{self, Sample};
-use super::undecided::Undecided;
+use super::undecided::{LARGEST_CHANCE, Undecided};
 use crate::model::Model;
 
 /// Random states at which a sum must vanish, and those of each branch where there are several.
@@ -75,6 +75,8 @@ pub(super) struct Evidence {
     pub(super) witness: Option<(Sample, Vec<(String, f64)>)>,
     /// Whether it has a value at any real point that was tried.
     pub(super) is_real: bool,
+    /// Why the question may be open.
+    pub(super) open: Undecided,
 }
 
 /// The two answers to a claim that something vanishes, or does not.
@@ -105,6 +107,7 @@ impl Evidence {
             error: self.error + other.error,
             witness: self.witness.or(other.witness),
             is_real: self.is_real || other.is_real,
+            open: self.open,
         }
     }
 
@@ -161,7 +164,7 @@ impl Evidence {
                 values: Vec::new(),
                 help: wording.help[1].clone(),
             }),
-            _ => Verdict::Undecided(Undecided::Relations(Vec::new()).to_string()),
+            _ => Verdict::Undecided(self.open.to_string()),
         }
     }
 }
@@ -180,7 +183,20 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
     let profile = model.pool.profile_of(&roots);
     let mut primes = Vec::new();
     let residues = residues(model, question, &roots, &profile, seed, &mut primes);
-    let vanishes = residues.as_ref().map(|(covered, _)| covered.holds);
+    let accident = chance_of_accident(model, profile.degree);
+    // Zeros that may be accidents show nothing.
+    let residues = residues.and_then(|(covered, branches)| {
+        let error = covered.error(&branches, accident);
+        match !covered.holds || error <= LARGEST_CHANCE {
+            true => Ok((covered, error)),
+            false => Err(Undecided::Chance),
+        }
+    });
+    let (covered, open) = match residues {
+        Ok(covered) => (Some(covered), Undecided::Relations(Vec::new())),
+        Err(reason) => (None, reason),
+    };
+    let vanishes = covered.map(|(covered, _)| covered.holds);
     primes.sort_unstable();
     primes.dedup();
     let is_exact = profile.is_exact() && !question.hides_relations(model);
@@ -192,17 +208,16 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
     let real = real_evidence(model, question, threshold);
     Evidence {
         vanishes,
-        points: residues.as_ref().map_or(0, |(covered, _)| covered.points),
+        points: covered.map_or(0, |(covered, _)| covered.points),
         primes,
-        error: residues.map_or(1.0, |(covered, branches)| {
-            covered.error(&branches, chance_of_accident(model, profile.degree))
-        }),
+        error: covered.map_or(1.0, |(_, error)| error),
         witness: real.witness,
         is_real: real.is_real,
+        open,
     }
 }
 
-/// Whether a sum vanishes at states of all branches modulo primes, which are noted; `None` if a branch is out of reach.
+/// Whether a sum vanishes at states of all branches modulo primes, which are noted; an error if a branch is out of reach.
 fn residues(
     model: &Model,
     question: &impl Vanishing,
@@ -210,9 +225,9 @@ fn residues(
     profile: &Profile,
     seed: u64,
     primes: &mut Vec<u64>,
-) -> Option<(Covered, Branches)> {
-    let mut points = sample_points(&model.pool, roots, profile, seed).ok()?;
-    let branches = branches_of(&model.pool, roots, profile, &points)?;
+) -> Result<(Covered, Branches), Undecided> {
+    let mut points = sample_points(&model.pool, roots, profile, seed)?;
+    let branches = branches_of(&model.pool, roots, profile, &points).ok_or(Undecided::Branches)?;
     let each = branches.points_of_each(STATES);
     let covered = points.cover(&model.pool, &branches, each, |point| {
         question.settle(model, point)?;
@@ -221,8 +236,8 @@ fn residues(
         let field = point.modulus();
         let sum = terms.into_iter().fold(0, |sum, term| field.add(sum, term));
         Some(sum == 0)
-    })?;
-    Some((covered, branches))
+    });
+    Ok((covered.ok_or(Undecided::Degenerate)?, branches))
 }
 
 /// What was seen at real points.

@@ -20,7 +20,7 @@ use super::potential::{Allowed, Candidates, Potential};
 use super::problem::Problem;
 use super::regularity;
 use super::smoothness::{HOLES, is_smooth};
-use super::undecided::Undecided;
+use super::undecided::{LARGEST_CHANCE, Undecided};
 use crate::model::Model;
 
 /// Points of each branch that are sampled, each modulo the next prime.
@@ -154,6 +154,13 @@ fn decide_local_from(
     primes.dedup();
     let chance = chance_of_accident(&profile, problem, hull.growth.len());
     let is_proof = hull.extended_rank > problem.components() && profile.is_exact();
+    let error = match is_proof {
+        true => 0.0,
+        false => covered.error(&branches, chance),
+    };
+    if error > LARGEST_CHANCE {
+        return Err(Undecided::Chance);
+    }
     Ok(Local {
         exists: hull.rank == hull.extended_rank,
         rank: hull.rank,
@@ -161,11 +168,7 @@ fn decide_local_from(
         growth: hull.growth.clone(),
         is_partial: is_free && is_obstructed(&hull),
         is_proof,
-        error: if is_proof {
-            0.0
-        } else {
-            covered.error(&branches, chance)
-        },
+        error,
         points: covered.points,
         primes,
         hull,

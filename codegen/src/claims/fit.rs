@@ -12,7 +12,7 @@ use super::exactness::{branches_of, sample_points};
 use super::frame::{Demand, frame};
 use super::potential::{Allowed, Candidates, Potential, Term};
 use super::problem::Problem;
-use super::undecided::Undecided;
+use super::undecided::{LARGEST_CHANCE, Undecided};
 
 /// Numerators and denominators of coefficients up to this size are believed.
 const LARGEST: i64 = 50;
@@ -342,10 +342,14 @@ pub(super) fn certify(
     primes.dedup();
     let sizes = (problem.coordinates + problem.forms.len()) as f64;
     let degree = 64.0 * sizes.powi(3) * profile.degree.max(1.0);
+    let error = covered.error(&branches, degree / 2f64.powi(60));
+    if error > LARGEST_CHANCE {
+        return Err(Undecided::Chance);
+    }
     Ok(Some(Certified {
         points: covered.points,
         primes,
-        error: covered.error(&branches, degree / 2f64.powi(60)),
+        error,
     }))
 }
 

@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// The largest chance of error with which something is proved.
+pub(super) const LARGEST_CHANCE: f64 = 1e-12;
+
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Undecided {
@@ -19,6 +22,8 @@ pub enum Undecided {
     Denominators,
     /// Roots and absolute values have more branches than are gone through.
     Branches,
+    /// Residues are 0, but so many of them may be by accident that nothing follows.
+    Chance,
     /// The parts named may be related in ways that residues do not show.
     Relations(Vec<String>),
 }
@@ -53,6 +58,10 @@ impl fmt::Display for Undecided {
             Self::Branches => write!(
                 f,
                 "roots and absolute values have more combinations of signs than are gone through"
+            ),
+            Self::Chance => write!(
+                f,
+                "with so many roots and such degrees, values at random points modulo 61-bit primes leave too large a chance of error"
             ),
             Self::Relations(atoms) if atoms.is_empty() => {
                 write!(f, "values at real points do not confirm what residues say")
