@@ -341,6 +341,13 @@ fn loops_around_what_is_left_out_are_not_forgotten() {
         not_proved(&declared, "density: exact");
         not_refuted(&declared, "density: locally_exact");
     }
+    // A step function without absolute values, 0 between its steps and odd: a reflection leads from one part of Q to another.
+    let steps = "coordinates { x; z; th: angle; s; }
+        lagrangian = (dot(x)^2 + dot(z)^2 + dot(th)^2 + dot(s)^2)/2;
+        let step(u) = atan(u) + atan(1/u);
+        forces { drag: -dot(z)*((step(x - 1) + step(x + 1))*dot(th) + exp(-s^2)*dot(s))*d(z); }";
+    not_proved(steps, "density: exact");
+    not_refuted(steps, "density: locally_exact");
     // Nothing is left out of a plane, or of a line, around which a loop leads.
     for slope in [
         "exp(-x^2)*dot(x)",

@@ -19,7 +19,7 @@ use super::leaf;
 use super::potential::{Allowed, Candidates, Potential};
 use super::problem::Problem;
 use super::regularity;
-use super::smoothness::{HOLES, is_smooth};
+use super::smoothness::{HOLES, cuts};
 use super::undecided::{LARGEST_CHANCE, Undecided};
 use crate::model::Model;
 
@@ -386,8 +386,9 @@ fn without_closed_form(
     (candidates, parameters): (&Candidates, &[SymbolId]),
     seed: u64,
 ) -> Global {
-    let global = match global::from_periods(model, problem, local) {
-        Global::Exists if !is_smooth(model, problem, seed) => Global::Undecided(HOLES),
+    let cuts = cuts(model, problem, seed);
+    let global = match global::from_periods(model, problem, local, cuts.as_deref()) {
+        Global::Exists if cuts.is_none() => Global::Undecided(HOLES),
         other => other,
     };
     let is_open = matches!(global, Global::Undecided(_));

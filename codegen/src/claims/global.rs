@@ -232,7 +232,12 @@ impl Leaves {
 
 /// The answer of the growth of `G` along loops, certified by enclosures: with all components in the hull of D along each circle,
 /// else along the combinations of circles that lie in leaves.
-pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> Global {
+pub(super) fn from_periods(
+    model: &Model,
+    problem: &Problem,
+    local: &Local,
+    cuts: Option<&[usize]>,
+) -> Global {
     let is_whole = local.rank == problem.components();
     let angles = angles(model, problem);
     let loops = match is_whole {
@@ -243,8 +248,15 @@ pub(super) fn from_periods(model: &Model, problem: &Problem, local: &Local) -> G
         .then(|| Leaves::of(&model.pool, problem))
         .flatten();
     let roots = problem.roots();
-    let has_no_period =
-        |angle: usize| reflection::has_no_period(model, problem, local, angle, PERIODS);
+    let has_no_period = |angle: usize| {
+        reflection::has_no_period(
+            model,
+            problem,
+            local,
+            (angle, cuts.unwrap_or_default()),
+            PERIODS,
+        )
+    };
     let (mut is_open, mut uncertain) = (false, None);
     // Circles along which the growth is 0 by symmetry, or may be.
     let (mut proved, mut left) = (0, Vec::new());

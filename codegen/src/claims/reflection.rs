@@ -60,12 +60,13 @@ impl Move {
 /// Moves of coordinates, each by itself.
 type Map = Vec<(SymbolId, Move)>;
 
-/// True if the growth of `G` along the circle of a coordinate is 0 by a symmetry; D must connect all configurations.
+/// True if the growth of `G` along the circle of a coordinate is 0 by a symmetry that moves no coordinate at whose values Q may be cut: then an
+/// image lies in the same part of Q, in which D must connect all configurations.
 pub(super) fn has_no_period(
     model: &Model,
     problem: &Problem,
     local: &Local,
-    angle: usize,
+    (angle, cuts): (usize, &[usize]),
     seed: u64,
 ) -> bool {
     let roots = problem.roots();
@@ -83,6 +84,7 @@ pub(super) fn has_no_period(
         problem,
         local,
         angle,
+        cuts,
         points,
     };
     let turns = turns(profile.denominator.unwrap_or(1));
@@ -100,6 +102,7 @@ struct Circle<'c> {
     problem: &'c Problem,
     local: &'c Local,
     angle: usize,
+    cuts: &'c [usize],
     points: SamplePoints,
 }
 
@@ -111,7 +114,7 @@ impl Circle<'_> {
         let mut points = self.points.clone();
         // Points with the sums there; more of them as maps get on.
         let mut known: Vec<(ModularPoint, u64)> = Vec::new();
-        let maps = maps(model, problem, (self.angle, moves));
+        let maps = maps(model, problem, (self.angle, moves), self.cuts);
         maps.iter().any(|map| {
             (0..count).all(|k| {
                 if known.len() == k {
@@ -153,12 +156,18 @@ fn turns(denominator: i64) -> Vec<Move> {
 }
 
 /// The maps that move the angle by one of some moves and each of the other coordinates on which anything depends.
-fn maps(model: &Model, problem: &Problem, (angle, moves): (usize, &[Move])) -> Vec<Map> {
+fn maps(
+    model: &Model,
+    problem: &Problem,
+    (angle, moves): (usize, &[Move]),
+    cuts: &[usize],
+) -> Vec<Map> {
     let symbol = model.coordinates[angle].q;
     let mut maps: Vec<Map> = moves.iter().map(|moved| vec![(symbol, *moved)]).collect();
     let others = problem.variables.iter().copied();
     for i in others.filter(|i| *i != angle && *i < problem.coordinates) {
         let moves: &[Move] = match model.coordinates[i].topology {
+            _ if cuts.contains(&i) => &[STAYS],
             Topology::Line => &[STAYS, REFLECTED],
             Topology::Angle => &[STAYS, REFLECTED, SUPPLEMENT, OPPOSITE],
             // The charts of Euler angles are `(0, pi)` mostly; another one is not mapped to itself.

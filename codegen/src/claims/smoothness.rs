@@ -1,7 +1,7 @@
-//! Is a problem smooth on all of Q? Then its loops are those of the declared circles; a configuration that is left out, as the
-//! origin of a plane by `1/(x^2 + y^2)`, may have others around it.
+//! Configurations that are left out of Q, because the metric, the constraints or an expression is singular there. Without any the loops of
+//! Q are those of the declared circles; the origin of a plane, left out by `1/(x^2 + y^2)`, has others around it, and `1/x` parts Q.
 
-use dalembert_expr::{ExprId, Function, JetSpace, Jets, Node, Pool, Rational, SymbolId};
+use dalembert_expr::{ExprId, Function, JetSpace, Jets, Node, Pool, Rational};
 
 use super::exactness::{branches_of, sample_points};
 use super::frame::frame;
@@ -17,36 +17,39 @@ const SAMPLES: usize = 3;
 /// Minors of the constraint forms that are written out.
 const MOST_MINORS: usize = 64;
 
-/// True if no configurations are left out of Q but those where one coordinate has certain values: what is left of lines and circles has
-/// no other loops than whole circles. What depends on several coordinates is certified to be regular everywhere.
-pub(super) fn is_smooth(model: &mut Model, problem: &Problem, seed: u64) -> bool {
-    let Some(mut divisors) = divisors(&mut model.pool, problem) else {
-        return false;
-    };
-    let Some(dependence) = determinants_by_component(&model.pool, problem, seed) else {
-        return false;
-    };
+/// The components of which certain values may be left out of Q; `None` if other configurations may be. What depends on several components
+/// is certified to be regular everywhere, and what is left of lines and circles without some of their points has no other loops than whole
+/// circles.
+pub(super) fn cuts(model: &mut Model, problem: &Problem, seed: u64) -> Option<Vec<usize>> {
+    let mut divisors = divisors(&mut model.pool, problem)?;
+    let dependence = determinants_by_component(&model.pool, problem, seed)?;
+    let mut cuts = Vec::new();
     for (components, write) in dependence.into_iter().zip([blocks_of_metric, gramian]) {
-        if components > 1 {
-            let Some(written) = write(model, problem) else {
-                return false;
-            };
-            divisors.extend(written);
+        match components.as_slice() {
+            [] => {}
+            [only] => cuts.push(*only),
+            _ => divisors.extend(write(model, problem)?),
         }
     }
-    divisors.retain(|divisor| {
-        let depends = |symbol: &&SymbolId| model.pool.depends_on(*divisor, **symbol);
-        problem.symbols.iter().filter(depends).count() > 1
-    });
     divisors.sort_unstable();
     divisors.dedup();
-    divisors
-        .into_iter()
-        .all(|divisor| is_never_zero(model, divisor))
+    for divisor in divisors {
+        let symbols = problem.symbols.iter().enumerate();
+        let depends = symbols.filter(|(_, symbol)| model.pool.depends_on(divisor, **symbol));
+        let components: Vec<usize> = depends.map(|(component, _)| component).collect();
+        if components.is_empty() || is_never_zero(model, divisor) {
+            continue;
+        }
+        let [only] = components.as_slice() else {
+            return None;
+        };
+        cuts.push(*only);
+    }
+    Some(cuts)
 }
 
-/// The numbers of components on which `det g` and `det m^{ab}` depend; `None` if it is not known.
-fn determinants_by_component(pool: &Pool, problem: &Problem, seed: u64) -> Option<[usize; 2]> {
+/// The components on which `det g` and `det m^{ab}` depend; `None` if it is not known.
+fn determinants_by_component(pool: &Pool, problem: &Problem, seed: u64) -> Option<[Vec<usize>; 2]> {
     let roots = problem.roots();
     let profile = pool.profile_of(&roots);
     let mut points = sample_points(pool, &roots, &profile, seed).ok()?;
@@ -65,7 +68,11 @@ fn determinants_by_component(pool: &Pool, problem: &Problem, seed: u64) -> Optio
         }
         Some(true)
     })?;
-    Some([0, 1].map(|k| depends.iter().filter(|depends| depends[k]).count()))
+    let components = problem.variables.iter().zip(&depends);
+    Some([0, 1].map(|k| {
+        let of_this = components.clone().filter(|(_, depends)| depends[k]);
+        of_this.map(|(component, _)| *component).collect()
+    }))
 }
 
 /// Expressions that must not be 0 for all others to be smooth; `None` where one of them jumps.
