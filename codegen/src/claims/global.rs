@@ -110,16 +110,9 @@ pub(super) fn from_angles(
         let Some((period, sample)) = grown.filter(|_| holds(&turns)) else {
             continue;
         };
-        // The circle lies in the domain of the declaration.
-        let roots = problem.roots();
-        let circles =
-            ATTEMPTS.map(|attempt| self::sample(model, attempt, uses(&model.pool, &roots)));
-        let certified = circles
-            .iter()
-            .map(|place| Loop::new(model, problem, local, &turns).certified(place, &Domain::new()));
-        match certified.reduce(|first, second| first.or(second)) {
-            Some(Err(reason)) => uncertain = Some(reason_of(reason)),
-            _ => {
+        match certify(model, problem, local, &turns) {
+            Err(reason) => uncertain = Some(reason_of(reason)),
+            Ok(()) => {
                 return Global::Many {
                     turns,
                     period,
@@ -134,6 +127,22 @@ pub(super) fn from_angles(
     Global::Undecided(
         "the density found is not single-valued, and another one, which differs by a function that D does not see, may be",
     )
+}
+
+/// Certifies at one of the samples that `G` grows along a loop, which then lies in the domain of the declaration.
+fn certify(
+    model: &Model,
+    problem: &Problem,
+    local: &Local,
+    turns: &[(usize, i64)],
+) -> Result<(), Uncertain> {
+    let roots = problem.roots();
+    let certified = |attempt| {
+        let place = sample(model, attempt, uses(&model.pool, &roots));
+        Loop::new(model, problem, local, turns).certified(&place, &Domain::new())
+    };
+    let [first, second] = ATTEMPTS;
+    certified(first).or_else(|_| certified(second)).map(|_| ())
 }
 
 /// The reason that is printed.
