@@ -201,7 +201,7 @@ fn small_forces_are_seen_at_a_point_of_47_digits() {
     }
 }
 
-/// What an impact changes by a part below rounding, on surfaces whose points are no decimals.
+/// Losses of energy in impacts far below rounding, on surfaces whose points are no decimals.
 #[test]
 fn small_changes_in_impacts_are_seen_with_their_digits() {
     let energy = |wall: &str| {

@@ -218,7 +218,7 @@ impl Mul for Interval {
             product(self.hi, other.lo),
             product(self.hi, other.hi),
         ];
-        let is_unit = |own: Self| own == Self::point(1.0) || own == Self::point(-1.0);
+        let is_unit = |factor: Self| factor == Self::point(1.0) || factor == Self::point(-1.0);
         let is_exact = is_unit(self) || is_unit(other);
         let lo = ends.iter().copied().fold(f64::INFINITY, f64::min);
         let hi = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);

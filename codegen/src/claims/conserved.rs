@@ -36,10 +36,10 @@ pub(super) fn check_conserved(
             dynamics,
             written,
         };
-        let own = evidence(model, &rate, seed);
+        let part = evidence(model, &rate, seed);
         found = Some(match found {
-            Some(others) => others.and(own),
-            None => own,
+            Some(others) => others.and(part),
+            None => part,
         });
     }
     let Some(found) = found else {

@@ -150,7 +150,7 @@ impl Dynamics {
 
     /// The velocities that constraints that are not linear are solved for.
     pub(super) fn roots_of_branches(&self) -> impl Iterator<Item = SymbolId> {
-        self.branches.iter().map(|own| own.velocity)
+        self.branches.iter().map(|branch| branch.velocity)
     }
 
     /// The equations with parameters replaced.
@@ -158,7 +158,7 @@ impl Dynamics {
         let branches: Vec<Branch> = self
             .branches
             .iter()
-            .map(|own| own.substituted(pool, replacements))
+            .map(|branch| branch.substituted(pool, replacements))
             .collect();
         let mut replaced = |own: &Rows| {
             let rows = own.rows.iter();

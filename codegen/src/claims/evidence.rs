@@ -217,7 +217,7 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
     }
 }
 
-/// Whether a sum vanishes at states of all branches modulo primes, which are noted; an error if a branch is out of reach.
+/// The answer of states of all branches modulo primes, which are noted, to whether a sum vanishes; an error if a branch is out of reach.
 fn residues(
     model: &Model,
     question: &impl Vanishing,

@@ -378,7 +378,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
     })
 }
 
-/// Whether a density exists on all of Q, where none is a sum of candidates.
+/// The answer on all of Q where no density is a sum of candidates.
 fn without_closed_form(
     model: &mut Model,
     problem: &Problem,

@@ -257,15 +257,9 @@ pub(super) fn from_periods(
         .then(|| Leaves::of(&model.pool, problem))
         .flatten();
     let roots = problem.roots();
-    let has_no_period = |angle: usize| {
-        reflection::has_no_period(
-            model,
-            problem,
-            local,
-            (angle, cuts.unwrap_or_default()),
-            PERIODS,
-        )
-    };
+    let cuts = cuts.unwrap_or_default();
+    let has_no_period =
+        |angle| reflection::has_no_period(model, problem, local, (angle, cuts), PERIODS);
     let (mut is_open, mut uncertain) = (false, None);
     // Circles along which the growth is 0 by symmetry, or may be.
     let (mut proved, mut left) = (0, Vec::new());

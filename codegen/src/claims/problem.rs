@@ -41,7 +41,7 @@ pub(super) struct Friction {
     pub(super) slope: Vec<Vec<Vec<ExprId>>>,
     /// `dF_i/dqdot^j`, as far as they are not 0.
     pub(super) entries: Vec<ForceSlope>,
-    /// How the divergence of the forces depends on the velocities of D.
+    /// The dependence of the divergence of the forces on the velocities of D.
     pub(super) dependence: Dependence,
 }
 
@@ -147,7 +147,7 @@ impl Problem {
             .collect();
     }
 
-    /// Whether the criterion covers the forces: their divergence is linear in the velocities.
+    /// Refuses forces that the criterion does not cover: their divergence is not known to be linear in the velocities.
     ///
     /// # Errors
     /// [`Undecided::Forces`].
@@ -212,7 +212,7 @@ impl Problem {
 }
 
 impl Friction {
-    /// Whether the derivatives of the forces are polynomials in the velocities.
+    /// True if the derivatives of the forces are polynomials in the velocities.
     fn is_smooth_at_rest(&self, pool: &Pool, velocities: &[SymbolId]) -> bool {
         let is_pole = |id: &ExprId| match pool.node(*id) {
             Node::Product(factors) => factors
