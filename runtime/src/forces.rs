@@ -3,6 +3,7 @@
 use crate::contract::{System, VectorField};
 use crate::error::Fault;
 use crate::integrate::{Counters, Instant, Series, StepFailure, Stepper, Tolerance};
+use crate::jet::LENGTH;
 
 /// Forces on a system.
 pub trait Forces<Sys: System>: Copy + PartialEq {
@@ -171,6 +172,14 @@ where
 
     fn interpolate(&self, theta: f64) -> Sys::State {
         self.stepper.interpolate(theta)
+    }
+
+    fn powers(&self, coefficients: &mut [Sys::State; LENGTH]) -> usize {
+        self.stepper.powers(coefficients)
+    }
+
+    fn sway(&self) -> Option<Sys::State> {
+        self.stepper.sway()
     }
 
     fn cut(&mut self, theta: f64) -> (Instant, Sys::State) {

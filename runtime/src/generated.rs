@@ -275,6 +275,7 @@ pub mod arguments {
     pub fn reach() {}
     pub fn after_q() {}
     pub fn after_qdot() {}
+    pub fn component() {}
 }
 
 /// Guards over several numbers at once: the fault of the first lane that has one.

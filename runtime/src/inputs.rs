@@ -5,6 +5,7 @@ use crate::contract::{
 };
 use crate::error::{Fault, ParameterError, StateError};
 use crate::impacts::law::{Blow, Contact, Jump, Law};
+use crate::numbers::Rated;
 
 /// A system whose inputs are given by a function; [`Actuated::with_inputs`] makes one.
 ///
@@ -217,6 +218,10 @@ where
 
     fn gap_rates(&self, t: f64, state: &Self::State) -> Result<Self::Gaps, Fault> {
         self.at(t, state).gap_rates(t, state)
+    }
+
+    fn gap_along(&self, surface: usize, t: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+        self.system.gap_along(surface, t, component)
     }
 
     fn gap_accelerations(

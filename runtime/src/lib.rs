@@ -17,6 +17,7 @@
 //!     Contact, Dop853, EventLog, Fault, Impacting, Impacts, Law, Outcome, ParameterError, Simulation, System,
 //!     Tolerance, VectorField,
 //! };
+//! use dalembert::numbers::Rated;
 //! use nalgebra::SVector;
 //!
 //! /// Mass 1, gravity 1; the state is (x, v).
@@ -66,6 +67,9 @@
 //!     type Gaps = Height;
 //!     fn gaps(&self, _t: f64, state: &State) -> Height {
 //!         Height::new(state[0])
+//!     }
+//!     fn gap_along(&self, _surface: usize, _t: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+//!         component(0)
 //!     }
 //!     fn gap_rates(&self, _t: f64, state: &State) -> Result<Height, Fault> {
 //!         Ok(Height::new(state[1]))

@@ -7,13 +7,18 @@ use dalembert::{Dop853, Event, Impacts, Observer, Outcome, Simulation, Tolerance
 use support::*;
 
 /// In coordinates in which the metric is the identity: a small mass at `u`, a block of mass `M` at `v / sqrt(M)`.
-fn block<const ROOT: u64>([u, v]: [f64; 2]) -> (f64, [f64; 2]) {
-    let part = 1.0 / ROOT as f64;
-    (v * part - u, [-1.0, part])
+fn block<const ROOT: u64>() -> Gap {
+    Gap {
+        at: |[u, v]| {
+            let part = 1.0 / ROOT as f64;
+            (v * part - u, [-1.0, part])
+        },
+        along: |[u, v]| v * Rated::of(1.0 / ROOT as f64) - u,
+    }
 }
 
 fn count<const ROOT: u64>() -> (u64, f64) {
-    let system = Particle::new([0.0, 0.0], [floor, block::<ROOT>]);
+    let system = Particle::new([0.0, 0.0], [FLOOR, block::<ROOT>()]);
     let root = ROOT as f64;
     let mut log = Log::new();
     let end = run(&system, at(1.0, 2.0 * root, 0.0, -root), 1e4, &mut log);
@@ -45,12 +50,8 @@ fn c11_collisions_of_block_and_wall_count_the_digits_of_pi() {
 
 #[test]
 fn c13_a_cusp_is_left_after_finitely_many_reflections() {
-    fn upper([x, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (x * x - y, [2.0 * x, -1.0])
-    }
-    fn lower([x, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (x * x + y, [2.0 * x, 1.0])
-    }
+    let upper = gap!(c | x, y | x * x - y, [2.0 * x, -1.0]);
+    let lower = gap!(c | x, y | x * x + y, [2.0 * x, 1.0]);
     let mut cusp = Particle::new([0.0, 0.0], [upper, lower]);
     cusp.active = |_, [x, _]| x > 0.0;
     for (vy, exact) in [(0.05, 5), (0.01, 14), (0.001, 73)] {
@@ -76,9 +77,7 @@ fn c13_a_cusp_is_left_after_finitely_many_reflections() {
 
 #[test]
 fn f01_circle_keeps_angular_momentum_and_bounces_where_it_must() {
-    fn circle([x, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (1.0 - x * x - y * y, [-2.0 * x, -2.0 * y])
-    }
+    let circle = gap!(c | x, y | c(1.0) - x * x - y * y, [-2.0 * x, -2.0 * y]);
     struct Watch {
         bounces: f64,
         worst: f64,
@@ -114,21 +113,11 @@ fn f01_circle_keeps_angular_momentum_and_bounces_where_it_must() {
 
 #[test]
 fn f05_sinai_table_follows_the_reference_for_twenty_bounces() {
-    fn right([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
-        (1.0 - x, [-1.0, 0.0])
-    }
-    fn left([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
-        (x + 1.0, [1.0, 0.0])
-    }
-    fn top([_, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (1.0 - y, [0.0, -1.0])
-    }
-    fn bottom([_, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (y + 1.0, [0.0, 1.0])
-    }
-    fn disk([x, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (x * x + y * y - 0.25, [2.0 * x, 2.0 * y])
-    }
+    let right = gap!(c | x, y | c(1.0) - x, [-1.0, 0.0]);
+    let left = gap!(c | x, y | x + c(1.0), [1.0, 0.0]);
+    let top = gap!(c | x, y | c(1.0) - y, [0.0, -1.0]);
+    let bottom = gap!(c | x, y | y + c(1.0), [0.0, 1.0]);
+    let disk = gap!(c | x, y | x * x + y * y - c(0.25), [2.0 * x, 2.0 * y]);
     let table = Particle::new([0.0, 0.0], [right, left, top, bottom, disk]);
     let mut log = Log::new();
     let end = run(&table, at(0.7, 0.1, 0.6, 0.8), 51.0, &mut log);

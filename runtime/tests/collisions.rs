@@ -4,6 +4,7 @@
 use core::ops::ControlFlow;
 
 use dalembert::integrate::{ComposedPrinciple, FixedStep, Gauss, Method, MidpointPrinciple};
+use dalembert::numbers::{Numbers, Rated};
 use dalembert::{
     Contact, Fault, Impacting, Impacts, Lagrangian, Law, Observer, Outcome, ParameterError,
     Segment, Simulation, Stepper, System, Tolerance, VectorField,
@@ -113,6 +114,13 @@ impl Impacting for Well {
 
     fn gaps(&self, _: f64, state: &Plane) -> Plane {
         Plane::new(state[0] + 0.3, self.far - state[0])
+    }
+
+    fn gap_along(&self, surface: usize, _: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+        match surface {
+            0 => component(0) + Rated::of(0.3),
+            _ => Rated::of(self.far) - component(0),
+        }
     }
 
     fn gap_rates(&self, _: f64, state: &Plane) -> Result<Plane, Fault> {

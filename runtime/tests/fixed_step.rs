@@ -11,7 +11,7 @@ use dalembert::{
     Simulation, Stepper, System, Tolerance,
 };
 use support::line::{Line, Plane, soliton, soliton_at};
-use support::{Particle, at, floor};
+use support::{FLOOR, Particle, at};
 
 fn tolerance() -> Tolerance {
     Tolerance::new(1e-10).unwrap()
@@ -228,7 +228,7 @@ fn a_fault_ahead_is_reached_before_it_is_reported() {
 
 #[test]
 fn steps_grow_back_after_hops_and_accumulations_are_found() {
-    let ball = Particle::new([-1.0, 0.0], [floor]).with_law(Law::Restitution(0.5));
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_law(Law::Restitution(0.5));
     let stepper = Gauss4::new(tolerance()).with_step(0.5);
     let mut log = EventLog::<_, 256>::new();
     let run = Simulation::new(&ball, stepper, Impacts::declared(&ball))
@@ -240,7 +240,7 @@ fn steps_grow_back_after_hops_and_accumulations_are_found() {
         run.outcome
     );
     // A corner: one short flight, then a long one, over which steps are those of the run again.
-    let ball = Particle::new([-1.0, 0.0], [floor]);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]);
     let run = Simulation::new(&ball, stepper, Impacts::declared(&ball))
         .run(0.0, at(1e-6, 0.0, 30.0, 0.0), 50.0, &mut log)
         .unwrap();

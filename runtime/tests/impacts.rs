@@ -10,7 +10,7 @@ const U: f64 = f64::EPSILON / 2.0;
 
 #[test]
 fn a01_zero_at_the_start_is_not_reported_and_hides_nothing() {
-    let ball = Particle::new([-1.0, 0.0], [floor]);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]);
     with_every_integrator(&ball, at(0.0, 0.0, 1.0, 0.0), 5.0, |run, log, case| {
         assert_done(run, case);
         assert_times(log, &[2.0, 4.0], 1e-13, case);
@@ -19,7 +19,7 @@ fn a01_zero_at_the_start_is_not_reported_and_hides_nothing() {
 
 #[test]
 fn a02_entering_at_the_start_is_one_impact() {
-    let ball = Particle::new([-1.0, 0.0], [floor]);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]);
     with_every_integrator(&ball, at(0.0, 0.0, -1.0, 0.0), 5.0, |run, log, case| {
         assert_done(run, case);
         assert_times(log, &[0.0, 2.0, 4.0], 1e-13, case);
@@ -28,7 +28,7 @@ fn a02_entering_at_the_start_is_one_impact() {
 
 #[test]
 fn a03_resting_is_contact_without_impacts() {
-    let ball = Particle::new([-1.0, 0.0], [floor]);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]);
     with_every_integrator(&ball, at(0.0, 0.0, 0.0, 0.0), 1e6, |run, log, case| {
         assert_eq!(run.outcome, Outcome::Contact { surface: 0 }, "{case}");
         assert_eq!((run.t, log.seen()), (0.0, 0), "{case}");
@@ -37,7 +37,7 @@ fn a03_resting_is_contact_without_impacts() {
 
 #[test]
 fn a04_leaving_from_rest_is_no_event() {
-    let ball = Particle::new([1.0, 0.0], [floor]);
+    let ball = Particle::new([1.0, 0.0], [FLOOR]);
     with_every_integrator(&ball, at(0.0, 0.0, 0.0, 0.0), 2.0, |run, log, case| {
         assert_done(run, case);
         assert_eq!(log.seen(), 0, "{case}");
@@ -52,7 +52,7 @@ fn a04_leaving_from_rest_is_no_event() {
 
 /// `h'' = 2`, `h(0) = 1 - eps`, `h'(0) = -2`.
 fn near_graze(eps: f64, mut check: impl FnMut(f64, &Log, &str)) {
-    let ball = Particle::new([2.0, 0.0], [floor]);
+    let ball = Particle::new([2.0, 0.0], [FLOOR]);
     with_every_integrator(
         &ball,
         at(1.0 - eps, 0.0, -2.0, 0.0),
@@ -100,9 +100,7 @@ fn a06_a07_a08_grazes_within_rounding_change_nothing_visible() {
 
 #[test]
 fn a09_a_wall_crossed_at_rest_ends_the_run_where_it_is_crossed() {
-    fn cubic([x, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (y - x * x * x, [-3.0 * x * x, 1.0])
-    }
+    let cubic = gap!(c | x, y | y - x * x * x, [-3.0 * x * x, 1.0]);
     let particle = Particle::new([0.0, 0.0], [cubic]);
     with_every_integrator(&particle, at(-1.0, 0.0, 1.0, 0.0), 2.0, |run, log, case| {
         assert_eq!(
@@ -118,8 +116,8 @@ fn a09_a_wall_crossed_at_rest_ends_the_run_where_it_is_crossed() {
 #[test]
 fn a11_a_thin_slab_is_not_passed_at_high_speed() {
     const W: f64 = 1e-10;
-    let near = |[x, _]: [f64; 2]| (1.0 - x, [-1.0, 0.0]);
-    let far = |[x, _]: [f64; 2]| (x - 1.0 - W, [1.0, 0.0]);
+    let near = gap!(c | x, y | c(1.0) - x, [-1.0, 0.0]);
+    let far = gap!(c | x, y | x - c(1.0) - c(W), [1.0, 0.0]);
     let mut slab = Particle::new([0.0, 0.0], [near, far]);
     slab.active = |surface, [x, _]| (surface == 0) == (x < 1.0 + 0.5 * W);
     for speed in [1e6, 1.0] {
@@ -133,7 +131,7 @@ fn a11_a_thin_slab_is_not_passed_at_high_speed() {
 
 #[test]
 fn a12_ten_thousand_impacts_in_a_channel() {
-    let channel = Particle::new([0.0, 0.0], [floor, ceiling]);
+    let channel = Particle::new([0.0, 0.0], [FLOOR, CEILING]);
     struct Watch(u64, f64);
     impl dalembert::Observer<Particle<2>> for Watch {
         fn event(&mut self, event: &dalembert::Event<State>) -> core::ops::ControlFlow<()> {
@@ -155,12 +153,11 @@ fn a12_ten_thousand_impacts_in_a_channel() {
 
 #[test]
 fn a13_first_of_seven_crossings_of_a_corrugated_wall() {
-    fn wall([x, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (
-            y - 0.05 * (200.0 * x).sin(),
-            [-10.0 * (200.0 * x).cos(), 1.0],
-        )
-    }
+    let wall = gap!(
+        c | x,
+        y | y - c(0.05) * Numbers::sin(c(200.0) * x),
+        [-10.0 * (200.0 * x).cos(), 1.0]
+    );
     let particle = Particle::new([0.0, 0.0], [wall]);
     for max_step in [f64::INFINITY, 0.25, 1e-3] {
         let stepper = Dop853::new(Tolerance::new(1e-10).unwrap()).with_max_step(max_step);
@@ -176,9 +173,11 @@ fn a13_first_of_seven_crossings_of_a_corrugated_wall() {
 
 #[test]
 fn a14_nearly_flat_crossing() {
-    fn wall([x, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (y - 1e-3 * (1000.0 * x).sin(), [-(1000.0 * x).cos(), 1.0])
-    }
+    let wall = gap!(
+        c | x,
+        y | y - c(1e-3) * Numbers::sin(c(1000.0) * x),
+        [-(1000.0 * x).cos(), 1.0]
+    );
     let particle = Particle::new([0.0, 0.0], [wall]);
     let mut log = Log::new();
     run(&particle, at(0.0, 1.0, 1.0, -1.0), 0.9997, &mut log);
@@ -187,7 +186,7 @@ fn a14_nearly_flat_crossing() {
 
 #[test]
 fn a15_a16_an_event_at_the_end_belongs_to_the_step_that_ends_there() {
-    let particle = Particle::new([0.0, 0.0], [floor]);
+    let particle = Particle::new([0.0, 0.0], [FLOOR]);
     with_every_integrator(&particle, at(1.0, 0.0, -1.0, 0.0), 1.0, |run, log, case| {
         assert_done(run, case);
         let tolerance = if case.ends_with("0.001") {
@@ -217,8 +216,8 @@ fn a15_a16_an_event_at_the_end_belongs_to_the_step_that_ends_there() {
 #[test]
 fn a19_two_surfaces_in_one_step_are_taken_in_order_of_time() {
     // The dip below 0.3 at t = 1 -+ 0.1 comes before the second surface at y = 2.
-    let dip = |[x, _]: [f64; 2]| (x, [1.0, 0.0]);
-    let end = |[_, y]: [f64; 2]| (1.05 - y, [0.0, -1.0]);
+    let dip = gap!(c | x, y | x, [1.0, 0.0]);
+    let end = gap!(c | x, y | c(1.05) - y, [0.0, -1.0]);
     let particle = Particle::new([2.0, 0.0], [end, dip]);
     with_every_integrator(
         &particle,
@@ -235,9 +234,11 @@ fn a19_two_surfaces_in_one_step_are_taken_in_order_of_time() {
 
 #[test]
 fn a20_a_pole_is_no_impact() {
-    fn pole([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
-        (1.0 / (x - 1.0), [-1.0 / ((x - 1.0) * (x - 1.0)), 0.0])
-    }
+    let pole = gap!(
+        c | x,
+        y | c(1.0) / (x - c(1.0)),
+        [-1.0 / ((x - 1.0) * (x - 1.0)), 0.0]
+    );
     let mut particle = Particle::new([0.0, 0.0], [pole]);
     particle.active = |_, [x, _]| x > 0.5;
     let mut log = Log::new();
@@ -253,7 +254,7 @@ fn a20_a_pole_is_no_impact() {
 
 #[test]
 fn b01_accumulating_impacts_end_as_zeno() {
-    for (surface, x) in [(floor as Gap, 0.0), (raised_floor as Gap, 1.0)] {
+    for (surface, x) in [(FLOOR, 0.0), (RAISED_FLOOR, 1.0)] {
         for e in [0.1, 0.5, 0.9, 0.99] {
             let ball = Particle::new([-1.0, 0.0], [surface]).with_law(Law::Restitution(e));
             let exact = 2.0 / (1.0 - e);
@@ -286,7 +287,7 @@ fn b01_accumulating_impacts_end_as_zeno() {
 #[test]
 fn accumulation_by_large_factors_is_seen_before_hops_are_rounding_errors() {
     for e in [1e-3, 1e-4, 1e-6] {
-        let ball = Particle::new([-1.0, 0.0], [raised_floor as Gap]).with_law(Law::Restitution(e));
+        let ball = Particle::new([-1.0, 0.0], [RAISED_FLOOR]).with_law(Law::Restitution(e));
         with_every_integrator(&ball, at(1.0, 0.0, 1.0, 0.0), 1e3, |run, log, case| {
             let Outcome::Zeno { t, surface: 0 } = run.outcome else {
                 panic!("{case}, e = {e}: {} at {}", run.outcome, run.t);
@@ -300,7 +301,7 @@ fn accumulation_by_large_factors_is_seen_before_hops_are_rounding_errors() {
 #[test]
 fn b02_slow_loss_is_not_zeno_within_the_horizon() {
     let e = 1.0 - 1e-6;
-    let ball = Particle::new([-1.0, 0.0], [floor]).with_law(Law::Restitution(e));
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_law(Law::Restitution(e));
     let mut log = Log::new();
     let run = run(&ball, at(0.0, 0.0, 1.0, 0.0), 1e3, &mut log);
     assert_done(&run, "ball");
@@ -311,7 +312,7 @@ fn b02_slow_loss_is_not_zeno_within_the_horizon() {
 
 #[test]
 fn b03_tiny_elastic_hops_are_counted() {
-    let ball = Particle::new([-1.0, 0.0], [floor]);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]);
     let mut log = Log::new();
     let run = run(&ball, at(0.0, 0.0, 1e-8, 0.0), 1.00001e-3, &mut log);
     assert_done(&run, "ball");
@@ -320,8 +321,8 @@ fn b03_tiny_elastic_hops_are_counted() {
 
 #[test]
 fn c05_a_corner_hit_exactly_reverses_the_velocity() {
-    let side = |[_, y]: [f64; 2]| (y, [0.0, 1.0]);
-    let corner = Particle::new([0.0, 0.0], [floor, side]);
+    let side = gap!(c | x, y | y, [0.0, 1.0]);
+    let corner = Particle::new([0.0, 0.0], [FLOOR, side]);
     with_every_integrator(&corner, at(1.0, 1.0, -1.0, -1.0), 2.0, |run, log, case| {
         assert_done(run, case);
         assert_eq!(log.seen(), 2, "{case}");
@@ -332,8 +333,8 @@ fn c05_a_corner_hit_exactly_reverses_the_velocity() {
 
 #[test]
 fn c06_a_corner_missed_by_little_has_the_same_limit() {
-    let side = |[_, y]: [f64; 2]| (y, [0.0, 1.0]);
-    let corner = Particle::new([0.0, 0.0], [floor, side]);
+    let side = gap!(c | x, y | y, [0.0, 1.0]);
+    let corner = Particle::new([0.0, 0.0], [FLOOR, side]);
     for miss in [1e-13, 1e-16] {
         with_every_integrator(
             &corner,
@@ -353,7 +354,7 @@ fn c06_a_corner_missed_by_little_has_the_same_limit() {
 
 #[test]
 fn c20_the_impact_budget_leaves_a_usable_state() {
-    let ball = Particle::new([-1.0, 0.0], [floor]);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]);
     let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
     let effects = Impacts::declared(&ball).with_budget(3);
     let mut log = Log::new();
@@ -366,7 +367,7 @@ fn c20_the_impact_budget_leaves_a_usable_state() {
 
 #[test]
 fn starting_inside_is_refused_as_an_outcome() {
-    let ball = Particle::new([-1.0, 0.0], [floor]);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]);
     let run = run(&ball, at(-1e-9, 0.0, 1.0, 0.0), 1.0, &mut Log::new());
     assert_eq!(
         run.outcome,
@@ -379,10 +380,8 @@ fn starting_inside_is_refused_as_an_outcome() {
 
 #[test]
 fn a_wall_that_counts_by_rounding_alone_is_not_met_from_inside() {
-    fn ledge([_, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (y - 0.7, [0.0, 1.0])
-    }
-    let mut ball = Particle::new([0.0, -1.0], [ledge, floor]);
+    let ledge = gap!(c | x, y | y - c(0.7), [0.0, 1.0]);
+    let mut ball = Particle::new([0.0, -1.0], [ledge, FLOOR]);
     // The wall x >= 0 lies below the ledge, which ends there.
     ball.active = |surface, [x, y]| if surface == 0 { x < 0.0 } else { y < 0.7 };
     for height in (0..40).map(|k| 0.8 + 0.01 * f64::from(k)) {
@@ -403,7 +402,7 @@ fn a_wall_that_counts_by_rounding_alone_is_not_met_from_inside() {
 
 #[test]
 fn the_same_run_gives_the_same_bits() {
-    let ball = Particle::new([-1.0, 0.3], [floor]).with_law(Law::Restitution(0.9));
+    let ball = Particle::new([-1.0, 0.3], [FLOOR]).with_law(Law::Restitution(0.9));
     let (mut first, mut second) = (Log::new(), Log::new());
     let a = run(&ball, at(1.0, 0.0, 0.1, 0.0), 10.0, &mut first);
     let b = run(&ball, at(1.0, 0.0, 0.1, 0.0), 10.0, &mut second);
@@ -413,7 +412,7 @@ fn the_same_run_gives_the_same_bits() {
 
 #[test]
 fn plastic_impact_on_a_pressed_floor_is_contact() {
-    let ball = Particle::new([-1.0, 0.0], [floor]).with_law(Law::ImpactPlastic);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_law(Law::ImpactPlastic);
     with_every_integrator(&ball, at(0.5, 0.0, 0.0, 1.0), 10.0, |run, log, case| {
         assert_eq!(run.outcome, Outcome::Contact { surface: 0 }, "{case}");
         // An impact taken at the end of a step may leave the last bits of the gap to fall through, in hops that shrink by
@@ -425,7 +424,7 @@ fn plastic_impact_on_a_pressed_floor_is_contact() {
 
 #[test]
 fn sliding_along_a_wall_is_no_impact() {
-    let oblique = |[x, y]: [f64; 2]| (0.6 * x + 0.8 * y, [0.6, 0.8]);
+    let oblique = gap!(c | x, y | c(0.6) * x + c(0.8) * y, [0.6, 0.8]);
     let particle = Particle::new([0.0, 0.0], [oblique]);
     with_every_integrator(
         &particle,

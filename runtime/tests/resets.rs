@@ -7,18 +7,14 @@ use dalembert::{Dop853, Impacts, Law, Outcome, Simulation, Tolerance};
 use support::*;
 
 /// A wave along x with period 2 pi, as a gap that falls through 0 at `pi/2 + 2 pi n`.
-fn wave([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
-    (x.cos(), [-x.sin(), 0.0])
-}
+const WAVE: Gap = gap!(c | x, y | Numbers::cos(x), [-x.sin(), 0.0]);
 
 /// The same, where it rises.
-fn trough([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
-    (-x.cos(), [x.sin(), 0.0])
-}
+const TROUGH: Gap = gap!(c | x, y | -Numbers::cos(x), [x.sin(), 0.0]);
 
 #[test]
 fn a_surface_with_an_empty_reset_counts_every_fall_once() {
-    let point = Particle::new([0.0, 0.0], [wave as Gap, trough]).with_reset(|_, state| state);
+    let point = Particle::new([0.0, 0.0], [WAVE, TROUGH]).with_reset(|_, state| state);
     let times: Vec<f64> = (0..12)
         .map(|n| core::f64::consts::PI * (f64::from(n) + 0.5))
         .collect();
@@ -34,7 +30,7 @@ fn a_surface_with_an_empty_reset_counts_every_fall_once() {
 
 #[test]
 fn several_falls_in_one_step_hide_none() {
-    let point = Particle::new([0.0, 0.0], [wave as Gap]).with_reset(|_, state| state);
+    let point = Particle::new([0.0, 0.0], [WAVE]).with_reset(|_, state| state);
     let mut log = Log::new();
     let stepper = Dop853::new(Tolerance::new(1e-6).unwrap());
     // A free motion: the first steps are as long as they may be.
@@ -46,7 +42,7 @@ fn several_falls_in_one_step_hide_none() {
 /// Thrown up from the negative side: the gap rises through 0, and only its fall counts.
 #[test]
 fn below_the_surface_is_no_fault_and_a_rise_no_event() {
-    let ball = Particle::new([-1.0, 0.0], [floor]).with_reset(|_, state| state);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_reset(|_, state| state);
     with_every_integrator(&ball, at(-1.5, 0.0, 2.0, 0.0), 6.0, |run, log, case| {
         assert_done(run, case);
         assert_times(log, &[3.0], 1e-11, case);
@@ -56,7 +52,7 @@ fn below_the_surface_is_no_fault_and_a_rise_no_event() {
 
 #[test]
 fn a_start_on_the_surface_counts_only_if_it_falls() {
-    let ball = Particle::new([-1.0, 0.0], [floor]).with_reset(|_, state| state);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_reset(|_, state| state);
     with_every_integrator(&ball, at(0.0, 0.0, 1.0, 0.0), 5.0, |run, log, case| {
         assert_done(run, case);
         assert_times(log, &[2.0], 1e-12, case);
@@ -69,10 +65,8 @@ fn a_start_on_the_surface_counts_only_if_it_falls() {
 
 #[test]
 fn a_crossing_at_gap_rate_zero_counts() {
-    fn cubic([x, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        (y - x * x * x, [-3.0 * x * x, 1.0])
-    }
-    let point = Particle::new([0.0, 0.0], [cubic as Gap]).with_reset(|_, state| state);
+    let cubic = gap!(c | x, y | y - x * x * x, [-3.0 * x * x, 1.0]);
+    let point = Particle::new([0.0, 0.0], [cubic]).with_reset(|_, state| state);
     with_every_integrator(&point, at(-1.0, 0.0, 1.0, 0.0), 3.0, |run, log, case| {
         assert_done(run, case);
         assert_eq!(log.seen(), 1, "{case}");
@@ -84,7 +78,7 @@ fn a_crossing_at_gap_rate_zero_counts() {
 #[test]
 fn a_reset_that_bounces_is_a_bounce() {
     let ball =
-        Particle::new([-1.0, 0.0], [floor]).with_reset(|_, s| at(s[0], s[1], -s[2], 0.5 * s[3]));
+        Particle::new([-1.0, 0.0], [FLOOR]).with_reset(|_, s| at(s[0], s[1], -s[2], 0.5 * s[3]));
     with_every_integrator(&ball, at(0.0, 0.0, 1.0, 8.0), 7.0, |run, log, case| {
         assert_done(run, case);
         assert_times(log, &[2.0, 4.0, 6.0], 1e-11, case);
@@ -95,7 +89,7 @@ fn a_reset_that_bounces_is_a_bounce() {
 #[test]
 fn bounces_of_a_reset_accumulate_as_others_do() {
     let ball =
-        Particle::new([-1.0, 0.0], [floor]).with_reset(|_, s| at(s[0], s[1], -0.5 * s[2], s[3]));
+        Particle::new([-1.0, 0.0], [FLOOR]).with_reset(|_, s| at(s[0], s[1], -0.5 * s[2], s[3]));
     with_every_integrator(&ball, at(0.0, 0.0, 1.0, 0.0), 7.0, |run, _, case| {
         let Outcome::Zeno { t, surface: 0 } = run.outcome else {
             panic!("{case}: {:?}", run.outcome)
@@ -107,7 +101,7 @@ fn bounces_of_a_reset_accumulate_as_others_do() {
 /// A circle of length 1: at `x = 1` the point is put back to 0, and no trace of the surface is left there.
 #[test]
 fn a_position_that_is_reset_goes_on_from_there() {
-    let point = Particle::new([0.0, 0.0], [ceiling as Gap])
+    let point = Particle::new([0.0, 0.0], [CEILING])
         .with_reset(|_, s| at(s[0] - 1.0, s[1] + 1.0, s[2], s[3]));
     with_every_integrator(&point, at(0.25, 0.0, 1.0, 0.0), 10.0, |run, log, case| {
         assert_done(run, case);
@@ -124,7 +118,7 @@ fn a_reset_onto_another_surface_acts_there_too() {
         0 => at(1.0, s[1], -s[2], s[3]),
         _ => at(s[0], s[1] + 1.0, -s[2], s[3]),
     };
-    let point = Particle::new([0.0, 0.0], [floor as Gap, ceiling]).with_reset(jump);
+    let point = Particle::new([0.0, 0.0], [FLOOR, CEILING]).with_reset(jump);
     with_every_integrator(&point, at(0.5, 0.0, -1.0, 0.0), 2.0, |run, log, case| {
         assert_done(run, case);
         let met: Vec<usize> = log.iter().map(|event| event.surface).collect();
@@ -137,7 +131,7 @@ fn a_reset_onto_another_surface_acts_there_too() {
 #[test]
 fn a_surface_acts_once_at_a_time() {
     let jump = |surface: usize, s: State| at(f64::from(surface == 0), s[1], -s[2], s[3]);
-    let point = Particle::new([0.0, 0.0], [floor as Gap, ceiling]).with_reset(jump);
+    let point = Particle::new([0.0, 0.0], [FLOOR, CEILING]).with_reset(jump);
     with_every_integrator(&point, at(0.5, 0.0, -1.0, 0.0), 2.0, |run, log, case| {
         assert_done(run, case);
         assert_times(log, &[0.5, 0.5], 1e-12, case);
@@ -147,7 +141,7 @@ fn a_surface_acts_once_at_a_time() {
 
 #[test]
 fn a_reset_into_a_wall_is_named() {
-    let ball = Particle::new([-1.0, 0.0], [floor as Gap, raised_floor])
+    let ball = Particle::new([-1.0, 0.0], [FLOOR, RAISED_FLOOR])
         .with_reset(|_, s| at(-1.0, s[1], s[2], s[3]));
     let effects = Impacts::declared(&ball).with_law(0, Law::Elastic);
     let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
@@ -163,7 +157,7 @@ fn a_reset_into_a_wall_is_named() {
 
 #[test]
 fn a_reset_that_is_not_declared_is_refused_at_the_start() {
-    let ball = Particle::new([-1.0, 0.0], [floor]);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]);
     let effects = Impacts::declared(&ball).with_law(0, Law::Reset);
     let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
     let run = Simulation::new(&ball, stepper, effects)
@@ -174,7 +168,7 @@ fn a_reset_that_is_not_declared_is_refused_at_the_start() {
 
 #[test]
 fn another_law_may_stand_for_a_reset() {
-    let ball = Particle::new([-1.0, 0.0], [floor]).with_reset(|_, state| state);
+    let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_reset(|_, state| state);
     let effects = Impacts::declared(&ball).with_law(0, Law::Elastic);
     let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
     let mut log = Log::new();
@@ -187,7 +181,7 @@ fn another_law_may_stand_for_a_reset() {
 #[test]
 fn numbers_that_are_not_finite_end_the_run() {
     let ball =
-        Particle::new([-1.0, 0.0], [floor]).with_reset(|_, s| at(s[0], s[1], s[2], s[3] / 0.0));
+        Particle::new([-1.0, 0.0], [FLOOR]).with_reset(|_, s| at(s[0], s[1], s[2], s[3] / 0.0));
     with_every_integrator(&ball, at(1.0, 0.0, 0.0, 1.0), 5.0, |run, log, case| {
         assert_eq!(run.outcome, Outcome::NonFinite { component: 3 }, "{case}");
         assert_eq!(log.seen(), 0, "{case}");

@@ -129,6 +129,23 @@ impl Context<'_> {
         self.body(self.bind_coordinates(function), function)
     }
 
+    /// The statements of a function of `(t, q)` over numbers that enclose, and its results; `component` gives positions.
+    pub(super) fn enclosed_body(&self, function: &Function) -> Body {
+        let names = self.names.enclosed();
+        let coordinates = names.coordinates.iter().enumerate();
+        let used = coordinates.filter(|(i, _)| uses(function, |own| own == Input::Coordinate(*i)));
+        let bindings = used.map(|(i, name)| quote!(let #name = component(#i);));
+        let bindings = quote!(#(#bindings)*);
+        let Body {
+            statements,
+            outputs,
+        } = emit_body(function, &names);
+        Body {
+            statements: joined([bindings, statements]),
+            outputs,
+        }
+    }
+
     /// The statements of a function after what binds its arguments.
     pub(super) fn body(&self, bindings: TokenStream, function: &Function) -> Body {
         let Body {

@@ -298,6 +298,10 @@ impl<'a> Writer<'a> {
             }
             Op::Add(a, b) => self.binary(*a, *b, quote!(+), Binding::Sum),
             Op::Sub(a, b) => self.binary(*a, *b, quote!(-), Binding::Sum),
+            // An interval's square is never negative, which its product with itself does not know.
+            Op::Mul(a, b) if a == b && self.names.numbers == Numbers::SideBySide => {
+                self.call("square", &[*a])
+            }
             Op::Mul(a, b) => self.binary(*a, *b, quote!(*), Binding::Product),
             Op::Div(a, b) => self.binary(*a, *b, quote!(/), Binding::Product),
             Op::Sqrt(a) => self.call("sqrt", &[*a]),

@@ -16,6 +16,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let s = context.model.surfaces.len();
     let gaps = emit_gaps(context, functions);
+    let gap_along = emit_gap_along(context, functions);
     let responses = match context.is_first_order() {
         true => TokenStream::new(),
         false => emit_responses(context, functions),
@@ -38,6 +39,7 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
         impl ::dalembert::Impacting for #type_name {
             type Gaps = ::dalembert::__private::SVector<f64, #s>;
             #gaps
+            #gap_along
             #responses
             #conditions
             #laws
@@ -72,6 +74,33 @@ fn emit_gaps(context: &Context<'_>, functions: &Impacting) -> TokenStream {
         ) -> ::core::result::Result<Self::Gaps, ::dalembert::Fault> {
             #rate_statements
             ::core::result::Result::Ok(::dalembert::__private::vector([#(#rate_values),*]))
+        }
+    }
+}
+
+/// Every gap by itself, over numbers that enclose it along a stretch of motion.
+fn emit_gap_along(context: &Context<'_>, functions: &Impacting) -> TokenStream {
+    let arms = functions.gap_alone.iter().enumerate().map(|(s, function)| {
+        let Body {
+            statements,
+            outputs,
+        } = context.enclosed_body(function);
+        quote!(#s => { #statements #(#outputs)* })
+    });
+    quote! {
+        fn gap_along(
+            &self,
+            surface: usize,
+            t: ::dalembert::numbers::Rated,
+            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::Rated,
+        ) -> ::dalembert::numbers::Rated {
+            #[allow(unused_imports)]
+            use ::dalembert::numbers::Numbers as _;
+            type L = ::dalembert::numbers::Rated;
+            match surface {
+                #(#arms)*
+                _ => L::ZERO,
+            }
         }
     }
 }

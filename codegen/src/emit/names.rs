@@ -93,7 +93,7 @@ impl Numbers {
 }
 
 /// Names that generated functions use for their own arguments and locals; `dalembert::__private::arguments` has each of them.
-const ARGUMENTS: [&str; 34] = [
+const ARGUMENTS: [&str; 35] = [
     "t",
     "state",
     "rate",
@@ -128,6 +128,7 @@ const ARGUMENTS: [&str; 34] = [
     "reach",
     "after_q",
     "after_qdot",
+    "component",
 ];
 
 /// The identifier of the type of the global form.
@@ -179,6 +180,16 @@ impl Names {
         let places = (0..self.parameters.len()).map(Literal::usize_unsuffixed);
         Self {
             parameters: places.map(|place| quote!(parameters[#place])).collect(),
+            numbers: Numbers::SideBySide,
+            ..self.clone()
+        }
+    }
+
+    /// Those inside functions of numbers that enclose, with the parameters of the system.
+    pub fn enclosed(&self) -> Self {
+        let places = self.parameters.iter();
+        Self {
+            parameters: places.map(|place| quote!(L::of(#place))).collect(),
             numbers: Numbers::SideBySide,
             ..self.clone()
         }

@@ -493,6 +493,8 @@ impl InvariantVolume {
 pub struct Impacting {
     /// `(t, q) -> h_s`
     pub gaps: Function,
+    /// Per surface `(t, q) -> h_s`, for enclosures of one gap at a time.
+    pub gap_alone: Vec<Function>,
     /// `(t, s) -> dh_s(qdot) + d_t h_s`
     pub gap_rates: Function,
     /// `(t, s, w) -> d^2h_s/dt^2` where the motion's part of the state changes at the rates `w`
@@ -523,6 +525,7 @@ impl Impacting {
     fn functions(&self) -> Vec<&Function> {
         let Self {
             gaps,
+            gap_alone,
             gap_rates,
             gap_accelerations,
             gap_responses,
@@ -547,6 +550,7 @@ impl Impacting {
         let moving = [gap_rates, gap_accelerations, gap_responses];
         core::iter::once(gaps)
             .chain(moving)
+            .chain(gap_alone)
             .chain(contacts)
             .chain(declared)
             .collect()

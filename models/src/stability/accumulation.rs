@@ -2,11 +2,12 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::numbers::Numbers;
 use dalembert::{Event, Observer, Outcome, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
-use super::by_hand::Point;
+use super::by_hand::{Gap, Point};
 use super::course::{Course, U, location};
 use super::zeno::accumulates;
 use crate::{SpasmodicHamiltonian, SuperElasticStrip};
@@ -131,7 +132,17 @@ fn treads(setting: Setting, report: &mut Report) {
 }
 
 fn below_the_treads(setting: Setting, report: &mut Report) {
-    let curve: super::by_hand::Gap = |at| rising(0.85, at);
+    let curve = Gap {
+        at: |at| {
+            let [x, _] = at;
+            let b = 0.85 * 0.85;
+            (
+                rising(0.85, at),
+                [2.0 * b * b * x - b * 2.0_f64.sqrt(), 1.0],
+            )
+        },
+        along: |at| rising(0.85, at),
+    };
     let system = Point {
         acceleration: [0.0, -1.0],
         surfaces: [(curve, |[vx, vy]| [vx, -vy])],
@@ -143,19 +154,16 @@ fn below_the_treads(setting: Setting, report: &mut Report) {
     let x = 2.0 / (1.0 + 2.0_f64.sqrt() * 0.85 * 0.85);
     report.near(
         "root of the parabola",
-        rising(0.85, [x, x - 0.5 * x * x]).0,
+        rising(0.85, [x, x - 0.5 * x * x]),
         0.0,
         4.0 * U,
     );
 }
 
-/// The height over the curve of B06 for `v0 = 1`, and its gradient.
-fn rising(a: f64, [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
-    let b = a * a;
-    (
-        y - b * x * (2.0_f64.sqrt() - b * x),
-        [2.0 * b * b * x - b * 2.0_f64.sqrt(), 1.0],
-    )
+/// The height over the curve of B06 for `v0 = 1`.
+fn rising<L: Numbers>(a: f64, [x, y]: [L; 2]) -> L {
+    let b = L::of(a * a);
+    y - b * x * (L::of(2.0_f64.sqrt()) - b * x)
 }
 
 /// The factor of B08.

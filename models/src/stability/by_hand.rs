@@ -2,7 +2,7 @@
 
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::jet::LENGTH;
-use dalembert::numbers::Numbers;
+use dalembert::numbers::{Numbers, Rated};
 use dalembert::{
     Fault, Impacting, Impacts, ParameterError, Scene, System, TaylorField, VectorField,
 };
@@ -11,8 +11,14 @@ use nalgebra::SVector;
 type Pair = SVector<f64, 2>;
 type State = SVector<f64, 4>;
 
-/// A gap and its gradient at a point.
-pub type Gap = fn([f64; 2]) -> (f64, [f64; 2]);
+/// A surface.
+#[derive(Clone, Copy)]
+pub struct Gap {
+    /// Gap and gradient at a point.
+    pub at: fn([f64; 2]) -> (f64, [f64; 2]),
+    /// The gap along a stretch of motion.
+    pub along: fn([Rated; 2]) -> Rated,
+}
 
 /// What an impact makes of a velocity.
 pub type Reset = fn([f64; 2]) -> [f64; 2];
@@ -119,13 +125,17 @@ impl<const S: usize> Impacting for Point<S> {
     type Gaps = SVector<f64, S>;
 
     fn gaps(&self, _t: f64, state: &State) -> Self::Gaps {
-        let gap = |surface: usize, _| self.surfaces[surface].0([state[0], state[1]]).0;
+        let gap = |surface: usize, _| (self.surfaces[surface].0.at)([state[0], state[1]]).0;
         Self::Gaps::from_fn(gap)
+    }
+
+    fn gap_along(&self, surface: usize, _t: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+        (self.surfaces[surface].0.along)([component(0), component(1)])
     }
 
     fn gap_rates(&self, _t: f64, state: &State) -> Result<Self::Gaps, Fault> {
         let rate = |surface: usize, _| {
-            let (_, [hx, hy]) = self.surfaces[surface].0([state[0], state[1]]);
+            let (_, [hx, hy]) = (self.surfaces[surface].0.at)([state[0], state[1]]);
             hx * state[2] + hy * state[3]
         };
         Ok(Self::Gaps::from_fn(rate))
@@ -137,7 +147,7 @@ impl<const S: usize> Impacting for Point<S> {
     }
 
     fn contact(&self, surface: usize, _t: f64, state: &State) -> Result<Contact<Pair>, Fault> {
-        let (gap, reset) = self.surfaces[surface];
+        let (Gap { at: gap, .. }, reset) = self.surfaces[surface];
         let (_, [hx, hy]) = gap([state[0], state[1]]);
         let [vx, vy] = reset([state[2], state[3]]);
         let gap_rate = hx * state[2] + hy * state[3];

@@ -2,10 +2,11 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::numbers::{Numbers, Rated};
 use dalembert::{Event, Observer, VectorField};
 use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 
-use super::by_hand::Point;
+use super::by_hand::{Gap, Point};
 use super::course::{Course, Hit, U, location};
 
 dalembert::model! {
@@ -234,7 +235,13 @@ fn irregular_surfaces(setting: Setting, report: &mut Report) {
         let said = refusal(&source).unwrap_or_default();
         report.equal(surface, said.contains("not regular"), true);
     }
-    let cube = |[x, _]: [f64; 2]| ((1.0 - x).powi(3), [-3.0 * (1.0 - x) * (1.0 - x), 0.0]);
+    let cube = Gap {
+        at: |[x, _]| ((1.0 - x).powi(3), [-3.0 * (1.0 - x) * (1.0 - x), 0.0]),
+        along: |[x, _]| {
+            let way = Rated::of(1.0) - x;
+            way * way.square()
+        },
+    };
     let point = Point {
         acceleration: [0.0; 2],
         surfaces: [(cube, |[vx, vy]| [-vx, vy])],

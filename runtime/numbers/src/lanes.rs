@@ -2,7 +2,7 @@
 
 use wide::f64x8;
 
-use crate::numbers::Numbers;
+use crate::numbers::{Numbers, functions_of_lanes};
 
 impl Numbers for f64x8 {
     const LANES: usize = 8;
@@ -49,4 +49,6 @@ impl Numbers for f64x8 {
     fn max(self, other: Self) -> Self {
         Self::fast_max(self, other)
     }
+
+    functions_of_lanes!();
 }

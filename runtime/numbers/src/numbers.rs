@@ -8,6 +8,9 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::math;
 
+pub use crate::interval::Interval;
+pub use crate::rated::Rated;
+
 /// The circle constant, as [`Numbers::constant`] takes it.
 pub const PI: [f64; 4] = [
     core::f64::consts::PI,
@@ -94,121 +97,113 @@ pub trait Numbers:
         (self.sin(), self.cos())
     }
 
-    /// A function of every lane.
+    /// The square: of an interval it is never negative, which `self * self` does not know.
     #[must_use]
     #[inline(always)]
-    fn map(self, function: impl Fn(f64) -> f64) -> Self {
-        Self::gathered(|lane| function(self.lane(lane)))
+    fn square(self) -> Self {
+        self * self
     }
 
     /// `x` with its sign turned where `sign` is negative.
     #[must_use]
-    #[inline(always)]
-    fn turned(self, sign: Self) -> Self {
-        Self::gathered(|lane| match sign.lane(lane) < 0.0 {
-            true => -self.lane(lane),
-            false => self.lane(lane),
-        })
-    }
+    fn turned(self, sign: Self) -> Self;
 
     /// The angle of `(x, y)`, with `self` for `y`.
     #[must_use]
-    #[inline(always)]
-    fn atan2(self, x: Self) -> Self {
-        Self::gathered(|lane| math::atan2(self.lane(lane), x.lane(lane)))
-    }
+    fn atan2(self, x: Self) -> Self;
 
     /// The power with a constant exponent.
     #[must_use]
-    #[inline(always)]
-    fn powf(self, exponent: f64) -> Self {
-        self.map(|x| math::powf(x, exponent))
-    }
+    fn powf(self, exponent: f64) -> Self;
 
     /// The power with a constant exponent that is no double.
     #[must_use]
-    #[inline(always)]
-    fn power(self, exponent: Self) -> Self {
-        self.powf(exponent.lane(0))
-    }
+    fn power(self, exponent: Self) -> Self;
 
     /// Sine.
     #[must_use]
-    #[inline(always)]
-    fn sin(self) -> Self {
-        self.map(math::sin)
-    }
+    fn sin(self) -> Self;
 
     /// Cosine.
     #[must_use]
-    #[inline(always)]
-    fn cos(self) -> Self {
-        self.map(math::cos)
-    }
+    fn cos(self) -> Self;
 
     /// Tangent.
     #[must_use]
-    #[inline(always)]
-    fn tan(self) -> Self {
-        self.map(math::tan)
-    }
+    fn tan(self) -> Self;
 
     /// Arc sine.
     #[must_use]
-    #[inline(always)]
-    fn asin(self) -> Self {
-        self.map(math::asin)
-    }
+    fn asin(self) -> Self;
 
     /// Arc cosine.
     #[must_use]
-    #[inline(always)]
-    fn acos(self) -> Self {
-        self.map(math::acos)
-    }
+    fn acos(self) -> Self;
 
     /// Arc tangent.
     #[must_use]
-    #[inline(always)]
-    fn atan(self) -> Self {
-        self.map(math::atan)
-    }
+    fn atan(self) -> Self;
 
     /// The exponential.
     #[must_use]
-    #[inline(always)]
-    fn exp(self) -> Self {
-        self.map(math::exp)
-    }
+    fn exp(self) -> Self;
 
     /// The natural logarithm.
     #[must_use]
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.map(math::ln)
-    }
+    fn ln(self) -> Self;
 
     /// Hyperbolic sine.
     #[must_use]
-    #[inline(always)]
-    fn sinh(self) -> Self {
-        self.map(math::sinh)
-    }
+    fn sinh(self) -> Self;
 
     /// Hyperbolic cosine.
     #[must_use]
-    #[inline(always)]
-    fn cosh(self) -> Self {
-        self.map(math::cosh)
-    }
+    fn cosh(self) -> Self;
 
     /// Hyperbolic tangent.
     #[must_use]
-    #[inline(always)]
-    fn tanh(self) -> Self {
-        self.map(math::tanh)
-    }
+    fn tanh(self) -> Self;
 }
+
+/// The functions of [`Numbers`] that take every lane by itself, for numbers whose lanes are doubles.
+// NOTE: no defaults of the trait: a kind of number that forgot one would compute it in the doubles of its lanes, in silence.
+macro_rules! functions_of_lanes {
+    () => {
+        #[inline(always)]
+        fn turned(self, sign: Self) -> Self {
+            Self::gathered(|lane| match sign.lane(lane) < 0.0 {
+                true => -self.lane(lane),
+                false => self.lane(lane),
+            })
+        }
+
+        #[inline(always)]
+        fn atan2(self, x: Self) -> Self {
+            Self::gathered(|lane| $crate::math::atan2(self.lane(lane), x.lane(lane)))
+        }
+
+        #[inline(always)]
+        fn powf(self, exponent: f64) -> Self {
+            Self::gathered(|lane| $crate::math::powf(self.lane(lane), exponent))
+        }
+
+        #[inline(always)]
+        fn power(self, exponent: Self) -> Self {
+            <Self as $crate::Numbers>::powf(self, exponent.lane(0))
+        }
+
+        $crate::numbers::functions_of_lanes! {
+            sin, cos, tan, asin, acos, atan, exp, ln, sinh, cosh, tanh
+        }
+    };
+    ($($name:ident),*) => {$(
+        #[inline(always)]
+        fn $name(self) -> Self {
+            Self::gathered(|lane| $crate::math::$name(self.lane(lane)))
+        }
+    )*};
+}
+pub(crate) use functions_of_lanes;
 
 impl Numbers for f64 {
     const LANES: usize = 1;
@@ -248,6 +243,8 @@ impl Numbers for f64 {
     fn max(self, other: Self) -> Self {
         f64::max(self, other)
     }
+
+    functions_of_lanes!();
 }
 
 /// A fixed number of [`Numbers`]. Implemented by arrays.

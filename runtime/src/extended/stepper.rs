@@ -251,6 +251,17 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
         state
     }
 
+    fn powers(&self, coefficients: &mut [Sys::State; LENGTH]) -> usize {
+        let mut power = 1.0;
+        let own = &self.coefficients[..=self.order];
+        for (to, from) in coefficients.iter_mut().zip(own) {
+            let scaled = to.as_mut_slice().iter_mut().zip(from.as_slice());
+            scaled.for_each(|(to, from)| *to = power * from);
+            power *= self.theta;
+        }
+        self.order
+    }
+
     fn cut(&mut self, theta: f64) -> (Instant, Sys::State) {
         self.flight.borrow_mut().cut = Some(theta * self.theta);
         match theta >= 1.0 {

@@ -2,12 +2,14 @@
 //!
 //! The force is a function of time along a step like a gap is, and its fall through zero is found in the same way.
 
+use core::cell::{Cell, RefCell};
+
 use super::held::Held;
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::error::Fault;
-use crate::events::crossing::{NODES, SAMPLES};
 use crate::events::locate::{Line, Search, Start};
+use crate::events::sampled::{NODES, SAMPLES, along, nodes};
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
@@ -68,18 +70,23 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         // Pressed by the gap, pulled by the force: within rounding of neither.
         return Err(Outcome::Contact { surface });
     }
-    let mut fault = None;
-    let mut force = |part: f64| match sizes(held, step, part) {
+    let fault = Cell::new(None);
+    let step = RefCell::new(step);
+    let force = |part: f64| match sizes(held, *step.borrow_mut(), part) {
         Ok(sizes) => sizes.as_slice()[surface],
         Err(found) => {
-            fault = Some(found);
+            fault.set(Some(found));
             f64::NAN
         }
     };
     let line = Line {
-        gap: &mut force,
+        gap: &mut { force },
+        along: &mut |ends: [f64; 2]| match ends == [0.0, 1.0] {
+            true => along(whole, 1.0),
+            false => along(&nodes(ends).map(force), ends[1] - ends[0]),
+        },
+        ends: [whole[0], whole[SAMPLES - 1]],
         rounding: &mut || ROUNDING * largest,
-        whole,
         start: Start {
             from: 0.0,
             above,
@@ -88,7 +95,7 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         },
     };
     let found = line.first_fall();
-    if let Some(fault) = fault {
+    if let Some(fault) = fault.take() {
         return Err(fault.into());
     }
     Ok(match found {

@@ -1,14 +1,13 @@
 //! The search for hits along a step that the first look did not settle: falls of gaps through zero, which of them are
 //! impacts, and what a motion from rest on a surface does.
 
-use super::fall::{Known, first_fall};
+use super::fall::first_fall;
 use super::glance::Glance;
 use super::place::Place;
 use super::tangency::{crosses_at_rest, is_accelerated};
 use super::watch::Watch;
 use crate::contract::Impacting;
 use crate::effects::StepView;
-use crate::events::crossing::{NODES, SAMPLES, Signs};
 use crate::events::locate::{Bracket, Search, Start};
 use crate::events::resolution::{error_within, resolution};
 use crate::integrate::Stepper;
@@ -35,35 +34,21 @@ enum Found {
 }
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Looks for the earliest hit along the dense output. `first` is the first surface that the look did not clear, with
-    /// the signs of its gap.
+    /// Looks for the earliest hit along the dense output. `first` is the first surface that is not clear.
     pub(super) fn search<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
-        first: (usize, Signs),
+        first: usize,
     ) -> Result<(), Outcome> {
-        step.prepare()?;
+        self.path.refine(step)?;
         self.length = glance.length;
         self.parts.as_mut_slice().fill(f64::INFINITY);
-        let mut whole = None;
-        for surface in first.0..Sys::Gaps::LEN {
-            let signs = match surface == first.0 {
-                true => Some(first.1),
-                false => self.unclear(surface, glance),
-            };
-            let Some(signs) = signs else {
+        for surface in first..Sys::Gaps::LEN {
+            if surface != first && self.is_clear(surface, step, glance) {
                 continue;
-            };
-            let known = match &glance.series {
-                Some(series) => Known::Series(series, signs),
-                None => {
-                    let whole =
-                        whole.get_or_insert_with(|| samples(step, &self.gaps, &glance.gaps));
-                    Known::Samples(whole.map(|gaps| gaps.as_slice()[surface]))
-                }
-            };
-            let (part, rate) = match self.first_hit(surface, step, &known, glance)? {
+            }
+            let (part, rate) = match self.first_hit(surface, step, glance)? {
                 Found::Hit(part, rate) => (part, Some(rate)),
                 // Gaps that cannot be told however short the step is: it would be cut again and again where it begins.
                 Found::Unfinished(part) if part * self.length < least_trial(step.t_start()) => {
@@ -124,7 +109,6 @@ impl<Sys: Impacting> Watch<Sys> {
         &mut self,
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
-        known: &Known<'_, Sys::Gaps>,
         glance: &Glance<Sys::Gaps>,
     ) -> Result<Found, Outcome> {
         let gap = self.gaps.as_slice()[surface];
@@ -138,9 +122,13 @@ impl<Sys: Impacting> Watch<Sys> {
             slope,
             until,
         };
+        let known = (
+            glance.series.as_ref(),
+            [gap, glance.gaps.as_slice()[surface]],
+        );
         let mut tangential = None;
         for _ in 0..FALLS {
-            let found = first_fall(surface, step, &self.sizes, known, start);
+            let found = first_fall(surface, step, &self.path, &self.sizes, known, start);
             let (part, after, nearest) = match found {
                 Search::Clear => {
                     return match tangential {
@@ -373,19 +361,4 @@ fn rate_at<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<f64, Outcome> {
     let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
     Ok(rates.as_slice()[surface])
-}
-
-/// Gaps at the samples over a whole step; those at the ends are known.
-fn samples<Sys: Impacting, Step: Stepper<Sys>>(
-    step: &mut StepView<'_, Sys, Step>,
-    first: &Sys::Gaps,
-    last: &Sys::Gaps,
-) -> [Sys::Gaps; SAMPLES] {
-    let mut samples = [*first; SAMPLES];
-    samples[SAMPLES - 1] = *last;
-    for j in 1..SAMPLES - 1 {
-        samples[j] = step.system.gaps(step.time(NODES[j]), &step.state(NODES[j]));
-    }
-    step.counters.event_evaluations += SAMPLES as u64 - 2;
-    samples
 }

@@ -1,20 +1,21 @@
 //! Gaps along a step that is a power series: polynomials themselves, whose signs are read from their coefficients.
 //!
-//! The Bernstein coefficients of a polynomial on the step bound it from both sides (convex hull); no sample is taken of
-//! a gap that is bounded away from zero.
+//! The Bernstein coefficients of a polynomial on the step bound it from both sides (convex hull). They tell where to look for a
+//! root. That there is none elsewhere is for an enclosure of the gap itself to show: terms that the series leaves out may hide one.
 //!
 //! Reference: G. Farin, *Curves and Surfaces for CAGD* (2002), chapter 5.
 
 use crate::contract::Impacting;
 use crate::effects::StepView;
-use crate::events::crossing::{FROM_POWERS, NODES, SAMPLES, Signs, read};
+use crate::events::crossing::{COUNT, FROM_POWERS, Signs, read};
 use crate::integrate::{Series, Stepper};
 use crate::jet::LENGTH;
 use crate::math;
 use crate::state::StateVector;
 
-/// Part of the sum of its terms that a polynomial may be wrong by and still be of use.
-const USEFUL: f64 = 1.0 / (1 << 7) as f64;
+/// Part of the sum of its terms that a polynomial may be wrong by and still be of use. Its first terms must be most of the
+/// sum besides: where the last ones are, the step is longer than the series reaches.
+const USEFUL: f64 = 1.0 / (1 << 20) as f64;
 
 /// Rounding of coefficients and of sums over them, in parts of the sum of terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -66,7 +67,11 @@ impl<G: StateVector> GapSeries<G> {
         for i in 0..G::LEN {
             let missed = (sums.as_slice()[i] - last.as_slice()[i]).abs();
             let size = sizes.as_slice()[i];
-            let is_useful = missed <= USEFUL * size;
+            let first = match order < 5 {
+                true => size,
+                false => tails.as_slice()[i],
+            };
+            let is_useful = missed <= USEFUL * size && size <= 2.0 * first;
             if !is_useful {
                 return None;
             }
@@ -91,33 +96,15 @@ impl<G: StateVector> GapSeries<G> {
     /// The gap of a surface at a part of the step.
     #[inline(always)]
     pub(super) fn at(&self, surface: usize, part: f64) -> f64 {
-        let [gap] = self.at_each(surface, [part]);
-        gap
-    }
-
-    /// Samples of the gap of a surface; that at the end of the step is the gap itself.
-    pub(super) fn samples(&self, surface: usize) -> [f64; SAMPLES] {
-        let mut gaps = self.at_each(surface, NODES);
-        gaps[SAMPLES - 1] = self.last.as_slice()[surface];
-        gaps
+        let terms = self.coefficients[..=self.order].iter().rev();
+        terms.fold(0.0, |sum, term| {
+            math::mul_add(sum, part, term.as_slice()[surface])
+        })
     }
 
     /// Whether the gap of a surface is positive at a part of the step, beyond doubt.
     pub(super) fn is_positive(&self, surface: usize, part: f64) -> bool {
         self.at(surface, part) > self.doubts.as_slice()[surface]
-    }
-
-    /// The gap of a surface at several parts of the step, which do not wait for each other.
-    #[inline(always)]
-    fn at_each<const N: usize>(&self, surface: usize, parts: [f64; N]) -> [f64; N] {
-        let mut gaps = [0.0; N];
-        for term in self.coefficients[..=self.order].iter().rev() {
-            let term = term.as_slice()[surface];
-            for (gap, part) in gaps.iter_mut().zip(parts) {
-                *gap = math::mul_add(*gap, part, term);
-            }
-        }
-        gaps
     }
 
     /// The gap rates at the end of a step of this length.
@@ -157,9 +144,9 @@ impl<G: StateVector> GapSeries<G> {
     pub(super) fn signs_by_more(&self, surface: usize, at_hand: bool, end: f64) -> Signs {
         let first = usize::from(at_hand);
         // NOTE: terms above the order are zero.
-        let terms = &self.coefficients[first..=self.order.max(SAMPLES)];
+        let terms = &self.coefficients[first..=self.order.max(COUNT)];
         let mut doubt = self.doubts.as_slice()[surface];
-        let mut behind = [0.0; SAMPLES - 1];
+        let mut behind = [0.0; COUNT - 1];
         let mut power = 1.0;
         for (term, weights) in terms.iter().zip(&FROM_POWERS) {
             let term = power * term.as_slice()[surface];
@@ -168,11 +155,11 @@ impl<G: StateVector> GapSeries<G> {
             }
             power *= end;
         }
-        for term in &terms[SAMPLES..] {
+        for term in &terms[COUNT..] {
             doubt += (power * term.as_slice()[surface]).abs();
             power *= end;
         }
-        let mut coefficients = [terms[0].as_slice()[surface]; SAMPLES];
+        let mut coefficients = [terms[0].as_slice()[surface]; COUNT];
         coefficients[1..].copy_from_slice(&behind);
         read(&coefficients, doubt)
     }

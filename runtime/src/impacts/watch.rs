@@ -1,7 +1,8 @@
 //! Watching the gaps of all surfaces along a step.
 //!
-//! The gaps and their rates at the ends, and one probe between, settle most steps without dense output. A gap of
-//! exactly 0 at the start of a step stands for a surface at hand: it was just hit, or touched within rounding.
+//! A step in a box in which no gap vanishes is not looked at ([`Haven`]). Elsewhere all values and rates of each gap along the step
+//! are enclosed ([`Path`]): one that is enclosed away from zero, or rises from a surface just left, settles its surface. What is left is
+//! searched ([`super::search`]). A gap of exactly 0 at the start of a step stands for a surface at hand: it was just hit, or touched within rounding.
 //! Its root there is divided out, so it is neither found again nor hides a later one.
 //!
 //! A surface is passable where its law is a reset: its gap may be negative, and falls count from above only.
@@ -12,7 +13,10 @@ use super::hits::Hits;
 use super::place::Place;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
-use crate::events::crossing::{Signs, clear};
+use crate::events::crossing::Signs;
+use crate::events::haven::Haven;
+use crate::events::locate::{signs_between, signs_enclosed, signs_from_zero};
+use crate::events::path::Path;
 use crate::events::resolution::{counts_beyond_rounding, resolution};
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
@@ -53,6 +57,12 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) errors: f64,
     /// Surfaces that the motion is held on: their gaps are 0, and are not watched.
     held: Held<Sys::Gaps>,
+    /// The motion along the last step.
+    pub(super) path: Path<Sys::State>,
+    /// Where no gap vanishes.
+    haven: Haven<Sys::State>,
+    /// True if the gaps at the start of the coming step are not those kept: the last steps were not looked at.
+    is_stale: bool,
 }
 
 impl<Sys: Impacting> Watch<Sys> {
@@ -73,11 +83,15 @@ impl<Sys: Impacting> Watch<Sys> {
             steps: 0,
             errors: 0.0,
             held: Held::none(),
+            path: Path::new(),
+            haven: Haven::new(),
+            is_stale: false,
         }
     }
 
     /// The surfaces that the motion is held on from now on.
     pub(super) fn hold(&mut self, held: &Held<Sys::Gaps>) {
+        self.haven.forget();
         self.held = *held;
     }
 
@@ -94,6 +108,7 @@ impl<Sys: Impacting> Watch<Sys> {
     pub(super) fn begin(&mut self, now: &mut Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
         (self.proposed, self.place) = (None, None);
         self.held = Held::none();
+        (self.haven, self.is_stale) = (Haven::new(), false);
         let rates = now.system.gap_rates(now.t, now.state)?;
         let mut hits = Hits::<Sys::Gaps>::none();
         self.sizes = *now.state;
@@ -153,6 +168,8 @@ impl<Sys: Impacting> Watch<Sys> {
         rates: Sys::Gaps,
     ) -> Result<(), Outcome> {
         self.rates = rates;
+        self.haven.forget();
+        self.is_stale = false;
         (self.steps, self.errors) = (0, 0.0);
         let (held, here) = (self.held, self.here.take());
         let is_at_hand =
@@ -280,7 +297,6 @@ impl<Sys: Impacting> Watch<Sys> {
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<Option<f64>, Outcome> {
-        let glance = glance(step)?;
         self.proposed = None;
         self.steps = self.steps.saturating_add(1);
         self.errors += step.stepper.error();
@@ -292,8 +308,17 @@ impl<Sys: Impacting> Watch<Sys> {
         {
             *size = size.abs().max(value.abs());
         }
+        self.path.follow(step)?;
+        if self.haven.holds(&self.path) {
+            self.is_stale = true;
+            return Ok(None);
+        }
+        if self.is_stale {
+            self.catch_up(step)?;
+        }
+        let glance = glance(step)?;
         let mut surfaces = 0..Sys::Gaps::LEN;
-        let unclear = surfaces.find_map(|surface| Some((surface, self.unclear(surface, &glance)?)));
+        let unclear = surfaces.find(|&surface| !self.is_clear(surface, step, &glance));
         if let Some(first) = unclear {
             self.search(step, &glance, first)?;
         }
@@ -301,6 +326,18 @@ impl<Sys: Impacting> Watch<Sys> {
             self.pass(step, &glance)?;
         }
         Ok(self.proposed)
+    }
+
+    /// Gaps and rates at the start of a step that follows others which were not looked at.
+    fn catch_up<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<(), Outcome> {
+        step.counters.event_evaluations += 1;
+        self.gaps = finite::<Sys>(step.system.gaps(step.t_start(), step.start()))?;
+        self.rates = step.system.gap_rates(step.t_start(), step.start())?;
+        self.is_stale = false;
+        Ok(())
     }
 
     /// The step passes whole: its end is the start of the next.
@@ -314,6 +351,15 @@ impl<Sys: Impacting> Watch<Sys> {
         self.gaps = glance.gaps;
         self.rates = glance.rates;
         if self.gaps.as_slice().iter().all(|&gap| gap > 0.0) {
+            let Self { haven, path, .. } = self;
+            let passable = self.passable;
+            let is_passable = |surface: usize| passable.as_slice()[surface] == 1.0;
+            haven.settle(
+                step.system,
+                path,
+                is_passable,
+                &mut step.counters.enclosures,
+            );
             return Ok(());
         }
         for surface in 0..Sys::Gaps::LEN {
@@ -358,32 +404,42 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// `None` if the step can pass this surface, told cheaply; else what that told of the signs of its gap.
-    #[inline(always)]
-    pub(super) fn unclear(&self, surface: usize, glance: &Glance<Sys::Gaps>) -> Option<Signs> {
+    /// True if the step passes this surface, as an enclosure of its gap along the whole step shows.
+    #[inline]
+    pub(super) fn is_clear<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) -> bool {
         if self.held.is_held(surface) {
-            return None;
+            return true;
         }
         let at = |values: &Sys::Gaps| values.as_slice()[surface];
-        let slopes = [
-            at(&self.rates) * glance.length,
-            at(&glance.rates) * glance.length,
-        ];
+        let (first, last) = (at(&self.gaps), at(&glance.gaps));
+        let is_at_hand = first == 0.0;
         // NOTE: negative throughout, a surface at hand is not clear but pressed, unless it is passed.
-        let is_passed = self.is_passable(surface) && slopes[0] <= 0.0;
-        let is_sunk = at(&self.gaps) == 0.0 && at(&glance.gaps) < 0.0 && !is_passed;
-        let (signs, is_clear) = match &glance.series {
-            Some(series) => {
-                let signs = series.signs(surface, at(&self.gaps) == 0.0);
-                (signs, matches!(signs, Signs::Positive | Signs::Negative))
-            }
-            None => {
-                let gaps = [at(&self.gaps), at(&glance.gaps)];
-                (Signs::Unclear, clear(gaps, slopes, at(&glance.probe)))
-            }
+        let is_passed = self.is_passable(surface) && at(&self.rates) <= 0.0;
+        if (is_at_hand && last < 0.0 && !is_passed) || glance.is_due(surface) {
+            return false;
+        }
+        if !is_at_hand && (first > 0.0) != (last > 0.0) {
+            return false;
+        }
+        let whole = [0.0, 1.0];
+        step.counters.enclosures += 1;
+        let component = |i: usize| self.path.component(i, whole);
+        let along = step
+            .system
+            .gap_along(surface, self.path.time(whole), &component);
+        let signs = match is_at_hand {
+            true => signs_from_zero(&along),
+            false => match signs_enclosed(&along) {
+                Signs::Unclear => signs_between(&along, 1.0, [first, last]),
+                signs => signs,
+            },
         };
-        let passes = is_clear && !is_sunk && !glance.is_due(surface);
-        (!passes).then_some(signs)
+        matches!(signs, Signs::Positive | Signs::Negative)
     }
 
     /// Surfaces that count have a gap that is not negative beyond rounding; within rounding they are at hand. One that

@@ -6,6 +6,7 @@ use super::stepper::{GapAt, Rebound, Series, StepFailure, Stepper};
 use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
+use crate::jet::LENGTH;
 
 /// An integrator that is chosen while the program runs.
 ///
@@ -117,6 +118,14 @@ impl<F: VectorField> Stepper<F> for Chosen<'_, F> {
 
     fn interpolate(&self, theta: f64) -> F::State {
         self.stepper.interpolate(theta)
+    }
+
+    fn powers(&self, coefficients: &mut [F::State; LENGTH]) -> usize {
+        self.stepper.powers(coefficients)
+    }
+
+    fn sway(&self) -> Option<F::State> {
+        self.stepper.sway()
     }
 
     fn meet(

@@ -1,6 +1,7 @@
 //! Dense output as a polynomial in nested form.
 
 use super::precise::Precise;
+use crate::jet::LENGTH;
 use crate::state::StateVector;
 
 /// The state inside a step: with `s = 1 - theta`,
@@ -66,6 +67,31 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         gained - node * (2.0 * at(1) + (2.0 - 3.0 * node) * at(2))
     }
 
+    /// The coefficients in powers of `theta`; returns the number of the last one.
+    pub(super) fn powers(&self, powers: &mut [S; LENGTH]) -> usize {
+        powers[..=K].fill(S::zeros());
+        for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
+            let degree = K - 1 - k;
+            for i in 0..S::LEN {
+                powers[0].as_mut_slice()[i] += coefficient.as_slice()[i];
+                for j in (0..=degree).rev() {
+                    let power = powers[j].as_slice()[i];
+                    powers[j + 1].as_mut_slice()[i] = match is_along(k) {
+                        true => power,
+                        false => powers[j + 1].as_slice()[i] - power,
+                    };
+                }
+                if is_along(k) {
+                    powers[0].as_mut_slice()[i] = 0.0;
+                }
+            }
+        }
+        for i in 0..S::LEN {
+            powers[0].as_mut_slice()[i] += self.base.value.as_slice()[i];
+        }
+        K
+    }
+
     /// The state at `theta` in \[0, 1\].
     #[inline(always)]
     pub fn at(&self, theta: f64) -> S {
@@ -77,8 +103,7 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
     pub(super) fn precisely_at(&self, theta: f64) -> Precise<S> {
         let mut value = S::zeros();
         for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
-            let is_along = matches!(k, 0 | 1) || (k > 3 && k % 2 == 0);
-            let factor = if is_along { theta } else { 1.0 - theta };
+            let factor = if is_along(k) { theta } else { 1.0 - theta };
             for i in 0..S::LEN {
                 let sum = value.as_slice()[i] + coefficient.as_slice()[i];
                 value.as_mut_slice()[i] = sum * factor;
@@ -86,6 +111,12 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         }
         self.base.advanced(|i| value.as_slice()[i])
     }
+}
+
+/// Whether coefficient `k` and those above it are multiplied by `theta`, not by `1 - theta`.
+#[inline(always)]
+fn is_along(k: usize) -> bool {
+    matches!(k, 0 | 1) || (k > 3 && k.is_multiple_of(2))
 }
 
 /// Where the slopes inside are prescribed by [`Polynomial::set_inner`]: here and at one minus it, the outer nodes of
@@ -138,9 +169,14 @@ mod tests {
         };
         dense.set_cubic(0, &Precise::new(value(0.0)), cubic);
         dense.set_inner(h, [&rate(INNER), &rate(1.0 - INNER)]);
+        let mut powers = [Scalar::zeros(); LENGTH];
+        let order = dense.powers(&mut powers);
         for step in 0..=16 {
             let x = f64::from(step) / 16.0;
             assert!((dense.at(x) - value(x)).amax() < 1e-14, "{x}");
+            let horner = |sum: f64, power: &Scalar| sum * x + power[0];
+            let sum = powers[..=order].iter().rev().fold(0.0, horner);
+            assert!((sum - value(x)[0]).abs() < 1e-13, "{x}: {sum}");
         }
     }
 }

@@ -13,6 +13,7 @@ use super::tableau::{
 };
 use crate::contract::VectorField;
 use crate::error::Fault;
+use crate::jet::LENGTH;
 use crate::math;
 use crate::state::StateVector;
 
@@ -31,6 +32,7 @@ impl Scheme for Dop853Scheme {
     const ORDER: usize = 8;
     const DENSE_ORDER: usize = 7;
     const WEIGHTS: &'static [Term] = &B;
+    const NODES: &'static [f64] = &NODES;
     const LAST: usize = 12;
     const ERROR_TAKES_LAST: bool = false;
     const CONTROL: Control = Control {
@@ -93,6 +95,10 @@ impl Scheme for Dop853Scheme {
         let built = fill_dense(field, span, stages, dense);
         stages[Self::LAST] = last;
         built
+    }
+
+    fn dense_powers<S: StateVector>(dense: &Self::Dense<S>, powers: &mut [S; LENGTH]) -> usize {
+        dense.powers(powers)
     }
 
     #[inline(always)]

@@ -12,6 +12,7 @@ use super::tableau::{
 };
 use crate::contract::VectorField;
 use crate::error::Fault;
+use crate::jet::LENGTH;
 use crate::state::StateVector;
 
 /// The integrator of choice at loose tolerances.
@@ -81,6 +82,7 @@ impl Scheme for DormandPrince5Scheme {
     const ORDER: usize = 5;
     const DENSE_ORDER: usize = 4;
     const WEIGHTS: &'static [Term] = &B;
+    const NODES: &'static [f64] = &NODES;
     const LAST: usize = 6;
     const ERROR_TAKES_LAST: bool = true;
     const CONTROL: Control = Control {
@@ -157,6 +159,10 @@ impl Scheme for DormandPrince5Scheme {
             dense.coefficients[3].as_mut_slice()[i] = weigh_beyond_rounding(&gains, &D, size);
         }
         Ok(())
+    }
+
+    fn dense_powers<S: StateVector>(dense: &Self::Dense<S>, powers: &mut [S; LENGTH]) -> usize {
+        dense.powers(powers)
     }
 
     #[inline(always)]

@@ -15,6 +15,7 @@ use super::tableau::{Term, sum};
 use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
+use crate::jet::LENGTH;
 use crate::state::StateVector;
 
 /// The vector field with its evaluations counted.
@@ -89,6 +90,10 @@ pub trait Scheme {
     #[doc(hidden)]
     const WEIGHTS: &'static [Term];
 
+    /// Nodes of the stages.
+    #[doc(hidden)]
+    const NODES: &'static [f64];
+
     /// From the first stage, all others but [`Scheme::LAST`], with room for a state. The first stage and the last hold rates,
     /// the others what their rates differ by from that of the first.
     #[doc(hidden)]
@@ -113,6 +118,10 @@ pub trait Scheme {
         stages: &mut [F::State],
         dense: &mut Self::Dense<F::State>,
     ) -> Result<(), Fault>;
+
+    /// The coefficients of the dense output in powers of `theta`, as [`Stepper::powers`] gives them.
+    #[doc(hidden)]
+    fn dense_powers<S: StateVector>(dense: &Self::Dense<S>, powers: &mut [S; LENGTH]) -> usize;
 
     /// The state at `theta`, and what it is rounded off.
     #[doc(hidden)]
@@ -413,6 +422,35 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
     #[inline(always)]
     fn interpolate(&self, theta: f64) -> F::State {
         M::dense_at(&self.dense, theta).value
+    }
+
+    #[inline]
+    fn powers(&self, coefficients: &mut [F::State; LENGTH]) -> usize {
+        M::dense_powers(&self.dense, coefficients)
+    }
+
+    #[inline]
+    fn sway(&self) -> Option<F::State> {
+        let (h, stages) = (self.ends.length(), self.stages.as_ref());
+        let first = stages[0].as_slice();
+        let (mut bends, mut twists) = (F::State::zeros(), F::State::zeros());
+        for i in 0..F::State::LEN {
+            let gained = h * (stages[M::LAST].as_slice()[i] - first[i]);
+            let bend = self.ends.end.minus(&self.ends.start, i) - h * first[i];
+            bends.as_mut_slice()[i] = bend;
+            twists.as_mut_slice()[i] = 2.0 * bend - gained;
+        }
+        let mut sway = F::State::zeros();
+        for (stage, &node) in stages[1..M::LAST].iter().zip(&M::NODES[1..]) {
+            for i in 0..F::State::LEN {
+                let cubic =
+                    node * (2.0 * bends.as_slice()[i] + (2.0 - 3.0 * node) * twists.as_slice()[i]);
+                let apart = (h * stage.as_slice()[i] - cubic).abs();
+                let largest = &mut sway.as_mut_slice()[i];
+                *largest = largest.max(apart);
+            }
+        }
+        Some(sway)
     }
 
     #[inline]

@@ -17,6 +17,7 @@ use super::stepper::{EnergyAt, GapAt, Rebound, StepFailure, Stepper};
 use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
+use crate::jet::LENGTH;
 use crate::state::StateVector;
 
 /// Largest factor between successive steps on the way back to the size of the run.
@@ -586,6 +587,10 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
     #[inline(always)]
     fn interpolate(&self, theta: f64) -> F::State {
         self.dense.at(theta)
+    }
+
+    fn powers(&self, coefficients: &mut [F::State; LENGTH]) -> usize {
+        self.dense.powers(coefficients)
     }
 
     fn cut(&mut self, theta: f64) -> (Instant, F::State) {

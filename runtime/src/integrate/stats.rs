@@ -20,6 +20,8 @@ pub struct Counters {
     pub dense_constructions: u64,
     /// Evaluations of the vector of gaps.
     pub event_evaluations: u64,
+    /// Enclosures of one gap along a part of a step.
+    pub enclosures: u64,
     /// Roots of a gap that were located, in whichever direction motion then went on.
     pub crossings: u64,
     /// Impacts carried out.

@@ -7,6 +7,7 @@ use super::stats::Counters;
 use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
+use crate::jet::LENGTH;
 
 /// A one-step integrator with dense output, whether it chooses its steps by an error estimate or keeps a size.
 ///
@@ -138,6 +139,18 @@ pub trait Stepper<F: VectorField> {
     ///
     /// Meaningful only while [`Stepper::dense_ready`].
     fn interpolate(&self, theta: f64) -> F::State;
+
+    /// Writes the coefficients of the dense output in powers of the part of the step, and returns the number of the last one. Those
+    /// above it are left as they are.
+    ///
+    /// Meaningful only while [`Stepper::dense_ready`].
+    fn powers(&self, coefficients: &mut [F::State; LENGTH]) -> usize;
+
+    /// How far rates along the step, times its length, are from those of the cubic through its ends, as far as rates are
+    /// known without dense output; `None` where none are known inside the step.
+    fn sway(&self) -> Option<F::State> {
+        None
+    }
 
     /// Makes the last step again with the length at which its end has gap 0, near this part of it. `gap` gives a gap and its
     /// rate. Returns whether that is done; the step is as it was otherwise. Only methods that solve for impacts do it.

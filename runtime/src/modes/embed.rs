@@ -8,7 +8,7 @@ use crate::contract::{Impacting, Keep, RankDrop};
 use crate::describe::{Initial, Report};
 use crate::error::{Fault, StateError};
 use crate::impacts::law::{Blow, Contact, Landing};
-use crate::numbers::Row;
+use crate::numbers::{Numbers, Rated, Row};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -337,6 +337,25 @@ pub fn gaps<M: Mode + Impacting, G: StateVector>(
 ) -> G {
     let own = M::of(model).gaps(t, &taken::<M>(state));
     filled(own.as_slice(), M::SURFACES, 1.0)
+}
+
+/// As [`Impacting::gap_along`], of a surface of the mode; that of a state in another mode is never met.
+pub fn gap_along<M: Mode + Impacting>(
+    model: &M::Model,
+    surface: usize,
+    t: Rated,
+    component: &dyn Fn(usize) -> Rated,
+) -> Rated {
+    let number = component(StateOf::<M>::LEN - 1).value.middle();
+    match (number + 0.5) as usize == M::INDEX {
+        true => M::of(model).gap_along(surface, t, component),
+        false => no_gap(),
+    }
+}
+
+/// The gap of a surface that the mode does not have.
+pub fn no_gap() -> Rated {
+    Rated::of(1.0)
 }
 
 /// Gaps of a mode without surfaces.

@@ -213,6 +213,11 @@ impl Numbers for Dual {
     }
 
     #[inline(always)]
+    fn power(self, exponent: Self) -> Self {
+        self.powf(exponent.value)
+    }
+
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (sine, cosine) = math::sin_cos(self.value);
         (self.chain(sine, cosine), self.chain(cosine, -sine))

@@ -3,7 +3,7 @@
 
 pub mod line;
 
-use dalembert::numbers::Numbers;
+pub use dalembert::numbers::{Numbers, Rated};
 use dalembert::{
     Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Gauss4, Gauss6, Impacting, Impacts,
     Jump, Law, Outcome, ParameterError, Rk4, Run, Simulation, Stepper, System, Taylor, TaylorField,
@@ -14,8 +14,30 @@ use nalgebra::SVector;
 pub type Vector = SVector<f64, 2>;
 pub type State = SVector<f64, 4>;
 
-/// A gap and its gradient at a point.
-pub type Gap = fn([f64; 2]) -> (f64, [f64; 2]);
+/// A surface: its gap and gradient at a point, and its gap along a stretch.
+#[derive(Clone, Copy)]
+pub struct Gap {
+    pub at: fn([f64; 2]) -> (f64, [f64; 2]),
+    pub along: fn([Rated; 2]) -> Rated,
+}
+
+/// A surface from its gap, in which `c` makes constants, and its gradient: `gap!(c |x, y| c(1.0) - x, [-1.0, 0.0])`.
+#[macro_export]
+macro_rules! gap {
+    ($c:ident |$x:ident, $y:ident| $gap:expr, $gradient:expr) => {{
+        #[allow(unused_variables)]
+        fn at([$x, $y]: [f64; 2]) -> (f64, [f64; 2]) {
+            let $c = |number: f64| number;
+            ($gap, $gradient)
+        }
+        #[allow(unused_variables)]
+        fn along([$x, $y]: [Rated; 2]) -> Rated {
+            let $c = <Rated as Numbers>::of;
+            $gap
+        }
+        Gap { at, along }
+    }};
+}
 
 #[derive(Clone)]
 pub struct Particle<const S: usize> {
@@ -146,12 +168,16 @@ impl<const S: usize> Impacting for Particle<S> {
     type Gaps = SVector<f64, S>;
 
     fn gaps(&self, _: f64, state: &State) -> Self::Gaps {
-        SVector::from_fn(|s, _| self.surfaces[s](point(state)).0)
+        SVector::from_fn(|s, _| (self.surfaces[s].at)(point(state)).0)
+    }
+
+    fn gap_along(&self, surface: usize, _: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+        (self.surfaces[surface].along)([component(0), component(1)])
     }
 
     fn gap_rates(&self, _: f64, state: &State) -> Result<Self::Gaps, Fault> {
         Ok(SVector::from_fn(|s, _| {
-            let gradient = self.surfaces[s](point(state)).1;
+            let gradient = (self.surfaces[s].at)(point(state)).1;
             gradient[0] * state[2] + gradient[1] * state[3]
         }))
     }
@@ -176,7 +202,7 @@ impl<const S: usize> Impacting for Particle<S> {
     }
 
     fn contact(&self, surface: usize, _: f64, state: &State) -> Result<Contact<Vector>, Fault> {
-        let [a, b] = self.surfaces[surface](point(state)).1;
+        let [a, b] = (self.surfaces[surface].at)(point(state)).1;
         let rate = a * state[2] + b * state[3];
         let compliance = a * a + b * b;
         if compliance <= 0.0 {
@@ -193,18 +219,12 @@ impl<const S: usize> Impacting for Particle<S> {
     }
 }
 
-pub fn floor([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
-    (x, [1.0, 0.0])
-}
+pub const FLOOR: Gap = gap!(c | x, y | x, [1.0, 0.0]);
 
-pub fn ceiling([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
-    (1.0 - x, [-1.0, 0.0])
-}
+pub const CEILING: Gap = gap!(c | x, y | c(1.0) - x, [-1.0, 0.0]);
 
 /// A floor away from zero, where the gap rounds.
-pub fn raised_floor([x, _]: [f64; 2]) -> (f64, [f64; 2]) {
-    (x - 1.0, [1.0, 0.0])
-}
+pub const RAISED_FLOOR: Gap = gap!(c | x, y | x - c(1.0), [1.0, 0.0]);
 
 pub type Log = EventLog<State, 256>;
 

@@ -59,6 +59,11 @@ fn emit_gaps(whole: &Whole<'_>) -> TokenStream {
         &quote!(false),
         |own| quote!(::dalembert::__private::modes::surface_active::<#own>(self, surface, t, state)),
     );
+    let types = whole.types();
+    let alone = whole.graph.surfaces.iter().enumerate().map(|(place, entry)| {
+        let (own, surface) = (types[entry.mode], entry.place);
+        quote!(#place => ::dalembert::__private::modes::gap_along::<#own>(self, #surface, t, component),)
+    });
     let rated = fallible(&quote!(Self::Gaps));
     let optional = fallible(&quote!(::core::option::Option<Self::Gaps>));
     quote! {
@@ -67,6 +72,18 @@ fn emit_gaps(whole: &Whole<'_>) -> TokenStream {
 
         #[inline]
         fn gap_rates(&self, t: f64, state: &Self::State) -> #rated { #rates }
+
+        fn gap_along(
+            &self,
+            surface: usize,
+            t: ::dalembert::numbers::Rated,
+            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::Rated,
+        ) -> ::dalembert::numbers::Rated {
+            match surface {
+                #(#alone)*
+                _ => ::dalembert::__private::modes::no_gap(),
+            }
+        }
 
         fn gap_accelerations(&self, t: f64, state: &Self::State, motion: &Self::Impulse) -> #optional { #accelerations }
 

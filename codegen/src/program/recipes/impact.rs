@@ -27,6 +27,11 @@ pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<I
     });
     Some(Impacting {
         gaps,
+        gap_alone: derivation
+            .surfaces
+            .iter()
+            .map(|surface| position_function(model, derivation, &[surface.gap]))
+            .collect(),
         gap_rates: evaluate(model, derivation, form.state(), |surface| {
             vec![surface.gap_rate]
         }),

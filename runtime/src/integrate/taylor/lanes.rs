@@ -79,14 +79,12 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         if self.arrive(walkers, &plans, order).is_err() {
             return [false; MOST];
         }
-        let theta = theta(walkers, &plans);
-        let clearance = self.expansion.clearance(order, theta);
         let mut made = [false; MOST];
         for (lane, walker) in walkers.iter_mut().enumerate() {
             made[lane] =
                 walker.taylor().order == order && self.hand_over(lane, walker, plans[lane], order);
             if made[lane] {
-                let is_wanted = walker.looks_inside() || clearance.lane(lane) <= 0.0;
+                let is_wanted = walker.looks_inside() || F::Gaps::<f64>::LEN > 0;
                 let (taylor, _) = walker.at_work();
                 taylor.is_expanded = is_wanted;
                 if taylor.is_expanded {
@@ -206,24 +204,6 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         for (own, row) in rows.take(taylor.order + 1) {
             scatter(own, row, lane);
         }
-    }
-}
-
-impl<F: TaylorField, L: Numbers> Expansion<F, L> {
-    /// By how much each gap stays positive along `theta` units of time at least, as the sizes of its terms tell; the least
-    /// of all. Infinite where there are no gaps.
-    #[inline(always)]
-    fn clearance(&self, order: usize, theta: L) -> L {
-        let mut rest = F::Gaps::<L>::ZERO;
-        for coefficient in self.gaps[1..=order].iter().rev() {
-            for (sum, entry) in rest.as_mut_slice().iter_mut().zip(coefficient.as_slice()) {
-                *sum = (*sum + entry.abs()) * theta;
-            }
-        }
-        let gaps = self.gaps[0].as_slice().iter().zip(rest.as_slice());
-        gaps.fold(L::of(f64::INFINITY), |least, (gap, rest)| {
-            -(-least).max(*rest - *gap)
-        })
     }
 }
 

@@ -10,6 +10,7 @@ use crate::integrate::rough::power_of_two;
 use crate::integrate::stats::Counters;
 use crate::integrate::stepper::{Series, StepFailure, Stepper};
 use crate::integrate::tolerance::Tolerance;
+use crate::jet::LENGTH;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
@@ -155,6 +156,18 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
     #[inline(always)]
     fn interpolate(&self, theta: f64) -> F::State {
         self.state_at(theta).value
+    }
+
+    fn powers(&self, coefficients: &mut [F::State; LENGTH]) -> usize {
+        let part = self.ends.length() / self.unit;
+        let mut power = 1.0;
+        let own = &self.expansion.coefficients[..=self.order];
+        for (to, from) in coefficients.iter_mut().zip(own) {
+            let scaled = to.as_mut_slice().iter_mut().zip(from.as_slice());
+            scaled.for_each(|(to, from)| *to = power * from);
+            power *= part;
+        }
+        self.order
     }
 
     #[inline]

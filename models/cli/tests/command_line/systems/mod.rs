@@ -12,7 +12,7 @@ use dalembert::describe::{
 use dalembert::error::ParameterError;
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::jet::LENGTH;
-use dalembert::numbers::Numbers;
+use dalembert::numbers::{Numbers, Rated};
 use dalembert::{
     Fault, Impacting, Impacts, Lagrangian, Scene, StateError, System, TaylorField, VectorField,
 };
@@ -100,6 +100,10 @@ impl Impacting for BouncingBall {
 
     fn gaps(&self, _t: f64, state: &Self::State) -> Self::Gaps {
         SVector::from([state[0]])
+    }
+
+    fn gap_along(&self, _surface: usize, _t: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+        component(0)
     }
 
     fn gap_rates(&self, _t: f64, state: &Self::State) -> Result<Self::Gaps, Fault> {

@@ -1,0 +1,671 @@
+//! Closed intervals of doubles that contain every value of what they stand for.
+//!
+//! Sums, products, quotients and square roots of doubles are correctly rounded, so that one unit in the last place outwards
+//! encloses them. Elementary functions are those of `libm` on every machine, whose error is below two units in the last place;
+//! they are widened by [`CALL`]. Endpoints may be infinite, and are never NaN: what may have no value is [`Interval::WHOLE`].
+//!
+//! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapters 2 and 5.
+
+use core::f64::consts::PI;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::math;
+use crate::numbers::Numbers;
+
+/// Unit in the last place of 1: at least the unit in the last place of any number, as a part of it.
+const ULP: f64 = f64::EPSILON;
+
+/// Parts of an elementary function's value that it is widened by: at least four units in the last place.
+const CALL: f64 = 4.0 * ULP;
+
+/// Arguments of sine and cosine beyond this size have the range `[-1, 1]`.
+const FAR: f64 = 1e9;
+
+/// All numbers from `lo` to `hi`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// The lower end.
+    pub lo: f64,
+    /// The upper end.
+    pub hi: f64,
+}
+
+impl Interval {
+    /// All real numbers, and of what may have no value.
+    pub const WHOLE: Self = Self {
+        lo: f64::NEG_INFINITY,
+        hi: f64::INFINITY,
+    };
+
+    /// From one number to another that is not less.
+    #[inline(always)]
+    pub const fn new(lo: f64, hi: f64) -> Self {
+        Self { lo, hi }
+    }
+
+    /// One number.
+    #[inline(always)]
+    pub const fn point(value: f64) -> Self {
+        Self::new(value, value)
+    }
+
+    /// The smallest interval that contains two numbers.
+    #[inline(always)]
+    pub fn between(a: f64, b: f64) -> Self {
+        Self::new(a.min(b), a.max(b))
+    }
+
+    /// The smallest interval that contains both.
+    #[must_use]
+    #[inline(always)]
+    pub fn hull(self, other: Self) -> Self {
+        Self::new(self.lo.min(other.lo), self.hi.max(other.hi))
+    }
+
+    /// Numbers that are in both intervals, if there are any.
+    #[must_use]
+    #[inline(always)]
+    pub fn intersection(self, other: Self) -> Option<Self> {
+        let (lo, hi) = (self.lo.max(other.lo), self.hi.min(other.hi));
+        (lo <= hi).then_some(Self::new(lo, hi))
+    }
+
+    /// True if 0 is outside.
+    #[inline(always)]
+    pub fn excludes_zero(self) -> bool {
+        self.lo > 0.0 || self.hi < 0.0
+    }
+
+    /// True if the whole of another interval is inside.
+    #[inline(always)]
+    pub fn contains(self, other: Self) -> bool {
+        self.lo <= other.lo && other.hi <= self.hi
+    }
+
+    /// The largest absolute value.
+    #[inline(always)]
+    pub fn magnitude(self) -> f64 {
+        self.lo.abs().max(self.hi.abs())
+    }
+
+    /// The smallest absolute value.
+    pub fn mignitude(self) -> f64 {
+        match self.excludes_zero() {
+            true => self.lo.abs().min(self.hi.abs()),
+            false => 0.0,
+        }
+    }
+
+    /// `hi - lo`, rounded.
+    #[inline(always)]
+    pub fn width(self) -> f64 {
+        self.hi - self.lo
+    }
+
+    /// A number inside, in the middle up to rounding; 0 of what has no ends.
+    #[inline(always)]
+    pub fn middle(self) -> f64 {
+        let middle = 0.5 * self.lo + 0.5 * self.hi;
+        match middle.is_finite() {
+            true => middle.clamp(self.lo, self.hi),
+            false => 0.0_f64.clamp(self.lo, self.hi),
+        }
+    }
+
+    /// Every number that is at most `radius` away from one of these.
+    #[must_use]
+    #[inline(always)]
+    pub fn widened(self, radius: f64) -> Self {
+        outwards(self.lo - radius, self.hi + radius, ULP)
+    }
+
+    /// Half the circumference of the unit circle.
+    pub const fn pi() -> Self {
+        Self::new(PI, PI.next_up())
+    }
+
+    /// The range of a function that does not decrease, as `libm` computes it.
+    #[must_use]
+    #[inline(always)]
+    pub fn increasing(self, function: impl Fn(f64) -> f64) -> Self {
+        widest(function(self.lo), function(self.hi), CALL)
+    }
+
+    /// The part from `lo` to `hi`, which it meets.
+    #[must_use]
+    #[inline(always)]
+    pub fn within(self, lo: f64, hi: f64) -> Self {
+        Self::new(self.lo.clamp(lo, hi), self.hi.clamp(lo, hi))
+    }
+
+    /// True of what may have no value, and of all real numbers.
+    #[inline(always)]
+    pub fn is_whole(self) -> bool {
+        self.lo == f64::NEG_INFINITY && self.hi == f64::INFINITY
+    }
+
+    /// `1 / a`; one-sided at an end that is 0, and [`Interval::WHOLE`] with 0 inside.
+    #[must_use]
+    #[inline(always)]
+    pub fn inverse(self) -> Self {
+        if self.lo > 0.0 || self.hi < 0.0 {
+            return widest(1.0 / self.hi, 1.0 / self.lo, ULP);
+        }
+        match (self.lo == 0.0, self.hi == 0.0) {
+            (true, false) => Self::new(widest(1.0 / self.hi, 1.0 / self.hi, ULP).lo, f64::INFINITY),
+            (false, true) => Self::new(
+                f64::NEG_INFINITY,
+                widest(1.0 / self.lo, 1.0 / self.lo, ULP).hi,
+            ),
+            _ => Self::WHOLE,
+        }
+    }
+
+    /// A sine with its greatest value at `crest`.
+    fn wave(self, function: fn(f64) -> f64, crest: f64) -> Self {
+        // A little less than a whole turn: extreme values are counted also where they are near.
+        if !(self.magnitude() <= FAR) || self.hi - self.lo > 6.2 {
+            return Self::new(-1.0, 1.0);
+        }
+        const MARGIN: f64 = 1e-6;
+        const TURN: f64 = 2.0 * PI;
+        let meets = |place: f64| {
+            let turns = -math::floor((place - self.lo + MARGIN) / TURN);
+            place + turns * TURN <= self.hi + MARGIN
+        };
+        let (a, b) = (function(self.lo), function(self.hi));
+        let ends = widest(a.min(b), a.max(b), CALL);
+        Self::new(
+            if meets(crest + PI) {
+                -1.0
+            } else {
+                ends.lo.max(-1.0)
+            },
+            if meets(crest) { 1.0 } else { ends.hi.min(1.0) },
+        )
+    }
+}
+
+/// The interval between two numbers, each moved outwards by this part of itself.
+///
+/// It is enough for sums: where a sum of doubles underflows it is exact.
+#[inline(always)]
+fn outwards(lo: f64, hi: f64, part: f64) -> Interval {
+    let (lo, hi) = (lo - lo.abs() * part, hi + hi.abs() * part);
+    // Not a comparison that NaN passes.
+    match lo <= hi {
+        true => Interval::new(lo, hi),
+        false => Interval::WHOLE,
+    }
+}
+
+/// The same, and by the smallest normal number, which is more than what a product loses where it underflows.
+#[inline(always)]
+fn widest(lo: f64, hi: f64, part: f64) -> Interval {
+    let (lo, hi) = (
+        lo - (lo.abs() * part + f64::MIN_POSITIVE),
+        hi + (hi.abs() * part + f64::MIN_POSITIVE),
+    );
+    match lo <= hi {
+        true => Interval::new(lo, hi),
+        false => Interval::WHOLE,
+    }
+}
+
+impl Add for Interval {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        outwards(self.lo + other.lo, self.hi + other.hi, ULP)
+    }
+}
+
+impl Sub for Interval {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        outwards(self.lo - other.hi, self.hi - other.lo, ULP)
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.hi, -self.lo)
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let ends = [
+            self.lo * other.lo,
+            self.lo * other.hi,
+            self.hi * other.lo,
+            self.hi * other.hi,
+        ];
+        let lo = ends[0].min(ends[1]).min(ends[2].min(ends[3]));
+        let hi = ends[0].max(ends[1]).max(ends[2].max(ends[3]));
+        let is_finite = (ends[0] + ends[1] + ends[2] + ends[3]).abs() < f64::INFINITY;
+        match is_finite {
+            true => {
+                // Products of numbers that are not negative are not negative, whatever rounding says.
+                let product = widest(lo, hi, ULP);
+                match self.lo >= 0.0 && other.lo >= 0.0 {
+                    true => Self::new(product.lo.max(0.0), product.hi),
+                    false => product,
+                }
+            }
+            false => far_product(self, other),
+        }
+    }
+}
+
+/// A product with an end that is not finite. An infinite end stands for all large numbers, so that 0 times it is 0; but of what may
+/// have no value nothing is known.
+#[cold]
+fn far_product(a: Interval, b: Interval) -> Interval {
+    if a.is_whole() || b.is_whole() {
+        return Interval::WHOLE;
+    }
+    let times = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
+    let ends = [
+        times(a.lo, b.lo),
+        times(a.lo, b.hi),
+        times(a.hi, b.lo),
+        times(a.hi, b.hi),
+    ];
+    let lo = ends.into_iter().fold(f64::INFINITY, f64::min);
+    let hi = ends.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let (lo, hi) = (
+        if lo.is_finite() {
+            widest(lo, lo, ULP).lo
+        } else {
+            lo
+        },
+        if hi.is_finite() {
+            widest(hi, hi, ULP).hi
+        } else {
+            hi
+        },
+    );
+    match lo == f64::INFINITY || hi == f64::NEG_INFINITY {
+        // All ends are beyond the doubles.
+        true => Interval::new(lo.min(f64::MAX), hi.max(f64::MIN)),
+        false => Interval::new(lo, hi),
+    }
+}
+
+impl Div for Interval {
+    type Output = Self;
+
+    // A quotient is the product with the inverse.
+    #[allow(clippy::suspicious_arithmetic_impl)]
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self * other.inverse()
+    }
+}
+
+impl Numbers for Interval {
+    const LANES: usize = 1;
+    const ZERO: Self = Self::point(0.0);
+
+    #[inline(always)]
+    fn of(number: f64) -> Self {
+        match number.is_nan() {
+            true => Self::WHOLE,
+            false => Self::point(number),
+        }
+    }
+
+    #[inline(always)]
+    fn constant(parts: [f64; 4]) -> Self {
+        match parts[1] == 0.0 {
+            true => Self::point(parts[0]),
+            false => widest(parts[0], parts[0], ULP),
+        }
+    }
+
+    #[inline(always)]
+    fn inverse(k: usize) -> Self {
+        Self::point(k as f64).inverse()
+    }
+
+    #[inline(always)]
+    fn gathered(mut of_lane: impl FnMut(usize) -> f64) -> Self {
+        Self::of(of_lane(0))
+    }
+
+    /// A number inside. Nothing that is to hold for the whole interval may be asked of it.
+    #[inline(always)]
+    fn lane(&self, _: usize) -> f64 {
+        self.middle()
+    }
+
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+
+    #[inline(always)]
+    fn square(self) -> Self {
+        let size = self.abs();
+        let (lo, hi) = (size.lo * size.lo, size.hi * size.hi);
+        match hi < f64::INFINITY {
+            true => {
+                let square = widest(lo, hi, ULP);
+                Self::new(square.lo.max(0.0), square.hi)
+            }
+            false => Self::new((lo - lo * ULP).min(f64::MAX).max(0.0), f64::INFINITY),
+        }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        match self.lo >= 0.0 {
+            true => {
+                let root = outwards(math::sqrt(self.lo), math::sqrt(self.hi), ULP);
+                Self::new(root.lo.max(0.0), root.hi)
+            }
+            false => Self::WHOLE,
+        }
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        let (a, b) = (self.lo.abs(), self.hi.abs());
+        match self.lo <= 0.0 && self.hi >= 0.0 {
+            true => Self::new(0.0, a.max(b)),
+            false => Self::between(a, b),
+        }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::new(self.lo.max(other.lo), self.hi.max(other.hi))
+    }
+
+    #[inline(always)]
+    fn turned(self, sign: Self) -> Self {
+        match (sign.lo < 0.0, sign.hi < 0.0) {
+            (false, _) => self,
+            (_, true) => -self,
+            _ => self.hull(-self),
+        }
+    }
+
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        let is_off_the_cut = x.lo > 0.0 || self.excludes_zero();
+        if !is_off_the_cut {
+            return match x.lo == 0.0 && x.hi == 0.0 && self.lo == 0.0 && self.hi == 0.0 {
+                true => Self::ZERO,
+                false => Self::new(-Self::pi().hi, Self::pi().hi),
+            };
+        }
+        // Monotone in each argument along each edge: the extremes are at corners.
+        let corners = [
+            (self.lo, x.lo),
+            (self.lo, x.hi),
+            (self.hi, x.lo),
+            (self.hi, x.hi),
+        ];
+        let angles = corners.map(|(y, x)| libm::atan2(y, x));
+        let lo = angles.into_iter().fold(f64::INFINITY, f64::min);
+        let hi = angles.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        widest(lo, hi, CALL)
+    }
+
+    #[inline]
+    fn powf(self, exponent: f64) -> Self {
+        if !(self.lo >= 0.0) {
+            return Self::WHOLE;
+        }
+        let at = |x: f64| libm::pow(x, exponent);
+        match exponent >= 0.0 {
+            true => self.increasing(at),
+            false => (-self).increasing(|x| at(-x)),
+        }
+        .within(0.0, f64::INFINITY)
+    }
+
+    #[inline]
+    fn power(self, exponent: Self) -> Self {
+        match self.lo > 0.0 {
+            true => (exponent * self.ln()).exp(),
+            false => Self::WHOLE,
+        }
+    }
+
+    #[inline]
+    fn sin(self) -> Self {
+        match self == Self::ZERO {
+            true => self,
+            false => self.wave(libm::sin, core::f64::consts::FRAC_PI_2),
+        }
+    }
+
+    #[inline]
+    fn cos(self) -> Self {
+        self.wave(libm::cos, 0.0)
+    }
+
+    #[inline]
+    fn tan(self) -> Self {
+        let cosine = self.cos();
+        match cosine.excludes_zero() {
+            true => self.increasing(libm::tan),
+            false => Self::WHOLE,
+        }
+    }
+
+    #[inline]
+    fn asin(self) -> Self {
+        match self.lo >= -1.0 && self.hi <= 1.0 {
+            true => self.increasing(libm::asin),
+            false => Self::WHOLE,
+        }
+    }
+
+    #[inline]
+    fn acos(self) -> Self {
+        match self.lo >= -1.0 && self.hi <= 1.0 {
+            true => (-self).increasing(|x| libm::acos(-x)),
+            false => Self::WHOLE,
+        }
+    }
+
+    #[inline]
+    fn atan(self) -> Self {
+        self.increasing(libm::atan)
+    }
+
+    #[inline]
+    fn exp(self) -> Self {
+        self.increasing(libm::exp).within(0.0, f64::INFINITY)
+    }
+
+    #[inline]
+    fn ln(self) -> Self {
+        match self.lo > 0.0 {
+            true => self.increasing(libm::log),
+            false => Self::WHOLE,
+        }
+    }
+
+    #[inline]
+    fn sinh(self) -> Self {
+        self.increasing(libm::sinh)
+    }
+
+    #[inline]
+    fn cosh(self) -> Self {
+        self.abs().increasing(libm::cosh).within(1.0, f64::INFINITY)
+    }
+
+    #[inline]
+    fn tanh(self) -> Self {
+        self.increasing(libm::tanh).within(-1.0, 1.0)
+    }
+}
+
+impl Interval {
+    /// The power with an exponent that is less by 1: what the derivative of a power takes.
+    #[inline]
+    pub(crate) fn powf_below(self, exponent: f64) -> Self {
+        // The exponent is rounded: the power changes by no more than its logarithm says, less than `746 u`.
+        const SLACK: f64 = 1e-12;
+        let power = self.powf(exponent - 1.0);
+        power * Self::new(1.0 - SLACK, 1.0 + SLACK)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::rated::Rated;
+
+    /// A function of the language, over doubles and over both kinds of enclosures.
+    pub(crate) struct Enclosed {
+        pub(crate) name: &'static str,
+        pub(crate) plain: fn(f64) -> f64,
+        pub(crate) interval: fn(Interval) -> Interval,
+        pub(crate) rated: fn(Rated) -> Rated,
+        /// Where it has values.
+        domain: [f64; 2],
+    }
+
+    /// Two places that a path leads between.
+    pub(crate) struct Sample {
+        pub(crate) from: f64,
+        pub(crate) to: f64,
+    }
+
+    impl Enclosed {
+        /// Stretches of its domain, both ways, from points to all of it.
+        pub(crate) fn stretches(&self) -> impl Iterator<Item = Sample> + '_ {
+            let [lo, hi] = self.domain;
+            (0..=24).flat_map(move |start| {
+                [0.0, 1e-9, 0.01, 0.1, 0.3, 1.0]
+                    .into_iter()
+                    .flat_map(move |width| {
+                        let from = lo + (hi - lo) * f64::from(start) / 24.0;
+                        let to = (from + width * (hi - lo)).min(hi);
+                        [Sample { from, to }, Sample { from: to, to: from }]
+                    })
+            })
+        }
+    }
+
+    macro_rules! functions {
+        ($($name:literal on $lo:expr, $hi:expr => |$x:ident| $value:expr;)*) => {
+            /// Every function of the language, and a few compositions.
+            pub(crate) const FUNCTIONS: &[Enclosed] = &[$(Enclosed {
+                name: $name,
+                plain: |$x: f64| $value,
+                interval: |$x: Interval| $value,
+                rated: |$x: Rated| $value,
+                domain: [$lo, $hi],
+            }),*];
+        };
+    }
+
+    /// A constant of whatever kind its neighbour is.
+    fn like<L: Numbers>(_: L, number: f64) -> L {
+        L::of(number)
+    }
+
+    functions! {
+        "sqrt" on 0.001, 9.0 => |x| Numbers::sqrt(x);
+        "abs" on -2.0, 2.0 => |x| Numbers::abs(x);
+        "square" on -3.0, 3.0 => |x| Numbers::square(x);
+        "sin" on -9.0, 9.0 => |x| Numbers::sin(x);
+        "cos" on -9.0, 9.0 => |x| Numbers::cos(x);
+        "tan" on -1.5, 1.5 => |x| Numbers::tan(x);
+        "asin" on -0.99, 0.99 => |x| Numbers::asin(x);
+        "acos" on -0.99, 0.99 => |x| Numbers::acos(x);
+        "atan" on -7.0, 7.0 => |x| Numbers::atan(x);
+        "exp" on -5.0, 5.0 => |x| Numbers::exp(x);
+        "ln" on 0.01, 9.0 => |x| Numbers::ln(x);
+        "sinh" on -4.0, 4.0 => |x| Numbers::sinh(x);
+        "cosh" on -4.0, 4.0 => |x| Numbers::cosh(x);
+        "tanh" on -4.0, 4.0 => |x| Numbers::tanh(x);
+        "powf" on 0.01, 5.0 => |x| Numbers::powf(x, 1.7);
+        "inverse power" on 0.01, 5.0 => |x| Numbers::powf(x, -0.4);
+        "power" on 0.01, 5.0 => |x| Numbers::power(x, like(x, 0.3));
+        "atan2" on -2.0, 2.0 => |x| Numbers::atan2(x - like(x, 3.0), x * x + like(x, 0.5));
+        "max" on -2.0, 2.0 => |x| Numbers::max(x, like(x, 0.3) - x);
+        "turned" on -2.0, 2.0 => |x| Numbers::turned(x, x);
+        "bump" on -3.0, 3.0 => |x| Numbers::exp(-(x * x) / like(x, 0.01));
+        "quotient" on -2.0, 2.0 => |x| (x - like(x, 0.1)) / (like(x, 1.2) + x * x);
+        "fused" on -2.0, 2.0 => |x| Numbers::mul_add(x, x - like(x, 1.0), like(x, 0.2));
+    }
+
+    #[test]
+    fn values_lie_in_their_intervals() {
+        for function in FUNCTIONS {
+            for Sample { from, to } in function.stretches() {
+                let range = (function.interval)(Interval::between(from, to));
+                for k in 0..=16 {
+                    let x = (from + (to - from) * f64::from(k) / 16.0)
+                        .clamp(from.min(to), from.max(to));
+                    let value = (function.plain)(x);
+                    assert!(
+                        range.lo <= value && value <= range.hi,
+                        "{} at {x}: {value} is not in {range:?}",
+                        function.name
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn intervals_of_single_numbers_are_narrow() {
+        for function in FUNCTIONS {
+            for Sample { from, .. } in function.stretches() {
+                let range = (function.interval)(Interval::point(from));
+                let wide = 1e-12 * (1.0 + range.magnitude());
+                assert!(
+                    range.width() <= wide,
+                    "{} at {from}: {range:?}",
+                    function.name
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn extreme_values_are_met_inside() {
+        let bump = Interval::new(1.0, 2.0).sin();
+        assert!(bump.hi == 1.0 && bump.lo > 0.8);
+        let dip = Interval::new(3.0, 4.0).cos();
+        assert!(dip.lo == -1.0 && dip.hi < -0.6);
+    }
+
+    #[test]
+    fn infinite_ends_are_carried() {
+        let ray = Interval::new(2.0, f64::INFINITY);
+        assert!((ray * Interval::ZERO).magnitude() <= f64::MIN_POSITIVE);
+        let square = ray.square();
+        assert!(square.lo > 3.99 && square.hi == f64::INFINITY);
+        assert!(ray.inverse().lo <= 0.0 && ray.inverse().hi > 0.5);
+        assert!(Interval::new(-1.0, 1.0).inverse().is_whole());
+        assert!((Interval::WHOLE * Interval::ZERO).is_whole());
+        let large = Interval::new(1e200, 1e201);
+        assert!((large * large).hi == f64::INFINITY && (large * large).lo >= 1e308);
+    }
+
+    #[test]
+    fn zero_is_kept_where_rounding_cannot_reach_it() {
+        let sum = Interval::ZERO.square() + Interval::ZERO.square();
+        assert!(sum.lo >= 0.0 && !sum.sqrt().is_whole());
+    }
+}

@@ -1,0 +1,336 @@
+//! Numbers along a stretch of motion: the interval of their values, and that of their rates.
+//!
+//! For a function `f` over numbers and a path `x(s)`, `f(x)` encloses the values of `f(x(s))` on the stretch and its rates, where it
+//! has one; where it has a kink, the slopes of all its chords. So its values differ along the stretch by no more than the
+//! rates say, and with rates of one sign it has one root at most.
+//!
+//! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 6 (centred forms).
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::interval::Interval;
+use crate::numbers::Numbers;
+
+/// Values and rates along a stretch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rated {
+    /// All values on the stretch.
+    pub value: Interval,
+    /// All rates, and all slopes of chords.
+    pub rate: Interval,
+}
+
+impl Rated {
+    /// A number that does not change along the stretch.
+    #[inline(always)]
+    pub const fn constant(value: Interval) -> Self {
+        Self {
+            value,
+            rate: Interval::point(0.0),
+        }
+    }
+
+    /// The value of a function, where its derivative lies in an interval.
+    #[inline(always)]
+    fn chain(self, value: Interval, derivative: Interval) -> Self {
+        // What does not change has the rate 0, however steep the function is.
+        let rate = match self.rate == Interval::ZERO {
+            true => Interval::ZERO,
+            false => self.rate * derivative,
+        };
+        Self { value, rate }
+    }
+}
+
+impl Add for Rated {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            rate: self.rate + other.rate,
+        }
+    }
+}
+
+impl Sub for Rated {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            rate: self.rate - other.rate,
+        }
+    }
+}
+
+impl Neg for Rated {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            value: -self.value,
+            rate: -self.rate,
+        }
+    }
+}
+
+impl Mul for Rated {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let value = self.value * other.value;
+        let rate = match (self.rate == Interval::ZERO, other.rate == Interval::ZERO) {
+            (true, true) => Interval::ZERO,
+            (true, false) => self.value * other.rate,
+            (false, true) => self.rate * other.value,
+            (false, false) => self.rate * other.value + self.value * other.rate,
+        };
+        Self { value, rate }
+    }
+}
+
+impl Div for Rated {
+    type Output = Self;
+
+    // A quotient is the product with the inverse.
+    #[allow(clippy::suspicious_arithmetic_impl)]
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let inverse = other.value.inverse();
+        self * other.chain(inverse, -inverse.square())
+    }
+}
+
+impl Numbers for Rated {
+    const LANES: usize = 1;
+    const ZERO: Self = Self::constant(Interval::ZERO);
+
+    #[inline(always)]
+    fn of(number: f64) -> Self {
+        Self::constant(Interval::of(number))
+    }
+
+    #[inline(always)]
+    fn constant(parts: [f64; 4]) -> Self {
+        Self::constant(<Interval as Numbers>::constant(parts))
+    }
+
+    #[inline(always)]
+    fn inverse(k: usize) -> Self {
+        Self::constant(<Interval as Numbers>::inverse(k))
+    }
+
+    #[inline(always)]
+    fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
+        Self::constant(Interval::gathered(of_lane))
+    }
+
+    /// A number inside. Nothing that is to hold for the whole stretch may be asked of it.
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> f64 {
+        self.value.lane(lane)
+    }
+
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+
+    #[inline(always)]
+    fn square(self) -> Self {
+        self.chain(self.value.square(), self.value + self.value)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, (root + root).inverse())
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.turned(self)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self {
+            value: Numbers::max(self.value, other.value),
+            rate: self.rate.hull(other.rate),
+        }
+    }
+
+    /// `|x|` where `sign` is `x` itself; of others the values jump where the sign changes, and so the rates are anything.
+    #[inline(always)]
+    fn turned(self, sign: Self) -> Self {
+        match (sign.value.lo < 0.0, sign.value.hi < 0.0) {
+            (false, _) => self,
+            (_, true) => -self,
+            _ if self == sign => Self {
+                value: self.value.abs(),
+                rate: self.rate.hull(-self.rate),
+            },
+            _ => Self {
+                value: self.value.turned(sign.value),
+                rate: Interval::WHOLE,
+            },
+        }
+    }
+
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        let (y, x_value) = (self.value, x.value);
+        let value = y.atan2(x_value);
+        let is_off_the_cut = x_value.lo > 0.0 || y.excludes_zero();
+        let rate = match is_off_the_cut {
+            true => {
+                let squared = y.square() + x_value.square();
+                (x_value * self.rate - y * x.rate) / squared
+            }
+            false => Interval::WHOLE,
+        };
+        Self { value, rate }
+    }
+
+    #[inline]
+    fn powf(self, exponent: f64) -> Self {
+        let slope = Interval::point(exponent) * self.value.powf_below(exponent);
+        self.chain(self.value.powf(exponent), slope)
+    }
+
+    #[inline]
+    fn power(self, exponent: Self) -> Self {
+        (exponent * self.ln()).exp()
+    }
+
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sine, cosine) = self.value.sin_cos();
+        (self.chain(sine, cosine), self.chain(cosine, -sine))
+    }
+
+    #[inline]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    #[inline]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    #[inline]
+    fn tan(self) -> Self {
+        let tangent = self.value.tan();
+        self.chain(tangent, Interval::point(1.0) + tangent.square())
+    }
+
+    #[inline]
+    fn asin(self) -> Self {
+        let one = Interval::point(1.0);
+        let cosine = ((one - self.value) * (one + self.value)).sqrt();
+        self.chain(self.value.asin(), cosine.inverse())
+    }
+
+    #[inline]
+    fn acos(self) -> Self {
+        let one = Interval::point(1.0);
+        let sine = ((one - self.value) * (one + self.value)).sqrt();
+        self.chain(self.value.acos(), -sine.inverse())
+    }
+
+    #[inline]
+    fn atan(self) -> Self {
+        let slope = (Interval::point(1.0) + self.value.square()).inverse();
+        self.chain(self.value.atan(), slope)
+    }
+
+    #[inline]
+    fn exp(self) -> Self {
+        let power = self.value.exp();
+        self.chain(power, power)
+    }
+
+    #[inline]
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), self.value.inverse())
+    }
+
+    #[inline]
+    fn sinh(self) -> Self {
+        self.chain(self.value.sinh(), self.value.cosh())
+    }
+
+    #[inline]
+    fn cosh(self) -> Self {
+        self.chain(self.value.cosh(), self.value.sinh())
+    }
+
+    #[inline]
+    fn tanh(self) -> Self {
+        let tangent = self.value.tanh();
+        let one = Interval::point(1.0);
+        let slope = ((one - tangent) * (one + tangent)).within(0.0, 1.0);
+        self.chain(tangent, slope)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interval::tests::{FUNCTIONS, Sample};
+
+    /// Values and chords of every function on stretches of paths lie in what the function says of the stretch.
+    #[test]
+    fn values_and_slopes_of_chords_lie_in_their_intervals() {
+        for function in FUNCTIONS {
+            for Sample { from, to } in function.stretches() {
+                let stretch = Rated {
+                    value: Interval::between(from, to),
+                    rate: Interval::point(to - from),
+                };
+                let found = (function.rated)(stretch);
+                let at = |part: f64| {
+                    let x = (from + part * (to - from)).clamp(from.min(to), from.max(to));
+                    (function.plain)(x)
+                };
+                for k in 0..16 {
+                    let part = f64::from(k) / 16.0;
+                    let chord = (at(part + 1.0 / 16.0) - at(part)) * 16.0;
+                    let slack = 1e-12 * (1.0 + chord.abs() + found.value.magnitude());
+                    let name = function.name;
+                    assert!(found.value.contains(Interval::point(at(part))), "{name}");
+                    assert!(
+                        found.rate.lo - slack <= chord && chord <= found.rate.hi + slack,
+                        "{name} from {from} to {to}: {chord} is not in {:?}",
+                        found.rate
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_may_have_no_value_is_anything() {
+        let stretch = |lo: f64, hi: f64| Rated {
+            value: Interval::new(lo, hi),
+            rate: Interval::point(hi - lo),
+        };
+        for outside in [
+            stretch(-0.1, 0.2).sqrt(),
+            stretch(-0.1, 0.2).ln(),
+            stretch(0.9, 1.1).asin(),
+            stretch(0.9, 1.1).acos(),
+            stretch(1.5, 1.6).tan(),
+            Rated::of(1.0) / stretch(-1.0, 1.0),
+        ] {
+            assert!(outside.value.is_whole(), "{outside:?}");
+            assert!((Rated::ZERO * outside).value.is_whole());
+        }
+    }
+}
