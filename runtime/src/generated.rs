@@ -3,9 +3,10 @@
 use nalgebra::SVector;
 
 use crate::assumption::Assumption;
-use crate::contract::{Constrained, System};
+use crate::contract::{Constrained, System, TaylorField};
 use crate::describe::{Described, Report};
 use crate::error::{Fault, ParameterError, StateError};
+use crate::numbers::{Numbers, Rated, Row};
 use crate::state::StateVector;
 
 /// A constraint residual up to this share of the sum of the absolute values of its terms counts as satisfied
@@ -276,6 +277,34 @@ pub mod arguments {
     pub fn after_q() {}
     pub fn after_qdot() {}
     pub fn component() {}
+}
+
+/// Rates along a stretch of motion, by what the power series of a system begin with.
+///
+/// # Errors
+/// That of the series.
+pub fn rates_along<F: TaylorField>(
+    field: &F,
+    t: Rated,
+    component: &dyn Fn(usize) -> Rated,
+    rate: &mut dyn FnMut(usize, Rated),
+) -> Result<(), Fault> {
+    let mut parameters = F::Parameters::<Rated>::ZERO;
+    let values = field.parameters();
+    for (parameter, value) in parameters.as_mut_slice().iter_mut().zip(values.as_slice()) {
+        *parameter = Rated::of(*value);
+    }
+    let mut state = F::Row::<Rated>::ZERO;
+    for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
+        *entry = component(i);
+    }
+    let mut firsts = F::Firsts::<Rated>::ZERO;
+    F::begin(&parameters, t, &state, &mut firsts)?;
+    let rates = &firsts.as_slice()[..F::Row::<Rated>::LEN];
+    for (i, own) in rates.iter().enumerate() {
+        rate(i, *own);
+    }
+    Ok(())
 }
 
 /// Guards over several numbers at once: the fault of the first lane that has one.

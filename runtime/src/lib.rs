@@ -128,6 +128,7 @@ pub mod lanes;
 mod linalg;
 #[doc(hidden)]
 pub mod modes;
+mod narrow;
 mod nearest;
 pub mod outcome;
 pub mod projection;

@@ -6,7 +6,9 @@ use crate::contract::{RankDrop, System};
 use crate::effects::{Change, Effect, Moment, StepView};
 use crate::error::Fault;
 use crate::forces::{Along, Driven};
+use crate::integrate::controller::least_trial;
 use crate::integrate::{Counters, Dop853, Instant, Rebound, Stepper};
+use crate::narrow;
 use crate::outcome::{Outcome, Run, StartError};
 use crate::record::{Observer, Segment};
 use crate::state::StateVector;
@@ -17,6 +19,10 @@ pub const STEP_BUDGET: u64 = 1_000_000_000;
 /// After an impact no step is longer than this many times the last flight, so that hops that shrink are followed
 /// by steps of their own size.
 const FLIGHTS: f64 = 4.0;
+
+/// A step that passes a narrow force ends before it if that leaves this part of it at least; else it is made this many times as
+/// long.
+const AHEAD: f64 = 1.0 / 8.0;
 
 /// A step whose dense output meets dependent constraints is made again as a step this many times as long: its stages lie
 /// elsewhere then.
@@ -246,6 +252,9 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         if Sys::CAN_LOSE_RANK && self.shorten_where_dependent()? {
             return Ok(Next::Step);
         }
+        if Sys::CAN_BE_NARROW && forces.is_none() && self.shorten_where_narrow()? {
+            return Ok(Next::Step);
+        }
         let mut view = StepView {
             system: self.system,
             counters: &mut self.progress.counters,
@@ -423,6 +432,33 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             }
             Err(fault) => Err(fault.into()),
         }
+    }
+
+    /// Whether the step passes a force that none of its stages has seen: then a shorter one is to be made from the same start.
+    #[inline(never)]
+    fn shorten_where_narrow(&mut self) -> Result<bool, Outcome> {
+        let mut view = StepView {
+            system: self.system,
+            counters: &mut self.progress.counters,
+            stepper: &mut *self.stepper,
+        };
+        let resolved = narrow::resolved(&mut view)?;
+        if resolved >= 1.0 {
+            return Ok(false);
+        }
+        let (t, length) = (self.stepper.t_start(), self.stepper.length());
+        let shorter = length * if resolved >= AHEAD { resolved } else { AHEAD };
+        if shorter < least_trial(t) {
+            return Err(Outcome::StepUnderflow { t });
+        }
+        let now = self.progress.now();
+        let Progress {
+            state, counters, ..
+        } = &mut *self.progress;
+        counters.rejected += 1;
+        self.stepper
+            .restart(self.system, now, state, shorter, counters)?;
+        Ok(true)
     }
 
     /// Ends the run where the constraint forms become dependent between the start of the step and `reach`.

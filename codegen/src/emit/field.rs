@@ -203,6 +203,7 @@ pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
         statements,
         outputs,
     } = context.state_body(&program.rate);
+    let along = program.can_be_narrow.then(emit_rates_along);
     let scale = context.position_body(&program.scale);
     let scale_doc = match program.form {
         Form::Global => {
@@ -243,6 +244,24 @@ pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
                 #scale_statements
                 ::dalembert::__private::vector([#(#units),*])
             }
+
+            #along
+        }
+    }
+}
+
+/// `rates_along`, where the rate may have narrow features.
+pub(super) fn emit_rates_along() -> TokenStream {
+    quote! {
+        const CAN_BE_NARROW: bool = true;
+
+        fn rates_along(
+            &self,
+            t: ::dalembert::numbers::Rated,
+            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::Rated,
+            rate: &mut dyn ::core::ops::FnMut(usize, ::dalembert::numbers::Rated),
+        ) -> ::core::result::Result<(), ::dalembert::Fault> {
+            ::dalembert::__private::rates_along(self, t, component, rate)
         }
     }
 }

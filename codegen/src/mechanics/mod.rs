@@ -20,6 +20,7 @@ pub mod field;
 pub mod frame;
 pub mod impact;
 pub mod metric;
+mod narrow;
 mod rank;
 
 use dalembert_expr::{ExprId, SymbolId};
@@ -45,6 +46,8 @@ pub struct Derivation {
     pub constraints: Vec<ConstraintForm>,
     /// Whether their forms are linear in the velocities and not known to be independent at every state.
     pub can_lose_rank: bool,
+    /// Whether the rates may have features that are narrow beside what a step passes.
+    pub can_be_narrow: bool,
     /// Impact surfaces with their differentials.
     pub surfaces: Vec<SurfaceForm>,
     /// What the density form and the divergence need.
@@ -83,9 +86,16 @@ pub fn derive(model: &mut Model) -> Derivation {
     let frame = frame::derive_frame(model, &coordinates, &constraints, &field);
     let surfaces = impact::derive_surfaces(model, &coordinates, frame.as_ref().ok());
     let metric_rows = model.lagrangian.metric.clone();
+    let mut varying = [&coordinates.q[..], &coordinates.qdot].concat();
+    varying.push(coordinates.time);
     Derivation {
         can_lose_rank: !model.is_nonlinear()
             && !rank::is_constant(&model.pool, &coordinates.q, &constraints),
+        can_be_narrow: narrow::can_be_narrow(
+            &model.pool,
+            model.field.as_ref().unwrap_or(&field.force),
+            &varying,
+        ),
         factors: factors::derive_factors(&mut model.pool, &metric_rows),
         field,
         constraints,

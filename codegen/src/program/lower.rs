@@ -68,6 +68,7 @@ fn lower_form(
         form,
         jet: Jet::of(&functions, &components, component),
         rate,
+        can_be_narrow: derivation.can_be_narrow,
         scale: motion::scale(model, derivation, form),
         velocity: motion::velocity(model, derivation, form),
         momentum: motion::momentum(model, derivation),

@@ -254,6 +254,8 @@ pub struct Program {
     pub form: Form,
     /// `(t, s) -> (qdot, pdot)`, `(qdot, udot)` or `qdot`
     pub rate: Function,
+    /// Whether the rate may have features that are narrow beside what a step passes.
+    pub can_be_narrow: bool,
     /// Taylor coefficients along the motion, of the rate and, where they are analytic, of the gaps.
     pub jet: jet::Jet,
     /// `(t, q) ->` the unit of each component of the state.
@@ -304,6 +306,7 @@ impl Program {
         let Self {
             form: _,
             rate,
+            can_be_narrow: _,
             jet,
             scale,
             velocity,

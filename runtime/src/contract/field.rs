@@ -2,7 +2,7 @@
 
 use crate::error::Fault;
 use crate::jet::{Jets, LENGTH, Work};
-use crate::numbers::{Numbers, Row};
+use crate::numbers::{Numbers, Rated, Row};
 use crate::state::StateVector;
 
 /// A first-order system of ordinary differential equations on a state of fixed size.
@@ -26,6 +26,25 @@ pub trait VectorField {
         let mut ones = Self::State::zeros();
         ones.as_mut_slice().fill(1.0);
         ones
+    }
+
+    /// Whether rates may have features that are narrow beside what a step passes, as bumps of an exponential are. Steps are
+    /// compared with [`VectorField::rates_along`] then.
+    const CAN_BE_NARROW: bool = false;
+
+    /// All rates along a stretch of motion: `component(i)` gives all values of component `i` of the state, `rate(i, ..)` takes all
+    /// values of its rate. Nothing where [`VectorField::CAN_BE_NARROW`] is false.
+    ///
+    /// # Errors
+    /// [`Fault`] where the rates do not exist.
+    fn rates_along(
+        &self,
+        t: Rated,
+        component: &dyn Fn(usize) -> Rated,
+        rate: &mut dyn FnMut(usize, Rated),
+    ) -> Result<(), Fault> {
+        let _ = (t, component, rate);
+        Ok(())
     }
 }
 

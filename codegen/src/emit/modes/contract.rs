@@ -4,6 +4,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Whole;
+use crate::emit::field::emit_rates_along;
 use crate::emit::function::Body;
 use crate::emit::lagrangian::emit_refusal;
 use crate::emit::{Context, attributes};
@@ -114,6 +115,10 @@ pub(super) fn emit_field(whole: &Whole<'_>) -> TokenStream {
     );
     let scale = whole
         .of_state(|_, mode| quote!(::dalembert::__private::modes::scale::<#mode>(self, t, state)));
+    let mut modes = whole.contexts.iter().map(|contexts| contexts[0].program);
+    let along = modes
+        .any(|program| program.can_be_narrow)
+        .then(emit_rates_along);
     quote! {
         #attributes
         impl ::dalembert::VectorField for #own {
@@ -133,6 +138,8 @@ pub(super) fn emit_field(whole: &Whole<'_>) -> TokenStream {
             fn scale(&self, t: f64, state: &Self::State) -> Self::State {
                 #scale
             }
+
+            #along
         }
     }
 }

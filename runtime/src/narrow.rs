@@ -1,0 +1,119 @@
+//! Rates along a step against those that the step assumed: a force that acts in a part of it that no stage has seen is found here.
+//!
+//! On a part of the step all rates of the system are enclosed, for the states and times that the motion passes there:
+//!
+//! ```text
+//! R = f(Y) and f(y_m) + [-1, 1] f'(Y) (b - a)/2,   Y the states on [a, b], y_m the one in the middle
+//! ```
+//!
+//! and compared with the interval `P` of rates that the step's polynomial has there. What `R` exceeds `P` by is a force that the step
+//! knows nothing of. It may be as large as what the rates of the step change by, since an enclosure is wider than the range; or so small that
+//! the error allowed in the step covers it. Other parts are halved; where that does not help the step is too long.
+
+use crate::contract::System;
+use crate::effects::StepView;
+use crate::events::path::Path;
+use crate::integrate::Stepper;
+use crate::numbers::{Interval, Rated};
+use crate::outcome::Outcome;
+use crate::state::StateVector;
+
+/// Halvings of a step.
+const DEPTH: u32 = 6;
+
+/// What an enclosure may exceed the rates of the step by, in parts of what these change by.
+const WIDER: f64 = 1.0;
+
+/// The part of a step up to which its rates are what it assumed: 1 if all of it is.
+///
+/// # Errors
+/// Those of the dense output.
+pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
+    step: &mut StepView<'_, Sys, Step>,
+) -> Result<f64, Outcome> {
+    let mut path = Path::new();
+    path.follow(step)?;
+    let along = Along {
+        system: step.system,
+        path: &path,
+        length: step.length(),
+        allowed: allowed(step, &path),
+    };
+    let (mut index, mut depth) = (0_u64, 0_u32);
+    loop {
+        let count = (1_u64 << depth) as f64;
+        let part = [index as f64 / count, (index + 1) as f64 / count];
+        step.counters.rate_evaluations += 1;
+        if !along.is_known(part) {
+            if depth == DEPTH {
+                return Ok(part[0]);
+            }
+            (index, depth) = (2 * index, depth + 1);
+            continue;
+        }
+        index += 1;
+        while index.is_multiple_of(2) && depth > 0 {
+            (index, depth) = (index / 2, depth - 1);
+        }
+        if depth == 0 {
+            return Ok(1.0);
+        }
+    }
+}
+
+/// The error allowed in each component.
+fn allowed<Sys: System, Step: Stepper<Sys>>(
+    step: &StepView<'_, Sys, Step>,
+    path: &Path<Sys::State>,
+) -> Sys::State {
+    let tolerance = step.stepper.tolerance();
+    let mut allowed = step.system.scale(step.t_start(), step.start());
+    for (i, entry) in allowed.as_mut_slice().iter_mut().enumerate() {
+        let size = path.range(i).magnitude();
+        *entry = tolerance.absolute() * *entry + tolerance.relative() * size;
+    }
+    allowed
+}
+
+/// A step, and what it may err by.
+struct Along<'a, Sys: System> {
+    system: &'a Sys,
+    path: &'a Path<Sys::State>,
+    length: f64,
+    allowed: Sys::State,
+}
+
+impl<Sys: System> Along<'_, Sys> {
+    /// True if the rates on a part of the step are what it assumed.
+    fn is_known(&self, part: [f64; 2]) -> bool {
+        let (path, width) = (self.path, part[1] - part[0]);
+        let middle = 0.5 * (part[0] + part[1]);
+        let mut state = Sys::State::zeros();
+        for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
+            *entry = path.component(i, [middle, middle]).value.middle();
+        }
+        let t = path.time([middle, middle]).value.middle();
+        let mut centre = Sys::State::zeros();
+        if self.system.rate(t, &state, &mut centre).is_err() {
+            return false;
+        }
+        let mut is_known = true;
+        let length = Interval::point(self.length);
+        let component = |i: usize| path.component(i, part);
+        let mut compare = |i: usize, rate: Rated| {
+            let reach = (rate.rate.magnitude() * 0.5) * width;
+            let centred = Interval::point(centre.as_slice()[i]).widened(reach);
+            let rates = length * rate.value.intersection(centred).unwrap_or(rate.value);
+            let assumed = path.component(i, part).rate;
+            let excess = (rates.hi - assumed.hi).max(assumed.lo - rates.lo);
+            let change = path.component(i, [0.0, 1.0]).rate.width();
+            let most = (WIDER * change * width).max(self.allowed.as_slice()[i]);
+            // Not a comparison that NaN passes.
+            is_known &= excess * width <= most;
+        };
+        let along = self
+            .system
+            .rates_along(path.time(part), &component, &mut compare);
+        is_known && along.is_ok()
+    }
+}
