@@ -8,7 +8,8 @@
 //!
 //! and compared with the interval `P` of rates that the step's polynomial has there. What `R` exceeds `P` by is a force that the step
 //! knows nothing of. It may be as large as what the rates of the step change by, since an enclosure is wider than the range; or so small that
-//! the error allowed in the step covers it. Other parts are halved; where that does not help the step is too long.
+//! the error allowed in the step covers it. Other parts are halved; where that does not help the step is too long. So it is where the
+//! integral of `R` over the step does not contain what the step has gained.
 
 use crate::contract::System;
 use crate::effects::StepView;
@@ -20,6 +21,9 @@ use crate::state::StateVector;
 
 /// Halvings of a step.
 const DEPTH: u32 = 6;
+
+/// Halvings that steps begin with whose error nobody estimates: their integral is to tell.
+const DEPTH_OF_FIXED: u32 = 3;
 
 /// What an enclosure may exceed the rates of the step by, in parts of what these change by.
 const WIDER: f64 = 1.0;
@@ -33,13 +37,18 @@ pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
 ) -> Result<f64, Outcome> {
     let mut path = Path::new();
     path.follow(step)?;
-    let along = Along {
+    let mut along = Along {
         system: step.system,
         path: &path,
         length: step.length(),
         allowed: allowed(step, &path),
+        gained: [Sys::State::zeros(); 2],
     };
-    let (mut index, mut depth) = (0_u64, 0_u32);
+    let least = match step.stepper.fixed_step() {
+        Some(_) => DEPTH_OF_FIXED,
+        None => 0,
+    };
+    let (mut index, mut depth) = (0_u64, least);
     loop {
         let count = (1_u64 << depth) as f64;
         let part = [index as f64 / count, (index + 1) as f64 / count];
@@ -52,11 +61,14 @@ pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
             continue;
         }
         index += 1;
-        while index.is_multiple_of(2) && depth > 0 {
+        while index.is_multiple_of(2) && depth > least {
             (index, depth) = (index / 2, depth - 1);
         }
-        if depth == 0 {
-            return Ok(1.0);
+        if index == 1 << depth {
+            return Ok(match along.has_gained(step.start(), step.end()) {
+                true => 1.0,
+                false => 0.0,
+            });
         }
     }
 }
@@ -81,12 +93,25 @@ struct Along<'a, Sys: System> {
     path: &'a Path<Sys::State>,
     length: f64,
     allowed: Sys::State,
+    /// Bounds of what the components gain on the parts that are known.
+    gained: [Sys::State; 2],
 }
 
 impl<Sys: System> Along<'_, Sys> {
-    /// True if the rates on a part of the step are what it assumed.
-    fn is_known(&self, part: [f64; 2]) -> bool {
+    /// True if a step between these states has gained what the rates give, as far as that is known.
+    fn has_gained(&self, start: &Sys::State, end: &Sys::State) -> bool {
+        (0..Sys::State::LEN).all(|i| {
+            let change = end.as_slice()[i] - start.as_slice()[i];
+            let [least, most] = [0, 1].map(|bound| self.gained[bound].as_slice()[i]);
+            let allowed = self.allowed.as_slice()[i];
+            least - allowed <= change && change <= most + allowed
+        })
+    }
+
+    /// True if the rates on a part of the step are what it assumed; what the components gain there is added then.
+    fn is_known(&mut self, part: [f64; 2]) -> bool {
         let (path, width) = (self.path, part[1] - part[0]);
+        let mut gained = self.gained;
         let middle = 0.5 * (part[0] + part[1]);
         let mut state = Sys::State::zeros();
         for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
@@ -110,10 +135,16 @@ impl<Sys: System> Along<'_, Sys> {
             let most = (WIDER * change * width).max(self.allowed.as_slice()[i]);
             // Not a comparison that NaN passes.
             is_known &= excess * width <= most;
+            gained[0].as_mut_slice()[i] += width * rates.lo;
+            gained[1].as_mut_slice()[i] += width * rates.hi;
         };
         let along = self
             .system
             .rates_along(path.time(part), &component, &mut compare);
-        is_known && along.is_ok()
+        if is_known && along.is_ok() {
+            self.gained = gained;
+            return true;
+        }
+        false
     }
 }
