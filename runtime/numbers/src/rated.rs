@@ -23,7 +23,7 @@ pub struct Rated {
 impl Rated {
     /// A number that does not change along the stretch.
     #[inline(always)]
-    pub const fn constant(value: Interval) -> Self {
+    pub const fn steady(value: Interval) -> Self {
         Self {
             value,
             rate: Interval::point(0.0),
@@ -108,26 +108,26 @@ impl Div for Rated {
 
 impl Numbers for Rated {
     const LANES: usize = 1;
-    const ZERO: Self = Self::constant(Interval::ZERO);
+    const ZERO: Self = Self::steady(Interval::ZERO);
 
     #[inline(always)]
     fn of(number: f64) -> Self {
-        Self::constant(Interval::of(number))
+        Self::steady(Interval::of(number))
     }
 
     #[inline(always)]
     fn constant(parts: [f64; 4]) -> Self {
-        Self::constant(<Interval as Numbers>::constant(parts))
+        Self::steady(<Interval as Numbers>::constant(parts))
     }
 
     #[inline(always)]
     fn inverse(k: usize) -> Self {
-        Self::constant(<Interval as Numbers>::inverse(k))
+        Self::steady(<Interval as Numbers>::inverse(k))
     }
 
     #[inline(always)]
     fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
-        Self::constant(Interval::gathered(of_lane))
+        Self::steady(Interval::gathered(of_lane))
     }
 
     /// A number inside. Nothing that is to hold for the whole stretch may be asked of it.

@@ -80,12 +80,12 @@ impl<S: StateVector> Haven<S> {
         self.surround(path);
         self.positions = Sys::Vector::LEN.min(S::LEN);
         let component = |i: usize| match i < self.positions {
-            true => Rated::constant(self.range(i)),
-            false => Rated::constant(path.range(i)),
+            true => Rated::steady(self.range(i)),
+            false => Rated::steady(path.range(i)),
         };
         let is_off = |surface: usize| {
             let gap = system
-                .gap_along(surface, Rated::constant(self.times), &component)
+                .gap_along(surface, Rated::steady(self.times), &component)
                 .value;
             gap.lo > 0.0 || (is_passable(surface) && gap.hi < 0.0)
         };
