@@ -10,6 +10,7 @@ use crate::effects::{Change, Effect, Moment, SceneEffects};
 use crate::error::Fault;
 use crate::forces::NoForces;
 use crate::generated::check_positions;
+use crate::math;
 use crate::outcome::Outcome;
 use crate::record::Observer;
 use crate::state::StateVector;
@@ -88,12 +89,13 @@ impl<Sys: Constrained> Projection<Sys> {
         if Sys::IS_REDUCED || (!cut && violated(now)?.is_none()) {
             return Ok(Change::Kept);
         }
+        let before = *now.state;
         now.system.restore(now.t, now.state)?;
         // Restoring is linear; a second time mends the rounding of the first where constraints are ill-conditioned.
         if violated(now)?.is_some() {
             now.system.restore(now.t, now.state)?;
         }
-        match far(now)? {
+        match far(now, &before)? {
             Some(constraint) => Err(Outcome::ProjectionFailed { constraint }),
             None => Ok(Change::Changed),
         }
@@ -119,24 +121,72 @@ fn is_visible<V: StateVector>(q: &V, correction: &V) -> bool {
 
 /// The first constraint violated by more than the threshold.
 fn violated<Sys: Constrained>(now: &Moment<'_, Sys>) -> Result<Option<usize>, Fault> {
-    exceeding(now, THRESHOLD)
+    exceeding(now, None, THRESHOLD)
 }
 
-/// The first constraint still violated so much that projection cannot be said to have worked: a thousand
-/// thresholds, the bound at which states are refused divided by twenty.
-fn far<Sys: Constrained>(now: &Moment<'_, Sys>) -> Result<Option<usize>, Fault> {
-    exceeding(now, 1024.0 * THRESHOLD)
+/// The first constraint still violated so much that projection of the state `before` cannot be said to have worked: a
+/// thousand thresholds, the bound at which states are refused divided by twenty.
+///
+/// The terms of a constraint are no scale where all of them vanish: where the velocities that it holds at 0 are all that is left of
+/// it, as `y ydot` of a hanging pendulum, or where the motion rests. The terms are rounding errors then, and a residual is as
+/// large as they are, however small. What projection leaves is rounding of the velocity that it was given; so the scale are the terms
+/// with velocities as large as that speed allows.
+fn far<Sys: Constrained>(
+    now: &Moment<'_, Sys>,
+    before: &Sys::State,
+) -> Result<Option<usize>, Fault> {
+    let threshold = 1024.0 * THRESHOLD;
+    match exceeding(now, None, threshold)? {
+        None => Ok(None),
+        Some(_) => exceeding(now, Some(&largest_velocities(now, before)?), threshold),
+    }
 }
 
+/// The largest values that single velocities can have at the kinetic energy of a state: `|v_i| <= sqrt(g^ii v.p)` by the
+/// inequality of Cauchy and Schwarz.
+fn largest_velocities<Sys: Constrained>(
+    now: &Moment<'_, Sys>,
+    state: &Sys::State,
+) -> Result<Sys::Vector, Fault> {
+    let (system, t) = (now.system, now.t);
+    let (v, p) = (system.velocity(t, state)?, system.momentum(t, state)?);
+    let pairs = v.as_slice().iter().zip(p.as_slice());
+    // NOTE: roots before products, which would be 0 for velocities below 1e-162.
+    let speed: f64 = pairs
+        .map(|(v, p)| math::sqrt(v.abs()) * math::sqrt(p.abs()))
+        .sum();
+    let q = system.position(state);
+    let velocity = |p: &Sys::Vector| system.velocity(t, &system.state_from_momenta(t, &q, p)?);
+    let at_rest = velocity(&Sys::Vector::zeros())?;
+    let mut largest = Sys::Vector::zeros();
+    for i in 0..Sys::Vector::LEN {
+        let mut unit = Sys::Vector::zeros();
+        unit.as_mut_slice()[i] = 1.0;
+        let cometric = velocity(&unit)?.as_slice()[i] - at_rest.as_slice()[i];
+        largest.as_mut_slice()[i] = math::sqrt(cometric.abs()) * speed;
+    }
+    Ok(largest)
+}
+
+/// The first constraint violated by more than a part of its terms, or of those at other velocities if they are larger.
 fn exceeding<Sys: Constrained>(
     now: &Moment<'_, Sys>,
+    velocities: Option<&Sys::Vector>,
     threshold: f64,
 ) -> Result<Option<usize>, Fault> {
     let (q, qdot) = (
         now.system.position(now.state),
         now.system.velocity(now.t, now.state)?,
     );
-    let (residuals, scales) = now.system.residuals(now.t, &q, &qdot);
+    let (residuals, mut scales) = now.system.residuals(now.t, &q, &qdot);
+    if let Some(velocities) = velocities {
+        let (_, larger) = now.system.residuals(now.t, &q, velocities);
+        let pairs = scales.as_mut_slice().iter_mut().zip(larger.as_slice());
+        // Numbers below the normal ones have lost digits.
+        pairs.for_each(|(scale, larger)| {
+            *scale = scale.max(*larger) + f64::MIN_POSITIVE / threshold
+        });
+    }
     let mut pairs = residuals.as_slice().iter().zip(scales.as_slice());
     let holds = |(residual, scale): (&f64, &f64)| residual.abs() <= threshold * scale;
     Ok(pairs.position(|pair| !holds(pair)))

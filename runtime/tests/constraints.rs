@@ -2,8 +2,9 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::{
-    Constrained, DormandPrince5, Effect, Fault, Outcome, ParameterError, Projection, SceneEffects,
-    Simulation, StateError, System, Tolerance, VectorField, complete_velocities,
+    Constrained, Counters, DormandPrince5, Effect, Fault, Outcome, ParameterError, Projection,
+    SceneEffects, Simulation, StateError, System, Tolerance, VectorField, complete_velocities,
+    effects::Moment,
 };
 use nalgebra::SVector;
 
@@ -12,7 +13,12 @@ type Vector = SVector<f64, 2>;
 type State = SVector<f64, 4>;
 
 /// A point of mass 1 on the circle `x dx + y dy = 0`.
-struct Circle;
+struct Circle {
+    /// Part of the velocity along the radius that is left where it is restored.
+    left: f64,
+}
+
+const CIRCLE: Circle = Circle { left: 0.0 };
 
 impl VectorField for Circle {
     type State = State;
@@ -85,7 +91,8 @@ impl Constrained for Circle {
     }
 
     fn restore(&self, t: f64, s: &mut State) -> Result<(), Fault> {
-        *s = self.state_nearest(t, &self.position(s), &self.velocity(t, s)?)?;
+        let near = self.state_nearest(t, &self.position(s), &self.velocity(t, s)?)?;
+        *s = near + self.left * (*s - near);
         Ok(())
     }
 
@@ -107,7 +114,7 @@ impl Constrained for Circle {
 fn drift(effects: impl Effect<Circle>) -> (f64, f64, u64) {
     let stepper = DormandPrince5::new(Tolerance::new(1e-6).unwrap());
     let state = State::new(2.0, 0.0, 0.0, 1.0);
-    let run = Simulation::new(&Circle, stepper, effects)
+    let run = Simulation::new(&CIRCLE, stepper, effects)
         .run(0.0, state, 1e3, &mut ())
         .unwrap();
     assert_eq!(run.outcome, Outcome::Done);
@@ -142,7 +149,7 @@ fn projection_can_be_switched_off() {
 fn open_velocities_are_completed_and_contradictions_refused() {
     let q = Vector::new(2.0, 1.0);
     let complete = |qdot: [f64; 2], named: [f64; 2]| {
-        complete_velocities(&Circle, 0.0, &q, &Vector::from(qdot), &Vector::from(named))
+        complete_velocities(&CIRCLE, 0.0, &q, &Vector::from(qdot), &Vector::from(named))
     };
     let completed = complete([0.0, 4.0], [0.0, 1.0]).unwrap();
     assert!((completed - Vector::new(-2.0, 4.0)).amax() < 1e-15);
@@ -156,4 +163,48 @@ fn open_velocities_are_completed_and_contradictions_refused() {
         Err(StateError::NotFinite { component: 3 })
     );
     assert_eq!(complete([f64::NAN, 4.0], [0.0, 1.0]), Ok(completed));
+}
+
+/// What projection makes of a state where a step was cut.
+fn settled(left: f64, mut state: State) -> Result<State, Outcome> {
+    let mut counters = Counters::default();
+    let mut now = Moment {
+        system: &Circle { left },
+        t: 0.0,
+        state: &mut state,
+        counters: &mut counters,
+    };
+    let mut projection = Projection::<Circle>::new();
+    projection.begin(&mut now, &mut ())?;
+    projection.settle(&mut now, true)?;
+    Ok(state)
+}
+
+#[test]
+fn a_residual_of_vanishing_terms_is_no_failure() {
+    // At the lowest point `y ydot` is all that is left of the residual, and restoring leaves rounding of it.
+    let rounding = f64::EPSILON;
+    for velocity in [[-1.0, 1e-11], [1e-9, 1e-5], [0.0, 1e-30], [0.0, 1e-300]] {
+        let state = State::new(0.0, -1.0, velocity[0], velocity[1]);
+        let after = settled(rounding, state).unwrap();
+        assert!(
+            after[2] == velocity[0] && after[3].abs() <= 1e-30 * velocity[1],
+            "{after:?}"
+        );
+    }
+}
+
+#[test]
+fn a_projection_that_does_not_reach_the_constraint_fails() {
+    for (left, velocity) in [
+        (1.0, [-1.0, 1e-3]),
+        (0.01, [1.0, 1e-3]),
+        (1.0, [0.0, 1e-30]),
+    ] {
+        let state = State::new(0.0, -1.0, velocity[0], velocity[1]);
+        assert_eq!(
+            settled(left, state),
+            Err(Outcome::ProjectionFailed { constraint: 0 })
+        );
+    }
 }

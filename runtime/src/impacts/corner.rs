@@ -1,6 +1,6 @@
 //! Corners: several surfaces hit at one time. Impacts are carried out one after the other, and their order may matter.
 
-use super::hits::Hits;
+use super::hits::{Hits, Order};
 use super::impulse::{Impacts, STILL};
 use super::policy::Corner;
 use crate::contract::Impacting;
@@ -15,66 +15,164 @@ const LONGEST: u32 = 100;
 /// own: squared `2^-40`, what rounding leaves of it in corners of small angles.
 const SAME: f64 = 1.0 / (1_u128 << 80) as f64;
 
-impl<Sys: Impacting> Impacts<Sys> {
-    /// The surface to be struck next.
-    pub(super) fn next(&self, hits: &Hits<Sys::Gaps>, rates: &Sys::Gaps) -> Option<usize> {
-        match self.policies.corner {
-            Corner::Stop | Corner::Ascending => hits.first_approached(rates),
-            Corner::Descending => hits.last_approached(rates),
+/// What is known of the order of the impacts at one moment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// Whether the order matters is to be found out where a round begins with several surfaces.
+    Open,
+    /// The order does not matter, or was chosen.
+    Settled,
+}
+
+/// How far the impacts of one moment are followed in advance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Until {
+    /// To the end of the round.
+    Round,
+    /// Until no surface at hand is approached.
+    End,
+}
+
+/// Finds out that impacts at one moment never end: without loss of energy they come back to a state they have left. The
+/// state is compared with those after impacts whose number is a power of two (Brent).
+///
+/// In a corner that leaves room to go, momenta grow in a direction into that room at every impact, and never return.
+pub(super) struct Recurrence<S> {
+    kept: Option<S>,
+    impacts: u64,
+}
+
+impl<S: StateVector> Recurrence<S> {
+    pub(super) fn new() -> Self {
+        Self {
+            kept: None,
+            impacts: 0,
         }
     }
 
-    /// The first and the last of several surfaces at hand, if it matters which of the two orders they are struck in.
-    pub(super) fn ambiguous(
-        &self,
+    /// Takes in the state after an impact. Returns whether it returned.
+    pub(super) fn add<Sys: Impacting<State = S>>(
+        &mut self,
+        now: &Moment<'_, Sys>,
+    ) -> Result<bool, Outcome> {
+        self.impacts += 1;
+        if self.impacts < u64::from(LONGEST) {
+            return Ok(false);
+        }
+        let is_back = match &self.kept {
+            Some(kept) => {
+                let system = now.system;
+                let velocity = system.velocity(now.t, now.state)?;
+                let momentum = system.momentum(now.t, now.state)?;
+                let pairs = velocity.as_slice().iter().zip(momentum.as_slice());
+                let size: f64 = pairs.map(|(v, p)| (v * p).abs()).sum();
+                energy_apart(now, kept, now.state)? <= SAME * size
+            }
+            None => false,
+        };
+        if self.kept.is_none() || self.impacts.is_power_of_two() {
+            self.kept = Some(*now.state);
+        }
+        Ok(is_back)
+    }
+}
+
+impl<Sys: Impacting> Impacts<Sys> {
+    /// The surface to be struck next.
+    pub(super) fn next(
+        &mut self,
+        hits: &mut Hits<Sys::Gaps>,
+        rates: &Sys::Gaps,
+        verdict: &mut Verdict,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<Option<usize>, Outcome> {
+        if hits.begin_round(rates) > 1
+            && *verdict == Verdict::Open
+            && let Some(surfaces) = self.ambiguous(hits, rates, verdict, now)?
+        {
+            return Err(Outcome::Ambiguous { surfaces });
+        }
+        Ok(hits.turn(rates, self.order()))
+    }
+
+    fn order(&self) -> Order {
+        match self.policies.corner {
+            Corner::Stop | Corner::Ascending => Order::Ascending,
+            Corner::Descending => Order::Descending,
+        }
+    }
+
+    /// What is known of the order before the first impact.
+    pub(super) fn verdict(&self) -> Verdict {
+        match self.policies.corner {
+            Corner::Stop => Verdict::Open,
+            Corner::Ascending | Corner::Descending => Verdict::Settled,
+        }
+    }
+
+    /// The first and the last of the surfaces of a round, if it matters which of the two orders they are struck in.
+    fn ambiguous(
+        &mut self,
         hits: &Hits<Sys::Gaps>,
         rates: &Sys::Gaps,
-        now: &Moment<'_, Sys>,
+        verdict: &mut Verdict,
+        now: &mut Moment<'_, Sys>,
     ) -> Result<Option<[usize; 2]>, Outcome> {
-        let ends = (hits.first_approached(rates), hits.last_approached(rates));
-        let (Some(first), Some(last)) = ends else {
+        if self.orders_agree(hits, rates, Until::Round, now)? {
             return Ok(None);
-        };
-        let ascending = self.carried(*hits, rates, now, Hits::first_approached)?;
-        let descending = self.carried(*hits, rates, now, Hits::last_approached)?;
+        }
+        // However the round is ordered, all that follows is the same.
+        *verdict = Verdict::Settled;
+        match self.orders_agree(hits, rates, Until::End, now)? {
+            true => Ok(None),
+            false => Ok(hits.ends(rates)),
+        }
+    }
+
+    /// Whether the impacts lead to the same state in both orders.
+    fn orders_agree(
+        &mut self,
+        hits: &Hits<Sys::Gaps>,
+        rates: &Sys::Gaps,
+        until: Until,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<bool, Outcome> {
+        let ascending = self.carried(*hits, rates, (Order::Ascending, until), now)?;
+        let descending = self.carried(*hits, rates, (Order::Descending, until), now)?;
         let (Some(ascending), Some(descending)) = (ascending, descending) else {
-            return Ok(None);
+            return Ok(true);
         };
         let place = |state: &Sys::State| (now.system.mode(state), now.system.position(state));
         if place(&ascending) != place(&descending) {
-            return Ok(Some([first, last]));
+            return Ok(false);
         }
-        let energy = |a: &Sys::State, b: &Sys::State| -> Result<f64, Outcome> {
-            let system = now.system;
-            let (v, w) = (system.velocity(now.t, a)?, system.velocity(now.t, b)?);
-            let (p, q) = (system.momentum(now.t, a)?, system.momentum(now.t, b)?);
-            let velocities = v.as_slice().iter().zip(w.as_slice());
-            let momenta = p.as_slice().iter().zip(q.as_slice());
-            Ok(velocities
-                .zip(momenta)
-                .map(|((v, w), (p, q))| (v - w) * (p - q))
-                .sum())
-        };
-        let difference = match energy(&ascending, &descending) {
+        let difference = match energy_apart(now, &ascending, &descending) {
             // A first-order system is where it is, and nothing besides.
-            Err(Outcome::FirstOrder) => return Ok(None),
+            Err(Outcome::FirstOrder) => return Ok(true),
             difference => difference?,
         };
-        let changes = energy(&ascending, now.state)?.max(energy(&descending, now.state)?);
-        Ok((difference > SAME * changes).then_some([first, last]))
+        let changes = energy_apart(now, &ascending, now.state)?.max(energy_apart(
+            now,
+            &descending,
+            now.state,
+        )?);
+        Ok(difference <= SAME * changes)
     }
 
-    /// The state after all impacts in an order; `None` if they do not end.
+    /// The state after the impacts in an order; `None` if they do not end.
     fn carried(
-        &self,
+        &mut self,
         mut hits: Hits<Sys::Gaps>,
         rates: &Sys::Gaps,
-        now: &Moment<'_, Sys>,
-        next: impl Fn(&Hits<Sys::Gaps>, &Sys::Gaps) -> Option<usize>,
+        (order, until): (Order, Until),
+        now: &mut Moment<'_, Sys>,
     ) -> Result<Option<Sys::State>, Outcome> {
         let (mut state, mut rates) = (*now.state, *rates);
         for _ in 0..LONGEST {
-            let Some(surface) = next(&hits, &rates) else {
+            if until == Until::End {
+                hits.begin_round(&rates);
+            }
+            let Some(surface) = hits.turn(&rates, order) else {
                 return Ok(Some(state));
             };
             let rate = rates.as_slice()[surface];
@@ -86,7 +184,25 @@ impl<Sys: Impacting> Impacts<Sys> {
             }
             (state, rates) = (struck.after, struck.rates);
             hits.set_still(surface, -rates.as_slice()[surface]);
+            self.watch.add_touching(&mut hits, &rates, now)?;
         }
         Ok(None)
     }
+}
+
+/// Twice the kinetic energy of the difference between the velocities of two states.
+fn energy_apart<Sys: Impacting>(
+    now: &Moment<'_, Sys>,
+    a: &Sys::State,
+    b: &Sys::State,
+) -> Result<f64, Outcome> {
+    let system = now.system;
+    let (v, w) = (system.velocity(now.t, a)?, system.velocity(now.t, b)?);
+    let (p, q) = (system.momentum(now.t, a)?, system.momentum(now.t, b)?);
+    let velocities = v.as_slice().iter().zip(w.as_slice());
+    let momenta = p.as_slice().iter().zip(q.as_slice());
+    Ok(velocities
+        .zip(momenta)
+        .map(|((v, w), (p, q))| (v - w) * (p - q))
+        .sum())
 }

@@ -1,6 +1,19 @@
-//! Which surfaces are at hand at one moment, and which of them are approached.
+//! Which surfaces are at hand at one moment, which of them are approached, and in which order they are struck.
+//!
+//! Surfaces are struck in rounds: first those that are approached on arrival, then those that the impacts of a round leave
+//! approached, and so on. So a wave of impacts passes through bodies that touch as it does through small gaps, if every
+//! gap takes equally long.
 
 use crate::state::StateVector;
+
+/// The order in which the surfaces of one round are struck.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Order {
+    /// First the surface declared first.
+    Ascending,
+    /// First the surface declared last.
+    Descending,
+}
 
 /// Surfaces at hand at one moment.
 #[derive(Debug, Clone, Copy)]
@@ -9,6 +22,10 @@ pub(super) struct Hits<G> {
     pub(super) at_hand: G,
     /// Gap rates above minus this count as not approaching.
     still: G,
+    /// 1 for surfaces that were approached when this round began and have not had their turn.
+    due: G,
+    /// 1 for surfaces that were struck at this moment.
+    struck: G,
 }
 
 impl<G: StateVector> Hits<G> {
@@ -17,6 +34,8 @@ impl<G: StateVector> Hits<G> {
         Self {
             at_hand: G::zeros(),
             still: G::zeros(),
+            due: G::zeros(),
+            struck: G::zeros(),
         }
     }
 
@@ -52,16 +71,44 @@ impl<G: StateVector> Hits<G> {
             .count()
     }
 
-    /// The first of them.
-    pub(super) fn first_approached(&self, rates: &G) -> Option<usize> {
-        (0..G::LEN).find(|&surface| self.is_approached(surface, rates))
+    /// The first and the last of them.
+    pub(super) fn ends(&self, rates: &G) -> Option<[usize; 2]> {
+        let mut approached = (0..G::LEN).filter(|&surface| self.is_approached(surface, rates));
+        let first = approached.next()?;
+        Some([first, approached.next_back().unwrap_or(first)])
     }
 
-    /// The last of them.
-    pub(super) fn last_approached(&self, rates: &G) -> Option<usize> {
-        (0..G::LEN)
-            .rev()
-            .find(|&surface| self.is_approached(surface, rates))
+    /// Begins a round if the last one is over. Returns the number of surfaces in it; 0 within a round.
+    pub(super) fn begin_round(&mut self, rates: &G) -> usize {
+        if self.due(rates).next().is_some() {
+            return 0;
+        }
+        for surface in 0..G::LEN {
+            let is_due = f64::from(u8::from(self.is_approached(surface, rates)));
+            self.due.as_mut_slice()[surface] = is_due;
+        }
+        self.due(rates).count()
+    }
+
+    /// The surface whose turn it is in this round; `None` where it is over.
+    pub(super) fn turn(&mut self, rates: &G, order: Order) -> Option<usize> {
+        let surface = match order {
+            Order::Ascending => self.due(rates).next(),
+            Order::Descending => self.due(rates).next_back(),
+        }?;
+        self.due.as_mut_slice()[surface] = 0.0;
+        Some(surface)
+    }
+
+    /// Surfaces of this round that have not had their turn and are still approached.
+    fn due<'a>(&'a self, rates: &'a G) -> impl DoubleEndedIterator<Item = usize> + 'a {
+        let is_due = |surface: usize| self.due.as_slice()[surface] == 1.0;
+        (0..G::LEN).filter(move |&surface| is_due(surface) && self.is_approached(surface, rates))
+    }
+
+    /// Notes an impact on a surface. Returns whether it was struck at this moment before.
+    pub(super) fn note_struck(&mut self, surface: usize) -> bool {
+        core::mem::replace(&mut self.struck.as_mut_slice()[surface], 1.0) == 1.0
     }
 
     /// The gap was seen to fall through 0: it counts as approached, whatever its rate.
@@ -80,6 +127,11 @@ impl<G: StateVector> Hits<G> {
         for still in self.still.as_mut_slice() {
             *still = still.max(0.0);
         }
+    }
+
+    /// Gap rates above minus this count as not approaching.
+    pub(super) fn still(&self, surface: usize) -> f64 {
+        self.still.as_slice()[surface]
     }
 
     /// From now on, gap rates above `-rate` count as not approaching.

@@ -2,13 +2,14 @@
 
 use core::ops::ControlFlow;
 
-use super::accumulation::{Accumulation, Ends};
+use super::accumulation::{Accumulation, Bounce, Ends};
+use super::corner::Recurrence;
 use super::held::Held;
 use super::hits::Hits;
 use super::instantaneous::focused;
 use super::law::{Blow, Law};
 use super::override_table::Overrides;
-use super::policy::{Corner, Penetration, Policies, Rest, Split};
+use super::policy::{Penetration, Policies, Rest, Split};
 use super::resting::Resting;
 use super::sliding::Slide;
 use super::watch::Watch;
@@ -29,9 +30,10 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 
 /// Impacts of a system on its surfaces, each by its declared law unless another was chosen.
 ///
-/// Hits at the same time (within rounding) are carried out in order of index, again and again until no surface at
-/// hand is approached. Where that order matters, where a law leaves the state approaching, and where the motion presses
-/// into a surface, the [`Policies`] say how to go on; by default the run ends, after an impact with the state after it.
+/// Hits at the same time (within rounding) are carried out in rounds, in each in order of index, until no surface at
+/// hand is approached. Surfaces that touch and that an impact leaves approached join the next round: so a wave of impacts
+/// passes through bodies that touch, in no time. Where the order of a round matters, where a law leaves the state
+/// approaching, and where the motion presses into a surface, the [`Policies`] say how to go on; by default the run ends, after an impact with the state after it.
 ///
 /// A surface with instantaneous constraints first brings the state to them ([`Impacting::focus`]). Where it still
 /// approaches, the law acts within them; along the surface they hold.
@@ -58,6 +60,29 @@ pub(super) struct Struck<Sys: Impacting> {
     by_impulse: bool,
     /// Whether rounding may have decided between two ways to go on.
     is_graze: bool,
+}
+
+/// An impact to be carried out.
+#[derive(Debug, Clone, Copy)]
+struct Strike {
+    surface: usize,
+    /// Gap rate at which the surface is approached.
+    rate: f64,
+    /// Whether other surfaces are hit at the same moment.
+    simultaneous: bool,
+    /// Gap rates above minus this count as not approaching.
+    still: f64,
+    /// Whether the surface was struck at this moment before.
+    again: bool,
+}
+
+/// What comes after an impact at the same moment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Next {
+    /// Impacts on the surfaces that are still approached.
+    Impacts,
+    /// Infinitely many impacts have led to their limit; surfaces that are still approached hold the motion.
+    Rest,
 }
 
 /// Transitions at one moment. There are few where they end: each loses energy (Cortes and Vinogradov, Remark 5.8).
@@ -132,6 +157,10 @@ impl<Sys: Impacting> Impacts<Sys> {
         step: &StepView<'_, Sys, Step>,
     ) -> Result<Option<f64>, Outcome> {
         let t = step.t_start();
+        let is_map = self.law_of(step.system, surface).is_map();
+        if is_map && self.accumulation.has_passed_on(surface, t) {
+            return Err(Outcome::Zeno { t, surface });
+        }
         // If it had bounced, hops have become too small to rise from the surface at all.
         let accumulation = self.accumulation.ends_at(surface, t);
         match (self.may_rest(surface), accumulation) {
@@ -164,28 +193,40 @@ impl<Sys: Impacting> Impacts<Sys> {
     ) -> Result<(), Outcome> {
         let mut rates = self.watch.rates_here(now)?;
         let mut several = hits.approached(&rates) > 1;
-        if several
-            && self.policies.corner == Corner::Stop
-            && let Some(surfaces) = self.ambiguous(&hits, &rates, now)?
-        {
-            return Err(Outcome::Ambiguous { surfaces });
-        }
+        let mut verdict = self.verdict();
         let mut passages = Passages(0);
-        while let Some(surface) = self.next(&hits, &rates) {
+        let mut recurrence = Recurrence::new();
+        while let Some(surface) = self.next(&mut hits, &rates, &mut verdict, now)? {
             if now.counters.impacts >= self.budget {
                 return Err(Outcome::ImpactBudget);
             }
-            let before = rates.as_slice()[surface];
-            if self.law_of(now.system, surface).is_map() {
-                let place = (now.system.mode(now.state), now.system.position(now.state));
-                let arrived = *now.state;
-                rates = self.impact(surface, several, before, now, observer)?;
-                let changes = now.system.mode(now.state) != place.0;
+            let rate = rates.as_slice()[surface];
+            let is_map = self.law_of(now.system, surface).is_map();
+            let mut still = STILL * rate.abs();
+            if !is_map {
+                if self.watch.is_tangential_crossing(surface) {
+                    return Err(Outcome::TangentialCrossing { surface });
+                }
+                hits.set_still(surface, still);
+                still = hits.still(surface);
+            }
+            let strike = Strike {
+                surface,
+                rate,
+                simultaneous: several,
+                still,
+                again: hits.note_struck(surface),
+            };
+            let arrived = *now.state;
+            let next;
+            (rates, next) = self.impact(strike, now, observer)?;
+            if is_map {
+                let changes = now.system.mode(now.state) != now.system.mode(&arrived);
                 match changes {
                     true => passages.count(surface)?,
                     false => hits.set_done(surface),
                 }
-                if changes || now.system.position(now.state) != place.1 {
+                if changes || now.system.position(now.state) != now.system.position(&arrived) {
                     self.watch.resize(&arrived, now.state);
                     self.watch.relocate(&mut hits, &rates, now)?;
                     self.resting.keep(&hits.at_hand, now, observer)?;
@@ -196,13 +237,15 @@ impl<Sys: Impacting> Impacts<Sys> {
                     self.slide(surface, &mut hits, &rates, now, observer)?;
                 }
             } else {
-                if self.watch.is_tangential_crossing(surface) {
-                    return Err(Outcome::TangentialCrossing { surface });
-                }
-                hits.set_still(surface, STILL * before.abs());
-                rates = self.impact(surface, several, before, now, observer)?;
                 // What still approaches here does so within rounding.
                 hits.set_still(surface, -rates.as_slice()[surface]);
+                self.watch.touch(&mut hits, &rates, now)?;
+                if recurrence.add(now)? {
+                    return Err(Outcome::Zeno { t: now.t, surface });
+                }
+            }
+            if next == Next::Rest {
+                break;
             }
             several = several || hits.approached(&rates) > 0;
         }
@@ -314,18 +357,22 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// One impact; returns the gap rates after it.
+    /// One impact; returns the gap rates after it, and what comes next.
     fn impact<O: Observer<Sys>>(
         &mut self,
-        surface: usize,
-        simultaneous: bool,
-        rate: f64,
+        strike: Strike,
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
-    ) -> Result<Sys::Gaps, Outcome> {
+    ) -> Result<(Sys::Gaps, Next), Outcome> {
+        let Strike {
+            surface,
+            rate,
+            simultaneous,
+            ..
+        } = strike;
         let (t, before) = (now.t, *now.state);
         let mut struck = self.struck(now.system, surface, rate, t, &before)?;
-        let penetrates = self.penetrates(surface, rate, struck.rates.as_slice()[surface], now);
+        let penetrates = self.penetrates(strike, struck.rates.as_slice()[surface], now);
         let repeats = struck.by_impulse && self.policies.penetration == Penetration::Repeat;
         if penetrates && repeats {
             struck.take_rate(now.system, surface, t)?;
@@ -356,42 +403,42 @@ impl<Sys: Impacting> Impacts<Sys> {
             // It goes on through the surface, or in another mode.
             false if penetrates || leads_on => match self.accumulation.pass(surface, t) {
                 Some(_) => Err(Outcome::Zeno { t, surface }),
-                None => Ok(struck.rates),
+                None => Ok((struck.rates, Next::Impacts)),
             },
-            _ => self.accumulate(surface, rate, struck, now),
+            _ => self.accumulate(strike, struck, now),
         }
     }
 
-    /// Whether the state still approaches a surface after an impact at gap rate `rate`.
-    fn penetrates(
-        &self,
-        surface: usize,
-        rate: f64,
-        rate_after: f64,
-        now: &mut Moment<'_, Sys>,
-    ) -> bool {
+    /// Whether the state still approaches a surface after an impact.
+    fn penetrates(&self, strike: Strike, rate_after: f64, now: &mut Moment<'_, Sys>) -> bool {
         // The sign of the rate after a slow impact may be made of rounding errors, which the impact has multiplied.
         let watch = &self.watch;
-        rate_after < -STILL * rate.abs()
+        let surface = strike.surface;
+        rate_after < -strike.still
             && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
     }
 
-    /// Takes in an impact at gap rate `rate`; returns the gap rates to go on with.
+    /// Takes in an impact; returns the gap rates to go on with.
     fn accumulate(
         &mut self,
-        surface: usize,
-        rate: f64,
+        strike: Strike,
         mut struck: Struck<Sys>,
         now: &mut Moment<'_, Sys>,
-    ) -> Result<Sys::Gaps, Outcome> {
+    ) -> Result<(Sys::Gaps, Next), Outcome> {
+        let Strike { surface, rate, .. } = strike;
         let (system, t) = (now.system, now.t);
         let rate_after = struck.rates.as_slice()[surface];
         // A reset sets the rate to its last digit; an impulse leaves rounding errors of the rate it takes.
         let still = match struck.by_impulse {
-            true => STILL * rate.abs(),
+            true => strike.still,
             false => 0.0,
         };
-        let bounce = if rate_after > still { rate_after } else { 0.0 };
+        let bounce = Bounce {
+            surface,
+            t,
+            rates: [rate, if rate_after > still { rate_after } else { 0.0 }],
+            again: strike.again,
+        };
         let may_rest = self.may_rest(surface);
         // A first-order system has no energy: whether its motion becomes faster is told by the rate it leaves the surface at.
         let energy = || match system.energy(t, &struck.after) {
@@ -401,15 +448,21 @@ impl<Sys: Impacting> Impacts<Sys> {
         };
         let watch = &self.watch;
         let rounding = || watch.rounding(surface, now);
-        match self.accumulation.add(surface, t, bounce, rounding, energy) {
-            None => Ok(struck.rates),
+        match self.accumulation.add(bounce, rounding, energy) {
+            None => Ok((struck.rates, Next::Impacts)),
             Some(Ends::Spasmodic(t)) => Err(Outcome::Spasmodic { t, surface }),
             Some(Ends::Hops(t)) if may_rest => {
                 // Hops too small to be seen: what is left of the last one is taken.
                 struck.take_rate(system, surface, now.t)?;
                 *now.state = struck.after;
                 self.resting.note_accumulation(surface, t);
-                Ok(struck.rates)
+                Ok((struck.rates, Next::Impacts))
+            }
+            // What does not bounce off is pressed.
+            Some(Ends::AtOneTime(_)) if bounce.rates[1] == 0.0 => Ok((struck.rates, Next::Rest)),
+            Some(Ends::AtOneTime(t)) if may_rest && bounce.rates[1] < rate.abs() => {
+                self.resting.note_accumulation(surface, t);
+                Ok((struck.rates, Next::Rest))
             }
             Some(Ends::Hops(t) | Ends::AtOneTime(t)) => Err(Outcome::Zeno { t, surface }),
         }

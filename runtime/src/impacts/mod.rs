@@ -21,6 +21,7 @@ mod search;
 mod series;
 mod sliding;
 mod tangency;
+mod touch;
 mod watch;
 
 pub use held::Held;

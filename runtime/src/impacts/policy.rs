@@ -52,8 +52,8 @@ pub enum Corner {
     /// End with [`Outcome::Ambiguous`](crate::Outcome::Ambiguous).
     #[default]
     Stop,
-    /// Always first the surface declared first.
+    /// Of the surfaces approached at one time, first the surface declared first.
     Ascending,
-    /// Always first the surface declared last.
+    /// Of the surfaces approached at one time, first the surface declared last.
     Descending,
 }

@@ -23,7 +23,7 @@ use crate::outcome::Outcome;
 use crate::state::StateVector;
 
 /// Only a surface that is hit within this part of a step after another is asked for its rounding.
-const BESIDE: f64 = 1.0 / (1 << 20) as f64;
+pub(super) const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 
 /// The gaps at the start of the coming step, and what was found in the last one looked at.
 #[derive(Debug, Clone)]
@@ -48,11 +48,11 @@ pub(super) struct Watch<Sys: Impacting> {
     /// What was evaluated where a hit was placed, perhaps the earliest.
     pub(super) place: Option<Place<Sys>>,
     /// Gaps at the position that impacts happen at, once they are known.
-    here: Option<Sys::Gaps>,
+    pub(super) here: Option<Sys::Gaps>,
     /// Largest absolute values of the state's components since the last impact: their rounding errors stay with it.
     pub(super) sizes: Sys::State,
     /// Steps since then: each has rounded the state.
-    steps: u32,
+    pub(super) steps: u32,
     /// The sum of their estimated errors, in units of the tolerance.
     pub(super) errors: f64,
     /// Surfaces that the motion is held on: their gaps are 0, and are not watched.

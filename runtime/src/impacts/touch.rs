@@ -1,0 +1,75 @@
+//! Surfaces that touch where an impact happens: their gaps are 0 there, and they were not approached before it.
+
+use super::glance::finite;
+use super::hits::Hits;
+use super::watch::{BESIDE, Watch};
+use crate::contract::Impacting;
+use crate::effects::Moment;
+use crate::outcome::Outcome;
+use crate::state::StateVector;
+
+impl<Sys: Impacting> Watch<Sys> {
+    /// Adds the surfaces that touch and are approached at these rates, after an impulse.
+    pub(super) fn touch(
+        &mut self,
+        hits: &mut Hits<Sys::Gaps>,
+        rates: &Sys::Gaps,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<(), Outcome> {
+        if Sys::Gaps::LEN == 1 {
+            return Ok(());
+        }
+        let before = hits.at_hand;
+        self.add_touching(hits, rates, now)?;
+        for surface in 0..Sys::Gaps::LEN {
+            if hits.at_hand.as_slice()[surface] != before.as_slice()[surface] {
+                // What was found out about the last hit on it is of another place.
+                self.grazes.as_mut_slice()[surface] = 0.0;
+                self.bends.as_mut_slice()[surface] = 0.0;
+            }
+        }
+        Ok(())
+    }
+
+    /// The same, without taking the surfaces in as hit.
+    pub(super) fn add_touching(
+        &mut self,
+        hits: &mut Hits<Sys::Gaps>,
+        rates: &Sys::Gaps,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<(), Outcome> {
+        for surface in 0..Sys::Gaps::LEN {
+            let is_candidate = hits.at_hand.as_slice()[surface] == 0.0
+                && rates.as_slice()[surface] < 0.0
+                && !self.is_passable(surface);
+            if is_candidate && self.touches(surface, rates.as_slice()[surface], now)? {
+                hits.add([surface].into_iter());
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the gap of a surface is 0 within rounding, and is reached at this rate in no time that counts.
+    fn touches(
+        &mut self,
+        surface: usize,
+        rate: f64,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<bool, Outcome> {
+        let gaps = match self.here {
+            Some(gaps) => gaps,
+            None => {
+                now.counters.event_evaluations += 1;
+                finite::<Sys>(now.system.gaps(now.t, now.state))?
+            }
+        };
+        self.here = Some(gaps);
+        let gap = gaps.as_slice()[surface];
+        if gap > BESIDE * rate.abs() * self.length {
+            return Ok(false);
+        }
+        let roundings = 2.0 + f64::from(self.steps) / 16.0;
+        let is_near = gap == 0.0 || gap.abs() <= roundings * self.rounding(surface, now);
+        Ok(is_near && now.system.surface_active(surface, now.t, now.state))
+    }
+}
