@@ -2,12 +2,12 @@
 //! demand that is not.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExtendedPoint, JetSpace, Jets, Pool, Real, SymbolId,
+    Arithmetic, BallPoint, EnclosedPoint, ExpansionPoint, JetSpace, Jets, Pool, RangePoint,
+    SymbolId,
 };
 
 use super::closure::{Hull, Origin, bracket};
 use super::dynamics::Number;
-use super::evidence::is_regular;
 use super::exactness::Local;
 use super::frame::{Demand, frame};
 use super::problem::Problem;
@@ -27,38 +27,23 @@ pub struct Obstruction {
     pub relation: Vec<(String, f64)>,
     /// What the bracket demands of the derivative of `G` less what the combination demands.
     pub delta: f64,
-    /// Sizes below which `delta` would be rounding.
+    /// The size of what `delta` was computed from.
     pub scale: f64,
+    /// Whether an enclosure shows that `delta` is not 0.
+    pub is_certain: bool,
 }
 
 /// Points that are tried.
 const ATTEMPTS: usize = 64;
-/// A delta counts from this part of its scale on: 18 digits above the rounding of extended numbers.
-const CLEAR: f64 = 1e-30;
-/// The same in doubles, which are tried first where series have more monomials than [`LARGE`].
-const CLEAR_IN_DOUBLES: f64 = 1e-4;
+/// Series with more monomials are enclosed in doubles first.
 const LARGE: usize = 200;
-/// A combination that leaves more than this part, or [`CLEAR`], is none.
+/// What doubles enclose to this part of it has the digits that are printed.
+const SHARP: f64 = 1e-9;
+/// A combination that may leave more than this part in doubles, or in balls, is none.
 const REMAINDER: f64 = 1e-9;
+const REMAINDER_OF_BALLS: f64 = 1e-30;
 /// Vectors whose elimination meets a smaller pivot count as dependent.
 const LEAST_PIVOT: f64 = 1e-9;
-
-/// A number as a double.
-trait Nearest: Copy {
-    fn nearest(self) -> f64;
-}
-
-impl Nearest for f64 {
-    fn nearest(self) -> f64 {
-        self
-    }
-}
-
-impl Nearest for Real {
-    fn nearest(self) -> f64 {
-        Real::nearest(&self)
-    }
-}
 
 /// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none. Where the hull does not span, a
 /// combination of its elements is only known on the branches that residues saw: with roots it must show at all points that are tried.
@@ -73,8 +58,10 @@ pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Opti
         let Some(found) = obstruction_at(model, problem, local, sample) else {
             continue;
         };
-        let is_clear = is_regular(found.delta) && found.delta.abs() > CLEAR * found.scale;
-        match (is_clear, has_branches) {
+        match (
+            found.is_certain && found.sample.is_allowed(model),
+            has_branches,
+        ) {
             (true, false) => return Some(found),
             (true, true) => {
                 shown.get_or_insert(found);
@@ -127,44 +114,32 @@ fn obstruction_at(
     let monomials =
         JetSpace::new(problem.variables.len(), local.hull.growth.len(), usize::MAX)?.len();
     if monomials > LARGE {
-        let mut point = sample.point();
-        let found = obstruction_with(
-            model,
-            problem,
-            local,
-            sample.clone(),
-            &mut point,
-            CLEAR_IN_DOUBLES,
-        );
-        if let Some(found) =
-            found.filter(|found| found.delta.abs() > CLEAR_IN_DOUBLES * found.scale)
-        {
+        let found = obstruction_with::<EnclosedPoint>(model, problem, local, &sample, REMAINDER);
+        if let Some((found, true)) = found.filter(|(found, _)| found.is_certain) {
             return Some(found.with_eight_digits());
         }
     }
-    let mut point = ExtendedPoint::of(&sample.point());
-    obstruction_with(model, problem, local, sample, &mut point, CLEAR)
+    let found = obstruction_with::<BallPoint>(model, problem, local, &sample, REMAINDER_OF_BALLS);
+    found.map(|(found, _)| found)
 }
 
-/// The obstruction in the numbers of a point; what is below a part `clear` of its scale counts as 0.
-fn obstruction_with<P: ExpansionPoint>(
+/// The obstruction in ranges, and whether all numbers that are shown are sharp; a combination may leave a part `least` of the
+/// size of vectors.
+fn obstruction_with<P: RangePoint>(
     model: &Model,
     problem: &Problem,
     local: &Local,
-    sample: Sample,
-    point: &mut P,
-    clear: f64,
-) -> Option<Obstruction>
-where
-    Number<P>: Nearest,
-{
+    sample: &Sample,
+    least: f64,
+) -> Option<(Obstruction, bool)> {
+    let mut point = P::of(&sample.point());
     let field = point.field();
     let elements = elements_at(
         &model.pool,
         problem,
         &local.hull,
         Some(&local.dependent),
-        point,
+        &mut point,
     )?;
     let names = names(
         &local.hull,
@@ -183,46 +158,58 @@ where
     let vector = |element: usize| &elements[element][..width];
     let others: Vec<&[Number<P>]> = before.iter().map(|e| vector(*e)).collect();
     let coefficients = combine(field, &others, vector(position))?;
-    let size = elements.iter().map(|own| largest(own)).fold(0.0, f64::max);
+    let size = elements
+        .iter()
+        .map(|own| largest::<P>(own))
+        .fold(0.0, f64::max);
     // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
     let rest = remainder(field, &others, &coefficients, vector(position));
-    if largest(&rest) > clear.min(REMAINDER) * size {
+    let may_vanish = |range: &Number<P>| P::sign(*range).is_none();
+    if largest::<P>(&rest) > least * size || !rest.iter().all(may_vanish) {
         return None;
     }
     let mut delta = elements[position][width];
-    let mut scale = size + delta.nearest().abs();
+    let mut scale = size + P::nearest(delta).abs();
     for (coefficient, element) in coefficients.iter().zip(&before) {
         let part = field.mul(*coefficient, elements[*element][width]);
         delta = field.sub(delta, part);
-        scale += part.nearest().abs();
+        scale += P::nearest(part).abs();
     }
-    let relation = before
-        .iter()
-        .zip(&coefficients)
-        .filter(|(_, coefficient)| coefficient.nearest().abs() > clear.min(REMAINDER))
-        .map(|(element, coefficient)| (names[*element].clone(), coefficient.nearest()))
+    let relation: Vec<(usize, Number<P>)> = before
+        .into_iter()
+        .zip(coefficients)
+        .filter(|(_, coefficient)| P::sign(*coefficient).is_some())
         .collect();
+    let is_sharp = |range: Number<P>| P::radius(range) <= SHARP * P::nearest(range).abs();
+    let are_sharp = is_sharp(delta) && relation.iter().all(|(_, own)| is_sharp(*own));
+    let relation = relation.into_iter();
+    let relation = relation.map(|(element, own)| (names[element].clone(), P::nearest(own)));
     let is_generator =
         |element: &usize| matches!(local.hull.elements[*element], Origin::Generator(_));
-    Some(Obstruction {
+    let found = Obstruction {
         frame: (0..elements.len())
             .filter(is_generator)
-            .map(|element| (names[element].clone(), nearest(vector(element))))
+            .map(|element| (names[element].clone(), nearest::<P>(vector(element))))
             .collect(),
-        sample,
+        sample: sample.clone(),
         bracket: names[position].clone(),
-        relation,
-        delta: delta.nearest(),
+        relation: relation.collect(),
+        delta: P::nearest(delta),
         scale,
-    })
+        is_certain: P::sign(delta).is_some(),
+    };
+    Some((found, are_sharp))
 }
 
-fn nearest<T: Nearest>(values: &[T]) -> Vec<f64> {
-    values.iter().map(|own| own.nearest()).collect()
+fn nearest<P: RangePoint>(ranges: &[Number<P>]) -> Vec<f64> {
+    ranges.iter().map(|own| P::nearest(*own)).collect()
 }
 
-fn largest<T: Nearest>(values: &[T]) -> f64 {
-    let sizes = values.iter().map(|own| own.nearest().abs());
+/// The largest absolute value, or a little more.
+fn largest<P: RangePoint>(ranges: &[Number<P>]) -> f64 {
+    let sizes = ranges
+        .iter()
+        .map(|own| P::nearest(*own).abs() + P::radius(*own));
     sizes.fold(0.0, f64::max)
 }
 

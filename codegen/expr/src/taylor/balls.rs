@@ -184,8 +184,13 @@ impl RangePoint for BallPoint {
         range.radius()
     }
 
-    fn widened(range: Ball, radius: f64) -> Ball {
-        range.widened(radius)
+    fn ends(range: Ball) -> [Ball; 2] {
+        let (middle, radius) = (range.midpoint(), Ball::double(range.radius()));
+        [middle.sub(radius), middle.add(radius)]
+    }
+
+    fn widened(range: Ball, distance: f64) -> Ball {
+        range.widened(distance)
     }
 }
 

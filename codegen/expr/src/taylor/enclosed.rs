@@ -11,7 +11,7 @@ use crate::pool::Pool;
 use crate::rational::Rational;
 
 /// A point whose numbers are ranges: what is known of a range holds for the number that is meant.
-pub trait RangePoint: ExpansionPoint {
+pub trait RangePoint: ExpansionPoint + Clone {
     /// A part of a number that is a few times its uncertainty after some operations.
     const CLOSE: f64;
 
@@ -29,6 +29,9 @@ pub trait RangePoint: ExpansionPoint {
 
     /// A bound of the distance of numbers in the range from the middle.
     fn radius(range: Range<Self>) -> f64;
+
+    /// Ranges of the least and the largest number.
+    fn ends(range: Range<Self>) -> [Range<Self>; 2];
 
     /// The range with everything that is no further away than a distance.
     fn widened(range: Range<Self>, distance: f64) -> Range<Self>;
@@ -196,6 +199,10 @@ impl RangePoint for EnclosedPoint {
 
     fn radius(range: Interval) -> f64 {
         (range.hi - range.lo).next_up()
+    }
+
+    fn ends(range: Interval) -> [Interval; 2] {
+        [range.lo, range.hi].map(Interval::point)
     }
 
     fn widened(range: Interval, distance: f64) -> Interval {
