@@ -374,3 +374,137 @@ pub(super) fn in_arguments(pool: &Pool, roots: &[ExprId], symbols: &[SymbolId]) 
 pub(super) fn is_regular(sum: f64) -> bool {
     sum.is_finite() && sum.abs() > LEAST
 }
+
+#[cfg(test)]
+mod tests {
+    use dalembert_expr::Rational;
+
+    use super::*;
+
+    /// A sum of expressions of coordinates, with a size below which doubles would be rounding.
+    struct Sum {
+        terms: Vec<ExprId>,
+        size: f64,
+    }
+
+    impl Vanishing for Sum {
+        fn roots(&self) -> Vec<ExprId> {
+            self.terms.clone()
+        }
+
+        fn settle(&self, _: &Model, _: &mut ModularPoint) -> Option<()> {
+            Some(())
+        }
+
+        fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
+            let sample = sample::sample(model, attempt, sample::uses(&model.pool, &self.terms));
+            let point = sample.point();
+            Some((sample, point))
+        }
+
+        fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+            let values = point.values(&model.pool, &model.pool.reachable(&self.terms))?;
+            Some(self.terms.iter().map(|term| values[term.index()]).collect())
+        }
+
+        fn scale(&self, _: &Model, _: &mut RealPoint) -> Option<f64> {
+            Some(self.size)
+        }
+
+        fn enclosed<P: RangePoint>(&self, _: &Model, point: &RealPoint) -> Option<P> {
+            Some(P::of(point))
+        }
+
+        fn shown(&self, _: &Model, _: &[f64], sum: f64) -> Vec<(String, f64)> {
+            vec![("sum".to_owned(), sum)]
+        }
+    }
+
+    /// A model of two coordinates with a potential.
+    fn model(potential: &str) -> Model {
+        let declaration = format!(
+            "pub Sample {{ coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2 - ({potential}); }}"
+        );
+        let tokens = declaration.parse().expect("tokens");
+        crate::compile(tokens).expect("a model").model
+    }
+
+    /// `(x + y)^2 - x^2 - 2 x y - y^2` and a part of `y`.
+    fn binomial(model: &mut Model, part: &Rational) -> Vec<ExprId> {
+        let [x, y] = [0, 1].map(|i| model.pool.variable(model.coordinates[i].q));
+        let square = |model: &mut Model, of: ExprId| model.pool.pow(of, Rational::from(2));
+        let sum = model.pool.add(x, y);
+        let product = model.pool.mul(x, y);
+        let [whole, first, second] = [sum, x, y].map(|own| square(model, own));
+        let minus = Rational::MINUS_ONE;
+        vec![
+            whole,
+            model.pool.scale(&minus, first),
+            model.pool.scale(&Rational::from(-2), product),
+            model.pool.scale(&minus, second),
+            model.pool.scale(part, y),
+        ]
+    }
+
+    #[test]
+    fn rounding_is_never_counted() {
+        let mut model = model("0");
+        let terms = binomial(&mut model, &Rational::ZERO);
+        // A size for which every rounding of doubles would be clear.
+        let question = Sum { terms, size: 0.0 };
+        let rounded = (0..WITNESSES).filter(|attempt| {
+            let (_, mut point) = question.sample(&model, *attempt).expect("a sample");
+            let terms = question.terms(&model, &mut point).expect("values");
+            terms.iter().sum::<f64>() != 0.0
+        });
+        assert!(rounded.count() > 8, "doubles should not be exact here");
+        let seen = real_evidence(&model, &question, Search::Difference);
+        assert!(seen.witness.is_none() && seen.is_real);
+        let found = evidence(&model, &question, 1);
+        assert!(found.shows_that_it_vanishes());
+    }
+
+    #[test]
+    fn small_differences_are_enclosed_away_from_0() {
+        for digits in [20, 30, 60] {
+            let mut model = model("0");
+            let tiny = Rational::from_decimal(&format!("1e-{digits}")).expect("a number");
+            let terms = binomial(&mut model, &tiny);
+            let question = Sum { terms, size: 1.0 };
+            let seen = real_evidence(&model, &question, Search::Difference);
+            let (sample, values) = seen.witness.expect("a witness");
+            let y = sample.value(model.coordinates[1].q).expect("a value");
+            let expected = tiny.to_f64() * y;
+            assert!((values[0].1 - expected).abs() < 1e-12 * expected.abs());
+        }
+    }
+
+    #[test]
+    fn what_no_enclosure_confirms_keeps_a_proof_from_being_made() {
+        let mut model = model("0");
+        let terms = binomial(&mut model, &Rational::ZERO);
+        let question = Sum { terms, size: 0.0 };
+        let seen = real_evidence(&model, &question, Search::Difference);
+        assert!(seen.is_suspect);
+        let question = Sum {
+            size: 1.0,
+            ..question
+        };
+        let seen = real_evidence(&model, &question, Search::Difference);
+        assert!(!seen.is_suspect);
+    }
+
+    #[test]
+    fn states_without_a_lagrangian_show_nothing() {
+        // Its derivatives have values where it has none.
+        let mut model = model("ln(x)");
+        let x = model.pool.variable(model.coordinates[0].q);
+        let size = model.pool.call(dalembert_expr::Function::Abs, x);
+        let minus = model.pool.neg(size);
+        let terms = vec![x, minus];
+        let question = Sum { terms, size: 1.0 };
+        let seen = real_evidence(&model, &question, Search::Difference);
+        assert!(seen.witness.is_none(), "|x| = x where ln(x) has a value");
+        assert!(!seen.is_suspect);
+    }
+}

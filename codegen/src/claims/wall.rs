@@ -461,3 +461,44 @@ fn polynomials(model: &mut Model, gap: ExprId, coordinates: &[SymbolId]) -> Vec<
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use dalembert_expr::{BallPoint, EnclosedPoint};
+
+    use super::*;
+
+    /// The range in which a circle of radius 1 is looked for, next to the point where `x` is given and `y` is 0.3.
+    fn enclosed<P: RangePoint>(x: f64) -> Option<(f64, f64)> {
+        let declaration = "pub Sample { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
+            impacts { wall: x^2 + y^2 >= 1 => elastic; } }";
+        let compiled = crate::compile(declaration.parse().expect("tokens")).expect("a model");
+        let mut model = compiled.model;
+        let wall = Wall::of(&mut model, &compiled.derivation, 0);
+        let [first, second] = [0, 1].map(|i| model.coordinates[i].q);
+        let mut point = RealPoint::default();
+        point.set(first, x);
+        point.set(second, 0.3);
+        let mut point = P::of(&point);
+        wall.enclose(&model, &mut point)?;
+        let range = point.symbol(&model.pool, first);
+        Some((P::nearest(range), P::radius(range)))
+    }
+
+    #[test]
+    fn a_position_on_the_surface_is_enclosed() {
+        let root = 0.91_f64.sqrt();
+        for found in [enclosed::<EnclosedPoint>(root), enclosed::<BallPoint>(root)] {
+            let (place, radius) = found.expect("a range");
+            assert!((place - root).abs() < 1e-15 && radius < 1e-12);
+        }
+        let (_, radius) = enclosed::<BallPoint>(root).expect("a range");
+        assert!(radius < 1e-59, "{radius:e}");
+    }
+
+    #[test]
+    fn a_position_off_the_surface_is_not() {
+        // Steps of Newton's method halve what is far out.
+        assert_eq!(enclosed::<BallPoint>(5e5), None);
+    }
+}
