@@ -29,14 +29,15 @@ pub struct Obstruction {
     pub delta: f64,
     /// The size of what `delta` was computed from.
     pub scale: f64,
-    /// Whether an enclosure shows that `delta` is not 0.
+    /// Whether there is an obstruction for certain: by an enclosure of `delta`, or by residues alone.
     pub is_certain: bool,
 }
 
 /// Points that are tried.
 const ATTEMPTS: usize = 64;
-/// Series with more monomials are enclosed in doubles first.
+/// Series with more monomials are computed in doubles first, and taken from there if `delta` is no smaller part of its scale.
 const LARGE: usize = 200;
+const CLEAR_IN_DOUBLES: f64 = 1e-4;
 /// What doubles enclose to this part of it has the digits that are printed.
 const SHARP: f64 = 1e-9;
 /// A combination that may leave more than this part in doubles, or in balls, is none.
@@ -111,106 +112,158 @@ fn obstruction_at(
     local: &Local,
     sample: Sample,
 ) -> Option<Obstruction> {
+    let question = Question {
+        model,
+        problem,
+        local,
+        sample,
+    };
     let monomials =
         JetSpace::new(problem.variables.len(), local.hull.growth.len(), usize::MAX)?.len();
     if monomials > LARGE {
-        let found = obstruction_with::<EnclosedPoint>(model, problem, local, &sample, REMAINDER);
-        if let Some((found, true)) = found.filter(|(found, _)| found.is_certain) {
-            return Some(found.with_eight_digits());
+        let found = match local.is_proof {
+            true => question.in_doubles(),
+            false => question.enclosed::<EnclosedPoint>(REMAINDER),
+        };
+        if found.as_ref().is_some_and(|found| found.is_certain) {
+            return found.map(Obstruction::with_eight_digits);
         }
     }
-    let found = obstruction_with::<BallPoint>(model, problem, local, &sample, REMAINDER_OF_BALLS);
-    found.map(|(found, _)| found)
+    question.enclosed::<BallPoint>(REMAINDER_OF_BALLS)
 }
 
-/// The obstruction in ranges, and whether all numbers that are shown are sharp; a combination may leave a part `least` of the
-/// size of vectors.
-fn obstruction_with<P: RangePoint>(
-    model: &Model,
-    problem: &Problem,
-    local: &Local,
-    sample: &Sample,
-    least: f64,
-) -> Option<(Obstruction, bool)> {
-    let mut point = P::of(&sample.point());
-    let field = point.field();
-    let elements = elements_at(
-        &model.pool,
-        problem,
-        &local.hull,
-        Some(&local.dependent),
-        &mut point,
-    )?;
-    let names = names(
-        &local.hull,
-        local.hull.elements.len(),
-        drift(problem, &model.pool),
-    );
-    let position = local.hull.obstruction?;
-    let before: Vec<usize> = local
-        .hull
-        .basis
-        .iter()
-        .copied()
-        .filter(|element| *element < position)
-        .collect();
-    let width = elements[position].len() - 1;
-    let vector = |element: usize| &elements[element][..width];
-    let others: Vec<&[Number<P>]> = before.iter().map(|e| vector(*e)).collect();
-    let coefficients = combine(field, &others, vector(position))?;
-    let size = elements
-        .iter()
-        .map(|own| largest::<P>(own))
-        .fold(0.0, f64::max);
-    // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
-    let rest = remainder(field, &others, &coefficients, vector(position));
-    let may_vanish = |range: &Number<P>| P::sign(*range).is_none();
-    if largest::<P>(&rest) > least * size || !rest.iter().all(may_vanish) {
-        return None;
+/// A hull with an obstruction, and a point.
+struct Question<'q> {
+    model: &'q Model,
+    problem: &'q Problem,
+    local: &'q Local,
+    sample: Sample,
+}
+
+/// What an obstruction is made of.
+struct Parts<S> {
+    /// The elements of the hull, the demand last.
+    elements: Vec<Vec<S>>,
+    /// The basis in front of the bracket, with the coefficients of the bracket in it.
+    relation: Vec<(usize, S)>,
+    /// The bracket less the combination.
+    rest: Vec<S>,
+    /// The demands of the bracket and of the terms of the combination, and the difference.
+    demands: Vec<S>,
+    delta: S,
+}
+
+impl Question<'_> {
+    /// The obstruction in doubles, which are shown where residues alone decide.
+    fn in_doubles(&self) -> Option<Obstruction> {
+        let parts = self.parts(&mut self.sample.point())?;
+        let size = |values: &[f64]| {
+            values
+                .iter()
+                .fold(0.0, |size: f64, own| size.max(own.abs()))
+        };
+        let whole = parts.elements.iter().map(|own| size(own));
+        if size(&parts.rest) > REMAINDER * whole.fold(0.0, f64::max) {
+            return None;
+        }
+        let is_seen = |coefficient: f64| coefficient.abs() > REMAINDER;
+        let found = self.obstruction(&parts, |value| value, is_seen);
+        Some(Obstruction {
+            is_certain: found.delta.abs() > CLEAR_IN_DOUBLES * found.scale,
+            ..found
+        })
     }
-    let mut delta = elements[position][width];
-    let mut scale = size + P::nearest(delta).abs();
-    for (coefficient, element) in coefficients.iter().zip(&before) {
-        let part = field.mul(*coefficient, elements[*element][width]);
-        delta = field.sub(delta, part);
-        scale += P::nearest(part).abs();
+
+    /// The obstruction in ranges, certain if that of `delta` excludes 0 and all that is shown is sharp; a combination may leave a part `least` of
+    /// the size of vectors.
+    fn enclosed<P: RangePoint>(&self, least: f64) -> Option<Obstruction> {
+        let parts = self.parts(&mut P::of(&self.sample.point()))?;
+        let sizes = |ranges: &[Number<P>]| {
+            let sizes = ranges
+                .iter()
+                .map(|own| P::nearest(*own).abs() + P::radius(*own));
+            sizes.fold(0.0, f64::max)
+        };
+        let whole = parts.elements.iter().map(|own| sizes(own));
+        // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
+        let may_vanish = |range: &Number<P>| P::sign(*range).is_none();
+        let is_combination = parts.rest.iter().all(may_vanish)
+            && sizes(&parts.rest) <= least * whole.fold(0.0, f64::max);
+        if !is_combination {
+            return None;
+        }
+        let is_seen = |coefficient| P::sign(coefficient).is_some();
+        let is_sharp = |range| P::radius(range) <= SHARP * P::nearest(range).abs();
+        let mut seen = parts.relation.iter().filter(|(_, own)| is_seen(*own));
+        Some(Obstruction {
+            is_certain: is_seen(parts.delta)
+                && is_sharp(parts.delta)
+                && seen.all(|(_, own)| is_sharp(*own)),
+            ..self.obstruction(&parts, P::nearest, is_seen)
+        })
     }
-    let relation: Vec<(usize, Number<P>)> = before
-        .into_iter()
-        .zip(coefficients)
-        .filter(|(_, coefficient)| P::sign(*coefficient).is_some())
-        .collect();
-    let is_sharp = |range: Number<P>| P::radius(range) <= SHARP * P::nearest(range).abs();
-    let are_sharp = is_sharp(delta) && relation.iter().all(|(_, own)| is_sharp(*own));
-    let relation = relation.into_iter();
-    let relation = relation.map(|(element, own)| (names[element].clone(), P::nearest(own)));
-    let is_generator =
-        |element: &usize| matches!(local.hull.elements[*element], Origin::Generator(_));
-    let found = Obstruction {
-        frame: (0..elements.len())
-            .filter(is_generator)
-            .map(|element| (names[element].clone(), nearest::<P>(vector(element))))
-            .collect(),
-        sample: sample.clone(),
-        bracket: names[position].clone(),
-        relation: relation.collect(),
-        delta: P::nearest(delta),
-        scale,
-        is_certain: P::sign(delta).is_some(),
-    };
-    Some((found, are_sharp))
-}
 
-fn nearest<P: RangePoint>(ranges: &[Number<P>]) -> Vec<f64> {
-    ranges.iter().map(|own| P::nearest(*own)).collect()
-}
+    fn parts<P: ExpansionPoint>(&self, point: &mut P) -> Option<Parts<Number<P>>> {
+        let hull = &self.local.hull;
+        let field = point.field();
+        let dependent = Some(self.local.dependent.as_slice());
+        let elements = elements_at(&self.model.pool, self.problem, hull, dependent, point)?;
+        let position = hull.obstruction?;
+        let before = hull.basis.iter().copied();
+        let before: Vec<usize> = before.filter(|element| *element < position).collect();
+        let width = elements[position].len() - 1;
+        let vector = |element: usize| &elements[element][..width];
+        let others: Vec<&[Number<P>]> = before.iter().map(|e| vector(*e)).collect();
+        let coefficients = combine(field, &others, vector(position))?;
+        let rest = remainder(field, &others, &coefficients, vector(position));
+        let mut delta = elements[position][width];
+        let mut demands = vec![delta];
+        for (coefficient, element) in coefficients.iter().zip(&before) {
+            let part = field.mul(*coefficient, elements[*element][width]);
+            delta = field.sub(delta, part);
+            demands.push(part);
+        }
+        Some(Parts {
+            relation: before.into_iter().zip(coefficients).collect(),
+            elements,
+            rest,
+            demands,
+            delta,
+        })
+    }
 
-/// The largest absolute value, or a little more.
-fn largest<P: RangePoint>(ranges: &[Number<P>]) -> f64 {
-    let sizes = ranges
-        .iter()
-        .map(|own| P::nearest(*own).abs() + P::radius(*own));
-    sizes.fold(0.0, f64::max)
+    /// The numbers that are shown.
+    fn obstruction<S: Copy>(
+        &self,
+        parts: &Parts<S>,
+        nearest: impl Fn(S) -> f64,
+        is_seen: impl Fn(S) -> bool,
+    ) -> Obstruction {
+        let hull = &self.local.hull;
+        let drift = drift(self.problem, &self.model.pool);
+        let names = names(hull, hull.elements.len(), drift);
+        let numbers = |values: &[S]| values.iter().map(|own| nearest(*own)).collect::<Vec<_>>();
+        let sizes = |values: &[S]| numbers(values).into_iter().map(f64::abs);
+        let largest = parts.elements.iter().flat_map(|own| sizes(own));
+        let seen = parts.relation.iter().filter(|(_, own)| is_seen(*own));
+        let generators = hull.elements.iter().enumerate();
+        let generators = generators.filter(|(_, origin)| matches!(origin, Origin::Generator(_)));
+        let frame = generators.map(|(element, _)| {
+            let (_, vector) = parts.elements[element].split_last().unzip();
+            (names[element].clone(), numbers(vector.unwrap_or_default()))
+        });
+        Obstruction {
+            frame: frame.collect(),
+            sample: self.sample.clone(),
+            bracket: names[hull.obstruction.unwrap_or_default()].clone(),
+            relation: seen
+                .map(|(element, own)| (names[*element].clone(), nearest(*own)))
+                .collect(),
+            delta: nearest(parts.delta),
+            scale: largest.fold(0.0, f64::max) + sizes(&parts.demands).sum::<f64>(),
+            is_certain: false,
+        }
+    }
 }
 
 /// `target` less a combination of vectors.

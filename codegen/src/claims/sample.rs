@@ -52,9 +52,9 @@ impl Sample {
         }
     }
 
-    /// True if all coordinates are where they are declared to be, away from the ends by more than rounding.
+    /// True if all coordinates are where they are declared to be. A surface may be at an end: rounding beyond it is allowed.
     pub(super) fn is_allowed(&self, model: &Model) -> bool {
-        let is_above = |value: f64, end: f64| value - end > NEAR_END * (1.0 + end.abs());
+        let is_above = |value: f64, end: f64| value >= end - ROUNDING * (1.0 + end.abs());
         model.coordinates.iter().all(|coordinate| {
             let Some(value) = self.value(coordinate.q) else {
                 return true;
@@ -99,8 +99,8 @@ const HUNDREDTHS: [i32; 16] = [
     36, -53, 39, 81, -28, 67, -74, 45, 92, -17, 58, -86, 23, 71, -42, 64,
 ];
 
-/// A coordinate that is no further from an end of its interval may be beyond it.
-const NEAR_END: f64 = 1e-12;
+/// A part of a number by which a root that was found in doubles may be off.
+const ROUNDING: f64 = 1e-12;
 
 /// Attempts with the declared defaults of parameters.
 const DECLARED: usize = 8;

@@ -113,7 +113,8 @@ impl Ball {
             angle = angle.add(rest(middle, angle)?).midpoint();
         }
         let radius = rest(self, angle)?.magnitude();
-        Some(angle.widened(radius))
+        // An angle further away could be off by a turn.
+        (angle.magnitude() < 1.6).then(|| angle.widened(radius))
     }
 
     /// `asin(self)`; `None` where there may be none.

@@ -109,7 +109,7 @@ impl Wide {
 
     /// At most the absolute value.
     pub(super) fn at_least(&self) -> f64 {
-        self.leading(0, f64::MAX, 0.0)
+        self.leading(0, power_of_two(1023), 0.0)
     }
 
     /// The first 53 bits, with an integer added in the last place; other values beyond the range of doubles.
@@ -438,6 +438,15 @@ mod tests {
             let near = number.nearest().abs();
             assert!(number.at_least() <= near && near <= number.at_most());
         }
+    }
+
+    #[test]
+    fn bounds_hold_beyond_the_range_of_doubles() {
+        let large = Wide::integer(1).shifted(1023);
+        assert!(large.at_least() <= 2f64.powi(1023) && large.at_most() == f64::INFINITY);
+        let small = Wide::integer(1).shifted(-1100);
+        assert!(small.at_least() == 0.0 && small.at_most() > 0.0);
+        assert_eq!(large.shifted(-1100).nearest(), 2f64.powi(-77));
     }
 
     #[test]
