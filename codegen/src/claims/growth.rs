@@ -174,7 +174,8 @@ impl<'l> Loop<'l> {
         let mut point = BallPoint::of(&sample.point());
         let mut sum = Ball::ZERO;
         for k in 0..points {
-            let turn = Ball::double(k as f64 + SHIFT).mul(step);
+            // NOTE: the sum converges for points of equal distance, which `k + SHIFT` in doubles are not.
+            let turn = Ball::integer(k as i64).add(Ball::double(SHIFT)).mul(step);
             for (i, count) in self.turns {
                 let angle = whole.mul(turn).mul(Ball::integer(*count));
                 point.set_symbol(self.model.coordinates[*i].q, angle);
