@@ -169,22 +169,22 @@ impl<'l> Loop<'l> {
 
     /// The sum by a number of points, computed with 76 digits.
     fn precise(&self, sample: &Sample, points: usize) -> Option<f64> {
-        let whole = Ball::pi().mul(Ball::integer(2));
+        let whole = Ball::pi() * Ball::integer(2);
         let step = Ball::integer(points as i64).inverse()?;
         let mut point = BallPoint::of(&sample.point());
         let mut sum = Ball::ZERO;
         for k in 0..points {
             // NOTE: the sum converges for points of equal distance, which `k + SHIFT` in doubles are not.
-            let turn = Ball::integer(k as i64).add(Ball::double(SHIFT)).mul(step);
+            let turn = (Ball::integer(k as i64) + Ball::double(SHIFT)) * step;
             for (i, count) in self.turns {
-                let angle = whole.mul(turn).mul(Ball::integer(*count));
+                let angle = whole * turn * Ball::integer(*count);
                 point.set_symbol(self.model.coordinates[*i].q, angle);
             }
             for part in self.parts(&self.frames[0], 0, &mut point)? {
-                sum = sum.add(part.first().copied().unwrap_or(Ball::ZERO));
+                sum = sum + part.first().copied().unwrap_or(Ball::ZERO);
             }
         }
-        Some(sum.mul(whole).mul(step).nearest())
+        Some((sum * whole * step).nearest())
     }
 
     /// The terms of the derivative of `G` along the loop, as series of an order; `None` where the elements of the hull

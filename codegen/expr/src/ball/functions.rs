@@ -10,6 +10,7 @@
 //! What is left out of the sums is at most twice its first term, by size: their terms fall at least as fast as `2^-k`.
 
 use std::cmp::Ordering;
+use std::ops::{Add, Mul, Neg, Sub};
 
 use super::bound;
 use super::number::{Ball, NEWTON_STEPS};

@@ -1,6 +1,7 @@
 //! Balls and their arithmetic.
 
 use std::cmp::Ordering;
+use std::ops::{Add, Mul, Neg, Sub};
 
 use num_bigint::BigInt;
 
@@ -147,42 +148,6 @@ impl Ball {
         }
     }
 
-    /// `self + other`
-    pub fn add(self, other: Self) -> Self {
-        let (middle, error) = self.middle.add(other.middle);
-        let radius = bound::sum(self.radius, other.radius);
-        Self::of(middle, bound::sum(radius, error))
-    }
-
-    /// `-self`
-    pub fn neg(self) -> Self {
-        Self {
-            middle: self.middle.neg(),
-            ..self
-        }
-    }
-
-    /// `self - other`
-    pub fn sub(self, other: Self) -> Self {
-        self.add(other.neg())
-    }
-
-    /// `self * other`
-    pub fn mul(self, other: Self) -> Self {
-        if self.is_zero() || other.is_zero() {
-            return Self::ZERO;
-        }
-        let (middle, mut radius) = self.middle.mul(other.middle);
-        if self.radius > 0.0 {
-            let part = bound::product(self.radius, other.middle.at_most());
-            radius = bound::sum(radius, part);
-        }
-        if other.radius > 0.0 {
-            radius = bound::sum(radius, bound::product(other.radius, self.magnitude()));
-        }
-        Self::of(middle, radius)
-    }
-
     /// `self / divisor`
     pub(super) fn divided(self, divisor: u64) -> Self {
         let (middle, error) = self.middle.divided(divisor);
@@ -288,6 +253,54 @@ impl Ball {
             None if self.is_zero() => self,
             None => Self::of(Wide::ZERO, self.magnitude()),
         }
+    }
+}
+
+impl Add for Ball {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let (middle, error) = self.middle.add(other.middle);
+        let radius = bound::sum(self.radius, other.radius);
+        Self::of(middle, bound::sum(radius, error))
+    }
+}
+
+impl Neg for Ball {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            middle: self.middle.neg(),
+            ..self
+        }
+    }
+}
+
+impl Sub for Ball {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self.add(other.neg())
+    }
+}
+
+impl Mul for Ball {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        if self.is_zero() || other.is_zero() {
+            return Self::ZERO;
+        }
+        let (middle, mut radius) = self.middle.mul(other.middle);
+        if self.radius > 0.0 {
+            let part = bound::product(self.radius, other.middle.at_most());
+            radius = bound::sum(radius, part);
+        }
+        if other.radius > 0.0 {
+            radius = bound::sum(radius, bound::product(other.radius, self.magnitude()));
+        }
+        Self::of(middle, radius)
     }
 }
 

@@ -27,15 +27,15 @@ impl Arithmetic for Balls {
     }
 
     fn add(self, a: Ball, b: Ball) -> Ball {
-        a.add(b)
+        a + b
     }
 
     fn sub(self, a: Ball, b: Ball) -> Ball {
-        a.sub(b)
+        a - b
     }
 
     fn mul(self, a: Ball, b: Ball) -> Ball {
-        a.mul(b)
+        a * b
     }
 
     fn inv(self, a: Ball) -> Option<Ball> {
@@ -65,7 +65,7 @@ impl Arithmetic for Balls {
                 return;
             };
             let sum = &mut sums[*k as usize];
-            *sum = sum.add(factor.mul(*b));
+            *sum = *sum + factor * *b;
         }
     }
 }
@@ -91,14 +91,14 @@ impl BallPoint {
             Node::Sum { constant, terms } => {
                 let mut sum = Ball::rational(constant);
                 for (coefficient, term) in terms {
-                    sum = sum.add(Ball::rational(coefficient).mul(value(*term)));
+                    sum = sum + Ball::rational(coefficient) * value(*term);
                 }
                 sum
             }
             Node::Product(factors) => {
                 let mut product = Ball::integer(1);
                 for (base, exponent) in factors {
-                    product = product.mul(value(*base).power(exponent)?);
+                    product = product * value(*base).power(exponent)?;
                 }
                 product
             }
@@ -186,7 +186,7 @@ impl RangePoint for BallPoint {
 
     fn ends(range: Ball) -> [Ball; 2] {
         let (middle, radius) = (range.midpoint(), Ball::double(range.radius()));
-        [middle.sub(radius), middle.add(radius)]
+        [middle - radius, middle + radius]
     }
 
     fn widened(range: Ball, distance: f64) -> Ball {
@@ -195,7 +195,7 @@ impl RangePoint for BallPoint {
 }
 
 fn apply(function: Function, x: Ball) -> Option<Ball> {
-    let ratio = |(above, below): (Ball, Ball)| Some(above.mul(below.inverse()?));
+    let ratio = |(above, below): (Ball, Ball)| Some(above * below.inverse()?);
     match function {
         Function::Sin => Some(x.sin_cos().0),
         Function::Cos => Some(x.sin_cos().1),
