@@ -11,8 +11,9 @@
 //! | `construct.rs`, `sum.rs`, `product.rs`, `call.rs`, `constants.rs` | the constructors and every rewrite they make |
 //! | `sign.rs` | what is known of signs and finiteness |
 //! | `diff.rs`, `subst.rs`, `eval.rs` | calculus and evaluation |
-//! | `taylor/` | truncated series, modulo a prime, in double precision, with 47 digits or in intervals |
+//! | `taylor/` | truncated series, modulo a prime, in double precision or in ranges |
 //! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `branch.rs`, `squares.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and what it decides |
+//! | `ball/` | numbers of 76 digits with bounds of their errors |
 //! | `interval.rs`, `enclose.rs` | certified ranges, and expressions that are never 0 |
 //! | `simplify.rs`, `expand.rs`, `print/` | presentation |
 //!
@@ -38,6 +39,7 @@
 // A test may stop at the first surprise.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod ball;
 mod branch;
 mod call;
 mod constants;
@@ -69,6 +71,7 @@ mod sum;
 mod taylor;
 mod zero;
 
+pub use ball::Ball;
 pub use branch::{Branches, Covered};
 pub use enclose::{Domain, Zeros};
 pub use field::Modulus;
@@ -82,7 +85,7 @@ pub use rank::RankReport;
 pub use rational::{MAX_BITS, Rational};
 pub use sign::Sign;
 pub use taylor::{
-    Arithmetic, EnclosedPoint, Enclosures, ExpansionPoint, ExtendedPoint, ExtendedReals, JetSpace,
-    Jets, Real, RealPoint, Reals, Series,
+    Arithmetic, BallPoint, Balls, EnclosedPoint, Enclosures, ExpansionPoint, JetSpace, Jets,
+    RangePoint, RealPoint, Reals, Series,
 };
 pub use zero::{Frozen, SamplePoints, Verdict};

@@ -1,6 +1,6 @@
 //! Questions about states before an impact, answered on every component of the surface.
 
-use dalembert_expr::{ExpansionPoint, ExprId, ExtendedPoint, ModularPoint, RealPoint};
+use dalembert_expr::{ExpansionPoint, ExprId, ModularPoint, RangePoint, RealPoint};
 
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Evidence, Vanishing, evidence};
@@ -144,11 +144,11 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
         self.question.scale(model, point, &after)
     }
 
-    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint> {
-        let mut point = ExtendedPoint::of(point);
-        self.wall.settle_extended(model, &mut point)?;
+    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
+        let mut point = P::of(point);
+        self.wall.enclose(model, &mut point)?;
         self.dynamics.motion(&model.pool, &mut point, None)?;
-        Some(point)
+        self.wall.is_met(model, &mut point).then_some(point)
     }
 
     fn shown(&self, _: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)> {

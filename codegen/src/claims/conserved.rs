@@ -1,7 +1,7 @@
 //! Conserved quantities: the rate of an expression along the motion on D, `d_i e qdot^i + de/dqdot^i qddot^i + d_t e`.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, ExtendedPoint, ModularPoint, RealPoint, SymbolId,
+    Arithmetic, ExpansionPoint, ExprId, ModularPoint, RangePoint, RealPoint, SymbolId,
 };
 
 use super::continuity::{poles, possible_jump};
@@ -187,8 +187,8 @@ impl Vanishing for Rate<'_> {
         state_on_d(model, self.dynamics, &self.roots(), attempt)
     }
 
-    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint> {
-        extended_on_d(model, self.dynamics, point)
+    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
+        enclosed_on_d(model, self.dynamics, point)
     }
 
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
@@ -233,13 +233,13 @@ pub(super) fn state_on_d(
     with_velocities(model, dynamics, sample, attempt)
 }
 
-/// A real state with the digits of extended numbers: the dependent velocities follow from the others once more.
-pub(super) fn extended_on_d(
+/// Ranges that contain a state on D: the dependent velocities follow from the others once more.
+pub(super) fn enclosed_on_d<P: RangePoint>(
     model: &Model,
     dynamics: &Dynamics,
     point: &RealPoint,
-) -> Option<ExtendedPoint> {
-    let mut point = ExtendedPoint::of(point);
+) -> Option<P> {
+    let mut point = P::of(point);
     dynamics.motion(&model.pool, &mut point, None)?;
     Some(point)
 }

@@ -8,11 +8,11 @@
 //! alone balances `P` only if that is, too.
 
 use dalembert_expr::{
-    Arithmetic, Assumption, ExpansionPoint, ExprId, ExtendedPoint, JetSpace, Jets, ModularPoint,
+    Arithmetic, Assumption, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, RangePoint,
     RealPoint, SymbolId,
 };
 
-use super::conserved::{extended_on_d, state_on_d};
+use super::conserved::{enclosed_on_d, state_on_d};
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Evidence, Vanishing, evidence};
 use super::frame::projected_cometric;
@@ -115,8 +115,8 @@ impl Vanishing for Row<'_> {
         Some((sample, point))
     }
 
-    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint> {
-        extended_on_d(model, self.dynamics, point)
+    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
+        enclosed_on_d(model, self.dynamics, point)
     }
 
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {

@@ -4,11 +4,10 @@
 //! A factor `abs(l)^s` counts as `l^s` where `l` is not 0: its logarithmic derivative is the same.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, ExtendedPoint, JetSpace, Jets, ModularPoint, Node,
-    RealPoint,
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Node, RangePoint, RealPoint,
 };
 
-use super::conserved::{Quantity, extended_on_d, jump, rate_scale, state_on_d};
+use super::conserved::{Quantity, enclosed_on_d, jump, rate_scale, state_on_d};
 use super::contraction::contraction;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
@@ -104,8 +103,8 @@ impl Vanishing for Balance<'_> {
         state_on_d(model, self.dynamics, &self.roots(), attempt)
     }
 
-    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint> {
-        extended_on_d(model, self.dynamics, point)
+    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
+        enclosed_on_d(model, self.dynamics, point)
     }
 
     /// The rate of `ln e`, then the divergence.

@@ -1,8 +1,8 @@
 //! Does something vanish at all states? What residues at random states and values at real states say.
 
 use dalembert_expr::{
-    Branches, Covered, ExpansionPoint, ExprId, ExtendedPoint, ExtendedReals, ModularPoint, Node,
-    Pool, Profile, Real as Extended, RealPoint, SymbolId,
+    Arithmetic, BallPoint, Branches, Covered, EnclosedPoint, ExpansionPoint, ExprId, ModularPoint,
+    Node, Pool, Profile, RangePoint, RealPoint, SymbolId,
 };
 
 use super::dynamics::Number;
@@ -16,18 +16,16 @@ use crate::model::Model;
 const STATES: (usize, usize) = (12, 3);
 /// Real states that are tried.
 const WITNESSES: usize = 48;
-/// A sum counts as different from 0 beyond this part of its scale: a factor 1e9 above rounding.
-const CLEAR: f64 = 1e-6;
+/// States at which a sum is enclosed with more digits, whatever doubles say of it.
+const ENCLOSED: usize = 12;
+/// Later ones are where doubles are above this part of its scale.
+const VISIBLE: f64 = 1e-10;
+/// Beyond this part of its scale a sum in doubles is no rounding: what is not enclosed there is not proved to vanish.
+const SUSPECT: f64 = 1e-6;
 /// A sum below this part of its scale has lost digits that a message shows.
 const VISIBLE_DIGITS: f64 = 1e-3;
 /// Numbers below it have digits that are out of the range of doubles.
 const LEAST: f64 = 1e-200;
-/// States that are looked at with more digits.
-const EXTENDED: usize = 12;
-/// A factor of safety above the rounding of extended numbers.
-const ROOM: f64 = 1e12;
-/// As [`CLEAR`], where residues have shown that it is not 0 and only a point to show it at is looked for.
-const VISIBLE: f64 = 1e-10;
 
 /// A sum of terms at states that may vanish identically.
 pub(super) trait Vanishing {
@@ -54,8 +52,9 @@ pub(super) trait Vanishing {
     /// room for the conditioning of metric and constraints.
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64>;
 
-    /// The state with more digits, settled anew; `None` if what makes it one is known to the digits of doubles only.
-    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint>;
+    /// Ranges that contain a state close to a real one: what is printed of it is exact but for what follows from the rest. `None` if it
+    /// is not certain that there is one.
+    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P>;
 
     /// What a person is shown at a real state, given the terms and their sum.
     fn shown(&self, model: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)>;
@@ -71,10 +70,12 @@ pub(super) struct Evidence {
     pub(super) primes: Vec<u64>,
     /// A bound of the chance of error.
     pub(super) error: f64,
-    /// A real point at which it is clearly not 0, with what is shown there.
+    /// A real point at which an enclosure excludes 0, with what is shown there.
     pub(super) witness: Option<(Sample, Vec<(String, f64)>)>,
     /// Whether it has a value at any real point that was tried.
     pub(super) is_real: bool,
+    /// Whether doubles are far from 0 at a point at which no enclosure excludes 0.
+    pub(super) is_suspect: bool,
     /// Why the question may be open.
     pub(super) open: Undecided,
 }
@@ -107,13 +108,14 @@ impl Evidence {
             error: self.error + other.error,
             witness: self.witness.or(other.witness),
             is_real: self.is_real || other.is_real,
+            is_suspect: self.is_suspect || other.is_suspect,
             open: self.open,
         }
     }
 
     /// Whether the sum is 0 at all states, of which there are some.
     pub(super) fn shows_that_it_vanishes(&self) -> bool {
-        self.is_real && self.vanishes == Some(true) && self.witness.is_none()
+        self.is_real && self.vanishes == Some(true) && self.witness.is_none() && !self.is_suspect
     }
 
     /// The verdict on the claim that the quantity vanishes, or that it does not.
@@ -132,7 +134,7 @@ impl Evidence {
         }
         // A point that satisfies everything that is declared is needed: residues know no inequality.
         let differs = self.witness.is_some();
-        let vanishes = self.vanishes == Some(true) && self.witness.is_none();
+        let vanishes = self.shows_that_it_vanishes();
         match (holds, vanishes, differs) {
             (true, true, _) => Verdict::Proved(certificate(wording.vanishes, self.error)),
             (false, _, true) => {
@@ -200,12 +202,10 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
     primes.sort_unstable();
     primes.dedup();
     let is_exact = profile.is_exact() && !question.hides_relations(model);
-    let threshold = match (is_exact, vanishes) {
-        (true, Some(true)) => f64::INFINITY,
-        (true, Some(false)) => VISIBLE,
-        _ => CLEAR,
+    let real = match is_exact && vanishes == Some(true) {
+        true => real_evidence(model, question, Search::Value),
+        false => real_evidence(model, question, Search::Difference),
     };
-    let real = real_evidence(model, question, threshold);
     Evidence {
         vanishes,
         points: covered.map_or(0, |(covered, _)| covered.points),
@@ -213,6 +213,7 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
         error: covered.map_or(1.0, |(_, error)| error),
         witness: real.witness,
         is_real: real.is_real,
+        is_suspect: real.is_suspect,
         open,
     }
 }
@@ -240,12 +241,24 @@ fn residues(
     Ok((covered.ok_or(Undecided::Degenerate)?, branches))
 }
 
+/// What is looked for at real points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Search {
+    /// A point where the sum has a value.
+    Value,
+    /// A point where it is not 0.
+    Difference,
+}
+
 /// What was seen at real points.
+#[derive(Default)]
 struct Real {
-    /// A point where the sum is clearly not 0, and what to show there.
+    /// A point where the sum is certainly not 0, and what to show there.
     witness: Option<(Sample, Vec<(String, f64)>)>,
     /// Whether it has a value at any.
     is_real: bool,
+    /// Whether doubles are far from 0 at one of which that is not certain.
+    is_suspect: bool,
 }
 
 /// The degree of a rate over the prime (Schwartz, Zippel): the saddle system of acceleration
@@ -256,10 +269,10 @@ fn chance_of_accident(model: &Model, degree: f64) -> f64 {
     degree / 2f64.powi(60)
 }
 
-fn real_evidence(model: &Model, question: &impl Vanishing, threshold: f64) -> Real {
-    let mut is_real = false;
+fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Real {
+    let mut seen = Real::default();
     for attempt in 0..sample::ATTEMPTS {
-        if is_real && (attempt >= WITNESSES || threshold == f64::INFINITY) {
+        if seen.is_real && (attempt >= WITNESSES || search == Search::Value) {
             break;
         }
         let Some((sample, point)) = question.sample(model, attempt) else {
@@ -269,30 +282,81 @@ fn real_evidence(model: &Model, question: &impl Vanishing, threshold: f64) -> Re
         let Some(terms) = question.terms(model, &mut point.clone()) else {
             continue;
         };
-        is_real = true;
+        seen.is_real = true;
         let Some(scale) = question.scale(model, &mut point.clone()) else {
             continue;
         };
+        if search == Search::Value || !sample.is_allowed(model) {
+            continue;
+        }
+        let mut place = Place::new(model, &sample, point);
         let sum: f64 = terms.iter().sum();
-        let is_clear = is_regular(sum) && sum.abs() > threshold * scale;
-        let found = match is_clear && sum.abs() > VISIBLE_DIGITS * scale {
-            true => Some((terms, sum)),
-            false if attempt >= EXTENDED => is_clear.then_some((terms, sum)),
-            false => beyond_doubles(model, question, &point, scale, threshold)
-                .or(is_clear.then_some((terms, sum))),
+        let size = if is_regular(sum) { sum.abs() } else { 0.0 };
+        let found = if size > VISIBLE_DIGITS * scale {
+            // Doubles show all digits of what is certain.
+            let with_doubles = |_| (terms.clone(), sum);
+            let found = place.difference::<EnclosedPoint>(question);
+            let found = found.or_else(|| place.difference::<BallPoint>(question));
+            found.map(with_doubles)
+        } else if attempt < ENCLOSED || size > VISIBLE * scale {
+            place.difference::<BallPoint>(question)
+        } else {
+            None
         };
         if let Some((terms, sum)) = found {
-            let witness = Some((sample, question.shown(model, &terms, sum)));
-            return Real {
-                witness,
-                is_real: true,
-            };
+            let values = question.shown(model, &terms, sum);
+            seen.witness = Some((sample, values));
+            return seen;
+        }
+        seen.is_suspect |= size > SUSPECT * scale && is_defined(model, &mut place.point);
+    }
+    seen
+}
+
+/// A real state.
+struct Place<'p> {
+    model: &'p Model,
+    point: RealPoint,
+    /// Symbols on which only the rest of the Lagrangian may depend, with values.
+    others: Vec<(SymbolId, f64)>,
+}
+
+impl<'p> Place<'p> {
+    fn new(model: &'p Model, sample: &Sample, mut point: RealPoint) -> Self {
+        let others = sample::sample(model, 0, |symbol| sample.value(symbol).is_none());
+        let others = others.point_values();
+        for (symbol, value) in &others {
+            point.set(*symbol, *value);
+        }
+        Self {
+            model,
+            point,
+            others,
         }
     }
-    Real {
-        witness: None,
-        is_real,
+
+    /// The terms of a sum and the sum at the state, where an enclosure shows that it is not 0.
+    fn difference<P: RangePoint>(&self, question: &impl Vanishing) -> Option<(Vec<f64>, f64)> {
+        let mut state: P = question.enclosed(self.model, &self.point)?;
+        let field = state.field();
+        let terms = question.terms(self.model, &mut state.clone())?;
+        let add = |sum, term: &Number<P>| field.add(sum, *term);
+        let sum = terms.iter().fold(field.integer(0), add);
+        P::sign(sum)?;
+        // An exact default is next to its double.
+        for (symbol, value) in &self.others {
+            let range = state.symbol(&self.model.pool, *symbol);
+            state.set_symbol(*symbol, P::widened(range, f64::EPSILON * value.abs()));
+        }
+        let shown = terms.iter().map(|term| P::nearest(*term)).collect();
+        is_defined(self.model, &mut state).then(|| (shown, P::nearest(sum)))
     }
+}
+
+/// True if the Lagrangian has a value: without one there is no motion.
+fn is_defined<P: ExpansionPoint>(model: &Model, point: &mut P) -> bool {
+    let order = model.pool.reachable(&[model.lagrangian.whole]);
+    point.values(&model.pool, &order).is_some()
 }
 
 /// True if a function has an argument that depends on one of some symbols.
@@ -311,24 +375,136 @@ pub(super) fn is_regular(sum: f64) -> bool {
     sum.is_finite() && sum.abs() > LEAST
 }
 
-/// The terms and their sum with more digits, where it is clearly not 0; nothing is looked for beyond an infinite threshold.
-fn beyond_doubles(
-    model: &Model,
-    question: &impl Vanishing,
-    point: &RealPoint,
-    scale: f64,
-    threshold: f64,
-) -> Option<(Vec<f64>, f64)> {
-    if threshold == f64::INFINITY {
-        return None;
+#[cfg(test)]
+mod tests {
+    use dalembert_expr::Rational;
+
+    use super::*;
+
+    /// A sum of expressions of coordinates, with a size below which doubles would be rounding.
+    struct Sum {
+        terms: Vec<ExprId>,
+        size: f64,
     }
-    let mut point = question.extended(model, point)?;
-    let terms = question.terms(model, &mut point)?;
-    let sum = terms
-        .iter()
-        .fold(Extended::from(0.0), |sum, term| sum + *term)
-        .nearest();
-    let is_clear = is_regular(sum) && sum.abs() > ROOM * ExtendedReals::ROUNDING * scale;
-    let terms = terms.iter().map(|term| term.nearest()).collect();
-    is_clear.then_some((terms, sum))
+
+    impl Vanishing for Sum {
+        fn roots(&self) -> Vec<ExprId> {
+            self.terms.clone()
+        }
+
+        fn settle(&self, _: &Model, _: &mut ModularPoint) -> Option<()> {
+            Some(())
+        }
+
+        fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
+            let sample = sample::sample(model, attempt, sample::uses(&model.pool, &self.terms));
+            let point = sample.point();
+            Some((sample, point))
+        }
+
+        fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+            let values = point.values(&model.pool, &model.pool.reachable(&self.terms))?;
+            Some(self.terms.iter().map(|term| values[term.index()]).collect())
+        }
+
+        fn scale(&self, _: &Model, _: &mut RealPoint) -> Option<f64> {
+            Some(self.size)
+        }
+
+        fn enclosed<P: RangePoint>(&self, _: &Model, point: &RealPoint) -> Option<P> {
+            Some(P::of(point))
+        }
+
+        fn shown(&self, _: &Model, _: &[f64], sum: f64) -> Vec<(String, f64)> {
+            vec![("sum".to_owned(), sum)]
+        }
+    }
+
+    /// A model of two coordinates with a potential.
+    fn model(potential: &str) -> Model {
+        let declaration = format!(
+            "pub Sample {{ coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2 - ({potential}); }}"
+        );
+        let tokens = declaration.parse().expect("tokens");
+        crate::compile(tokens).expect("a model").model
+    }
+
+    /// `(x + y)^2 - x^2 - 2 x y - y^2` and a part of `y`.
+    fn binomial(model: &mut Model, part: &Rational) -> Vec<ExprId> {
+        let [x, y] = [0, 1].map(|i| model.pool.variable(model.coordinates[i].q));
+        let square = |model: &mut Model, of: ExprId| model.pool.pow(of, Rational::from(2));
+        let sum = model.pool.add(x, y);
+        let product = model.pool.mul(x, y);
+        let [whole, first, second] = [sum, x, y].map(|own| square(model, own));
+        let minus = Rational::MINUS_ONE;
+        vec![
+            whole,
+            model.pool.scale(&minus, first),
+            model.pool.scale(&Rational::from(-2), product),
+            model.pool.scale(&minus, second),
+            model.pool.scale(part, y),
+        ]
+    }
+
+    #[test]
+    fn rounding_is_never_counted() {
+        let mut model = model("0");
+        let terms = binomial(&mut model, &Rational::ZERO);
+        // A size for which every rounding of doubles would be clear.
+        let question = Sum { terms, size: 0.0 };
+        let rounded = (0..WITNESSES).filter(|attempt| {
+            let (_, mut point) = question.sample(&model, *attempt).expect("a sample");
+            let terms = question.terms(&model, &mut point).expect("values");
+            terms.iter().sum::<f64>() != 0.0
+        });
+        assert!(rounded.count() > 8, "doubles should not be exact here");
+        let seen = real_evidence(&model, &question, Search::Difference);
+        assert!(seen.witness.is_none() && seen.is_real);
+        let found = evidence(&model, &question, 1);
+        assert!(found.shows_that_it_vanishes());
+    }
+
+    #[test]
+    fn small_differences_are_enclosed_away_from_0() {
+        for digits in [20, 30, 60] {
+            let mut model = model("0");
+            let tiny = Rational::from_decimal(&format!("1e-{digits}")).expect("a number");
+            let terms = binomial(&mut model, &tiny);
+            let question = Sum { terms, size: 1.0 };
+            let seen = real_evidence(&model, &question, Search::Difference);
+            let (sample, values) = seen.witness.expect("a witness");
+            let y = sample.value(model.coordinates[1].q).expect("a value");
+            let expected = tiny.to_f64() * y;
+            assert!((values[0].1 - expected).abs() < 1e-12 * expected.abs());
+        }
+    }
+
+    #[test]
+    fn what_no_enclosure_confirms_keeps_a_proof_from_being_made() {
+        let mut model = model("0");
+        let terms = binomial(&mut model, &Rational::ZERO);
+        let question = Sum { terms, size: 0.0 };
+        let seen = real_evidence(&model, &question, Search::Difference);
+        assert!(seen.is_suspect);
+        let question = Sum {
+            size: 1.0,
+            ..question
+        };
+        let seen = real_evidence(&model, &question, Search::Difference);
+        assert!(!seen.is_suspect);
+    }
+
+    #[test]
+    fn states_without_a_lagrangian_show_nothing() {
+        // Its derivatives have values where it has none.
+        let mut model = model("ln(x)");
+        let x = model.pool.variable(model.coordinates[0].q);
+        let size = model.pool.call(dalembert_expr::Function::Abs, x);
+        let minus = model.pool.neg(size);
+        let terms = vec![x, minus];
+        let question = Sum { terms, size: 1.0 };
+        let seen = real_evidence(&model, &question, Search::Difference);
+        assert!(seen.witness.is_none(), "|x| = x where ln(x) has a value");
+        assert!(!seen.is_suspect);
+    }
 }

@@ -8,8 +8,8 @@
 use std::f64::consts::TAU;
 
 use dalembert_expr::{
-    Arithmetic, Domain, EnclosedPoint, Enclosures, ExpansionPoint, ExprId, ExtendedPoint,
-    ExtendedReals, Interval, JetSpace, Jets, Real, Reals, Series,
+    Arithmetic, Ball, BallPoint, Domain, EnclosedPoint, Enclosures, ExpansionPoint, ExprId,
+    Interval, JetSpace, Jets, RangePoint, Reals, Series,
 };
 
 use super::contraction::real_step;
@@ -167,22 +167,24 @@ impl<'l> Loop<'l> {
         sum.is_finite().then_some((sum * step, size * step))
     }
 
-    /// The sum by a number of points, computed with 47 digits.
+    /// The sum by a number of points, computed with 76 digits.
     fn precise(&self, sample: &Sample, points: usize) -> Option<f64> {
-        let whole = ExtendedReals::pi() * Real::from(2.0);
-        let mut point = ExtendedPoint::of(&sample.point());
-        let mut sum = Real::from(0.0);
+        let whole = Ball::pi() * Ball::integer(2);
+        let step = Ball::integer(points as i64).inverse()?;
+        let mut point = BallPoint::of(&sample.point());
+        let mut sum = Ball::ZERO;
         for k in 0..points {
-            let turn = (Real::from(k as f64) + Real::from(SHIFT)) / Real::from(points as f64);
+            // NOTE: the sum converges for points of equal distance, which `k + SHIFT` in doubles are not.
+            let turn = (Ball::integer(k as i64) + Ball::double(SHIFT)) * step;
             for (i, count) in self.turns {
-                let angle = whole * turn * Real::from(*count as f64);
+                let angle = whole * turn * Ball::integer(*count);
                 point.set_symbol(self.model.coordinates[*i].q, angle);
             }
             for part in self.parts(&self.frames[0], 0, &mut point)? {
-                sum = sum + part.first().copied().unwrap_or(Real::from(0.0));
+                sum = sum + part.first().copied().unwrap_or(Ball::ZERO);
             }
         }
-        Some((sum * whole / Real::from(points as f64)).nearest())
+        Some((sum * whole * step).nearest())
     }
 
     /// The terms of the derivative of `G` along the loop, as series of an order; `None` where the elements of the hull

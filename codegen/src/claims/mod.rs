@@ -20,8 +20,8 @@
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
 //! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts in words |
 //!
-//! Decisions are taken modulo 61-bit primes at random points; values in double precision are for witnesses, and where
-//! residues alone do not decide.
+//! Decisions are taken modulo 61-bit primes at random points. Values in double precision say where to look for a point that shows something;
+//! it counts once it is enclosed.
 
 mod alternatives;
 mod ansatz;

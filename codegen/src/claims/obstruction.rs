@@ -2,12 +2,12 @@
 //! demand that is not.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExtendedPoint, JetSpace, Jets, Pool, Real, SymbolId,
+    Arithmetic, BallPoint, EnclosedPoint, ExpansionPoint, JetSpace, Jets, Pool, RangePoint,
+    SymbolId,
 };
 
 use super::closure::{Hull, Origin, bracket};
 use super::dynamics::Number;
-use super::evidence::is_regular;
 use super::exactness::Local;
 use super::frame::{Demand, frame};
 use super::problem::Problem;
@@ -27,38 +27,24 @@ pub struct Obstruction {
     pub relation: Vec<(String, f64)>,
     /// What the bracket demands of the derivative of `G` less what the combination demands.
     pub delta: f64,
-    /// Sizes below which `delta` would be rounding.
+    /// The size of what `delta` was computed from.
     pub scale: f64,
+    /// Whether there is an obstruction for certain: by an enclosure of `delta`, or by residues alone.
+    pub is_certain: bool,
 }
 
 /// Points that are tried.
 const ATTEMPTS: usize = 64;
-/// A delta counts from this part of its scale on: 18 digits above the rounding of extended numbers.
-const CLEAR: f64 = 1e-30;
-/// The same in doubles, which are tried first where series have more monomials than [`LARGE`].
-const CLEAR_IN_DOUBLES: f64 = 1e-4;
+/// Series with more monomials are computed in doubles first, and taken from there if `delta` is no smaller part of its scale.
 const LARGE: usize = 200;
-/// A combination that leaves more than this part, or [`CLEAR`], is none.
+const CLEAR_IN_DOUBLES: f64 = 1e-4;
+/// What doubles enclose to this part of it has the digits that are printed.
+const SHARP: f64 = 1e-9;
+/// A combination that may leave more than this part in doubles, or in balls, is none.
 const REMAINDER: f64 = 1e-9;
+const REMAINDER_OF_BALLS: f64 = 1e-30;
 /// Vectors whose elimination meets a smaller pivot count as dependent.
 const LEAST_PIVOT: f64 = 1e-9;
-
-/// A number as a double.
-trait Nearest: Copy {
-    fn nearest(self) -> f64;
-}
-
-impl Nearest for f64 {
-    fn nearest(self) -> f64 {
-        self
-    }
-}
-
-impl Nearest for Real {
-    fn nearest(self) -> f64 {
-        Real::nearest(&self)
-    }
-}
 
 /// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none. Where the hull does not span, a
 /// combination of its elements is only known on the branches that residues saw: with roots it must show at all points that are tried.
@@ -73,8 +59,10 @@ pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Opti
         let Some(found) = obstruction_at(model, problem, local, sample) else {
             continue;
         };
-        let is_clear = is_regular(found.delta) && found.delta.abs() > CLEAR * found.scale;
-        match (is_clear, has_branches) {
+        match (
+            found.is_certain && found.sample.is_allowed(model),
+            has_branches,
+        ) {
             (true, false) => return Some(found),
             (true, true) => {
                 shown.get_or_insert(found);
@@ -124,106 +112,158 @@ fn obstruction_at(
     local: &Local,
     sample: Sample,
 ) -> Option<Obstruction> {
+    let question = Question {
+        model,
+        problem,
+        local,
+        sample,
+    };
     let monomials =
         JetSpace::new(problem.variables.len(), local.hull.growth.len(), usize::MAX)?.len();
     if monomials > LARGE {
-        let mut point = sample.point();
-        let found = obstruction_with(
-            model,
-            problem,
-            local,
-            sample.clone(),
-            &mut point,
-            CLEAR_IN_DOUBLES,
-        );
-        if let Some(found) =
-            found.filter(|found| found.delta.abs() > CLEAR_IN_DOUBLES * found.scale)
-        {
-            return Some(found.with_eight_digits());
+        let found = match local.is_proof {
+            true => question.in_doubles(),
+            false => question.enclosed::<EnclosedPoint>(REMAINDER),
+        };
+        if found.as_ref().is_some_and(|found| found.is_certain) {
+            return found.map(Obstruction::with_eight_digits);
         }
     }
-    let mut point = ExtendedPoint::of(&sample.point());
-    obstruction_with(model, problem, local, sample, &mut point, CLEAR)
+    question.enclosed::<BallPoint>(REMAINDER_OF_BALLS)
 }
 
-/// The obstruction in the numbers of a point; what is below a part `clear` of its scale counts as 0.
-fn obstruction_with<P: ExpansionPoint>(
-    model: &Model,
-    problem: &Problem,
-    local: &Local,
+/// A hull with an obstruction, and a point.
+struct Question<'q> {
+    model: &'q Model,
+    problem: &'q Problem,
+    local: &'q Local,
     sample: Sample,
-    point: &mut P,
-    clear: f64,
-) -> Option<Obstruction>
-where
-    Number<P>: Nearest,
-{
-    let field = point.field();
-    let elements = elements_at(
-        &model.pool,
-        problem,
-        &local.hull,
-        Some(&local.dependent),
-        point,
-    )?;
-    let names = names(
-        &local.hull,
-        local.hull.elements.len(),
-        drift(problem, &model.pool),
-    );
-    let position = local.hull.obstruction?;
-    let before: Vec<usize> = local
-        .hull
-        .basis
-        .iter()
-        .copied()
-        .filter(|element| *element < position)
-        .collect();
-    let width = elements[position].len() - 1;
-    let vector = |element: usize| &elements[element][..width];
-    let others: Vec<&[Number<P>]> = before.iter().map(|e| vector(*e)).collect();
-    let coefficients = combine(field, &others, vector(position))?;
-    let size = elements.iter().map(|own| largest(own)).fold(0.0, f64::max);
-    // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
-    let rest = remainder(field, &others, &coefficients, vector(position));
-    if largest(&rest) > clear.min(REMAINDER) * size {
-        return None;
-    }
-    let mut delta = elements[position][width];
-    let mut scale = size + delta.nearest().abs();
-    for (coefficient, element) in coefficients.iter().zip(&before) {
-        let part = field.mul(*coefficient, elements[*element][width]);
-        delta = field.sub(delta, part);
-        scale += part.nearest().abs();
-    }
-    let relation = before
-        .iter()
-        .zip(&coefficients)
-        .filter(|(_, coefficient)| coefficient.nearest().abs() > clear.min(REMAINDER))
-        .map(|(element, coefficient)| (names[*element].clone(), coefficient.nearest()))
-        .collect();
-    let is_generator =
-        |element: &usize| matches!(local.hull.elements[*element], Origin::Generator(_));
-    Some(Obstruction {
-        frame: (0..elements.len())
-            .filter(is_generator)
-            .map(|element| (names[element].clone(), nearest(vector(element))))
-            .collect(),
-        sample,
-        bracket: names[position].clone(),
-        relation,
-        delta: delta.nearest(),
-        scale,
-    })
 }
 
-fn nearest<T: Nearest>(values: &[T]) -> Vec<f64> {
-    values.iter().map(|own| own.nearest()).collect()
+/// What an obstruction is made of.
+struct Parts<S> {
+    /// The elements of the hull, the demand last.
+    elements: Vec<Vec<S>>,
+    /// The basis in front of the bracket, with the coefficients of the bracket in it.
+    relation: Vec<(usize, S)>,
+    /// The bracket less the combination.
+    rest: Vec<S>,
+    /// The demands of the bracket and of the terms of the combination, and the difference.
+    demands: Vec<S>,
+    delta: S,
 }
 
-fn largest<T: Nearest>(values: &[T]) -> f64 {
-    let sizes = values.iter().map(|own| own.nearest().abs());
-    sizes.fold(0.0, f64::max)
+impl Question<'_> {
+    /// The obstruction in doubles, which are shown where residues alone decide.
+    fn in_doubles(&self) -> Option<Obstruction> {
+        let parts = self.parts(&mut self.sample.point())?;
+        let size = |values: &[f64]| {
+            values
+                .iter()
+                .fold(0.0, |size: f64, own| size.max(own.abs()))
+        };
+        let whole = parts.elements.iter().map(|own| size(own));
+        if size(&parts.rest) > REMAINDER * whole.fold(0.0, f64::max) {
+            return None;
+        }
+        let is_seen = |coefficient: f64| coefficient.abs() > REMAINDER;
+        let found = self.obstruction(&parts, |value| value, is_seen);
+        Some(Obstruction {
+            is_certain: found.delta.abs() > CLEAR_IN_DOUBLES * found.scale,
+            ..found
+        })
+    }
+
+    /// The obstruction in ranges, certain if that of `delta` excludes 0 and all that is shown is sharp; a combination may leave a part `least` of
+    /// the size of vectors.
+    fn enclosed<P: RangePoint>(&self, least: f64) -> Option<Obstruction> {
+        let parts = self.parts(&mut P::of(&self.sample.point()))?;
+        let sizes = |ranges: &[Number<P>]| {
+            let sizes = ranges
+                .iter()
+                .map(|own| P::nearest(*own).abs() + P::radius(*own));
+            sizes.fold(0.0, f64::max)
+        };
+        let whole = parts.elements.iter().map(|own| sizes(own));
+        // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
+        let may_vanish = |range: &Number<P>| P::sign(*range).is_none();
+        let is_combination = parts.rest.iter().all(may_vanish)
+            && sizes(&parts.rest) <= least * whole.fold(0.0, f64::max);
+        if !is_combination {
+            return None;
+        }
+        let is_seen = |coefficient| P::sign(coefficient).is_some();
+        let is_sharp = |range| P::radius(range) <= SHARP * P::nearest(range).abs();
+        let mut seen = parts.relation.iter().filter(|(_, own)| is_seen(*own));
+        Some(Obstruction {
+            is_certain: is_seen(parts.delta)
+                && is_sharp(parts.delta)
+                && seen.all(|(_, own)| is_sharp(*own)),
+            ..self.obstruction(&parts, P::nearest, is_seen)
+        })
+    }
+
+    fn parts<P: ExpansionPoint>(&self, point: &mut P) -> Option<Parts<Number<P>>> {
+        let hull = &self.local.hull;
+        let field = point.field();
+        let dependent = Some(self.local.dependent.as_slice());
+        let elements = elements_at(&self.model.pool, self.problem, hull, dependent, point)?;
+        let position = hull.obstruction?;
+        let before = hull.basis.iter().copied();
+        let before: Vec<usize> = before.filter(|element| *element < position).collect();
+        let width = elements[position].len() - 1;
+        let vector = |element: usize| &elements[element][..width];
+        let others: Vec<&[Number<P>]> = before.iter().map(|e| vector(*e)).collect();
+        let coefficients = combine(field, &others, vector(position))?;
+        let rest = remainder(field, &others, &coefficients, vector(position));
+        let mut delta = elements[position][width];
+        let mut demands = vec![delta];
+        for (coefficient, element) in coefficients.iter().zip(&before) {
+            let part = field.mul(*coefficient, elements[*element][width]);
+            delta = field.sub(delta, part);
+            demands.push(part);
+        }
+        Some(Parts {
+            relation: before.into_iter().zip(coefficients).collect(),
+            elements,
+            rest,
+            demands,
+            delta,
+        })
+    }
+
+    /// The numbers that are shown.
+    fn obstruction<S: Copy>(
+        &self,
+        parts: &Parts<S>,
+        nearest: impl Fn(S) -> f64,
+        is_seen: impl Fn(S) -> bool,
+    ) -> Obstruction {
+        let hull = &self.local.hull;
+        let drift = drift(self.problem, &self.model.pool);
+        let names = names(hull, hull.elements.len(), drift);
+        let numbers = |values: &[S]| values.iter().map(|own| nearest(*own)).collect::<Vec<_>>();
+        let sizes = |values: &[S]| numbers(values).into_iter().map(f64::abs);
+        let largest = parts.elements.iter().flat_map(|own| sizes(own));
+        let seen = parts.relation.iter().filter(|(_, own)| is_seen(*own));
+        let generators = hull.elements.iter().enumerate();
+        let generators = generators.filter(|(_, origin)| matches!(origin, Origin::Generator(_)));
+        let frame = generators.map(|(element, _)| {
+            let (_, vector) = parts.elements[element].split_last().unzip();
+            (names[element].clone(), numbers(vector.unwrap_or_default()))
+        });
+        Obstruction {
+            frame: frame.collect(),
+            sample: self.sample.clone(),
+            bracket: names[hull.obstruction.unwrap_or_default()].clone(),
+            relation: seen
+                .map(|(element, own)| (names[*element].clone(), nearest(*own)))
+                .collect(),
+            delta: nearest(parts.delta),
+            scale: largest.fold(0.0, f64::max) + sizes(&parts.demands).sum::<f64>(),
+            is_certain: false,
+        }
+    }
 }
 
 /// `target` less a combination of vectors.

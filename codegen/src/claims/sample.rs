@@ -52,6 +52,28 @@ impl Sample {
         }
     }
 
+    /// True if all coordinates are where they are declared to be. A surface may be at an end: rounding beyond it is allowed.
+    pub(super) fn is_allowed(&self, model: &Model) -> bool {
+        let is_above = |value: f64, end: f64| value >= end - ROUNDING * (1.0 + end.abs());
+        model.coordinates.iter().all(|coordinate| {
+            let Some(value) = self.value(coordinate.q) else {
+                return true;
+            };
+            let is_inside = match coordinate.topology {
+                Topology::Interval { low, high } => {
+                    let ends = model.pool.eval(&[low, high], &|_| 0.0);
+                    is_above(value, ends[0]) && is_above(-value, -ends[1])
+                }
+                _ => true,
+            };
+            let is_signed = match model.pool.symbol_assumption(coordinate.q) {
+                Known::Positive | Known::NonNegative => is_above(value, 0.0),
+                _ => true,
+            };
+            is_inside && is_signed
+        })
+    }
+
     /// Adds a symbol.
     pub(super) fn push(&mut self, name: String, symbol: SymbolId, value: f64) {
         self.values.push((name, value));
@@ -77,6 +99,9 @@ const HUNDREDTHS: [i32; 16] = [
     36, -53, 39, 81, -28, 67, -74, 45, 92, -17, 58, -86, 23, 71, -42, 64,
 ];
 
+/// A part of a number by which a root that was found in doubles may be off.
+const ROUNDING: f64 = 1e-12;
+
 /// Attempts with the declared defaults of parameters.
 const DECLARED: usize = 8;
 /// Attempts with coordinates between -1 and 1; after these, those on lines are multiplied by one of the scales, as roots
@@ -100,7 +125,7 @@ pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> b
         let value = match coordinate.topology {
             Topology::Interval { low, high } => {
                 let ends = model.pool.eval(&[low, high], &|_| 0.0);
-                round(ends[0] + (ends[1] - ends[0]) * (0.5 + 0.4 * unit))
+                between(ends[0], ends[1], unit)
             }
             _ => match model.pool.symbol_assumption(coordinate.q) {
                 Known::Positive | Known::NonNegative => unit.abs(),
@@ -126,7 +151,7 @@ pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> b
             (Assumption::Positive | Assumption::NonNegative, _) => round(1.0 + unit.abs()),
             (Assumption::Within { low, high }, _) => {
                 let (low, high) = (low.to_f64(), high.to_f64());
-                round(low + (high - low) * (0.5 + 0.4 * unit))
+                between(low, high, unit)
             }
             (Assumption::Finite | Assumption::NonZero, _) => unit,
         };
@@ -193,6 +218,16 @@ fn knots(model: &Model, arguments: &[ExprId], symbol: SymbolId, sample: &Sample)
     knots.sort_by(f64::total_cmp);
     knots.dedup();
     knots
+}
+
+/// A number inside of an interval: to hundredths, where these are inside.
+fn between(low: f64, high: f64, unit: f64) -> f64 {
+    let value = low + (high - low) * (0.5 + 0.4 * unit);
+    let short = round(value);
+    match low < short && short < high {
+        true => short,
+        false => value,
+    }
 }
 
 /// To hundredths, where that leaves more than two digits.

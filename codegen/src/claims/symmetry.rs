@@ -10,10 +10,10 @@
 //! the Lagrangian itself, see [`super::gauge`] elsewhere.
 
 use dalembert_expr::{
-    ExpansionPoint, ExprId, ExtendedPoint, ModularPoint, Pool, RealPoint, SymbolId, Verdict as Zero,
+    ExpansionPoint, ExprId, ModularPoint, Pool, RangePoint, RealPoint, SymbolId, Verdict as Zero,
 };
 
-use super::conserved::{extended_on_d, magnitude, state_on_d};
+use super::conserved::{enclosed_on_d, magnitude, state_on_d};
 use super::continuity::possible_jump;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
@@ -188,10 +188,10 @@ impl Vanishing for Change<'_> {
         }
     }
 
-    fn extended(&self, model: &Model, point: &RealPoint) -> Option<ExtendedPoint> {
+    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
         match self.on_d {
-            None => Some(ExtendedPoint::of(point)),
-            Some(dynamics) => extended_on_d(model, dynamics, point),
+            None => Some(P::of(point)),
+            Some(dynamics) => enclosed_on_d(model, dynamics, point),
         }
     }
 

@@ -15,9 +15,11 @@
 //! through the surface, `-G+/G-`. The determinant is the factor by which G is multiplied with the other sign, except for
 //! `elastic` and `restitution e` where constraints are affine: there it is e.
 
+use std::cmp::Ordering;
+
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, ExtendedPoint, JetSpace, Jets, ModularPoint, Pool,
-    Rational, Real, RealPoint, Series, SymbolId, Verdict as Zero,
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Pool, RangePoint, Rational,
+    RealPoint, Series, SymbolId, Verdict as Zero,
 };
 
 use super::conserved::with_velocities;
@@ -29,8 +31,8 @@ use super::sample::{Sample, sample, uses};
 use crate::mechanics::Derivation;
 use crate::model::{Beside, Law, Model, Surface};
 
-/// Newton steps from 16 digits to 47, and one more.
-const EXTENDED_STEPS: usize = 3;
+/// Newton steps from 16 digits to 76, and one more.
+const STEPS: usize = 4;
 
 /// An impact surface with everything that its map is made of.
 #[derive(Debug)]
@@ -269,17 +271,19 @@ impl Wall {
         let (sample, point) = with_velocities(model, dynamics, sample, attempt)?;
         let rate = model.pool.eval(&[self.gap_rate], &|s| point.value(s))[0];
         let margins = model.pool.eval(&self.margins, &|s| point.value(s));
+        let side = |value: &f64| value.partial_cmp(&0.0);
+        let margins: Vec<_> = margins.iter().map(side).collect();
         (rate < 0.0 && self.counts(&margins)).then_some((sample, point))
     }
 
-    /// True if the surface counts where its margins have these values, away from the ends of where it does.
-    fn counts(&self, margins: &[f64]) -> bool {
+    /// True if the surface counts where its margins are on these sides of 0.
+    fn counts(&self, margins: &[Option<Ordering>]) -> bool {
         let (own, mut rest) = margins.split_at(self.lists.0);
-        own.iter().all(|value| *value > 0.0)
+        own.iter().all(|side| *side == Some(Ordering::Greater))
             && self.lists.1.iter().all(|&length| {
                 let (other, behind) = rest.split_at(length);
                 rest = behind;
-                other.iter().any(|value| *value < 0.0)
+                other.contains(&Some(Ordering::Less))
             })
     }
 
@@ -342,24 +346,48 @@ impl Wall {
         })
     }
 
-    /// Moves a point near the surface onto it with 47 digits, in the coordinate in which the gap is steepest; where the gap has no
-    /// slope, `None`.
-    pub(super) fn settle_extended(&self, model: &Model, point: &mut ExtendedPoint) -> Option<()> {
+    /// Replaces a coordinate of a point near the surface, that in which the gap is steepest, by a range in which the gap has a root: it has
+    /// values all over the range, and other signs at its ends. `None` if that is not certain.
+    pub(super) fn enclose<P: RangePoint>(&self, model: &Model, point: &mut P) -> Option<()> {
         let mut roots = vec![self.gap];
         roots.extend(&self.slope);
         let order = model.pool.reachable(&roots);
-        for _ in 0..EXTENDED_STEPS {
+        let field = point.field();
+        let values = point.values(&model.pool, &order)?;
+        let slopes = self.slope.iter().enumerate();
+        let slopes = slopes.map(|(i, own)| (i, P::nearest(values[own.index()]).abs()));
+        let (steepest, _) = slopes.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let symbol = self.coordinates[steepest];
+        let mut root = P::midpoint(point.symbol(&model.pool, symbol));
+        for _ in 0..STEPS {
+            point.set_symbol(symbol, root);
             let values = point.values(&model.pool, &order)?;
-            let slopes = self.slope.iter().map(|own| values[own.index()]).enumerate();
-            let size = |slope: &(usize, Real)| slope.1.nearest().abs();
-            let (steepest, slope) = slopes.max_by(|a, b| size(a).total_cmp(&size(b)))?;
-            let symbol = self.coordinates[steepest];
-            let field = point.field();
-            let step = field.mul(values[self.gap.index()], field.inv(slope)?);
-            let value = point.symbol(&model.pool, symbol);
-            point.set_symbol(symbol, field.sub(value, step));
+            let slope = field.inv(values[self.slope[steepest].index()])?;
+            let step = field.mul(values[self.gap.index()], slope);
+            root = P::midpoint(field.sub(root, step));
         }
-        Some(())
+        let distance = P::CLOSE * (1.0 + P::nearest(root).abs());
+        let range = P::widened(root, distance);
+        let mut gap = |range| {
+            point.set_symbol(symbol, range);
+            Some(point.values(&model.pool, &order)?[self.gap.index()])
+        };
+        let [low, high] = P::ends(range);
+        let signs = [P::sign(gap(low)?)?, P::sign(gap(high)?)?];
+        gap(range)?;
+        (signs[0] != signs[1]).then_some(())
+    }
+
+    /// True if a state approaches the surface where it counts, all over its ranges.
+    pub(super) fn is_met<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+        let mut roots = vec![self.gap_rate];
+        roots.extend(&self.margins);
+        let Some(values) = point.values(&model.pool, &model.pool.reachable(&roots)) else {
+            return false;
+        };
+        let sign = |id: &ExprId| P::sign(values[id.index()]);
+        let margins: Vec<_> = self.margins.iter().map(sign).collect();
+        sign(&self.gap_rate) == Some(Ordering::Less) && self.counts(&margins)
     }
 
     /// Moves a real sample onto the surface by Newton's method in the coordinate in which the gap is steepest.
@@ -432,4 +460,45 @@ fn polynomials(model: &mut Model, gap: ExprId, coordinates: &[SymbolId]) -> Vec<
         }
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use dalembert_expr::{BallPoint, EnclosedPoint};
+
+    use super::*;
+
+    /// The range in which a circle of radius 1 is looked for, next to the point where `x` is given and `y` is 0.3.
+    fn enclosed<P: RangePoint>(x: f64) -> Option<(f64, f64)> {
+        let declaration = "pub Sample { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
+            impacts { wall: x^2 + y^2 >= 1 => elastic; } }";
+        let compiled = crate::compile(declaration.parse().expect("tokens")).expect("a model");
+        let mut model = compiled.model;
+        let wall = Wall::of(&mut model, &compiled.derivation, 0);
+        let [first, second] = [0, 1].map(|i| model.coordinates[i].q);
+        let mut point = RealPoint::default();
+        point.set(first, x);
+        point.set(second, 0.3);
+        let mut point = P::of(&point);
+        wall.enclose(&model, &mut point)?;
+        let range = point.symbol(&model.pool, first);
+        Some((P::nearest(range), P::radius(range)))
+    }
+
+    #[test]
+    fn a_position_on_the_surface_is_enclosed() {
+        let root = 0.91_f64.sqrt();
+        for found in [enclosed::<EnclosedPoint>(root), enclosed::<BallPoint>(root)] {
+            let (place, radius) = found.expect("a range");
+            assert!((place - root).abs() < 1e-15 && radius < 1e-12);
+        }
+        let (_, radius) = enclosed::<BallPoint>(root).expect("a range");
+        assert!(radius < 1e-59, "{radius:e}");
+    }
+
+    #[test]
+    fn a_position_off_the_surface_is_not() {
+        // Steps of Newton's method halve what is far out.
+        assert_eq!(enclosed::<BallPoint>(5e5), None);
+    }
 }

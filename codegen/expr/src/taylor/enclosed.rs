@@ -1,12 +1,49 @@
 //! Boxes in place of points: series whose coefficients are intervals that contain those at every point of the box.
 
+use std::cmp::Ordering;
+
 use super::arithmetic::Arithmetic;
-use super::expand::ExpansionPoint;
+use super::expand::{ExpansionPoint, RealPoint};
 use crate::enclose::Domain;
 use crate::interval::Interval;
 use crate::node::{ExprId, Function, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
+
+/// A point whose numbers are ranges: what is known of a range holds for the number that is meant.
+pub trait RangePoint: ExpansionPoint + Clone {
+    /// A part of a number that is a few times its uncertainty after some operations.
+    const CLOSE: f64;
+
+    /// The point whose coordinates are the shortest decimal numbers that round to those of `point`: what is printed of it is exact.
+    fn of(point: &RealPoint) -> Self;
+
+    /// The side of 0 on which the whole range is; `None` if 0 or numbers on both sides are inside.
+    fn sign(range: Range<Self>) -> Option<Ordering>;
+
+    /// A range of one number, near the middle.
+    fn midpoint(range: Range<Self>) -> Range<Self>;
+
+    /// A double near the middle.
+    fn nearest(range: Range<Self>) -> f64;
+
+    /// A bound of the distance of numbers in the range from the middle.
+    fn radius(range: Range<Self>) -> f64;
+
+    /// Ranges of the least and the largest number.
+    fn ends(range: Range<Self>) -> [Range<Self>; 2];
+
+    /// The range with everything that is no further away than a distance.
+    fn widened(range: Range<Self>, distance: f64) -> Range<Self>;
+}
+
+type Range<P> = <<P as ExpansionPoint>::Field as Arithmetic>::Scalar;
+
+/// The shortest decimal number that rounds to a double, which is the one that is printed; `None` if it is not finite.
+pub(super) fn decimal(value: f64) -> Option<Rational> {
+    let size = Rational::from_decimal(&value.abs().to_string())?;
+    Some(if value < 0.0 { -size } else { size })
+}
 
 /// Intervals of doubles, rounded outwards.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
@@ -129,6 +166,47 @@ impl ExpansionPoint for EnclosedPoint {
 
     fn power(&self, value: Interval, exponent: &Rational) -> Option<Interval> {
         value.power(exponent)
+    }
+}
+
+impl RangePoint for EnclosedPoint {
+    const CLOSE: f64 = 1e-13;
+
+    fn of(point: &RealPoint) -> Self {
+        let range =
+            |value: &f64| decimal(*value).map_or(Interval::WHOLE, |own| Interval::rational(&own));
+        let ranges = point.coordinates().iter().map(range);
+        Self {
+            ranges: (0..).map(SymbolId::from_index).zip(ranges).collect(),
+        }
+    }
+
+    fn sign(range: Interval) -> Option<Ordering> {
+        match (range.lo > 0.0, range.hi < 0.0) {
+            (true, _) => Some(Ordering::Greater),
+            (_, true) => Some(Ordering::Less),
+            _ => None,
+        }
+    }
+
+    fn midpoint(range: Interval) -> Interval {
+        Interval::point(Self::nearest(range))
+    }
+
+    fn nearest(range: Interval) -> f64 {
+        f64::midpoint(range.lo, range.hi)
+    }
+
+    fn radius(range: Interval) -> f64 {
+        (range.hi - range.lo).next_up()
+    }
+
+    fn ends(range: Interval) -> [Interval; 2] {
+        [range.lo, range.hi].map(Interval::point)
+    }
+
+    fn widened(range: Interval, distance: f64) -> Interval {
+        range + Interval::new(-distance, distance)
     }
 }
 
