@@ -85,6 +85,10 @@ where
         self.stepper.tolerance()
     }
 
+    fn max_step(&self) -> f64 {
+        self.stepper.max_step()
+    }
+
     fn start(
         &mut self,
         _: &Sys,

@@ -281,7 +281,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     }
 
     /// Steps to the end, or to where the forces change. Whatever integrator was chosen, with [`Dop853`] at its
-    /// tolerance: not every integrator takes forces that a system does not know.
+    /// tolerance and its longest step: not every integrator takes forces that a system does not know.
     #[inline(never)]
     pub(crate) fn drive_under<O: Observer<Sys>>(
         &mut self,
@@ -293,9 +293,11 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             system: self.system,
             forces,
         };
+        let unlimited = Dop853::new(self.stepper.tolerance());
+        let limited = unlimited.with_max_step(self.stepper.max_step());
         let mut stepper = Along {
             field: &field,
-            stepper: Dop853::new(self.stepper.tolerance()),
+            stepper: limited.unwrap_or(unlimited),
         };
         // The integrator of this stretch has made no step before.
         let was_begun = core::mem::replace(&mut self.progress.is_begun, false);

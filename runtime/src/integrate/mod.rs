@@ -31,6 +31,7 @@ pub(crate) mod taylor;
 mod tolerance;
 
 pub use chosen::Chosen;
+pub use controller::MaxStepError;
 pub use dense::Polynomial;
 pub use dop853::{Dop853, Dop853Scheme};
 pub use dopri5::{DormandPrince5, DormandPrince5Scheme};

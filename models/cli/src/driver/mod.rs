@@ -1,5 +1,14 @@
 //! Drives one model through one run, and shows the run to a [`Watch`] that knows nothing of the model's type.
 
+/// An integrator that chooses its steps, with the largest one of the settings; a refusal leaves the function as text.
+macro_rules! limited {
+    ($stepper:expr, $settings:expr) => {
+        $stepper
+            .with_max_step($settings.max_step.unwrap_or(f64::INFINITY))
+            .map_err(|error| error.to_string())?
+    };
+}
+
 mod abreast;
 
 use std::cell::RefCell;
@@ -30,6 +39,8 @@ pub(crate) struct Settings {
     pub tol: f64,
     /// The step of an integrator of fixed step, where the flags say.
     pub step: Option<f64>,
+    /// The largest step of an integrator that chooses its steps.
+    pub max_step: Option<f64>,
     /// Stop after this many steps.
     pub steps: Option<u64>,
     pub until: f64,
@@ -171,9 +182,9 @@ pub(crate) fn solve<M: Model>(
         }};
     }
     match settings.integrator {
-        Integrator::Dop853 => run!(Dop853::new(tolerance)),
-        Integrator::Dopri5 => run!(DormandPrince5::new(tolerance)),
-        Integrator::Taylor => run!(Taylor::new(tolerance)),
+        Integrator::Dop853 => run!(limited!(Dop853::new(tolerance), settings)),
+        Integrator::Dopri5 => run!(limited!(DormandPrince5::new(tolerance), settings)),
+        Integrator::Taylor => run!(limited!(Taylor::new(tolerance), settings)),
         Integrator::Rk4 => run!(stepping(Rk4::new(tolerance), settings)),
         Integrator::Gauss4 => run!(stepping(Gauss4::new(tolerance), settings)),
         Integrator::Gauss6 => run!(stepping(Gauss6::new(tolerance), settings)),

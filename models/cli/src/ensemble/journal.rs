@@ -193,7 +193,7 @@ pub fn discard(path: &Path) -> io::Result<()> {
     remove(&beside(path, ".counts"))
 }
 
-/// Refuses to go on with another ensemble.
+/// Refuses to go on with another ensemble. A key that is absent counts as `null`: the flag did not exist then.
 fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
     let place = beside(path, ".meta.json");
     let invalid = |reason: String| CliError::Input {
@@ -205,7 +205,7 @@ fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
         serde_json::from_slice(&text).map_err(|error| invalid(error.to_string()))?;
     let differs = metadata
         .iter()
-        .find(|(key, value)| before.get(*key) != Some(value));
+        .find(|(key, value)| before.get(*key).unwrap_or(&Value::Null) != *value);
     match differs {
         None => Ok(()),
         Some((key, value)) => {

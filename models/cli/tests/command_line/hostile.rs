@@ -74,6 +74,18 @@ fn unknown_names_bring_the_nearest_and_all() {
             "simulate bouncing_ball --integrator rk4 --step 0",
             &["--step", "positive"],
         ),
+        (
+            "simulate bouncing_ball --integrator rk4 --max-step 0.1",
+            &["--max-step", "--step", "dop853, dopri5 or taylor"],
+        ),
+        (
+            "simulate bouncing_ball --max-step 0",
+            &["--max-step", "positive"],
+        ),
+        (
+            "ensemble bouncing_ball --vary x=1,2 --max-step -1",
+            &["--max-step", "positive"],
+        ),
         ("list --format xml", &["--format", "text", "json"]),
         ("simulat bouncing_ball", &["simulate"]),
         ("simulate bouncing_ball --untill 3", &["--until"]),

@@ -99,6 +99,49 @@ fn integrators_of_fixed_step_take_one_and_tell_it() {
     }
 }
 
+/// A force between two steps is not seen: the largest step must be shorter than it lasts.
+#[test]
+fn a_short_push_is_not_stepped_over_with_a_largest_step() {
+    for integrator in ["dop853", "dopri5", "taylor"] {
+        let line = format!("simulate pushed --max-step 0.05 --integrator {integrator}");
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let told = run_over(&models![systems::Pushed], "", &words);
+        assert!(
+            told.output.contains("no step above 0.05\n"),
+            "{}",
+            told.output
+        );
+        let words = [&words[..], &["--json", "-"]].concat();
+        let document = run_over(&models![systems::Pushed], "", &words).json();
+        assert_eq!(document["outcome"]["kind"], "done");
+        assert_eq!(document["max_step"], 0.05);
+        let v = numbers(&document["outcome"]["qdot"])[0];
+        assert!((v - 1.0).abs() < 1e-8, "{integrator}: {v}");
+        // Steps of the full length alone, as nothing else limits them: the tolerance is met by far.
+        let steps = document["counters"]["accepted"].as_u64().unwrap();
+        assert!((200..300).contains(&steps), "{integrator}: {steps}");
+    }
+}
+
+/// Alone and abreast.
+#[test]
+fn members_keep_to_the_largest_step() {
+    for integrator in ["dop853", "taylor"] {
+        let line = format!(
+            "ensemble pushed --vary x=0..1:12 --max-step 0.05 --integrator {integrator} --csv -"
+        );
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let done = run_over(&models![systems::Pushed], "", &words);
+        let mut reader = csv::Reader::from_reader(done.output.as_bytes());
+        let headers = reader.headers().unwrap().clone();
+        let column = headers.iter().position(|name| name == "end.x_dot").unwrap();
+        for record in reader.records().map(Result::unwrap) {
+            let v: f64 = record[column].parse().unwrap();
+            assert!((v - 1.0).abs() < 1e-8, "{integrator}: {v}");
+        }
+    }
+}
+
 #[test]
 fn impacts_are_located_and_samples_never_cross_them() {
     let (exit, document) = document("simulate bouncing_ball --until 10 --samples 1001");

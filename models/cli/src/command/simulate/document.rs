@@ -45,6 +45,9 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     if let Some(step) = ending.step {
         document.field("step", number(step))?;
     }
+    if let Some(max_step) = settings.max_step {
+        document.field("max_step", number(max_step))?;
+    }
     document.field("outcome", outcome(finished))?;
     if let Some(verified) = verified {
         let error = json!({
