@@ -99,20 +99,24 @@ fn integrators_of_fixed_step_take_one_and_tell_it() {
     }
 }
 
+fn pushed() -> Vec<Entry> {
+    models![systems::Pushed]
+}
+
 /// A force between two steps is not seen: the largest step must be shorter than it lasts.
 #[test]
 fn a_short_push_is_not_stepped_over_with_a_largest_step() {
     for integrator in ["dop853", "dopri5", "taylor"] {
         let line = format!("simulate pushed --max-step 0.05 --integrator {integrator}");
         let words: Vec<&str> = line.split_whitespace().collect();
-        let told = run_over(&models![systems::Pushed], "", &words);
+        let told = run_over(&pushed(), "", &words);
         assert!(
             told.output.contains("no step above 0.05\n"),
             "{}",
             told.output
         );
         let words = [&words[..], &["--json", "-"]].concat();
-        let document = run_over(&models![systems::Pushed], "", &words).json();
+        let document = run_over(&pushed(), "", &words).json();
         assert_eq!(document["outcome"]["kind"], "done");
         assert_eq!(document["max_step"], 0.05);
         let v = numbers(&document["outcome"]["qdot"])[0];
@@ -131,7 +135,7 @@ fn members_keep_to_the_largest_step() {
             "ensemble pushed --vary x=0..1:12 --max-step 0.05 --integrator {integrator} --csv -"
         );
         let words: Vec<&str> = line.split_whitespace().collect();
-        let done = run_over(&models![systems::Pushed], "", &words);
+        let done = run_over(&pushed(), "", &words);
         let mut reader = csv::Reader::from_reader(done.output.as_bytes());
         let headers = reader.headers().unwrap().clone();
         let column = headers.iter().position(|name| name == "end.x_dot").unwrap();
