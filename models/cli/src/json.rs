@@ -7,6 +7,8 @@ use std::io::{self, Write};
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 
+use crate::spool::Spool;
+
 /// The value of a text in JSON, every key of an object at most once.
 ///
 /// # Errors
@@ -143,6 +145,12 @@ impl<'a> Document<'a> {
     pub fn rows(&mut self, key: &str, rows: impl Iterator<Item = Value>) -> io::Result<()> {
         self.key(key)?;
         write_rows(self.output, rows)
+    }
+
+    /// Writes a key with an array of rows that were kept.
+    pub fn spooled(&mut self, key: &str, rows: &Spool) -> io::Result<()> {
+        self.key(key)?;
+        rows.write(self.output)
     }
 
     /// Closes the object.

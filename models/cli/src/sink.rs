@@ -124,6 +124,20 @@ impl Sink {
         }
     }
 
+    /// What is written goes there; `output` is the standard output.
+    pub fn stream<'a>(self, output: &'a mut dyn Write) -> Stream<'a> {
+        match self {
+            Self::Stdout => Stream {
+                output: Box::new(output),
+                file: None,
+            },
+            Self::File { flag, path, file } => Stream {
+                output: Box::new(file),
+                file: Some((flag, path)),
+            },
+        }
+    }
+
     /// Writes it.
     ///
     /// # Errors
@@ -131,19 +145,41 @@ impl Sink {
     pub fn write(
         self,
         streams: &mut Streams<'_>,
-        content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), CliError> {
-        match self {
-            Self::Stdout => {
-                let mut buffer = BufWriter::new(&mut *streams.output);
-                content(&mut buffer)?;
-                Ok(buffer.flush()?)
-            }
-            Self::File { flag, path, file } => {
-                let mut buffer = BufWriter::new(file);
-                let written = content(&mut buffer).and_then(|()| buffer.flush());
-                written.map_err(|source| CliError::File { flag, path, source })
-            }
+        let mut buffer = BufWriter::new(self.stream(&mut *streams.output));
+        let written = content(&mut buffer).and_then(|()| buffer.flush());
+        written.map_err(|source| buffer.get_ref().failed(source))
+    }
+}
+
+/// A file or the standard output, while it is written.
+pub struct Stream<'a> {
+    output: Box<dyn Write + 'a>,
+    /// The flag that named the file, and its path.
+    file: Option<(&'static str, PathBuf)>,
+}
+
+impl Stream<'_> {
+    /// What is said of a failure.
+    pub fn failed(&self, source: io::Error) -> CliError {
+        match &self.file {
+            None => CliError::Stream(source),
+            Some((flag, path)) => CliError::File {
+                flag,
+                path: path.clone(),
+                source,
+            },
         }
+    }
+}
+
+impl Write for Stream<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.output.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.output.flush()
     }
 }

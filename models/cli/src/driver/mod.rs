@@ -115,6 +115,11 @@ pub(crate) trait Watch {
 
     /// A surface begins or ceases to hold the motion.
     fn contact(&mut self, contact: Contact);
+
+    /// Whether nobody wants to see more: the run ends then.
+    fn is_over(&self) -> bool {
+        false
+    }
 }
 
 /// A run that has ended, in the model's own type.
@@ -251,13 +256,22 @@ struct Bridge<'a, M> {
     watch: &'a mut dyn Watch,
 }
 
+impl<M> Bridge<'_, M> {
+    fn go_on(&self) -> ControlFlow<()> {
+        match self.watch.is_over() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+}
+
 impl<M: Model> Observer<M> for Bridge<'_, M> {
     fn step(&mut self, segment: &mut Segment<'_, M::State>) -> ControlFlow<()> {
         self.watch.step(&SegmentPiece {
             model: self.model,
             segment: RefCell::new(segment),
         });
-        ControlFlow::Continue(())
+        self.go_on()
     }
 
     fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
@@ -269,7 +283,7 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
             simultaneous: event.simultaneous,
             graze: event.graze,
         });
-        ControlFlow::Continue(())
+        self.go_on()
     }
 
     fn hold(&mut self, hold: &Hold<M::State>) -> ControlFlow<()> {
@@ -280,7 +294,7 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
             begins: hold.begins,
             accumulation: hold.accumulation,
         });
-        ControlFlow::Continue(())
+        self.go_on()
     }
 }
 

@@ -304,6 +304,52 @@ fn a_table_has_samples_and_impacts_in_order_of_time() {
     assert_eq!(events, ["floor", "floor"]);
 }
 
+/// What a run wrote is there before the run has ended.
+#[test]
+fn a_table_is_written_while_the_run_goes_on() {
+    struct Full {
+        room: usize,
+    }
+    impl std::io::Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.room = self
+                .room
+                .checked_sub(bytes.len())
+                .ok_or(std::io::ErrorKind::StorageFull)?;
+            Ok(bytes.len())
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    // A run of hours, that ends when its first rows do not find room.
+    let line = "dalembert simulate bouncing_ball --until 1e12 --samples 0 --csv -";
+    let mut errors = Vec::new();
+    let mut streams = Streams {
+        input: &mut "".as_bytes(),
+        output: &mut Full { room: 100_000 },
+        errors: &mut errors,
+        terminal: false,
+    };
+    let exit = run_with(line.split_whitespace(), &list_of_models(), &mut streams);
+    assert_eq!(exit, Exit::Refused);
+    let errors = String::from_utf8(errors).unwrap();
+    assert!(errors.contains("standard streams"), "{errors}");
+}
+
+/// More rows than are kept in memory.
+#[test]
+fn a_long_document_is_whole() {
+    let (exit, document) =
+        document("simulate bouncing_ball --until 30000 --samples 20001 --law elastic");
+    assert_eq!(exit, Exit::Reached);
+    let (events, samples) = (times(&document["events"]), times(&document["samples"]));
+    assert_eq!(events.len(), (30000.0 / 8f64.sqrt()).round() as usize);
+    assert_eq!(samples.len(), 20001);
+    assert!(events.is_sorted() && samples.is_sorted());
+    assert_eq!(samples[20000], 30000.0);
+}
+
 #[test]
 fn a_table_of_outputs_names_members_of_families() {
     let done = run("simulate oscillator --set k=1 --samples 2 --csv -");
