@@ -456,7 +456,8 @@ pub struct CourseArgs {
     /// The integrator.
     #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
     pub integrator: Integrator,
-    /// The step of an integrator of fixed step. Without it, one that suits --tol where the run starts; the summary says which.
+    /// The step of an integrator of fixed step. Without it, one that suits --tol where the run starts, of which about
+    /// four million make the run at most; the summary says which.
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub step: Option<f64>,
     /// The largest step that dop853, dopri5 and taylor may take. A force that acts for a short time is stepped over unless it

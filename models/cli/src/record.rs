@@ -201,6 +201,10 @@ impl Watch for Recorder<'_> {
         }
     }
 
+    fn wants_warnings(&self) -> bool {
+        true
+    }
+
     fn is_over(&self) -> bool {
         self.failure.is_some()
     }

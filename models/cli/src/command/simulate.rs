@@ -58,6 +58,9 @@ pub fn run(
 
     let (finished, rows) =
         write_as_it_goes(model.as_ref(), prepared, args, csv, json.as_ref(), streams)?;
+    for warning in &finished.ending.warnings {
+        writeln!(streams.errors, "warning: {warning}")?;
+    }
     if let Some((sink, rows)) = json.zip(rows) {
         sink.write(streams, |output| document::write(output, &finished, &rows))?;
     }

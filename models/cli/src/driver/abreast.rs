@@ -44,7 +44,11 @@ pub(crate) fn simulate_abreast<M: Model>(
     let mut bridges = Vec::with_capacity(models.len());
     for (model, (state, watch)) in models.iter().zip(watched) {
         states.push(state);
-        bridges.push(Bridge { model, watch });
+        bridges.push(Bridge {
+            model,
+            watch,
+            balance: None,
+        });
     }
     let mut endings: Vec<Result<Ending, String>> = Vec::new();
     endings.resize_with(models.len(), || Err(String::new()));

@@ -10,6 +10,7 @@ macro_rules! limited {
 }
 
 mod abreast;
+mod energy;
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -17,8 +18,8 @@ use std::ops::ControlFlow;
 use dalembert::describe::Description;
 use dalembert::impacts::law::Law;
 use dalembert::integrate::{
-    Chosen, Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4, Gauss6, Method, Rk4,
-    Taylor, Tolerance,
+    AUTOMATIC_STEPS, Chosen, Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4,
+    Gauss6, Method, Rk4, Taylor, Tolerance,
 };
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
@@ -30,6 +31,7 @@ use crate::args::{Form, Integrator};
 use crate::entry::{Model, Point, point};
 use crate::{json, names};
 pub(crate) use abreast::{Abreast, simulate_abreast};
+use energy::Balance;
 
 /// How a run is to be made.
 #[derive(Debug, Clone)]
@@ -70,6 +72,8 @@ pub(crate) struct Ending {
     pub laws: Vec<Option<Law>>,
     /// Whether the requested time or number of impacts was reached.
     pub reached: bool,
+    /// Where the integrator was out of its depth, in words.
+    pub warnings: Vec<String>,
 }
 
 /// An impact.
@@ -116,6 +120,11 @@ pub(crate) trait Watch {
     /// A surface begins or ceases to hold the motion.
     fn contact(&mut self, contact: Contact);
 
+    /// Whether to look for errors that an integrator of fixed step does not estimate, which takes time.
+    fn wants_warnings(&self) -> bool {
+        false
+    }
+
     /// Whether nobody wants to see more: the run ends then.
     fn is_over(&self) -> bool {
         false
@@ -142,9 +151,42 @@ pub(crate) fn simulate<M: Model>(
     watch: &mut dyn Watch,
 ) -> Result<Ending, String> {
     let first = point(model, 0.0, &state);
-    let mut bridge = Bridge { model, watch };
+    let is_doubtful = !settings.integrator.is_adaptive() && watch.wants_warnings();
+    let balance = is_doubtful.then(|| Balance::of(model, 0.0, &state));
+    let mut bridge = Bridge {
+        model,
+        watch,
+        balance: balance.flatten(),
+    };
     let solved = solve(model, &state, settings, &mut bridge)?;
-    Ok(ending(model, first, solved, settings))
+    let warnings = warnings(settings, &solved, bridge.balance);
+    Ok(Ending {
+        warnings,
+        ..ending(model, first, solved, settings)
+    })
+}
+
+/// Where an integrator of fixed step was out of its depth.
+fn warnings<S>(settings: &Settings, solved: &Solved<S>, balance: Option<Balance>) -> Vec<String> {
+    let Some(step) = solved.step else {
+        return Vec::new();
+    };
+    let name = settings.integrator.name();
+    let mut warnings = Vec::new();
+    if settings.step.is_none() && 2.0 * settings.until >= step * AUTOMATIC_STEPS {
+        warnings.push(format!(
+            "{name} with step {step}, the shortest that is chosen for a run of this length: errors may be above --tol {:e}; set \
+             a shorter one with --step, or take an integrator of higher order",
+            settings.tol
+        ));
+    }
+    if let Some((error, t, part)) = balance.and_then(|balance| balance.told()) {
+        warnings.push(format!(
+            "{name} with step {step}: the energy is off by {error:.1e} at t = {t}, {part:.1e} of its size; set a shorter \
+             step with --step, or take an integrator that chooses its steps, such as --integrator dop853"
+        ));
+    }
+    warnings
 }
 
 /// What is told of a run that has ended.
@@ -166,6 +208,7 @@ fn ending<M: Model>(
         laws,
         reached: run.outcome.is_done()
             || (settings.impacts.is_some() && run.outcome == Outcome::ImpactBudget),
+        warnings: Vec::new(),
     }
 }
 
@@ -254,6 +297,8 @@ fn effects<M: Model>(model: &M, settings: &Settings) -> (M::Effects, Vec<Option<
 struct Bridge<'a, M> {
     model: &'a M,
     watch: &'a mut dyn Watch,
+    /// The energy along steps of one size, where errors are to be told.
+    balance: Option<Balance>,
 }
 
 impl<M> Bridge<'_, M> {
@@ -267,6 +312,9 @@ impl<M> Bridge<'_, M> {
 
 impl<M: Model> Observer<M> for Bridge<'_, M> {
     fn step(&mut self, segment: &mut Segment<'_, M::State>) -> ControlFlow<()> {
+        if let Some(balance) = &mut self.balance {
+            balance.follow(self.model, segment);
+        }
         self.watch.step(&SegmentPiece {
             model: self.model,
             segment: RefCell::new(segment),
@@ -275,6 +323,9 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
     }
 
     fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
+        if let Some(balance) = &mut self.balance {
+            balance.jump();
+        }
         self.watch.impact(Impact {
             t: event.t,
             surface: event.surface,
@@ -287,6 +338,9 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
     }
 
     fn hold(&mut self, hold: &Hold<M::State>) -> ControlFlow<()> {
+        if let Some(balance) = &mut self.balance {
+            balance.hold(hold.begins);
+        }
         self.watch.contact(Contact {
             t: hold.t,
             surface: hold.surface,

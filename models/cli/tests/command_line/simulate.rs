@@ -32,6 +32,7 @@ fn a_document_has_the_keys_of_the_interface() {
         "contacts",
         "samples",
         "counters",
+        "warnings",
     ];
     assert_eq!(keys, expected);
     assert_eq!(document["parameters"]["k"], 4.0);
@@ -143,6 +144,60 @@ fn members_keep_to_the_largest_step() {
             let v: f64 = record[column].parse().unwrap();
             assert!((v - 1.0).abs() < 1e-8, "{integrator}: {v}");
         }
+    }
+}
+
+/// Steps of one size estimate no error: where they change the energy of a motion that keeps it, that is told.
+#[test]
+fn a_step_that_is_too_long_is_told() {
+    let line = "simulate oscillator --set k=40 --integrator rk4";
+    let good = run(&format!("{line} --step 0.001 --json -"));
+    assert!(good.errors.is_empty(), "{}", good.errors);
+    assert_eq!(good.json()["warnings"], Value::Array(Vec::new()));
+    let bad = run(&format!("{line} --step 0.3 --json -"));
+    for part in [
+        "warning: rk4 with step 0.3: the energy",
+        "of its size",
+        "--step",
+        "--integrator dop853",
+    ] {
+        assert!(bad.errors.contains(part), "{}", bad.errors);
+    }
+    let warnings = bad.json()["warnings"].clone();
+    assert_eq!(warnings.as_array().unwrap().len(), 1);
+    let text = warnings[0].as_str().unwrap();
+    assert_eq!(bad.errors, format!("warning: {text}\n"));
+}
+
+/// Work that is done on the system and impacts are no errors.
+#[test]
+fn work_and_impacts_are_no_errors_of_the_energy() {
+    for integrator in ["rk4", "gauss4", "dla4"] {
+        for line in [
+            "bouncing_ball --until 30 --step 0.05",
+            "bouncing_ball --until 4 --law newton:0.5 --step 0.05",
+            "pushed --step 0.01",
+        ] {
+            let line = format!("simulate {line} --integrator {integrator} --json -");
+            let models = models![systems::BouncingBall, systems::Pushed];
+            let words: Vec<&str> = line.split_whitespace().collect();
+            let done = run_over(&models, "", &words);
+            assert_eq!(done.exit, Exit::Reached, "{line}: {}", done.errors);
+            assert!(done.errors.is_empty(), "{line}: {}", done.errors);
+        }
+    }
+}
+
+/// A tight tolerance asks a method of low order for more steps than anybody waits for.
+#[test]
+fn steps_that_are_chosen_have_a_number() {
+    let done = run("simulate oscillator --set k=4 --integrator dla2 --tol 1e-15 --json -");
+    assert_eq!(done.exit, Exit::Reached);
+    let document = done.json();
+    let steps = document["counters"]["accepted"].as_u64().unwrap();
+    assert!(steps <= 1 << 22, "{steps}");
+    for part in ["warning: dla2 with step", "--tol 1e-15", "--step"] {
+        assert!(done.errors.contains(part), "{}", done.errors);
     }
 }
 

@@ -114,6 +114,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>, rows: &Rows) -> io
         .iter()
         .map(|&(name, count)| (name.to_owned(), Value::from(count)));
     document.field("counters", counters.collect::<Map<_, _>>())?;
+    document.field("warnings", ending.warnings.clone())?;
     document.end()
 }
 
