@@ -122,9 +122,27 @@ impl<'a, M: Scene + TaylorField + Lagrangian> Start<'a, M> {
     fn every(&self, judge: impl Fn(&str, Run<M::State>, &Log<M>)) {
         for step in STEPS {
             let tol = tolerance();
-            self.run(step, Dop853::new(tol).with_max_step(step), &judge);
-            self.run(step, DormandPrince5::new(tol).with_max_step(step), &judge);
-            self.run(step, Taylor::new(tol).with_max_step(step), &judge);
+            self.run(
+                step,
+                Dop853::new(tol)
+                    .with_max_step(step)
+                    .expect("a positive step"),
+                &judge,
+            );
+            self.run(
+                step,
+                DormandPrince5::new(tol)
+                    .with_max_step(step)
+                    .expect("a positive step"),
+                &judge,
+            );
+            self.run(
+                step,
+                Taylor::new(tol)
+                    .with_max_step(step)
+                    .expect("a positive step"),
+                &judge,
+            );
             self.run(step, Rk4::new(tol).with_step(step), &judge);
             self.run(step, Gauss4::new(tol).with_step(step), &judge);
             self.run(step, Gauss6::new(tol).with_step(step), &judge);

@@ -266,7 +266,8 @@ fn error(order: usize, count: u32) -> f64 {
     let h = 2.0 / f64::from(count);
     let stepper = Taylor::new(Tolerance::new(1e3).expect("a tolerance"))
         .with_order(order)
-        .with_max_step(h);
+        .with_max_step(h)
+        .expect("a positive step");
     let run = Simulation::new(&Soliton::default(), stepper, ())
         .run(-1.0, soliton_at(-1.0).into(), 1.0, &mut ())
         .expect("a start");

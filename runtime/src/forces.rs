@@ -86,6 +86,10 @@ where
         self.stepper.tolerance()
     }
 
+    fn max_step(&self) -> f64 {
+        self.stepper.max_step()
+    }
+
     fn start(
         &mut self,
         _: &Sys,

@@ -156,8 +156,8 @@ pub use impacts::policy::{Corner, Penetration, Policies, Rest};
 pub use initial::{complete_positions, complete_velocities};
 pub use inputs::Steered;
 pub use integrate::{
-    Counters, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Stepper, Taylor, Tolerance,
-    ToleranceError,
+    Counters, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, MaxStepError, Rk4, Stepper,
+    Taylor, Tolerance, ToleranceError,
 };
 pub use modes::Mode;
 pub use outcome::{Outcome, Run, StartError};

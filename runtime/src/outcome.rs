@@ -126,6 +126,9 @@ pub enum Outcome {
         /// Where.
         t: f64,
     },
+    /// A step of fixed size led to where the energy is no finite number though the rates are, as beyond the edge of the domain of
+    /// `ln(x)`. The state is that at the start of the step.
+    LeftDomain,
     /// An implicit step could not be solved: it is too long for the fastest motion.
     NotConverged {
         /// Start of the step.
@@ -172,6 +175,7 @@ impl Outcome {
             Self::NonFinite { .. } => "non_finite",
             Self::StepUnderflow { .. } => "step_underflow",
             Self::NotConverged { .. } => "not_converged",
+            Self::LeftDomain => "left_domain",
             Self::StepBudget => "step_budget",
             Self::ImpactBudget => "impact_budget",
             Self::ProjectionFailed { .. } => "projection_failed",
@@ -260,6 +264,9 @@ impl fmt::Display for Outcome {
             Self::NonFinite { component } => Fault::NonFinite { component }.fmt(f),
             Self::StepUnderflow { t } => StepFailure::StepUnderflow { t }.fmt(f),
             Self::NotConverged { t } => StepFailure::NotConverged { t }.fmt(f),
+            Self::LeftDomain => f.write_str(
+                "the motion left the domain of the energy, which is no finite number there",
+            ),
             Self::StepBudget => write!(f, "the allowed number of steps was used up"),
             Self::ImpactBudget => write!(f, "the allowed number of impacts was used up"),
             Self::ProjectionFailed { constraint } => {

@@ -102,10 +102,17 @@ pub(crate) fn check_start(system: &impl System, t0: f64, t_end: f64) -> Result<(
     Ok(system.check_parameters()?)
 }
 
+/// Whether the energy of a state is a finite number.
+fn has_energy<Sys: System>(system: &Sys, t: f64, state: &Sys::State) -> bool {
+    system.energy(t, state).is_ok_and(f64::is_finite)
+}
+
 /// How far a run has come.
 pub(crate) struct Progress<S> {
     /// Whether the integrator has made steps before.
     is_begun: bool,
+    /// Whether the energy is looked at: it is finite at the start, and steps are of a size that knows no error.
+    watches_energy: bool,
     pub(crate) t: f64,
     /// The part of the time that `t` cannot hold: lengths of steps and flights add up without losing it.
     rest: f64,
@@ -119,6 +126,7 @@ impl<S> Progress<S> {
     pub(crate) fn new(t: f64, state: S) -> Self {
         Self {
             is_begun: false,
+            watches_energy: false,
             t,
             rest: 0.0,
             flight: 0.0,
@@ -183,7 +191,11 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     /// What comes before the first step.
     pub(crate) fn begin<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
         let Progress {
-            t, state, counters, ..
+            t,
+            state,
+            counters,
+            watches_energy,
+            ..
         } = &mut *self.progress;
         if let Some(component) = state.as_slice().iter().position(|value| !value.is_finite()) {
             return Err(Outcome::NonFinite { component });
@@ -191,6 +203,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         if let Some(coordinate) = self.system.outside_chart(state) {
             return Err(Outcome::LeftChart { coordinate });
         }
+        *watches_energy = self.stepper.fixed_step().is_some() && has_energy(self.system, *t, state);
         let mut now = Moment {
             system: self.system,
             t: *t,
@@ -290,7 +303,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     }
 
     /// Steps to the end, or to where the forces change. Whatever integrator was chosen, with [`Dop853`] at its
-    /// tolerance: not every integrator takes forces that a system does not know.
+    /// tolerance and its longest step: not every integrator takes forces that a system does not know.
     #[inline(never)]
     pub(crate) fn drive_under<O: Observer<Sys>>(
         &mut self,
@@ -302,9 +315,11 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             system: self.system,
             forces,
         };
+        let unlimited = Dop853::new(self.stepper.tolerance());
+        let limited = unlimited.with_max_step(self.stepper.max_step());
         let mut stepper = Along {
             field: &field,
-            stepper: Dop853::new(self.stepper.tolerance()),
+            stepper: limited.unwrap_or(unlimited),
         };
         // The integrator of this stretch has made no step before.
         let was_begun = core::mem::replace(&mut self.progress.is_begun, false);
@@ -325,6 +340,11 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     fn pass<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
         if let Some(coordinate) = self.system.outside_chart(self.stepper.end_state()) {
             return Err(self.leave_chart(1.0, coordinate, observer));
+        }
+        if self.progress.watches_energy
+            && !has_energy(self.system, self.stepper.t_end(), self.stepper.end_state())
+        {
+            return Err(Outcome::LeftDomain);
         }
         self.progress.set_time(self.stepper.end_time());
         self.progress.flight += self.stepper.length();

@@ -277,3 +277,64 @@ fn two_runs_agree_to_the_bit() {
     };
     assert_eq!(run(0.07), run(0.07));
 }
+
+/// Beyond 0 the force of `ln(x)` is a number again, its energy is none.
+#[test]
+fn a_run_ends_where_the_energy_is_no_number() {
+    let system = Line {
+        potential: |x| x.ln(),
+        ..Line::new(|_, x, _| Ok(-1.0 / x))
+    };
+    fn check<M: Method>(system: &Line, h: f64)
+    where
+        FixedStep<Plane, M>: Stepper<Line>,
+    {
+        let run = Simulation::new(system, with_step::<M>(h), ())
+            .run(0.0, Plane::new(1.0, -1.0), 5.0, &mut ())
+            .unwrap();
+        // It falls into 0 at this time.
+        assert!(run.t <= 0.655_68 + h, "{} {h}: {}", M::NAME, run.t);
+        assert_ne!(run.outcome, Outcome::Done, "{} {h}", M::NAME);
+        let energy = system.energy(run.t, &run.state).unwrap();
+        assert!(energy.is_finite(), "{} {h}: {energy}", M::NAME);
+        if M::ORDER == 4 && !M::MEETS {
+            assert_eq!(run.outcome, Outcome::LeftDomain, "{h}");
+        }
+    }
+    for h in [0.1, 0.03125, 0.01, 0.001] {
+        check::<ClassicalRungeKutta>(&system, h);
+        check::<Gauss<2>>(&system, h);
+        check::<Gauss<3>>(&system, h);
+    }
+}
+
+/// Beside the edge of the domain of the force an implicit step is shortened like any other.
+#[test]
+fn implicit_steps_reach_the_edge_of_the_domain_of_the_force() {
+    let system = Line {
+        potential: |x| x.sqrt(),
+        ..Line::new(|_, x, _| Ok(-0.5 / x.sqrt()))
+    };
+    fn check<M: Method>(system: &Line, h: f64)
+    where
+        FixedStep<Plane, M>: Stepper<Line>,
+    {
+        let run = Simulation::new(system, with_step::<M>(h), ())
+            .run(0.0, Plane::new(1.0, -1.0), 5.0, &mut ())
+            .unwrap();
+        assert!(
+            matches!(run.outcome, Outcome::NonFinite { .. }),
+            "{} {h}: {}",
+            M::NAME,
+            run.outcome
+        );
+        // The closed form, from the energy.
+        let edge = 0.797_434_948_472_345;
+        assert!((run.t - edge).abs() < 1e-3, "{} {h}: {}", M::NAME, run.t);
+        assert!(run.state[0] >= 0.0 && run.state[0] < 1e-3);
+    }
+    for h in [0.03125, 0.01, 0.001] {
+        check::<Gauss<2>>(&system, h);
+        check::<Gauss<3>>(&system, h);
+    }
+}

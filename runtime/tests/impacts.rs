@@ -160,7 +160,9 @@ fn a13_first_of_seven_crossings_of_a_corrugated_wall() {
     );
     let particle = Particle::new([0.0, 0.0], [wall]);
     for max_step in [f64::INFINITY, 0.25, 1e-3] {
-        let stepper = Dop853::new(Tolerance::new(1e-10).unwrap()).with_max_step(max_step);
+        let stepper = Dop853::new(Tolerance::new(1e-10).unwrap())
+            .with_max_step(max_step)
+            .unwrap();
         let mut log = Log::new();
         run_with(&particle, stepper, at(0.0, 1.0, 1.0, -1.0), 1.0, &mut log);
         let first = times(&log)[0];

@@ -61,6 +61,7 @@ fn assert_orders<Step: Stepper<Line>>(
 fn limited<M: dalembert::integrate::Scheme>(h: f64) -> Embedded<Plane, M> {
     Embedded::new(Tolerance::new(1e3).unwrap())
         .with_max_step(h)
+        .unwrap()
         .with_first_step(h)
 }
 
@@ -72,6 +73,40 @@ fn fixed<M: dalembert::integrate::Method>(h: f64) -> FixedStep<Plane, M> {
 fn embedded_pairs_converge_at_their_orders() {
     assert_orders(20, [5, 4], limited::<DormandPrince5Scheme>);
     assert_orders(8, [8, 7], limited::<Dop853Scheme>);
+}
+
+#[test]
+fn no_step_is_longer_than_the_largest() {
+    struct Longest(f64, u32);
+    impl Observer<Line> for Longest {
+        fn step(&mut self, segment: &mut Segment<'_, Plane>) -> ControlFlow<()> {
+            self.0 = self.0.max(segment.t_end() - segment.t_start());
+            self.1 += 1;
+            ControlFlow::Continue(())
+        }
+    }
+    let system = soliton();
+    let tolerance = Tolerance::new(1e3).unwrap();
+    // The last step would be a hundredth longer, to land on the end.
+    for (t_end, steps) in [(0.1, 10), (0.10009, 11)] {
+        let stepper = Dop853::new(tolerance).with_max_step(0.01).unwrap();
+        let mut longest = Longest(0.0, 0);
+        Simulation::new(&system, stepper.with_first_step(1.0), ())
+            .run(0.0, soliton_at(0.0), t_end, &mut longest)
+            .unwrap();
+        assert!(longest.0 <= 0.01 * (1.0 + 1e-9), "{}", longest.0);
+        assert_eq!(longest.1, steps);
+    }
+}
+
+#[test]
+fn a_largest_step_is_positive() {
+    let stepper = Dop853::<Plane>::new(Tolerance::new(1e-9).unwrap());
+    for value in [0.0, -1.0, f64::NAN, f64::NEG_INFINITY] {
+        let refused = stepper.with_max_step(value).unwrap_err();
+        assert!(refused.to_string().contains("positive"), "{refused}");
+    }
+    assert!(stepper.with_max_step(f64::INFINITY).is_ok());
 }
 
 #[test]

@@ -123,14 +123,17 @@ impl Visitor for Orders {
         type Five<S> = DormandPrince5<<S as VectorField>::State>;
         check_limited!(Eight, 8, |h| Eight::<S>::new(loose)
             .with_max_step(h)
+            .expect("a positive step")
             .with_first_step(h));
         check_limited!(Five, 5, |h| Five::<S>::new(loose)
             .with_max_step(h)
+            .expect("a positive step")
             .with_first_step(h));
         let coarse = Tolerance::new(1e-3).expect("a tolerance");
         check_limited!(Taylor, TAYLOR_ORDER, |h| Taylor::<S>::new(coarse)
             .with_order(TAYLOR_ORDER)
-            .with_max_step(h));
+            .with_max_step(h)
+            .expect("a positive step"));
     }
 }
 

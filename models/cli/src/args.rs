@@ -93,6 +93,7 @@ Examples:
   dalembert simulate rolling_disk --impacts 50 --law leading_edge=newton:0.5 --json -
   dalembert simulate double_pendulum --integrator gauss6 --step 0.01 --until 1000
   dalembert simulate chaplygin_sleigh --integrator dla4 --step pi/200
+  dalembert simulate rolling_disk --until 40 --max-step 0.05
   dalembert simulate bouncing_ball --q 1 --qdot 0 --until 10 --csv ball.csv
   dalembert simulate bouncing_ball --law newton:0.5 --rest contact --until 10";
 
@@ -455,9 +456,14 @@ pub struct CourseArgs {
     /// The integrator.
     #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
     pub integrator: Integrator,
-    /// The step of an integrator of fixed step. Without it, one that suits --tol where the run starts; the summary says which.
+    /// The step of an integrator of fixed step. Without it, one that suits --tol where the run starts, of which about
+    /// four million make the run at most; the summary says which.
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub step: Option<f64>,
+    /// The largest step that dop853, dopri5 and taylor may take. A force that acts for a short time is stepped over unless it
+    /// lasts longer than this.
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
+    pub max_step: Option<f64>,
     /// Relative error allowed per step, between 1e-15 and 0.1.
     #[arg(long, value_name = "X", default_value = "1e-10", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
     pub tol: f64,

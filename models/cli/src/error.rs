@@ -115,6 +115,17 @@ pub enum CliError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A file that another run, or another flag of the same run, is writing.
+    #[error(
+        "{flag} {}: another run is writing this file; give another file, or wait until that run has ended",
+        path.display()
+    )]
+    Busy {
+        /// The flag that named it.
+        flag: &'static str,
+        /// Its path.
+        path: PathBuf,
+    },
     /// The standard output or input failed.
     #[error("standard streams: {0}")]
     Stream(#[from] std::io::Error),

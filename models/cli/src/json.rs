@@ -1,9 +1,85 @@
 //! JSON as the command line writes it: keys in the order of the interface, one row per line, numbers that read
 //! back to the same `f64`, `null` for what is infinite or not a number.
 
+use std::fmt;
 use std::io::{self, Write};
 
-use serde_json::Value;
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Value};
+
+use crate::spool::Spool;
+
+/// The value of a text in JSON, every key of an object at most once.
+///
+/// # Errors
+/// A text that is no JSON, or a key that is there twice, with its place.
+pub fn parse(text: &[u8]) -> serde_json::Result<Value> {
+    serde_json::from_slice(text).map(|Unique(value)| value)
+}
+
+/// A value in whose objects every key is there once: of two, [`Value`] silently takes the last.
+struct Unique(Value);
+
+impl<'de> Deserialize<'de> for Unique {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(UniqueVisitor).map(Self)
+    }
+}
+
+struct UniqueVisitor;
+
+impl<'de> Visitor<'de> for UniqueVisitor {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a value")
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Value, A::Error> {
+        let mut array = Vec::new();
+        while let Some(Unique(element)) = elements.next_element()? {
+            array.push(element);
+        }
+        Ok(Value::Array(array))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
+        let mut object = Map::new();
+        while let Some((key, Unique(value))) = entries.next_entry::<String, Unique>()? {
+            if object.contains_key(&key) {
+                return Err(A::Error::custom(format_args!(
+                    "the key `{key}` is there twice; expected every key once"
+                )));
+            }
+            object.insert(key, value);
+        }
+        Ok(Value::Object(object))
+    }
+}
 
 /// A number; `null` if it is not finite.
 pub fn number(value: f64) -> Value {
@@ -71,6 +147,12 @@ impl<'a> Document<'a> {
         write_rows(self.output, rows)
     }
 
+    /// Writes a key with an array of rows that were kept.
+    pub fn spooled(&mut self, key: &str, rows: &Spool) -> io::Result<()> {
+        self.key(key)?;
+        rows.write(self.output)
+    }
+
     /// Closes the object.
     pub fn end(self) -> io::Result<()> {
         writeln!(self.output, "\n}}")
@@ -113,6 +195,21 @@ mod tests {
                 .ok()
                 .and_then(|back: Value| back.as_f64());
             assert_eq!(back.map(f64::to_bits), Some(value.to_bits()), "{text}");
+        }
+    }
+
+    #[test]
+    fn texts_are_read_as_without_the_check_of_keys() {
+        let text =
+            r#"[null, true, -3, 18446744073709551615, 0.1, "\u00e9", {"a": {"b": []}, "c": 1e-7}]"#;
+        let plain: Value = serde_json::from_str(text).unwrap();
+        assert_eq!(parse(text.as_bytes()).unwrap(), plain);
+        for text in [
+            r#"{"a": 1, "b": {"c": 1, "\u0063": 2}}"#,
+            r#"[{"c": 1, "c": 1}]"#,
+        ] {
+            let error = parse(text.as_bytes()).unwrap_err().to_string();
+            assert!(error.contains("`c` is there twice"), "{error}");
         }
     }
 

@@ -44,6 +44,7 @@ mod record;
 mod run_request;
 mod scalar;
 mod sink;
+mod spool;
 mod state_input;
 pub mod suite;
 mod table;

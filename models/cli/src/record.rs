@@ -1,7 +1,12 @@
 //! What is kept of a run: states at equally spaced times, the impacts, and the trace for a picture.
+//!
+//! Samples, impacts and contacts are handed on while the run goes on; only a picture keeps impacts in memory.
+
+use std::io;
 
 use crate::driver::{Contact, Impact, Piece, Watch};
 use crate::entry::Point;
+use crate::error::CliError;
 use crate::plot::trace::Trace;
 use crate::progress::Progress;
 
@@ -27,13 +32,28 @@ impl Grid {
 }
 
 /// What to keep of a run.
-pub struct Wanted {
+pub struct Wanted<'a> {
     /// The times of the samples.
     pub grid: Grid,
-    /// Whether to keep every impact, or to count them only.
-    pub impacts: bool,
     /// The empty trace of a picture.
     pub trace: Option<Trace>,
+    /// What samples, impacts and contacts are handed to, in order of time.
+    pub keeps: Vec<&'a mut dyn Keep>,
+}
+
+/// Takes what a run shows. The first error ends the run.
+pub trait Keep {
+    /// The state at a time of the grid. An impact at that very instant came before.
+    fn sample(&mut self, t: f64, point: &Point) -> io::Result<()>;
+
+    /// An impact was carried out.
+    fn impact(&mut self, impact: &Impact) -> io::Result<()>;
+
+    /// A surface begins or ceases to hold the motion.
+    fn contact(&mut self, contact: &Contact) -> io::Result<()>;
+
+    /// What is said of an error.
+    fn failed(&self, error: io::Error) -> CliError;
 }
 
 /// How many impacts there were.
@@ -50,20 +70,24 @@ pub struct Tally {
 }
 
 /// Keeps what was asked for while a run goes on.
-pub struct Recorder {
+pub struct Recorder<'a> {
     grid: Grid,
-    keeps_impacts: bool,
-    /// Samples taken so far, in order of time.
-    pub samples: Vec<(f64, Point)>,
-    /// Impacts, in order of time, if they were asked for.
+    /// Samples taken so far.
+    taken: u64,
+    keeps: Vec<&'a mut dyn Keep>,
+    failure: Option<CliError>,
+    record: Record,
+    progress: Progress,
+}
+
+/// What is known of a run that has ended.
+pub struct Record {
+    /// Impacts, in order of time, if there is a picture.
     pub impacts: Vec<Impact>,
-    /// Where surfaces begin and cease to hold the motion, if impacts were asked for.
-    pub contacts: Vec<Contact>,
     /// The trace, if a picture was asked for.
     pub trace: Option<Trace>,
     /// The number of impacts, kept or not.
     pub tally: Tally,
-    progress: Progress,
 }
 
 impl Tally {
@@ -88,69 +112,101 @@ impl Tally {
     }
 }
 
-impl Recorder {
+impl<'a> Recorder<'a> {
     /// A recorder that has seen nothing.
-    pub fn new(wanted: Wanted, progress: Progress) -> Self {
+    pub fn new(wanted: Wanted<'a>, progress: Progress) -> Self {
         Self {
             grid: wanted.grid,
-            keeps_impacts: wanted.impacts,
-            samples: Vec::new(),
-            impacts: Vec::new(),
-            contacts: Vec::new(),
-            trace: wanted.trace,
-            tally: Tally::default(),
+            taken: 0,
+            keeps: wanted.keeps,
+            failure: None,
+            record: Record {
+                impacts: Vec::new(),
+                trace: wanted.trace,
+                tally: Tally::default(),
+            },
             progress,
         }
     }
 
     /// Takes the sample at the run's last instant, if the grid has one there.
-    pub fn finish(&mut self, t: f64, last: &Point) {
+    ///
+    /// # Errors
+    /// The first of what the run was handed to.
+    pub fn finish(mut self, t: f64, last: &Point) -> Result<Record, CliError> {
         while let Some(time) = self.next_time().filter(|&time| time <= t) {
-            self.samples.push((time, last.clone()));
+            self.sample(time, last);
         }
-        if let Some(trace) = &mut self.trace {
+        if let Some(trace) = &mut self.record.trace {
             trace.corner(t, last);
         }
         self.progress.finish();
+        match self.failure {
+            None => Ok(self.record),
+            Some(failure) => Err(failure),
+        }
     }
 
     fn next_time(&self) -> Option<f64> {
-        self.grid.time(self.samples.len() as u64)
+        self.grid.time(self.taken)
+    }
+
+    fn sample(&mut self, t: f64, point: &Point) {
+        self.taken += 1;
+        self.hand_on(|keep| keep.sample(t, point));
+    }
+
+    /// Hands something on, until that fails once.
+    fn hand_on(&mut self, mut give: impl FnMut(&mut dyn Keep) -> io::Result<()>) {
+        if self.failure.is_some() {
+            return;
+        }
+        for keep in &mut self.keeps {
+            if let Err(error) = give(*keep) {
+                self.failure = Some(keep.failed(error));
+                return;
+            }
+        }
     }
 }
 
-impl Watch for Recorder {
+impl Watch for Recorder<'_> {
     /// The step's last instant is left to the next step: at an impact, a sample shows the state after it.
     fn step(&mut self, piece: &dyn Piece) {
         let (_, end) = piece.span();
         while let Some(time) = self.next_time().filter(|&time| time < end) {
-            self.samples.push((time, piece.at(time)));
+            self.sample(time, &piece.at(time));
         }
-        if let Some(trace) = &mut self.trace {
+        if let Some(trace) = &mut self.record.trace {
             trace.follow(piece);
         }
         self.progress.at(end);
     }
 
     fn impact(&mut self, impact: Impact) {
-        if let Some(trace) = &mut self.trace {
+        self.hand_on(|keep| keep.impact(&impact));
+        self.record.tally.count(&impact);
+        if let Some(trace) = &mut self.record.trace {
             trace.corner(impact.t, &impact.before);
             trace.corner(impact.t, &impact.after);
-        }
-        self.tally.count(&impact);
-        if self.keeps_impacts {
-            self.impacts.push(impact);
+            self.record.impacts.push(impact);
         }
     }
 
     fn contact(&mut self, contact: Contact) {
-        if let Some(trace) = &mut self.trace {
+        self.hand_on(|keep| keep.contact(&contact));
+        self.record.tally.contacts += u64::from(contact.begins);
+        if let Some(trace) = &mut self.record.trace {
             trace.corner(contact.t, &contact.at);
         }
-        self.tally.contacts += u64::from(contact.begins);
-        if self.keeps_impacts {
-            self.contacts.push(contact);
-        }
+    }
+
+    fn wants_warnings(&self) -> bool {
+        true
+    }
+
+    fn is_over(&self) -> bool {
+        self.failure.is_some()
     }
 }
 

@@ -61,9 +61,16 @@ pub fn course(
              or dla4",
         ));
     }
+    if course.max_step.is_some() && !course.integrator.is_adaptive() {
+        return Err(CliError::Usage(
+            "--max-step: rk4, gauss4, gauss6, dla2 and dla4 keep one step, which --step sets; a largest step needs --integrator \
+             dop853, dopri5 or taylor",
+        ));
+    }
     let integrator = (course.integrator, course.tol);
     Ok(Settings {
         step: course.step,
+        max_step: course.max_step,
         steps: course.steps,
         ..settings(model, run, course.impacts, integrator)?
     })
@@ -87,6 +94,7 @@ pub fn settings(
         integrator,
         tol,
         step: None,
+        max_step: None,
         steps: None,
         until: horizon(model, args.until, impacts)?,
         impacts,

@@ -1,7 +1,7 @@
 //! Files that commands write, or the standard output in their place.
 
-use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::Streams;
@@ -10,6 +10,56 @@ use crate::error::CliError;
 /// Whether the path means the standard output.
 pub fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
+}
+
+/// Opens a file that no other run is writing, with `options`; what it holds stays. Until it is closed, other runs are
+/// refused in the same way.
+///
+/// # Errors
+/// The file cannot be written, or another run is writing it.
+pub fn claim(flag: &'static str, path: &Path, options: &mut OpenOptions) -> Result<File, CliError> {
+    let failed = |source| CliError::File {
+        flag,
+        path: path.to_owned(),
+        source,
+    };
+    let file = options
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(path)
+        .map_err(failed)?;
+    // A device or a pipe may be written by many.
+    if !file.metadata().map_err(failed)?.is_file() {
+        return Ok(file);
+    }
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(CliError::Busy {
+            flag,
+            path: path.to_owned(),
+        }),
+        // Some file systems have no locks.
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(file),
+        Err(TryLockError::Error(error)) => Err(failed(error)),
+    }
+}
+
+/// Opens a file as [`claim`] does, and empties it.
+fn claim_empty(flag: &'static str, path: &Path) -> Result<File, CliError> {
+    let file = claim(flag, path, &mut OpenOptions::new())?;
+    let emptied = match file.metadata() {
+        Ok(metadata) if metadata.is_file() => file.set_len(0),
+        other => other.map(drop),
+    };
+    match emptied {
+        Ok(()) => Ok(file),
+        Err(source) => Err(CliError::File {
+            flag,
+            path: path.to_owned(),
+            source,
+        }),
+    }
 }
 
 /// Where a file goes.
@@ -31,16 +81,16 @@ impl Sink {
     /// Opens it, before anything is computed: a path that cannot be written is better known at once.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The file cannot be written, or another run is writing it.
     pub fn open(flag: &'static str, path: &Path) -> Result<Self, CliError> {
         if is_stdout(path) {
             return Ok(Self::Stdout);
         }
-        let path = path.to_owned();
-        match File::create(&path) {
-            Ok(file) => Ok(Self::File { flag, path, file }),
-            Err(source) => Err(CliError::File { flag, path, source }),
-        }
+        Ok(Self::File {
+            flag,
+            path: path.to_owned(),
+            file: claim_empty(flag, path)?,
+        })
     }
 
     /// Opens the file of a flag, if the flag was given.
@@ -74,6 +124,20 @@ impl Sink {
         }
     }
 
+    /// What is written goes there; `output` is the standard output.
+    pub fn stream<'a>(self, output: &'a mut dyn Write) -> Stream<'a> {
+        match self {
+            Self::Stdout => Stream {
+                output: Box::new(output),
+                file: None,
+            },
+            Self::File { flag, path, file } => Stream {
+                output: Box::new(file),
+                file: Some((flag, path)),
+            },
+        }
+    }
+
     /// Writes it.
     ///
     /// # Errors
@@ -81,19 +145,41 @@ impl Sink {
     pub fn write(
         self,
         streams: &mut Streams<'_>,
-        content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), CliError> {
-        match self {
-            Self::Stdout => {
-                let mut buffer = BufWriter::new(&mut *streams.output);
-                content(&mut buffer)?;
-                Ok(buffer.flush()?)
-            }
-            Self::File { flag, path, file } => {
-                let mut buffer = BufWriter::new(file);
-                let written = content(&mut buffer).and_then(|()| buffer.flush());
-                written.map_err(|source| CliError::File { flag, path, source })
-            }
+        let mut buffer = BufWriter::new(self.stream(&mut *streams.output));
+        let written = content(&mut buffer).and_then(|()| buffer.flush());
+        written.map_err(|source| buffer.get_ref().failed(source))
+    }
+}
+
+/// A file or the standard output, while it is written.
+pub struct Stream<'a> {
+    output: Box<dyn Write + 'a>,
+    /// The flag that named the file, and its path.
+    file: Option<(&'static str, PathBuf)>,
+}
+
+impl Stream<'_> {
+    /// What is said of a failure.
+    pub fn failed(&self, source: io::Error) -> CliError {
+        match &self.file {
+            None => CliError::Stream(source),
+            Some((flag, path)) => CliError::File {
+                flag,
+                path: path.clone(),
+                source,
+            },
         }
+    }
+}
+
+impl Write for Stream<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.output.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.output.flush()
     }
 }

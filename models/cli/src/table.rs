@@ -5,24 +5,74 @@ use std::io::{self, Write};
 
 use dalembert::describe::Description;
 
-use crate::driver::Impact;
+use crate::driver::{Contact, Impact};
 use crate::entry::Point;
+use crate::error::CliError;
 use crate::names;
+use crate::record::Keep;
+use crate::sink::Stream;
 
-/// Writes samples and impacts in order of time. The row of an impact shows the state after it and names the
+/// The table of a run, written while the run goes on. The row of an impact shows the state after it and names the
 /// surface in the column `event`; a sample at that very instant follows it.
-///
-/// # Errors
-/// Whatever the stream says.
-pub fn write(
-    output: &mut dyn Write,
-    description: &Description,
-    samples: &[(f64, Point)],
-    impacts: &[Impact],
-) -> io::Result<()> {
-    write_rows(output, |writer| {
-        write_run(writer, description, samples, impacts)
-    })
+pub struct RunTable<'a> {
+    description: Description,
+    writer: csv::Writer<Stream<'a>>,
+    has_header: bool,
+}
+
+impl<'a> RunTable<'a> {
+    /// A table of which nothing is written, the header neither.
+    pub fn new(description: Description, stream: Stream<'a>) -> Self {
+        Self {
+            description,
+            writer: csv::Writer::from_writer(stream),
+            has_header: false,
+        }
+    }
+
+    /// Writes what is not written yet.
+    ///
+    /// # Errors
+    /// Whatever the file or stream says.
+    pub fn finish(mut self) -> Result<(), CliError> {
+        let finished = self.head().and_then(|()| self.writer.flush());
+        finished.map_err(|source| self.failed(source))
+    }
+
+    /// The header, before anything else.
+    fn head(&mut self) -> io::Result<()> {
+        if self.has_header {
+            return Ok(());
+        }
+        self.has_header = true;
+        let header = header(&self.description);
+        self.writer.write_record(header).map_err(io_error)
+    }
+
+    fn row(&mut self, t: f64, point: &Point, event: &str) -> io::Result<()> {
+        self.head()?;
+        let row = row(&self.description, t, point, event);
+        self.writer.write_record(row).map_err(io_error)
+    }
+}
+
+impl Keep for RunTable<'_> {
+    fn sample(&mut self, t: f64, point: &Point) -> io::Result<()> {
+        self.row(t, point, "")
+    }
+
+    fn impact(&mut self, impact: &Impact) -> io::Result<()> {
+        let surface = surface(&self.description, impact);
+        self.row(impact.t, &impact.after, surface)
+    }
+
+    fn contact(&mut self, _contact: &Contact) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn failed(&self, error: io::Error) -> CliError {
+        self.writer.get_ref().failed(error)
+    }
 }
 
 /// Writes rows of CSV, to the end.
@@ -34,35 +84,15 @@ pub fn write_rows(
     rows: impl FnOnce(&mut csv::Writer<&mut dyn Write>) -> csv::Result<()>,
 ) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(output);
-    rows(&mut writer).map_err(|error| match error.into_kind() {
-        csv::ErrorKind::Io(error) => error,
-        kind => io::Error::other(format!("{kind:?}")),
-    })?;
+    rows(&mut writer).map_err(io_error)?;
     writer.flush()
 }
 
-fn write_run(
-    writer: &mut csv::Writer<&mut dyn Write>,
-    description: &Description,
-    samples: &[(f64, Point)],
-    impacts: &[Impact],
-) -> csv::Result<()> {
-    writer.write_record(header(description))?;
-    let struck = |impact: &Impact| {
-        let event = surface(description, impact);
-        row(description, impact.t, &impact.after, event)
-    };
-    let mut impacts = impacts.iter().peekable();
-    for (t, point) in samples {
-        while let Some(impact) = impacts.next_if(|impact| impact.t <= *t) {
-            writer.write_record(struck(impact))?;
-        }
-        writer.write_record(row(description, *t, point, ""))?;
+fn io_error(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        kind => io::Error::other(format!("{kind:?}")),
     }
-    for impact in impacts {
-        writer.write_record(struck(impact))?;
-    }
-    Ok(())
 }
 
 fn header(description: &Description) -> Vec<String> {

@@ -185,7 +185,7 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
         let longest = setting.max_step.unwrap_or(f64::INFINITY);
         macro_rules! step {
             ($stepper:expr) => {{
-                let mut stepper = $stepper.with_max_step(longest);
+                let mut stepper = $stepper.with_max_step(longest).expect("a positive step");
                 self.step(Chosen::new(&mut stepper), setting, observer)
             }};
         }

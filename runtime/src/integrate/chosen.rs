@@ -33,6 +33,10 @@ impl<F: VectorField> Stepper<F> for Chosen<'_, F> {
         self.stepper.tolerance()
     }
 
+    fn max_step(&self) -> f64 {
+        self.stepper.max_step()
+    }
+
     fn start(
         &mut self,
         field: &F,

@@ -1,5 +1,7 @@
 //! Step size control (Hairer, Norsett, Wanner I, II.4; Gustafsson's PI controller).
 
+use core::fmt;
+
 use super::instant::Instant;
 use super::tableau::larger;
 use super::tolerance::Tolerance;
@@ -151,6 +153,46 @@ pub(crate) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
     }
     let t = start.t + h;
     (t - start.t, Instant { t, ..start })
+}
+
+/// By how much a step may exceed the longest that is allowed: rounding of its ends.
+const ROUNDED: f64 = 1.0 + 1e-9;
+
+/// As [`landing`], but in two steps where the one that reaches `t_end` is longer than `max_step`.
+#[inline(always)]
+pub(crate) fn landing_within(max_step: f64, start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
+    let (made, arrival) = landing(start, h, t_end);
+    if arrival.t == t_end && made > h && made > ROUNDED * max_step {
+        return landing(start, 0.5 * made, t_end);
+    }
+    (made, arrival)
+}
+
+/// A largest step that is not a positive number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MaxStepError {
+    /// The refused value.
+    pub value: f64,
+}
+
+impl fmt::Display for MaxStepError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "the largest step must be a positive number, not {}",
+            self.value
+        )
+    }
+}
+
+impl core::error::Error for MaxStepError {}
+
+/// The largest step, if it is one.
+pub(super) fn check_max_step(value: f64) -> Result<f64, MaxStepError> {
+    match value > 0.0 {
+        true => Ok(value),
+        false => Err(MaxStepError { value }),
+    }
 }
 
 /// The first component that is not finite.

@@ -4,7 +4,8 @@
 //! estimate does without it, it is evaluated only once the error has passed.
 
 use super::controller::{
-    Control, Memory, Weights, first_step, landing, least_step, least_trial, not_finite,
+    Control, MaxStepError, Memory, Weights, check_max_step, first_step, landing_within, least_step,
+    least_trial, not_finite,
 };
 use super::ends::Ends;
 use super::instant::Instant;
@@ -165,15 +166,14 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         }
     }
 
-    /// With no step longer than `max_step`. Anything but a positive number lifts the limit.
-    #[must_use]
-    pub fn with_max_step(mut self, max_step: f64) -> Self {
-        self.max_step = if max_step > 0.0 {
-            max_step
-        } else {
-            f64::INFINITY
-        };
-        self
+    /// With no step longer than `max_step`, in units of time; infinity is no limit. A short force, such as a blow between two
+    /// steps, is seen if it lasts longer than this.
+    ///
+    /// # Errors
+    /// [`MaxStepError`] unless `max_step` is positive.
+    pub fn with_max_step(mut self, max_step: f64) -> Result<Self, MaxStepError> {
+        self.max_step = check_max_step(max_step)?;
+        Ok(self)
     }
 
     /// With this size for the first trial instead of the automatic one. Anything but a positive number is ignored.
@@ -270,6 +270,10 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         self.tolerance
     }
 
+    fn max_step(&self) -> f64 {
+        self.max_step
+    }
+
     fn start(
         &mut self,
         field: &F,
@@ -326,7 +330,7 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         let least = least_trial(t);
         let mut h = self.next.min(self.max_step).max(least_step(t));
         loop {
-            let (made, arrival) = landing(self.ends.t[0], h, t_end);
+            let (made, arrival) = landing_within(self.max_step, self.ends.t[0], h, t_end);
             let attempt = self.attempt(&mut field, made);
             if let Ok(error) = attempt
                 && error <= 1.0

@@ -30,6 +30,10 @@ const SLIVER: f64 = 1e-6;
 /// An implicit step is made in at most this many parts.
 const PARTS: u32 = 1 << 10;
 
+/// The most steps that a run of an automatic step has: a method of low order would make more for a tight tolerance than anybody
+/// waits for. A step that is given may be shorter.
+pub const AUTOMATIC_STEPS: f64 = (1_u32 << 22) as f64;
+
 /// A method of fixed step: its names and orders. Implemented by the methods here.
 pub trait Method: Copy {
     /// See [`Stepper::name`].
@@ -43,6 +47,9 @@ pub trait Method: Copy {
 
     /// What the method keeps from one step for the next besides the state.
     type Memory<S: StateVector>: Copy;
+
+    /// Whether the step is the solution of equations, which shorter steps may have where a longer one has none.
+    const IS_IMPLICIT: bool = false;
 
     /// Whether impacts are solved for inside the step.
     const MEETS: bool = false;
@@ -129,7 +136,8 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     pub const ORDER: usize = M::ORDER;
 
     /// An integrator whose step is found at the start: a power of two at most as long as the automatic first step of this
-    /// tolerance and the method's order, from the rate at the start alone, and then kept. Prefer [`FixedStep::with_step`] where the motion becomes faster.
+    /// tolerance and the method's order, from the rate at the start alone, and then kept; long enough for [`AUTOMATIC_STEPS`] to
+    /// make the run. Prefer [`FixedStep::with_step`] where the motion becomes faster.
     pub fn new(tolerance: Tolerance) -> Self {
         let zeros = S::zeros();
         Self {
@@ -184,7 +192,8 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         check_finite(state, &self.rates[1])
     }
 
-    /// The automatic first step, rounded down to a power of two: the times of the grid are exact then.
+    /// The automatic first step, rounded down to a power of two: the times of the grid are exact then. No shorter than for
+    /// about [`AUTOMATIC_STEPS`] in the run.
     fn automatic_step<F: VectorField<State = S>>(
         &self,
         field: &mut Counted<'_, F>,
@@ -194,6 +203,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     ) -> f64 {
         let weights = Weights::new(self.tolerance, &self.units);
         let (power, rate) = ((M::ORDER + 1) as f64, self.rates[1]);
+        let span = t_end - t;
         let step = first_step(power, t_end - t, &weights, (state, &rate), |h| {
             let mut moved = *state;
             for i in 0..S::LEN {
@@ -203,8 +213,9 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
             let known = evaluate(field, t + h, &moved, &mut after).is_ok();
             (known && after.is_finite()).then_some(after)
         });
-        const MANTISSA: u64 = (1 << (f64::MANTISSA_DIGITS - 1)) - 1;
-        f64::from_bits(step.to_bits() & !MANTISSA)
+        // The least power of two that is no shorter than a step of the most.
+        let least = 2.0 * power_below(span / AUTOMATIC_STEPS);
+        power_below(step).max(least.min(span))
     }
 
     /// The end of the last step becomes the start of the next.
@@ -268,7 +279,9 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         if M::KEEPS_ENERGY && self.target.is_some() {
             let memory = self.memory;
             match self.cross_pieces(field, self.departing(h)) {
-                Err(StepFailure::NotConverged { .. }) => self.memory = memory,
+                Err(StepFailure::NotConverged { .. } | StepFailure::NonFinite { .. }) => {
+                    self.memory = memory;
+                }
                 outcome => return outcome.map(|()| 1),
             }
         }
@@ -277,6 +290,12 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
             let memory = self.memory;
             match self.cross_in(field, h, parts) {
                 Err(StepFailure::NotConverged { .. }) if parts < PARTS => {
+                    field.counters.rejected += 1;
+                    self.memory = memory;
+                    parts *= 2;
+                }
+                // Beside the edge of the domain of the vector field, or in an iteration that runs away.
+                Err(StepFailure::NonFinite { .. }) if M::IS_IMPLICIT && parts < PARTS => {
                     field.counters.rejected += 1;
                     self.memory = memory;
                     parts *= 2;
@@ -371,6 +390,12 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         }
         reaches
     }
+}
+
+/// The largest power of two that is no larger than a positive number.
+fn power_below(x: f64) -> f64 {
+    const MANTISSA: u64 = (1 << (f64::MANTISSA_DIGITS - 1)) - 1;
+    f64::from_bits(x.to_bits() & !MANTISSA)
 }
 
 /// The units with 1 for what is not a positive finite number.

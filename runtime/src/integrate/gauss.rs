@@ -8,6 +8,7 @@
 //! numbers, whatever the rounding of `b`. The stages are solved by fixed-point iteration until the increments no longer
 //! decrease, and the sums over steps are compensated: what is left of rounding is a random walk (Brouwer's law).
 
+use super::controller::not_finite;
 use super::embedded::Counted;
 use super::fixed::{Advance, Departure, FixedStep, Method, evaluate};
 use super::iteration::{Iteration, Verdict};
@@ -259,7 +260,14 @@ fn advance<F: VectorField, const STAGES: usize>(
         match iteration.judge(change, size) {
             Verdict::GoOn => {}
             Verdict::Solved => break,
-            Verdict::Diverges => return Err(StepFailure::NotConverged { t }),
+            Verdict::Diverges => {
+                let mut slopes = stages.iter().map(|slope| not_finite(slope.as_slice()));
+                return Err(slopes
+                    .find_map(|component| component)
+                    .map_or(StepFailure::NotConverged { t }, |component| {
+                        StepFailure::NonFinite { component }
+                    }));
+            }
         }
     }
     Ok(state.advanced(|i| {
@@ -284,6 +292,7 @@ macro_rules! collocation {
             const DENSE_ORDER: usize = $dense;
             const REFINEMENTS: u32 = $refinements;
 
+            const IS_IMPLICIT: bool = true;
             const MEETS: bool = true;
             const KEEPS_ENERGY: bool = true;
 

@@ -16,6 +16,7 @@
 //! The first line is solved for `v` by iterating the velocity that the constraints at the midpoint allow:
 //! `P = p0 + h/2 f(v) + lambda eta(q0)`, `(v, nu) = constrained_velocity(qm, P)`, `lambda += nu`; `nu` is 0 where it ends.
 
+use super::controller::not_finite;
 use super::embedded::Counted;
 use super::fixed::{Advance, Departure, FixedStep, Method};
 use super::iteration::{Iteration, Verdict};
@@ -81,6 +82,7 @@ macro_rules! principle {
             const ORDER: usize = $order;
             const DENSE_ORDER: usize = $order;
             const REFINEMENTS: u32 = $refinements;
+            const IS_IMPLICIT: bool = true;
             const MEETS: bool = true;
 
             /// What was rounded off the positions: N numbers, for which a state has room.
@@ -205,7 +207,13 @@ fn midpoint_step<F: Lagrangian>(
         match iteration.judge(change, size) {
             Verdict::GoOn => {}
             Verdict::Solved => break combined(&reaction, 1.0, &force, h),
-            Verdict::Diverges => return Err(StepFailure::NotConverged { t: from.t }),
+            Verdict::Diverges => {
+                let failure = match not_finite(qdot.as_slice()) {
+                    Some(component) => StepFailure::NonFinite { component },
+                    None => StepFailure::NotConverged { t: from.t },
+                };
+                return Err(failure);
+            }
         }
     };
     let q = from.q.advanced(|i| h * qdot.as_slice()[i]);

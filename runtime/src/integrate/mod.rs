@@ -31,11 +31,12 @@ pub(crate) mod taylor;
 mod tolerance;
 
 pub use chosen::Chosen;
+pub use controller::MaxStepError;
 pub use dense::Polynomial;
 pub use dop853::{Dop853, Dop853Scheme};
 pub use dopri5::{DormandPrince5, DormandPrince5Scheme};
 pub use embedded::{Embedded, Scheme};
-pub use fixed::{Advance, FixedStep, Method};
+pub use fixed::{AUTOMATIC_STEPS, Advance, FixedStep, Method};
 pub use gauss::{Gauss, Gauss4, Gauss6};
 pub use instant::Instant;
 pub use lagrange_d_alembert::{ComposedPrinciple, Dla2, Dla4, MidpointPrinciple};

@@ -21,6 +21,11 @@ pub trait Stepper<F: VectorField> {
     /// The tolerance it was made with.
     fn tolerance(&self) -> Tolerance;
 
+    /// The longest step it may choose; infinite without a limit, and where it keeps a size.
+    fn max_step(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// Begins at `(now, state)`, heading for `t_end`: finds a first step size.
     ///
     /// # Errors

@@ -10,6 +10,8 @@ pub type Plane = SVector<f64, 2>;
 #[derive(Clone, Copy)]
 pub struct Line {
     pub force: fn(f64, f64, f64) -> Result<f64, Fault>,
+    /// The potential, where a test needs one.
+    pub potential: fn(f64) -> f64,
     pub chart: f64,
     pub mass: f64,
 }
@@ -18,6 +20,7 @@ impl Line {
     pub fn new(force: fn(f64, f64, f64) -> Result<f64, Fault>) -> Self {
         Self {
             force,
+            potential: |_| 0.0,
             chart: f64::INFINITY,
             mass: 1.0,
         }
@@ -58,7 +61,7 @@ impl System for Line {
     }
 
     fn energy(&self, _: f64, state: &Plane) -> Result<f64, Fault> {
-        Ok(0.5 * state[1] * state[1])
+        Ok(0.5 * state[1] * state[1] + (self.potential)(state[0]))
     }
 
     fn kick(&self, state: &mut Plane, size: f64, direction: &Scalar) {

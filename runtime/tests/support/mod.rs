@@ -248,12 +248,20 @@ pub fn with_every_integrator<const S: usize>(
         };
     }
     for max_step in [f64::INFINITY, 0.25, 1e-3] {
-        check!("dop853", Dop853::new(tolerance).with_max_step(max_step));
+        check!(
+            "dop853",
+            Dop853::new(tolerance).with_max_step(max_step).unwrap()
+        );
         check!(
             "dopri5",
-            DormandPrince5::new(tolerance).with_max_step(max_step)
+            DormandPrince5::new(tolerance)
+                .with_max_step(max_step)
+                .unwrap()
         );
-        check!("taylor", Taylor::new(tolerance).with_max_step(max_step));
+        check!(
+            "taylor",
+            Taylor::new(tolerance).with_max_step(max_step).unwrap()
+        );
     }
     for step in [0.25, 1e-3] {
         check!("rk4", Rk4::new(tolerance).with_step(step));

@@ -209,6 +209,7 @@ pub fn measure<M: Model>(scene: &M, state: &M::State, plan: &Plan) -> Result<Stu
         integrator: Integrator::Taylor,
         tol: FINEST[0],
         step: None,
+        max_step: None,
         steps: None,
         until: plan.until,
         impacts: None,

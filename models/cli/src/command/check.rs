@@ -131,6 +131,7 @@ fn behind_wall(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
         integrator: Integrator::Dop853,
         tol: 1e-9,
         step: None,
+        max_step: None,
         steps: Some(1),
         until: 1e-3,
         impacts: None,

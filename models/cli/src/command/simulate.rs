@@ -12,17 +12,18 @@ use crate::exit::Exit;
 use crate::plot::trace::{Source, Trace};
 use crate::plot::{self, Drawn, Picture, quantity};
 use crate::progress::Progress;
-use crate::record::{Grid, Recorder, Wanted};
+use crate::record::{Grid, Keep, Record, Recorder, Wanted};
 use crate::sink::Sink;
 use crate::state_input::{build_run, initial_state};
-use crate::{Streams, run_request, table};
+use crate::table::RunTable;
+use crate::{Streams, run_request};
 
 /// A run that has ended, with what the files say of it.
 pub(crate) struct Finished<'a> {
     pub model: &'a dyn AnyModel,
     pub scene: &'a str,
     pub settings: Settings,
-    pub record: Recorder,
+    pub record: Record,
     pub ending: Ending,
     /// Its measured error, if that was asked for.
     pub verified: Option<Verified>,
@@ -55,17 +56,13 @@ pub fn run(
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let plot = Sink::open_given("--plot", args.plot.as_deref())?;
 
-    let finished = finish(model.as_ref(), prepared, args, streams.terminal)?;
-
-    let description = model.description();
-    if let Some(sink) = json {
-        sink.write(streams, |output| document::write(output, &finished))?;
+    let (finished, rows) =
+        write_as_it_goes(model.as_ref(), prepared, args, csv, json.as_ref(), streams)?;
+    for warning in &finished.ending.warnings {
+        writeln!(streams.errors, "warning: {warning}")?;
     }
-    if let Some(sink) = csv {
-        let (samples, impacts) = (&finished.record.samples, &finished.record.impacts);
-        sink.write(streams, |output| {
-            table::write(output, &description, samples, impacts)
-        })?;
+    if let Some((sink, rows)) = json.zip(rows) {
+        sink.write(streams, |output| document::write(output, &finished, &rows))?;
     }
     if let Some(sink) = plot {
         let svg = picture(&finished, args)?;
@@ -81,6 +78,29 @@ pub fn run(
     })
 }
 
+/// Makes the run. The table is written while it goes on; of a document the rows are kept.
+fn write_as_it_goes<'a>(
+    model: &'a dyn AnyModel,
+    prepared: Prepared,
+    args: &'a SimulateArgs,
+    csv: Option<Sink>,
+    json: Option<&Sink>,
+    streams: &mut Streams<'_>,
+) -> Result<(Finished<'a>, Option<document::Rows>), CliError> {
+    let description = model.description();
+    let output = &mut *streams.output;
+    let mut table = csv.map(|sink| RunTable::new(description, sink.stream(output)));
+    let mut rows = json.map(|sink| document::Rows::new(description, sink.path()));
+    let mut keeps: Vec<&mut dyn Keep> = Vec::new();
+    keeps.extend(table.as_mut().map(|table| table as &mut dyn Keep));
+    keeps.extend(rows.as_mut().map(|rows| rows as &mut dyn Keep));
+    let finished = finish(model, prepared, args, keeps, streams.terminal)?;
+    if let Some(table) = table {
+        table.finish()?;
+    }
+    Ok((finished, rows))
+}
+
 /// The picture that `simulate` would write with these flags.
 ///
 /// # Errors
@@ -88,7 +108,7 @@ pub fn run(
 pub fn draw(models: &[Entry], args: &SimulateArgs) -> Result<Drawn, CliError> {
     let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;
-    let finished = finish(model.as_ref(), prepared, args, false)?;
+    let finished = finish(model.as_ref(), prepared, args, Vec::new(), false)?;
     Ok(Drawn {
         svg: picture(&finished, args)?,
         outcome: summary::outcome(&finished.ending),
@@ -123,9 +143,10 @@ fn finish<'a>(
     model: &'a dyn AnyModel,
     prepared: Prepared,
     args: &'a SimulateArgs,
+    keeps: Vec<&mut dyn Keep>,
     terminal: bool,
 ) -> Result<Finished<'a>, CliError> {
-    let (record, ending) = carry_out(model, &prepared, args, terminal)?;
+    let (record, ending) = carry_out(model, &prepared, args, keeps, terminal)?;
     let Prepared {
         settings, origin, ..
     } = prepared;
@@ -173,9 +194,10 @@ fn carry_out(
         source,
     }: &Prepared,
     args: &SimulateArgs,
+    keeps: Vec<&mut dyn Keep>,
     terminal: bool,
-) -> Result<(Recorder, Ending), CliError> {
-    let sampled = args.csv.is_some() || args.json.is_some();
+) -> Result<(Record, Ending), CliError> {
+    let sampled = !keeps.is_empty();
     let progress = || Progress::new(settings.until, terminal);
     let mut grid = Grid {
         end: settings.until,
@@ -184,8 +206,8 @@ fn carry_out(
     if sampled && settings.impacts.is_some() && args.run.until.is_none() {
         let nothing = Wanted {
             grid: Grid { count: 0, ..grid },
-            impacts: false,
             trace: None,
+            keeps: Vec::new(),
         };
         let mut recorder = Recorder::new(nothing, progress());
         grid.end = model
@@ -196,18 +218,17 @@ fn carry_out(
     if grid.end == 0.0 {
         grid.count = grid.count.min(1);
     }
-    let trace = source.clone().map(Trace::of);
     let wanted = Wanted {
         grid,
-        impacts: sampled || trace.is_some(),
-        trace,
+        trace: source.clone().map(Trace::of),
+        keeps,
     };
     let mut recorder = Recorder::new(wanted, progress());
     let ending = model
         .simulate(origin, settings, &mut recorder)
         .map_err(CliError::Start)?;
-    recorder.finish(ending.t, &ending.last);
-    Ok((recorder, ending))
+    let record = recorder.finish(ending.t, &ending.last)?;
+    Ok((record, ending))
 }
 
 /// The run's picture as SVG.

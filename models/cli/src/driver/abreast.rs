@@ -14,15 +14,21 @@ pub(crate) struct Abreast<'w, M: Model> {
     pub watch: &'w mut dyn Watch,
 }
 
+/// The integrator of all runs.
+fn stepper<M: Model>(settings: &Settings) -> Result<Taylor<M>, String> {
+    let tolerance = Tolerance::new(settings.tol).map_err(|error| error.to_string())?;
+    Ok(limited!(Taylor::new(tolerance), settings))
+}
+
 /// As [`simulate`](super::simulate), with Taylor series, of several at once; the results in the order of the runs.
 pub(crate) fn simulate_abreast<M: Model>(
     runs: Vec<Abreast<'_, M>>,
     settings: &Settings,
     looks_inside: bool,
 ) -> Vec<Result<Ending, String>> {
-    let tolerance = match Tolerance::new(settings.tol) {
-        Ok(tolerance) => tolerance,
-        Err(error) => return runs.iter().map(|_| Err(error.to_string())).collect(),
+    let stepper = match stepper(settings) {
+        Ok(stepper) => stepper,
+        Err(error) => return runs.iter().map(|_| Err(error.clone())).collect(),
     };
     let (models, watched): (Vec<M>, Vec<_>) = runs
         .into_iter()
@@ -38,7 +44,11 @@ pub(crate) fn simulate_abreast<M: Model>(
     let mut bridges = Vec::with_capacity(models.len());
     for (model, (state, watch)) in models.iter().zip(watched) {
         states.push(state);
-        bridges.push(Bridge { model, watch });
+        bridges.push(Bridge {
+            model,
+            watch,
+            balance: None,
+        });
     }
     let mut endings: Vec<Result<Ending, String>> = Vec::new();
     endings.resize_with(models.len(), || Err(String::new()));
@@ -46,7 +56,6 @@ pub(crate) fn simulate_abreast<M: Model>(
         let model = bridge.model;
         let (effects, _) = effects(model, settings);
         let start = (0.0, states[index]);
-        let stepper = Taylor::new(tolerance);
         let observer: &mut dyn Observer<M> = bridge;
         Member::new(
             index,

@@ -1,6 +1,16 @@
 //! Drives one model through one run, and shows the run to a [`Watch`] that knows nothing of the model's type.
 
+/// An integrator that chooses its steps, with the largest one of the settings; a refusal leaves the function as text.
+macro_rules! limited {
+    ($stepper:expr, $settings:expr) => {
+        $stepper
+            .with_max_step($settings.max_step.unwrap_or(f64::INFINITY))
+            .map_err(|error| error.to_string())?
+    };
+}
+
 mod abreast;
+mod energy;
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -8,8 +18,8 @@ use std::ops::ControlFlow;
 use dalembert::describe::Description;
 use dalembert::impacts::law::Law;
 use dalembert::integrate::{
-    Chosen, Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4, Gauss6, Method, Rk4,
-    Taylor, Tolerance,
+    AUTOMATIC_STEPS, Chosen, Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4,
+    Gauss6, Method, Rk4, Taylor, Tolerance,
 };
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
@@ -21,6 +31,7 @@ use crate::args::{Form, Integrator};
 use crate::entry::{Model, Point, point};
 use crate::{json, names};
 pub(crate) use abreast::{Abreast, simulate_abreast};
+use energy::Balance;
 
 /// How a run is to be made.
 #[derive(Debug, Clone)]
@@ -30,6 +41,8 @@ pub(crate) struct Settings {
     pub tol: f64,
     /// The step of an integrator of fixed step, where the flags say.
     pub step: Option<f64>,
+    /// The largest step of an integrator that chooses its steps.
+    pub max_step: Option<f64>,
     /// Stop after this many steps.
     pub steps: Option<u64>,
     pub until: f64,
@@ -59,6 +72,8 @@ pub(crate) struct Ending {
     pub laws: Vec<Option<Law>>,
     /// Whether the requested time or number of impacts was reached.
     pub reached: bool,
+    /// Where the integrator was out of its depth, in words.
+    pub warnings: Vec<String>,
 }
 
 /// An impact.
@@ -104,6 +119,16 @@ pub(crate) trait Watch {
 
     /// A surface begins or ceases to hold the motion.
     fn contact(&mut self, contact: Contact);
+
+    /// Whether to look for errors that an integrator of fixed step does not estimate, which takes time.
+    fn wants_warnings(&self) -> bool {
+        false
+    }
+
+    /// Whether nobody wants to see more: the run ends then.
+    fn is_over(&self) -> bool {
+        false
+    }
 }
 
 /// A run that has ended, in the model's own type.
@@ -126,9 +151,42 @@ pub(crate) fn simulate<M: Model>(
     watch: &mut dyn Watch,
 ) -> Result<Ending, String> {
     let first = point(model, 0.0, &state);
-    let mut bridge = Bridge { model, watch };
+    let is_doubtful = !settings.integrator.is_adaptive() && watch.wants_warnings();
+    let balance = is_doubtful.then(|| Balance::of(model, 0.0, &state));
+    let mut bridge = Bridge {
+        model,
+        watch,
+        balance: balance.flatten(),
+    };
     let solved = solve(model, &state, settings, &mut bridge)?;
-    Ok(ending(model, first, solved, settings))
+    let warnings = warnings(settings, &solved, bridge.balance);
+    Ok(Ending {
+        warnings,
+        ..ending(model, first, solved, settings)
+    })
+}
+
+/// Where an integrator of fixed step was out of its depth.
+fn warnings<S>(settings: &Settings, solved: &Solved<S>, balance: Option<Balance>) -> Vec<String> {
+    let Some(step) = solved.step else {
+        return Vec::new();
+    };
+    let name = settings.integrator.name();
+    let mut warnings = Vec::new();
+    if settings.step.is_none() && 2.0 * settings.until >= step * AUTOMATIC_STEPS {
+        warnings.push(format!(
+            "{name} with step {step}, the shortest that is chosen for a run of this length: errors may be above --tol {:e}; set \
+             a shorter one with --step, or take an integrator of higher order",
+            settings.tol
+        ));
+    }
+    if let Some((error, t, part)) = balance.and_then(|balance| balance.told()) {
+        warnings.push(format!(
+            "{name} with step {step}: the energy is off by {error:.1e} at t = {t}, {part:.1e} of its size; set a shorter \
+             step with --step, or take an integrator that chooses its steps, such as --integrator dop853"
+        ));
+    }
+    warnings
 }
 
 /// What is told of a run that has ended.
@@ -150,6 +208,7 @@ fn ending<M: Model>(
         laws,
         reached: run.outcome.is_done()
             || (settings.impacts.is_some() && run.outcome == Outcome::ImpactBudget),
+        warnings: Vec::new(),
     }
 }
 
@@ -171,9 +230,9 @@ pub(crate) fn solve<M: Model>(
         }};
     }
     match settings.integrator {
-        Integrator::Dop853 => run!(Dop853::new(tolerance)),
-        Integrator::Dopri5 => run!(DormandPrince5::new(tolerance)),
-        Integrator::Taylor => run!(Taylor::new(tolerance)),
+        Integrator::Dop853 => run!(limited!(Dop853::new(tolerance), settings)),
+        Integrator::Dopri5 => run!(limited!(DormandPrince5::new(tolerance), settings)),
+        Integrator::Taylor => run!(limited!(Taylor::new(tolerance), settings)),
         Integrator::Rk4 => run!(stepping(Rk4::new(tolerance), settings)),
         Integrator::Gauss4 => run!(stepping(Gauss4::new(tolerance), settings)),
         Integrator::Gauss6 => run!(stepping(Gauss6::new(tolerance), settings)),
@@ -238,18 +297,35 @@ fn effects<M: Model>(model: &M, settings: &Settings) -> (M::Effects, Vec<Option<
 struct Bridge<'a, M> {
     model: &'a M,
     watch: &'a mut dyn Watch,
+    /// The energy along steps of one size, where errors are to be told.
+    balance: Option<Balance>,
+}
+
+impl<M> Bridge<'_, M> {
+    fn go_on(&self) -> ControlFlow<()> {
+        match self.watch.is_over() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
 }
 
 impl<M: Model> Observer<M> for Bridge<'_, M> {
     fn step(&mut self, segment: &mut Segment<'_, M::State>) -> ControlFlow<()> {
+        if let Some(balance) = &mut self.balance {
+            balance.follow(self.model, segment);
+        }
         self.watch.step(&SegmentPiece {
             model: self.model,
             segment: RefCell::new(segment),
         });
-        ControlFlow::Continue(())
+        self.go_on()
     }
 
     fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
+        if let Some(balance) = &mut self.balance {
+            balance.jump();
+        }
         self.watch.impact(Impact {
             t: event.t,
             surface: event.surface,
@@ -258,10 +334,13 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
             simultaneous: event.simultaneous,
             graze: event.graze,
         });
-        ControlFlow::Continue(())
+        self.go_on()
     }
 
     fn hold(&mut self, hold: &Hold<M::State>) -> ControlFlow<()> {
+        if let Some(balance) = &mut self.balance {
+            balance.hold(hold.begins);
+        }
         self.watch.contact(Contact {
             t: hold.t,
             surface: hold.surface,
@@ -269,7 +348,7 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
             begins: hold.begins,
             accumulation: hold.accumulation,
         });
-        ControlFlow::Continue(())
+        self.go_on()
     }
 }
 

@@ -1,11 +1,16 @@
-//! A short name for bytes, to see whether two are the same: FNV-1a of 64 bits. It does not withstand intent.
+//! A short name for bytes, to see whether two are the same: FNV-1a of 64 bits. Bytes that differ in one place have different
+//! names. It does not withstand intent.
+
+/// The hash.
+pub fn hash(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
 
 /// The hash as 16 hexadecimal digits.
 pub fn fingerprint(bytes: &[u8]) -> String {
-    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    });
-    format!("{hash:016x}")
+    format!("{:016x}", hash(bytes))
 }
 
 #[cfg(test)]

@@ -1,8 +1,15 @@
 //! The file that rows are appended to while members are run, and from which a run that was cut off goes on.
 //!
-//! Beside `FILE` stand `FILE.meta.json`, which says of what ensemble the rows are, and, while a density is counted,
-//! `FILE.counts`: the counts of the first so many members. What is kept after a cut are the rows that are complete, of
-//! which counts are known.
+//! | beside `FILE` | |
+//! |---|---|
+//! | `FILE.meta.json` | of what ensemble the rows are |
+//! | `FILE.sums` | a line for every row: its checksum, [`fingerprint`] of the row with the end of its line |
+//! | `FILE.counts` | while a density is counted: the counts of the first so many members, and their checksum |
+//!
+//! What is kept after a cut are the rows that are complete, of which counts are known. A row that is not the one that was
+//! written is an error. Checksums are written before their rows, so that every row that is there has one.
+//!
+//! `FILE` is locked while it is written.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -12,8 +19,10 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value};
 
 use super::density::Counts;
+use super::fingerprint::{fingerprint, hash};
 use super::row::{Columns, Field, Row};
 use crate::error::CliError;
+use crate::sink;
 
 /// Least time between two writings of counts.
 const SAVE: Duration = Duration::from_secs(1);
@@ -21,11 +30,16 @@ const SAVE: Duration = Duration::from_secs(1);
 /// Writing counts takes one part in so many of the time at most.
 const SAVING: u32 = 20;
 
-/// The file, open.
+/// Bytes of a line of `FILE.sums`.
+const SUM: usize = 17;
+
+/// The file, open and locked.
 pub struct Journal {
     flag: &'static str,
     path: PathBuf,
     file: File,
+    /// Checksums of the rows, once the file is begun.
+    sums: Option<File>,
     saved: Instant,
     /// Time between two writings of counts.
     patience: Duration,
@@ -39,77 +53,86 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
 }
 
 impl Journal {
-    /// Begins a file.
+    /// Opens a file, which keeps what it holds until [`begin`](Self::begin).
+    ///
+    /// # Errors
+    /// It cannot be written, or another run is writing it.
+    pub fn open(flag: &'static str, path: &Path) -> Result<Self, CliError> {
+        let file = sink::claim(flag, path, OpenOptions::new().read(true))?;
+        Ok(Self {
+            flag,
+            path: path.to_owned(),
+            file,
+            sums: None,
+            saved: Instant::now(),
+            patience: SAVE,
+        })
+    }
+
+    /// Begins the file.
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn create(
-        flag: &'static str,
-        path: &Path,
+    pub fn begin(
+        &mut self,
         columns: &Columns,
         metadata: &Map<String, Value>,
-    ) -> Result<Self, CliError> {
-        let created = || {
-            let file = File::create(path)?;
-            let mut text = serde_json::to_string_pretty(metadata)?;
-            text.push('\n');
-            replace(&beside(path, ".meta.json"), text.as_bytes())?;
-            remove(&beside(path, ".counts"))?;
-            let mut journal = Self::over(flag, path, file);
-            journal.file.write_all(&columns.header())?;
-            Ok(journal)
-        };
-        created().map_err(|source| failed(flag, path, source))
+    ) -> Result<(), CliError> {
+        self.try_begin(columns, metadata)
+            .map_err(|source| failed(self.flag, &self.path, source))
     }
 
-    /// Opens a file that was begun, shows `see` the rows that are kept, and says how many they are. `None` where there is
-    /// nothing to keep; rows that were shown then do not count.
+    fn try_begin(&mut self, columns: &Columns, metadata: &Map<String, Value>) -> io::Result<()> {
+        self.file.set_len(0)?;
+        self.file.rewind()?;
+        let mut text = serde_json::to_string_pretty(metadata)?;
+        text.push('\n');
+        replace(&beside(&self.path, ".meta.json"), text.as_bytes())?;
+        remove(&beside(&self.path, ".counts"))?;
+        self.sums = Some(File::create(beside(&self.path, ".sums"))?);
+        self.file.write_all(&columns.header())
+    }
+
+    /// Goes on with a file that was begun: shows `see` the rows that are kept, and says how many they are. `None` where there
+    /// is nothing to keep; rows that were shown then do not count.
     ///
     /// # Errors
-    /// It cannot be read or written, or is of another ensemble.
+    /// It cannot be read or written, is of another ensemble, or was altered.
     pub fn resume(
-        flag: &'static str,
-        path: &Path,
+        &mut self,
         columns: &Columns,
         metadata: &Map<String, Value>,
         (first_member, counts): (u64, Option<&mut Counts>),
         see: &mut dyn FnMut(&Row),
-    ) -> Result<Option<(Self, u64)>, CliError> {
+    ) -> Result<Option<u64>, CliError> {
+        let (flag, path) = (self.flag, self.path.clone());
+        let whole = |source| failed(flag, &path, source);
         // A file that is empty was begun just now: what stands beside it may be of another ensemble.
-        if fs::metadata(path).map_or(0, |file| file.len()) == 0 {
+        if self.file.metadata().map_err(whole)?.len() == 0 {
             return Ok(None);
         }
-        let whole = |source| failed(flag, path, source);
-        compare(path, metadata)?;
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .open(path)
-            .map_err(whole)?;
+        compare(&path, metadata)?;
         let counted = match counts {
             None => u64::MAX,
-            Some(counts) => load(&beside(path, ".counts"), counts).map_err(whole)?,
+            Some(counts) => load(&beside(&path, ".counts"), counts)?,
         };
-        let mut scan = Scan::of(&mut file, columns, first_member);
-        let complete = scan.run(counted, see).map_err(whole)?;
+        let mut sums = open_sums(&beside(&path, ".sums"))?;
+        self.file.rewind().map_err(whole)?;
+        let mut scan = Scan::of(&mut self.file, columns, first_member);
+        scan.sums = Some(BufReader::new(&mut sums));
+        let complete = match scan.run(counted, see).map_err(whole)? {
+            Found::Complete(complete) => complete,
+            Found::Altered { line } => return Err(altered(&path, line)),
+        };
         // Counts cannot be taken back: where rows were lost that they know of, both begin anew.
         let is_short = counted != u64::MAX && complete.rows < counted;
         if complete.length == 0 || is_short {
             return Ok(None);
         }
-        file.set_len(complete.length).map_err(whole)?;
-        file.seek(SeekFrom::End(0)).map_err(whole)?;
-        Ok(Some((Self::over(flag, path, file), complete.rows)))
-    }
-
-    fn over(flag: &'static str, path: &Path, file: File) -> Self {
-        Self {
-            flag,
-            path: path.to_owned(),
-            file,
-            saved: Instant::now(),
-            patience: SAVE,
-        }
+        cut(&mut self.file, complete.length).map_err(whole)?;
+        cut(&mut sums, complete.rows * SUM as u64).map_err(whole)?;
+        self.sums = Some(sums);
+        Ok(Some(complete.rows))
     }
 
     /// Appends lines, after which `members` are in the file and counted in `counts`.
@@ -132,6 +155,11 @@ impl Journal {
         members: u64,
         counts: Option<&Counts>,
     ) -> io::Result<()> {
+        if let Some(sums) = &mut self.sums {
+            let rows = lines.split_inclusive(|&byte| byte == b'\n');
+            let text: String = rows.map(|row| fingerprint(row) + "\n").collect();
+            sums.write_all(text.as_bytes())?;
+        }
         self.file.write_all(lines)?;
         match counts {
             Some(counts) if self.saved.elapsed() >= self.patience => {
@@ -190,10 +218,11 @@ pub fn read_rows(
 pub fn discard(path: &Path) -> io::Result<()> {
     remove(path)?;
     remove(&beside(path, ".meta.json"))?;
+    remove(&beside(path, ".sums"))?;
     remove(&beside(path, ".counts"))
 }
 
-/// Refuses to go on with another ensemble.
+/// Refuses to go on with another ensemble. A key that is absent counts as `null`: the flag did not exist then.
 fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
     let place = beside(path, ".meta.json");
     let invalid = |reason: String| CliError::Input {
@@ -205,7 +234,7 @@ fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
         serde_json::from_slice(&text).map_err(|error| invalid(error.to_string()))?;
     let differs = metadata
         .iter()
-        .find(|(key, value)| before.get(*key) != Some(value));
+        .find(|(key, value)| before.get(*key).unwrap_or(&Value::Null) != *value);
     match differs {
         None => Ok(()),
         Some((key, value)) => {
@@ -220,11 +249,57 @@ fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
     }
 }
 
+/// The checksums of a file that was begun.
+fn open_sums(path: &Path) -> Result<File, CliError> {
+    let opened = OpenOptions::new().read(true).write(true).open(path);
+    opened.map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => CliError::Input {
+            place: format!("--resume {}", path.display()),
+            reason: "there is no such file: rows without their checksums are not continued; leave out --resume to begin anew"
+                .to_owned(),
+        },
+        _ => failed("--resume", path, error),
+    })
+}
+
+/// Refuses to go on after a line that is not the one that was written.
+fn altered(path: &Path, line: u64) -> CliError {
+    let (what, help) = match line {
+        1 => ("header", ""),
+        _ => (
+            "row",
+            "cut the file before this line to go on from there, or ",
+        ),
+    };
+    CliError::Input {
+        place: format!("--resume {}, line {line}", path.display()),
+        reason: format!(
+            "the {what} was altered since it was written, as its checksum tells; {help}leave out --resume to begin anew"
+        ),
+    }
+}
+
+/// Shortens a file, and goes to its end.
+fn cut(file: &mut File, length: u64) -> io::Result<()> {
+    file.set_len(length)?;
+    file.seek(SeekFrom::End(0)).map(drop)
+}
+
 /// The complete rows at the beginning of a file.
 struct Scan<'a> {
     reader: BufReader<&'a mut File>,
+    /// The checksums of the rows; without them no row is compared.
+    sums: Option<BufReader<&'a mut File>>,
     columns: &'a Columns,
     first_member: u64,
+}
+
+/// What a file holds.
+enum Found {
+    /// Rows as they were written.
+    Complete(Complete),
+    /// A line that is not the one that was written, counted from 1.
+    Altered { line: u64 },
 }
 
 /// How much of a file is complete.
@@ -237,31 +312,53 @@ impl<'a> Scan<'a> {
     fn of(file: &'a mut File, columns: &'a Columns, first_member: u64) -> Self {
         Self {
             reader: BufReader::new(file),
+            sums: None,
             columns,
             first_member,
         }
     }
 
-    /// Reads up to so many rows; a last one that was cut off is none.
-    fn run(&mut self, most: u64, see: &mut dyn FnMut(&Row)) -> io::Result<Complete> {
+    /// Reads up to so many rows; a last one that was cut off is none, nor is one without a checksum.
+    fn run(&mut self, most: u64, see: &mut dyn FnMut(&Row)) -> io::Result<Found> {
         let mut complete = Complete { rows: 0, length: 0 };
         let mut line = Vec::new();
-        if !self.next_line(&mut line)? || line != self.columns.header() {
-            return Ok(complete);
+        if !self.next_line(&mut line)? {
+            return Ok(Found::Complete(complete));
+        }
+        if line != self.columns.header() {
+            return Ok(Found::Altered { line: 1 });
         }
         complete.length = line.len() as u64;
         while complete.rows < most && self.next_line(&mut line)? {
-            let Some(row) = self.columns.parse(&line) else {
+            let Some(is_same) = self.compare(&line)? else {
                 break;
             };
-            if row.first() != Some(&Field::Integer(self.first_member + complete.rows)) {
-                break;
+            let member = Field::Integer(self.first_member + complete.rows);
+            let row = self.columns.parse(&line).filter(|_| is_same);
+            match row.filter(|row| row.first() == Some(&member)) {
+                Some(row) => see(&row),
+                None => {
+                    let line = complete.rows + 2;
+                    return Ok(Found::Altered { line });
+                }
             }
-            see(&row);
             complete.rows += 1;
             complete.length += line.len() as u64;
         }
-        Ok(complete)
+        Ok(Found::Complete(complete))
+    }
+
+    /// Whether a row has the next checksum; `None` where there is none.
+    fn compare(&mut self, line: &[u8]) -> io::Result<Option<bool>> {
+        let Some(sums) = &mut self.sums else {
+            return Ok(Some(true));
+        };
+        let mut sum = [0; SUM];
+        match sums.read_exact(&mut sum) {
+            Ok(()) => Ok(Some(sum == *(fingerprint(line) + "\n").as_bytes())),
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     /// Whether there is another line with an end.
@@ -289,20 +386,32 @@ fn remove(path: &Path) -> io::Result<()> {
 fn save(path: &Path, members: u64, counts: &Counts) -> io::Result<()> {
     let mut content = members.to_le_bytes().to_vec();
     counts.write(&mut content)?;
+    content.extend_from_slice(&hash(&content).to_le_bytes());
     replace(path, &content)
 }
 
 /// How many members the counts are of; 0 where there are none.
-fn load(path: &Path, counts: &mut Counts) -> io::Result<u64> {
-    let mut file = match File::open(path) {
-        Ok(file) => BufReader::new(file),
+fn load(path: &Path, counts: &mut Counts) -> Result<u64, CliError> {
+    let content = match fs::read(path) {
+        Ok(content) => content,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(0),
-        Err(error) => return Err(error),
+        Err(error) => return Err(failed("--resume", path, error)),
     };
-    let mut members = [0; 8];
-    file.read_exact(&mut members)?;
-    counts.read(&mut file)?;
-    Ok(u64::from_le_bytes(members))
+    members_of(&content, counts).ok_or_else(|| CliError::Input {
+        place: format!("--resume {}", path.display()),
+        reason: "the counts were altered since they were written, as their checksum tells; remove the file to count from the \
+                 first member on, or leave out --resume to begin anew"
+            .to_owned(),
+    })
+}
+
+/// Reads what [`save`] wrote; `None` where it is something else.
+fn members_of(content: &[u8], counts: &mut Counts) -> Option<u64> {
+    let (content, sum) = content.split_last_chunk()?;
+    let (members, mut rest) = content.split_first_chunk()?;
+    counts.read(&mut rest).ok()?;
+    let is_whole = rest.is_empty() && hash(content) == u64::from_le_bytes(*sum);
+    is_whole.then(|| u64::from_le_bytes(*members))
 }
 
 #[cfg(test)]
@@ -332,8 +441,10 @@ mod tests {
         let path = std::env::temp_dir().join(format!("dalembert-{name}-{}", std::process::id()));
         let columns = Columns::unnamed(&[Kind::Integer, Kind::Number]);
         let metadata = Map::from_iter([("tol".to_owned(), Value::from(0.5))]);
-        let journal = Journal::create("--csv", &path, &columns, &metadata);
-        let mut journal = journal.expect("the folder can be written");
+        let open = || Journal::open("--csv", &path).expect("the folder can be written");
+        let mut journal = open();
+        let begun = journal.begin(&columns, &metadata);
+        begun.expect("the file can be written");
         for member in 7..10 {
             let row = vec![Field::Integer(member), Field::Number(0.1)];
             let appended = journal.append(&csv_line(&row), member - 6, None);
@@ -345,9 +456,8 @@ mod tests {
         let counts = counted.map(|_| &mut counts);
         let mut seen = 0;
         let mut see = |_: &Row| seen += 1;
-        let resumed = Journal::resume("--csv", &path, &columns, &metadata, (7, counts), &mut see);
-        let resumed = resumed.expect("the file can be read");
-        let rows = resumed.map(|(_, rows)| rows);
+        let resumed = open().resume(&columns, &metadata, (7, counts), &mut see);
+        let rows = resumed.expect("the file can be read");
         let lines = fs::read_to_string(&path).map_or(0, |text| text.lines().count() as u64 - 1);
         discard(&path).expect("the files can be removed");
         rows.map(|rows| {

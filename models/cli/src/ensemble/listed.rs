@@ -1,7 +1,8 @@
 //! Members from a table, one a row.
 
+use std::cell::Cell;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 use dalembert::describe::Description;
@@ -26,10 +27,25 @@ const OTHERS: [&str; 7] = [
 /// Beginning of the names of columns that `ensemble --csv` writes for what was varied.
 pub const INPUT: &str = "in.";
 
+/// How much a table may hold: what is read is kept in memory.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    /// Bytes of a row, with what is passed over before it.
+    row: usize,
+    /// Rows.
+    members: usize,
+}
+
+const LIMITS: Limits = Limits {
+    row: 1 << 20,
+    members: 10_000_000,
+};
+
 /// Reads the members. In a table that `ensemble` wrote they are the columns `in.NAME`.
 ///
 /// # Errors
-/// A file that cannot be read, a column that a model does not have, a field that is no number.
+/// A file that cannot be read, a column that a model does not have, a field that is no number, a row of more than a mebibyte, more
+/// than ten million rows.
 pub fn read(
     path: &Path,
     stdin: &mut dyn Read,
@@ -46,25 +62,49 @@ pub fn read(
         Box::new(opened?)
     };
     let place = format!("--from {}", path.display());
+    parse(&place, file, description, LIMITS)
+}
+
+/// The members of a table.
+fn parse(
+    place: &str,
+    file: impl Read,
+    description: &Description,
+    limits: Limits,
+) -> Result<Members, CliError> {
     let invalid = |reason: String| CliError::Input {
-        place: place.clone(),
+        place: place.to_owned(),
         reason,
     };
+    let since_row = Cell::new(0);
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .from_reader(file);
+        .from_reader(Bounded {
+            file,
+            since_row: &since_row,
+            most: limits.row,
+        });
     let header = reader
         .headers()
         .map_err(|error| invalid(error.to_string()))?;
-    let columns = columns(&place, header, description)?;
+    let columns = columns(place, header, description)?;
     if columns.is_empty() {
         return Err(invalid(
             "no column is named like a coordinate, a velocity or a parameter".to_owned(),
         ));
     }
     let mut rows = Vec::new();
+    let mut members = 0;
     for record in reader.records() {
         let record = record.map_err(|error| invalid(error.to_string()))?;
+        since_row.set(0);
+        members += 1;
+        if members > limits.members {
+            return Err(invalid(format!(
+                "more than {} rows, which is the most that --from takes; divide the file",
+                limits.members
+            )));
+        }
         let line = record.position().map_or(0, csv::Position::line);
         for (index, name, _) in &columns {
             let text = record.get(*index).unwrap_or_default();
@@ -77,6 +117,29 @@ pub fn read(
         .into_iter()
         .map(|(_, name, quantity)| (name, quantity));
     Ok(Members::listed(named.collect(), rows))
+}
+
+/// A file that is read no further than a limit past the last row that was taken.
+struct Bounded<'a, R> {
+    file: R,
+    /// Bytes read since the last row was taken.
+    since_row: &'a Cell<usize>,
+    most: usize,
+}
+
+impl<R: Read> Read for Bounded<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.since_row.get() > self.most {
+            let text = format!(
+                "a row of more than {} bytes, which is the most that --from takes",
+                self.most
+            );
+            return Err(io::Error::new(io::ErrorKind::InvalidData, text));
+        }
+        let read = self.file.read(buffer)?;
+        self.since_row.set(self.since_row.get() + read);
+        Ok(read)
+    }
 }
 
 /// The columns that members are made of: index, name and quantity.
@@ -106,4 +169,72 @@ fn columns(
         columns.push((index, name, quantity));
     }
     Ok(columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use dalembert::describe::{CoordinateInfo, Topology};
+
+    use super::*;
+
+    const POINT: Description = Description {
+        type_name: "Point",
+        name: "point",
+        documentation: "",
+        source: "",
+        is_first_order: false,
+        coordinates: &[CoordinateInfo {
+            name: "x",
+            topology: Topology::Line,
+        }],
+        parameters: &[],
+        constraints: &[],
+        quasi_velocities: &[],
+        forces: &[],
+        surfaces: &[],
+        outputs: &[],
+        scenes: &["all"],
+        modes: &[],
+        view: None,
+    };
+
+    fn count(table: impl Read) -> Result<u64, String> {
+        let limits = Limits {
+            row: 100_000,
+            members: 1000,
+        };
+        let members = parse("--from table.csv", table, &POINT, limits);
+        members
+            .map(|members| members.count())
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn tables_within_the_limits_are_read() {
+        let table = "x\n".to_owned() + &"1\n".repeat(1000);
+        assert_eq!(count(table.as_bytes()), Ok(1000));
+        let wide = format!("x,t\n1,\"{}\"\n", "\n".repeat(90_000));
+        assert_eq!(count(wide.as_bytes()), Ok(1));
+    }
+
+    #[test]
+    fn a_table_without_end_is_refused_with_its_limit() {
+        let refused = |table: &mut dyn Read, limit: &str| {
+            let error = count(table).expect_err("a table that is too long");
+            assert!(
+                error.contains("--from table.csv") && error.contains(limit),
+                "{error}"
+            );
+        };
+        refused(&mut io::repeat(0), "100000 bytes");
+        refused(&mut io::repeat(b'\n'), "100000 bytes");
+        refused(
+            &mut "x\n".as_bytes().chain(io::repeat(b'1')),
+            "100000 bytes",
+        );
+        let quoted = b"x,t\n1,a\"b\n2,\"".as_slice();
+        refused(&mut quoted.chain(io::repeat(b'\n')), "100000 bytes");
+        let rows = "x\n".to_owned() + &"1\n".repeat(1001);
+        refused(&mut rows.as_bytes(), "1000 rows");
+    }
 }

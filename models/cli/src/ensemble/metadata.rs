@@ -62,6 +62,7 @@ pub fn metadata(
         "integrator": settings.integrator.name(),
         "tol": number(settings.tol),
         "step": settings.step.map(number),
+        "max_step": settings.max_step.map(number),
         "until": number(settings.until),
         "impacts": settings.impacts,
         "steps": settings.steps,

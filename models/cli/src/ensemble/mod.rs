@@ -103,7 +103,7 @@ pub fn is_reached(outcome: &str, settings: &Settings) -> bool {
 /// Runs the members.
 ///
 /// # Errors
-/// A file that cannot be written, or that is of another ensemble. Whatever happens to a member is in its row.
+/// A file that cannot be written, that another run is writing, or that is of another ensemble. Whatever happens to a member is in its row.
 pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summary, CliError> {
     let Plan { shared, range, .. } = plan;
     let reached = |outcome: &str| is_reached(outcome, shared.settings);
@@ -186,19 +186,20 @@ fn begin<'a>(plan: &Plan<'_>, rows: Rows<'a>) -> Result<(Summary, Output<'a>), C
             Output::Stream(stream)
         }
         Rows::File { flag, path, resume } => {
+            let mut journal = Journal::open(flag, path)?;
             if resume {
                 let Summary { tally, counts, .. } = &mut summary;
                 let mut see =
                     |row: &_| tally.add(row, |outcome| is_reached(outcome, shared.settings));
                 let begun = (range.start, counts.as_mut());
-                let resumed = Journal::resume(flag, path, columns, metadata, begun, &mut see)?;
-                if let Some((journal, kept)) = resumed {
+                if let Some(kept) = journal.resume(columns, metadata, begun, &mut see)? {
                     summary.kept = kept;
                     return Ok((summary, Output::Journal(journal)));
                 }
                 summary = nothing();
             }
-            Output::Journal(Journal::create(flag, path, columns, metadata)?)
+            journal.begin(columns, metadata)?;
+            Output::Journal(journal)
         }
     };
     Ok((summary, output))

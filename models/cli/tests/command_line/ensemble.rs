@@ -304,6 +304,134 @@ fn a_run_that_was_cut_off_goes_on_to_the_same_file() {
 }
 
 #[test]
+fn a_file_that_another_run_is_writing_is_refused() {
+    let folder = Folder::new("busy");
+    for (line, name) in [
+        (BALLS, "--csv rows"),
+        (BALLS, "--resume --csv rows"),
+        (BALLS, "--json all"),
+        (
+            "ensemble bouncing_ball --vary x=1,2 --until 1 --density x,x_dot",
+            "--cells cells",
+        ),
+        ("simulate bouncing_ball --until 1", "--csv run"),
+    ] {
+        let (flags, name) = name.rsplit_once(' ').unwrap();
+        let line = format!("{line} {flags} {}", folder.path(name));
+        let before = run(&line);
+        assert_ne!(before.exit, Exit::Refused, "{}", before.errors);
+        let written = folder.read(name);
+        let other = fs::File::open(folder.0.join(name)).unwrap();
+        other.lock().unwrap();
+        let refused = run(&line);
+        assert_eq!(refused.exit, Exit::Refused, "{line}");
+        let flag = flags.rsplit(' ').next().unwrap();
+        for part in [flag, &folder.path(name), "another run is writing"] {
+            assert!(refused.errors.contains(part), "{}", refused.errors);
+        }
+        assert_eq!(folder.read(name), written, "nothing was touched");
+        drop(other);
+        assert_eq!(run(&line).exit, before.exit);
+    }
+    // The same file by two names.
+    let twice = format!(
+        "{BALLS} --csv {} --json {}/./rows",
+        folder.path("rows"),
+        folder.0.display()
+    );
+    assert_eq!(run(&twice).exit, Exit::Refused);
+}
+
+/// The file with the byte at this place replaced.
+fn alter(folder: &Folder, name: &str, place: usize, byte: u8) {
+    let mut bytes = fs::read(folder.0.join(name)).unwrap();
+    assert_ne!(bytes[place], byte);
+    bytes[place] = byte;
+    fs::write(folder.0.join(name), bytes).unwrap();
+}
+
+#[test]
+fn a_row_that_was_altered_is_not_continued() {
+    let folder = Folder::new("altered");
+    let density = "--density x_dot=-3..3,x=0..4:8 --every 0.25";
+    for more in ["", density] {
+        let line = format!("{BALLS} {more} --csv {}", folder.path("rows.csv"));
+        run(&line);
+        let resumed = || run(&format!("{line} --resume"));
+        let whole = folder.read("rows.csv");
+        // A digit of the energy of member 20.
+        let row = whole.lines().nth(21).unwrap();
+        let energy = column(&whole, "energy")[20].clone();
+        let place = whole.find(row).unwrap() + row.find(&energy).unwrap() + energy.len() - 1;
+        let digit = if whole.as_bytes()[place] == b'3' {
+            b'4'
+        } else {
+            b'3'
+        };
+        for (place, byte, at) in [
+            (place, digit, "line 22"),
+            (3, b'B', "line 1"),
+            // The end of a row.
+            (whole.find(row).unwrap() - 1, b' ', "line 21"),
+        ] {
+            alter(&folder, "rows.csv", place, byte);
+            let refused = resumed();
+            assert_eq!(refused.exit, Exit::Refused, "{at}: {}", refused.output);
+            for part in ["--resume", "rows.csv", at, "altered", "begin anew"] {
+                assert!(refused.errors.contains(part), "{}", refused.errors);
+            }
+            fs::write(folder.0.join("rows.csv"), &whole).unwrap();
+        }
+        assert_eq!(resumed().exit, Exit::Other);
+        assert_eq!(folder.read("rows.csv"), whole);
+    }
+    alter(&folder, "rows.csv.counts", 900, 77);
+    let refused = run(&format!(
+        "{BALLS} {density} --resume --csv {}",
+        folder.path("rows.csv")
+    ));
+    assert_eq!(refused.exit, Exit::Refused);
+    assert!(
+        refused.errors.contains("rows.csv.counts"),
+        "{}",
+        refused.errors
+    );
+    fs::remove_file(folder.0.join("rows.csv.sums")).unwrap();
+    fs::remove_file(folder.0.join("rows.csv.counts")).unwrap();
+    let refused = run(&format!(
+        "{BALLS} {density} --resume --csv {}",
+        folder.path("rows.csv")
+    ));
+    assert!(
+        refused.errors.contains("rows.csv.sums"),
+        "{}",
+        refused.errors
+    );
+}
+
+/// Rows without a checksum are run again.
+#[test]
+fn rows_whose_checksums_were_cut_off_are_run_again() {
+    let folder = Folder::new("sums");
+    let line = format!("{BALLS} --csv {}", folder.path("rows.csv"));
+    run(&line);
+    let [whole, sums] = ["rows.csv", "rows.csv.sums"].map(|name| folder.read(name));
+    assert_eq!(sums.lines().count(), whole.lines().count() - 1);
+    for cut in [0, 30, sums.len() / 2] {
+        fs::write(folder.0.join("rows.csv.sums"), &sums[..cut]).unwrap();
+        let done = run(&format!("{line} --resume"));
+        let kept = cut / 17;
+        assert!(
+            kept == 0 || done.output.contains(&format!("({kept} member")),
+            "{}",
+            done.output
+        );
+        assert_eq!(folder.read("rows.csv"), whole);
+        assert_eq!(folder.read("rows.csv.sums"), sums);
+    }
+}
+
+#[test]
 fn a_ball_has_every_speed_for_the_same_time() {
     let folder = Folder::new("density");
     // Thrown up from the floor at speed 1, thrice a flight of length 2: all speeds from -1 to 1 alike.

@@ -74,6 +74,18 @@ fn unknown_names_bring_the_nearest_and_all() {
             "simulate bouncing_ball --integrator rk4 --step 0",
             &["--step", "positive"],
         ),
+        (
+            "simulate bouncing_ball --integrator rk4 --max-step 0.1",
+            &["--max-step", "--step", "dop853, dopri5 or taylor"],
+        ),
+        (
+            "simulate bouncing_ball --max-step 0",
+            &["--max-step", "positive"],
+        ),
+        (
+            "ensemble bouncing_ball --vary x=1,2 --max-step -1",
+            &["--max-step", "positive"],
+        ),
         ("list --format xml", &["--format", "text", "json"]),
         ("simulat bouncing_ball", &["simulate"]),
         ("simulate bouncing_ball --untill 3", &["--until"]),
@@ -231,7 +243,7 @@ fn files_that_cannot_be_opened() {
 
 #[test]
 fn states_that_are_not_states() {
-    let cases: [(&str, &[&str]); 16] = [
+    let cases: [(&str, &[&str]); 18] = [
         ("", &["standard input"]),
         ("{", &["standard input"]),
         ("{}", &["expected a JSON array of states"]),
@@ -263,6 +275,14 @@ fn states_that_are_not_states() {
             &["unknown key `qdto`", "did you mean `qdot`?"],
         ),
         (r#"[{"q":[1],"qdot":[1],"t":[]}]"#, &["state 0, t"]),
+        (
+            r#"[{"q":[1],"qdot":[1],"q":[2]}]"#,
+            &["standard input", "`q`", "twice"],
+        ),
+        (
+            r#"[{"q":[1],"t":0,"qdot":[1],"t":0}]"#,
+            &["standard input", "`t`", "twice"],
+        ),
     ];
     for (input, parts) in cases {
         let done = run_on(input, &["eval", "bouncing_ball"]);
@@ -290,6 +310,22 @@ fn deep_and_binary_input_is_refused() {
             Exit::Refused
         );
     }
+}
+
+/// Memory is bounded: the limit is named, with the flag.
+#[test]
+#[cfg(unix)]
+fn input_without_end_is_refused() {
+    check(&[
+        (
+            "ensemble bouncing_ball --until 1 --from /dev/zero",
+            &["--from /dev/zero", "1048576 bytes"],
+        ),
+        (
+            "eval bouncing_ball --input /dev/zero",
+            &["--input /dev/zero", "268435456 bytes"],
+        ),
+    ]);
 }
 
 #[test]

@@ -40,6 +40,11 @@ fn list_of_models() -> Vec<Entry> {
 
 /// Runs a command line given as words, with this standard input.
 fn run_on(input: &str, words: &[&str]) -> Done {
+    run_over(&list_of_models(), input, words)
+}
+
+/// Runs a command line over these models.
+fn run_over(models: &[Entry], input: &str, words: &[&str]) -> Done {
     let (mut output, mut errors) = (Vec::new(), Vec::new());
     let mut streams = Streams {
         input: &mut input.as_bytes(),
@@ -48,7 +53,7 @@ fn run_on(input: &str, words: &[&str]) -> Done {
         terminal: false,
     };
     let args = std::iter::once("dalembert").chain(words.iter().copied());
-    let exit = run_with(args, &list_of_models(), &mut streams);
+    let exit = run_with(args, models, &mut streams);
     let text = |bytes| String::from_utf8(bytes).unwrap();
     Done {
         exit,

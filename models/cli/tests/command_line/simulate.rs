@@ -32,6 +32,7 @@ fn a_document_has_the_keys_of_the_interface() {
         "contacts",
         "samples",
         "counters",
+        "warnings",
     ];
     assert_eq!(keys, expected);
     assert_eq!(document["parameters"]["k"], 4.0);
@@ -96,6 +97,107 @@ fn integrators_of_fixed_step_take_one_and_tell_it() {
             told.contains("(from tol 1e-4; set it with --step)"),
             "{told}"
         );
+    }
+}
+
+fn pushed() -> Vec<Entry> {
+    models![systems::Pushed]
+}
+
+/// A force between two steps is not seen: the largest step must be shorter than it lasts.
+#[test]
+fn a_short_push_is_not_stepped_over_with_a_largest_step() {
+    for integrator in ["dop853", "dopri5", "taylor"] {
+        let line = format!("simulate pushed --max-step 0.05 --integrator {integrator}");
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let told = run_over(&pushed(), "", &words);
+        assert!(
+            told.output.contains("no step above 0.05\n"),
+            "{}",
+            told.output
+        );
+        let words = [&words[..], &["--json", "-"]].concat();
+        let document = run_over(&pushed(), "", &words).json();
+        assert_eq!(document["outcome"]["kind"], "done");
+        assert_eq!(document["max_step"], 0.05);
+        let v = numbers(&document["outcome"]["qdot"])[0];
+        assert!((v - 1.0).abs() < 1e-8, "{integrator}: {v}");
+        // Steps of the full length alone, as nothing else limits them: the tolerance is met by far.
+        let steps = document["counters"]["accepted"].as_u64().unwrap();
+        assert!((200..300).contains(&steps), "{integrator}: {steps}");
+    }
+}
+
+/// Alone and abreast.
+#[test]
+fn members_keep_to_the_largest_step() {
+    for integrator in ["dop853", "taylor"] {
+        let line = format!(
+            "ensemble pushed --vary x=0..1:12 --max-step 0.05 --integrator {integrator} --csv -"
+        );
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let done = run_over(&pushed(), "", &words);
+        let mut reader = csv::Reader::from_reader(done.output.as_bytes());
+        let headers = reader.headers().unwrap().clone();
+        let column = headers.iter().position(|name| name == "end.x_dot").unwrap();
+        for record in reader.records().map(Result::unwrap) {
+            let v: f64 = record[column].parse().unwrap();
+            assert!((v - 1.0).abs() < 1e-8, "{integrator}: {v}");
+        }
+    }
+}
+
+/// Steps of one size estimate no error: where they change the energy of a motion that keeps it, that is told.
+#[test]
+fn a_step_that_is_too_long_is_told() {
+    let line = "simulate oscillator --set k=40 --integrator rk4";
+    let good = run(&format!("{line} --step 0.001 --json -"));
+    assert!(good.errors.is_empty(), "{}", good.errors);
+    assert_eq!(good.json()["warnings"], Value::Array(Vec::new()));
+    let bad = run(&format!("{line} --step 0.3 --json -"));
+    for part in [
+        "warning: rk4 with step 0.3: the energy",
+        "of its size",
+        "--step",
+        "--integrator dop853",
+    ] {
+        assert!(bad.errors.contains(part), "{}", bad.errors);
+    }
+    let warnings = bad.json()["warnings"].clone();
+    assert_eq!(warnings.as_array().unwrap().len(), 1);
+    let text = warnings[0].as_str().unwrap();
+    assert_eq!(bad.errors, format!("warning: {text}\n"));
+}
+
+/// Work that is done on the system and impacts are no errors.
+#[test]
+fn work_and_impacts_are_no_errors_of_the_energy() {
+    for integrator in ["rk4", "gauss4", "dla4"] {
+        for line in [
+            "bouncing_ball --until 30 --step 0.05",
+            "bouncing_ball --until 4 --law newton:0.5 --step 0.05",
+            "pushed --step 0.01",
+        ] {
+            let line = format!("simulate {line} --integrator {integrator} --json -");
+            let models = models![systems::BouncingBall, systems::Pushed];
+            let words: Vec<&str> = line.split_whitespace().collect();
+            let done = run_over(&models, "", &words);
+            assert_eq!(done.exit, Exit::Reached, "{line}: {}", done.errors);
+            assert!(done.errors.is_empty(), "{line}: {}", done.errors);
+        }
+    }
+}
+
+/// A tight tolerance asks a method of low order for more steps than anybody waits for.
+#[test]
+fn steps_that_are_chosen_have_a_number() {
+    let done = run("simulate oscillator --set k=4 --integrator dla2 --tol 1e-15 --json -");
+    assert_eq!(done.exit, Exit::Reached);
+    let document = done.json();
+    let steps = document["counters"]["accepted"].as_u64().unwrap();
+    assert!(steps <= 1 << 22, "{steps}");
+    for part in ["warning: dla2 with step", "--tol 1e-15", "--step"] {
+        assert!(done.errors.contains(part), "{}", done.errors);
     }
 }
 
@@ -255,6 +357,52 @@ fn a_table_has_samples_and_impacts_in_order_of_time() {
         .filter(|event| !event.is_empty())
         .collect();
     assert_eq!(events, ["floor", "floor"]);
+}
+
+/// What a run wrote is there before the run has ended.
+#[test]
+fn a_table_is_written_while_the_run_goes_on() {
+    struct Full {
+        room: usize,
+    }
+    impl std::io::Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.room = self
+                .room
+                .checked_sub(bytes.len())
+                .ok_or(std::io::ErrorKind::StorageFull)?;
+            Ok(bytes.len())
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    // A run of hours, that ends when its first rows do not find room.
+    let line = "dalembert simulate bouncing_ball --until 1e12 --samples 0 --csv -";
+    let mut errors = Vec::new();
+    let mut streams = Streams {
+        input: &mut "".as_bytes(),
+        output: &mut Full { room: 100_000 },
+        errors: &mut errors,
+        terminal: false,
+    };
+    let exit = run_with(line.split_whitespace(), &list_of_models(), &mut streams);
+    assert_eq!(exit, Exit::Refused);
+    let errors = String::from_utf8(errors).unwrap();
+    assert!(errors.contains("standard streams"), "{errors}");
+}
+
+/// More rows than are kept in memory.
+#[test]
+fn a_long_document_is_whole() {
+    let (exit, document) =
+        document("simulate bouncing_ball --until 30000 --samples 20001 --law elastic");
+    assert_eq!(exit, Exit::Reached);
+    let (events, samples) = (times(&document["events"]), times(&document["samples"]));
+    assert_eq!(events.len(), (30000.0 / 8f64.sqrt()).round() as usize);
+    assert_eq!(samples.len(), 20001);
+    assert!(events.is_sorted() && samples.is_sorted());
+    assert_eq!(samples[20000], 30000.0);
 }
 
 #[test]

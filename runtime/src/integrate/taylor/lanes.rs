@@ -8,7 +8,7 @@ use super::expansion::{Expansion, sum};
 use super::{LONGEST, Taylor, not_finite};
 use crate::contract::TaylorField;
 use crate::error::Fault;
-use crate::integrate::controller::landing;
+use crate::integrate::controller::landing_within;
 use crate::integrate::instant::Instant;
 use crate::integrate::rough::power_of_two;
 use crate::integrate::stats::Counters;
@@ -128,7 +128,12 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             let taylor = walker.taylor();
             let reach = taylor.reach_of(sizes.map(|size| size.lane(lane)));
             let reach = reach.min(LONGEST) * taylor.unit;
-            let (made, arrival) = landing(taylor.ends.t[0], taylor.length(reach), walker.t_end());
+            let (made, arrival) = landing_within(
+                taylor.max_step,
+                taylor.ends.t[0],
+                taylor.length(reach),
+                walker.t_end(),
+            );
             *plan = Plan {
                 reach,
                 arrival,

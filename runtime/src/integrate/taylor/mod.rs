@@ -29,7 +29,9 @@ use core::fmt;
 
 use expansion::{Expansion, row, state, sum};
 
-use super::controller::{Weights, least_step, least_trial, not_finite};
+use super::controller::{
+    MaxStepError, Weights, check_max_step, least_step, least_trial, not_finite,
+};
 use super::ends::Ends;
 use super::instant::Instant;
 use super::order::{LEAST_ORDER, PART_OF_TOLERANCE, order};
@@ -132,15 +134,14 @@ impl<F: TaylorField> Taylor<F> {
         self
     }
 
-    /// With no step longer than `max_step`. Anything but a positive number lifts the limit.
-    #[must_use]
-    pub fn with_max_step(mut self, max_step: f64) -> Self {
-        self.max_step = if max_step > 0.0 {
-            max_step
-        } else {
-            f64::INFINITY
-        };
-        self
+    /// With no step longer than `max_step`, in units of time; infinity is no limit. A short force, such as a blow between two
+    /// steps, is seen if it lasts longer than this.
+    ///
+    /// # Errors
+    /// [`MaxStepError`] unless `max_step` is positive.
+    pub fn with_max_step(mut self, max_step: f64) -> Result<Self, MaxStepError> {
+        self.max_step = check_max_step(max_step)?;
+        Ok(self)
     }
 
     /// With no first step longer than this. Anything but a positive number is ignored.

@@ -3,7 +3,7 @@
 use super::{LONGEST, TAYLOR, Taylor};
 use crate::contract::TaylorField;
 use crate::error::Fault;
-use crate::integrate::controller::{RETREAT, landing, least_trial};
+use crate::integrate::controller::{RETREAT, landing_within, least_trial};
 use crate::integrate::instant::Instant;
 use crate::integrate::precise::Precise;
 use crate::integrate::rough::power_of_two;
@@ -21,6 +21,10 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
 
     fn tolerance(&self) -> Tolerance {
         self.tolerance
+    }
+
+    fn max_step(&self) -> f64 {
+        self.max_step
     }
 
     fn start(
@@ -66,7 +70,7 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         let mut h = self.length(reach);
         self.next_unit = power_of_two(h);
         loop {
-            let (made, arrival) = landing(self.ends.t[0], h, t_end);
+            let (made, arrival) = landing_within(self.max_step, self.ends.t[0], h, t_end);
             let attempt = self.attempt(field, made / self.unit, arrival, counters);
             if let Ok(true) = attempt {
                 self.accept(made, reach, counters);

@@ -1,7 +1,7 @@
 //! Reads states: a JSON array of `{"q": [..], "qdot": [..], "t": 0}`, with `p` for `qdot` if one likes, and
 //! numbers as numbers or as decimal strings. A first-order system takes `q` alone, a model with inputs `inputs: [..]` too.
 
-use std::fs;
+use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 
 use crate::entry::Rates;
 use crate::error::CliError;
-use crate::{names, scalar};
+use crate::{json, names, scalar};
 
 /// A state as given.
 #[derive(Debug, PartialEq)]
@@ -24,6 +24,9 @@ pub struct Given {
     /// The inputs; 0 if they were not given.
     pub inputs: Vec<f64>,
 }
+
+/// The most bytes that are read: states are kept in memory, where they take several times as much.
+const MOST: u64 = 1 << 28;
 
 /// Reads all states from the file, or from `stdin` without one.
 ///
@@ -42,19 +45,20 @@ pub fn read(
                 path: path.to_owned(),
                 source,
             };
+            let mut file = File::open(path).map_err(failed)?;
             (
                 format!("--input {}", path.display()),
-                fs::read(path).map_err(failed)?,
+                read_bytes(&mut file).map_err(failed)?,
             )
         }
-        None => {
-            let mut bytes = Vec::new();
-            stdin.read_to_end(&mut bytes)?;
-            ("standard input".to_owned(), bytes)
-        }
+        None => ("standard input".to_owned(), read_bytes(stdin)?),
     };
-    let value: Value =
-        serde_json::from_slice(&bytes).map_err(|error| invalid(&place, error.to_string()))?;
+    if bytes.len() as u64 > MOST {
+        let reason =
+            format!("more than {MOST} bytes, which is the most that is read; divide the states");
+        return Err(invalid(&place, reason));
+    }
+    let value = json::parse(&bytes).map_err(|error| invalid(&place, error.to_string()))?;
     let Value::Array(states) = value else {
         return Err(invalid(
             &place,
@@ -73,6 +77,13 @@ pub fn read(
             )
         })
         .collect()
+}
+
+/// Up to one byte more than may be read.
+fn read_bytes(input: &mut dyn Read) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    input.take(MOST + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 fn parse(

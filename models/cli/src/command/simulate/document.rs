@@ -1,6 +1,7 @@
 //! A run as one JSON document.
 
 use std::io::{self, Write};
+use std::path::PathBuf;
 
 use dalembert::describe::Description;
 use serde_json::{Map, Value, json};
@@ -8,17 +9,65 @@ use serde_json::{Map, Value, json};
 use super::Finished;
 use crate::driver::{Contact, Impact};
 use crate::entry::Point;
+use crate::error::CliError;
 use crate::json::{Document, named, number, vector};
+use crate::record::Keep;
+use crate::spool::Spool;
+
+/// What a document says of the course of a run, kept until the run has ended.
+pub struct Rows {
+    description: Description,
+    /// The file of the document, for messages.
+    path: PathBuf,
+    events: Spool,
+    contacts: Spool,
+    samples: Spool,
+}
+
+impl Rows {
+    /// None yet, of the document in this file.
+    pub fn new(description: Description, path: PathBuf) -> Self {
+        Self {
+            description,
+            path,
+            events: Spool::new(),
+            contacts: Spool::new(),
+            samples: Spool::new(),
+        }
+    }
+}
+
+impl Keep for Rows {
+    fn sample(&mut self, t: f64, point: &Point) -> io::Result<()> {
+        self.samples.push(&sample(&self.description, t, point))
+    }
+
+    fn impact(&mut self, impact: &Impact) -> io::Result<()> {
+        self.events.push(&event(&self.description, impact))
+    }
+
+    fn contact(&mut self, contact: &Contact) -> io::Result<()> {
+        self.contacts.push(&hold(&self.description, contact))
+    }
+
+    fn failed(&self, source: io::Error) -> CliError {
+        CliError::File {
+            flag: "--json: a temporary file for",
+            path: self.path.clone(),
+            source,
+        }
+    }
+}
 
 /// Writes the document.
-pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
+pub fn write(output: &mut dyn Write, finished: &Finished<'_>, rows: &Rows) -> io::Result<()> {
     let Finished {
         model,
         scene,
         settings,
-        record,
         ending,
         verified,
+        ..
     } = finished;
     let description = model.description();
     let values: Vec<f64> = (0..description.parameters.len())
@@ -45,6 +94,9 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     if let Some(step) = ending.step {
         document.field("step", number(step))?;
     }
+    if let Some(max_step) = settings.max_step {
+        document.field("max_step", number(max_step))?;
+    }
     document.field("outcome", outcome(finished))?;
     if let Some(verified) = verified {
         let error = json!({
@@ -54,32 +106,15 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         });
         document.field("error", error)?;
     }
-    document.rows(
-        "events",
-        record
-            .impacts
-            .iter()
-            .map(|impact| event(&description, impact)),
-    )?;
-    document.rows(
-        "contacts",
-        record
-            .contacts
-            .iter()
-            .map(|contact| hold(&description, contact)),
-    )?;
-    document.rows(
-        "samples",
-        record
-            .samples
-            .iter()
-            .map(|(t, point)| sample(&description, *t, point)),
-    )?;
+    document.spooled("events", &rows.events)?;
+    document.spooled("contacts", &rows.contacts)?;
+    document.spooled("samples", &rows.samples)?;
     let counters = ending
         .counters
         .iter()
         .map(|&(name, count)| (name.to_owned(), Value::from(count)));
     document.field("counters", counters.collect::<Map<_, _>>())?;
+    document.field("warnings", ending.warnings.clone())?;
     document.end()
 }
 

@@ -148,7 +148,10 @@ fn integrator(ending: &Ending, settings: &Settings) -> String {
     );
     let tol = settings.tol;
     match (ending.step, settings.step) {
-        (None, _) => format!("{name}, tol {tol:e}"),
+        (None, _) => match settings.max_step {
+            None => format!("{name}, tol {tol:e}"),
+            Some(longest) => format!("{name}, tol {tol:e}, no step above {longest}"),
+        },
         (Some(step), Some(_)) => format!("{name}, step {step}"),
         (Some(step), None) => {
             format!("{name}, step {step} (from tol {tol:e}; set it with --step)")

@@ -1,9 +1,10 @@
 //! Systems written by hand, so that the command line is tested without the generator: a ball on a floor, an
-//! oscillator with a view of the plane, and a bead held to a line by a constraint.
+//! oscillator with a view of the plane, a bead held to a line by a constraint, and a mass that is pushed for a short time.
 //!
 //! All have the metric `m` times the identity, and a potential.
 
 mod particle;
+mod pushed;
 
 use dalembert::describe::{
     Assumption, ConstraintInfo, CoordinateInfo, Described, Description, Initial, ParameterInfo,
@@ -18,7 +19,8 @@ use dalembert::{
 };
 use nalgebra::SVector;
 
-use particle::{Particle, field, free, particle};
+use particle::{Particle, field, free, particle, system};
+pub use pushed::Pushed;
 
 /// What every model reports.
 fn inspect_common<S: System>(

@@ -88,7 +88,13 @@ macro_rules! field {
 macro_rules! particle {
     ($type:ty, $n:literal, $dim:literal, { $($hooks:tt)* }) => {
         field!($type, $n, $dim);
+        system!($type, $n, $dim, { $($hooks)* });
+    };
+}
 
+/// `System` of a [`Particle`] with state `(q, p)`; the hooks are the caller's.
+macro_rules! system {
+    ($type:ty, $n:literal, $dim:literal, { $($hooks:tt)* }) => {
         impl System for $type {
             type Vector = SVector<f64, $n>;
             type Impulse = SVector<f64, $n>;
@@ -168,4 +174,4 @@ macro_rules! free {
     };
 }
 
-pub(super) use {field, free, particle};
+pub(super) use {field, free, particle, system};

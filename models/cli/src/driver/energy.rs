@@ -1,0 +1,143 @@
+//! How far the energy of a run with steps of one size is off: such steps estimate no error, and this one tells of it.
+//!
+//! Along smooth motion the energy changes by its power, the derivative of the energy along the motion: 0 where nothing works on the
+//! system. What it changes by besides is an error. The power is integrated by the trapezoidal rule, whose own error does not grow
+//! with the number of steps.
+
+use dalembert::{Segment, StateVector, System};
+
+/// The part of its size by which the energy may be off before it is told.
+const TOLD: f64 = 1e-2;
+
+/// The largest kinetic energy counts as a thousandth of it in the size of an energy, so that one that is 0 but for rounding has a
+/// size.
+const SWING: f64 = 1e-3;
+
+/// The part of a step over which the power is a difference of energies: rounding takes a `1e-11` of the energy from it in every step.
+const PART: f64 = 1e-5;
+
+/// The energy along smooth motion; impacts are left out, and motion that a surface holds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Balance {
+    /// The absolute value of the energy at the start, or the kinetic energy there if that is more.
+    size: f64,
+    /// The largest kinetic energy.
+    swing: f64,
+    /// The work, without regard to its sign.
+    work: f64,
+    /// The error so far.
+    error: f64,
+    /// The largest error, and its time.
+    largest: f64,
+    at: f64,
+    /// What is known at the end of the last step, unless something happened there.
+    last: Option<Known>,
+    /// Surfaces that hold the motion.
+    holds: usize,
+}
+
+/// Energy and power.
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    energy: f64,
+    power: f64,
+}
+
+impl Balance {
+    /// Of a run that begins in this state; `None` where it has no energy.
+    pub(super) fn of<M: System>(model: &M, t: f64, state: &M::State) -> Option<Self> {
+        let energy = model.energy(t, state).ok().filter(|it| it.is_finite())?;
+        let kinetic = kinetic(model, t, state);
+        Some(Self {
+            size: energy.abs().max(kinetic),
+            swing: kinetic,
+            work: 0.0,
+            error: 0.0,
+            largest: 0.0,
+            at: t,
+            last: None,
+            holds: 0,
+        })
+    }
+
+    /// Takes in a stretch of motion.
+    pub(super) fn follow<M: System>(&mut self, model: &M, segment: &Segment<'_, M::State>) {
+        if self.holds > 0 {
+            return;
+        }
+        let (start, end) = (segment.t_start(), segment.t_end());
+        let length = end - start;
+        let before = self
+            .last
+            .unwrap_or_else(|| known(model, start, segment.start(), length));
+        let after = known(model, end, segment.end(), length);
+        self.last = Some(after);
+        let work = 0.5 * length * (before.power + after.power);
+        let error = after.energy - before.energy - work;
+        // Where a power does not exist, nothing is known of the step.
+        if !error.is_finite() {
+            return;
+        }
+        self.error += error;
+        self.work += work.abs();
+        self.swing = self.swing.max(kinetic(model, end, segment.end()));
+        if self.error.abs() > self.largest {
+            (self.largest, self.at) = (self.error.abs(), end);
+        }
+    }
+
+    /// The state was changed.
+    pub(super) fn jump(&mut self) {
+        self.last = None;
+    }
+
+    /// A surface begins or ceases to hold the motion.
+    pub(super) fn hold(&mut self, begins: bool) {
+        self.last = None;
+        self.holds = match begins {
+            true => self.holds + 1,
+            false => self.holds.saturating_sub(1),
+        };
+    }
+
+    /// The largest error, its time, and its part of the size of the energy, where it is large.
+    pub(super) fn told(&self) -> Option<(f64, f64, f64)> {
+        let size = self.size.max(self.work).max(SWING * self.swing);
+        let part = self.largest / size;
+        (part > TOLD).then_some((self.largest, self.at, part))
+    }
+}
+
+fn known<M: System>(model: &M, t: f64, state: &M::State, length: f64) -> Known {
+    let energy = |t: f64, state: &M::State| model.energy(t, state).unwrap_or(f64::NAN);
+    let mut rate = M::State::zeros();
+    if model.rate(t, state, &mut rate).is_err() {
+        return Known {
+            energy: energy(t, state),
+            power: f64::NAN,
+        };
+    }
+    let after = |time: f64| {
+        let mut moved = *state;
+        for (value, rate) in moved.as_mut_slice().iter_mut().zip(rate.as_slice()) {
+            *value += time * rate;
+        }
+        energy(t + time, &moved)
+    };
+    let time = PART * length;
+    Known {
+        energy: energy(t, state),
+        power: (after(time) - after(-time)) / (2.0 * time),
+    }
+}
+
+/// Half the product of momentum and velocity.
+fn kinetic<M: System>(model: &M, t: f64, state: &M::State) -> f64 {
+    match (model.momentum(t, state), model.velocity(t, state)) {
+        (Ok(p), Ok(qdot)) => {
+            let products = p.as_slice().iter().zip(qdot.as_slice());
+            0.5 * products.map(|(p, v)| p * v).sum::<f64>().abs()
+        }
+        _ => 0.0,
+    }
+}

@@ -1,0 +1,135 @@
+//! Rows of a JSON array that are kept until it is their turn: a document says how a run ended before it says what happened in
+//! it. A few are kept in memory, many in a temporary file.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read, Seek, Write};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use serde_json::Value;
+
+/// Bytes that are kept in memory.
+const ROOM: usize = 1 << 20;
+
+/// Names of temporary files that are tried.
+const NAMES: u32 = 1000;
+
+/// Rows, as text.
+pub struct Spool {
+    /// The last of the text.
+    text: Vec<u8>,
+    /// What came before it.
+    file: Option<Temporary>,
+    room: usize,
+}
+
+impl Spool {
+    /// No row.
+    pub fn new() -> Self {
+        Self::with_room(ROOM)
+    }
+
+    fn with_room(room: usize) -> Self {
+        Self {
+            text: Vec::new(),
+            file: None,
+            room,
+        }
+    }
+
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// The temporary file cannot be written.
+    pub fn push(&mut self, row: &Value) -> io::Result<()> {
+        let is_first = self.text.is_empty() && self.file.is_none();
+        write!(self.text, "{}\n{row}", if is_first { "" } else { "," })?;
+        if self.text.len() > self.room {
+            let file = match &mut self.file {
+                Some(file) => file,
+                none => none.insert(Temporary::create()?),
+            };
+            file.file.write_all(&self.text)?;
+            self.text.clear();
+        }
+        Ok(())
+    }
+
+    /// Writes the array.
+    ///
+    /// # Errors
+    /// Whatever the stream or the temporary file says.
+    pub fn write(&self, output: &mut dyn Write) -> io::Result<()> {
+        write!(output, "[")?;
+        if let Some(Temporary { file, .. }) = &self.file {
+            let mut file = file;
+            file.rewind()?;
+            io::copy(&mut file.take(u64::MAX), output)?;
+        }
+        output.write_all(&self.text)?;
+        let is_empty = self.text.is_empty() && self.file.is_none();
+        write!(output, "{}]", if is_empty { "" } else { "\n" })
+    }
+}
+
+/// A file without a name, or one that is removed at the end where files in use have one.
+struct Temporary {
+    file: File,
+    path: Option<PathBuf>,
+}
+
+impl Temporary {
+    fn create() -> io::Result<Self> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let mut taken = io::Error::from(io::ErrorKind::AlreadyExists);
+        for _ in 0..NAMES {
+            let count = COUNT.fetch_add(1, Ordering::Relaxed);
+            let name = format!("dalembert-{}-{count}.part", std::process::id());
+            let path = std::env::temp_dir().join(name);
+            let mut options = OpenOptions::new();
+            match options.read(true).write(true).create_new(true).open(&path) {
+                Ok(file) => {
+                    let path = fs::remove_file(&path).is_err().then_some(path);
+                    return Ok(Self { file, path });
+                }
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => taken = error,
+                Err(error) => return Err(error),
+            }
+        }
+        Err(taken)
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if let Some(path) = &self.path {
+            // A file that stays harms nobody.
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(rows: u64, room: usize) -> String {
+        let mut spool = Spool::with_room(room);
+        for row in 0..rows {
+            spool.push(&Value::from(row)).expect("a temporary file");
+        }
+        let mut text = Vec::new();
+        spool.write(&mut text).expect("memory takes everything");
+        String::from_utf8(text).expect("text")
+    }
+
+    #[test]
+    fn rows_in_memory_and_in_a_file_are_the_same_text() {
+        assert_eq!(written(0, 10), "[]");
+        assert_eq!(written(2, 10), "[\n0,\n1\n]");
+        for rows in [1, 3, 4, 5, 1000] {
+            assert_eq!(written(rows, 7), written(rows, usize::MAX), "{rows}");
+            assert_eq!(written(rows, 0), written(rows, usize::MAX), "{rows}");
+        }
+    }
+}
