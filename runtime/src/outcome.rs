@@ -74,8 +74,15 @@ pub enum Outcome {
         /// The surface.
         surface: usize,
     },
-    /// A surface counts where its gap is clearly negative: at the start, or where its condition begins to hold.
+    /// A surface counts where its gap is clearly negative: at the start, or after an impact.
     StartsInside {
+        /// The surface.
+        surface: usize,
+        /// Its gap.
+        gap: f64,
+    },
+    /// The condition of a surface begins to hold while the motion is behind it.
+    BeginsBehind {
         /// The surface.
         surface: usize,
         /// Its gap.
@@ -164,6 +171,7 @@ impl Outcome {
             Self::Contact { .. } => "contact",
             Self::TangentialCrossing { .. } => "tangential_crossing",
             Self::StartsInside { .. } => "starts_inside",
+            Self::BeginsBehind { .. } => "begins_behind",
             Self::LeftChart { .. } => "left_chart",
             Self::MetricNotPositive { .. } => "metric_not_positive",
             Self::SingularConstraint { .. } => "singular_constraint",
@@ -242,6 +250,10 @@ impl fmt::Display for Outcome {
             Self::StartsInside { surface, gap } => {
                 write!(f, "surface {surface} counts where its gap is {gap:e}")
             }
+            Self::BeginsBehind { surface, gap } => write!(
+                f,
+                "surface {surface} begins to count where its gap is {gap:e}"
+            ),
             Self::LeftChart { coordinate } => {
                 write!(f, "coordinate {coordinate} reached the end of its interval")
             }

@@ -534,6 +534,7 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
+        self.watch.check_behind(now)?;
         let held = *self.resting.held();
         if self.resting.turn(now, observer)? {
             let rates = now.system.gap_rates(now.t, now.state)?;

@@ -57,6 +57,8 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) errors: f64,
     /// Surfaces that the motion is held on: their gaps are 0, and are not watched.
     held: Held<Sys::Gaps>,
+    /// The surface that begins to count behind the motion where the last step is to be cut.
+    behind: Option<usize>,
     /// The motion along the last step.
     pub(super) path: Path<Sys::State>,
     /// Where no gap vanishes.
@@ -83,6 +85,7 @@ impl<Sys: Impacting> Watch<Sys> {
             steps: 0,
             errors: 0.0,
             held: Held::none(),
+            behind: None,
             path: Path::new(),
             haven: Haven::new(),
             is_stale: false,
@@ -297,7 +300,7 @@ impl<Sys: Impacting> Watch<Sys> {
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<Option<f64>, Outcome> {
-        self.proposed = None;
+        (self.proposed, self.behind) = (None, None);
         self.steps = self.steps.saturating_add(1);
         self.errors += step.stepper.error();
         for (size, value) in self
@@ -380,12 +383,55 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         let (t, mut state) = (step.t_end(), *step.end());
         let counters = &mut *step.counters;
-        self.check_negative(&mut Moment {
+        let checked = self.check_negative(&mut Moment {
             system: step.system,
             t,
             state: &mut state,
             counters,
-        })
+        });
+        match checked {
+            Err(Outcome::StartsInside { surface, .. }) => self.end_where_behind(surface, step),
+            checked => checked,
+        }
+    }
+
+    /// A surface that counts at the end of the step, with the motion behind it, began to count in the step: proposes to cut it there.
+    #[cold]
+    fn end_where_behind<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<(), Outcome> {
+        step.prepare()?;
+        let (mut before, mut after) = (0.0, 1.0);
+        loop {
+            let middle = 0.5 * (before + after);
+            if middle <= before || middle >= after {
+                break;
+            }
+            let (t, state) = (step.time(middle), step.state(middle));
+            let gap = step.system.gaps(t, &state).as_slice()[surface];
+            step.counters.event_evaluations += 1;
+            match gap < 0.0 && step.system.surface_active(surface, t, &state) {
+                true => after = middle,
+                false => before = middle,
+            }
+        }
+        self.length = step.length();
+        self.parts.as_mut_slice().fill(f64::INFINITY);
+        (self.proposed, self.behind) = (Some(after), Some(surface));
+        Ok(())
+    }
+
+    /// Ends the run where a surface begins to count behind the motion, if the step was cut for that.
+    pub(super) fn check_behind(&self, now: &Moment<'_, Sys>) -> Result<(), Outcome> {
+        match self.behind {
+            Some(surface) => {
+                let gap = now.system.gaps(now.t, now.state).as_slice()[surface];
+                Err(Outcome::BeginsBehind { surface, gap })
+            }
+            None => Ok(()),
+        }
     }
 
     /// A passable surface that is met within rounding at the end of the step, without a fall that counted, has not been

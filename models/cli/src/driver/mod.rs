@@ -410,6 +410,10 @@ pub(crate) fn details(description: &Description, outcome: &Outcome) -> Vec<(&'st
         Outcome::StartsInside {
             surface: index,
             gap,
+        }
+        | Outcome::BeginsBehind {
+            surface: index,
+            gap,
         } => vec![surface(index), ("gap", json::number(gap))],
         Outcome::LeftChart { coordinate: index } => vec![("coordinate", coordinate(index))],
         Outcome::MetricNotPositive { pivot, value } => {
