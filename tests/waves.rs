@@ -196,10 +196,8 @@ fn a_wave_through_unequal_masses_keeps_momentum_and_energy() {
     check!(Dop853 Taylor Gauss6 Rk4 Dla4);
 }
 
-/// The order in which a wave goes through bodies that touch is that through equal small gaps, if they are small.
 #[test]
-fn a_wave_that_leaves_a_body_apart_is_the_limit_of_small_gaps() {
-    // Four balls: the first wave passes before the second begins, whatever the gaps are.
+fn a_wave_is_the_limit_of_equal_small_gaps() {
     let balls = Four {
         m1: 1.0,
         m2: 2.0,
