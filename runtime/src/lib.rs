@@ -110,6 +110,7 @@
 #![forbid(unsafe_code)]
 
 mod assumption;
+pub mod certified;
 pub mod contract;
 pub mod describe;
 pub mod effects;

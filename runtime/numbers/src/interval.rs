@@ -392,12 +392,14 @@ impl Numbers for Interval {
         Self::new(self.lo.max(other.lo), self.hi.max(other.hi))
     }
 
+    /// Anything where the sign changes: series of what has a kink there do not exist.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.lo < 0.0, sign.hi < 0.0) {
             (false, _) => self,
             (_, true) => -self,
-            _ => self.hull(-self),
+            _ if self == sign => self.abs(),
+            _ => Self::WHOLE,
         }
     }
 

@@ -1,0 +1,176 @@
+//! Certified motion contains the motion, with boxes that stay narrow, and says where it loses it.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+use dalembert::certified::CertifiedFlow;
+use dalembert::extended::{At, ExtendedSimulation};
+use dalembert::numbers::Interval;
+use dalembert::{StateVector, System, Variational};
+
+dalembert::model! {
+    /// A point on a spring.
+    pub Oscillator {
+        coordinates { x; }
+        lagrangian = dot(x)^2/2 - x^2/2;
+    }
+}
+
+dalembert::model! {
+    /// Two bars of length 1 with bobs of mass 1.
+    pub DoublePendulum {
+        coordinates { a: angle; b: angle; }
+        parameters { g > 0 = 9.81; }
+        lagrangian = dot(a)^2 + dot(b)^2/2 + dot(a)*dot(b)*cos(a - b) + 2*g*cos(a) + g*cos(b);
+    }
+}
+
+dalembert::model! {
+    /// A rate that grows without end: `x = 1/(1 - t)`.
+    pub Burst {
+        coordinates { x; }
+        field { dot(x) = x^2; }
+    }
+}
+
+dalembert::model! {
+    /// A force with a kink at 0.
+    pub Kinked {
+        coordinates { x; }
+        lagrangian = dot(x)^2/2;
+        forces { pull: -(x + abs(x)/3)*d(x); }
+    }
+}
+
+dalembert::model! {
+    /// A swing whose spring is driven, with functions of several kinds.
+    pub Driven {
+        coordinates { x; y; }
+        lagrangian = dot(x)^2/2 + dot(y)^2/2 - x^2/2 - sqrt(1 + x^2 + y^2) + sin(t)*x*exp(-y^2) - ln(2 + cos(x));
+    }
+}
+
+fn state<S: System>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
+    let vector = |values: &[f64]| {
+        let mut vector = S::Vector::zeros();
+        vector.as_mut_slice().copy_from_slice(values);
+        vector
+    };
+    system
+        .state_unchecked(0.0, &vector(q), &vector(qdot))
+        .unwrap()
+}
+
+fn from_point<'a, S: Variational>(system: &'a S, start: &S::State) -> CertifiedFlow<'a, S> {
+    let start = *start;
+    CertifiedFlow::new(system, 0.0, move |i| Interval::point(start.as_slice()[i]))
+}
+
+/// The state by a run with 32 digits.
+fn digits<S: Variational>(system: &S, start: &S::State, until: f64) -> S::State {
+    let start = At::<_, 2>::of(0.0, start);
+    let run = ExtendedSimulation::new(system, ())
+        .run(start, until, |_| core::ops::ControlFlow::Continue(()))
+        .unwrap();
+    assert!(run.outcome.is_ok_and(|outcome| outcome.is_done()));
+    run.end.rounded()
+}
+
+#[test]
+fn a_spring_is_held_for_a_thousand_units_of_time() {
+    let mut flow = from_point(&Oscillator {}, &state(&Oscillator {}, &[1.0], &[0.0]));
+    for t in [1.0, 10.0, 100.0, 1000.0] {
+        flow.run(t).unwrap();
+        let [x, v] = [0, 1].map(|i| flow.component(i));
+        let wide = 4.0 * f64::EPSILON;
+        assert!(
+            x.widened(wide).contains(Interval::point(t.cos())),
+            "{t}: {x:?}"
+        );
+        assert!(
+            v.widened(wide).contains(Interval::point(-t.sin())),
+            "{t}: {v:?}"
+        );
+        assert!(
+            flow.width() < 1e-13 * (1.0 + t),
+            "{t}: {:e} after {} steps",
+            flow.width(),
+            flow.steps()
+        );
+    }
+}
+
+#[test]
+fn a_double_pendulum_is_held_for_ten_seconds() {
+    let system = DoublePendulum::default();
+    let start = state(&system, &[1.0, 2.0], &[0.0, 0.0]);
+    let mut flow = from_point(&system, &start);
+    for t in [1.0, 5.0, 10.0] {
+        flow.run(t).unwrap();
+        let exact = digits(&system, &start, t);
+        for i in 0..4 {
+            let (range, value) = (flow.component(i), exact.as_slice()[i]);
+            assert!(
+                range.contains(Interval::point(value)),
+                "{t}: {i}: {range:?}, {value}"
+            );
+        }
+        println!(
+            "t = {t}: width {:e} after {} steps",
+            flow.width(),
+            flow.steps()
+        );
+    }
+    assert!(flow.width() < 1e-6, "{:e}", flow.width());
+}
+
+#[test]
+fn every_motion_from_a_box_is_held() {
+    let system = Driven {};
+    let centre = state(&system, &[0.3, -0.2], &[0.1, 0.4]);
+    const RADIUS: f64 = 1e-3;
+    let mut flow = CertifiedFlow::new(&system, 0.0, |i| {
+        Interval::point(centre.as_slice()[i]).widened(RADIUS)
+    });
+    flow.run(5.0).unwrap();
+    for corner in 0..16 {
+        let mut start = centre;
+        for (i, entry) in start.as_mut_slice().iter_mut().enumerate() {
+            *entry += if corner >> i & 1 == 0 {
+                -RADIUS
+            } else {
+                RADIUS
+            };
+        }
+        let exact = digits(&system, &start, 5.0);
+        for i in 0..4 {
+            let (range, value) = (flow.component(i), exact.as_slice()[i]);
+            assert!(
+                range.contains(Interval::point(value)),
+                "{corner}, {i}: {range:?}, {value}"
+            );
+        }
+    }
+    assert!(flow.width() < 100.0 * RADIUS, "{:e}", flow.width());
+}
+
+#[test]
+fn a_motion_that_ends_is_lost_before_its_end() {
+    let mut flow = CertifiedFlow::new(&Burst {}, 0.0, |_| Interval::point(1.0));
+    let lost = flow.run(2.0).unwrap_err();
+    assert!(lost.t < 1.0 && lost.t > 0.9, "{lost}");
+    let (x, exact) = (flow.component(0), 1.0 / (1.0 - lost.t));
+    assert!(
+        x.widened(4.0 * f64::EPSILON * exact)
+            .contains(Interval::point(exact)),
+        "{x:?}, {exact}"
+    );
+}
+
+#[test]
+fn a_kink_is_not_stepped_over() {
+    let system = Kinked {};
+    let mut flow = from_point(&system, &state(&system, &[1.0], &[0.0]));
+    let lost = flow.run(3.0).unwrap_err();
+    // It passes 0 after a quarter of a period.
+    let kink = core::f64::consts::FRAC_PI_2 / (4.0_f64 / 3.0).sqrt();
+    assert!(lost.t <= kink && lost.t > 0.99 * kink, "{lost}, {kink}");
+}
