@@ -2,6 +2,7 @@
 //! glancing wall, long runs of the disk.
 
 use dalembert::impacts::law::Law;
+use dalembert::numbers::{Numbers, Rated};
 use dalembert::{Constrained, Described, Impacting, System};
 use dalembert_cli::suite::{Setting, every_integrator};
 use dalembert_models::stability::by_hand::{Gap, Point, Reset};
@@ -263,16 +264,24 @@ fn the_disk_follows_its_reference_for_hundreds_of_impacts() {
 
 /// Treads along the curve of the case, and walls that multiply speeds by 1.25.
 fn treads(alpha: f64) -> Point<1> {
-    fn curve(a: f64, v0: f64, [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
-        let (b, slope) = (a * a, 2.0_f64.sqrt() * v0);
-        (
-            y - b * x * (slope - b * x),
-            [2.0 * b * b * x - b * slope, 1.0],
-        )
+    fn curve<L: Numbers>([a, v0]: [f64; 2], [x, y]: [L; 2]) -> L {
+        let (b, slope) = (L::of(a * a), L::of(2.0_f64.sqrt() * v0));
+        y - b * x * (slope - b * x)
     }
-    let surface: Gap = match alpha {
-        0.5 => |at| curve(0.5, 1.0, at),
-        _ => |at| curve(0.75, 1.25, at),
+    fn at(shape: [f64; 2], point: [f64; 2]) -> (f64, [f64; 2]) {
+        let ([a, v0], [x, _]) = (shape, point);
+        let (b, slope) = (a * a, 2.0_f64.sqrt() * v0);
+        (curve(shape, point), [2.0 * b * b * x - b * slope, 1.0])
+    }
+    let surface = match alpha {
+        0.5 => Gap {
+            at: |point| at([0.5, 1.0], point),
+            along: |point| curve([0.5, 1.0], point),
+        },
+        _ => Gap {
+            at: |point| at([0.75, 1.25], point),
+            along: |point| curve([0.75, 1.25], point),
+        },
     };
     let reset: Reset = |[vx, vy]| [vx, -vy];
     Point {
@@ -306,8 +315,14 @@ fn rising_treads_are_hit_where_proposition_8_says() {
 
 #[test]
 fn super_elastic_walls_are_hit_where_example_4_says() {
-    let left: Gap = |[x, _]| (x, [1.0, 0.0]);
-    let right: Gap = |[x, _]| (1.0 - x, [-1.0, 0.0]);
+    let left = Gap {
+        at: |[x, _]| (x, [1.0, 0.0]),
+        along: |[x, _]| x,
+    };
+    let right = Gap {
+        at: |[x, _]| (1.0 - x, [-1.0, 0.0]),
+        along: |[x, _]| Rated::of(1.0) - x,
+    };
     let reset: Reset = |[vx, vy]| [-1.25 * vx, vy];
     let walls = Point {
         acceleration: [0.0; 2],
