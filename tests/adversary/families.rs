@@ -57,7 +57,10 @@ fn flat(count: usize) -> String {
 fn potential(draw: &mut Draw) -> Case {
     let count = 3 + draw.below(3);
     let which: Vec<usize> = (1..count).collect();
-    let potential = function(draw, &IS_ANGLE, &which, 2);
+    // NOTE: a drawn function may be constant, as a product of `exp(cos(th)^2)` and `exp(sin(th)^2)` is; with the sine the force is not
+    // zero, which would be refused.
+    let sine = Function::Sin(Box::new(Coordinate(1)));
+    let potential = Sum(vec![function(draw, &IS_ANGLE, &which, 2), sine]);
     let mut slopes: Vec<Vec<Function>> = which
         .iter()
         .map(|i| potential.slope(*i).into_iter().collect())
