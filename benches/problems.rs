@@ -137,7 +137,7 @@ pub const ALL: [Problem; 5] = [
 const IMPACTS: u64 = 20;
 
 /// Longer than any billiard takes to its last impact.
-const LATE: f64 = 1e3;
+const LATE: f64 = 200.0;
 
 /// The disk on the elliptical table, up to impact 20.
 fn disk_billiard(manner: Manner) -> Solved {

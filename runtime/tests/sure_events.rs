@@ -326,7 +326,10 @@ impl Random {
     }
 
     fn velocity(&mut self) -> [f64; 2] {
-        let (angle, speed) = (self.between(0.0, 6.283), self.size(0.1, 10.0));
+        let (angle, speed) = (
+            self.between(0.0, core::f64::consts::TAU),
+            self.size(0.1, 10.0),
+        );
         [speed * angle.cos(), speed * angle.sin()]
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Sums, products, quotients and square roots of doubles are correctly rounded, so that one unit in the last place outwards
 //! encloses them. Elementary functions are those of `libm` on every machine, whose error is below two units in the last place;
-//! they are widened by [`CALL`]. Endpoints may be infinite, and are never NaN: what may have no value is [`Interval::WHOLE`].
+//! they are widened by four units. Endpoints may be infinite, and are never NaN: what may have no value is [`Interval::WHOLE`].
 //!
 //! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapters 2 and 5.
 
@@ -164,7 +164,8 @@ impl Interval {
     /// A sine with its greatest value at `crest`.
     fn wave(self, function: fn(f64) -> f64, crest: f64) -> Self {
         // A little less than a whole turn: extreme values are counted also where they are near.
-        if !(self.magnitude() <= FAR) || self.hi - self.lo > 6.2 {
+        let is_short = self.magnitude() <= FAR && self.hi - self.lo <= 6.2;
+        if !is_short {
             return Self::new(-1.0, 1.0);
         }
         const MARGIN: f64 = 1e-6;
@@ -363,7 +364,11 @@ impl Numbers for Interval {
                 let square = widest(lo, hi, ULP);
                 Self::new(square.lo.max(0.0), square.hi)
             }
-            false => Self::new((lo - lo * ULP).min(f64::MAX).max(0.0), f64::INFINITY),
+            false => {
+                let below = lo - lo * ULP;
+                let is_double = below < f64::MAX;
+                Self::new(if is_double { below } else { f64::MAX }, f64::INFINITY)
+            }
         }
     }
 
@@ -427,7 +432,7 @@ impl Numbers for Interval {
 
     #[inline]
     fn powf(self, exponent: f64) -> Self {
-        if !(self.lo >= 0.0) {
+        if self.lo < 0.0 {
             return Self::WHOLE;
         }
         let at = |x: f64| libm::pow(x, exponent);

@@ -156,7 +156,8 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
                 true => t_end,
                 false => self.t + h,
             };
-            if !(later > self.t) || h < least_step(self.t) {
+            let is_ahead = later > self.t && h >= least_step(self.t);
+            if !is_ahead {
                 return Err(lost);
             }
             let length = Interval::point(later) - Interval::point(self.t);

@@ -159,15 +159,19 @@ impl Line<'_> {
                         continue;
                     }
                     let floor = *floor.get_or_insert_with(&mut self.rounding);
+                    // A gap that rises from zero beyond rounding is not flat, however soon it falls.
+                    let rises = is_at_hand && self.start.slope.is_some_and(|slope| slope > floor);
+                    if rises && depth < DEPTH {
+                        (index, depth) = (2 * index, depth + 1);
+                        continue;
+                    }
                     let before = self.place_at(left, &mut known);
                     let after = self.place_at(right, &mut known);
-                    let is_flat = is_within(
-                        floor,
-                        &along,
-                        right - left,
-                        [before.gap, after.gap],
-                        is_at_hand,
-                    );
+                    let gaps = [if is_at_hand { 0.0 } else { before.gap }, after.gap];
+                    let is_flat = match rises {
+                        true => None,
+                        false => is_within(floor, &along, right - left, gaps),
+                    };
                     match is_flat {
                         // It leaves zero, upwards or downwards, without having gone the other way.
                         Some(Signs::Positive) => {
@@ -186,6 +190,10 @@ impl Line<'_> {
                         None if depth < DEPTH => {
                             (index, depth) = (2 * index, depth + 1);
                             continue;
+                        }
+                        // It rises and falls within what the parts of a step can tell.
+                        None if is_at_hand && after.gap < 0.0 => {
+                            return Err(Search::Sinks(right));
                         }
                         None if above && before.gap >= 0.0 && after.gap < 0.0 => {
                             return Ok([before, after]);
@@ -338,23 +346,13 @@ pub(crate) fn signs_between(along: &Rated, width: f64, [first, last]: [f64; 2]) 
 }
 
 /// A stretch on which a gap is zero within rounding, or leaves it one way only: which way it left, or `Unclear` of one that is flat.
-fn is_within(
-    floor: f64,
-    along: &Rated,
-    width: f64,
-    [first, last]: [f64; 2],
-    is_at_hand: bool,
-) -> Option<Signs> {
-    let from = match is_at_hand {
-        true => 0.0,
-        false => first,
-    };
-    let lowest = along.value.lo.max(from + along.rate.lo * width);
-    let highest = along.value.hi.min(from + along.rate.hi * width);
+fn is_within(floor: f64, along: &Rated, width: f64, [first, last]: [f64; 2]) -> Option<Signs> {
+    let lowest = along.value.lo.max(first + along.rate.lo * width);
+    let highest = along.value.hi.min(first + along.rate.hi * width);
     match (lowest >= -floor, highest <= floor) {
         (true, true) => Some(Signs::Unclear),
-        (true, false) if last > floor && from <= floor => Some(Signs::Positive),
-        (false, true) if last < -floor && from >= -floor => Some(Signs::Negative),
+        (true, false) if last > floor && first <= floor => Some(Signs::Positive),
+        (false, true) if last < -floor && first >= -floor => Some(Signs::Negative),
         _ => None,
     }
 }

@@ -243,9 +243,8 @@ mod tests {
 
     #[test]
     fn values_and_rates_lie_in_their_intervals() {
-        let long: Vec<f64> = (0..24)
-            .map(|k| f64::from(k % 5 - 2) * 0.4_f64.powi(k))
-            .collect();
+        let long: [f64; 24] =
+            core::array::from_fn(|k| (k % 5) as f64 * 0.4_f64.powi(k as i32) - 0.1);
         for coefficients in [&[1.0, -3.0, 2.5][..], &[0.0, 1.0], &[4.0], &long] {
             let path = path(coefficients);
             let at = |x: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c);

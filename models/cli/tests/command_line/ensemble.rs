@@ -434,9 +434,10 @@ fn rows_whose_checksums_were_cut_off_are_run_again() {
 #[test]
 fn a_ball_has_every_speed_for_the_same_time() {
     let folder = Folder::new("density");
-    // Thrown up from the floor at speed 1, thrice a flight of length 2: all speeds from -1 to 1 alike.
+    // Thrown up from the floor at speed 1, thrice a flight of length 2: all speeds from -1 to 1 alike. No sample falls on an impact, where
+    // rounding decides whether the speed is one of them.
     let done = run(&format!(
-        "ensemble bouncing_ball --q 0 --qdot 1 --until 40000 --every 0.0123 --discard 2 --density x_dot=-1..1,x=0..0.51:10x20 \
+        "ensemble bouncing_ball --q 0 --qdot 1 --until 40000 --every 0.01230001 --discard 2 --density x_dot=-1..1,x=0..0.51:10x20 \
          --cells {} --plot {} --json {}",
         folder.path("cells.csv"),
         folder.path("density.svg"),
