@@ -51,6 +51,8 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) here: Option<Sys::Gaps>,
     /// Largest absolute values of the state's components since the last impact: their rounding errors stay with it.
     pub(super) sizes: Sys::State,
+    /// The same at the start of the last step: what lies behind the place where that is cut has no part in it.
+    sizes_at_start: Sys::State,
     /// Steps since then: each has rounded the state.
     pub(super) steps: u32,
     /// The sum of their estimated errors, in units of the tolerance.
@@ -82,6 +84,7 @@ impl<Sys: Impacting> Watch<Sys> {
             place: None,
             here: None,
             sizes: Sys::State::zeros(),
+            sizes_at_start: Sys::State::zeros(),
             steps: 0,
             errors: 0.0,
             held: Held::none(),
@@ -114,7 +117,7 @@ impl<Sys: Impacting> Watch<Sys> {
         (self.haven, self.is_stale) = (Haven::new(), false);
         let rates = now.system.gap_rates(now.t, now.state)?;
         let mut hits = Hits::<Sys::Gaps>::none();
-        self.sizes = *now.state;
+        (self.sizes, self.sizes_at_start) = (*now.state, *now.state);
         self.relocate(&mut hits, &rates, now)?;
         Ok(hits)
     }
@@ -289,6 +292,15 @@ impl<Sys: Impacting> Watch<Sys> {
         rounding(now, surface, &self.sizes)
     }
 
+    /// The same where the last step is cut: what lies behind has no part in it.
+    pub(super) fn rounding_at_cut(&self, surface: usize, now: &mut Moment<'_, Sys>) -> f64 {
+        let mut sizes = self.sizes_at_start;
+        for (size, value) in sizes.as_mut_slice().iter_mut().zip(now.state.as_slice()) {
+            *size = size.abs().max(value.abs());
+        }
+        rounding(now, surface, &sizes)
+    }
+
     /// Whether this surface is crossed at gap rate 0.
     pub(super) fn is_tangential_crossing(&self, surface: usize) -> bool {
         self.grazes.as_slice()[surface] == 2.0
@@ -303,6 +315,7 @@ impl<Sys: Impacting> Watch<Sys> {
         (self.proposed, self.behind) = (None, None);
         self.steps = self.steps.saturating_add(1);
         self.errors += step.stepper.error();
+        self.sizes_at_start = self.sizes;
         for (size, value) in self
             .sizes
             .as_mut_slice()
