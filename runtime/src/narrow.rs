@@ -7,9 +7,10 @@
 //! ```
 //!
 //! and compared with the interval `P` of rates that the step's polynomial has there. What `R` exceeds `P` by is a force that the step
-//! knows nothing of. It may be as large as what the rates of the step change by, since an enclosure is wider than the range; or so small that
+//! knows nothing of. It may be as large as what the rates of the step change by, or a quarter of them, since an enclosure is wider than the range; or so small that
 //! the error allowed in the step covers it. Other parts are halved; where that does not help the step is too long. So it is where the
-//! integral of `R` over the step does not contain what the step has gained.
+//! integral of `R` over the step does not contain what the step has gained. Of the shortest parts on which `R` has no bounds, as where a force
+//! jumps or has a pole, nothing is known; those beside them tell.
 
 use crate::contract::System;
 use crate::effects::StepView;
@@ -22,11 +23,21 @@ use crate::state::StateVector;
 /// Halvings of a step.
 const DEPTH: u32 = 6;
 
+/// The same where rates have no bounds.
+const DEPTH_OF_POLES: u32 = 40;
+
+/// Parts that are looked at: rates that have bounds nowhere are not looked for any longer.
+const PARTS: u32 = 256;
+
 /// Halvings that steps begin with whose error nobody estimates: their integral is to tell.
 const DEPTH_OF_FIXED: u32 = 3;
 
-/// What an enclosure may exceed the rates of the step by, in parts of what these change by.
-const WIDER: f64 = 1.0;
+/// A step no longer than this part of its time is no part of it that anybody could tell: its rates are not looked at.
+const SAME_MOMENT: f64 = 64.0 * f64::EPSILON;
+
+/// What an enclosure may exceed the rates of the step by: in parts of what these change by, and of their size.
+const OF_CHANGE: f64 = 1.0;
+const OF_SIZE: f64 = 0.25;
 
 /// The part of a step up to which its rates are what it assumed: 1 if all of it is.
 ///
@@ -35,6 +46,9 @@ const WIDER: f64 = 1.0;
 pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
 ) -> Result<f64, Outcome> {
+    if step.length() <= SAME_MOMENT * step.t_end().abs() {
+        return Ok(1.0);
+    }
     let mut path = Path::new();
     path.follow(step)?;
     let mut along = Along {
@@ -43,20 +57,28 @@ pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
         length: step.length(),
         allowed: allowed(step, &path),
         gained: [Sys::State::zeros(); 2],
+        has_pole: false,
     };
     let least = match step.stepper.fixed_step() {
         Some(_) => DEPTH_OF_FIXED,
         None => 0,
     };
     let (mut index, mut depth) = (0_u64, least);
-    loop {
+    for _ in 0..PARTS {
         let count = (1_u64 << depth) as f64;
         let part = [index as f64 / count, (index + 1) as f64 / count];
         step.counters.rate_evaluations += 1;
-        if !along.is_known(part) {
-            if depth == DEPTH {
-                return Ok(part[0]);
+        let is_split = match along.compare(part) {
+            Rates::Assumed => false,
+            Rates::Exceeded if depth >= DEPTH => return Ok(part[0]),
+            Rates::Exceeded => true,
+            Rates::Unbounded if depth >= DEPTH_OF_POLES => {
+                along.has_pole = true;
+                false
             }
+            Rates::Unbounded => true,
+        };
+        if is_split {
             (index, depth) = (2 * index, depth + 1);
             continue;
         }
@@ -71,6 +93,7 @@ pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
             });
         }
     }
+    Ok(0.0)
 }
 
 /// The error allowed in each component.
@@ -87,6 +110,13 @@ fn allowed<Sys: System, Step: Stepper<Sys>>(
     allowed
 }
 
+/// What the rates on a part of a step are beside those that it assumed.
+enum Rates {
+    Assumed,
+    Exceeded,
+    Unbounded,
+}
+
 /// A step, and what it may err by.
 struct Along<'a, Sys: System> {
     system: &'a Sys,
@@ -95,21 +125,24 @@ struct Along<'a, Sys: System> {
     allowed: Sys::State,
     /// Bounds of what the components gain on the parts that are known.
     gained: [Sys::State; 2],
+    /// Whether there are parts of which nothing is known.
+    has_pole: bool,
 }
 
 impl<Sys: System> Along<'_, Sys> {
     /// True if a step between these states has gained what the rates give, as far as that is known.
     fn has_gained(&self, start: &Sys::State, end: &Sys::State) -> bool {
-        (0..Sys::State::LEN).all(|i| {
+        let is_within = |i: usize| {
             let change = end.as_slice()[i] - start.as_slice()[i];
             let [least, most] = [0, 1].map(|bound| self.gained[bound].as_slice()[i]);
             let allowed = self.allowed.as_slice()[i];
             least - allowed <= change && change <= most + allowed
-        })
+        };
+        self.has_pole || (0..Sys::State::LEN).all(is_within)
     }
 
-    /// True if the rates on a part of the step are what it assumed; what the components gain there is added then.
-    fn is_known(&mut self, part: [f64; 2]) -> bool {
+    /// Compares the rates on a part of the step with those that it assumed; what the components gain there is added if they are.
+    fn compare(&mut self, part: [f64; 2]) -> Rates {
         let (path, width) = (self.path, part[1] - part[0]);
         let mut gained = self.gained;
         let middle = 0.5 * (part[0] + part[1]);
@@ -120,31 +153,36 @@ impl<Sys: System> Along<'_, Sys> {
         let t = path.time([middle, middle]).value.middle();
         let mut centre = Sys::State::zeros();
         if self.system.rate(t, &state, &mut centre).is_err() {
-            return false;
+            return Rates::Unbounded;
         }
-        let mut is_known = true;
+        let (mut is_assumed, mut is_bounded) = (true, true);
         let length = Interval::point(self.length);
         let component = |i: usize| path.component(i, part);
-        let mut compare = |i: usize, rate: Rated| {
+        let mut take = |i: usize, rate: Rated| {
             let reach = (rate.rate.magnitude() * 0.5) * width;
             let centred = Interval::point(centre.as_slice()[i]).widened(reach);
             let rates = length * rate.value.intersection(centred).unwrap_or(rate.value);
             let assumed = path.component(i, part).rate;
             let excess = (rates.hi - assumed.hi).max(assumed.lo - rates.lo);
             let change = path.component(i, [0.0, 1.0]).rate.width();
-            let most = (WIDER * change * width).max(self.allowed.as_slice()[i]);
+            let wider = OF_CHANGE * change + OF_SIZE * assumed.magnitude();
+            let most = (wider * width).max(self.allowed.as_slice()[i]);
             // Not a comparison that NaN passes.
-            is_known &= excess * width <= most;
+            is_assumed &= excess * width <= most;
+            is_bounded &= rates.lo.is_finite() && rates.hi.is_finite();
             gained[0].as_mut_slice()[i] += width * rates.lo;
             gained[1].as_mut_slice()[i] += width * rates.hi;
         };
         let along = self
             .system
-            .rates_along(path.time(part), &component, &mut compare);
-        if is_known && along.is_ok() {
-            self.gained = gained;
-            return true;
+            .rates_along(path.time(part), &component, &mut take);
+        match (is_assumed, is_bounded && along.is_ok()) {
+            (_, false) => Rates::Unbounded,
+            (false, true) => Rates::Exceeded,
+            (true, true) => {
+                self.gained = gained;
+                Rates::Assumed
+            }
         }
-        false
     }
 }
