@@ -2,7 +2,7 @@
 //! glancing wall, long runs of the disk.
 
 use dalembert::impacts::law::Law;
-use dalembert::numbers::{Numbers, Rated};
+use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{Constrained, Described, Impacting, System};
 use dalembert_cli::suite::{Setting, every_integrator};
 use dalembert_models::stability::by_hand::{Gap, Point, Reset};
@@ -321,7 +321,7 @@ fn super_elastic_walls_are_hit_where_example_4_says() {
     };
     let right = Gap {
         at: |[x, _]| (1.0 - x, [-1.0, 0.0]),
-        along: |[x, _]| Rated::of(1.0) - x,
+        along: |[x, _]| TaylorModel::of(1.0) - x,
     };
     let reset: Reset = |[vx, vy]| [-1.25 * vx, vy];
     let walls = Point {

@@ -5,7 +5,7 @@ use crate::contract::{
 };
 use crate::error::{Fault, ParameterError, StateError};
 use crate::impacts::law::{Blow, Contact, Jump, Law};
-use crate::numbers::Rated;
+use crate::numbers::TaylorModel;
 
 /// A system whose inputs are given by a function; [`Actuated::with_inputs`] makes one.
 ///
@@ -220,7 +220,12 @@ where
         self.at(t, state).gap_rates(t, state)
     }
 
-    fn gap_along(&self, surface: usize, t: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+    fn gap_along(
+        &self,
+        surface: usize,
+        t: TaylorModel,
+        component: &dyn Fn(usize) -> TaylorModel,
+    ) -> TaylorModel {
         self.system.gap_along(surface, t, component)
     }
 

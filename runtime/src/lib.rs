@@ -17,7 +17,7 @@
 //!     Contact, Dop853, EventLog, Fault, Impacting, Impacts, Law, Outcome, ParameterError, Simulation, System,
 //!     Tolerance, VectorField,
 //! };
-//! use dalembert::numbers::Rated;
+//! use dalembert::numbers::TaylorModel;
 //! use nalgebra::SVector;
 //!
 //! /// Mass 1, gravity 1; the state is (x, v).
@@ -68,7 +68,12 @@
 //!     fn gaps(&self, _t: f64, state: &State) -> Height {
 //!         Height::new(state[0])
 //!     }
-//!     fn gap_along(&self, _surface: usize, _t: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+//!     fn gap_along(
+//!         &self,
+//!         _surface: usize,
+//!         _t: TaylorModel,
+//!         component: &dyn Fn(usize) -> TaylorModel,
+//!     ) -> TaylorModel {
 //!         component(0)
 //!     }
 //!     fn gap_rates(&self, _t: f64, state: &State) -> Result<Height, Fault> {

@@ -148,7 +148,7 @@ impl<Sys: System> Along<'_, Sys> {
         let middle = 0.5 * (part[0] + part[1]);
         let mut state = Sys::State::zeros();
         for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
-            *entry = path.component(i, [middle, middle]).value.middle();
+            *entry = path.at(i, middle);
         }
         let t = path.time([middle, middle]).value.middle();
         let mut centre = Sys::State::zeros();
@@ -157,14 +157,14 @@ impl<Sys: System> Along<'_, Sys> {
         }
         let (mut is_assumed, mut is_bounded) = (true, true);
         let length = Interval::point(self.length);
-        let component = |i: usize| path.component(i, part);
+        let component = |i: usize| path.rated(i, part);
         let mut take = |i: usize, rate: Rated| {
             let reach = (rate.rate.magnitude() * 0.5) * width;
             let centred = Interval::point(centre.as_slice()[i]).widened(reach);
             let rates = length * rate.value.intersection(centred).unwrap_or(rate.value);
-            let assumed = path.component(i, part).rate;
+            let assumed = path.rated(i, part).rate;
             let excess = (rates.hi - assumed.hi).max(assumed.lo - rates.lo);
-            let change = path.component(i, [0.0, 1.0]).rate.width();
+            let change = path.rated(i, [0.0, 1.0]).rate.width();
             let wider = OF_CHANGE * change + OF_SIZE * assumed.magnitude();
             let most = (wider * width).max(self.allowed.as_slice()[i]);
             // Not a comparison that NaN passes.

@@ -13,7 +13,7 @@ fn block<const ROOT: u64>() -> Gap {
             let part = 1.0 / ROOT as f64;
             (v * part - u, [-1.0, part])
         },
-        along: |[u, v]| v * Rated::of(1.0 / ROOT as f64) - u,
+        along: |[u, v]| v * TaylorModel::of(1.0 / ROOT as f64) - u,
     }
 }
 

@@ -4,7 +4,7 @@
 use core::ops::ControlFlow;
 
 use dalembert::integrate::{ComposedPrinciple, FixedStep, Gauss, Method, MidpointPrinciple};
-use dalembert::numbers::{Numbers, Rated};
+use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{
     Contact, Fault, Impacting, Impacts, Lagrangian, Law, Observer, Outcome, ParameterError,
     Segment, Simulation, Stepper, System, Tolerance, VectorField,
@@ -116,10 +116,15 @@ impl Impacting for Well {
         Plane::new(state[0] + 0.3, self.far - state[0])
     }
 
-    fn gap_along(&self, surface: usize, _: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+    fn gap_along(
+        &self,
+        surface: usize,
+        _: TaylorModel,
+        component: &dyn Fn(usize) -> TaylorModel,
+    ) -> TaylorModel {
         match surface {
-            0 => component(0) + Rated::of(0.3),
-            _ => Rated::of(self.far) - component(0),
+            0 => component(0) + TaylorModel::of(0.3),
+            _ => TaylorModel::of(self.far) - component(0),
         }
     }
 

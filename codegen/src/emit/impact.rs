@@ -78,7 +78,7 @@ fn emit_gaps(context: &Context<'_>, functions: &Impacting) -> TokenStream {
     }
 }
 
-/// Every gap by itself, over numbers that enclose it along a stretch of motion.
+/// Every gap by itself, along a stretch of motion.
 fn emit_gap_along(context: &Context<'_>, functions: &Impacting) -> TokenStream {
     let arms = functions.gap_alone.iter().enumerate().map(|(s, function)| {
         let Body {
@@ -91,12 +91,12 @@ fn emit_gap_along(context: &Context<'_>, functions: &Impacting) -> TokenStream {
         fn gap_along(
             &self,
             surface: usize,
-            t: ::dalembert::numbers::Rated,
-            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::Rated,
-        ) -> ::dalembert::numbers::Rated {
+            t: ::dalembert::numbers::TaylorModel,
+            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::TaylorModel,
+        ) -> ::dalembert::numbers::TaylorModel {
             #[allow(unused_imports)]
             use ::dalembert::numbers::Numbers as _;
-            type L = ::dalembert::numbers::Rated;
+            type L = ::dalembert::numbers::TaylorModel;
             match surface {
                 #(#arms)*
                 _ => L::ZERO,

@@ -2,7 +2,7 @@
 
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::jet::LENGTH;
-use dalembert::numbers::{Numbers, Rated};
+use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{
     Fault, Impacting, Impacts, ParameterError, Scene, System, TaylorField, VectorField,
 };
@@ -17,7 +17,7 @@ pub struct Gap {
     /// Gap and gradient at a point.
     pub at: fn([f64; 2]) -> (f64, [f64; 2]),
     /// The gap along a stretch of motion.
-    pub along: fn([Rated; 2]) -> Rated,
+    pub along: fn([TaylorModel; 2]) -> TaylorModel,
 }
 
 /// What an impact makes of a velocity.
@@ -129,7 +129,12 @@ impl<const S: usize> Impacting for Point<S> {
         Self::Gaps::from_fn(gap)
     }
 
-    fn gap_along(&self, surface: usize, _t: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+    fn gap_along(
+        &self,
+        surface: usize,
+        _t: TaylorModel,
+        component: &dyn Fn(usize) -> TaylorModel,
+    ) -> TaylorModel {
         (self.surfaces[surface].0.along)([component(0), component(1)])
     }
 

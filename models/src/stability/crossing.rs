@@ -2,7 +2,7 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::numbers::{Numbers, Rated};
+use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{Event, Observer, VectorField};
 use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 
@@ -238,7 +238,7 @@ fn irregular_surfaces(setting: Setting, report: &mut Report) {
     let cube = Gap {
         at: |[x, _]| ((1.0 - x).powi(3), [-3.0 * (1.0 - x) * (1.0 - x), 0.0]),
         along: |[x, _]| {
-            let way = Rated::of(1.0) - x;
+            let way = TaylorModel::of(1.0) - x;
             way * way.square()
         },
     };

@@ -537,14 +537,18 @@ impl Interval {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::bent::Bent;
     use crate::rated::Rated;
+    use crate::taylor_model::TaylorModel;
 
-    /// A function of the language, over doubles and over both kinds of enclosures.
+    /// A function of the language, over doubles and over all kinds of enclosures.
     pub(crate) struct Enclosed {
         pub(crate) name: &'static str,
         pub(crate) plain: fn(f64) -> f64,
         pub(crate) interval: fn(Interval) -> Interval,
         pub(crate) rated: fn(Rated) -> Rated,
+        pub(crate) model: fn(TaylorModel) -> TaylorModel,
+        pub(crate) bent: fn(Bent) -> Bent,
         /// Where it has values.
         domain: [f64; 2],
     }
@@ -579,6 +583,8 @@ pub(crate) mod tests {
                 plain: |$x: f64| $value,
                 interval: |$x: Interval| $value,
                 rated: |$x: Rated| $value,
+                model: |$x: TaylorModel| $value,
+                bent: |$x: Bent| $value,
                 domain: [$lo, $hi],
             }),*];
         };

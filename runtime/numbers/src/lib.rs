@@ -7,11 +7,14 @@
 //! | `lanes.rs` | vectors of eight doubles, with the feature `lanes` |
 //! | `interval.rs` | intervals that contain every value, rounded outwards |
 //! | `rated.rs` | intervals of values and of rates along a stretch of motion |
+//! | `bent.rs` | intervals of values, rates and bends along lines through a box |
+//! | `taylor_model.rs` | cubics along a stretch of motion, and how far from them values and rates may be |
 //! | `extended/` | sums of a few doubles: arithmetic, elementary functions, decimal text |
 
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
+pub mod bent;
 pub mod extended;
 pub mod interval;
 #[cfg(feature = "lanes")]
@@ -19,8 +22,11 @@ mod lanes;
 pub mod math;
 pub mod numbers;
 pub mod rated;
+pub mod taylor_model;
 
+pub use bent::Bent;
 pub use extended::{Extended, MOST_PARTS, NotDecimal};
 pub use interval::Interval;
 pub use numbers::Numbers;
 pub use rated::Rated;
+pub use taylor_model::TaylorModel;

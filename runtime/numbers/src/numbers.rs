@@ -8,8 +8,10 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::math;
 
+pub use crate::bent::Bent;
 pub use crate::interval::Interval;
 pub use crate::rated::Rated;
+pub use crate::taylor_model::TaylorModel;
 
 /// The circle constant, as [`Numbers::constant`] takes it.
 pub const PI: [f64; 4] = [

@@ -4,7 +4,7 @@ use super::System;
 use crate::error::Fault;
 use crate::impacts::after_reset;
 use crate::impacts::law::{Blow, Contact, Jump, Landing, Law};
-use crate::numbers::Rated;
+use crate::numbers::TaylorModel;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -19,9 +19,14 @@ pub trait Impacting: System {
     /// The gaps `h_s`; motion is allowed where they are not negative, and everywhere at a surface with a reset.
     fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps;
 
-    /// All values and rates of the gap of one surface along a stretch of motion. `component(i)` gives all values and rates of
-    /// component `i` of the state; a gap takes positions only.
-    fn gap_along(&self, surface: usize, t: Rated, component: &dyn Fn(usize) -> Rated) -> Rated;
+    /// The gap of one surface along a stretch of motion. `component(i)` gives component `i` of the state along it; a gap takes positions
+    /// only.
+    fn gap_along(
+        &self,
+        surface: usize,
+        t: TaylorModel,
+        component: &dyn Fn(usize) -> TaylorModel,
+    ) -> TaylorModel;
 
     /// The gap rates `dh_s(qdot) + d_t h_s`.
     ///

@@ -5,7 +5,7 @@
 
 use super::path::Path;
 use crate::contract::Impacting;
-use crate::numbers::{Interval, Rated};
+use crate::numbers::{Interval, TaylorModel};
 use crate::state::StateVector;
 
 /// Steps to wait for the next trial after several that failed, at most.
@@ -80,13 +80,12 @@ impl<S: StateVector> Haven<S> {
         self.surround(path);
         self.positions = Sys::Vector::LEN.min(S::LEN);
         let component = |i: usize| match i < self.positions {
-            true => Rated::steady(self.range(i)),
-            false => Rated::steady(path.range(i)),
+            true => TaylorModel::steady(self.range(i)),
+            false => TaylorModel::steady(path.range(i)),
         };
         let is_off = |surface: usize| {
-            let gap = system
-                .gap_along(surface, Rated::steady(self.times), &component)
-                .value;
+            let times = TaylorModel::steady(self.times);
+            let gap = system.gap_along(surface, times, &component).range();
             gap.lo > 0.0 || (is_passable(surface) && gap.hi < 0.0)
         };
         *evaluations += 1;

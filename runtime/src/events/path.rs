@@ -1,20 +1,18 @@
-//! The motion along a step: a polynomial in the part of the step for each component, with all values and rates that it has on a
-//! part of the step.
+//! The motion along a step: a polynomial in the part of the step for each component, and Taylor models of it on parts of the step.
 //!
-//! On `[a, b]`, with `m` in the middle and `r` half as long, `p(m + r x) = sum_k q_k x^k` for `x` in `[-1, 1]` has values within
-//! `q_0 + [-1, 1] |q_k|` for odd and `q_0 + [0, 1] q_k` for even `k`; the same holds of its rate. This is the centred form of a
-//! polynomial: it is wider than the range by no more than the square of `b - a`.
+//! On `[a, b]`, with `m` in the middle and `r` half as long, `p(m + r s) = sum_k q_k s^k` for `s` in `[-1, 1]`. The model has the first
+//! four terms; all others are its remainder.
 
 use crate::contract::System;
 use crate::effects::StepView;
 use crate::integrate::Stepper;
 use crate::jet::LENGTH;
-use crate::numbers::{Interval, Rated};
+use crate::numbers::{Interval, Rated, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
 /// Terms that are centred on a part of the step that is not short; the sizes of all others are added.
-const CENTRED: usize = 6;
+const FEW: usize = 8;
 
 /// A part of the step that is shorter has all its terms centred.
 const SHORT: f64 = 1.0 / 8.0;
@@ -34,8 +32,18 @@ pub(crate) struct Path<S> {
     doubts: [S; 2],
     /// Sizes of the terms that are not centred on long parts: of the component, and of its rate.
     tails: [S; 2],
+    /// The model of every component on the whole step.
+    whole: Whole<S>,
     /// True once the dense output is taken in, false of the cubic through the ends.
     is_dense: bool,
+}
+
+/// Models of all components, side by side.
+#[derive(Debug, Clone)]
+struct Whole<S> {
+    powers: [S; 4],
+    error: S,
+    slope: S,
 }
 
 impl<S: StateVector> Path<S> {
@@ -49,6 +57,11 @@ impl<S: StateVector> Path<S> {
             order: 0,
             doubts: [zeros; 2],
             tails: [zeros; 2],
+            whole: Whole {
+                powers: [zeros; 4],
+                error: zeros,
+                slope: zeros,
+            },
             is_dense: false,
         }
     }
@@ -77,19 +90,20 @@ impl<S: StateVector> Path<S> {
         Ok(())
     }
 
-    /// Takes in the dense output of the step, which it prepares.
+    /// Takes in the dense output of the step, which it prepares. Returns whether that is new.
     ///
     /// # Errors
     /// Those of the dense output.
     pub(crate) fn refine<Sys: System<State = S>, Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
-    ) -> Result<(), Outcome> {
+    ) -> Result<bool, Outcome> {
         step.prepare()?;
-        if !self.is_dense {
+        let is_new = !self.is_dense;
+        if is_new {
             self.follow_dense(step);
         }
-        Ok(())
+        Ok(is_new)
     }
 
     fn follow_dense<Sys: System<State = S>, Step: Stepper<Sys>>(
@@ -126,71 +140,161 @@ impl<S: StateVector> Path<S> {
         self.add_rounding();
     }
 
-    /// Adds the rounding errors of the coefficients to the doubts, and sums up the terms that are not centred.
+    /// Adds the rounding errors of the coefficients to the doubts, sums up the terms that are not centred, and makes the models of the
+    /// whole step.
     #[inline]
     fn add_rounding(&mut self) {
-        self.tails = [S::zeros(); 2];
-        let (mut sizes, mut slopes) = (S::zeros(), S::zeros());
+        let zeros = S::zeros();
+        let (mut sizes, mut slopes) = (zeros, zeros);
+        self.tails = [zeros; 2];
         for (k, coefficient) in self.coefficients[..=self.order].iter().enumerate() {
+            if k == FEW {
+                self.tails = [sizes, slopes];
+            }
             for i in 0..S::LEN {
                 let size = coefficient.as_slice()[i].abs();
                 sizes.as_mut_slice()[i] += size;
                 slopes.as_mut_slice()[i] += k as f64 * size;
-                if k >= CENTRED {
-                    self.tails[0].as_mut_slice()[i] += size;
-                    self.tails[1].as_mut_slice()[i] += k as f64 * size;
-                }
             }
         }
+        let has_tails = self.order >= FEW;
         for i in 0..S::LEN {
-            self.doubts[0].as_mut_slice()[i] += ROUNDING * sizes.as_slice()[i];
-            self.doubts[1].as_mut_slice()[i] += 2.0 * ROUNDING * slopes.as_slice()[i];
+            let [size, slope] = [sizes.as_slice()[i], slopes.as_slice()[i]];
+            self.doubts[0].as_mut_slice()[i] += ROUNDING * size;
+            self.doubts[1].as_mut_slice()[i] += 2.0 * ROUNDING * slope;
+            for (tail, sum) in self.tails.iter_mut().zip([size, slope]) {
+                let tail = &mut tail.as_mut_slice()[i];
+                *tail = if has_tails {
+                    sum - *tail + ROUNDING * sum
+                } else {
+                    0.0
+                };
+            }
+        }
+        self.fill_whole();
+    }
+
+    /// As [`Path::component`] of the whole step, for all components side by side.
+    #[inline]
+    fn fill_whole(&mut self) {
+        const COUNT: usize = FEW;
+        let mut powers = [S::zeros(); COUNT];
+        let terms = (self.order + 1).min(COUNT);
+        powers[..terms].copy_from_slice(&self.coefficients[..terms]);
+        for first in 0..COUNT - 1 {
+            for k in (first..COUNT - 1).rev() {
+                let above = powers[k + 1];
+                let power = powers[k].as_mut_slice().iter_mut();
+                power
+                    .zip(above.as_slice())
+                    .for_each(|(power, above)| *power += 0.5 * above);
+            }
+        }
+        let Whole {
+            powers: cubic,
+            error,
+            slope,
+        } = &mut self.whole;
+        for i in 0..S::LEN {
+            let mut scale = 1.0;
+            let (mut beyond, mut steep) = (0.0, 0.0);
+            for (k, power) in powers.iter().enumerate() {
+                let term = scale * power.as_slice()[i];
+                match k < 4 {
+                    true => cubic[k].as_mut_slice()[i] = term,
+                    false => {
+                        beyond += term.abs();
+                        steep += k as f64 * term.abs();
+                    }
+                }
+                scale *= 0.5;
+            }
+            error.as_mut_slice()[i] =
+                beyond + self.tails[0].as_slice()[i] + self.doubts[0].as_slice()[i];
+            slope.as_mut_slice()[i] =
+                steep + 0.5 * (self.tails[1].as_slice()[i] + self.doubts[1].as_slice()[i]);
         }
     }
 
-    /// All values of component `i` on a part of the step, and its rates by the part.
+    /// Component `i` on a part of the step.
     #[inline]
-    pub(crate) fn component(&self, i: usize, part: [f64; 2]) -> Rated {
+    pub(crate) fn component(&self, i: usize, part: [f64; 2]) -> TaylorModel {
+        let radius = 0.5 * (part[1] - part[0]);
+        match part {
+            [0.0, 1.0] => TaylorModel {
+                error: self.whole.error.as_slice()[i],
+                slope: self.whole.slope.as_slice()[i],
+                ..TaylorModel::exact(core::array::from_fn(|k| self.whole.powers[k].as_slice()[i]))
+            },
+            _ if self.order < FEW || radius >= 0.5 * SHORT => self.centred::<FEW>(i, part),
+            _ => self.centred::<LENGTH>(i, part),
+        }
+    }
+
+    /// The same with the first `COUNT` terms centred.
+    #[inline]
+    fn centred<const COUNT: usize>(&self, i: usize, part: [f64; 2]) -> TaylorModel {
         let [middle, radius] = [0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])];
-        let terms = match radius < 0.5 * SHORT {
-            true => self.order + 1,
-            false => (self.order + 1).min(CENTRED),
-        };
-        let mut powers = [0.0; LENGTH];
+        let terms = (self.order + 1).min(COUNT);
+        let mut powers = [0.0; COUNT];
         for (power, coefficient) in powers.iter_mut().zip(&self.coefficients[..terms]) {
             *power = coefficient.as_slice()[i];
         }
-        let powers = &mut powers[..terms];
-        move_to(powers, middle);
-        let (mut value, mut rate) = (Interval::point(0.0), Interval::point(0.0));
+        move_to(&mut powers[..terms], middle);
+        let mut cubic = [0.0; 4];
+        let (mut error, mut slope) = (
+            self.doubts[0].as_slice()[i],
+            radius * self.doubts[1].as_slice()[i],
+        );
         let mut scale = 1.0;
-        for (k, &power) in powers.iter().enumerate() {
-            let slope = k as f64 * power * scale;
-            if k > 0 {
-                rate = with_term(rate, slope, k - 1);
-                scale *= radius;
+        for (k, &power) in powers[..terms].iter().enumerate() {
+            let term = scale * power;
+            match cubic.get_mut(k) {
+                Some(own) => *own = term,
+                None => {
+                    error += term.abs();
+                    slope += k as f64 * term.abs();
+                }
             }
-            value = with_term(value, power * scale, k);
+            scale *= radius;
         }
-        let (mut doubt, mut rate_doubt) =
-            (self.doubts[0].as_slice()[i], self.doubts[1].as_slice()[i]);
         if terms <= self.order {
-            doubt += self.tails[0].as_slice()[i];
-            rate_doubt += self.tails[1].as_slice()[i];
+            // On `[0, b]` the terms from `b^k` on are at most `b^k` times what they are on the whole step.
+            let [b, square] = [part[1], part[1] * part[1]];
+            let power = square * square * square * b;
+            error += power * b * self.tails[0].as_slice()[i];
+            slope += radius * power * self.tails[1].as_slice()[i];
         }
+        TaylorModel {
+            error,
+            slope,
+            ..TaylorModel::exact(cubic)
+        }
+    }
+
+    /// All values of component `i` on a part of the step that is no point, and all its rates by the part.
+    pub(crate) fn rated(&self, i: usize, part: [f64; 2]) -> Rated {
+        let model = self.component(i, part);
+        let radius = Interval::point(0.5 * (part[1] - part[0]));
         Rated {
-            value: value.widened(doubt),
-            rate: rate.widened(rate_doubt),
+            value: model.range(),
+            rate: model.rates() * radius.inverse(),
         }
+    }
+
+    /// Component `i` at a part of the step, as the polynomial has it.
+    pub(crate) fn at(&self, i: usize, part: f64) -> f64 {
+        let terms = self.coefficients[..=self.order].iter().rev();
+        terms.fold(0.0, |sum, term| sum * part + term.as_slice()[i])
     }
 
     /// All values of component `i` on the whole step.
     #[inline]
     pub(crate) fn range(&self, i: usize) -> Interval {
-        self.component(i, [0.0, 1.0]).value
+        self.component(i, [0.0, 1.0]).range()
     }
 
-    /// All times on a part of the step.
+    /// All times on a part of the step, and their rate by the part.
     #[inline]
     pub(crate) fn time(&self, [from, to]: [f64; 2]) -> Rated {
         let length = Interval::point(self.length);
@@ -199,16 +303,18 @@ impl<S: StateVector> Path<S> {
             rate: length,
         }
     }
-}
 
-/// The interval with `term x^k` added, for `x` in `[-1, 1]`; sums round by less than the doubts hold.
-#[inline(always)]
-fn with_term(range: Interval, term: f64, k: usize) -> Interval {
-    let size = term.abs();
-    match (k, k % 2) {
-        (0, _) => Interval::new(range.lo + term, range.hi + term),
-        (_, 0) => Interval::new(range.lo + term.min(0.0), range.hi + term.max(0.0)),
-        _ => Interval::new(range.lo - size, range.hi + size),
+    /// The same as a model.
+    #[inline]
+    pub(crate) fn time_model(&self, [from, to]: [f64; 2]) -> TaylorModel {
+        let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from));
+        let centre = self.start + self.length * middle;
+        let change = self.length * radius;
+        TaylorModel {
+            error: ROUNDING * (self.start.abs() + centre.abs() + self.length),
+            slope: ROUNDING * change,
+            ..TaylorModel::exact([centre, change, 0.0, 0.0])
+        }
     }
 }
 
@@ -252,7 +358,10 @@ mod tests {
                 for width in [0.0, 1e-7, 0.05, 0.3, 1.0] {
                     let from = f64::from(start) / 16.0;
                     let to = (from + width).min(1.0);
-                    let found = path.component(0, [from, to]);
+                    if to <= from {
+                        continue;
+                    }
+                    let found = path.rated(0, [from, to]);
                     for k in 0..=16 {
                         let x = (from + (to - from) * f64::from(k) / 16.0).min(to);
                         assert!(
@@ -274,7 +383,7 @@ mod tests {
     fn intervals_of_short_parts_are_as_narrow_as_their_squares() {
         let path = path(&[0.3, -1.0, 2.0, 0.5, -0.25, 0.1, 0.05, -0.02]);
         for width in [0.1, 1e-2, 1e-3] {
-            let found = path.component(0, [0.4, 0.4 + width]);
+            let found = path.rated(0, [0.4, 0.4 + width]);
             let slope = found.rate.magnitude();
             assert!(found.value.width() <= width * slope + 4.0 * width * width);
         }

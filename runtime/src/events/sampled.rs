@@ -1,14 +1,14 @@
-//! Values and rates of a function on a stretch, estimated from samples: for functions that are known at points only.
+//! A Taylor model of a function on a stretch, estimated from samples: for functions that are known at points only.
 //!
-//! Nine samples at Chebyshev-Lobatto points give an interpolant of degree 8, whose Bernstein coefficients bound it and its rate
-//! (convex hull). What the interpolant misses is estimated by its last two Chebyshev coefficients. This is no enclosure: what is
-//! narrower than the distance of two samples may be missed.
+//! Nine samples at Chebyshev-Lobatto points give an interpolant of degree 8, whose Chebyshev coefficients from the fourth on are the
+//! remainder. What the interpolant misses is estimated by its last two. This is no enclosure: what is narrower than the distance of
+//! two samples may be missed.
 //!
 //! NOTE: gaps are enclosed ([`super::path`]). The forces of surfaces that hold the motion are not known over intervals.
 
 use core::f64::consts::FRAC_1_SQRT_2;
 
-use crate::numbers::{Interval, Rated};
+use crate::numbers::TaylorModel;
 
 /// Number of samples.
 pub(crate) const SAMPLES: usize = 9;
@@ -26,98 +26,56 @@ pub(crate) const NODES: [f64; SAMPLES] = [
     1.0,
 ];
 
-/// From samples to the Bernstein coefficients 1 to 4. Coefficients 0 and 8 are the end samples, 5 to 7 follow by
-/// reflection.
-const TO_BERNSTEIN: [[f64; SAMPLES]; 4] = [
-    [
-        -4.375,
-        6.568535592272045,
-        -1.7071067811865475,
-        0.8099572022108875,
-        -0.5,
-        0.3616156730429224,
-        -0.2928932188134525,
-        0.259891532474145,
-        -0.125,
-    ],
-    [
-        9.75,
-        -18.25275486114713,
-        14.22828282092095,
-        -7.581239029125371,
-        4.857142857142857,
-        -3.570028757024018,
-        2.914574321936191,
-        -2.5959773527034806,
-        1.25,
-    ],
-    [
-        -12.767857142857142,
-        25.51152560426028,
-        -25.112909700267398,
-        23.09799209414256,
-        -17.071428571428573,
-        13.306068923678326,
-        -11.172804585446888,
-        10.084413377918832,
-        -4.875,
-    ],
-    [
-        10.214285714285714,
-        -20.91764997160261,
-        22.4,
-        -24.7966357426831,
-        27.2,
-        -24.7966357426831,
-        22.4,
-        -20.91764997160261,
-        10.214285714285714,
-    ],
-];
+/// `cos(j pi / 8)` of a whole turn.
+const COSINES: [f64; 16] = {
+    const FIRST: [f64; 5] = [
+        1.0,
+        0.923_879_532_511_286_7,
+        FRAC_1_SQRT_2,
+        0.382_683_432_365_089_8,
+        0.0,
+    ];
+    let mut cosines = [0.0; 16];
+    let mut j = 0;
+    while j < 16 {
+        let turned = if j > 8 { 16 - j } else { j };
+        cosines[j] = match turned > 4 {
+            true => -FIRST[8 - turned],
+            false => FIRST[turned],
+        };
+        j += 1;
+    }
+    cosines
+};
 
-/// `cos(7 j pi / 8)`: the Chebyshev polynomial of degree 7 at the samples.
-const SEVENTH: [f64; SAMPLES] = [
-    1.0,
-    -0.9238795325112867,
-    FRAC_1_SQRT_2,
-    -0.3826834323650898,
-    0.0,
-    0.3826834323650898,
-    -FRAC_1_SQRT_2,
-    0.9238795325112867,
-    -1.0,
-];
-
-/// Rounding of the conversion relative to the largest sample: the largest row sum of the table is 184, and each
-/// product is rounded.
-const ROUNDING: f64 = 2.0 * 184.0 * f64::EPSILON;
+/// Rounding of the coefficients relative to the largest sample.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// How much steeper than large what the interpolant misses may be: twice the square of its degree.
 const STEEPER: f64 = 128.0;
 
-/// All values and rates of a function with these samples on a stretch of this width, estimated.
-pub(crate) fn along(samples: &[f64; SAMPLES], width: f64) -> Rated {
-    let (coefficients, doubt) = (bernstein(samples), doubt(samples));
-    if doubt == f64::INFINITY {
-        return Rated {
-            value: Interval::WHOLE,
-            rate: Interval::WHOLE,
-        };
-    }
-    let hull = |range: Interval, value: f64| range.hull(Interval::point(value));
-    let value = coefficients
+/// A function with these samples on a stretch, estimated. Infinite or NaN samples give doubt that nothing exceeds.
+pub(crate) fn along(samples: &[f64; SAMPLES]) -> TaylorModel {
+    let a = chebyshev(samples);
+    let largest = samples
         .iter()
-        .copied()
-        .fold(Interval::point(coefficients[0]), hull);
-    let slopes = coefficients
-        .windows(2)
-        .map(|pair| (SAMPLES - 1) as f64 * (pair[1] - pair[0]) / width);
-    let first = (SAMPLES - 1) as f64 * (coefficients[1] - coefficients[0]) / width;
-    Rated {
-        value: value.widened(doubt),
-        rate: slopes
-            .fold(Interval::point(first), hull)
-            .widened(STEEPER * doubt / width),
+        .fold(0.0, |most: f64, sample| match sample.abs() {
+            size if size <= most => most,
+            size => size,
+        });
+    let doubt = a[7].abs() + a[8].abs() + ROUNDING * largest;
+    if !(doubt < f64::INFINITY) {
+        return TaylorModel::ANYTHING;
+    }
+    let (mut error, mut slope) = (doubt, STEEPER * doubt);
+    for (k, coefficient) in a.iter().enumerate().skip(4) {
+        error += coefficient.abs();
+        slope += (k * k) as f64 * coefficient.abs();
+    }
+    TaylorModel {
+        error,
+        slope,
+        ..TaylorModel::exact([a[0] - a[2], a[1] - 3.0 * a[3], 2.0 * a[2], 4.0 * a[3]])
     }
 }
 
@@ -129,61 +87,40 @@ pub(crate) fn nodes([left, right]: [f64; 2]) -> [f64; SAMPLES] {
     })
 }
 
-/// Bernstein coefficients of the interpolant.
-fn bernstein(samples: &[f64; SAMPLES]) -> [f64; SAMPLES] {
-    let mut coefficients = *samples;
-    for (row, weights) in TO_BERNSTEIN.iter().enumerate() {
-        let (mut forward, mut backward) = (0.0, 0.0);
-        for j in 0..SAMPLES {
-            forward += weights[j] * samples[j];
-            backward += weights[j] * samples[SAMPLES - 1 - j];
+/// Chebyshev coefficients of the interpolant.
+fn chebyshev(samples: &[f64; SAMPLES]) -> [f64; SAMPLES] {
+    const LAST: usize = SAMPLES - 1;
+    core::array::from_fn(|k| {
+        let mut sum = 0.0;
+        for (j, sample) in samples.iter().enumerate() {
+            let weight = if j == 0 || j == LAST { 0.5 } else { 1.0 };
+            sum += weight * COSINES[k * j % COSINES.len()] * sample;
         }
-        coefficients[row + 1] = forward;
-        coefficients[SAMPLES - 2 - row] = backward;
-    }
-    coefficients
-}
-
-/// Below this a coefficient has no certain sign: the last two Chebyshev coefficients, and rounding. Infinite or NaN
-/// samples give doubt that nothing exceeds.
-fn doubt(samples: &[f64; SAMPLES]) -> f64 {
-    let (mut seventh, mut eighth, mut largest) = (0.0, 0.0, 0.0_f64);
-    for j in 0..SAMPLES {
-        let weight = if j == 0 || j == SAMPLES - 1 { 0.5 } else { 1.0 };
-        seventh += weight * SEVENTH[j] * samples[j];
-        eighth += if j % 2 == 0 {
-            weight * samples[j]
-        } else {
-            -weight * samples[j]
-        };
-        largest = largest.max(samples[j].abs());
-    }
-    let doubt = 0.25 * seventh.abs() + 0.125 * eighth.abs() + ROUNDING * largest;
-    if doubt.is_nan() { f64::INFINITY } else { doubt }
+        // Samples go from -1 to 1.
+        let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let share = if k == 0 || k == LAST { 0.125 } else { 0.25 };
+        sign * share * sum
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numbers::Interval;
 
     #[test]
-    fn conversion_reproduces_polynomials_of_degree_eight() {
-        let samples = NODES.map(|x| x * x * x * x * x * x * x * x - 0.5 * x * x * x + 2.0);
-        let coefficients = bernstein(&samples);
+    fn coefficients_reproduce_polynomials_of_degree_eight() {
+        let at = |x: f64| x.powi(8) - 0.5 * x * x * x + 2.0;
+        let a = chebyshev(&NODES.map(|node| at(2.0 * node - 1.0)));
         for step in 0..=20 {
-            let x = f64::from(step) / 20.0;
-            let mut row = coefficients;
-            for level in 1..SAMPLES {
-                for i in 0..SAMPLES - level {
-                    row[i] = (1.0 - x) * row[i] + x * row[i + 1];
-                }
+            let x = f64::from(step) / 10.0 - 1.0;
+            let (mut before, mut here) = (1.0, x);
+            let mut sum = a[0];
+            for coefficient in &a[1..] {
+                sum += coefficient * here;
+                (before, here) = (here, 2.0 * x * here - before);
             }
-            let exact = x * x * x * x * x * x * x * x - 0.5 * x * x * x + 2.0;
-            assert!(
-                (row[0] - exact).abs() < 2.5 * ROUNDING,
-                "{}",
-                row[0] - exact
-            );
+            assert!((sum - at(x)).abs() < 1e-14, "{}", sum - at(x));
         }
     }
 
@@ -191,17 +128,20 @@ mod tests {
     fn what_is_smooth_lies_in_its_estimate() {
         let at = |x: f64| (3.0 * x).sin() + x * x;
         for ends in [[0.0, 1.0], [0.3, 0.4], [0.2, 0.7]] {
-            let found = along(&nodes(ends).map(at), ends[1] - ends[0]);
+            let found = along(&nodes(ends).map(at));
             for k in 0..=32 {
-                let x = ends[0] + (ends[1] - ends[0]) * f64::from(k) / 32.0;
-                assert!(found.value.contains(Interval::point(at(x))));
-                let slope = 3.0 * (3.0 * x).cos() + 2.0 * x;
+                let part = f64::from(k) / 32.0;
+                let x = ends[0] + (ends[1] - ends[0]) * part;
+                let horner = |sum: f64, power: &f64| sum * (2.0 * part - 1.0) + power;
+                let cubic = found.powers.iter().rev().fold(0.0, horner);
+                assert!((at(x) - cubic).abs() <= found.error, "{x}: {found:?}");
+                let slope = (3.0 * (3.0 * x).cos() + 2.0 * x) * 0.5 * (ends[1] - ends[0]);
                 assert!(
-                    found.rate.contains(Interval::point(slope)),
+                    found.rates().contains(Interval::point(slope)),
                     "{x}: {found:?}"
                 );
             }
         }
-        assert!(along(&[f64::NAN; SAMPLES], 1.0).value.is_whole());
+        assert!(along(&[f64::NAN; SAMPLES]).range().is_whole());
     }
 }

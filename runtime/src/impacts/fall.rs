@@ -6,10 +6,22 @@ use super::series::GapSeries;
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::events::crossing::Signs;
-use crate::events::locate::{Line, Search, Start};
+use crate::events::locate::{Bracket, Line, Search, Start};
 use crate::events::path::Path;
 use crate::integrate::Stepper;
+use crate::numbers::TaylorModel;
 use crate::state::StateVector;
+
+/// What is known of a gap along a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Known<'a, G> {
+    /// The polynomials of all gaps, where the step is one.
+    pub(super) series: Option<&'a GapSeries<G>>,
+    /// The gap at both ends.
+    pub(super) ends: [f64; 2],
+    /// Its model on the whole step.
+    pub(super) whole: Option<TaylorModel>,
+}
 
 /// The first fall of a gap, with its time to the last bits. On a series it is looked for on the polynomial; that none is before it
 /// is shown on the gap itself.
@@ -18,7 +30,11 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
     path: &Path<Sys::State>,
     sizes: &Sys::State,
-    (series, ends): (Option<&GapSeries<Sys::Gaps>>, [f64; 2]),
+    Known {
+        series,
+        ends,
+        whole,
+    }: Known<'_, Sys::Gaps>,
     start: Start,
 ) -> Search {
     let (mut evaluations, mut more, mut enclosures) = (0, 0, 0);
@@ -31,23 +47,22 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     let mut along = |part: [f64; 2]| {
         enclosures += 1;
         let component = |i: usize| path.component(i, part);
-        step.system.gap_along(surface, path.time(part), &component)
+        step.system
+            .gap_along(surface, path.time_model(part), &component)
     };
     let mut rounding = || rounding_along(surface, step, sizes, &mut more);
     let plain = series.and_then(|series| plain_fall(surface, series, start, &mut gap));
-    let until = match plain {
-        Some(Search::Falls(bracket)) => bracket.before,
-        _ => start.until,
-    };
     let line = Line {
         gap: &mut gap,
         along: &mut along,
+        whole,
         ends,
         rounding: &mut rounding,
-        start: Start { until, ..start },
+        start,
+        known: plain,
     };
     let found = match (plain, line.first_fall()) {
-        (Some(plain @ Search::Falls(_)), Search::Clear) => plain,
+        (Some(plain), Search::Clear) => Search::Falls(plain),
         (_, found) => found,
     };
     step.counters.event_evaluations += evaluations + more;
@@ -61,7 +76,7 @@ fn plain_fall<G: StateVector>(
     series: &GapSeries<G>,
     start: Start,
     gap: &mut dyn FnMut(f64) -> f64,
-) -> Option<Search> {
+) -> Option<Bracket> {
     let is_plain = start.from == 0.0 && start.above;
     if !is_plain {
         return None;
@@ -76,5 +91,5 @@ fn plain_fall<G: StateVector>(
     if start.until < end && series.is_positive(surface, start.until) {
         return None;
     }
-    polynomial.fall([0.0, end], gap).map(Search::Falls)
+    polynomial.fall([0.0, end], gap)
 }

@@ -82,9 +82,10 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     let line = Line {
         gap: &mut { force },
         along: &mut |ends: [f64; 2]| match ends == [0.0, 1.0] {
-            true => along(whole, 1.0),
-            false => along(&nodes(ends).map(force), ends[1] - ends[0]),
+            true => along(whole),
+            false => along(&nodes(ends).map(force)),
         },
+        whole: None,
         ends: [whole[0], whole[SAMPLES - 1]],
         rounding: &mut || ROUNDING * largest,
         start: Start {
@@ -93,6 +94,7 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
             slope: None,
             until,
         },
+        known: None,
     };
     let found = line.first_fall();
     if let Some(fault) = fault.take() {

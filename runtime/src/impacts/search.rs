@@ -1,11 +1,11 @@
 //! The search for hits along a step that the first look did not settle: falls of gaps through zero, which of them are
 //! impacts, and what a motion from rest on a surface does.
 
-use super::fall::first_fall;
+use super::fall::{Known, first_fall};
 use super::glance::Glance;
 use super::place::Place;
 use super::tangency::{crosses_at_rest, is_accelerated};
-use super::watch::Watch;
+use super::watch::{Told, Watch};
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::events::locate::{Bracket, Search, Start};
@@ -13,6 +13,7 @@ use crate::events::resolution::{error_within, resolution};
 use crate::integrate::Stepper;
 use crate::integrate::controller::least_trial;
 use crate::math;
+use crate::numbers::TaylorModel;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -34,21 +35,27 @@ enum Found {
 }
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Looks for the earliest hit along the dense output. `first` is the first surface that is not clear.
+    /// Looks for the earliest hit along the dense output. `first` is the first surface that is not clear, with its gap on the whole step
+    /// where that is known.
     pub(super) fn search<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
-        first: usize,
+        (first, mut whole): (usize, Option<TaylorModel>),
     ) -> Result<(), Outcome> {
-        self.path.refine(step)?;
+        if self.path.refine(step)? {
+            whole = None;
+        }
         self.length = glance.length;
         self.parts.as_mut_slice().fill(f64::INFINITY);
         for surface in first..Sys::Gaps::LEN {
-            if surface != first && self.is_clear(surface, step, glance) {
-                continue;
+            if surface != first {
+                match self.told(surface, step, glance) {
+                    Told::Clear => continue,
+                    Told::Unclear(model) => whole = model,
+                }
             }
-            let (part, rate) = match self.first_hit(surface, step, glance)? {
+            let (part, rate) = match self.first_hit(surface, step, glance, whole)? {
                 Found::Hit(part, rate) => (part, Some(rate)),
                 // Gaps that cannot be told however short the step is: it would be cut again and again where it begins.
                 Found::Unfinished(part) if part * self.length < least_trial(step.t_start()) => {
@@ -110,6 +117,7 @@ impl<Sys: Impacting> Watch<Sys> {
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
+        whole: Option<TaylorModel>,
     ) -> Result<Found, Outcome> {
         let gap = self.gaps.as_slice()[surface];
         let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
@@ -122,10 +130,11 @@ impl<Sys: Impacting> Watch<Sys> {
             slope,
             until,
         };
-        let known = (
-            glance.series.as_ref(),
-            [gap, glance.gaps.as_slice()[surface]],
-        );
+        let known = Known {
+            series: glance.series.as_ref(),
+            ends: [gap, glance.gaps.as_slice()[surface]],
+            whole,
+        };
         let mut tangential = None;
         for _ in 0..FALLS {
             let found = first_fall(surface, step, &self.path, &self.sizes, known, start);

@@ -15,10 +15,11 @@ use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::events::crossing::Signs;
 use crate::events::haven::Haven;
-use crate::events::locate::{signs_between, signs_enclosed, signs_from_zero};
 use crate::events::path::Path;
+use crate::events::piece::Piece;
 use crate::events::resolution::{counts_beyond_rounding, resolution};
 use crate::integrate::Stepper;
+use crate::numbers::TaylorModel;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -67,6 +68,14 @@ pub(super) struct Watch<Sys: Impacting> {
     haven: Haven<Sys::State>,
     /// True if the gaps at the start of the coming step are not those kept: the last steps were not looked at.
     is_stale: bool,
+}
+
+/// What the first look at a step tells of a surface.
+pub(super) enum Told {
+    /// The step passes it.
+    Clear,
+    /// Nothing, with the gap on the whole step if it was needed.
+    Unclear(Option<TaylorModel>),
 }
 
 impl<Sys: Impacting> Watch<Sys> {
@@ -334,7 +343,10 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         let glance = glance(step)?;
         let mut surfaces = 0..Sys::Gaps::LEN;
-        let unclear = surfaces.find(|&surface| !self.is_clear(surface, step, &glance));
+        let unclear = surfaces.find_map(|surface| match self.told(surface, step, &glance) {
+            Told::Clear => None,
+            Told::Unclear(model) => Some((surface, model)),
+        });
         if let Some(first) = unclear {
             self.search(step, &glance, first)?;
         }
@@ -367,6 +379,9 @@ impl<Sys: Impacting> Watch<Sys> {
         self.gaps = glance.gaps;
         self.rates = glance.rates;
         if self.gaps.as_slice().iter().all(|&gap| gap > 0.0) {
+            if before.as_slice().contains(&0.0) {
+                return Ok(());
+            }
             let Self { haven, path, .. } = self;
             let passable = self.passable;
             let is_passable = |surface: usize| passable.as_slice()[surface] == 1.0;
@@ -463,16 +478,16 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// True if the step passes this surface, as an enclosure of its gap along the whole step shows.
+    /// Whether the step passes this surface, as a model of its gap along the whole step shows.
     #[inline]
-    pub(super) fn is_clear<Step: Stepper<Sys>>(
+    pub(super) fn told<Step: Stepper<Sys>>(
         &self,
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
-    ) -> bool {
+    ) -> Told {
         if self.held.is_held(surface) {
-            return true;
+            return Told::Clear;
         }
         let at = |values: &Sys::Gaps| values.as_slice()[surface];
         let (first, last) = (at(&self.gaps), at(&glance.gaps));
@@ -480,25 +495,28 @@ impl<Sys: Impacting> Watch<Sys> {
         // NOTE: negative throughout, a surface at hand is not clear but pressed, unless it is passed.
         let is_passed = self.is_passable(surface) && at(&self.rates) <= 0.0;
         if (is_at_hand && last < 0.0 && !is_passed) || glance.is_due(surface) {
-            return false;
+            return Told::Unclear(None);
         }
         if !is_at_hand && (first > 0.0) != (last > 0.0) {
-            return false;
+            return Told::Unclear(None);
         }
         let whole = [0.0, 1.0];
         step.counters.enclosures += 1;
         let component = |i: usize| self.path.component(i, whole);
-        let along = step
-            .system
-            .gap_along(surface, self.path.time(whole), &component);
+        let time = self.path.time_model(whole);
+        let model = step.system.gap_along(surface, time, &component);
+        let piece = Piece::of(&model, whole, whole);
         let signs = match is_at_hand {
-            true => signs_from_zero(&along),
-            false => match signs_enclosed(&along) {
-                Signs::Unclear => signs_between(&along, 1.0, [first, last]),
+            true => piece.signs_from_zero(),
+            false => match piece.signs() {
+                Signs::Unclear => piece.signs_between([first, last]),
                 signs => signs,
             },
         };
-        matches!(signs, Signs::Positive | Signs::Negative)
+        match signs {
+            Signs::Positive | Signs::Negative => Told::Clear,
+            _ => Told::Unclear(Some(model)),
+        }
     }
 
     /// Surfaces that count have a gap that is not negative beyond rounding; within rounding they are at hand. One that

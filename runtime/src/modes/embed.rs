@@ -8,7 +8,7 @@ use crate::contract::{Impacting, Keep, RankDrop};
 use crate::describe::{Initial, Report};
 use crate::error::{Fault, StateError};
 use crate::impacts::law::{Blow, Contact, Landing};
-use crate::numbers::{Numbers, Rated, Row};
+use crate::numbers::{Numbers, Row, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -343,10 +343,10 @@ pub fn gaps<M: Mode + Impacting, G: StateVector>(
 pub fn gap_along<M: Mode + Impacting>(
     model: &M::Model,
     surface: usize,
-    t: Rated,
-    component: &dyn Fn(usize) -> Rated,
-) -> Rated {
-    let number = component(StateOf::<M>::LEN - 1).value.middle();
+    t: TaylorModel,
+    component: &dyn Fn(usize) -> TaylorModel,
+) -> TaylorModel {
+    let number = component(StateOf::<M>::LEN - 1).lane(0);
     match (number + 0.5) as usize == M::INDEX {
         true => M::of(model).gap_along(surface, t, component),
         false => no_gap(),
@@ -354,8 +354,8 @@ pub fn gap_along<M: Mode + Impacting>(
 }
 
 /// The gap of a surface that the mode does not have.
-pub fn no_gap() -> Rated {
-    Rated::of(1.0)
+pub fn no_gap() -> TaylorModel {
+    TaylorModel::of(1.0)
 }
 
 /// Gaps of a mode without surfaces.

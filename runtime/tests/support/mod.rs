@@ -3,7 +3,7 @@
 
 pub mod line;
 
-pub use dalembert::numbers::{Numbers, Rated};
+pub use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{
     Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Gauss4, Gauss6, Impacting, Impacts,
     Jump, Law, Outcome, ParameterError, Rk4, Run, Simulation, Stepper, System, Taylor, TaylorField,
@@ -18,7 +18,7 @@ pub type State = SVector<f64, 4>;
 #[derive(Clone, Copy)]
 pub struct Gap {
     pub at: fn([f64; 2]) -> (f64, [f64; 2]),
-    pub along: fn([Rated; 2]) -> Rated,
+    pub along: fn([TaylorModel; 2]) -> TaylorModel,
 }
 
 /// A surface from its gap, in which `c` makes constants, and its gradient: `gap!(c |x, y| c(1.0) - x, [-1.0, 0.0])`.
@@ -31,8 +31,8 @@ macro_rules! gap {
             ($gap, $gradient)
         }
         #[allow(unused_variables)]
-        fn along([$x, $y]: [Rated; 2]) -> Rated {
-            let $c = <Rated as Numbers>::of;
+        fn along([$x, $y]: [TaylorModel; 2]) -> TaylorModel {
+            let $c = <TaylorModel as Numbers>::of;
             $gap
         }
         Gap { at, along }
@@ -171,7 +171,12 @@ impl<const S: usize> Impacting for Particle<S> {
         SVector::from_fn(|s, _| (self.surfaces[s].at)(point(state)).0)
     }
 
-    fn gap_along(&self, surface: usize, _: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+    fn gap_along(
+        &self,
+        surface: usize,
+        _: TaylorModel,
+        component: &dyn Fn(usize) -> TaylorModel,
+    ) -> TaylorModel {
         (self.surfaces[surface].along)([component(0), component(1)])
     }
 

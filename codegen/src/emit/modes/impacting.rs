@@ -76,9 +76,9 @@ fn emit_gaps(whole: &Whole<'_>) -> TokenStream {
         fn gap_along(
             &self,
             surface: usize,
-            t: ::dalembert::numbers::Rated,
-            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::Rated,
-        ) -> ::dalembert::numbers::Rated {
+            t: ::dalembert::numbers::TaylorModel,
+            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::TaylorModel,
+        ) -> ::dalembert::numbers::TaylorModel {
             match surface {
                 #(#alone)*
                 _ => ::dalembert::__private::modes::no_gap(),

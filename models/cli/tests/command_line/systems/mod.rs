@@ -13,7 +13,7 @@ use dalembert::describe::{
 use dalembert::error::ParameterError;
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::jet::LENGTH;
-use dalembert::numbers::{Numbers, Rated};
+use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{
     Fault, Impacting, Impacts, Lagrangian, Scene, StateError, System, TaylorField, VectorField,
 };
@@ -104,7 +104,12 @@ impl Impacting for BouncingBall {
         SVector::from([state[0]])
     }
 
-    fn gap_along(&self, _surface: usize, _t: Rated, component: &dyn Fn(usize) -> Rated) -> Rated {
+    fn gap_along(
+        &self,
+        _surface: usize,
+        _t: TaylorModel,
+        component: &dyn Fn(usize) -> TaylorModel,
+    ) -> TaylorModel {
         component(0)
     }
 

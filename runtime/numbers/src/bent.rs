@@ -1,0 +1,406 @@
+//! Numbers along straight lines through a box: intervals of their values, their rates and the rates of those.
+//!
+//! With every coordinate in its interval of the box, and its rate in an interval, `f(x)` encloses values, rates and bends of `f` along
+//! every such line. So it bounds first and second derivatives in all directions at once.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::interval::Interval;
+use crate::numbers::Numbers;
+
+/// Values, rates and bends along a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bent {
+    /// All values.
+    pub value: Interval,
+    /// All rates.
+    pub rate: Interval,
+    /// All rates of rates.
+    pub bend: Interval,
+}
+
+impl Bent {
+    /// Of what may have no value.
+    pub const ANYTHING: Self = Self {
+        value: Interval::WHOLE,
+        rate: Interval::WHOLE,
+        bend: Interval::WHOLE,
+    };
+
+    /// Along lines through an interval, with rates up to this size.
+    pub const fn line(value: Interval, rate: f64) -> Self {
+        Self {
+            value,
+            rate: Interval::new(-rate, rate),
+            bend: Interval::ZERO,
+        }
+    }
+
+    #[inline(always)]
+    fn is_steady(&self) -> bool {
+        self.rate == Interval::ZERO && self.bend == Interval::ZERO
+    }
+
+    #[inline(always)]
+    const fn steady(value: Interval) -> Self {
+        Self {
+            value,
+            rate: Interval::ZERO,
+            bend: Interval::ZERO,
+        }
+    }
+
+    /// The value of a function, with its first two derivatives.
+    #[inline(always)]
+    fn chain(self, value: Interval, first: Interval, second: Interval) -> Self {
+        match self.is_steady() {
+            true => Self::steady(value),
+            false => Self {
+                value,
+                rate: first * self.rate,
+                bend: second * self.rate.square() + first * self.bend,
+            },
+        }
+    }
+}
+
+impl Add for Bent {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            rate: self.rate + other.rate,
+            bend: self.bend + other.bend,
+        }
+    }
+}
+
+impl Sub for Bent {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            rate: self.rate - other.rate,
+            bend: self.bend - other.bend,
+        }
+    }
+}
+
+impl Neg for Bent {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        Self {
+            value: -self.value,
+            rate: -self.rate,
+            bend: -self.bend,
+        }
+    }
+}
+
+impl Mul for Bent {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let value = self.value * other.value;
+        match (self.is_steady(), other.is_steady()) {
+            (true, true) => Self::steady(value),
+            (true, false) => Self {
+                value,
+                rate: self.value * other.rate,
+                bend: self.value * other.bend,
+            },
+            (false, true) => Self {
+                value,
+                rate: self.rate * other.value,
+                bend: self.bend * other.value,
+            },
+            (false, false) => {
+                let mixed = self.rate * other.rate;
+                Self {
+                    value,
+                    rate: self.rate * other.value + self.value * other.rate,
+                    bend: self.bend * other.value + (mixed + mixed) + self.value * other.bend,
+                }
+            }
+        }
+    }
+}
+
+impl Div for Bent {
+    type Output = Self;
+
+    // A quotient is the product with the inverse.
+    #[allow(clippy::suspicious_arithmetic_impl)]
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let inverse = other.value.inverse();
+        let square = inverse.square();
+        let second = square * inverse;
+        self * other.chain(inverse, -square, second + second)
+    }
+}
+
+impl Numbers for Bent {
+    const LANES: usize = 1;
+    const ZERO: Self = Self::steady(Interval::ZERO);
+
+    #[inline]
+    fn of(number: f64) -> Self {
+        Self::steady(Interval::of(number))
+    }
+
+    #[inline]
+    fn constant(parts: [f64; 4]) -> Self {
+        Self::steady(<Interval as Numbers>::constant(parts))
+    }
+
+    #[inline]
+    fn inverse(k: usize) -> Self {
+        Self::steady(<Interval as Numbers>::inverse(k))
+    }
+
+    #[inline]
+    fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
+        Self::steady(Interval::gathered(of_lane))
+    }
+
+    /// A number inside. Nothing that is to hold for the whole box may be asked of it.
+    #[inline]
+    fn lane(&self, lane: usize) -> f64 {
+        self.value.lane(lane)
+    }
+
+    #[inline]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+
+    #[inline]
+    fn square(self) -> Self {
+        let two = Interval::point(2.0);
+        self.chain(self.value.square(), self.value + self.value, two)
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        let first = (root + root).inverse();
+        let cubed = self.value * root;
+        let four = Interval::point(4.0);
+        self.chain(root, first, -(four * cubed).inverse())
+    }
+
+    #[inline]
+    fn abs(self) -> Self {
+        self.turned(self)
+    }
+
+    #[inline]
+    fn max(self, other: Self) -> Self {
+        let ahead = self.value - other.value;
+        match (ahead.lo >= 0.0, ahead.hi <= 0.0) {
+            (true, _) => self,
+            (_, true) => other,
+            _ => Self {
+                value: Numbers::max(self.value, other.value),
+                ..Self::ANYTHING
+            },
+        }
+    }
+
+    /// Where the sign changes there is a kink.
+    #[inline]
+    fn turned(self, sign: Self) -> Self {
+        match (sign.value.lo < 0.0, sign.value.hi < 0.0) {
+            (false, _) => self,
+            (_, true) => -self,
+            _ => Self {
+                value: self
+                    .value
+                    .turned(sign.value)
+                    .hull(self.value.hull(-self.value)),
+                ..Self::ANYTHING
+            },
+        }
+    }
+
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        let value = self.value.atan2(x.value);
+        let is_off_the_cut = x.value.lo > 0.0 || self.value.excludes_zero();
+        if !is_off_the_cut {
+            return Self {
+                value,
+                ..Self::ANYTHING
+            };
+        }
+        // The rate of an angle is a quotient; so is that of the rate.
+        let squared = self.value.square() + x.value.square();
+        let across = x.value * self.rate - self.value * x.rate;
+        let along = x.value * x.rate + self.value * self.rate;
+        let rate = across / squared;
+        let change = x.value * self.bend - self.value * x.bend;
+        Self {
+            value,
+            rate,
+            bend: (change - (rate + rate) * along) / squared,
+        }
+    }
+
+    #[inline]
+    fn powf(self, exponent: f64) -> Self {
+        let factor = Interval::point(exponent);
+        let below = Interval::point(exponent) - Interval::point(1.0);
+        let first = factor * self.value.powf_below(exponent);
+        let second = first * below * self.value.inverse();
+        self.chain(self.value.powf(exponent), first, second)
+    }
+
+    #[inline]
+    fn power(self, exponent: Self) -> Self {
+        (exponent * self.ln()).exp()
+    }
+
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sine, cosine) = self.value.sin_cos();
+        (
+            self.chain(sine, cosine, -sine),
+            self.chain(cosine, -sine, -cosine),
+        )
+    }
+
+    #[inline]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    #[inline]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    #[inline]
+    fn tan(self) -> Self {
+        let tangent = self.value.tan();
+        let first = Interval::point(1.0) + tangent.square();
+        let second = tangent * first;
+        self.chain(tangent, first, second + second)
+    }
+
+    #[inline]
+    fn asin(self) -> Self {
+        let one = Interval::point(1.0);
+        let squared = (one - self.value) * (one + self.value);
+        let first = squared.sqrt().inverse();
+        self.chain(
+            self.value.asin(),
+            first,
+            self.value * first * squared.inverse(),
+        )
+    }
+
+    #[inline]
+    fn acos(self) -> Self {
+        let arc = self.asin();
+        Self {
+            value: self.value.acos(),
+            rate: -arc.rate,
+            bend: -arc.bend,
+        }
+    }
+
+    #[inline]
+    fn atan(self) -> Self {
+        let first = (Interval::point(1.0) + self.value.square()).inverse();
+        let second = self.value * first.square();
+        self.chain(self.value.atan(), first, -(second + second))
+    }
+
+    #[inline]
+    fn exp(self) -> Self {
+        let power = self.value.exp();
+        self.chain(power, power, power)
+    }
+
+    #[inline]
+    fn ln(self) -> Self {
+        let inverse = self.value.inverse();
+        self.chain(self.value.ln(), inverse, -inverse.square())
+    }
+
+    #[inline]
+    fn sinh(self) -> Self {
+        let (sine, cosine) = (self.value.sinh(), self.value.cosh());
+        self.chain(sine, cosine, sine)
+    }
+
+    #[inline]
+    fn cosh(self) -> Self {
+        let (sine, cosine) = (self.value.sinh(), self.value.cosh());
+        self.chain(cosine, sine, cosine)
+    }
+
+    #[inline]
+    fn tanh(self) -> Self {
+        let tangent = self.value.tanh();
+        let one = Interval::point(1.0);
+        let first = ((one - tangent) * (one + tangent)).within(0.0, 1.0);
+        let second = tangent * first;
+        self.chain(tangent, first, -(second + second))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interval::tests::{FUNCTIONS, Sample};
+
+    #[test]
+    fn differences_lie_in_their_intervals() {
+        for function in FUNCTIONS {
+            for Sample { from, to } in function.stretches() {
+                let width = (to - from).abs();
+                if width < 1e-3 {
+                    continue;
+                }
+                let found = (function.bent)(Bent::line(Interval::between(from, to), 1.0));
+                let h = 1e-3 * width;
+                let at = |x: f64| (function.plain)(x.clamp(from.min(to), from.max(to)));
+                for k in 1..16 {
+                    let x = from + (to - from) * f64::from(k) / 16.0;
+                    let [before, here, after] = [x - h, x, x + h].map(at);
+                    let size = 1.0 + here.abs().max(before.abs()).max(after.abs());
+                    let rate = (after - before) / (2.0 * h);
+                    let bend = (after - 2.0 * here + before) / (h * h);
+                    let name = function.name;
+                    assert!(found.value.contains(Interval::point(here)), "{name}");
+                    let rounding = 1e-14 * size;
+                    assert!(
+                        found
+                            .rate
+                            .widened(rounding / h)
+                            .contains(Interval::point(rate)),
+                        "{name} from {from} to {to}: {rate} is not in {:?}",
+                        found.rate
+                    );
+                    assert!(
+                        found
+                            .bend
+                            .widened(4.0 * rounding / (h * h))
+                            .contains(Interval::point(bend)),
+                        "{name} from {from} to {to}: {bend} is not in {:?}",
+                        found.bend
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,900 @@
+//! Functions along a stretch of motion: a cubic, and how far from it they may be.
+//!
+//! With `s` from -1 at the start of the stretch to 1 at its end, a [`TaylorModel`] holds every function `p(s) + r(s)` whose cubic is `p`
+//! and whose remainder obeys `|r(s)| <= error` and `|r(s) - r(s')| <= slope |s - s'|`. For a function `f` over numbers and a path `x(s)`,
+//! `f(x)` holds `f(x(s))`. On stretches that are half as long errors are a sixteenth: one model tells where a flight has its fall,
+//! which takes a dozen intervals.
+//!
+//! Reference: K. Makino, M. Berz, *Taylor models and other validated functional inclusion methods*, International Journal of Pure and
+//! Applied Mathematics 6 (2003).
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::interval::Interval;
+use crate::math;
+use crate::numbers::Numbers;
+use crate::rated::Rated;
+
+/// Rounding of a few operations, in parts of the sum of absolute values that goes into them.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// The same with elementary functions, which err by less than four units in the last place.
+const CALL: f64 = 32.0 * f64::EPSILON;
+
+/// A cubic and a remainder; see the module.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TaylorModel {
+    /// Coefficients of the cubic, in powers of `s`.
+    pub powers: [f64; 4],
+    /// The largest remainder.
+    pub error: f64,
+    /// The largest change of the remainder, by the change of `s`.
+    pub slope: f64,
+    /// Whether no value is negative, whatever the remainder says.
+    pub is_nonnegative: bool,
+}
+
+/// `f(c)`, `f'(c)`, `f''(c)/2`, `f'''(c)/6`, and what `|f''''|/24` is at most.
+struct Expansion {
+    terms: [f64; 4],
+    fourth: f64,
+}
+
+/// The change of a model from its middle, with its powers: what series about the middle are summed from.
+struct Change {
+    first: [f64; 3],
+    square: [f64; 5],
+    cube: [f64; 7],
+    spread: f64,
+    steepness: f64,
+    radius: f64,
+    error: f64,
+    slope: f64,
+}
+
+impl Change {
+    /// The sum of a series.
+    #[inline(always)]
+    fn summed(&self, Expansion { terms, fourth }: Expansion) -> TaylorModel {
+        let Self {
+            first: [a, b, c],
+            square,
+            cube,
+            spread,
+            steepness,
+            radius,
+            error: own,
+            slope,
+        } = *self;
+        let [value, f, g, h] = terms;
+        let powers = [
+            value,
+            f * a,
+            f * b + g * square[0],
+            f * c + g * square[1] + h * cube[0],
+        ];
+        let tails = [
+            g * square[2] + h * cube[1],
+            g * square[3] + h * cube[2],
+            g * square[4] + h * cube[3],
+            h * cube[4],
+            h * cube[5],
+            h * cube[6],
+        ]
+        .map(f64::abs);
+        let [f, g, h] = [f.abs(), g.abs(), h.abs()];
+        let cubed = radius * radius * radius;
+        let mut error =
+            fourth * radius * cubed + own * (f + g * (spread + radius) + 3.0 * h * radius * radius);
+        let mut steep = 4.0 * fourth * cubed * (steepness + slope)
+            + f * slope
+            + 2.0 * g * (radius * slope + own * steepness)
+            + 3.0 * h * radius * (radius * slope + 2.0 * own * steepness);
+        for (k, tail) in tails.into_iter().enumerate() {
+            error += tail;
+            steep += (k + 4) as f64 * tail;
+        }
+        let size = value.abs() + spread * (f + spread * (g + spread * h));
+        let change = (f + spread * (2.0 * g + 3.0 * spread * h)) * steepness;
+        TaylorModel {
+            powers,
+            error: error * (1.0 + CALL) + (CALL * size + f64::MIN_POSITIVE),
+            slope: steep * (1.0 + CALL) + (CALL * change + f64::MIN_POSITIVE),
+            is_nonnegative: false,
+        }
+    }
+}
+
+impl TaylorModel {
+    /// Of what may have no value.
+    pub const ANYTHING: Self = Self {
+        powers: [0.0; 4],
+        error: f64::INFINITY,
+        slope: f64::INFINITY,
+        is_nonnegative: false,
+    };
+
+    /// A function that does not leave its cubic.
+    pub const fn exact(powers: [f64; 4]) -> Self {
+        Self {
+            powers,
+            error: 0.0,
+            slope: 0.0,
+            is_nonnegative: false,
+        }
+    }
+
+    /// A number that does not change along the stretch.
+    #[inline]
+    pub fn steady(value: Interval) -> Self {
+        let middle = value.middle();
+        Self {
+            powers: [middle, 0.0, 0.0, 0.0],
+            error: (value.hi - middle).max(middle - value.lo) * (1.0 + ROUNDING),
+            slope: 0.0,
+            is_nonnegative: value.lo >= 0.0,
+        }
+    }
+
+    /// All values on the stretch.
+    #[inline]
+    pub fn range(&self) -> Interval {
+        let [middle, first, second, third] = self.powers;
+        let reach = (first.abs() + third.abs() + self.error) * (1.0 + ROUNDING);
+        let turns = Interval::new(middle + second.min(0.0), middle + second.max(0.0));
+        let range = turns.widened(reach);
+        match self.is_nonnegative && !range.is_whole() {
+            true => Interval::new(range.lo.max(0.0), range.hi.max(0.0)),
+            false => range,
+        }
+    }
+
+    /// All rates by `s`, and all slopes of chords.
+    #[inline]
+    pub fn rates(&self) -> Interval {
+        let [_, first, second, third] = self.powers;
+        let turns = Interval::new(first + 3.0 * third.min(0.0), first + 3.0 * third.max(0.0));
+        turns.widened((2.0 * second.abs() + self.slope) * (1.0 + ROUNDING))
+    }
+
+    /// Values and rates by `s`.
+    #[inline]
+    pub fn rated(&self) -> Rated {
+        Rated {
+            value: self.range(),
+            rate: self.rates(),
+        }
+    }
+
+    /// How far values are from the middle one by the cubic, at most.
+    #[inline(always)]
+    fn spread(&self) -> f64 {
+        self.powers[1].abs() + self.powers[2].abs() + self.powers[3].abs()
+    }
+
+    /// The largest rate of the cubic.
+    #[inline(always)]
+    fn steepness(&self) -> f64 {
+        self.powers[1].abs() + 2.0 * self.powers[2].abs() + 3.0 * self.powers[3].abs()
+    }
+
+    /// True of what does not change along the stretch, whether or not its value is known.
+    #[inline(always)]
+    fn is_steady(&self) -> bool {
+        let [_, first, second, third] = self.powers;
+        first == 0.0 && second == 0.0 && third == 0.0 && self.slope == 0.0
+    }
+
+    // NOTE: rounding of the constant term is the same all along the stretch, and so none of the slope.
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        let sum = Self {
+            powers: core::array::from_fn(|k| self.powers[k] + other.powers[k]),
+            error: self.error + other.error,
+            slope: self.slope + other.slope,
+            is_nonnegative: self.is_nonnegative && other.is_nonnegative,
+        };
+        let spread = sum.spread();
+        Self {
+            error: sum.error * (1.0 + ROUNDING) + ROUNDING * (sum.powers[0].abs() + spread),
+            slope: sum.slope * (1.0 + ROUNDING) + 3.0 * ROUNDING * spread,
+            ..sum
+        }
+    }
+
+    /// The product with what does not change.
+    #[inline(always)]
+    fn scaled(self, factor: Self) -> Self {
+        let (number, doubt) = (factor.powers[0], factor.error);
+        let powers = self.powers.map(|power| power * number);
+        let (spread, size) = (self.spread(), number.abs() + doubt);
+        let most = self.powers[0].abs() + spread + self.error;
+        let slope = match self.is_steady() {
+            true => 0.0,
+            false => {
+                self.slope * size + self.steepness() * (doubt + ROUNDING * size) + f64::MIN_POSITIVE
+            }
+        };
+        Self {
+            powers,
+            error: (self.error * number.abs() + most * doubt) * (1.0 + ROUNDING)
+                + (ROUNDING * most * size + f64::MIN_POSITIVE),
+            slope: slope * (1.0 + ROUNDING),
+            is_nonnegative: self.is_nonnegative && factor.is_nonnegative,
+        }
+    }
+
+    /// The product of two that change, or the square of one.
+    #[inline(always)]
+    fn times(self, other: Self, is_square: bool) -> Self {
+        let ([a, b], [d, e]) = ([self.powers, other.powers], [self.error, other.error]);
+        let fourth = a[1] * b[3] + a[2] * b[2] + a[3] * b[1];
+        let fifth = a[2] * b[3] + a[3] * b[2];
+        let sixth = a[3] * b[3];
+        let [fourth, fifth, sixth] = [fourth.abs(), fifth.abs(), sixth.abs()];
+        let [size, own] = [self, other].map(|model| model.powers[0].abs() + model.spread());
+        let products = d * e;
+        // The square of a remainder is not negative: half of it is its middle.
+        let lift = match is_square {
+            true => 0.5 * products,
+            false => 0.0,
+        };
+        let error = (products - lift) + (d * own + e * size) + (fourth + fifth + sixth);
+        let slope = (self.steepness() * e + other.steepness() * d)
+            + (size * other.slope + own * self.slope)
+            + (d * other.slope + e * self.slope)
+            + (4.0 * fourth + 5.0 * fifth + 6.0 * sixth);
+        Self {
+            powers: [
+                a[0] * b[0] + lift,
+                a[0] * b[1] + a[1] * b[0],
+                a[0] * b[2] + a[1] * b[1] + a[2] * b[0],
+                (a[0] * b[3] + a[3] * b[0]) + (a[1] * b[2] + a[2] * b[1]),
+            ],
+            error: error * (1.0 + ROUNDING) + (ROUNDING * (size * own + lift) + f64::MIN_POSITIVE),
+            slope: slope * (1.0 + ROUNDING) + (3.0 * ROUNDING * size * own + f64::MIN_POSITIVE),
+            is_nonnegative: is_square || (self.is_nonnegative && other.is_nonnegative),
+        }
+    }
+
+    /// How far values are from the middle of the cubic, at most.
+    #[inline(always)]
+    fn radius(&self) -> f64 {
+        (self.spread() + self.error) * (1.0 + ROUNDING)
+    }
+
+    /// The change from the middle, with its powers.
+    #[inline(always)]
+    fn change(&self) -> Change {
+        let [_, a, b, c] = self.powers;
+        let mixed = a * c + b * b;
+        Change {
+            first: [a, b, c],
+            square: [a * a, 2.0 * a * b, b * b + 2.0 * a * c, 2.0 * b * c, c * c],
+            cube: [
+                a * a * a,
+                3.0 * a * a * b,
+                3.0 * a * mixed,
+                b * (b * b + 6.0 * a * c),
+                3.0 * c * mixed,
+                3.0 * b * c * c,
+                c * c * c,
+            ],
+            spread: self.spread(),
+            steepness: self.steepness(),
+            radius: self.radius(),
+            error: self.error,
+            slope: self.slope,
+        }
+    }
+
+    /// What intervals say: of all values and rates, and of the value in the middle. A line, or a number where that is closer.
+    #[inline]
+    fn of_rated(found: Rated, middle: Interval) -> Self {
+        let (rate, value) = (found.rate.middle(), found.value.middle());
+        let steady = Self {
+            slope: found.rate.magnitude(),
+            ..Self::steady(found.value)
+        };
+        let slope = (found.rate.hi - rate).max(rate - found.rate.lo) * (1.0 + ROUNDING);
+        let centre = Self::steady(middle);
+        let error = (centre.error + slope) * (1.0 + ROUNDING);
+        match error < steady.error {
+            true => Self {
+                powers: [centre.powers[0], rate, 0.0, 0.0],
+                error: error + ROUNDING * value.abs(),
+                slope,
+                is_nonnegative: steady.is_nonnegative,
+            },
+            false => steady,
+        }
+    }
+
+    /// A function by intervals.
+    #[inline]
+    fn enclosed(self, rated: fn(Rated) -> Rated, interval: fn(Interval) -> Interval) -> Self {
+        let middle = Interval::point(self.powers[0]).widened(self.error);
+        Self::of_rated(rated(self.rated()), interval(middle))
+    }
+
+    /// A function by its series, or by intervals where they say more.
+    #[inline]
+    fn function(
+        self,
+        expansion: impl FnOnce(f64, f64) -> Expansion,
+        rated: fn(Rated) -> Rated,
+        interval: fn(Interval) -> Interval,
+    ) -> Self {
+        if self.is_steady() {
+            return Self::steady(interval(self.range()));
+        }
+        let change = self.change();
+        let summed = change.summed(expansion(self.powers[0], change.radius));
+        match summed.is_sharp() {
+            true => summed,
+            false => summed.or_closer(self.enclosed(rated, interval)),
+        }
+    }
+
+    /// Whether the cubic is most of the change.
+    #[inline(always)]
+    fn is_sharp(&self) -> bool {
+        self.error <= 0.5 * self.spread()
+    }
+
+    /// The one of two models of the same function that is closer to it.
+    #[inline(always)]
+    fn or_closer(self, other: Self) -> Self {
+        // Not a comparison that NaN passes.
+        match self.error < other.error {
+            true => self,
+            false => other,
+        }
+    }
+
+    #[inline(always)]
+    fn nonnegative(self) -> Self {
+        Self {
+            is_nonnegative: true,
+            ..self
+        }
+    }
+}
+
+impl Add for TaylorModel {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        self.plus(other)
+    }
+}
+
+impl Sub for TaylorModel {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self.plus(-other)
+    }
+}
+
+impl Neg for TaylorModel {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            powers: self.powers.map(|power| -power),
+            is_nonnegative: false,
+            ..self
+        }
+    }
+}
+
+impl Mul for TaylorModel {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        match (self.is_steady(), other.is_steady()) {
+            (_, true) => self.scaled(other),
+            (true, _) => other.scaled(self),
+            _ => self.times(other, false),
+        }
+    }
+}
+
+impl Div for TaylorModel {
+    type Output = Self;
+
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let inverse = other.function(
+            |c, radius| {
+                let inverse = 1.0 / c;
+                let square = inverse * inverse;
+                let least = (c.abs() - radius) * (1.0 - ROUNDING);
+                let fourth = match least > 0.0 {
+                    true => 1.0 / (least * least * least * least * least),
+                    false => f64::INFINITY,
+                };
+                Expansion {
+                    terms: [inverse, -square, inverse * square, -square * square],
+                    fourth,
+                }
+            },
+            |x| Rated::of(1.0) / x,
+            Interval::inverse,
+        );
+        let is_nonnegative = other.is_nonnegative;
+        self * Self {
+            is_nonnegative,
+            ..inverse
+        }
+    }
+}
+
+/// The distance of the middle from what a function may not be given, if there is any.
+#[inline(always)]
+fn least(middle: f64, radius: f64) -> Option<f64> {
+    let least = (middle - radius) * (1.0 - ROUNDING);
+    (least > 0.0).then_some(least)
+}
+
+impl Numbers for TaylorModel {
+    const LANES: usize = 1;
+    const ZERO: Self = Self::exact([0.0; 4]);
+
+    #[inline(always)]
+    fn of(number: f64) -> Self {
+        Self::steady(Interval::of(number))
+    }
+
+    #[inline(always)]
+    fn constant(parts: [f64; 4]) -> Self {
+        Self::steady(<Interval as Numbers>::constant(parts))
+    }
+
+    #[inline(always)]
+    fn inverse(k: usize) -> Self {
+        Self::steady(<Interval as Numbers>::inverse(k))
+    }
+
+    #[inline(always)]
+    fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
+        Self::steady(Interval::gathered(of_lane))
+    }
+
+    /// A number inside. Nothing that is to hold for the whole stretch may be asked of it.
+    #[inline(always)]
+    fn lane(&self, _: usize) -> f64 {
+        self.powers[0]
+    }
+
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+
+    #[inline]
+    fn square(self) -> Self {
+        match self.is_steady() {
+            true => Self::steady(self.range().square()),
+            false => self.times(self, true),
+        }
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        self.function(
+            |c, radius| {
+                let (root, inverse) = (math::sqrt(c), 1.0 / c);
+                let first = 0.5 * root * inverse;
+                let second = -0.25 * first * inverse;
+                Expansion {
+                    terms: [root, first, second, -0.5 * second * inverse],
+                    fourth: match least(c, radius) {
+                        Some(least) => {
+                            let square = least * least;
+                            (5.0 / 128.0) / (square * least * math::sqrt(least))
+                        }
+                        None => f64::INFINITY,
+                    },
+                }
+            },
+            Rated::sqrt,
+            Interval::sqrt,
+        )
+        .nonnegative()
+    }
+
+    #[inline]
+    fn abs(self) -> Self {
+        self.turned(self).nonnegative()
+    }
+
+    #[inline]
+    fn max(self, other: Self) -> Self {
+        let ahead = (self - other).range();
+        match (ahead.lo >= 0.0, ahead.hi <= 0.0) {
+            (true, _) => self,
+            (_, true) => other,
+            _ => {
+                let middle = |model: Self| Interval::point(model.powers[0]).widened(model.error);
+                Self::of_rated(
+                    Numbers::max(self.rated(), other.rated()),
+                    Numbers::max(middle(self), middle(other)),
+                )
+            }
+        }
+    }
+
+    /// `|x|` where `sign` is `x` itself; of others the values jump where the sign changes, and so the rates are anything.
+    #[inline]
+    fn turned(self, sign: Self) -> Self {
+        let range = sign.range();
+        match (range.lo < 0.0, range.hi < 0.0) {
+            (false, _) => self,
+            (_, true) => -self,
+            _ if self == sign => self.enclosed(Rated::abs, Interval::abs),
+            _ => Self {
+                slope: f64::INFINITY,
+                ..Self::steady(self.range().hull(-self.range()))
+            },
+        }
+    }
+
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        let middle = |model: Self| Interval::point(model.powers[0]).widened(model.error);
+        Self::of_rated(self.rated().atan2(x.rated()), middle(self).atan2(middle(x)))
+    }
+
+    #[inline]
+    fn powf(self, exponent: f64) -> Self {
+        let range = self.range();
+        if self.is_steady() {
+            return Self::steady(range.powf(exponent));
+        }
+        let rate = self.rates() * (Interval::point(exponent) * range.powf_below(exponent));
+        let middle = Interval::point(self.powers[0]).widened(self.error);
+        let enclosed = Self::of_rated(
+            Rated {
+                value: range.powf(exponent),
+                rate,
+            },
+            middle.powf(exponent),
+        );
+        let c = self.powers[0];
+        let Some(least) = least(c, self.radius()) else {
+            return enclosed.nonnegative();
+        };
+        let inverse = 1.0 / c;
+        let value = libm::pow(c, exponent);
+        let first = exponent * value * inverse;
+        let second = 0.5 * (exponent - 1.0) * first * inverse;
+        let third = (exponent - 2.0) / 3.0 * second * inverse;
+        let factor = exponent * (exponent - 1.0) * (exponent - 2.0) * (exponent - 3.0) / 24.0;
+        let at = |x: f64| libm::pow(x, exponent - 4.0);
+        let fourth = (1.0 + 1e-9) * factor.abs() * at(least).max(at(c + self.radius()));
+        let composed = self.change().summed(Expansion {
+            terms: [value, first, second, third],
+            fourth,
+        });
+        composed.or_closer(enclosed).nonnegative()
+    }
+
+    #[inline]
+    fn power(self, exponent: Self) -> Self {
+        (exponent * self.ln()).exp()
+    }
+
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        if self.is_steady() {
+            let (sine, cosine) = self.range().sin_cos();
+            return (Self::steady(sine), Self::steady(cosine));
+        }
+        let change = self.change();
+        let (sine, cosine) = libm::sincos(self.powers[0]);
+        let summed = |terms| {
+            let fourth = 1.0 / 24.0;
+            change.summed(Expansion { terms, fourth })
+        };
+        let [mut sines, mut cosines] = [
+            summed([sine, cosine, -0.5 * sine, -cosine / 6.0]),
+            summed([cosine, -sine, -0.5 * cosine, sine / 6.0]),
+        ];
+        // Neither is most of the change where it turns; both are short of it on a stretch that is too long.
+        if !sines.is_sharp() && !cosines.is_sharp() {
+            sines = sines.or_closer(self.enclosed(Rated::sin, Interval::sin));
+            cosines = cosines.or_closer(self.enclosed(Rated::cos, Interval::cos));
+        }
+        (sines, cosines)
+    }
+
+    #[inline]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    #[inline]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    #[inline]
+    fn tan(self) -> Self {
+        let most = self.range().tan().magnitude();
+        self.function(
+            |c, _| {
+                let tangent = libm::tan(c);
+                let (square, most_squared) = (tangent * tangent, most * most);
+                let first = 1.0 + square;
+                Expansion {
+                    terms: [
+                        tangent,
+                        first,
+                        tangent * first,
+                        first * (1.0 + 3.0 * square) / 3.0,
+                    ],
+                    fourth: most * (2.0 + 3.0 * most_squared) * (1.0 + most_squared) / 3.0,
+                }
+            },
+            Rated::tan,
+            Interval::tan,
+        )
+    }
+
+    #[inline]
+    fn asin(self) -> Self {
+        self.function(
+            |c, radius| {
+                let first = 1.0 / math::sqrt((1.0 - c) * (1.0 + c));
+                let square = first * first;
+                let most = c.abs() + radius;
+                let fourth = match least(1.0, most) {
+                    Some(least) => {
+                        let square = least * (1.0 + most);
+                        most * (3.0 + 2.0 * most * most)
+                            / (8.0 * square * square * square * math::sqrt(square))
+                    }
+                    None => f64::INFINITY,
+                };
+                Expansion {
+                    terms: [
+                        libm::asin(c),
+                        first,
+                        0.5 * c * first * square,
+                        (1.0 + 2.0 * c * c) / 6.0 * first * square * square,
+                    ],
+                    fourth,
+                }
+            },
+            Rated::asin,
+            Interval::asin,
+        )
+    }
+
+    #[inline]
+    fn acos(self) -> Self {
+        Self::steady(Interval::pi() * Interval::point(0.5)) - self.asin()
+    }
+
+    #[inline]
+    fn atan(self) -> Self {
+        self.function(
+            |c, _| {
+                let first = 1.0 / (1.0 + c * c);
+                Expansion {
+                    terms: [
+                        libm::atan(c),
+                        first,
+                        -c * first * first,
+                        (3.0 * c * c - 1.0) / 3.0 * first * first * first,
+                    ],
+                    // `|d^n atan| <= (n - 1)!`
+                    fourth: 0.25,
+                }
+            },
+            Rated::atan,
+            Interval::atan,
+        )
+    }
+
+    #[inline]
+    fn exp(self) -> Self {
+        self.function(
+            |c, radius| {
+                let power = libm::exp(c);
+                // Sums of arguments are rounded by less than 1e-12.
+                let most = (1.0 + 1e-9) * libm::exp(c + radius) + f64::MIN_POSITIVE;
+                Expansion {
+                    terms: [power, power, 0.5 * power, power / 6.0],
+                    fourth: most / 24.0,
+                }
+            },
+            Rated::exp,
+            Interval::exp,
+        )
+        .nonnegative()
+    }
+
+    #[inline]
+    fn ln(self) -> Self {
+        self.function(
+            |c, radius| {
+                let inverse = 1.0 / c;
+                let fourth = match least(c, radius) {
+                    Some(least) => 0.25 / (least * least * least * least),
+                    None => f64::INFINITY,
+                };
+                Expansion {
+                    terms: [
+                        libm::log(c),
+                        inverse,
+                        -0.5 * inverse * inverse,
+                        inverse * inverse * inverse / 3.0,
+                    ],
+                    fourth,
+                }
+            },
+            Rated::ln,
+            Interval::ln,
+        )
+    }
+
+    #[inline]
+    fn sinh(self) -> Self {
+        let most = self.range().sinh().magnitude();
+        self.function(
+            |c, _| {
+                let (sine, cosine) = (libm::sinh(c), libm::cosh(c));
+                Expansion {
+                    terms: [sine, cosine, 0.5 * sine, cosine / 6.0],
+                    fourth: most / 24.0,
+                }
+            },
+            Rated::sinh,
+            Interval::sinh,
+        )
+    }
+
+    #[inline]
+    fn cosh(self) -> Self {
+        let most = self.range().cosh().magnitude();
+        self.function(
+            |c, _| {
+                let (sine, cosine) = (libm::sinh(c), libm::cosh(c));
+                Expansion {
+                    terms: [cosine, sine, 0.5 * cosine, sine / 6.0],
+                    fourth: most / 24.0,
+                }
+            },
+            Rated::cosh,
+            Interval::cosh,
+        )
+        .nonnegative()
+    }
+
+    #[inline]
+    fn tanh(self) -> Self {
+        self.function(
+            |c, _| {
+                let (tangent, cosine) = (libm::tanh(c), libm::cosh(c));
+                let first = 1.0 / (cosine * cosine);
+                Expansion {
+                    terms: [
+                        tangent,
+                        first,
+                        -tangent * first,
+                        first * (3.0 * tangent * tangent - 1.0) / 3.0,
+                    ],
+                    // `t (2 - 3 t^2) (1 - t^2) / 3` for `t` up to 1.
+                    fourth: 0.26,
+                }
+            },
+            Rated::tanh,
+            Interval::tanh,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interval::tests::{FUNCTIONS, Sample};
+
+    /// Paths from one place to another: a line, and one that bends by a part of the way.
+    fn paths(from: f64, to: f64) -> [TaylorModel; 2] {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let exact = |powers: [f64; 4]| TaylorModel {
+            error: 8.0 * f64::EPSILON * (middle.abs() + half.abs()),
+            ..TaylorModel::exact(powers)
+        };
+        [
+            exact([middle, half, 0.0, 0.0]),
+            exact([middle - 0.25 * half, half, 0.25 * half, 0.0]),
+        ]
+    }
+
+    fn cubic(model: &TaylorModel, s: f64) -> f64 {
+        let horner = |sum: f64, power: &f64| sum * s + power;
+        model.powers.iter().rev().fold(0.0, horner)
+    }
+
+    #[test]
+    fn functions_along_paths_stay_by_their_cubics() {
+        for function in FUNCTIONS {
+            for Sample { from, to } in function.stretches() {
+                for path in paths(from, to) {
+                    let found = (function.model)(path);
+                    let remainder = |s: f64| {
+                        let x = cubic(&path, s).clamp(from.min(to), from.max(to));
+                        (function.plain)(x) - cubic(&found, s)
+                    };
+                    for k in 0..=16 {
+                        let s = f64::from(k) / 8.0 - 1.0;
+                        let name = function.name;
+                        let (here, before) = (remainder(s), remainder(s - 0.125));
+                        assert!(
+                            here.abs() <= found.error,
+                            "{name} from {from} to {to}: {here:e} of {found:?}"
+                        );
+                        assert!(
+                            found
+                                .range()
+                                .contains(Interval::point(here + cubic(&found, s)))
+                        );
+                        let slack = 1e-12 * (1.0 + cubic(&found, s).abs());
+                        assert!(
+                            k == 0 || (here - before).abs() <= 0.125 * found.slope + slack,
+                            "{name} from {from} to {to}: {:e} of {found:?}",
+                            (here - before) / 0.125
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn errors_fall_with_the_fourth_power_of_the_stretch() {
+        let smooth = |width: f64| {
+            let x = TaylorModel::exact([0.7, width, 0.0, 0.0]);
+            let y = TaylorModel::exact([0.3, width, width * width, 0.0]);
+            let distance = (x.square() + y.square()).sqrt() / x;
+            (distance + x.sin() * y.exp() - x.powf(1.5).atan()).error
+        };
+        let ratio = smooth(0.1) / smooth(0.05);
+        assert!(ratio > 14.0, "{ratio}");
+        assert!(smooth(0.05) < 1e-3, "{}", smooth(0.05));
+    }
+
+    #[test]
+    fn distances_through_the_origin_have_values() {
+        let x = TaylorModel::exact([0.0, 1.0, 0.0, 0.0]);
+        let distance = (x.square() + TaylorModel::of(0.0).square()).sqrt();
+        let range = distance.range();
+        assert!(range.lo >= 0.0 && range.hi < 1.1, "{range:?}");
+    }
+
+    #[test]
+    fn what_may_have_no_value_is_anything() {
+        let stretch = |lo: f64, hi: f64| paths(lo, hi)[0];
+        for outside in [
+            stretch(-0.1, 0.2).sqrt(),
+            stretch(-0.1, 0.2).ln(),
+            stretch(0.9, 1.1).asin(),
+            stretch(0.9, 1.1).acos(),
+            stretch(1.5, 1.6).tan(),
+            TaylorModel::of(1.0) / stretch(-1.0, 1.0),
+            TaylorModel::ANYTHING.sin() * TaylorModel::ANYTHING,
+        ] {
+            assert!(!(outside.error < 1e9), "{outside:?}");
+            assert!(!((TaylorModel::ZERO * outside).error < 1e9));
+            assert!((outside - TaylorModel::of(1.0)).range().is_whole());
+        }
+    }
+}
