@@ -279,6 +279,12 @@ pub mod arguments {
     pub fn component() {}
 }
 
+/// The gaps of a declared system over any kind of number.
+pub trait OverNumbers {
+    /// The gap of one surface; arguments as those of [`Impacting::gap_along`](crate::Impacting::gap_along).
+    fn gap_over<L: Numbers>(&self, surface: usize, t: L, component: &dyn Fn(usize) -> L) -> L;
+}
+
 /// Rates along a stretch of motion, by what the power series of a system begin with.
 ///
 /// # Errors

@@ -5,7 +5,7 @@ use crate::contract::{
 };
 use crate::error::{Fault, ParameterError, StateError};
 use crate::impacts::law::{Blow, Contact, Jump, Law};
-use crate::numbers::TaylorModel;
+use crate::numbers::{Bent, TaylorModel};
 
 /// A system whose inputs are given by a function; [`Actuated::with_inputs`] makes one.
 ///
@@ -227,6 +227,10 @@ where
         component: &dyn Fn(usize) -> TaylorModel,
     ) -> TaylorModel {
         self.system.gap_along(surface, t, component)
+    }
+
+    fn gap_about(&self, surface: usize, t: Bent, component: &dyn Fn(usize) -> Bent) -> Bent {
+        self.system.gap_about(surface, t, component)
     }
 
     fn gap_accelerations(

@@ -1,7 +1,7 @@
 //! `Impacting`: gaps, gap rates, conditions, laws and contacts.
 
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use super::function::{Body, emit_body, joined};
 use super::{Context, doc};
@@ -16,7 +16,15 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let s = context.model.surfaces.len();
     let gaps = emit_gaps(context, functions);
-    let gap_along = emit_gap_along(context, functions);
+    let alone = functions.gap_alone.iter().map(|function| {
+        let Body {
+            statements,
+            outputs,
+        } = context.enclosed_body(function);
+        quote!({ #statements #(#outputs)* })
+    });
+    let over_numbers = emit_over_numbers(type_name, alone);
+    let gap_along = emit_gap_along();
     let responses = match context.is_first_order() {
         true => TokenStream::new(),
         false => emit_responses(context, functions),
@@ -35,6 +43,8 @@ pub(super) fn emit_impacting(context: &Context<'_>) -> TokenStream {
     let instantaneous = super::instantaneous::emit_instantaneous(context, functions);
     let attributes = super::attributes();
     quote! {
+        #over_numbers
+
         #attributes
         impl ::dalembert::Impacting for #type_name {
             type Gaps = ::dalembert::__private::SVector<f64, #s>;
@@ -78,15 +88,8 @@ fn emit_gaps(context: &Context<'_>, functions: &Impacting) -> TokenStream {
     }
 }
 
-/// Every gap by itself, along a stretch of motion.
-fn emit_gap_along(context: &Context<'_>, functions: &Impacting) -> TokenStream {
-    let arms = functions.gap_alone.iter().enumerate().map(|(s, function)| {
-        let Body {
-            statements,
-            outputs,
-        } = context.enclosed_body(function);
-        quote!(#s => { #statements #(#outputs)* })
-    });
+/// The gaps along stretches of motion and in boxes, which [`emit_over_numbers`] writes once.
+pub(super) fn emit_gap_along() -> TokenStream {
     quote! {
         fn gap_along(
             &self,
@@ -94,12 +97,42 @@ fn emit_gap_along(context: &Context<'_>, functions: &Impacting) -> TokenStream {
             t: ::dalembert::numbers::TaylorModel,
             component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::TaylorModel,
         ) -> ::dalembert::numbers::TaylorModel {
-            #[allow(unused_imports)]
-            use ::dalembert::numbers::Numbers as _;
-            type L = ::dalembert::numbers::TaylorModel;
-            match surface {
-                #(#arms)*
-                _ => L::ZERO,
+            ::dalembert::__private::OverNumbers::gap_over(self, surface, t, component)
+        }
+
+        fn gap_about(
+            &self,
+            surface: usize,
+            t: ::dalembert::numbers::Bent,
+            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::Bent,
+        ) -> ::dalembert::numbers::Bent {
+            ::dalembert::__private::OverNumbers::gap_over(self, surface, t, component)
+        }
+    }
+}
+
+/// Every gap by itself, over any kind of number. `gaps` gives it with numbers of the kind `L`.
+pub(super) fn emit_over_numbers(
+    type_name: &impl ToTokens,
+    gaps: impl Iterator<Item = TokenStream>,
+) -> TokenStream {
+    let arms = gaps
+        .enumerate()
+        .map(|(surface, gap)| quote!(#surface => #gap,));
+    let attributes = super::attributes();
+    quote! {
+        #attributes
+        impl ::dalembert::__private::OverNumbers for #type_name {
+            fn gap_over<L: ::dalembert::numbers::Numbers>(
+                &self,
+                surface: usize,
+                t: L,
+                component: &dyn ::core::ops::Fn(usize) -> L,
+            ) -> L {
+                match surface {
+                    #(#arms)*
+                    _ => ::dalembert::__private::modes::no_gap(),
+                }
             }
         }
     }

@@ -224,6 +224,32 @@ impl TaylorModel {
         }
     }
 
+    /// One over what does not change.
+    #[inline(always)]
+    fn inverted(self) -> Self {
+        let (number, doubt) = (self.powers[0], self.error);
+        let least = (number.abs() - doubt) * (1.0 - ROUNDING);
+        let inverse = 1.0 / number;
+        // Not a comparison that NaN passes.
+        let error = match least > 0.0 {
+            true => inverse.abs() * (doubt / least + ROUNDING) + f64::MIN_POSITIVE,
+            false => f64::INFINITY,
+        };
+        Self {
+            error,
+            ..Self::exact([inverse, 0.0, 0.0, 0.0])
+        }
+        .with_sign_of(self)
+    }
+
+    #[inline(always)]
+    fn with_sign_of(self, other: Self) -> Self {
+        Self {
+            is_nonnegative: other.is_nonnegative,
+            ..self
+        }
+    }
+
     /// The product of two that change, or the square of one.
     #[inline(always)]
     fn times(self, other: Self, is_square: bool) -> Self {
@@ -410,6 +436,9 @@ impl Div for TaylorModel {
 
     #[inline]
     fn div(self, other: Self) -> Self {
+        if other.is_steady() {
+            return self.scaled(other.inverted());
+        }
         let inverse = other.function(
             |c, radius| {
                 let inverse = 1.0 / c;
@@ -427,11 +456,7 @@ impl Div for TaylorModel {
             |x| Rated::of(1.0) / x,
             Interval::inverse,
         );
-        let is_nonnegative = other.is_nonnegative;
-        self * Self {
-            is_nonnegative,
-            ..inverse
-        }
+        self * inverse.with_sign_of(other)
     }
 }
 
@@ -480,7 +505,7 @@ impl Numbers for TaylorModel {
     #[inline]
     fn square(self) -> Self {
         match self.is_steady() {
-            true => Self::steady(self.range().square()),
+            true => self.scaled(self).nonnegative(),
             false => self.times(self, true),
         }
     }

@@ -4,7 +4,7 @@ use super::System;
 use crate::error::Fault;
 use crate::impacts::after_reset;
 use crate::impacts::law::{Blow, Contact, Jump, Landing, Law};
-use crate::numbers::TaylorModel;
+use crate::numbers::{Bent, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -27,6 +27,13 @@ pub trait Impacting: System {
         t: TaylorModel,
         component: &dyn Fn(usize) -> TaylorModel,
     ) -> TaylorModel;
+
+    /// The gap of one surface along straight lines through a box, with arguments as [`Impacting::gap_along`] has them. It saves most
+    /// steps a closer look; without it nothing is known.
+    fn gap_about(&self, surface: usize, t: Bent, component: &dyn Fn(usize) -> Bent) -> Bent {
+        let _ = (surface, t, component);
+        Bent::ANYTHING
+    }
 
     /// The gap rates `dh_s(qdot) + d_t h_s`.
     ///

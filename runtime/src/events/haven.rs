@@ -3,9 +3,12 @@
 //! It is what an enclosure of every gap over the box shows, and so holds of any motion in it. Boxes grow where motion stays far
 //! from all surfaces, and are tried ever more rarely where it does not.
 
+use core::cell::Cell;
+
 use super::path::Path;
+use super::room::{Room, place};
 use crate::contract::Impacting;
-use crate::numbers::{Interval, TaylorModel};
+use crate::numbers::TaylorModel;
 use crate::state::StateVector;
 
 /// Steps to wait for the next trial after several that failed, at most.
@@ -17,12 +20,7 @@ const MOST_MARGIN: f64 = 1024.0;
 /// The box, once one is known.
 #[derive(Debug, Clone)]
 pub(crate) struct Haven<S> {
-    lowest: S,
-    highest: S,
-    times: Interval,
-    /// Components that positions are: gaps take no others.
-    positions: usize,
-    is_known: bool,
+    room: Room<S>,
     /// How much larger than what a step passes the next box is to be.
     margin: f64,
     /// Steps to let pass before the next trial, and how many the last failure has cost.
@@ -31,14 +29,10 @@ pub(crate) struct Haven<S> {
 }
 
 impl<S: StateVector> Haven<S> {
-    /// None yet.
-    pub(crate) fn new() -> Self {
+    /// None yet, for systems with so many positions.
+    pub(crate) fn new(positions: usize) -> Self {
         Self {
-            lowest: S::zeros(),
-            highest: S::zeros(),
-            times: Interval::point(0.0),
-            positions: 0,
-            is_known: false,
+            room: Room::new(positions),
             margin: 4.0,
             wait: 0,
             patience: 0,
@@ -47,20 +41,13 @@ impl<S: StateVector> Haven<S> {
 
     /// Forgets the box: surfaces, parameters or the mode are others.
     pub(crate) fn forget(&mut self) {
-        self.is_known = false;
+        self.room.forget();
     }
 
     /// True if a step lies in the box.
     #[inline]
     pub(crate) fn holds(&self, path: &Path<S>) -> bool {
-        self.is_known
-            && self.times.contains(path.time([0.0, 1.0]).value)
-            && (0..self.positions).all(|i| self.range(i).contains(path.range(i)))
-    }
-
-    #[inline]
-    fn range(&self, i: usize) -> Interval {
-        Interval::new(self.lowest.as_slice()[i], self.highest.as_slice()[i])
+        self.room.holds(path)
     }
 
     /// Looks for a box about a step that meets no surface. Gaps of walls are to be positive in it, those that motion may pass
@@ -77,41 +64,35 @@ impl<S: StateVector> Haven<S> {
             self.wait -= 1;
             return;
         }
-        self.surround(path);
-        self.positions = Sys::Vector::LEN.min(S::LEN);
-        let component = |i: usize| match i < self.positions {
-            true => TaylorModel::steady(self.range(i)),
+        self.room.surround(path, self.margin);
+        let room = &self.room;
+        let taken = Cell::new(0_u64);
+        let component = |i: usize| match i < room.positions() {
+            true => {
+                taken.set(taken.get() | place(i));
+                TaylorModel::steady(room.range(i))
+            }
             false => TaylorModel::steady(path.range(i)),
         };
         let is_off = |surface: usize| {
-            let times = TaylorModel::steady(self.times);
+            let times = TaylorModel::steady(room.times());
             let gap = system.gap_along(surface, times, &component).range();
             gap.lo > 0.0 || (is_passable(surface) && gap.hi < 0.0)
         };
         *evaluations += 1;
-        self.is_known = (0..Sys::Gaps::LEN).all(is_off);
-        match self.is_known {
+        let are_off = (0..Sys::Gaps::LEN).all(is_off);
+        self.room.keep(taken.get());
+        match are_off {
             true => {
                 self.margin = (2.0 * self.margin).min(MOST_MARGIN);
                 self.patience = 0;
             }
             false => {
+                self.room.forget();
                 self.margin = (0.5 * self.margin).max(1.0);
                 self.patience = (2 * self.patience + 1).min(MOST_PATIENCE);
             }
         }
         self.wait = self.patience;
-    }
-
-    /// The box of a step and its margin.
-    fn surround(&mut self, path: &Path<S>) {
-        for i in 0..S::LEN {
-            let range = path.range(i);
-            let room = range.widened(self.margin * range.width());
-            self.lowest.as_mut_slice()[i] = room.lo;
-            self.highest.as_mut_slice()[i] = room.hi;
-        }
-        let times = path.time([0.0, 1.0]).value;
-        self.times = times.widened(self.margin * times.width());
     }
 }

@@ -21,6 +21,9 @@ const STRETCHES: u32 = 4096;
 const BEFORE: f64 = 0.875;
 const BEHIND: f64 = 1.125;
 
+/// No stretches are chosen about falls that are expected within this part of the step: halves get there.
+const NEAR: f64 = 1.0 / (1_u64 << 36) as f64;
+
 /// A gap this many times larger next to a change of sign than anywhere else in the step belongs to a pole.
 const PEAK: f64 = (1 << 10) as f64;
 
@@ -136,7 +139,7 @@ impl Stretches {
     /// Of a part of the step, with cuts about where a fall is expected.
     fn of([from, until]: [f64; 2], expected: Option<f64>) -> Self {
         let at = |part: f64| match expected {
-            Some(fall) if from + BEFORE * (fall - from) > from => {
+            Some(fall) if fall - from > NEAR * (until - from) => {
                 (from + part * (fall - from)).min(until)
             }
             _ => until,

@@ -11,11 +11,11 @@ use crate::numbers::{Interval, Rated, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Terms that are centred on a part of the step that is not short; the sizes of all others are added.
+/// Terms that are centred on a part of the step at first; the sizes of all others are added.
 const FEW: usize = 8;
 
-/// A part of the step that is shorter has all its terms centred.
-const SHORT: f64 = 1.0 / 8.0;
+/// All terms are centred where the others are more than this part of the change.
+const SMALL: f64 = 1.0 / (1 << 10) as f64;
 
 /// Rounding of a coefficient, and of the sums that move it, in parts of the sum of all terms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -44,6 +44,8 @@ struct Whole<S> {
     powers: [S; 4],
     error: S,
     slope: S,
+    /// The largest second rates of the polynomials, by the part of the step.
+    bend: S,
 }
 
 impl<S: StateVector> Path<S> {
@@ -61,6 +63,7 @@ impl<S: StateVector> Path<S> {
                 powers: [zeros; 4],
                 error: zeros,
                 slope: zeros,
+                bend: zeros,
             },
             is_dense: false,
         }
@@ -171,17 +174,19 @@ impl<S: StateVector> Path<S> {
                 };
             }
         }
-        self.fill_whole();
+        match self.order < 4 {
+            true => self.fill_whole::<4>(),
+            false => self.fill_whole::<FEW>(),
+        }
     }
 
-    /// As [`Path::component`] of the whole step, for all components side by side.
+    /// As [`Path::component`] of the whole step, for all components side by side, with the first `COUNT` terms centred.
     #[inline]
-    fn fill_whole(&mut self) {
-        const COUNT: usize = FEW;
+    fn fill_whole<const COUNT: usize>(&mut self) {
         let mut powers = [S::zeros(); COUNT];
         let terms = (self.order + 1).min(COUNT);
         powers[..terms].copy_from_slice(&self.coefficients[..terms]);
-        for first in 0..COUNT - 1 {
+        for first in 0..COUNT.saturating_sub(1) {
             for k in (first..COUNT - 1).rev() {
                 let above = powers[k + 1];
                 let power = powers[k].as_mut_slice().iter_mut();
@@ -194,10 +199,12 @@ impl<S: StateVector> Path<S> {
             powers: cubic,
             error,
             slope,
+            bend,
         } = &mut self.whole;
+        let last = self.order as f64 - 1.0;
         for i in 0..S::LEN {
             let mut scale = 1.0;
-            let (mut beyond, mut steep) = (0.0, 0.0);
+            let (mut beyond, mut steep, mut bent) = (0.0, 0.0, 0.0);
             for (k, power) in powers.iter().enumerate() {
                 let term = scale * power.as_slice()[i];
                 match k < 4 {
@@ -207,8 +214,10 @@ impl<S: StateVector> Path<S> {
                         steep += k as f64 * term.abs();
                     }
                 }
+                bent += (k * k.saturating_sub(1)) as f64 * term.abs();
                 scale *= 0.5;
             }
+            bend.as_mut_slice()[i] = 4.0 * bent + last * self.tails[1].as_slice()[i];
             error.as_mut_slice()[i] =
                 beyond + self.tails[0].as_slice()[i] + self.doubts[0].as_slice()[i];
             slope.as_mut_slice()[i] =
@@ -219,21 +228,25 @@ impl<S: StateVector> Path<S> {
     /// Component `i` on a part of the step.
     #[inline]
     pub(crate) fn component(&self, i: usize, part: [f64; 2]) -> TaylorModel {
-        let radius = 0.5 * (part[1] - part[0]);
         match part {
             [0.0, 1.0] => TaylorModel {
                 error: self.whole.error.as_slice()[i],
                 slope: self.whole.slope.as_slice()[i],
                 ..TaylorModel::exact(core::array::from_fn(|k| self.whole.powers[k].as_slice()[i]))
             },
-            _ if self.order < FEW || radius >= 0.5 * SHORT => self.centred::<FEW>(i, part),
-            _ => self.centred::<LENGTH>(i, part),
+            _ => {
+                let (model, tail) = self.centred::<FEW>(i, part);
+                match tail <= SMALL * model.powers[1].abs() {
+                    true => model,
+                    false => self.centred::<LENGTH>(i, part).0,
+                }
+            }
         }
     }
 
-    /// The same with the first `COUNT` terms centred.
+    /// The same with the first `COUNT` terms centred, and what the others add to the error.
     #[inline]
-    fn centred<const COUNT: usize>(&self, i: usize, part: [f64; 2]) -> TaylorModel {
+    fn centred<const COUNT: usize>(&self, i: usize, part: [f64; 2]) -> (TaylorModel, f64) {
         let [middle, radius] = [0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])];
         let terms = (self.order + 1).min(COUNT);
         let mut powers = [0.0; COUNT];
@@ -258,18 +271,21 @@ impl<S: StateVector> Path<S> {
             }
             scale *= radius;
         }
+        let mut tail = 0.0;
         if terms <= self.order {
             // On `[0, b]` the terms from `b^k` on are at most `b^k` times what they are on the whole step.
             let [b, square] = [part[1], part[1] * part[1]];
             let power = square * square * square * b;
-            error += power * b * self.tails[0].as_slice()[i];
+            tail = power * b * self.tails[0].as_slice()[i];
+            error += tail;
             slope += radius * power * self.tails[1].as_slice()[i];
         }
-        TaylorModel {
+        let model = TaylorModel {
             error,
             slope,
             ..TaylorModel::exact(cubic)
-        }
+        };
+        (model, tail)
     }
 
     /// All values of component `i` on a part of the step that is no point, and all its rates by the part.
@@ -280,6 +296,32 @@ impl<S: StateVector> Path<S> {
             value: model.range(),
             rate: model.rates() * radius.inverse(),
         }
+    }
+
+    /// How fast component `i` moves along the whole step by the part of it, and how much it bends, at most.
+    ///
+    /// Path and polynomial meet at both ends of the step. What rates differ by keeps them apart by `d min(s, 1 - s)`, less than
+    /// `4 d s (1 - s)/2`: it counts as a bend of `4 d`.
+    #[inline]
+    pub(crate) fn motion(&self, i: usize) -> [f64; 2] {
+        let Whole {
+            powers,
+            slope,
+            bend,
+            ..
+        } = &self.whole;
+        let at = |values: &S| values.as_slice()[i];
+        let steepness =
+            at(&powers[1]).abs() + 2.0 * at(&powers[2]).abs() + 3.0 * at(&powers[3]).abs();
+        [
+            2.0 * (steepness + at(slope)),
+            at(bend) + 4.0 * at(&self.doubts[1]),
+        ]
+    }
+
+    /// Length of the step.
+    pub(crate) fn length(&self) -> f64 {
+        self.length
     }
 
     /// Component `i` at a part of the step, as the polynomial has it.

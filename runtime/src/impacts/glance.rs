@@ -10,12 +10,12 @@ use crate::state::StateVector;
 /// Times closer than this many units in the last place are the same time.
 pub(super) const SAME_TIME: f64 = 4.0 * f64::EPSILON;
 
-/// Gaps and rates at the end of a step.
+/// Gaps at the end of the step, and what a closer look shows.
 pub(super) struct Glance<G> {
     pub(super) gaps: G,
-    pub(super) rates: G,
-    /// The gaps as polynomials, where the step is one.
-    pub(super) series: Option<GapSeries<G>>,
+    /// Rates at the end, and the gaps as polynomials where the step is one; most steps need neither.
+    close: Option<(G, Option<GapSeries<G>>)>,
+    has_series: bool,
     /// Length of the step, and the larger of the absolute values of its times.
     pub(super) length: f64,
     pub(super) latest: f64,
@@ -27,13 +27,49 @@ impl<G: StateVector> Glance<G> {
         self.length <= SAME_TIME * self.latest
     }
 
+    /// Looks closer, unless that is done.
+    #[inline(always)]
+    pub(super) fn look_closer<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
+        &mut self,
+        step: &StepView<'_, Sys, Step>,
+    ) -> Result<(), Outcome> {
+        if self.close.is_none() {
+            let series = match self.has_series {
+                true => GapSeries::of(step, &self.gaps),
+                false => None,
+            };
+            let rates = match &series {
+                Some(series) => series.last_rates(self.length),
+                None => step.system.gap_rates(step.t_end(), step.end())?,
+            };
+            self.close = Some((rates, series));
+        }
+        Ok(())
+    }
+
+    /// The rates at the end; none without a closer look.
+    #[inline(always)]
+    pub(super) fn rates(&self) -> Option<&G> {
+        self.close.as_ref().map(|(rates, _)| rates)
+    }
+
+    /// The rate of a gap at the end, after a closer look.
+    #[inline(always)]
+    pub(super) fn rate(&self, surface: usize) -> f64 {
+        self.rates()
+            .map_or(f64::NAN, |rates| rates.as_slice()[surface])
+    }
+
+    /// The gaps as polynomials, after a closer look, where the step is one.
+    #[inline(always)]
+    pub(super) fn series(&self) -> Option<&GapSeries<G>> {
+        self.close.as_ref().and_then(|(_, series)| series.as_ref())
+    }
+
     /// The gap vanishes at the end of the step as far as times can tell.
     #[inline(always)]
     pub(super) fn is_due(&self, surface: usize) -> bool {
-        let (gap, rate) = (
-            self.gaps.as_slice()[surface],
-            self.rates.as_slice()[surface],
-        );
+        let (gap, rate) = (self.gaps.as_slice()[surface], self.rate(surface));
         rate < 0.0 && gap >= 0.0 && gap <= SAME_TIME * self.latest * -rate
     }
 }
@@ -49,7 +85,7 @@ pub(super) fn finite<Sys: Impacting>(gaps: Sys::Gaps) -> Result<Sys::Gaps, Outco
     }
 }
 
-/// Gaps and rates at the end of the step.
+/// Gaps at the end of the step.
 #[inline(always)]
 pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
@@ -68,16 +104,10 @@ pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
             step.system.gaps(t, step.end())
         }
     };
-    let gaps = finite::<Sys>(gaps)?;
-    let series = has_series.then(|| GapSeries::of(step, &gaps)).flatten();
-    let rates = match &series {
-        Some(series) => series.last_rates(length),
-        None => step.system.gap_rates(t, step.end())?,
-    };
     Ok(Glance {
-        gaps,
-        rates,
-        series,
+        gaps: finite::<Sys>(gaps)?,
+        close: None,
+        has_series,
         length,
         latest: t.abs().max(step.t_start().abs()),
     })

@@ -51,7 +51,7 @@ impl<Sys: Impacting> Watch<Sys> {
         for surface in first..Sys::Gaps::LEN {
             if surface != first {
                 match self.told(surface, step, glance) {
-                    Told::Clear => continue,
+                    Told::Passed | Told::Clear => continue,
                     Told::Unclear(model) => whole = model,
                 }
             }
@@ -63,7 +63,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
                 Found::Unfinished(part) => (part, None),
                 Found::Nothing if glance.is_due(surface) && is_active(surface, step, 1.0) => {
-                    (1.0, Some(glance.rates.as_slice()[surface]))
+                    (1.0, Some(glance.rate(surface)))
                 }
                 Found::Nothing => continue,
             };
@@ -131,7 +131,7 @@ impl<Sys: Impacting> Watch<Sys> {
             until,
         };
         let known = Known {
-            series: glance.series.as_ref(),
+            series: glance.series(),
             ends: [gap, glance.gaps.as_slice()[surface]],
             whole,
         };
@@ -252,10 +252,7 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
     ) -> Result<(), Outcome> {
-        let ends = [
-            self.rates.as_slice()[surface],
-            glance.rates.as_slice()[surface],
-        ];
+        let ends = [self.rates.as_slice()[surface], glance.rate(surface)];
         // The change of the rate per part of the step, forwards.
         let (change, apart) = if part > 0.5 {
             (rate - ends[0], part)
@@ -302,7 +299,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let mut evaluations = 0;
         let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
         step.counters.event_evaluations += evaluations;
-        glance.rates.as_slice()[surface] * glance.length < -rounding
+        glance.rate(surface) * glance.length < -rounding
     }
 
     /// Whether the gap is negative at the end of the step, by more than rounding: a motion along a wall falls and rises

@@ -10,9 +10,11 @@
 use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::Held;
 use super::hits::Hits;
+use super::law::Law;
 use super::place::Place;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
+use crate::events::bends::Bends;
 use crate::events::crossing::Signs;
 use crate::events::haven::Haven;
 use crate::events::path::Path;
@@ -34,7 +36,9 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) gaps: Sys::Gaps,
     /// 1 for passable surfaces.
     passable: Sys::Gaps,
+    /// Rates at the start of the step, where they are known; always of surfaces at hand.
     pub(super) rates: Sys::Gaps,
+    has_rates: bool,
     /// The earliest proposal of the last step.
     pub(super) proposed: Option<f64>,
     /// Per surface, the part of the last step at which it is hit; meaningful while something is proposed.
@@ -64,15 +68,18 @@ pub(super) struct Watch<Sys: Impacting> {
     behind: Option<usize>,
     /// The motion along the last step.
     pub(super) path: Path<Sys::State>,
-    /// Where no gap vanishes.
+    /// Where no gap vanishes, and where gaps bend by no more than is known.
     haven: Haven<Sys::State>,
+    limits: Bends<Sys::State, Sys::Gaps>,
     /// True if the gaps at the start of the coming step are not those kept: the last steps were not looked at.
     is_stale: bool,
 }
 
 /// What the first look at a step tells of a surface.
 pub(super) enum Told {
-    /// The step passes it.
+    /// The step passes it, as its ends and bounds of bends show.
+    Passed,
+    /// The step passes it, as the gap on the whole step shows.
     Clear,
     /// Nothing, with the gap on the whole step if it was needed.
     Unclear(Option<TaylorModel>),
@@ -85,6 +92,7 @@ impl<Sys: Impacting> Watch<Sys> {
             gaps: zeros,
             passable: zeros,
             rates: zeros,
+            has_rates: false,
             proposed: None,
             parts: zeros,
             grazes: zeros,
@@ -99,7 +107,8 @@ impl<Sys: Impacting> Watch<Sys> {
             held: Held::none(),
             behind: None,
             path: Path::new(),
-            haven: Haven::new(),
+            haven: Haven::new(Sys::Vector::LEN),
+            limits: Bends::new(Sys::Vector::LEN),
             is_stale: false,
         }
     }
@@ -123,7 +132,8 @@ impl<Sys: Impacting> Watch<Sys> {
     pub(super) fn begin(&mut self, now: &mut Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
         (self.proposed, self.place) = (None, None);
         self.held = Held::none();
-        (self.haven, self.is_stale) = (Haven::new(), false);
+        (self.haven, self.limits) = (Haven::new(Sys::Vector::LEN), Bends::new(Sys::Vector::LEN));
+        self.is_stale = false;
         let rates = now.system.gap_rates(now.t, now.state)?;
         let mut hits = Hits::<Sys::Gaps>::none();
         (self.sizes, self.sizes_at_start) = (*now.state, *now.state);
@@ -182,8 +192,13 @@ impl<Sys: Impacting> Watch<Sys> {
         now: &mut Moment<'_, Sys>,
         rates: Sys::Gaps,
     ) -> Result<(), Outcome> {
-        self.rates = rates;
+        (self.rates, self.has_rates) = (rates, true);
         self.haven.forget();
+        let leads_on =
+            |surface: usize| matches!(now.system.law(surface), Law::Reset | Law::Transition);
+        if (0..Sys::Gaps::LEN).any(|s| hits.at_hand.as_slice()[s] == 1.0 && leads_on(s)) {
+            self.limits.forget();
+        }
         self.is_stale = false;
         (self.steps, self.errors) = (0, 0.0);
         let (held, here) = (self.held, self.here.take());
@@ -341,19 +356,48 @@ impl<Sys: Impacting> Watch<Sys> {
         if self.is_stale {
             self.catch_up(step)?;
         }
-        let glance = glance(step)?;
+        let mut glance = glance(step)?;
+        if self.may_be_due(&glance) {
+            glance.look_closer(step)?;
+        }
         let mut surfaces = 0..Sys::Gaps::LEN;
+        let Self { limits, path, .. } = self;
+        limits.follow(step.system, path, &mut step.counters.enclosures);
+        let mut has_told = true;
         let unclear = surfaces.find_map(|surface| match self.told(surface, step, &glance) {
-            Told::Clear => None,
+            Told::Passed => None,
+            Told::Clear => {
+                has_told = false;
+                None
+            }
             Told::Unclear(model) => Some((surface, model)),
         });
+        self.limits.learn(has_told);
         if let Some(first) = unclear {
+            glance.look_closer(step)?;
+            if !self.has_rates {
+                self.rates = step.system.gap_rates(step.t_start(), step.start())?;
+                self.has_rates = true;
+            }
             self.search(step, &glance, first)?;
         }
         if self.proposed.is_none() {
-            self.pass(step, &glance)?;
+            self.pass(step, &mut glance)?;
         }
         Ok(self.proposed)
+    }
+
+    /// Whether a gap is so small at the end of the step that it may vanish there as far as times can tell.
+    #[inline]
+    fn may_be_due(&self, glance: &Glance<Sys::Gaps>) -> bool {
+        (0..Sys::Gaps::LEN).any(|surface| {
+            let at = |values: &Sys::Gaps| values.as_slice()[surface];
+            let rise = match self.has_rates {
+                true => at(&self.rates) * glance.length,
+                false => 0.0,
+            };
+            at(&glance.gaps).abs() <= BESIDE * (at(&self.gaps).abs() + rise.abs())
+        })
     }
 
     /// Gaps and rates at the start of a step that follows others which were not looked at.
@@ -363,7 +407,10 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Result<(), Outcome> {
         step.counters.event_evaluations += 1;
         self.gaps = finite::<Sys>(step.system.gaps(step.t_start(), step.start()))?;
-        self.rates = step.system.gap_rates(step.t_start(), step.start())?;
+        self.has_rates = self.gaps.as_slice().iter().any(|&gap| gap <= 0.0);
+        if self.has_rates {
+            self.rates = step.system.gap_rates(step.t_start(), step.start())?;
+        }
         self.is_stale = false;
         Ok(())
     }
@@ -373,12 +420,22 @@ impl<Sys: Impacting> Watch<Sys> {
     fn pass<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
+        glance: &mut Glance<Sys::Gaps>,
     ) -> Result<(), Outcome> {
         let before = self.gaps;
         self.gaps = glance.gaps;
-        self.rates = glance.rates;
-        if self.gaps.as_slice().iter().all(|&gap| gap > 0.0) {
+        let is_off = self.gaps.as_slice().iter().all(|&gap| gap > 0.0);
+        if !is_off {
+            glance.look_closer(step)?;
+        }
+        self.has_rates = match glance.rates() {
+            Some(rates) => {
+                self.rates = *rates;
+                true
+            }
+            None => false,
+        };
+        if is_off {
             if before.as_slice().contains(&0.0) {
                 return Ok(());
             }
@@ -478,7 +535,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Whether the step passes this surface, as a model of its gap along the whole step shows.
+    /// Whether the step passes this surface.
     #[inline]
     pub(super) fn told<Step: Stepper<Sys>>(
         &self,
@@ -487,7 +544,7 @@ impl<Sys: Impacting> Watch<Sys> {
         glance: &Glance<Sys::Gaps>,
     ) -> Told {
         if self.held.is_held(surface) {
-            return Told::Clear;
+            return Told::Passed;
         }
         let at = |values: &Sys::Gaps| values.as_slice()[surface];
         let (first, last) = (at(&self.gaps), at(&glance.gaps));
@@ -499,6 +556,9 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         if !is_at_hand && (first > 0.0) != (last > 0.0) {
             return Told::Unclear(None);
+        }
+        if self.limits.tell(surface, [first, last]) {
+            return Told::Passed;
         }
         let whole = [0.0, 1.0];
         step.counters.enclosures += 1;

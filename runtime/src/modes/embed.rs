@@ -7,8 +7,9 @@ use super::{Mode, StateOf};
 use crate::contract::{Impacting, Keep, RankDrop};
 use crate::describe::{Initial, Report};
 use crate::error::{Fault, StateError};
+use crate::generated::OverNumbers;
 use crate::impacts::law::{Blow, Contact, Landing};
-use crate::numbers::{Numbers, Row, TaylorModel};
+use crate::numbers::{Numbers, Row};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -339,23 +340,23 @@ pub fn gaps<M: Mode + Impacting, G: StateVector>(
     filled(own.as_slice(), M::SURFACES, 1.0)
 }
 
-/// As [`Impacting::gap_along`], of a surface of the mode; that of a state in another mode is never met.
-pub fn gap_along<M: Mode + Impacting>(
+/// As [`OverNumbers::gap_over`], of a surface of the mode; that of a state in another mode is never met.
+pub fn gap_over<M: Mode + OverNumbers, L: Numbers>(
     model: &M::Model,
     surface: usize,
-    t: TaylorModel,
-    component: &dyn Fn(usize) -> TaylorModel,
-) -> TaylorModel {
+    t: L,
+    component: &dyn Fn(usize) -> L,
+) -> L {
     let number = component(StateOf::<M>::LEN - 1).lane(0);
     match (number + 0.5) as usize == M::INDEX {
-        true => M::of(model).gap_along(surface, t, component),
+        true => M::of(model).gap_over(surface, t, component),
         false => no_gap(),
     }
 }
 
 /// The gap of a surface that the mode does not have.
-pub fn no_gap() -> TaylorModel {
-    TaylorModel::of(1.0)
+pub fn no_gap<L: Numbers>() -> L {
+    L::of(1.0)
 }
 
 /// Gaps of a mode without surfaces.

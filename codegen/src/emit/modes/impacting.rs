@@ -5,6 +5,7 @@ use quote::quote;
 
 use super::Whole;
 use crate::emit::attributes;
+use crate::emit::impact::{emit_gap_along, emit_over_numbers};
 use crate::model::{Law, Mode, Transition};
 
 /// `impl Impacting`, if there are surfaces or transitions.
@@ -19,7 +20,15 @@ pub(super) fn emit_impacting(whole: &Whole<'_>) -> TokenStream {
     let laws = emit_laws(whole);
     let impacts = emit_impacts(whole);
     let instantaneous = emit_instantaneous(whole);
+    let types = whole.types();
+    let alone = whole.graph.surfaces.iter().map(|entry| {
+        let (mode, surface) = (types[entry.mode], entry.place);
+        quote!(::dalembert::__private::modes::gap_over::<#mode, L>(self, #surface, t, component))
+    });
+    let over_numbers = emit_over_numbers(&own, alone);
     quote! {
+        #over_numbers
+
         #attributes
         impl ::dalembert::Impacting for #own {
             type Gaps = ::dalembert::__private::SVector<f64, #count>;
@@ -59,11 +68,7 @@ fn emit_gaps(whole: &Whole<'_>) -> TokenStream {
         &quote!(false),
         |own| quote!(::dalembert::__private::modes::surface_active::<#own>(self, surface, t, state)),
     );
-    let types = whole.types();
-    let alone = whole.graph.surfaces.iter().enumerate().map(|(place, entry)| {
-        let (own, surface) = (types[entry.mode], entry.place);
-        quote!(#place => ::dalembert::__private::modes::gap_along::<#own>(self, #surface, t, component),)
-    });
+    let gap_along = emit_gap_along();
     let rated = fallible(&quote!(Self::Gaps));
     let optional = fallible(&quote!(::core::option::Option<Self::Gaps>));
     quote! {
@@ -73,17 +78,7 @@ fn emit_gaps(whole: &Whole<'_>) -> TokenStream {
         #[inline]
         fn gap_rates(&self, t: f64, state: &Self::State) -> #rated { #rates }
 
-        fn gap_along(
-            &self,
-            surface: usize,
-            t: ::dalembert::numbers::TaylorModel,
-            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::TaylorModel,
-        ) -> ::dalembert::numbers::TaylorModel {
-            match surface {
-                #(#alone)*
-                _ => ::dalembert::__private::modes::no_gap(),
-            }
-        }
+        #gap_along
 
         fn gap_accelerations(&self, t: f64, state: &Self::State, motion: &Self::Impulse) -> #optional { #accelerations }
 

@@ -1,0 +1,125 @@
+//! A box of times and positions about a step, which later steps may lie in as well.
+
+use super::path::Path;
+use crate::numbers::Interval;
+use crate::state::StateVector;
+
+/// The box; none at first.
+#[derive(Debug, Clone)]
+pub(crate) struct Room<S> {
+    lowest: S,
+    highest: S,
+    times: Interval,
+    /// Components that are positions: gaps take no others.
+    positions: usize,
+    /// Those of them that are bounded, by their places.
+    kept: u64,
+    is_known: bool,
+}
+
+/// The bit of a component; all from the last one on share it.
+#[inline]
+pub(crate) fn place(i: usize) -> u64 {
+    1 << i.min(63)
+}
+
+impl<S: StateVector> Room<S> {
+    /// None yet, for systems with so many positions.
+    pub(crate) fn new(positions: usize) -> Self {
+        Self {
+            lowest: S::zeros(),
+            highest: S::zeros(),
+            times: Interval::point(0.0),
+            positions: positions.min(S::LEN),
+            kept: u64::MAX,
+            is_known: false,
+        }
+    }
+
+    /// Forgets the box.
+    pub(crate) fn forget(&mut self) {
+        self.is_known = false;
+    }
+
+    /// True if there is a box.
+    pub(crate) fn is_known(&self) -> bool {
+        self.is_known
+    }
+
+    /// True if a step lies in the box.
+    #[inline]
+    pub(crate) fn holds(&self, path: &Path<S>) -> bool {
+        self.is_known
+            && self.times.contains(path.time([0.0, 1.0]).value)
+            && (0..self.positions).all(|i| !self.keeps(i) || self.range(i).contains(path.range(i)))
+    }
+
+    /// All values of component `i` in the box.
+    #[inline]
+    pub(crate) fn range(&self, i: usize) -> Interval {
+        Interval::new(self.lowest.as_slice()[i], self.highest.as_slice()[i])
+    }
+
+    /// All times in the box.
+    #[inline]
+    pub(crate) fn times(&self) -> Interval {
+        self.times
+    }
+
+    /// Components that are positions.
+    #[inline]
+    pub(crate) fn positions(&self) -> usize {
+        self.positions
+    }
+
+    /// Bounds only these components from now on, by their [`place`]s: gaps take no others.
+    pub(crate) fn keep(&mut self, components: u64) {
+        self.kept = components;
+    }
+
+    /// Whether a component is bounded.
+    #[inline]
+    pub(crate) fn keeps(&self, i: usize) -> bool {
+        self.kept & place(i) != 0
+    }
+
+    /// Takes the box of a step, with so many times its way on every side.
+    pub(crate) fn surround(&mut self, path: &Path<S>, margin: f64) {
+        for i in 0..self.positions {
+            let range = path.range(i);
+            self.set(i, range.widened(margin * range.width()));
+        }
+        let times = path.time([0.0, 1.0]).value;
+        self.times = times.widened(margin * times.width());
+        self.is_known = true;
+    }
+
+    /// Makes the box so large that it holds a step as well; where the step leaves it, half as wide again.
+    pub(crate) fn extend(&mut self, path: &Path<S>) {
+        for i in 0..self.positions {
+            self.set(i, extended(self.range(i), path.range(i)));
+        }
+        self.times = extended(self.times, path.time([0.0, 1.0]).value);
+    }
+
+    fn set(&mut self, i: usize, range: Interval) {
+        self.lowest.as_mut_slice()[i] = range.lo;
+        self.highest.as_mut_slice()[i] = range.hi;
+    }
+}
+
+fn extended(old: Interval, new: Interval) -> Interval {
+    let room = 0.5 * old.width();
+    Interval::new(
+        if new.lo < old.lo {
+            new.lo - room
+        } else {
+            old.lo
+        },
+        if new.hi > old.hi {
+            new.hi + room
+        } else {
+            old.hi
+        },
+    )
+}
