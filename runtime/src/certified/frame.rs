@@ -48,6 +48,16 @@ impl<S: StateVector> Bounds<S> {
         middle
     }
 
+    /// The width of the widest component.
+    pub(super) fn width(&self) -> f64 {
+        (0..S::LEN).fold(0.0, |most, i| most.max(self.at(i).width()))
+    }
+
+    /// What both boxes contain; the other one where they do not meet.
+    pub(super) fn within(&self, other: &Self) -> Self {
+        Self::of(|i| self.at(i).intersection(other.at(i)).unwrap_or(other.at(i)))
+    }
+
     pub(super) fn is_finite(&self) -> bool {
         self.lo.is_finite() && self.hi.is_finite()
     }
@@ -77,19 +87,18 @@ impl<Sys: Variational> Matrix<Sys> {
         self.hi.as_mut()[j].as_mut_slice()[i] = range.hi;
     }
 
-    /// The product with a matrix of numbers.
-    fn times(&self, columns: &Sys::Columns) -> Self {
-        let mut product = Self::zero();
-        for (j, column) in columns.as_ref().iter().enumerate() {
-            for i in 0..Sys::State::LEN {
-                let terms = column.as_slice().iter().enumerate();
-                let sum = terms.fold(Interval::ZERO, |sum, (k, entry)| {
-                    sum + self.at(i, k) * Interval::point(*entry)
-                });
-                product.set(i, j, sum);
-            }
+    /// Column `j`.
+    pub(super) fn column(&self, j: usize) -> Bounds<Sys::State> {
+        Bounds {
+            lo: self.lo.as_ref()[j],
+            hi: self.hi.as_ref()[j],
         }
-        product
+    }
+
+    /// Replaces column `j`.
+    pub(super) fn set_column(&mut self, j: usize, column: &Bounds<Sys::State>) {
+        self.lo.as_mut()[j] = column.lo;
+        self.hi.as_mut()[j] = column.hi;
     }
 
     /// The product with a box.
@@ -106,6 +115,14 @@ pub(super) struct Frame<Sys: Variational> {
     axes: Sys::Columns,
     rest: Bounds<Sys::State>,
 }
+
+impl<Sys: Variational> Clone for Frame<Sys> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys: Variational> Copy for Frame<Sys> {}
 
 impl<Sys: Variational> Frame<Sys> {
     /// A box, in the axes of the state.
@@ -133,13 +150,23 @@ impl<Sys: Variational> Frame<Sys> {
         })
     }
 
-    /// The set that the map `centre -> moved`, with derivatives in `derivative` all over the hull, makes of this one.
-    pub(super) fn moved(&self, moved: &Bounds<Sys::State>, derivative: &Matrix<Sys>) -> Self {
+    /// Column `k` of `Q`.
+    pub(super) fn axis(&self, k: usize) -> Bounds<Sys::State> {
+        Bounds::point(&self.axes.as_ref()[k])
+    }
+
+    /// `slopes . r`: all that a function with these derivatives along the axes differs by from its value at the centre.
+    pub(super) fn along(&self, slopes: impl Fn(usize) -> Interval) -> Interval {
+        (0..Sys::State::LEN).fold(Interval::ZERO, |sum, k| sum + slopes(k) * self.rest.at(k))
+    }
+
+    /// The set that the map `centre -> moved` makes of this one; column `k` of `turned` has its derivatives along axis `k`, all over
+    /// the hull.
+    pub(super) fn moved(&self, moved: &Bounds<Sys::State>, turned: &Matrix<Sys>) -> Self {
         let centre = moved.middle();
-        let turned = derivative.times(&self.axes);
-        let axes = orthonormal::<Sys>(&turned, &self.rest);
+        let axes = orthonormal::<Sys>(turned, &self.rest);
         let inverse = inverse::<Sys>(&axes);
-        let along = product::<Sys>(&inverse, &turned);
+        let along = product::<Sys>(&inverse, turned);
         let shift = Bounds::of(|i| moved.at(i) - Interval::point(centre.as_slice()[i]));
         let (linear, shift) = (along.times_bounds(&self.rest), inverse.times_bounds(&shift));
         Self {

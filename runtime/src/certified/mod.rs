@@ -13,5 +13,8 @@
 
 mod flow;
 mod frame;
+mod lost;
+mod series;
 
-pub use flow::{CertifiedFlow, Lost};
+pub use flow::CertifiedFlow;
+pub use lost::{Lost, Reason};
