@@ -65,6 +65,18 @@ pub struct CertifiedFlow<'a, Sys: Variational> {
     steps: u64,
 }
 
+impl<Sys: Variational> Clone for CertifiedFlow<'_, Sys> {
+    fn clone(&self) -> Self {
+        Self {
+            field: self.field,
+            t: self.t,
+            frame: self.frame,
+            next: self.next,
+            steps: self.steps,
+        }
+    }
+}
+
 impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
     /// Begins at the time `t` with all states whose component `i` lies in `start(i)`.
     pub fn new(system: &'a Sys, t: f64, start: impl Fn(usize) -> Interval) -> Self {
