@@ -16,9 +16,9 @@
 //! differential equations with discontinuous right-hand sides*, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958).
 
 use super::course::{Course, Side, Sides, Surfaces};
-use super::frame::{Bounds, Frame, Matrix};
+use super::frame::{BLOCKS, Bounds, Frame, Matrix, Slopes, Turned};
 use super::lost::Reason;
-use super::series::{Arc, bounds, rated_row, row};
+use super::series::{Arc, Field, bounds, rated_row, row};
 use crate::contract::{Impacting, Variational};
 use crate::numbers::{Interval, Numbers, Rated, Row};
 use crate::outcome::Outcome;
@@ -63,8 +63,8 @@ struct Approach<'s, 'f, 'a, Sys: Variational + Impacting> {
     all: Course<'f, 'a, Sys>,
     centre: Course<'f, 'a, Sys>,
     /// Changes of the states at any time until `t_1` along each axis, and those of the gap.
-    turned: Matrix<Sys>,
-    slopes: Bounds<Sys::State>,
+    turned: Turned<Sys>,
+    slopes: Slopes<Sys>,
     /// All rates of the gap by units of time, until `t_1`.
     rate: Interval,
 }
@@ -76,7 +76,16 @@ struct Meeting<Sys: Variational> {
     before: Bounds<Sys::State>,
     rates_before: Bounds<Sys::State>,
     /// Changes of the time along each axis.
-    delays: Bounds<Sys::State>,
+    delays: Slopes<Sys>,
+}
+
+/// The impact of the centre.
+struct Centre<S> {
+    time: Interval,
+    before: Bounds<S>,
+    after: Bounds<S>,
+    /// At the time after all impacts.
+    moved: Bounds<S>,
 }
 
 /// Maps the states of a frame at the time `t`, at which the gap of a surface is positive and falls, across the impact there.
@@ -158,17 +167,17 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             tube,
             all,
             centre,
-            turned: Matrix::zero(),
-            slopes: Bounds::point(&Sys::State::zeros()),
+            turned: [Matrix::zero(), Matrix::zero()],
+            slopes: [Bounds::point(&Sys::State::zeros()); BLOCKS],
             rate,
         };
-        for k in 0..Sys::State::LEN {
-            let column = approach.carried(&frame.axis(k))?;
+        for (block, k, axis) in frame.axes() {
+            let column = approach.carried(&axis)?;
             let steady = Rated::steady(whole.times);
             let states = rated_row::<Sys>(&whole.states, &column);
             let gaps = Sys::clearances(&field.steady_parameters(), steady, &states).ok()?;
-            approach.slopes.set(k, gaps.as_slice()[surface].rate);
-            approach.turned.set_column(k, &column);
+            approach.slopes[block].set(k, gaps.as_slice()[surface].rate);
+            approach.turned[block].set_column(k, &column);
         }
         Some(approach)
     }
@@ -176,7 +185,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
     /// `Dphi q`: all changes of the states along a direction, at any time until `t_1`.
     fn carried(&self, direction: &Bounds<Sys::State>) -> Option<Bounds<Sys::State>> {
         carried(
-            self.surfaces,
+            self.surfaces.field,
             (&self.frame.hull(), &self.tube, direction),
             Interval::point(self.t),
             self.unit,
@@ -188,7 +197,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
     fn gap(&self, units: Interval) -> Option<Interval> {
         let of_all = self.gap_of(&self.all, units)?;
         let of_centre = self.gap_of(&self.centre, units)?;
-        let gap = of_centre + self.frame.along(|k| self.slopes.at(k));
+        let gap = of_centre + self.frame.along(|block, k| self.slopes[block].at(k));
         Some(gap.intersection(of_all).unwrap_or(of_all))
     }
 
@@ -243,7 +252,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let centre_units = self.narrowed(units, |units| self.gap_of(&self.centre, units))?;
         let part = self.all.part(units)?;
         let rate = self.rate_in(units)?;
-        let delays = Bounds::of(|k| -(self.slopes.at(k) / rate) * self.unit);
+        let delays = [0, 1]
+            .map(|block: usize| Bounds::of(|k| -(self.slopes[block].at(k) / rate) * self.unit));
         Some(Meeting {
             units,
             centre_units,
@@ -276,26 +286,30 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let unsure = Reason::UnsureLaw { surface };
         let is_map = self.check_map(strike, meeting)?;
         let times = self.all.times(meeting.units);
-        let centre_times = self.centre.times(meeting.centre_units);
-        let centre_before = self.centre.at(meeting.centre_units);
-        let centre = self
-            .applied(strike, centre_times, &centre_before)
-            .ok_or(unsure)?;
-        let mut changes = Matrix::<Sys>::zero();
+        let later = times.hi;
+        let rest = (Interval::point(later) - Interval::point(self.t)) / self.unit;
+        let centre = self.struck_centre(strike, meeting, rest).ok_or(unsure)?;
+        let mut changes = [Matrix::<Sys>::zero(), Matrix::zero()];
         let mut after = self.applied(strike, times, &meeting.before).ok_or(unsure)?;
-        for k in 0..Sys::State::LEN {
-            let column = self.applied_along(strike, meeting, k).ok_or(unsure)?;
-            changes.set_column(k, &column);
+        for (block, k, _) in self.frame.axes() {
+            let along = self.met_along(meeting, &self.turned[block], &meeting.delays[block], k);
+            let delay = meeting.delays[block].at(k);
+            let met = (times, &meeting.before);
+            let column = applied_along(self.surfaces.field, strike, met, &along, delay);
+            changes[block].set_column(k, &column.ok_or(unsure)?);
         }
-        let centred = Bounds::of(|i| centre.at(i) + self.frame.along(|k| changes.at(i, k)));
+        let centred = Bounds::of(|i| {
+            centre.after.at(i) + self.frame.along(|block, k| changes[block].at(i, k))
+        });
         after = after.within(&centred);
         let before = Bounds::of(|i| {
-            let along = |k: usize| {
-                self.turned.at(i, k) + meeting.rates_before.at(i) * meeting.delays.at(k)
+            let along = |block: usize, k: usize| {
+                self.met_along(meeting, &self.turned[block], &meeting.delays[block], k)
+                    .at(i)
             };
-            centre_before.at(i) + self.frame.along(along)
+            centre.before.at(i) + self.frame.along(along)
         });
-        let time = centre_times + self.frame.along(|k| meeting.delays.at(k));
+        let time = centre.time + self.frame.along(|block, k| meeting.delays[block].at(k));
         let sides = match is_map {
             true => Sides::unknown(),
             false => {
@@ -310,19 +324,79 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             frame: self.frame,
             times,
             unit: self.unit,
-            later: times.hi,
-            rest: (Interval::point(times.hi) - Interval::point(self.t)) / self.unit,
+            rest: Interval::new(0.0, ahead(rest, meeting.units).hi),
         };
-        let (frame, sides) =
-            departure.gone_on(meeting, (&centre, centre_times), (&after, &changes), &sides)?;
+        let all = (&after, &changes);
+        let (frame, sides) = departure.gone_on(&meeting.delays, &centre.moved, all, &sides)?;
         Ok(Crossed {
             time: time.intersection(times).unwrap_or(times),
             before: meeting.before.within(&before),
             after,
-            t: times.hi,
+            t: later,
             frame,
             sides,
             sides_before: *sides_before,
+        })
+    }
+
+    /// The impact of the centre, and where it is when `rest` units of time have passed from `t_0`.
+    ///
+    /// All of this is a function of the time `tau` and of the state `x` there. It is evaluated at one time and one state, and its derivatives by
+    /// both enclose what it differs by elsewhere.
+    fn struck_centre(
+        &self,
+        strike: &Strike,
+        meeting: &Meeting<Sys>,
+        rest: Interval,
+    ) -> Option<Centre<Sys::State>> {
+        let (field, course, units) = (self.surfaces.field, &self.centre, meeting.centre_units);
+        let middle = Interval::point(units.middle());
+        let (time, time_in_middle) = (course.times(units), course.times(middle));
+        let late = (units - middle) * self.unit;
+        let near = course.at(middle);
+        let arriving = course.at(units);
+        let before = Bounds::of(|i| arriving.at(i).hull(near.at(i)));
+        let all_after = self.applied(strike, time, &before)?;
+        let point = Bounds::point(&near.middle());
+        let after_in_middle = self.applied(strike, time_in_middle, &point)?;
+        let [rates_before, rates_after] = [&before, &all_after].map(|at| field.rates(time, at));
+        let (rates_before, rates_after) = (rates_before?, rates_after?);
+        let offset = Bounds::of(|i| near.at(i) - point.at(i));
+        let along = |along: &Bounds<Sys::State>, delay: f64| {
+            applied_along(
+                field,
+                strike,
+                (time, &before),
+                along,
+                Interval::point(delay),
+            )
+        };
+        let (by_offset, by_time) = (along(&offset, 0.0)?, along(&rates_before, 1.0)?);
+        let after = Bounds::of(|i| after_in_middle.at(i) + by_offset.at(i) + by_time.at(i) * late);
+        let ahead_of = |units: Interval| ahead(rest, units);
+        let during = Interval::new(0.0, (self.unit * ahead_of(units)).hi);
+        let tube = field.tube(&all_after, time + during, during)?;
+        let from = Course::new(
+            field,
+            &after_in_middle,
+            &tube,
+            time_in_middle,
+            self.unit,
+            ORDER,
+        )?;
+        let end = from.at(ahead_of(middle));
+        let shift = Bounds::of(|i| by_time.at(i) - rates_after.at(i));
+        let carried = |along: &Bounds<Sys::State>| {
+            let from = (&all_after, &tube, along);
+            carried(field, from, time, self.unit, ahead_of(units))
+        };
+        let (by_offset, by_time) = (carried(&by_offset)?, carried(&shift)?);
+        let moved = Bounds::of(|i| end.at(i) + by_offset.at(i) + by_time.at(i) * late);
+        moved.is_finite().then_some(Centre {
+            time,
+            before: arriving,
+            after,
+            moved,
         })
     }
 
@@ -355,26 +429,41 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         after.is_finite().then_some(after)
     }
 
-    /// Changes of the state after the law along an axis, where the surface is met.
-    fn applied_along(
+    /// Changes of the state along an axis where the surface is met.
+    fn met_along(
         &self,
-        strike: &Strike,
         meeting: &Meeting<Sys>,
+        turned: &Matrix<Sys>,
+        delays: &Bounds<Sys::State>,
         k: usize,
-    ) -> Option<Bounds<Sys::State>> {
-        let delay = meeting.delays.at(k);
-        let times = Rated {
-            value: self.all.times(meeting.units),
-            rate: delay,
-        };
-        let along = Bounds::of(|i| self.turned.at(i, k) + meeting.rates_before.at(i) * delay);
-        let states = rated_row::<Sys>(&meeting.before, &along);
-        let parameters = self.surfaces.field.steady_parameters();
-        let after = strike.applied::<Sys, Rated>(&parameters, times, &states);
-        let after = after.ok()??;
-        let changes = Bounds::of(|i| after.as_slice()[i].rate);
-        changes.is_finite().then_some(changes)
+    ) -> Bounds<Sys::State> {
+        Bounds::of(|i| turned.at(i, k) + meeting.rates_before.at(i) * delays.at(k))
     }
+}
+
+/// Changes of the state after the law along a change of the state before it and of the time.
+fn applied_along<Sys: Variational + Impacting>(
+    field: &Field<'_, Sys>,
+    strike: &Strike,
+    (times, states): (Interval, &Bounds<Sys::State>),
+    along: &Bounds<Sys::State>,
+    delay: Interval,
+) -> Option<Bounds<Sys::State>> {
+    let times = Rated {
+        value: times,
+        rate: delay,
+    };
+    let states = rated_row::<Sys>(states, along);
+    let after = strike.applied::<Sys, Rated>(&field.steady_parameters(), times, &states);
+    let after = after.ok()??;
+    let changes = Bounds::of(|i| after.as_slice()[i].rate);
+    changes.is_finite().then_some(changes)
+}
+
+/// What is left of some units of time after others, which are less.
+fn ahead(rest: Interval, units: Interval) -> Interval {
+    let rest = rest - units;
+    Interval::new(rest.lo.max(0.0), rest.hi.max(0.0))
 }
 
 /// Motion from an impact, at whatever time it comes, to one time after it.
@@ -385,59 +474,44 @@ struct Departure<'s, 'f, 'a, Sys: Variational + Impacting> {
     /// All times of the impact.
     times: Interval,
     unit: Interval,
-    /// The time after it, and how many units that is after `t_0`.
-    later: f64,
+    /// All lengths of time from it, in units.
     rest: Interval,
 }
 
 impl<Sys: Variational + Impacting> Departure<'_, '_, '_, Sys> {
     fn gone_on(
         &self,
-        meeting: &Meeting<Sys>,
-        (centre, centre_times): (&Bounds<Sys::State>, Interval),
-        (after, changes): (&Bounds<Sys::State>, &Matrix<Sys>),
+        delays: &Slopes<Sys>,
+        moved: &Bounds<Sys::State>,
+        (after, changes): (&Bounds<Sys::State>, &Turned<Sys>),
         sides: &Sides<Sys>,
     ) -> Result<(Frame<Sys>, Sides<Sys>), Reason> {
         let (field, unit, surface) = (self.surfaces.field, self.unit, self.surface);
-        let ahead = |units: Interval| {
-            let rest = self.rest - units;
-            Interval::new(rest.lo.max(0.0), rest.hi.max(0.0))
-        };
-        let rest = Interval::new(0.0, ahead(meeting.units).hi);
-        let during = Interval::new(0.0, (unit * rest).hi);
-        // The motions are followed to the later time, and not beyond it.
-        let times = self.times.hull(Interval::point(self.later));
+        let during = Interval::new(0.0, (unit * self.rest).hi);
+        let times = self.times + during;
         let tube = field.tube(after, times, during).ok_or(Reason::NoTube)?;
-        let from = |start: &Bounds<Sys::State>, times: Interval| {
-            Course::new(field, start, &tube, times, unit, ORDER)
-        };
-        let course = from(after, self.times).ok_or(Reason::NoTube)?;
-        let passed = self.surfaces.passed_in(course.part(rest), sides, None);
+        let course = Course::new(field, after, &tube, self.times, unit, ORDER);
+        let course = course.ok_or(Reason::NoTube)?;
+        let passed = self.surfaces.passed_in(course.part(self.rest), sides, None);
         let sides = passed.map_err(|(other, reason)| match other == surface {
             true => Reason::MayStay { surface },
             false => together(surface, other, reason),
         })?;
         let rates = field.rates(self.times, after).ok_or(Reason::NoTube)?;
-        let mut turned = Matrix::<Sys>::zero();
-        for k in 0..Sys::State::LEN {
-            let delay = meeting.delays.at(k);
-            let along = Bounds::of(|i| changes.at(i, k) - rates.at(i) * delay);
-            let box_of = (after, &tube, &along);
-            let column = carried(self.surfaces, box_of, self.times, unit, rest);
-            turned.set_column(k, &column.ok_or(Reason::NoTube)?);
+        let mut turned = [Matrix::<Sys>::zero(), Matrix::zero()];
+        for (block, k, _) in self.frame.axes() {
+            let delay = delays[block].at(k);
+            let along = Bounds::of(|i| changes[block].at(i, k) - rates.at(i) * delay);
+            let column = carried(field, (after, &tube, &along), self.times, unit, self.rest);
+            turned[block].set_column(k, &column.ok_or(Reason::NoTube)?);
         }
-        let of_centre = from(centre, centre_times).ok_or(Reason::NoTube)?;
-        let moved = of_centre.at(ahead(meeting.centre_units));
-        match moved.is_finite() {
-            true => Ok((self.frame.moved(&moved, &turned), sides)),
-            false => Err(Reason::NotFinite),
-        }
+        Ok((self.frame.moved(moved, &turned), sides))
     }
 }
 
 /// All changes of the states along directions after so many units of time, from all states of a box with a tube.
-fn carried<Sys: Variational + Impacting>(
-    surfaces: &Surfaces<'_, '_, Sys>,
+fn carried<Sys: Variational>(
+    field: &Field<'_, Sys>,
     (from, tube, along): (
         &Bounds<Sys::State>,
         &Bounds<Sys::State>,
@@ -447,7 +521,6 @@ fn carried<Sys: Variational + Impacting>(
     unit: Interval,
     units: Interval,
 ) -> Option<Bounds<Sys::State>> {
-    let field = surfaces.field;
     let during = Interval::new(0.0, (unit * units).hi);
     let times = start + during;
     let tube_along = field.tube_along(tube, along, times, during)?;

@@ -9,7 +9,7 @@
 //!
 //! with the Taylor coefficients `c_k` of the motion over intervals, and `J` the derivative of the sum by the start, over all of `Y`.
 
-use super::frame::{Bounds, Frame, Matrix};
+use super::frame::{Bounds, Frame, Matrix, Turned};
 use super::lost::{Lost, Reason};
 use super::series::{Arc, Field, bounds, row};
 use crate::contract::Variational;
@@ -249,12 +249,11 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         bounds.is_finite().then_some(Moved { bounds, excess })
     }
 
-    /// The derivatives of the sum of a step by its start, all over the hull, along each axis of the frame.
-    fn turned(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Matrix<Sys>> {
+    /// The derivatives of the sum of a step by its start, all over the hull, along the axes of the frame.
+    fn turned(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Turned<Sys>> {
         let now = Interval::point(self.t);
-        let mut turned = Matrix::zero();
-        for k in 0..Sys::State::LEN {
-            let axis = self.frame.axis(k);
+        let mut turned = [Matrix::zero(), Matrix::zero()];
+        for (block, k, axis) in self.frame.axes() {
             let series = self
                 .field
                 .series_along(hull, &axis, now, length, ORDER - 1)?;
@@ -264,7 +263,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
                     .map(|order| series.coefficients[order].as_slice()[i].rate);
                 terms.fold(Interval::ZERO, |sum, term| sum + term)
             });
-            turned.set_column(k, &column);
+            turned[block].set_column(k, &column);
         }
         Some(turned)
     }

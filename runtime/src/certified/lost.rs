@@ -96,7 +96,10 @@ impl fmt::Display for Reason {
                 "the law of surface {surface} does not certainly give one finite state"
             ),
             Self::OffConstraint { surface } => {
-                write!(f, "the reset of surface {surface} leads off the constraints")
+                write!(
+                    f,
+                    "the reset of surface {surface} leads off the constraints"
+                )
             }
             Self::EndsAtImpact { surface } => write!(
                 f,

@@ -138,7 +138,13 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
     ) -> Option<Expansion<Sys, Rated>> {
         let parameters = self.steady_parameters();
         let start = rated_row::<Sys>(from, along);
-        expanded(&parameters, Rated::steady(times), &start, unit_of(unit), order)
+        expanded(
+            &parameters,
+            Rated::steady(times),
+            &start,
+            unit_of(unit),
+            order,
+        )
     }
 }
 
