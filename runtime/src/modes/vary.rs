@@ -6,7 +6,7 @@ use super::{Mode, Passage};
 use crate::contract::Variational;
 use crate::error::Fault;
 use crate::impacts::law::Law;
-use crate::numbers::{Numbers, Row};
+use crate::numbers::{Interval, Numbers, Row};
 
 /// A mode whose transitions can be computed in any [`Numbers`]. Implemented by `model!`.
 pub trait VariationalMode: Mode + Variational {
@@ -120,6 +120,19 @@ pub fn deviations_of<M: VariationalMode, L: Numbers, R: Row<L>>(
         *place = *value;
     }
     Ok(all)
+}
+
+/// As [`Variational::counts_throughout`]; a surface that the mode does not have does not count.
+pub fn counts_throughout_of<M: VariationalMode>(
+    parameters: &[Interval],
+    surface: usize,
+    t: Interval,
+    state: &[Interval],
+) -> Option<bool> {
+    match super::embed::own_surface::<M>(surface) {
+        Some(own) => M::counts_throughout(&beginning(parameters), own, t, &beginning(state)),
+        None => Some(false),
+    }
 }
 
 /// As [`Variational::clearances`]; 1 for surfaces that the mode does not have.
