@@ -181,8 +181,9 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
                 Err(met) => {
                     let impact = self.meet(&step, met, t_end);
                     let t = self.flow.t;
-                    if let Some(impact) = impact.map_err(|reason| Lost { t, reason })? {
-                        return Ok(Some(impact));
+                    let impact = impact.map_err(|reason| Lost { t, reason })?;
+                    if impact.is_some() {
+                        return Ok(impact);
                     }
                 }
             }
@@ -242,8 +243,9 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         met: Met,
         t_end: f64,
     ) -> Result<Option<CertifiedImpact<Sys>>, Reason> {
-        let mut last = self.t() >= step.later || met.at == 0.0;
+        let mut last = met.at == 0.0;
         let mut reason = met.reason;
+        let mut nearest = None;
         for margin in MARGINS {
             let part = met.at - margin * f64::max(met.at, 1.0 / 1024.0);
             let t = (Interval::point(self.t()) + step.length * Interval::point(part)).lo;
@@ -251,13 +253,22 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
             let Some((flow, sides)) = self.brought_to(if last { self.t() } else { t }) else {
                 continue;
             };
-            match self.crossed(&flow, met.surface, &sides) {
+            let is_behind = matches!(met.reason, Reason::MayBeBehind { .. });
+            let crossed = match is_behind {
+                true => Err(met.reason),
+                false => self.crossed(&flow, met.surface, &sides),
+            };
+            match crossed {
                 Ok((surface, crossed)) => return self.take(&flow, (surface, &crossed), t_end),
                 Err(found) => reason = found,
             }
-            if last {
+            nearest.get_or_insert((flow, sides));
+            if last || is_behind {
                 break;
             }
+        }
+        if let Some((flow, sides)) = nearest {
+            (self.flow, self.sides) = (flow, sides);
         }
         Err(reason)
     }
