@@ -1061,19 +1061,14 @@ fn every_motion_from_a_box_is_held_across_impacts() {
             *range = range.hull(point(value.nearest()));
         }
     }
-    // The widths are those of the motions themselves, nearly.
-    for (i, range) in reached.into_iter().enumerate() {
-        let found = enclosures.last().unwrap().1[i].width();
-        println!(
-            "component {i}: width {found:.1e}, of the corners {:.1e}",
-            range.width()
-        );
-        assert!(
-            found < 2.0 * range.width() + 1e-8,
-            "{i}: {found:e}, {:e}",
-            range.width()
-        );
-    }
+    // The widest is as wide as the motions make it, nearly.
+    let found = enclosures.last().unwrap().1;
+    let [found, reached] = [found, reached].map(|ranges| {
+        let widths = ranges.map(Interval::width);
+        widths.into_iter().fold(0.0, f64::max)
+    });
+    println!("box of {RADIUS}: width {found:.1e}, of its corners {reached:.1e}");
+    assert!(found < 1.1 * reached, "{found:e}, {reached:e}");
 }
 
 #[test]
