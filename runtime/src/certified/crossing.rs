@@ -15,7 +15,7 @@
 //! Reference: M. A. Aizerman, F. R. Gantmakher, *Determination of stability by linear approximation of a periodic solution of a system of
 //! differential equations with discontinuous right-hand sides*, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958).
 
-use super::course::{Course, Side, Sides, Surfaces};
+use super::course::{Course, Part, Side, Sides, Surfaces};
 use super::frame::{BLOCKS, Bounds, Frame, Matrix, Slopes, Turned};
 use super::lost::Reason;
 use super::series::{Arc, Field, bounds, rated_row, row};
@@ -49,6 +49,8 @@ pub(super) struct Crossed<Sys: Variational + Impacting> {
     pub(super) sides: Sides<Sys>,
     /// The sides before the impact.
     pub(super) sides_before: Sides<Sys>,
+    /// Derivatives that were given: where the surface is met, and at the later time.
+    pub(super) derivatives: Option<[Matrix<Sys>; 2]>,
 }
 
 /// Motion from `t_0` over a surface.
@@ -65,7 +67,8 @@ struct Approach<'s, 'f, 'a, Sys: Variational + Impacting> {
     /// Changes of the states at any time until `t_1` along each axis, and those of the gap.
     turned: Turned<Sys>,
     slopes: Slopes<Sys>,
-    /// All rates of the gap by units of time, until `t_1`.
+    /// All motions until `t_1`, and all rates of the gap by units of time.
+    whole: Part<Sys::State>,
     rate: Interval,
 }
 
@@ -77,6 +80,8 @@ struct Meeting<Sys: Variational> {
     rates_before: Bounds<Sys::State>,
     /// Changes of the time along each axis.
     delays: Slopes<Sys>,
+    /// All rates of the gap by units of time, while it is met.
+    rate: Interval,
 }
 
 /// The impact of the centre.
@@ -88,7 +93,8 @@ struct Centre<S> {
     moved: Bounds<S>,
 }
 
-/// Maps the states of a frame at the time `t`, at which the gap of a surface is positive and falls, across the impact there.
+/// Maps the states of a frame at the time `t`, at which the gap of a surface is positive and falls, across the impact there, and with them
+/// the columns of a derivative.
 ///
 /// # Errors
 /// The condition that could not be proved.
@@ -97,12 +103,13 @@ pub(super) fn cross<Sys: Variational + Impacting>(
     strike: &Strike,
     (t, frame): (f64, &Frame<Sys>),
     sides: &Sides<Sys>,
+    derivative: Option<&Matrix<Sys>>,
 ) -> Result<Crossed<Sys>, Reason> {
     let surface = strike.surface;
     let approach = Approach::new(surfaces, surface, (t, frame))?;
     let meeting = approach.meeting()?;
     let sides_before = approach.pass_others(&meeting, sides)?;
-    approach.struck(strike, &meeting, &sides_before)
+    approach.struck(strike, &meeting, &sides_before, derivative)
 }
 
 impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
@@ -169,28 +176,27 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             centre,
             turned: [Matrix::zero(), Matrix::zero()],
             slopes: [Bounds::point(&Sys::State::zeros()); BLOCKS],
+            whole,
             rate,
         };
         for (block, k, axis) in frame.axes() {
-            let column = approach.carried(&axis)?;
-            let steady = Rated::steady(whole.times);
-            let states = rated_row::<Sys>(&whole.states, &column);
-            let gaps = Sys::clearances(&field.steady_parameters(), steady, &states).ok()?;
-            approach.slopes[block].set(k, gaps.as_slice()[surface].rate);
+            let (column, slope) = approach.swept(&axis)?;
+            approach.slopes[block].set(k, slope);
             approach.turned[block].set_column(k, &column);
         }
         Some(approach)
     }
 
-    /// `Dphi q`: all changes of the states along a direction, at any time until `t_1`.
-    fn carried(&self, direction: &Bounds<Sys::State>) -> Option<Bounds<Sys::State>> {
-        carried(
-            self.surfaces.field,
-            (&self.frame.hull(), &self.tube, direction),
-            Interval::point(self.t),
-            self.unit,
-            Interval::new(0.0, 1.0),
-        )
+    /// `Dphi q`: all changes of the states along a direction, at any time until `t_1`, and those of the gap.
+    fn swept(&self, direction: &Bounds<Sys::State>) -> Option<(Bounds<Sys::State>, Interval)> {
+        let (field, whole) = (self.surfaces.field, &self.whole);
+        let from = (&self.frame.hull(), &self.tube, direction);
+        let (now, units) = (Interval::point(self.t), Interval::new(0.0, 1.0));
+        let column = carried(field, from, now, self.unit, units, ORDER)?;
+        let states = rated_row::<Sys>(&whole.states, &column);
+        let steady = Rated::steady(whole.times);
+        let gaps = Sys::clearances(&field.steady_parameters(), steady, &states).ok()?;
+        Some((column, gaps.as_slice()[self.surface].rate))
     }
 
     /// The gap of all motions after so many units of time.
@@ -260,6 +266,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             before: part.states,
             rates_before: part.rates,
             delays,
+            rate,
         })
     }
 
@@ -281,6 +288,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         strike: &Strike,
         meeting: &Meeting<Sys>,
         sides_before: &Sides<Sys>,
+        derivative: Option<&Matrix<Sys>>,
     ) -> Result<Crossed<Sys>, Reason> {
         let surface = self.surface;
         let unsure = Reason::UnsureLaw { surface };
@@ -321,22 +329,57 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let departure = Departure {
             surfaces: self.surfaces,
             surface,
-            frame: self.frame,
             times,
             unit: self.unit,
             rest: Interval::new(0.0, ahead(rest, meeting.units).hi),
         };
-        let all = (&after, &changes);
-        let (frame, sides) = departure.gone_on(&meeting.delays, &centre.moved, all, &sides)?;
+        let departed = departure.departed(&after, &sides)?;
+        let column = |along: &Bounds<Sys::State>, delay: Interval| {
+            let column = departure.carried(&departed, &after, along, delay);
+            column.ok_or(Reason::NoTube)
+        };
+        let mut turned = [Matrix::<Sys>::zero(), Matrix::zero()];
+        for (block, k, _) in self.frame.axes() {
+            let along = changes[block].column(k);
+            let later = column(&along, meeting.delays[block].at(k))?;
+            turned[block].set_column(k, &later);
+        }
+        let mut derivatives = None;
+        if let Some(derivative) = derivative {
+            let mut both = [Matrix::<Sys>::zero(), Matrix::zero()];
+            for k in 0..Sys::State::LEN {
+                let struck = self.struck_along(strike, meeting, &derivative.column(k));
+                let (along, delay) = struck.ok_or(unsure)?;
+                both[0].set_column(k, &along);
+                both[1].set_column(k, &column(&along, delay)?);
+            }
+            derivatives = Some(both);
+        }
         Ok(Crossed {
             time: time.intersection(times).unwrap_or(times),
             before: meeting.before.within(&before),
             after,
             t: later,
-            frame,
-            sides,
+            frame: self.frame.moved(&centre.moved, &turned),
+            sides: departed.sides,
             sides_before: *sides_before,
+            derivatives,
         })
+    }
+
+    /// Changes of the state after the law along a direction from `t_0`, and of the time.
+    fn struck_along(
+        &self,
+        strike: &Strike,
+        meeting: &Meeting<Sys>,
+        direction: &Bounds<Sys::State>,
+    ) -> Option<(Bounds<Sys::State>, Interval)> {
+        let (column, slope) = self.swept(direction)?;
+        let delay = -(slope / meeting.rate) * self.unit;
+        let along = Bounds::of(|i| column.at(i) + meeting.rates_before.at(i) * delay);
+        let met = (self.all.times(meeting.units), &meeting.before);
+        let after = applied_along(self.surfaces.field, strike, met, &along, delay)?;
+        Some((after, delay))
     }
 
     /// The impact of the centre, and where it is when `rest` units of time have passed from `t_0`.
@@ -388,7 +431,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let shift = Bounds::of(|i| by_time.at(i) - rates_after.at(i));
         let carried = |along: &Bounds<Sys::State>| {
             let from = (&all_after, &tube, along);
-            carried(field, from, time, self.unit, ahead_of(units))
+            carried(field, from, time, self.unit, ahead_of(units), ORDER)
         };
         let (by_offset, by_time) = (carried(&by_offset)?, carried(&shift)?);
         let moved = Bounds::of(|i| end.at(i) + by_offset.at(i) + by_time.at(i) * late);
@@ -467,10 +510,9 @@ fn ahead(rest: Interval, units: Interval) -> Interval {
 }
 
 /// Motion from an impact, at whatever time it comes, to one time after it.
-struct Departure<'s, 'f, 'a, Sys: Variational + Impacting> {
-    surfaces: &'s Surfaces<'f, 'a, Sys>,
+struct Departure<'f, 'a, Sys: Variational + Impacting> {
+    surfaces: &'f Surfaces<'f, 'a, Sys>,
     surface: usize,
-    frame: &'s Frame<Sys>,
     /// All times of the impact.
     times: Interval,
     unit: Interval,
@@ -478,14 +520,20 @@ struct Departure<'s, 'f, 'a, Sys: Variational + Impacting> {
     rest: Interval,
 }
 
-impl<Sys: Variational + Impacting> Departure<'_, '_, '_, Sys> {
-    fn gone_on(
+/// All motions after an impact.
+struct Departed<Sys: Variational + Impacting> {
+    tube: Bounds<Sys::State>,
+    rates: Bounds<Sys::State>,
+    sides: Sides<Sys>,
+}
+
+impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
+    /// Passes all surfaces.
+    fn departed(
         &self,
-        delays: &Slopes<Sys>,
-        moved: &Bounds<Sys::State>,
-        (after, changes): (&Bounds<Sys::State>, &Turned<Sys>),
+        after: &Bounds<Sys::State>,
         sides: &Sides<Sys>,
-    ) -> Result<(Frame<Sys>, Sides<Sys>), Reason> {
+    ) -> Result<Departed<Sys>, Reason> {
         let (field, unit, surface) = (self.surfaces.field, self.unit, self.surface);
         let during = Interval::new(0.0, (unit * self.rest).hi);
         let times = self.times + during;
@@ -498,19 +546,26 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, '_, Sys> {
             false => together(surface, other, reason),
         })?;
         let rates = field.rates(self.times, after).ok_or(Reason::NoTube)?;
-        let mut turned = [Matrix::<Sys>::zero(), Matrix::zero()];
-        for (block, k, _) in self.frame.axes() {
-            let delay = delays[block].at(k);
-            let along = Bounds::of(|i| changes[block].at(i, k) - rates.at(i) * delay);
-            let column = carried(field, (after, &tube, &along), self.times, unit, self.rest);
-            turned[block].set_column(k, &column.ok_or(Reason::NoTube)?);
-        }
-        Ok((self.frame.moved(moved, &turned), sides))
+        Ok(Departed { tube, rates, sides })
+    }
+
+    /// Changes of the state at the time after all impacts, from those where the surface is met.
+    fn carried(
+        &self,
+        departed: &Departed<Sys>,
+        after: &Bounds<Sys::State>,
+        along: &Bounds<Sys::State>,
+        delay: Interval,
+    ) -> Option<Bounds<Sys::State>> {
+        let along = Bounds::of(|i| along.at(i) - departed.rates.at(i) * delay);
+        let from = (after, &departed.tube, &along);
+        let (field, unit) = (self.surfaces.field, self.unit);
+        carried(field, from, self.times, unit, self.rest, ORDER)
     }
 }
 
 /// All changes of the states along directions after so many units of time, from all states of a box with a tube.
-fn carried<Sys: Variational>(
+pub(super) fn carried<Sys: Variational>(
     field: &Field<'_, Sys>,
     (from, tube, along): (
         &Bounds<Sys::State>,
@@ -520,13 +575,14 @@ fn carried<Sys: Variational>(
     start: Interval,
     unit: Interval,
     units: Interval,
+    order: usize,
 ) -> Option<Bounds<Sys::State>> {
     let during = Interval::new(0.0, (unit * units).hi);
     let times = start + during;
     let tube_along = field.tube_along(tube, along, times, during)?;
-    let series = field.series_along(from, along, start, unit, ORDER)?;
-    let remainder = field.series_along(tube, &tube_along, times, unit, ORDER)?;
-    let end = Arc::new(&series, &remainder, ORDER).at(Rated::steady(units));
+    let series = field.series_along(from, along, start, unit, order)?;
+    let remainder = field.series_along(tube, &tube_along, times, unit, order)?;
+    let end = Arc::new(&series, &remainder, order).at(Rated::steady(units));
     let changes = Bounds::of(|i| end.as_slice()[i].rate);
     changes.is_finite().then_some(changes)
 }

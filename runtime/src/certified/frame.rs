@@ -73,6 +73,14 @@ pub(super) struct Matrix<Sys: Variational> {
     hi: Sys::Columns,
 }
 
+impl<Sys: Variational> Clone for Matrix<Sys> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys: Variational> Copy for Matrix<Sys> {}
+
 impl<Sys: Variational> Matrix<Sys> {
     pub(super) fn zero() -> Self {
         Self {
@@ -92,7 +100,7 @@ impl<Sys: Variational> Matrix<Sys> {
     }
 
     /// A matrix of numbers.
-    fn of(columns: &Sys::Columns) -> Self {
+    pub(super) fn of(columns: &Sys::Columns) -> Self {
         Self {
             lo: *columns,
             hi: *columns,
@@ -100,7 +108,7 @@ impl<Sys: Variational> Matrix<Sys> {
     }
 
     /// Numbers in the middle of its entries.
-    fn middle(&self) -> Sys::Columns {
+    pub(super) fn middle(&self) -> Sys::Columns {
         let mut middle = Sys::columns();
         for (j, column) in middle.as_mut().iter_mut().enumerate() {
             for (i, entry) in column.as_mut_slice().iter_mut().enumerate() {
@@ -108,6 +116,11 @@ impl<Sys: Variational> Matrix<Sys> {
             }
         }
         middle
+    }
+
+    /// Column `j`.
+    pub(super) fn column(&self, j: usize) -> Bounds<Sys::State> {
+        Bounds::of(|i| self.at(i, j))
     }
 
     /// Replaces column `j`.
@@ -270,7 +283,7 @@ fn joined<Sys: Variational>(first: &Block<Sys>, second: &Block<Sys>) -> Block<Sy
     }
 }
 
-fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Matrix<Sys> {
+pub(super) fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Matrix<Sys> {
     let mut product = Matrix::zero();
     for i in 0..Sys::State::LEN {
         for j in 0..Sys::State::LEN {

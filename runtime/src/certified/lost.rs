@@ -56,6 +56,8 @@ pub enum Reason {
         /// The surface.
         surface: usize,
     },
+    /// The box has states of several modes.
+    SeveralModes,
     /// The end of the time asked for may lie before an impact or after it.
     EndsAtImpact {
         /// The surface.
@@ -77,6 +79,7 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NoTube => write!(f, "no box holds the motion for the shortest step"),
+            Self::SeveralModes => write!(f, "the box has states of several modes"),
             Self::NotFinite => write!(f, "the box is not finite"),
             Self::MayGraze { surface } => write!(f, "surface {surface} may be grazed"),
             Self::MayMeetTogether { surface, other } => {

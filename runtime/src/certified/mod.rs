@@ -8,6 +8,7 @@
 //! | `course.rs` | gaps along a step: which surfaces are certainly not met |
 //! | `crossing.rs` | the impact of all motions of a box: when, where, and the states at one time after it |
 //! | `run.rs` | smooth motion and impacts by turns |
+//! | `orbit.rs` | periodic orbits that exist and attract by proof |
 //! | `lost.rs` | where certified motion ends, and why |
 //!
 //! References: R. J. Lohner, *Computation of guaranteed enclosures for the solutions of ordinary initial and boundary value problems*,
@@ -19,9 +20,11 @@ mod crossing;
 mod flow;
 mod frame;
 mod lost;
+mod orbit;
 mod run;
 mod series;
 
 pub use flow::CertifiedFlow;
 pub use lost::{Lost, Reason};
+pub use orbit::{CertifiedOrbit, CertifiedSection, NotProved};
 pub use run::{CertifiedImpact, CertifiedRun};

@@ -3,10 +3,11 @@
 use core::ops::ControlFlow;
 
 use super::course::{Course, Met, Side, Sides, Surfaces};
-use super::crossing::{Crossed, cross};
+use super::crossing::{Crossed, carried, cross};
 use super::flow::{CertifiedFlow, ORDER, Step};
-use super::frame::Bounds;
+use super::frame::{Bounds, Matrix};
 use super::lost::{Lost, Reason};
+use super::series::Field;
 use crate::contract::{Impacting, Variational};
 use crate::error::Fault;
 use crate::impacts::law::Law;
@@ -29,8 +30,10 @@ pub struct CertifiedImpact<Sys: Variational> {
     pub surface: usize,
     /// All times of the impact.
     pub time: Interval,
-    before: Bounds<Sys::State>,
-    after: Bounds<Sys::State>,
+    pub(super) before: Bounds<Sys::State>,
+    pub(super) after: Bounds<Sys::State>,
+    /// All derivatives of the state after the impact by the start, where they are asked for.
+    pub(super) derivative: Option<Matrix<Sys>>,
 }
 
 impl<Sys: Variational> CertifiedImpact<Sys> {
@@ -82,20 +85,60 @@ impl<Sys: Variational> CertifiedImpact<Sys> {
 /// # Ok::<(), dalembert::certified::Lost>(())
 /// ```
 pub struct CertifiedRun<'a, Sys: Variational + Impacting> {
-    flow: CertifiedFlow<'a, Sys>,
+    progress: Progress<'a, Sys>,
     laws: Overrides<<Sys as Impacting>::Gaps>,
-    sides: Sides<Sys>,
     is_begun: bool,
     impacts: u64,
+}
+
+/// The motion up to a time.
+struct Progress<'a, Sys: Variational + Impacting> {
+    flow: CertifiedFlow<'a, Sys>,
+    sides: Sides<Sys>,
+    /// All derivatives by the start, where they are asked for.
+    derivative: Option<Matrix<Sys>>,
+}
+
+impl<Sys: Variational + Impacting> Clone for Progress<'_, Sys> {
+    fn clone(&self) -> Self {
+        Self {
+            flow: self.flow.clone(),
+            sides: self.sides,
+            derivative: self.derivative,
+        }
+    }
+}
+
+impl<Sys: Variational + Impacting> Progress<'_, Sys> {
+    /// Makes a step that was prepared here, at the end of which surfaces are on these sides.
+    fn make(&mut self, step: &Step<Sys>, sides: Sides<Sys>) -> Result<(), Reason> {
+        let flow = &self.flow;
+        if let Some(derivative) = &mut self.derivative {
+            let (now, hull) = (Interval::point(flow.t), flow.frame.hull());
+            for k in 0..Sys::State::LEN {
+                let from = (&hull, &step.tube, &derivative.column(k));
+                let (unit, end) = (step.length, Interval::point(1.0));
+                let column = carried(&flow.field, from, now, unit, end, ORDER);
+                derivative.set_column(k, &column.ok_or(Reason::NoTube)?);
+            }
+        }
+        self.flow.make(step);
+        self.sides = sides;
+        Ok(())
+    }
 }
 
 impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     /// Begins at the time `t` with all states whose component `i` lies in `start(i)`.
     pub fn new(system: &'a Sys, t: f64, start: impl Fn(usize) -> Interval) -> Self {
-        Self {
+        let progress = Progress {
             flow: CertifiedFlow::new(system, t, start),
-            laws: Overrides::none(),
             sides: Sides::unknown(),
+            derivative: None,
+        };
+        Self {
+            progress,
+            laws: Overrides::none(),
             is_begun: false,
             impacts: 0,
         }
@@ -104,7 +147,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     /// With all values in a range for a parameter, as [`CertifiedFlow::with_parameter`] takes it.
     #[must_use]
     pub fn with_parameter(mut self, index: usize, range: Interval) -> Self {
-        self.flow = self.flow.with_parameter(index, range);
+        self.progress.flow.field.set_parameter(index, range);
         self
     }
 
@@ -117,12 +160,12 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
 
     /// The time that was reached.
     pub fn t(&self) -> f64 {
-        self.flow.t
+        self.progress.flow.t
     }
 
     /// Steps made so far.
     pub fn steps(&self) -> u64 {
-        self.flow.steps()
+        self.progress.flow.steps()
     }
 
     /// Impacts so far.
@@ -132,12 +175,12 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
 
     /// All values that component `i` of the state may have now.
     pub fn component(&self, i: usize) -> Interval {
-        self.flow.component(i)
+        self.progress.flow.component(i)
     }
 
     /// The width of the widest component.
     pub fn width(&self) -> f64 {
-        self.flow.width()
+        self.progress.flow.width()
     }
 
     /// All positions and velocities that the state may have now, as [`CertifiedFlow::velocities`] gives them.
@@ -145,7 +188,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     /// # Errors
     /// [`Fault`] where a velocity may not exist.
     pub fn velocities(&self) -> Result<Sys::Configuration<Interval>, Fault> {
-        self.flow.velocities()
+        self.progress.flow.velocities()
     }
 
     /// Follows the motion to the time `t_end`, or until `observer` breaks after an impact.
@@ -170,52 +213,72 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     /// # Errors
     /// As [`CertifiedRun::run`].
     pub fn next_impact(&mut self, t_end: f64) -> Result<Option<CertifiedImpact<Sys>>, Lost> {
-        self.begin();
-        while self.flow.t < t_end {
-            let step = self.flow.prepare(t_end)?;
-            match self.watched(&self.flow, &step) {
-                Ok(sides) => {
-                    self.flow.make(&step);
-                    self.sides = sides;
-                }
-                Err(met) => {
-                    let impact = self.meet(&step, met, t_end);
-                    let t = self.flow.t;
-                    let impact = impact.map_err(|reason| Lost { t, reason })?;
-                    if impact.is_some() {
-                        return Ok(impact);
-                    }
-                }
+        self.begin()?;
+        while self.t() < t_end {
+            let step = self.progress.flow.prepare(t_end)?;
+            let made = match self.watched(&self.progress, &step) {
+                Ok(sides) => self.progress.make(&step, sides).map(|()| None),
+                Err(met) => self.meet(&step, met, t_end),
+            };
+            let t = self.t();
+            let impact = made.map_err(|reason| Lost { t, reason })?;
+            if impact.is_some() {
+                return Ok(impact);
             }
         }
         Ok(None)
     }
 
-    /// At the start, surfaces at which the gap is exactly 0 are known to be left or entered.
-    fn begin(&mut self) {
-        if core::mem::replace(&mut self.is_begun, true) {
-            return;
+    /// With all derivatives by the start; they are those at [`CertifiedRun::t`].
+    pub(super) fn with_derivative(mut self) -> Self {
+        let mut identity = Sys::columns();
+        for (j, column) in identity.as_mut().iter_mut().enumerate() {
+            column.as_mut_slice()[j] = 1.0;
         }
-        let (now, hull) = (Interval::point(self.flow.t), self.flow.frame.hull());
-        let Some(gaps) = self.flow.field.gaps_at(now, &hull) else {
-            return;
+        self.progress.derivative = Some(Matrix::of(&identity));
+        self
+    }
+
+    pub(super) fn field(&self) -> &Field<'a, Sys> {
+        &self.progress.flow.field
+    }
+
+    pub(super) fn set_field(&mut self, field: &Field<'a, Sys>) {
+        self.progress.flow.field = *field;
+    }
+
+    /// At the start, surfaces at which the gap is exactly 0 are known to be left or entered.
+    fn begin(&mut self) -> Result<(), Lost> {
+        if core::mem::replace(&mut self.is_begun, true) {
+            return Ok(());
+        }
+        let Progress { flow, sides, .. } = &mut self.progress;
+        let (t, hull) = (flow.t, flow.frame.hull());
+        let [one, other] = [hull.lo, hull.hi].map(|corner| flow.field.system.mode(&corner));
+        if one != other {
+            let reason = Reason::SeveralModes;
+            return Err(Lost { t, reason });
+        }
+        let Some(gaps) = flow.field.gaps_at(Interval::point(t), &hull) else {
+            return Ok(());
         };
         for (surface, gap) in gaps.as_slice().iter().enumerate() {
             if gap.lo >= 0.0 {
-                self.sides.set(surface, Side::Above);
+                sides.set(surface, Side::Above);
             } else if gap.hi <= 0.0 {
-                self.sides.set(surface, Side::Below);
+                sides.set(surface, Side::Below);
             }
         }
+        Ok(())
     }
 
-    /// What may be met in a step of a flow, or the sides of all surfaces at its end.
-    fn watched(&self, flow: &CertifiedFlow<'a, Sys>, step: &Step<Sys>) -> Result<Sides<Sys>, Met> {
+    /// What may be met in a step, or the sides of all surfaces at its end.
+    fn watched(&self, progress: &Progress<'a, Sys>, step: &Step<Sys>) -> Result<Sides<Sys>, Met> {
+        let flow = &progress.flow;
         let (now, hull) = (Interval::point(flow.t), flow.frame.hull());
         let (tube, length) = (&step.tube, step.length);
-        let course = Course::new(&flow.field, &hull, tube, now, length, ORDER);
-        match course {
-            Some(course) => self.surfaces(flow).passed(&course, &self.sides),
+        match Course::new(&flow.field, &hull, tube, now, length, ORDER) {
+            Some(course) => self.surfaces(flow).passed(&course, &progress.sides),
             None => Err(Met {
                 surface: 0,
                 reason: Reason::NoTube,
@@ -236,7 +299,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Surfaces { field, passable }
     }
 
-    /// Crosses the surface that may be met in a step; `None` where the motion was only brought nearer to it, or to `t_end`.
+    /// Crosses the surface that may be met in a step; `None` where the motion only went on to `t_end`.
     fn meet(
         &mut self,
         step: &Step<Sys>,
@@ -250,57 +313,61 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
             let part = met.at - margin * f64::max(met.at, 1.0 / 1024.0);
             let t = (Interval::point(self.t()) + step.length * Interval::point(part)).lo;
             last |= t <= self.t();
-            let Some((flow, sides)) = self.brought_to(if last { self.t() } else { t }) else {
+            let Some(near) = self.brought_to(if last { self.t() } else { t }) else {
                 continue;
             };
             let is_behind = matches!(met.reason, Reason::MayBeBehind { .. });
             let crossed = match is_behind {
                 true => Err(met.reason),
-                false => self.crossed(&flow, met.surface, &sides),
+                false => self.crossed(&near, met.surface),
             };
             match crossed {
-                Ok((surface, crossed)) => return self.take(&flow, (surface, &crossed), t_end),
+                Ok((surface, crossed)) => return self.take(near, surface, &crossed, t_end),
                 Err(found) => reason = found,
             }
-            nearest.get_or_insert((flow, sides));
+            nearest.get_or_insert(near);
             if last || is_behind {
                 break;
             }
         }
-        if let Some((flow, sides)) = nearest {
-            (self.flow, self.sides) = (flow, sides);
+        if let Some(near) = nearest {
+            self.progress = near;
         }
         Err(reason)
     }
 
     /// The motion at a time before which nothing is met.
-    fn brought_to(&self, t: f64) -> Option<(CertifiedFlow<'a, Sys>, Sides<Sys>)> {
-        let (mut flow, mut sides) = (self.flow.clone(), self.sides);
-        while flow.t < t {
-            let step = flow.prepare(t).ok()?;
-            let (now, hull) = (Interval::point(flow.t), flow.frame.hull());
-            let course = Course::new(&flow.field, &hull, &step.tube, now, step.length, ORDER)?;
-            sides = self.surfaces(&flow).passed(&course, &sides).ok()?;
-            flow.make(&step);
+    fn brought_to(&self, t: f64) -> Option<Progress<'a, Sys>> {
+        let mut progress = self.progress.clone();
+        while progress.flow.t < t {
+            let step = progress.flow.prepare(t).ok()?;
+            let sides = self.watched(&progress, &step).ok()?;
+            progress.make(&step, sides).ok()?;
         }
-        Some((flow, sides))
+        Some(progress)
     }
 
     /// The impact on a surface from the motion shortly before it, or on another that may be first.
     fn crossed(
         &self,
-        flow: &CertifiedFlow<'a, Sys>,
+        near: &Progress<'a, Sys>,
         surface: usize,
-        sides: &Sides<Sys>,
     ) -> Result<(usize, Crossed<Sys>), Reason> {
+        let flow = &near.flow;
         let at = |surface: usize| {
             let strike = Strike {
                 surface,
                 chosen: self.chosen(surface)?,
                 motion_start: flow.field.system.motion_start(&flow.frame.centre),
             };
-            let surfaces = self.surfaces(flow);
-            cross(&surfaces, &strike, (flow.t, &flow.frame), sides)
+            let (surfaces, start) = (self.surfaces(flow), (flow.t, &flow.frame));
+            cross(
+                &surfaces,
+                &strike,
+                start,
+                &near.sides,
+                near.derivative.as_ref(),
+            )
         };
         match at(surface) {
             Ok(crossed) => Ok((surface, crossed)),
@@ -314,7 +381,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
 
     /// The law chosen for a surface, if there is one. A map is not to be chosen.
     fn chosen(&self, surface: usize) -> Result<Option<Law>, Reason> {
-        let declared = self.flow.field.system.law(surface);
+        let declared = self.field().system.law(surface);
         match self.laws.get(surface).filter(|law| *law != declared) {
             Some(law) if law.is_map() => Err(Reason::UnsureLaw { surface }),
             chosen => Ok(chosen),
@@ -324,30 +391,35 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     /// Goes on after an impact, if it is certainly not after `t_end`.
     fn take(
         &mut self,
-        flow: &CertifiedFlow<'a, Sys>,
-        (surface, crossed): (usize, &Crossed<Sys>),
+        near: Progress<'a, Sys>,
+        surface: usize,
+        crossed: &Crossed<Sys>,
         t_end: f64,
     ) -> Result<Option<CertifiedImpact<Sys>>, Reason> {
-        (self.flow, self.sides) = (flow.clone(), crossed.sides_before);
+        self.progress = near;
         if crossed.time.lo > t_end {
             // Until then no surface is met.
-            while self.flow.t < t_end {
-                let step = self.flow.prepare(t_end).map_err(|lost| lost.reason)?;
-                self.flow.make(&step);
+            while self.t() < t_end {
+                let step = self.progress.flow.prepare(t_end);
+                let step = step.map_err(|lost| lost.reason)?;
+                self.progress.make(&step, crossed.sides_before)?;
             }
             return Ok(None);
         }
         if crossed.t > t_end {
             return Err(Reason::EndsAtImpact { surface });
         }
-        self.flow.jump(crossed.t, crossed.frame);
-        self.sides = crossed.sides;
+        let derivatives = crossed.derivatives.as_ref();
+        self.progress.flow.jump(crossed.t, crossed.frame);
+        self.progress.sides = crossed.sides;
+        self.progress.derivative = derivatives.map(|[_, later]| *later);
         self.impacts += 1;
         Ok(Some(CertifiedImpact {
             surface,
             time: crossed.time,
             before: crossed.before,
             after: crossed.after,
+            derivative: derivatives.map(|[at_impact, _]| *at_impact),
         }))
     }
 }
