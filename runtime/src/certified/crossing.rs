@@ -190,7 +190,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
     /// `Dphi q`: all changes of the states along a direction, at any time until `t_1`, and those of the gap.
     fn swept(&self, direction: &Bounds<Sys::State>) -> Option<(Bounds<Sys::State>, Interval)> {
         let (field, whole) = (self.surfaces.field, &self.whole);
-        let from = (&self.frame.hull(), &self.tube, direction);
+        let hull = self.frame.hull();
+        let from = [&hull, &self.tube, direction];
         let (now, units) = (Interval::point(self.t), Interval::new(0.0, 1.0));
         let column = carried(field, from, now, self.unit, units, ORDER)?;
         let states = rated_row::<Sys>(&whole.states, &column);
@@ -430,7 +431,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let end = from.at(ahead_of(middle));
         let shift = Bounds::of(|i| by_time.at(i) - rates_after.at(i));
         let carried = |along: &Bounds<Sys::State>| {
-            let from = (&all_after, &tube, along);
+            let from = [&all_after, &tube, along];
             carried(field, from, time, self.unit, ahead_of(units), ORDER)
         };
         let (by_offset, by_time) = (carried(&by_offset)?, carried(&shift)?);
@@ -558,7 +559,7 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
         delay: Interval,
     ) -> Option<Bounds<Sys::State>> {
         let along = Bounds::of(|i| along.at(i) - departed.rates.at(i) * delay);
-        let from = (after, &departed.tube, &along);
+        let from = [after, &departed.tube, &along];
         let (field, unit) = (self.surfaces.field, self.unit);
         carried(field, from, self.times, unit, self.rest, ORDER)
     }
@@ -567,11 +568,7 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
 /// All changes of the states along directions after so many units of time, from all states of a box with a tube.
 pub(super) fn carried<Sys: Variational>(
     field: &Field<'_, Sys>,
-    (from, tube, along): (
-        &Bounds<Sys::State>,
-        &Bounds<Sys::State>,
-        &Bounds<Sys::State>,
-    ),
+    [from, tube, along]: [&Bounds<Sys::State>; 3],
     start: Interval,
     unit: Interval,
     units: Interval,

@@ -116,7 +116,8 @@ impl<Sys: Variational + Impacting> Progress<'_, Sys> {
         if let Some(derivative) = &mut self.derivative {
             let (now, hull) = (Interval::point(flow.t), flow.frame.hull());
             for k in 0..Sys::State::LEN {
-                let from = (&hull, &step.tube, &derivative.column(k));
+                let column = derivative.column(k);
+                let from = [&hull, &step.tube, &column];
                 let (unit, end) = (step.length, Interval::point(1.0));
                 let column = carried(&flow.field, from, now, unit, end, ORDER);
                 derivative.set_column(k, &column.ok_or(Reason::NoTube)?);

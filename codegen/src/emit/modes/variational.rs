@@ -136,8 +136,13 @@ fn of_row(whole: &Whole<'_>, arm: impl Fn(&Mode, &TokenStream) -> TokenStream) -
     whole.of_number(&number, arm)
 }
 
-/// `counts_throughout`, by the surfaces of the mode.
+/// `counts_throughout`, by the surfaces of the mode, where some have conditions.
 fn emit_counts_throughout(whole: &Whole<'_>) -> TokenStream {
+    let functions = whole.own().filter_map(|own| own.program.impacting.as_ref());
+    let mut conditions = functions.flat_map(|functions| &functions.conditions);
+    if !conditions.any(Option::is_some) {
+        return TokenStream::new();
+    }
     let answer = of_row(
         whole,
         |_, own| quote!(::dalembert::__private::modes::counts_throughout_of::<#own>(parameters, surface, t, state)),
