@@ -2,11 +2,12 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::audit::{Audit, Finding};
+use dalembert::effects::{Moment, StepView};
 use dalembert::integrate::Chosen;
 use dalembert::{
-    Dla2, Dop853, DormandPrince5, Effect, EventLog, Gauss4, Gauss6, Impacting, Impacts, Lagrangian,
-    Law, Outcome, Policies, Rest, Rk4, Simulation, StateVector, Stepper, Taylor, TaylorField,
-    Tolerance,
+    Dla2, Dop853, DormandPrince5, Effect, Event, EventLog, Gauss4, Gauss6, Impacting, Impacts,
+    Lagrangian, Law, NoForces, Observer, Outcome, Policies, Rest, Rk4, Simulation, StateVector,
+    Stepper, Taylor, TaylorField, Tolerance,
 };
 
 dalembert::model! {
@@ -279,5 +280,50 @@ fn hops_that_accumulate_and_rest_are_confirmed() {
     for run in with_every_integrator(&course, effects, start) {
         assert_eq!((run.outcome, run.finding), (Outcome::Done, None), "{run:?}");
         assert!(run.impacts > 10, "{run:?}");
+    }
+}
+
+/// Records an impact in the middle of every step.
+struct Invented;
+
+impl Effect<Peg> for Invented {
+    type Forces = NoForces;
+
+    fn propose<Step: Stepper<Peg>>(
+        &mut self,
+        _: &mut StepView<'_, Peg, Step>,
+    ) -> Result<Option<f64>, Outcome> {
+        Ok(Some(0.5))
+    }
+
+    fn act<O: Observer<Peg>>(
+        &mut self,
+        _: f64,
+        now: &mut Moment<'_, Peg>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        let _ = observer.event(&Event {
+            t: now.t,
+            surface: 0,
+            law: Law::Elastic,
+            before: *now.state,
+            after: *now.state,
+            simultaneous: false,
+            graze: false,
+        });
+        Err(Outcome::Stopped)
+    }
+}
+
+#[test]
+fn an_impact_away_from_its_surface_is_found() {
+    let start = Start {
+        q: &[0.0, 2.0],
+        v: &[0.0, 0.0],
+        until: 1.0,
+    };
+    for run in with_every_integrator(&Peg::default(), || Invented, start) {
+        let is_found = matches!(run.finding, Some(Finding::Misplaced { surface: 0, .. }));
+        assert!(is_found, "{run:?}");
     }
 }

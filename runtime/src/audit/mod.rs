@@ -148,7 +148,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
             *slack = 0.0;
             return;
         }
-        if let Err(place) = scan.from_start(part) {
+        if let Err(place) = scan.exclude_falls(part) {
             self.note_met(surface, self.motion.time_at(place));
             return;
         }

@@ -55,7 +55,7 @@ impl<Sys: Impacting> Scan<'_, Sys> {
     ///
     /// # Errors
     /// The first place where it may be met.
-    pub(super) fn from_start(&self, part: f64) -> Result<(), f64> {
+    pub(super) fn exclude_falls(&self, part: f64) -> Result<(), f64> {
         let start = self.at(0.0);
         let mut is_above = start.lo > self.slack.max(floor(start));
         let (mut index, mut depth) = (0_u64, 0);
