@@ -83,8 +83,21 @@ impl<S: StateVector> Motion<S> {
         }
     }
 
-    /// All values of component `i` on a part of the step, and its rates by the part.
+    /// All values that rounding allows component `i` at a part of the step.
+    fn component_at(&self, i: usize, part: f64) -> Interval {
+        let part = Interval::point(part);
+        let terms = self.coefficients[..=self.order].iter().rev();
+        let value = terms.fold(Interval::point(0.0), |sum, coefficient| {
+            sum * part + Interval::point(coefficient.as_slice()[i])
+        });
+        value.widened(self.doubts[0].as_slice()[i])
+    }
+
+    /// All values of component `i` on a part of the step, and its rates by the part; at a single place no rates are asked for.
     pub(super) fn component(&self, i: usize, [from, to]: [f64; 2]) -> Rated {
+        if from == to {
+            return Rated::steady(self.component_at(i, from));
+        }
         let middle = 0.5 * (from + to);
         let radius = (to - middle).max(middle - from) * (1.0 + f64::EPSILON);
         let mut powers = [Interval::point(0.0); LENGTH];
@@ -146,7 +159,7 @@ mod tests {
             terms.fold(0.0, |sum, (k, c)| sum + k as f64 * c * x.powi(k as i32 - 1))
         };
         for start in 0..16 {
-            for width in [0.0, 1e-9, 0.01, 1.0 / 16.0, 0.5] {
+            for width in [1e-9, 0.01, 1.0 / 16.0, 0.5] {
                 let from = f64::from(start) / 16.0;
                 let to = (from + width).min(1.0);
                 let found = motion.component(0, [from, to]);
@@ -158,6 +171,8 @@ mod tests {
                     assert!(found.rate.widened(1e-14).contains(rate), "{x}");
                 }
                 assert!(found.value.width() <= 8.0 * width + 1e-14);
+                let place = motion.component(0, [from, from]).value;
+                assert!(place.contains(Interval::point(motion.state(from)[0])));
             }
         }
     }

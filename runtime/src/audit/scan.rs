@@ -90,6 +90,10 @@ impl<Sys: Impacting> Scan<'_, Sys> {
     /// The sign on a piece, from all values there and from the values at both ends with all rates between.
     fn sign(&self, [from, to]: [f64; 2]) -> Sign {
         let Rated { value, rate } = self.along([from, to]);
+        // Of a wall it does not matter how far it is.
+        if value.lo > 0.0 && !self.is_passable {
+            return Sign::NotNegative;
+        }
         let ends = [from, to].map(|part| self.at(part));
         let width = Interval::new(0.0, (to - from) * (1.0 + f64::EPSILON));
         let (forwards, backwards) = (ends[0] + rate * width, ends[1] - rate * width);
