@@ -1,7 +1,7 @@
 //! Audit of a run: shows that the motion meets no surface between recorded impacts, and that recorded impacts lie on their surfaces.
 //!
 //! An audit observes a run and trusts nothing that the run says of its events. It encloses all values of every gap along every
-//! step, by interval arithmetic on the dense output ([`motion`]) and bisection ([`scan`]). Of the code that finds impacts it uses
+//! step, by interval arithmetic on the dense output (`motion.rs`) and bisection (`scan.rs`). Of the code that finds impacts it uses
 //! nothing. What it cannot show within its budget it reports as a [`Finding`], as it does a surface that was passed.
 //!
 //! Limits: the conditions of a surface (`when`) have no enclosure and are sampled where its gap is negative. A surface that holds
