@@ -5,6 +5,7 @@
 
 mod particle;
 mod pushed;
+mod unsure;
 
 use dalembert::describe::{
     Assumption, ConstraintInfo, CoordinateInfo, Described, Description, Initial, ParameterInfo,
@@ -21,6 +22,7 @@ use nalgebra::SVector;
 
 use particle::{Particle, field, free, particle, system};
 pub use pushed::Pushed;
+pub use unsure::Unsure;
 
 /// What every model reports.
 fn inspect_common<S: System>(
