@@ -42,7 +42,7 @@ mod scan;
 use core::ops::ControlFlow;
 
 use crate::contract::{Impacting, System};
-use crate::numbers::{Interval, Rated};
+use crate::numbers::{Bent, Interval};
 use crate::record::{Event, Hold, Observer, Segment};
 use crate::state::StateVector;
 use motion::{Motion, ROUNDING};
@@ -179,10 +179,10 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         let component = |i: usize| {
             let value = state.as_slice()[i];
             let rounding = (ROUNDING * value.abs()).max(self.motion.doubt(i));
-            Rated::steady(Interval::point(value).widened(rounding))
+            Bent::line(Interval::point(value).widened(rounding), 0.0)
         };
-        let time = Rated::steady(Interval::point(t).widened(ROUNDING * t.abs()));
-        self.system.gap_along(surface, time, &component).value
+        let time = Bent::line(Interval::point(t).widened(ROUNDING * t.abs()), 0.0);
+        self.system.gap_about(surface, time, &component).value
     }
 
     /// True if the gap of a surface is 0 at a state, within this many times its rounding.

@@ -2,7 +2,7 @@
 
 use super::motion::Motion;
 use crate::contract::Impacting;
-use crate::numbers::{Interval, Rated};
+use crate::numbers::{Bent, Interval, Rated};
 
 /// Halvings of a step; the scan of a piece that is shorter ends.
 const DEPTH: u32 = 44;
@@ -38,12 +38,22 @@ pub(super) fn floor(gap: Interval) -> f64 {
     2.0 * gap.width()
 }
 
+/// Values and rates of which it is not asked how they bend.
+pub(super) fn bent(Rated { value, rate }: Rated) -> Bent {
+    Bent {
+        value,
+        rate,
+        ..Bent::ANYTHING
+    }
+}
+
 impl<Sys: Impacting> Scan<'_, Sys> {
     /// All values and rates of the gap on a piece.
     pub(super) fn along(&self, piece: [f64; 2]) -> Rated {
-        let component = |i: usize| self.motion.component(i, piece);
-        let time = self.motion.time(piece);
-        self.system.gap_along(self.surface, time, &component)
+        let component = |i: usize| bent(self.motion.component(i, piece));
+        let time = bent(self.motion.time(piece));
+        let Bent { value, rate, .. } = self.system.gap_about(self.surface, time, &component);
+        Rated { value, rate }
     }
 
     /// The gap at a part of the step.
