@@ -67,7 +67,23 @@ dalembert::model! {
         }
         transitions {
             to_right: left -> right when x >= 0;
-            to_left: right -> left when x <= 0;
+            to_left: right -> left when x <= -1/2;
+        }
+    }
+}
+
+dalembert::model! {
+    /// A point that goes faster above 0, or back there.
+    pub Relay {
+        parameters { speed = 2; }
+        coordinates { x; }
+        modes {
+            below { field { dot(x) = 1; } }
+            above { field { dot(x) = speed; } }
+        }
+        transitions {
+            up: below -> above when x >= 0;
+            down: above -> below when x <= 0;
         }
     }
 }
@@ -276,9 +292,36 @@ fn refraction_and_reflection_are_told_apart() {
         Ok(impact.map(|_| run.component(2).middle().round()))
     };
     assert_eq!(mode(Interval::new(1.01, 1.0101)), Ok(Some(1.0)));
-    assert_eq!(mode(Interval::new(0.9899, 0.99)), Ok(Some(0.0)));
+    // Reflected, it is at the surface that it came to, and nothing says on which side.
+    assert_eq!(
+        mode(Interval::new(0.9899, 0.99)),
+        Err(Reason::MayStay { surface: 0 })
+    );
     assert_eq!(
         mode(Interval::new(0.99, 1.01)),
         Err(Reason::UnsureLaw { surface: 0 })
+    );
+}
+
+#[test]
+fn modes_that_meet_are_passed_and_sliding_is_refused() {
+    let start = points([-1.0, 0.0]);
+    let relay = Relay::default();
+    let mut run = CertifiedRun::new(&relay, 0.0, |i| start[i]);
+    run.run(2.0, |_| ControlFlow::Continue(())).unwrap();
+    let x = run.component(0);
+    assert!(
+        run.impacts() == 1 && x.contains(Interval::point(2.0)) && x.width() < 1e-14,
+        "{x:?}"
+    );
+    let relay = Relay {
+        speed: -1.0,
+        ..Relay::default()
+    };
+    let mut run = CertifiedRun::new(&relay, 0.0, |i| start[i]);
+    let lost = lost(run.run(2.0, |_| ControlFlow::Continue(())));
+    assert!(
+        matches!(lost.reason, Reason::MayMeetTogether { .. }) && lost.t <= 1.0,
+        "{lost}"
     );
 }

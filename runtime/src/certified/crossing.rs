@@ -320,7 +320,14 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         });
         let time = centre.time + self.frame.along(|block, k| meeting.delays[block].at(k));
         let sides = match is_map {
-            true => Sides::unknown(),
+            true => {
+                let mut sides = Sides::unknown();
+                // The state stays the same, at the surface of both.
+                if let Some(back) = self.surfaces.field.system.opposite(surface) {
+                    sides.set(back, Side::Above);
+                }
+                sides
+            }
             false => {
                 let mut sides = *sides_before;
                 sides.set(surface, Side::Above);

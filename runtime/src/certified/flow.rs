@@ -25,7 +25,7 @@ pub(super) const ORDER: usize = 18;
 
 const _: () = assert!(ORDER < LENGTH);
 
-/// The remainder of a step is to be about this part of the state.
+/// The remainder of a step is to be about this part of the state, unless told otherwise.
 const REMAINDER: f64 = f64::EPSILON;
 
 /// The same beside a box, in parts of its width.
@@ -60,6 +60,7 @@ pub struct CertifiedFlow<'a, Sys: Variational> {
     pub(super) field: Field<'a, Sys>,
     pub(super) t: f64,
     pub(super) frame: Frame<Sys>,
+    remainder: f64,
     /// The length to try next.
     next: f64,
     steps: u64,
@@ -71,6 +72,7 @@ impl<Sys: Variational> Clone for CertifiedFlow<'_, Sys> {
             field: self.field,
             t: self.t,
             frame: self.frame,
+            remainder: self.remainder,
             next: self.next,
             steps: self.steps,
         }
@@ -84,9 +86,17 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
             field: Field::new(system),
             t,
             frame: Frame::of(&Bounds::of(start)),
+            remainder: REMAINDER,
             next: f64::INFINITY,
             steps: 0,
         }
+    }
+
+    /// With steps whose remainder is about this part of the state, which is positive: enclosures are as much wider, and steps longer.
+    #[must_use]
+    pub fn with_remainder(mut self, part: f64) -> Self {
+        self.remainder = part;
+        self
     }
 
     /// With all values in a range for the parameter `index`, in the order of [`TaylorField::parameters`](crate::TaylorField::parameters);
@@ -214,7 +224,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
                 let size = self.frame.centre.as_slice()[i].abs() + scale.as_slice()[i];
                 largest = largest.max(coefficient.magnitude() / size);
             }
-            reach = reach.min(math::powf(REMAINDER / largest, 1.0 / order as f64));
+            reach = reach.min(math::powf(self.remainder / largest, 1.0 / order as f64));
         }
         (reach > 0.0).then_some(reach)
     }
@@ -243,7 +253,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         let last = remainder.coefficients[ORDER].as_slice();
         let excess = (0..Sys::State::LEN).fold(0.0_f64, |most, i| {
             let size = self.frame.centre.as_slice()[i].abs() + scale.as_slice()[i];
-            let allowed = REMAINDER * size + SHARE * hull.at(i).width();
+            let allowed = self.remainder * size + SHARE * hull.at(i).width();
             most.max(last[i].width() / allowed)
         });
         bounds.is_finite().then_some(Moved { bounds, excess })

@@ -152,6 +152,13 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         self
     }
 
+    /// With steps as [`CertifiedFlow::with_remainder`] has them.
+    #[must_use]
+    pub fn with_remainder(mut self, part: f64) -> Self {
+        self.progress.flow = self.progress.flow.with_remainder(part);
+        self
+    }
+
     /// With another law that is an impulse for a surface; one past the end changes nothing.
     #[must_use]
     pub fn with_law(mut self, surface: usize, law: Law) -> Self {
