@@ -61,6 +61,11 @@ fn assert_absent(folder: &str, forbidden: &[&str]) {
 }
 
 #[test]
+fn the_audit_of_events_shares_no_code_with_their_search() {
+    assert_absent("runtime/src/audit", &["events::", "impacts::", "StepView"]);
+}
+
+#[test]
 fn expressions_know_no_tokens_and_no_mechanics() {
     assert_absent(
         "codegen/expr/src",

@@ -3,12 +3,14 @@
 //! In every step each effect proposes the earliest crossing inside it; the motion is cut at the earliest of all,
 //! the effects that proposed it act there, and integration starts again from the state they leave.
 
+use crate::audit::Auditor;
 use crate::contract::System;
 use crate::error::Fault;
 use crate::forces::{Forces, NoForces};
 use crate::impacts::law::Law;
 use crate::impacts::policy::Policies;
 use crate::integrate::{Counters, Stepper};
+use crate::jet::LENGTH;
 use crate::outcome::Outcome;
 use crate::record::{Interpolant, Observer};
 
@@ -97,6 +99,11 @@ impl<Sys: System, Step: Stepper<Sys>> Interpolant<Sys::State> for StepView<'_, S
     fn at(&mut self, theta: f64) -> Result<Sys::State, Fault> {
         self.prepare()?;
         Ok(self.state(theta))
+    }
+
+    fn powers(&mut self, coefficients: &mut [Sys::State; LENGTH]) -> Result<usize, Fault> {
+        self.prepare()?;
+        Ok(self.stepper.powers(coefficients))
     }
 }
 
@@ -218,6 +225,13 @@ pub trait SceneEffects<Sys: System>: Effect<Sys> {
     fn set_policies(&mut self, policies: Policies) {
         let _ = policies;
     }
+
+    /// Makes an audit of the surfaces that act, and hands it to `work`. False if nothing was made: there are no surfaces, or no
+    /// audit that is independent of how these effects find impacts.
+    fn audit(&self, system: &Sys, work: &mut dyn FnMut(&mut dyn Auditor<Sys>)) -> bool {
+        let _ = (system, work);
+        false
+    }
 }
 
 /// A system with the effects its declaration asks for.
@@ -326,6 +340,10 @@ macro_rules! compose {
 
             fn set_policies(&mut self, policies: Policies) {
                 $(self.$index.set_policies(policies);)+
+            }
+
+            fn audit(&self, system: &Sys, work: &mut dyn FnMut(&mut dyn Auditor<Sys>)) -> bool {
+                false $(|| self.$index.audit(system, work))+
             }
         }
     };

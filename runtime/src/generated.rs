@@ -313,6 +313,50 @@ pub fn rates_along<F: TaylorField>(
     Ok(())
 }
 
+/// Conditions of surfaces over intervals: true, false, or not certain.
+pub mod certain {
+    use crate::numbers::Interval;
+
+    /// Whether a condition with these margins holds: of a closed one a margin may be 0.
+    #[inline]
+    pub fn holds(margin: Interval, is_closed: bool) -> Option<bool> {
+        let (is_true, is_false) = match is_closed {
+            true => (margin.lo >= 0.0, margin.hi < 0.0),
+            false => (margin.lo > 0.0, margin.hi <= 0.0),
+        };
+        (is_true || is_false).then_some(is_true)
+    }
+
+    /// Whether all of these hold.
+    #[inline]
+    pub fn all(conditions: &[Option<bool>]) -> Option<bool> {
+        match conditions.contains(&Some(false)) {
+            true => Some(false),
+            false => (!conditions.contains(&None)).then_some(true),
+        }
+    }
+
+    /// Whether none of these holds.
+    #[inline]
+    pub fn none(conditions: &[Option<bool>]) -> Option<bool> {
+        match conditions.contains(&Some(true)) {
+            true => Some(false),
+            false => (!conditions.contains(&None)).then_some(true),
+        }
+    }
+
+    /// Whether the last of several transitions counts and is taken. Where none of them is, the motion ends, which is not certain
+    /// motion.
+    #[inline]
+    pub fn last(own: Option<bool>, others: &[Option<bool>]) -> Option<bool> {
+        match (own, none(others)) {
+            (Some(true), _) => Some(true),
+            (Some(false), Some(false)) => Some(false),
+            _ => None,
+        }
+    }
+}
+
 /// Guards over several numbers at once: the fault of the first lane that has one.
 pub mod lanes {
     use crate::error::Fault;

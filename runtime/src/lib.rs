@@ -115,6 +115,7 @@
 #![forbid(unsafe_code)]
 
 mod assumption;
+pub mod audit;
 pub mod certified;
 pub mod contract;
 pub mod describe;

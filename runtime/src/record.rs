@@ -5,6 +5,7 @@ use core::ops::ControlFlow;
 use crate::contract::System;
 use crate::error::Fault;
 use crate::impacts::law::Law;
+use crate::jet::LENGTH;
 
 /// One impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,8 +48,9 @@ pub struct Hold<S> {
 pub struct Segment<'a, S> {
     pub(crate) t: [f64; 2],
     pub(crate) end: &'a S,
-    /// Length of the step the stretch is cut from.
+    /// Length of the step the stretch is cut from, and the part of the step that the stretch is.
     pub(crate) step: f64,
+    pub(crate) part: f64,
     pub(crate) source: &'a mut dyn Interpolant<S>,
 }
 
@@ -59,6 +61,9 @@ pub(crate) trait Interpolant<S> {
 
     /// The state at a part of the step.
     fn at(&mut self, theta: f64) -> Result<S, Fault>;
+
+    /// Writes the coefficients of the dense output in powers of the part of the step, and returns the number of the last one.
+    fn powers(&mut self, coefficients: &mut [S; LENGTH]) -> Result<usize, Fault>;
 }
 
 impl<S: Copy> Segment<'_, S> {
@@ -96,6 +101,21 @@ impl<S: Copy> Segment<'_, S> {
             return self.source.at((t - self.t[0]) / self.step);
         }
         Ok(*self.source.start())
+    }
+
+    /// Length of the step that the stretch is cut from.
+    pub(crate) fn step_length(&self) -> f64 {
+        self.step
+    }
+
+    /// The part of the step that the stretch is, in full precision.
+    pub(crate) fn part(&self) -> f64 {
+        self.part
+    }
+
+    /// Writes the coefficients of the dense output in powers of the part of the step, and returns the number of the last one.
+    pub(crate) fn powers(&mut self, coefficients: &mut [S; LENGTH]) -> Result<usize, Fault> {
+        self.source.powers(coefficients)
     }
 }
 

@@ -362,7 +362,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
                 &mut self.progress.counters,
             )?;
         }
-        self.show(observer)
+        self.show(1.0, observer)
     }
 
     /// The step ends at `theta`, where the effects act. Returns the longest step to go on with.
@@ -391,7 +391,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             counters: &mut self.progress.counters,
         };
         self.effects.settle(&mut now, true)?;
-        self.show(observer)?;
+        self.show(theta, observer)?;
         let mut now = Moment {
             system: self.system,
             t: self.progress.t,
@@ -414,9 +414,9 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         Ok(())
     }
 
-    /// Shows the motion from the start of the step to the present.
+    /// Shows the motion from the start of the step to the present, which is at this part of it.
     #[inline(always)]
-    fn show<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
+    fn show<O: Observer<Sys>>(&mut self, part: f64, observer: &mut O) -> Result<(), Outcome> {
         let t = [self.stepper.t_start(), self.progress.t];
         let step = self.stepper.length();
         let mut source = StepView {
@@ -428,6 +428,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             t,
             end: &self.progress.state,
             step,
+            part,
             source: &mut source,
         }) {
             ControlFlow::Continue(()) => Ok(()),
@@ -496,7 +497,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             return Ok(());
         };
         self.arrive(theta)?;
-        self.show(observer)?;
+        self.show(theta, observer)?;
         Err(Outcome::SingularConstraint {
             constraint,
             condition: f64::INFINITY,
@@ -538,7 +539,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             }
         }
         self.arrive(inside)?;
-        self.show(observer)?;
+        self.show(inside, observer)?;
         Ok(left)
     }
 }

@@ -123,6 +123,27 @@ fn a_double_pendulum_is_held_for_ten_seconds() {
 }
 
 #[test]
+fn long_steps_are_held_with_their_remainders() {
+    let system = DoublePendulum::default();
+    let start = state(&system, &[1.0, 2.0], &[0.0, 0.0]);
+    let [mut fine, mut coarse] =
+        [f64::EPSILON, 1e-6].map(|part| from_point(&system, &start).with_remainder(part));
+    let exact = digits(&system, &start, 1.0);
+    for flow in [&mut fine, &mut coarse] {
+        flow.run(1.0).unwrap();
+        for i in 0..4 {
+            let (range, value) = (flow.component(i), exact.as_slice()[i]);
+            assert!(
+                range.contains(Interval::point(value)),
+                "{i}: {range:?}, {value}"
+            );
+        }
+        println!("width {:e} after {} steps", flow.width(), flow.steps());
+    }
+    assert!(coarse.steps() < fine.steps() && coarse.width() > 1e3 * fine.width());
+}
+
+#[test]
 fn every_motion_from_a_box_is_held() {
     let system = Driven {};
     let centre = state(&system, &[0.3, -0.2], &[0.1, 0.4]);

@@ -9,7 +9,7 @@ use quote::{ToTokens, quote};
 use super::Context;
 use super::function::{Body, emit_body, joined, uses};
 use super::instantaneous::emit_varied;
-use crate::model::Law;
+use crate::model::{Beside, Condition, Law};
 use crate::program::{Form, Function, Input};
 
 /// `impl Variational`, where variations are asked for. A type that holds a reduced model in its global form has none.
@@ -21,6 +21,7 @@ pub(super) fn emit_variational(context: &Context<'_>) -> TokenStream {
     let (n, k) = (context.dimension(), context.motion_dimension());
     let parts = [
         emit_counts(context.program.impacting.is_some()),
+        emit_counts_throughout(context),
         emit_velocities(context),
         emit_composed(context),
         emit_deviations(context),
@@ -174,6 +175,73 @@ pub(super) fn emit_counts(has_surfaces: bool) -> TokenStream {
         #[inline]
         fn counts(&self, surface: usize, t: f64, state: &Self::State) -> bool { #counts }
     }
+}
+
+/// `counts_throughout`, where surfaces have conditions.
+fn emit_counts_throughout(context: &Context<'_>) -> TokenStream {
+    let functions = context.program.impacting.iter();
+    let conditions = functions.flat_map(|functions| &functions.conditions);
+    let certain = quote!(::dalembert::__private::certain);
+    let arms = conditions.enumerate().filter_map(|(s, function)| {
+        let Body {
+            statements,
+            outputs,
+        } = context.varied_body(function.as_ref()?);
+        let surface = &context.model.surfaces[s];
+        let mut margins = outputs.iter();
+        let holds = all_certain(&surface.conditions, &mut margins);
+        let others = surface.beside.others().iter();
+        let others: Vec<_> = others.map(|own| all_certain(own, &mut margins)).collect();
+        let counts = match &surface.beside {
+            Beside::Independent => holds,
+            Beside::Otherwise(_) => quote!(#certain::none(&[#(#others),*])),
+            Beside::Last(_) => quote!(#certain::last(#holds, &[#(#others),*])),
+        };
+        Some(quote!(#s => { #statements #counts }))
+    });
+    let arms: Vec<TokenStream> = arms.collect();
+    if arms.is_empty() {
+        return TokenStream::new();
+    }
+    over_intervals(&quote! {
+        #[allow(unused_imports)]
+        use ::dalembert::numbers::Numbers as _;
+        type L = ::dalembert::numbers::Interval;
+        let counts = || -> ::core::result::Result<_, ::dalembert::Fault> {
+            ::core::result::Result::Ok(match surface {
+                #(#arms)*
+                _ => ::core::option::Option::Some(true),
+            })
+        };
+        counts().ok().flatten()
+    })
+}
+
+/// `counts_throughout` with this body.
+pub(super) fn over_intervals(body: &TokenStream) -> TokenStream {
+    quote! {
+        fn counts_throughout(
+            parameters: &Self::Parameters<::dalembert::numbers::Interval>,
+            surface: usize,
+            t: ::dalembert::numbers::Interval,
+            state: &Self::Row<::dalembert::numbers::Interval>,
+        ) -> ::core::option::Option<bool> {
+            #body
+        }
+    }
+}
+
+/// Whether every condition of a list holds, of which the margins come next.
+fn all_certain<'a>(
+    conditions: &[Condition],
+    margins: &mut impl Iterator<Item = &'a TokenStream>,
+) -> TokenStream {
+    let certain = quote!(::dalembert::__private::certain);
+    let holds = conditions.iter().zip(margins).map(|(own, margin)| {
+        let is_closed = own.is_closed;
+        quote!(#certain::holds(#margin, #is_closed))
+    });
+    quote!(#certain::all(&[#(#holds),*]))
 }
 
 fn emit_velocities(context: &Context<'_>) -> TokenStream {

@@ -53,6 +53,9 @@ pub enum Command {
     #[command(after_help = ensemble::EXAMPLES)]
     Ensemble(Box<EnsembleArgs>),
     /// Measure what accuracy costs: error, work and time of every integrator over tolerances.
+    ///
+    /// Errors are differences from a reference whose impacts are audited by enclosures, without the search that found them. If
+    /// they are not confirmed nothing is measured, and the exit status is 1.
     #[command(after_help = ACCURACY_EXAMPLES)]
     Accuracy(Box<AccuracyArgs>),
     /// Find a periodic orbit by its returns to a surface, and its Floquet multipliers.
@@ -481,7 +484,9 @@ pub struct SimulateArgs {
     /// Its integrator and its end.
     #[command(flatten)]
     pub course: CourseArgs,
-    /// Measure the error of the run against a reference as exact as `f64` allows, which takes three more runs.
+    /// Measure the error of the run against a reference as exact as `f64` allows, which takes three more runs. The impacts of
+    /// all of them are audited by enclosures, without the search that found them; where they are not confirmed, or differ, the
+    /// run is `not verified` and the exit status is 1.
     #[arg(long)]
     pub verify: bool,
     /// Number of equally spaced times from 0 to the end, both included, to record (at most 1000000).

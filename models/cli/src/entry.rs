@@ -191,8 +191,13 @@ pub(crate) trait Runs {
         plan: &Plan,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Study, String>;
-    /// The measured error of a run.
-    fn verify(&self, origin: &Origin, settings: &Settings) -> Result<Verified, String>;
+    /// The measured error of a run that ended so.
+    fn verify(
+        &self,
+        origin: &Origin,
+        settings: &Settings,
+        ending: &Ending,
+    ) -> Result<Verified, String>;
     /// A periodic orbit near the first arrival from this state; `None` for a scene without variations.
     fn orbit(
         &self,
@@ -445,9 +450,14 @@ impl<M: Model> Runs for Typed<M> {
         ))
     }
 
-    fn verify(&self, origin: &Origin, settings: &Settings) -> Result<Verified, String> {
+    fn verify(
+        &self,
+        origin: &Origin,
+        settings: &Settings,
+        ending: &Ending,
+    ) -> Result<Verified, String> {
         in_form!(self, origin, settings, |model, state| accuracy::verify(
-            model, &state, settings
+            model, &state, settings, ending
         ))
     }
 

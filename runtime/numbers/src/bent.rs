@@ -178,6 +178,11 @@ impl Numbers for Bent {
     }
 
     #[inline]
+    fn is_below_zero(&self) -> Option<bool> {
+        self.value.is_below_zero()
+    }
+
+    #[inline]
     fn mul_add(self, b: Self, c: Self) -> Self {
         self * b + c
     }

@@ -351,6 +351,15 @@ impl Numbers for Interval {
     }
 
     #[inline(always)]
+    fn is_below_zero(&self) -> Option<bool> {
+        match (self.hi < 0.0, self.lo >= 0.0) {
+            (true, _) => Some(true),
+            (_, true) => Some(false),
+            _ => None,
+        }
+    }
+
+    #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         self * b + c
     }

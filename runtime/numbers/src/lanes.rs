@@ -2,7 +2,7 @@
 
 use wide::f64x8;
 
-use crate::numbers::{Numbers, functions_of_lanes};
+use crate::numbers::{Numbers, functions_of_lanes, sign_of};
 
 impl Numbers for f64x8 {
     const LANES: usize = 8;
@@ -21,6 +21,13 @@ impl Numbers for f64x8 {
     #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         self.as_array()[lane]
+    }
+
+    #[inline(always)]
+    fn is_below_zero(&self) -> Option<bool> {
+        let first = sign_of(self.lane(0));
+        let agree = (1..Self::LANES).all(|lane| sign_of(self.lane(lane)) == first);
+        first.filter(|_| agree)
     }
 
     #[inline(always)]

@@ -77,6 +77,9 @@ pub trait Numbers:
     /// The number of a lane.
     fn lane(&self, lane: usize) -> f64;
 
+    /// Whether the number is below 0, if that is the same in all lanes and certain.
+    fn is_below_zero(&self) -> Option<bool>;
+
     /// `self b + c`, rounded as [`math::mul_add`] does.
     #[must_use]
     fn mul_add(self, b: Self, c: Self) -> Self;
@@ -207,6 +210,12 @@ macro_rules! functions_of_lanes {
 }
 pub(crate) use functions_of_lanes;
 
+/// Whether a number is below 0; `None` of NaN.
+#[inline(always)]
+pub fn sign_of(number: f64) -> Option<bool> {
+    number.partial_cmp(&0.0).map(core::cmp::Ordering::is_lt)
+}
+
 impl Numbers for f64 {
     const LANES: usize = 1;
     const ZERO: Self = 0.0;
@@ -224,6 +233,11 @@ impl Numbers for f64 {
     #[inline(always)]
     fn lane(&self, _: usize) -> f64 {
         *self
+    }
+
+    #[inline(always)]
+    fn is_below_zero(&self) -> Option<bool> {
+        sign_of(*self)
     }
 
     #[inline(always)]

@@ -137,6 +137,11 @@ impl Numbers for Rated {
     }
 
     #[inline(always)]
+    fn is_below_zero(&self) -> Option<bool> {
+        self.value.is_below_zero()
+    }
+
+    #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         self * b + c
     }

@@ -497,6 +497,11 @@ impl Numbers for TaylorModel {
         self.powers[0]
     }
 
+    #[inline]
+    fn is_below_zero(&self) -> Option<bool> {
+        self.range().is_below_zero()
+    }
+
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         self * b + c

@@ -9,32 +9,27 @@
 //!
 //! with the Taylor coefficients `c_k` of the motion over intervals, and `J` the derivative of the sum by the start, over all of `Y`.
 
-use core::fmt;
-
-use super::frame::{Bounds, Frame, Matrix};
+use super::frame::{Bounds, Frame, Matrix, Turned};
+use super::lost::{Lost, Reason};
+use super::series::{Arc, Field, bounds, row};
 use crate::contract::Variational;
 use crate::error::Fault;
 use crate::integrate::controller::least_step;
-use crate::integrate::taylor::expansion::Expansion;
 use crate::jet::LENGTH;
 use crate::math;
-use crate::numbers::{Interval, Numbers, Rated, Row};
+use crate::numbers::{Interval, Numbers, Row};
 use crate::state::StateVector;
 
 /// Order of the series: remainders fall with its powers, work grows with its square.
-const ORDER: usize = 18;
+pub(super) const ORDER: usize = 18;
 
-/// The remainder of a step is to be about this part of the state.
+const _: () = assert!(ORDER < LENGTH);
+
+/// The remainder of a step is to be about this part of the state, unless told otherwise.
 const REMAINDER: f64 = f64::EPSILON;
 
 /// The same beside a box, in parts of its width.
 const SHARE: f64 = 1.0 / 1024.0;
-
-/// Trials to find a tube for one length of a step.
-const TRIALS: u32 = 6;
-
-/// Parts that a tube is made larger by than its last trial.
-const ROOM: f64 = 0.1;
 
 /// Factors between a step and the next.
 const GROW: f64 = 2.0;
@@ -48,45 +43,68 @@ struct Moved<S> {
     excess: f64,
 }
 
-/// That no box was found which holds the motion any longer.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lost {
-    /// The time up to which the motion is certified.
-    pub t: f64,
+/// A step that can be made.
+pub(super) struct Step<Sys: Variational> {
+    /// The time at its end.
+    pub(super) later: f64,
+    /// Its length.
+    pub(super) length: Interval,
+    /// A box that holds the motion until then.
+    pub(super) tube: Bounds<Sys::State>,
+    frame: Frame<Sys>,
+    next: f64,
 }
-
-impl fmt::Display for Lost {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "the motion is certified up to t = {} and no further",
-            self.t
-        )
-    }
-}
-
-impl core::error::Error for Lost {}
 
 /// A box of states that is followed through time.
 pub struct CertifiedFlow<'a, Sys: Variational> {
-    system: &'a Sys,
-    t: f64,
-    frame: Frame<Sys>,
+    pub(super) field: Field<'a, Sys>,
+    pub(super) t: f64,
+    pub(super) frame: Frame<Sys>,
+    remainder: f64,
     /// The length to try next.
     next: f64,
     steps: u64,
+}
+
+impl<Sys: Variational> Clone for CertifiedFlow<'_, Sys> {
+    fn clone(&self) -> Self {
+        Self {
+            field: self.field,
+            t: self.t,
+            frame: self.frame,
+            remainder: self.remainder,
+            next: self.next,
+            steps: self.steps,
+        }
+    }
 }
 
 impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
     /// Begins at the time `t` with all states whose component `i` lies in `start(i)`.
     pub fn new(system: &'a Sys, t: f64, start: impl Fn(usize) -> Interval) -> Self {
         Self {
-            system,
+            field: Field::new(system),
             t,
             frame: Frame::of(&Bounds::of(start)),
+            remainder: REMAINDER,
             next: f64::INFINITY,
             steps: 0,
         }
+    }
+
+    /// With steps whose remainder is about this part of the state, which is positive: enclosures are as much wider, and steps longer.
+    #[must_use]
+    pub fn with_remainder(mut self, part: f64) -> Self {
+        self.remainder = part;
+        self
+    }
+
+    /// With all values in a range for the parameter `index`, in the order of [`TaylorField::parameters`](crate::TaylorField::parameters);
+    /// one past the end changes nothing. The box holds the motions of all of them.
+    #[must_use]
+    pub fn with_parameter(mut self, index: usize, range: Interval) -> Self {
+        self.field.set_parameter(index, range);
+        self
     }
 
     /// The time that was reached.
@@ -106,8 +124,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
 
     /// The width of the widest component.
     pub fn width(&self) -> f64 {
-        let hull = self.frame.hull();
-        (0..Sys::State::LEN).fold(0.0, |most, i| most.max(hull.at(i).width()))
+        self.frame.hull().width()
     }
 
     /// All positions and velocities that the state may have now: coordinate `i` and its rate.
@@ -117,7 +134,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
     pub fn velocities(&self) -> Result<Sys::Configuration<Interval>, Fault> {
         let hull = self.frame.hull();
         Sys::velocities(
-            &self.parameters(),
+            self.field.parameters(),
             Interval::point(self.t),
             &row::<Sys>(&hull),
         )
@@ -129,69 +146,77 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
     /// [`Lost`] where no box is found that holds it; the state is that of the time it was lost at.
     pub fn run(&mut self, t_end: f64) -> Result<(), Lost> {
         while self.t < t_end {
-            self.step(t_end)?;
+            let step = self.prepare(t_end)?;
+            self.make(&step);
         }
         Ok(())
     }
 
-    fn parameters<L: Numbers>(&self) -> Sys::Parameters<L> {
-        let mut parameters = Sys::Parameters::<L>::ZERO;
-        let values = self.system.parameters();
-        for (parameter, value) in parameters.as_mut_slice().iter_mut().zip(values.as_slice()) {
-            *parameter = L::of(*value);
-        }
-        parameters
-    }
-
-    /// Makes one step, no further than `t_end`.
-    fn step(&mut self, t_end: f64) -> Result<(), Lost> {
-        let lost = Lost { t: self.t };
+    /// A step, no further than `t_end`, which is later.
+    pub(super) fn prepare(&self, t_end: f64) -> Result<Step<Sys>, Lost> {
+        let lost = |reason| Lost { t: self.t, reason };
         let hull = self.frame.hull();
         if !hull.is_finite() {
-            return Err(lost);
+            return Err(lost(Reason::NotFinite));
         }
-        let mut h = self.next.min(t_end - self.t).min(self.reach()?);
+        let reach = self.reach().ok_or(lost(Reason::NoTube))?;
+        let wished = self.next.min(reach);
+        let mut h = wished.min(t_end - self.t);
         loop {
             let later = match self.t + h >= t_end {
                 true => t_end,
                 false => self.t + h,
             };
-            let is_ahead = later > self.t && h >= least_step(self.t);
+            let is_ahead = later > self.t && h >= least_step(self.t).min(t_end - self.t);
             if !is_ahead {
-                return Err(lost);
+                return Err(lost(Reason::NoTube));
             }
             let length = Interval::point(later) - Interval::point(self.t);
             let made = self.tube(&hull, length).and_then(|tube| {
                 let moved = self.moved(&tube, length)?;
-                let derivative = self.derivative(&hull, length)?;
-                let frame = self.frame.moved(&moved.bounds, &derivative);
-                Some((frame, moved.excess))
+                let turned = self.turned(&hull, length)?;
+                let frame = self.frame.moved(&moved.bounds, &turned);
+                Some((tube, frame, moved.excess))
             });
             let factor = match made {
-                Some((_, excess)) => math::powf(excess, -1.0 / ORDER as f64).min(GROW),
+                Some((_, _, excess)) => math::powf(excess, -1.0 / ORDER as f64).min(GROW),
                 None => SHRINK,
             };
             match made {
-                Some((frame, excess)) if excess <= 1.0 => {
-                    self.frame = frame;
-                    self.t = later;
-                    self.steps += 1;
-                    self.next = SAFETY * factor * h;
-                    return Ok(());
+                Some((tube, frame, excess)) if excess <= 1.0 => {
+                    let longest = SAFETY * factor * h;
+                    let is_cut = h == t_end - self.t;
+                    return Ok(Step {
+                        later,
+                        length,
+                        tube,
+                        frame,
+                        // A step that was cut says nothing of longer ones.
+                        next: if is_cut { wished.max(longest) } else { longest },
+                    });
                 }
                 _ => h *= (SAFETY * factor).max(SHRINK),
             }
         }
     }
 
+    /// Makes a step that was prepared here.
+    pub(super) fn make(&mut self, step: &Step<Sys>) {
+        (self.frame, self.t, self.next) = (step.frame, step.later, step.next);
+        self.steps += 1;
+    }
+
+    /// Goes on with other states at a later time.
+    pub(super) fn jump(&mut self, t: f64, frame: Frame<Sys>) {
+        (self.frame, self.t) = (frame, t);
+    }
+
     /// The length at which the remainder is small, from the coefficients at the centre.
-    fn reach(&self) -> Result<f64, Lost> {
-        let lost = Lost { t: self.t };
+    fn reach(&self) -> Option<f64> {
         let point = Bounds::point(&self.frame.centre);
-        let series = self
-            .series(&point, Interval::point(self.t), Interval::point(1.0))
-            .ok_or(lost)?;
-        let scale = self.system.scale(self.t, &self.frame.centre);
+        let (now, unit) = (Interval::point(self.t), Interval::point(1.0));
+        let series = self.field.series(&point, now, unit, ORDER)?;
+        let scale = self.field.system.scale(self.t, &self.frame.centre);
         let mut reach = f64::INFINITY;
         for order in [ORDER - 1, ORDER] {
             let mut largest = 0.0_f64;
@@ -199,123 +224,57 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
                 let size = self.frame.centre.as_slice()[i].abs() + scale.as_slice()[i];
                 largest = largest.max(coefficient.magnitude() / size);
             }
-            reach = reach.min(math::powf(REMAINDER / largest, 1.0 / order as f64));
+            reach = reach.min(math::powf(self.remainder / largest, 1.0 / order as f64));
         }
-        match reach > 0.0 {
-            true => Ok(reach),
-            false => Err(lost),
-        }
+        (reach > 0.0).then_some(reach)
     }
 
     /// A box that holds every motion from the hull until the end of a step.
     fn tube(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Bounds<Sys::State>> {
         let during = Interval::new(0.0, length.hi);
         let times = Interval::point(self.t) + during;
-        let reached = |tube: &Bounds<Sys::State>| {
-            let rates = self.rates(tube, times)?;
-            let reached = Bounds::of(|i| hull.at(i) + during * rates.as_slice()[i]);
-            reached.is_finite().then_some(reached)
-        };
-        let mut tube = reached(hull)?;
-        for _ in 0..TRIALS {
-            let wider = Bounds::of(|i| {
-                let range = tube.at(i).hull(hull.at(i));
-                range.widened(ROOM * range.width() + f64::MIN_POSITIVE)
-            });
-            let found = reached(&wider)?;
-            if (0..Sys::State::LEN).all(|i| wider.at(i).contains(found.at(i))) {
-                return reached(&found);
-            }
-            tube = Bounds::of(|i| found.at(i).hull(tube.at(i)));
-        }
-        None
-    }
-
-    /// All rates in a box.
-    fn rates(&self, tube: &Bounds<Sys::State>, times: Interval) -> Option<Sys::Row<Interval>> {
-        let mut firsts = Sys::Firsts::<Interval>::ZERO;
-        Sys::begin(&self.parameters(), times, &row::<Sys>(tube), &mut firsts).ok()?;
-        let mut rates = Sys::Row::<Interval>::ZERO;
-        let own = &firsts.as_slice()[..Sys::State::LEN];
-        rates.as_mut_slice().copy_from_slice(own);
-        Some(rates)
-    }
-
-    /// The series of all motions from a box, in units of `unit`.
-    fn series(
-        &self,
-        from: &Bounds<Sys::State>,
-        times: Interval,
-        unit: Interval,
-    ) -> Option<Expansion<Sys, Interval>> {
-        let (parameters, start) = (self.parameters(), row::<Sys>(from));
-        let mut series = Expansion::new();
-        series.begin(&parameters, times, &start).ok()?;
-        series.advance(&parameters, unit, ORDER, &start);
-        Some(series)
+        self.field.tube(hull, times, during)
     }
 
     /// Where the centre is at the end of a step, with the remainder. That may be as wide as rounding makes the state, or a small part of
     /// what the box is wide.
     fn moved(&self, tube: &Bounds<Sys::State>, length: Interval) -> Option<Moved<Sys::State>> {
         let now = Interval::point(self.t);
-        let series = self.series(&Bounds::point(&self.frame.centre), now, length)?;
+        let point = Bounds::point(&self.frame.centre);
+        let series = self.field.series(&point, now, length, ORDER)?;
         let times = now + Interval::new(0.0, length.hi);
-        let remainder = self.series(tube, times, length)?;
-        let of = |series: &Expansion<Sys, Interval>, k: usize, i: usize| {
-            series.coefficients[k].as_slice()[i]
-        };
-        let bounds = Bounds::of(|i| {
-            let last = of(&remainder, ORDER, i);
-            (0..ORDER)
-                .rev()
-                .fold(last, |sum, k| sum + of(&series, k, i))
-        });
+        let remainder = self.field.series(tube, times, length, ORDER)?;
+        let end = Arc::new(&series, &remainder, ORDER).at(Interval::point(1.0));
+        let bounds = bounds::<Sys::State>(end.as_slice());
         let (scale, hull) = (
-            self.system.scale(self.t, &self.frame.centre),
+            self.field.system.scale(self.t, &self.frame.centre),
             self.frame.hull(),
         );
+        let last = remainder.coefficients[ORDER].as_slice();
         let excess = (0..Sys::State::LEN).fold(0.0_f64, |most, i| {
             let size = self.frame.centre.as_slice()[i].abs() + scale.as_slice()[i];
-            let allowed = REMAINDER * size + SHARE * hull.at(i).width();
-            most.max(of(&remainder, ORDER, i).width() / allowed)
+            let allowed = self.remainder * size + SHARE * hull.at(i).width();
+            most.max(last[i].width() / allowed)
         });
         bounds.is_finite().then_some(Moved { bounds, excess })
     }
 
-    /// The derivatives of the sum of a step by its start, all over the hull.
-    fn derivative(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Matrix<Sys>> {
-        let parameters = self.parameters::<Rated>();
-        let (now, unit) = (Rated::of(self.t), Rated::steady(length));
-        let mut derivative = Matrix::zero();
-        for j in 0..Sys::State::LEN {
-            let mut start = Sys::Row::<Rated>::ZERO;
-            for (i, entry) in start.as_mut_slice().iter_mut().enumerate() {
-                *entry = Rated {
-                    value: hull.at(i),
-                    rate: Interval::point(if i == j { 1.0 } else { 0.0 }),
-                };
-            }
-            let mut series = Expansion::<Sys, Rated>::new();
-            series.begin(&parameters, now, &start).ok()?;
-            series.advance(&parameters, unit, ORDER - 1, &start);
-            for i in 0..Sys::State::LEN {
+    /// The derivatives of the sum of a step by its start, all over the hull, along the axes of the frame.
+    fn turned(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Turned<Sys>> {
+        let now = Interval::point(self.t);
+        let mut turned = [Matrix::zero(), Matrix::zero()];
+        for (block, k, axis) in self.frame.axes() {
+            let series = self
+                .field
+                .series_along(hull, &axis, now, length, ORDER - 1)?;
+            let column = Bounds::of(|i| {
                 let terms = (0..ORDER)
                     .rev()
-                    .map(|k| series.coefficients[k].as_slice()[i].rate);
-                derivative.set(i, j, terms.fold(Interval::ZERO, |sum, term| sum + term));
-            }
+                    .map(|order| series.coefficients[order].as_slice()[i].rate);
+                terms.fold(Interval::ZERO, |sum, term| sum + term)
+            });
+            turned[block].set_column(k, &column);
         }
-        Some(derivative)
+        Some(turned)
     }
-}
-
-/// A box as numbers.
-fn row<Sys: Variational>(bounds: &Bounds<Sys::State>) -> Sys::Row<Interval> {
-    const { assert!(ORDER < LENGTH) };
-    let mut row = Sys::Row::<Interval>::ZERO;
-    for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
-        *entry = bounds.at(i);
-    }
-    row
 }

@@ -1,9 +1,13 @@
-//! A set of states `centre + Q r`: a box `r` in a frame `Q` that is orthonormal up to rounding.
+//! A set of states `centre + C r_0 + Q r`: a box `r_0` whose axes `C` are carried with the motion, and a box `r` in a frame `Q` that is
+//! orthonormal up to rounding.
+//!
+//! The first box is the set as it once was, mapped without any loss. The second one takes in all that steps add, and is turned
+//! (QR), so that boxes in boxes do not grow by themselves. Where it becomes as large as the first, both are put into one.
 
-use crate::contract::Variational;
+use crate::contract::{Variational, VectorField};
 use crate::math;
 use crate::numbers::{Interval, Numbers};
-use crate::state::StateVector;
+use crate::state::{StateVector, scaled};
 
 /// A box by its ends.
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +52,16 @@ impl<S: StateVector> Bounds<S> {
         middle
     }
 
+    /// The width of the widest component.
+    pub(super) fn width(&self) -> f64 {
+        (0..S::LEN).fold(0.0, |most, i| most.max(self.at(i).width()))
+    }
+
+    /// What both boxes contain; the other one where they do not meet.
+    pub(super) fn within(&self, other: &Self) -> Self {
+        Self::of(|i| self.at(i).intersection(other.at(i)).unwrap_or(other.at(i)))
+    }
+
     pub(super) fn is_finite(&self) -> bool {
         self.lo.is_finite() && self.hi.is_finite()
     }
@@ -58,6 +72,14 @@ pub(super) struct Matrix<Sys: Variational> {
     lo: Sys::Columns,
     hi: Sys::Columns,
 }
+
+impl<Sys: Variational> Clone for Matrix<Sys> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys: Variational> Copy for Matrix<Sys> {}
 
 impl<Sys: Variational> Matrix<Sys> {
     pub(super) fn zero() -> Self {
@@ -77,19 +99,34 @@ impl<Sys: Variational> Matrix<Sys> {
         self.hi.as_mut()[j].as_mut_slice()[i] = range.hi;
     }
 
-    /// The product with a matrix of numbers.
-    fn times(&self, columns: &Sys::Columns) -> Self {
-        let mut product = Self::zero();
-        for (j, column) in columns.as_ref().iter().enumerate() {
-            for i in 0..Sys::State::LEN {
-                let terms = column.as_slice().iter().enumerate();
-                let sum = terms.fold(Interval::ZERO, |sum, (k, entry)| {
-                    sum + self.at(i, k) * Interval::point(*entry)
-                });
-                product.set(i, j, sum);
+    /// A matrix of numbers.
+    pub(super) fn of(columns: &Sys::Columns) -> Self {
+        Self {
+            lo: *columns,
+            hi: *columns,
+        }
+    }
+
+    /// Numbers in the middle of its entries.
+    pub(super) fn middle(&self) -> Sys::Columns {
+        let mut middle = Sys::columns();
+        for (j, column) in middle.as_mut().iter_mut().enumerate() {
+            for (i, entry) in column.as_mut_slice().iter_mut().enumerate() {
+                *entry = self.at(i, j).middle();
             }
         }
-        product
+        middle
+    }
+
+    /// Column `j`.
+    pub(super) fn column(&self, j: usize) -> Bounds<Sys::State> {
+        Bounds::of(|i| self.at(i, j))
+    }
+
+    /// Replaces column `j`.
+    pub(super) fn set_column(&mut self, j: usize, column: &Bounds<Sys::State>) {
+        self.lo.as_mut()[j] = column.lo;
+        self.hi.as_mut()[j] = column.hi;
     }
 
     /// The product with a box.
@@ -100,57 +137,153 @@ impl<Sys: Variational> Matrix<Sys> {
     }
 }
 
-/// `centre + Q r`
-pub(super) struct Frame<Sys: Variational> {
-    pub(super) centre: Sys::State,
+/// A box along axes, which are columns.
+struct Block<Sys: Variational> {
     axes: Sys::Columns,
     rest: Bounds<Sys::State>,
 }
 
-impl<Sys: Variational> Frame<Sys> {
-    /// A box, in the axes of the state.
-    pub(super) fn of(bounds: &Bounds<Sys::State>) -> Self {
-        let centre = bounds.middle();
+impl<Sys: Variational> Clone for Block<Sys> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys: Variational> Copy for Block<Sys> {}
+
+impl<Sys: Variational> Block<Sys> {
+    /// Nothing, in the axes of the state.
+    fn none() -> Self {
         let mut axes = Sys::columns();
         for (j, axis) in axes.as_mut().iter_mut().enumerate() {
             axis.as_mut_slice()[j] = 1.0;
         }
         Self {
-            centre,
             axes,
-            rest: Bounds::of(|i| bounds.at(i) - Interval::point(centre.as_slice()[i])),
+            rest: Bounds::point(&Sys::State::zeros()),
+        }
+    }
+
+    /// The square of half its diagonal, if its edges are normal to each other.
+    fn size(&self) -> f64 {
+        let axes = self.axes.as_ref().iter().enumerate();
+        axes.fold(0.0, |sum, (k, axis)| {
+            let reach = self.rest.at(k).magnitude();
+            sum + inner(axis, axis) * reach * reach
+        })
+    }
+}
+
+/// Blocks of a frame.
+pub(super) const BLOCKS: usize = 2;
+
+/// Derivatives along all axes of a frame, block by block; of axes that the set has no part of they need not be known.
+pub(super) type Turned<Sys> = [Matrix<Sys>; BLOCKS];
+
+/// One number for each axis of a frame.
+pub(super) type Slopes<Sys> = [Bounds<<Sys as VectorField>::State>; BLOCKS];
+
+/// `centre + C r_0 + Q r`
+pub(super) struct Frame<Sys: Variational> {
+    pub(super) centre: Sys::State,
+    blocks: [Block<Sys>; BLOCKS],
+}
+
+impl<Sys: Variational> Clone for Frame<Sys> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys: Variational> Copy for Frame<Sys> {}
+
+impl<Sys: Variational> Frame<Sys> {
+    /// A box, in the axes of the state.
+    pub(super) fn of(bounds: &Bounds<Sys::State>) -> Self {
+        let centre = bounds.middle();
+        let mut first = Block::none();
+        first.rest = Bounds::of(|i| bounds.at(i) - Interval::point(centre.as_slice()[i]));
+        Self {
+            centre,
+            blocks: [first, Block::none()],
         }
     }
 
     /// The smallest box found that contains the set.
     pub(super) fn hull(&self) -> Bounds<Sys::State> {
         Bounds::of(|i| {
-            let axes = self.axes.as_ref().iter().enumerate();
-            axes.fold(
-                Interval::point(self.centre.as_slice()[i]),
-                |sum, (k, axis)| sum + Interval::point(axis.as_slice()[i]) * self.rest.at(k),
-            )
+            let along = |block: usize, k: usize| {
+                let axis = &self.blocks[block].axes.as_ref()[k];
+                Interval::point(axis.as_slice()[i])
+            };
+            Interval::point(self.centre.as_slice()[i]) + self.along(along)
         })
     }
 
-    /// The set that the map `centre -> moved`, with derivatives in `derivative` all over the hull, makes of this one.
-    pub(super) fn moved(&self, moved: &Bounds<Sys::State>, derivative: &Matrix<Sys>) -> Self {
+    /// The axes that the set has a part of: block, number and axis.
+    pub(super) fn axes(&self) -> impl Iterator<Item = (usize, usize, Bounds<Sys::State>)> + '_ {
+        let blocks = self.blocks.iter().enumerate();
+        blocks.flat_map(|(b, block)| {
+            let axes = block.axes.as_ref().iter().enumerate();
+            let used = axes.filter(|(k, _)| block.rest.at(*k) != Interval::ZERO);
+            used.map(move |(k, axis)| (b, k, Bounds::point(axis)))
+        })
+    }
+
+    /// All that a function with these derivatives along the axes differs by from its value at the centre.
+    pub(super) fn along(&self, slopes: impl Fn(usize, usize) -> Interval) -> Interval {
+        self.axes().fold(Interval::ZERO, |sum, (block, k, _)| {
+            sum + slopes(block, k) * self.blocks[block].rest.at(k)
+        })
+    }
+
+    /// The set that the map `centre -> moved`, with derivatives in `turned` all over the hull, makes of this one.
+    pub(super) fn moved(&self, moved: &Bounds<Sys::State>, turned: &Turned<Sys>) -> Self {
         let centre = moved.middle();
-        let turned = derivative.times(&self.axes);
-        let axes = orthonormal::<Sys>(&turned, &self.rest);
-        let inverse = inverse::<Sys>(&axes);
-        let along = product::<Sys>(&inverse, &turned);
-        let shift = Bounds::of(|i| moved.at(i) - Interval::point(centre.as_slice()[i]));
-        let (linear, shift) = (along.times_bounds(&self.rest), inverse.times_bounds(&shift));
-        Self {
-            centre,
+        let [first, second] = &self.blocks;
+        let axes = turned[0].middle();
+        let carried = Block::<Sys> {
             axes,
-            rest: Bounds::of(|i| linear.at(i) + shift.at(i)),
-        }
+            rest: first.rest,
+        };
+        let shift = Bounds::of(|i| {
+            let rounded = |k: usize| {
+                let middle = Interval::point(axes.as_ref()[k].as_slice()[i]);
+                (turned[0].at(i, k) - middle) * first.rest.at(k)
+            };
+            let from_centre = moved.at(i) - Interval::point(centre.as_slice()[i]);
+            (0..Sys::State::LEN).fold(from_centre, |sum, k| sum + rounded(k))
+        });
+        let added = Block::<Sys> {
+            axes: turned[1].middle(),
+            rest: second.rest,
+        };
+        let axes = orthonormal(&[&added]);
+        let added = Block::<Sys> {
+            axes,
+            rest: components::<Sys>(&axes, &[(&turned[1], &second.rest)], &shift),
+        };
+        let blocks = match added.size() < carried.size() {
+            true => [carried, added],
+            false => [joined(&carried, &added), Block::none()],
+        };
+        Self { centre, blocks }
     }
 }
 
-fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Matrix<Sys> {
+/// Both blocks in one.
+fn joined<Sys: Variational>(first: &Block<Sys>, second: &Block<Sys>) -> Block<Sys> {
+    let axes = orthonormal(&[first, second]);
+    let [one, other] = [first, second].map(|block| Matrix::<Sys>::of(&block.axes));
+    let parts = [(&one, &first.rest), (&other, &second.rest)];
+    let none = Bounds::point(&Sys::State::zeros());
+    Block {
+        axes,
+        rest: components::<Sys>(&axes, &parts, &none),
+    }
+}
+
+pub(super) fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Matrix<Sys> {
     let mut product = Matrix::zero();
     for i in 0..Sys::State::LEN {
         for j in 0..Sys::State::LEN {
@@ -161,58 +294,53 @@ fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Matrix<Sys> {
     product
 }
 
-/// Orthonormal axes along the columns of a matrix, the longest edges of the box that they span first (modified Gram-Schmidt, twice).
-fn orthonormal<Sys: Variational>(matrix: &Matrix<Sys>, rest: &Bounds<Sys::State>) -> Sys::Columns {
+/// Orthonormal axes along the edges of boxes: at each turn along the edge that reaches furthest beyond those before it (modified
+/// Gram-Schmidt, twice).
+fn orthonormal<Sys: Variational>(blocks: &[&Block<Sys>]) -> Sys::Columns {
     let n = Sys::State::LEN;
     let mut axes = Sys::columns();
-    let mut lengths = Sys::State::zeros();
-    for (j, axis) in axes.as_mut().iter_mut().enumerate() {
-        for (i, entry) in axis.as_mut_slice().iter_mut().enumerate() {
-            *entry = matrix.at(i, j).middle();
-        }
-        lengths.as_mut_slice()[j] = length(axis) * rest.at(j).magnitude();
-    }
-    for first in 0..n {
-        let longest = (first..n).fold(first, |best, j| {
-            match lengths.as_slice()[j] > lengths.as_slice()[best] {
-                true => j,
-                false => best,
-            }
-        });
-        axes.as_mut().swap(first, longest);
-        lengths.as_mut_slice().swap(first, longest);
-    }
     for j in 0..n {
-        for trial in 0..=n {
-            for _ in 0..2 {
-                let (before, rest) = axes.as_mut().split_at_mut(j);
-                before.iter().for_each(|other| remove(other, &mut rest[0]));
-            }
-            let axis = &mut axes.as_mut()[j];
-            let size = length(axis);
-            if size > 0.0 && size.is_finite() {
-                axis.as_mut_slice()
-                    .iter_mut()
-                    .for_each(|entry| *entry /= size);
-                // What is left of a column along the others may be rounding, which points anywhere.
-                if is_normal(&axes, j) {
-                    break;
+        let mut longest = (0.0, Sys::State::zeros());
+        for block in blocks {
+            for (k, edge) in block.axes.as_ref().iter().enumerate() {
+                let mut edge = scaled(edge, block.rest.at(k).magnitude());
+                let whole = length(&edge);
+                for _ in 0..2 {
+                    let before = &axes.as_ref()[..j];
+                    before.iter().for_each(|axis| remove(axis, &mut edge));
+                }
+                let left = length(&edge);
+                // What is left of an edge along the others may be rounding, which points anywhere.
+                if left > longest.0 && left > 1e-12 * whole {
+                    longest = (left, edge);
                 }
             }
-            let axis = &mut axes.as_mut()[j];
-            *axis = Sys::State::zeros();
-            axis.as_mut_slice()[(j + trial) % n] = 1.0;
         }
+        let (size, edge) = longest;
+        axes.as_mut()[j] = match size > 0.0 && size.is_finite() {
+            true => scaled(&edge, 1.0 / size),
+            false => another::<Sys>(&axes, j),
+        };
     }
     axes
 }
 
-/// True if an axis is normal to those before it, far beyond what a frame needs.
-fn is_normal<S: StateVector>(axes: &impl AsRef<[S]>, j: usize) -> bool {
-    let axes = axes.as_ref();
-    axes[..j]
-        .iter()
-        .all(|other| inner(other, &axes[j]).abs() < 1e-8)
+/// An axis normal to the first `count`: the axis of the state of which most is left.
+fn another<Sys: Variational>(axes: &Sys::Columns, count: usize) -> Sys::State {
+    let mut best = (0.0, Sys::State::zeros());
+    for i in 0..Sys::State::LEN {
+        let mut axis = Sys::State::zeros();
+        axis.as_mut_slice()[i] = 1.0;
+        for _ in 0..2 {
+            let before = &axes.as_ref()[..count];
+            before.iter().for_each(|other| remove(other, &mut axis));
+        }
+        let left = length(&axis);
+        if left > best.0 {
+            best = (left, scaled(&axis, 1.0 / left));
+        }
+    }
+    best.1
 }
 
 fn inner<S: StateVector>(a: &S, b: &S) -> f64 {
@@ -234,38 +362,49 @@ fn remove<S: StateVector>(axis: &S, from: &mut S) {
     }
 }
 
-/// All inverses of a frame: its transpose, and what `I - Q^T Q` leaves.
+/// A box that contains `Q^-1 (A_1 r_1 + .. + s)` for axes `Q` that are orthonormal up to rounding; of no bounds where they are not.
 ///
-/// With `e` the norm of `I - Q^T Q` (largest sum of a row), `Q^-1 - Q^T = (I - Q^T Q) Q^-1` has a norm of at most
-/// `e |Q^T|/(1 - e)`, and no entry is larger.
-fn inverse<Sys: Variational>(axes: &Sys::Columns) -> Matrix<Sys> {
+/// With `E = I - Q^T Q`, `w = Q^-1 v` is the fixed point of `w -> Q^T v + E w`, and lies in every box that this maps into itself if the
+/// norm of `E` is less than 1.
+fn components<Sys: Variational>(
+    axes: &Sys::Columns,
+    parts: &[(&Matrix<Sys>, &Bounds<Sys::State>)],
+    shift: &Bounds<Sys::State>,
+) -> Bounds<Sys::State> {
     let n = Sys::State::LEN;
-    let axes = axes.as_ref();
-    let (mut defect, mut norm) = (0.0_f64, 0.0_f64);
+    let mut transpose = Matrix::<Sys>::zero();
     for i in 0..n {
-        let (mut row, mut size) = (Interval::ZERO, Interval::ZERO);
         for j in 0..n {
-            let pairs = axes[i].as_slice().iter().zip(axes[j].as_slice());
-            let product = pairs.fold(Interval::ZERO, |sum, (a, b)| {
-                sum + Interval::point(*a) * Interval::point(*b)
-            });
+            transpose.set(i, j, Interval::point(axes.as_ref()[i].as_slice()[j]));
+        }
+    }
+    let mut defect = product(&transpose, &Matrix::of(axes));
+    let mut norm = 0.0_f64;
+    for i in 0..n {
+        let mut row = Interval::ZERO;
+        for j in 0..n {
             let unit = Interval::point(if i == j { 1.0 } else { 0.0 });
-            row = row + (product - unit).abs();
-            size = size + Interval::point(axes[i].as_slice()[j]).abs();
+            defect.set(i, j, unit - defect.at(i, j));
+            row = row + defect.at(i, j).abs();
         }
-        defect = defect.max(row.hi);
-        norm = norm.max(size.hi);
+        norm = norm.max(row.hi);
     }
-    let bound = match defect < 0.5 {
-        true => (Interval::point(2.0) * Interval::point(defect) * Interval::point(norm)).hi,
-        false => f64::INFINITY,
-    };
-    let mut inverse = Matrix::zero();
-    for i in 0..n {
-        for j in 0..n {
-            let entry = Interval::point(axes[i].as_slice()[j]);
-            inverse.set(i, j, entry.widened(bound));
-        }
+    let mut image = transpose.times_bounds(shift);
+    for (matrix, rest) in parts {
+        let linear = product(&transpose, matrix).times_bounds(rest);
+        image = Bounds::of(|i| image.at(i) + linear.at(i));
     }
-    inverse
+    let added = |own: &Bounds<Sys::State>| defect.times_bounds(own);
+    let first = added(&image);
+    let wide = Bounds::of(|i| {
+        let reach = 4.0 * first.at(i).magnitude() + f64::MIN_POSITIVE;
+        image.at(i).widened(reach)
+    });
+    let more = added(&wide);
+    let found = Bounds::of(|i| image.at(i) + more.at(i));
+    let holds = (0..n).all(|i| wide.at(i).contains(found.at(i)));
+    match norm < 0.5 && holds {
+        true => found,
+        false => Bounds::of(|_| Interval::WHOLE),
+    }
 }

@@ -29,7 +29,7 @@ pub trait Impacting: System {
     ) -> TaylorModel;
 
     /// The gap of one surface along straight lines through a box, with arguments as [`Impacting::gap_along`] has them. It saves most
-    /// steps a closer look; without it nothing is known.
+    /// steps a closer look, and an [`Audit`](crate::audit::Audit) rests on it; without it nothing is known, and no run is confirmed.
     fn gap_about(&self, surface: usize, t: Bent, component: &dyn Fn(usize) -> Bent) -> Bent {
         let _ = (surface, t, component);
         Bent::ANYTHING

@@ -3,7 +3,7 @@
 use super::{System, TaylorField};
 use crate::error::Fault;
 use crate::impacts::law::Law;
-use crate::numbers::{Numbers, Row};
+use crate::numbers::{Interval, Numbers, Row};
 use crate::variations::Tangent;
 
 /// A system whose states, gaps and transitions can be computed in any [`Numbers`], and so be differentiated.
@@ -42,6 +42,18 @@ pub trait Variational: TaylorField + System + Sized {
 
     /// Whether a surface counts here, as [`Impacting::surface_active`](crate::Impacting::surface_active) says.
     fn counts(&self, surface: usize, t: f64, state: &Self::State) -> bool;
+
+    /// Whether a surface counts, and has a law, at all times and states of a box; `None` where that is not certain. A system whose
+    /// surfaces count everywhere need not say so.
+    fn counts_throughout(
+        parameters: &Self::Parameters<Interval>,
+        surface: usize,
+        t: Interval,
+        state: &Self::Row<Interval>,
+    ) -> Option<bool> {
+        let _ = (parameters, surface, t, state);
+        Some(true)
+    }
 
     /// The velocities of a state.
     ///

@@ -13,6 +13,7 @@ use super::policy::{Penetration, Policies, Rest, Split};
 use super::resting::Resting;
 use super::sliding::Slide;
 use super::watch::Watch;
+use crate::audit::{Audit, Auditor};
 use crate::contract::Impacting;
 use crate::effects::{Change, Effect, Moment, SceneEffects, StepView};
 use crate::error::Fault;
@@ -182,6 +183,11 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.overrides
             .get(surface)
             .unwrap_or_else(|| system.law(surface))
+    }
+
+    /// Whether the motion may be on both sides of a surface.
+    fn passes(&self, system: &Sys, surface: usize) -> bool {
+        self.law_of(system, surface).is_map() && system.is_passable(surface)
     }
 
     /// Carries out impacts until none of the surfaces at hand is approached.
@@ -500,8 +506,8 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
             if law.is_map() && law != declared {
                 return Err(Outcome::NoReset { surface });
             }
-            let is_passable = law.is_map() && now.system.is_passable(surface);
-            self.watch.set_passable(surface, is_passable);
+            self.watch
+                .set_passable(surface, self.passes(now.system, surface));
         }
         let hits = self.watch.begin(now)?;
         self.strike(hits, now, observer)
@@ -566,6 +572,13 @@ impl<Sys: Impacting> SceneEffects<Sys> for Impacts<Sys> {
 
     fn set_policies(&mut self, policies: Policies) {
         self.policies = policies;
+    }
+
+    fn audit(&self, system: &Sys, work: &mut dyn FnMut(&mut dyn Auditor<Sys>)) -> bool {
+        work(&mut Audit::passing(system, |surface| {
+            self.passes(system, surface)
+        }));
+        true
     }
 }
 

@@ -10,7 +10,7 @@ mod hits;
 mod impulse;
 mod instantaneous;
 pub mod law;
-mod override_table;
+pub(crate) mod override_table;
 mod place;
 pub mod policy;
 mod release;

@@ -6,7 +6,7 @@ use crate::state::StateVector;
 /// The laws a caller put in place of the declared ones. A law is kept as two numbers, its place in [`Law::NAMES`]
 /// and its coefficient, because vectors of numbers are what a system has one of per surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Overrides<V> {
+pub(crate) struct Overrides<V> {
     places: V,
     coefficients: V,
 }
@@ -16,7 +16,7 @@ const DECLARED: f64 = -1.0;
 
 impl<V: StateVector> Overrides<V> {
     /// Every declared law stands.
-    pub(super) fn none() -> Self {
+    pub(crate) fn none() -> Self {
         let mut places = V::zeros();
         places.as_mut_slice().fill(DECLARED);
         Self {
@@ -26,7 +26,7 @@ impl<V: StateVector> Overrides<V> {
     }
 
     /// Puts a law in place of the declared one; a surface past the end changes nothing.
-    pub(super) fn set(&mut self, surface: usize, law: Law) {
+    pub(crate) fn set(&mut self, surface: usize, law: Law) {
         let place = Law::NAMES.iter().position(|(name, _)| *name == law.name());
         if let (Some(place), true) = (place, surface < V::LEN) {
             self.places.as_mut_slice()[surface] = place as f64;
@@ -35,7 +35,7 @@ impl<V: StateVector> Overrides<V> {
     }
 
     /// The law put in place of the declared one.
-    pub(super) fn get(&self, surface: usize) -> Option<Law> {
+    pub(crate) fn get(&self, surface: usize) -> Option<Law> {
         let place = *self.places.as_slice().get(surface)?;
         let (name, _) = Law::NAMES.get(usize::try_from(place as i64).ok()?)?;
         Law::from_name(name, self.coefficients.as_slice()[surface])

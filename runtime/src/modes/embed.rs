@@ -320,7 +320,7 @@ pub fn complete_velocity<M: Mode, V: StateVector>(
 
 /// The place of a surface of the model in the mode, if it has it.
 #[inline(always)]
-fn own_surface<M: Mode>(surface: usize) -> Option<usize> {
+pub(super) fn own_surface<M: Mode>(surface: usize) -> Option<usize> {
     M::SURFACES.iter().position(|&own| own == surface)
 }
 

@@ -6,7 +6,7 @@ use super::{Mode, Passage};
 use crate::contract::Variational;
 use crate::error::Fault;
 use crate::impacts::law::Law;
-use crate::numbers::{Numbers, Row};
+use crate::numbers::{Interval, Numbers, Row};
 
 /// A mode whose transitions can be computed in any [`Numbers`]. Implemented by `model!`.
 pub trait VariationalMode: Mode + Variational {
@@ -122,6 +122,19 @@ pub fn deviations_of<M: VariationalMode, L: Numbers, R: Row<L>>(
     Ok(all)
 }
 
+/// As [`Variational::counts_throughout`]; a surface that the mode does not have does not count.
+pub fn counts_throughout_of<M: VariationalMode>(
+    parameters: &[Interval],
+    surface: usize,
+    t: Interval,
+    state: &[Interval],
+) -> Option<bool> {
+    match super::embed::own_surface::<M>(surface) {
+        Some(own) => M::counts_throughout(&beginning(parameters), own, t, &beginning(state)),
+        None => Some(false),
+    }
+}
+
 /// As [`Variational::clearances`]; 1 for surfaces that the mode does not have.
 ///
 /// # Errors
@@ -233,21 +246,22 @@ pub fn passed_into<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>
             T::nearest(&after, t, &beginning(own.as_slice()), &qdot)?
         }
         Passage::Refracted if M::HOLDS_MOMENTA && T::HOLDS_MOMENTA => {
-            return refracted::<M, T, L, R>(&before, &after, surface, t, &own).map(Some);
+            return refracted::<M, T, L, R>(&before, &after, surface, t, &own);
         }
         Passage::Refracted => return Ok(None),
     };
     Ok(Some(placed::<T, L, R>(&entered)))
 }
 
-/// Refraction, or reflection where there is none, of momenta: the formulas are those of `passage.rs`.
+/// Refraction, or reflection where there is none, of momenta: the formulas are those of `passage.rs`. `None` where it is not certain
+/// which.
 fn refracted<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>>(
     before: &M::Parameters<L>,
     after: &T::Parameters<L>,
     surface: usize,
     t: L,
     own: &M::Row<L>,
-) -> Result<R, Fault> {
+) -> Result<Option<R>, Fault> {
     let n = M::Configuration::<L>::LEN;
     let collision = M::collision(before, surface, t, own)?;
     // NOTE: the third number of a contact is the rate of the surface itself, behind the fifth comes the direction.
@@ -269,19 +283,23 @@ fn refracted<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>>(
     let compliance = through(&|i| direction[i])? - through(&|_| L::ZERO)?;
     let excess = T::energy_of(after, t, &with_momenta(&p))? - M::energy_of(before, t, own)?;
     let discriminant = rate * rate - L::of(2.0) * compliance * excess;
-    if discriminant.lane(0) <= 0.0 {
+    let Some(is_refracted) = (-discriminant).is_below_zero() else {
+        return Ok(None);
+    };
+    if !is_refracted {
         let mut reflected = *own;
         Law::Elastic.strike(
             L::ZERO,
             collision.as_slice(),
             &mut reflected.as_mut_slice()[n..],
         );
-        return Ok(placed::<M, L, R>(&reflected));
+        return Ok(Some(placed::<M, L, R>(&reflected)));
     }
     let root = discriminant.sqrt();
-    let size = match rate.lane(0) < 0.0 {
-        true => L::of(2.0) * excess / (root - rate),
-        false => -(rate + root) / compliance,
+    let size = match rate.is_below_zero() {
+        Some(true) => L::of(2.0) * excess / (root - rate),
+        Some(false) => -(rate + root) / compliance,
+        None => return Ok(None),
     };
     let beyond = with_momenta(&|i| size.mul_add(direction[i], p(i)));
     let entered = match T::CAN_LEAVE_CONSTRAINTS {
@@ -291,5 +309,5 @@ fn refracted<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>>(
         }
         false => beyond,
     };
-    Ok(placed::<T, L, R>(&entered))
+    Ok(Some(placed::<T, L, R>(&entered)))
 }

@@ -162,6 +162,11 @@ impl Numbers for Dual {
     }
 
     #[inline(always)]
+    fn is_below_zero(&self) -> Option<bool> {
+        self.value.is_below_zero()
+    }
+
+    #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         Self {
             value: math::mul_add(self.value, b.value, c.value),

@@ -229,31 +229,72 @@ pub(crate) fn struck<Sys: Variational, L: Numbers>(
     state: &Sys::Row<L>,
 ) -> Result<Sys::Row<L>, Undefined> {
     let surface = event.surface;
-    if matches!(event.law, Law::Reset | Law::Transition) {
-        let after = Sys::passed(parameters, surface, t, state)?;
-        let t = event.t;
-        return after.ok_or(match event.law {
-            Law::Transition => Undefined::Refracted { t, surface },
-            _ => Undefined::Unlawful { t, surface },
-        });
-    }
-    let (declared, coefficient) = Sys::declared_law(parameters, surface);
-    let coefficient = match declared == event.law {
-        true => coefficient,
+    let (declared, _) = Sys::declared_law(parameters, surface);
+    let strike = Strike {
+        surface,
         // A law that was chosen for the run: its coefficient is a number.
-        false => L::of(event.law.coefficient().unwrap_or(0.0)),
+        chosen: (declared != event.law).then_some(event.law),
+        motion_start: system.motion_start(&event.before),
     };
-    let focused = Sys::focus(parameters, surface, t, state)?;
-    let mut after = focused.unwrap_or(*state);
-    let collision = Sys::collision(parameters, surface, t, &after)?;
-    if focused.is_some() && collision.as_slice()[0].lane(0) >= 0.0 {
-        // The instantaneous constraints alone have turned the motion round.
-        return Ok(after);
+    let after = strike.applied::<Sys, L>(parameters, t, state)?;
+    let t = event.t;
+    after.ok_or(match event.law {
+        Law::Transition => Undefined::Refracted { t, surface },
+        _ => Undefined::Unlawful { t, surface },
+    })
+}
+
+/// A law that acts at a surface.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Strike {
+    pub(crate) surface: usize,
+    /// The law in place of the declared one.
+    pub(crate) chosen: Option<Law>,
+    /// The first component of the state that holds the motion.
+    pub(crate) motion_start: usize,
+}
+
+impl Strike {
+    /// The law in force.
+    pub(crate) fn law<Sys: Variational, L: Numbers>(&self, parameters: &Sys::Parameters<L>) -> Law {
+        let declared = Sys::declared_law(parameters, self.surface).0;
+        self.chosen.unwrap_or(declared)
     }
-    let first = system.motion_start(&event.before);
-    let motion = &mut after.as_mut_slice()[first..];
-    event.law.strike(coefficient, collision.as_slice(), motion);
-    Ok(after)
+
+    /// The state after the law; `None` where it is not known over numbers, or not certainly the same in all of them.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    pub(crate) fn applied<Sys: Variational, L: Numbers>(
+        &self,
+        parameters: &Sys::Parameters<L>,
+        t: L,
+        state: &Sys::Row<L>,
+    ) -> Result<Option<Sys::Row<L>>, Fault> {
+        let surface = self.surface;
+        let (declared, coefficient) = Sys::declared_law(parameters, surface);
+        let (law, coefficient) = match self.chosen {
+            Some(law) => (law, L::of(law.coefficient().unwrap_or(0.0))),
+            None => (declared, coefficient),
+        };
+        if law.is_map() {
+            return Sys::passed(parameters, surface, t, state);
+        }
+        let focused = Sys::focus(parameters, surface, t, state)?;
+        let mut after = focused.unwrap_or(*state);
+        let collision = Sys::collision(parameters, surface, t, &after)?;
+        if focused.is_some() {
+            match collision.as_slice()[0].is_below_zero() {
+                Some(true) => {}
+                // The instantaneous constraints alone have turned the motion round.
+                Some(false) => return Ok(Some(after)),
+                None => return Ok(None),
+            }
+        }
+        let motion = &mut after.as_mut_slice()[self.motion_start..];
+        law.strike(coefficient, collision.as_slice(), motion);
+        Ok(Some(after))
+    }
 }
 
 /// Whether a state of the run, before or after an event, is this one.

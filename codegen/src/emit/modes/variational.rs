@@ -8,7 +8,7 @@ use super::contract::emit_entries;
 use super::impacting::{is_rough, passage};
 use crate::emit::function::Body;
 use crate::emit::instantaneous::over_numbers;
-use crate::emit::variational::{Lengths, emit_counts};
+use crate::emit::variational::{Lengths, emit_counts, over_intervals};
 use crate::emit::{Context, attributes};
 use crate::model::Mode;
 use crate::program::Form;
@@ -112,6 +112,7 @@ pub(super) fn emit_variational(whole: &Whole<'_>) -> TokenStream {
     let (n, count) = (whole.graph.coordinates.len(), whole.graph.surfaces.len());
     let parts = [
         emit_counts(count > 0),
+        emit_counts_throughout(whole),
         emit_asked(whole),
         emit_collision(whole),
         emit_instantaneous(whole),
@@ -133,6 +134,20 @@ pub(super) fn emit_variational(whole: &Whole<'_>) -> TokenStream {
 fn of_row(whole: &Whole<'_>, arm: impl Fn(&Mode, &TokenStream) -> TokenStream) -> TokenStream {
     let number = quote!(::dalembert::__private::modes::index_of(state));
     whole.of_number(&number, arm)
+}
+
+/// `counts_throughout`, by the surfaces of the mode, where some have conditions.
+fn emit_counts_throughout(whole: &Whole<'_>) -> TokenStream {
+    let functions = whole.own().filter_map(|own| own.program.impacting.as_ref());
+    let mut conditions = functions.flat_map(|functions| &functions.conditions);
+    if !conditions.any(Option::is_some) {
+        return TokenStream::new();
+    }
+    let answer = of_row(
+        whole,
+        |_, own| quote!(::dalembert::__private::modes::counts_throughout_of::<#own>(parameters, surface, t, state)),
+    );
+    over_intervals(&answer)
 }
 
 /// The functions of parameters, time and state that give a row.

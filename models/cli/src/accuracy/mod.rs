@@ -4,7 +4,8 @@
 //! An error is measured, never estimated: it is the largest difference of a position from a reference run at
 //! [`TIMES`] equally spaced times and at the end, as a share of the largest absolute value that this coordinate takes
 //! there (of an angle, at least one radian). The reference is a run of Taylor series at [`FINEST`]; a second one with
-//! other steps shows how far it can be trusted, which is the [`Study::floor`].
+//! other steps shows how far it can be trusted, which is the [`Study::floor`]. Both are audited ([`dalembert::audit`]): that they
+//! miss no impact is shown without the search that finds impacts. Nothing is measured by a reference that is not confirmed.
 //!
 //! ```
 //! use dalembert::{Described, System};
@@ -29,17 +30,19 @@
 //! ```
 
 mod probe;
+mod verdict;
 
 use std::time::{Duration, Instant};
 
 use dalembert::integrate::Counters;
-use dalembert::{Outcome, Policies};
+use dalembert::{Outcome, Policies, SceneEffects};
 use thiserror::Error;
 
 use crate::args::{Form, Integrator};
 use crate::driver::{self, Settings};
 use crate::entry::Model;
-use probe::{Probe, Track};
+use probe::{Audited, Probe, Track};
+pub(crate) use verdict::{Verified, verify};
 
 /// Equally spaced times at which positions are compared.
 pub const TIMES: u64 = 64;
@@ -98,7 +101,7 @@ pub struct Sample {
     pub step: Option<f64>,
     /// The measured error.
     pub error: f64,
-    /// Whether it ended as the reference did, after as many impacts.
+    /// Whether it met the same surfaces as the reference, and ended as it did.
     pub agrees: bool,
     /// How it ended.
     pub outcome: Outcome,
@@ -117,6 +120,8 @@ pub struct Study {
     pub until: f64,
     /// What two reference runs differ by: smaller errors are not told from 0.
     pub floor: f64,
+    /// Why the impacts of the reference are not confirmed, in words; there are no cases then.
+    pub doubt: Option<String>,
     /// How the reference ended.
     pub outcome: Outcome,
     /// The impacts of the reference.
@@ -134,6 +139,9 @@ pub enum NoChoice {
     /// The runs did not begin.
     #[error("{0}")]
     Start(String),
+    /// There is no reference to measure errors by.
+    #[error("the reference is not confirmed: {0}")]
+    Unconfirmed(String),
     /// Nothing that was measured is as accurate.
     #[error(
         "no run has an error below {wanted:e}; the least is {least:e}, and the reference is known to {floor:e}"
@@ -152,8 +160,12 @@ impl Study {
     /// The fastest of the cases that reach an error, and end as the reference does.
     ///
     /// # Errors
-    /// [`NoChoice::OutOfReach`] if there is none, or the reference itself is not known as well as that.
+    /// [`NoChoice::OutOfReach`] if there is none, or the reference itself is not known as well as that;
+    /// [`NoChoice::Unconfirmed`] without a reference.
     pub fn choose(&self, wanted: f64) -> Result<&Sample, NoChoice> {
+        if let Some(doubt) = &self.doubt {
+            return Err(NoChoice::Unconfirmed(doubt.clone()));
+        }
         let reached = self
             .samples
             .iter()
@@ -240,13 +252,18 @@ pub(crate) fn study<M: Model>(
     let reference = reference(model, state, base)?;
     let mut cases: Vec<Case> = Vec::new();
     let mut absent = Vec::new();
-    for &integrator in &plan.integrators {
+    let integrators = match reference.doubt {
+        None => plan.integrators.as_slice(),
+        Some(_) => &[],
+    };
+    for &integrator in integrators {
         let mut ladder = Ladder::new(plan, &reference);
         let end = ladder.climb(model, state, base, integrator, tell);
         cases.append(&mut ladder.cases);
         absent.extend(end.err().map(|reason| (integrator, reason)));
     }
-    for round in 0..plan.rounds {
+    let rounds = if cases.is_empty() { 0 } else { plan.rounds };
+    for round in 0..rounds {
         tell(&format!("timing, round {} of {}", round + 1, plan.rounds));
         for case in &mut cases {
             case.time(model, state)?;
@@ -255,6 +272,7 @@ pub(crate) fn study<M: Model>(
     Ok(Study {
         until: plan.until,
         floor: reference.floor,
+        doubt: reference.doubt,
         outcome: reference.track.outcome,
         impacts: reference.track.counters.impacts,
         samples: cases.into_iter().map(Case::timed).collect(),
@@ -380,6 +398,8 @@ impl Case {
 struct Reference {
     track: Track,
     floor: f64,
+    /// Why its impacts are not confirmed.
+    doubt: Option<String>,
 }
 
 fn reference<M: Model>(model: &M, state: &M::State, base: &Settings) -> Result<Reference, String> {
@@ -391,45 +411,59 @@ fn reference<M: Model>(model: &M, state: &M::State, base: &Settings) -> Result<R
             steps: None,
             ..base.clone()
         };
-        track(model, state, &settings)
+        audited(model, state, &settings, base.until)
     });
     let (track, second) = (first?, second?);
+    let names = ["the reference", "one with other steps"];
+    let of_track = |track: &Track, name: &str| Some(format!("{name}: {}", track.doubt()?));
+    let doubt = of_track(&track, names[0])
+        .or_else(|| of_track(&second, names[1]))
+        .or_else(|| track.difference_from(&second, names));
     let floor = match second.ends_as(&track) {
         true => second.distance(&track),
         false => f64::INFINITY,
     };
-    Ok(Reference { track, floor })
+    Ok(Reference {
+        track,
+        floor,
+        doubt,
+    })
 }
 
 fn track<M: Model>(model: &M, state: &M::State, settings: &Settings) -> Result<Track, String> {
     let mut probe = Probe::new(model, settings.until);
     let solved = driver::solve(model, state, settings, &mut probe)?;
-    Ok(probe.track(&solved))
+    Ok(probe.track(&solved, Audited::Not))
 }
 
-/// The measured error of one run, with what the reference is known to, and whether both ended alike.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Verified {
-    pub error: f64,
-    pub floor: f64,
-    pub agrees: bool,
-    pub outcome: Outcome,
-    pub impacts: u64,
-}
-
-/// Makes a run again, and measures its error.
-pub(crate) fn verify<M: Model>(
+/// The track of a run, with positions up to a time, under an audit of its impacts.
+fn audited<M: Model>(
     model: &M,
     state: &M::State,
     settings: &Settings,
-) -> Result<Verified, String> {
-    let reference = reference(model, state, settings)?;
-    let track = track(model, state, settings)?;
-    Ok(Verified {
-        error: track.distance(&reference.track),
-        floor: reference.floor,
-        agrees: track.ends_as(&reference.track),
-        outcome: reference.track.outcome,
-        impacts: reference.track.counters.impacts,
-    })
+    until: f64,
+) -> Result<Track, String> {
+    let (effects, laws) = driver::effects(model, settings);
+    let mut audited = None;
+    let has_audit = effects.audit(model, &mut |audit| {
+        let mut probe = Probe::new(model, until);
+        let solved = driver::solve(model, state, settings, &mut (&mut probe, &mut *audit));
+        let result = match audit.finding() {
+            None => Audited::Confirmed,
+            Some(finding) => Audited::Doubted(finding),
+        };
+        audited = Some(solved.map(|solved| probe.track(&solved, result)));
+    });
+    if let Some(track) = audited.filter(|_| has_audit) {
+        return track;
+    }
+    let mut probe = Probe::new(model, until);
+    let solved = driver::solve(model, state, settings, &mut probe)?;
+    Ok(probe.track(
+        &solved,
+        match laws.iter().all(Option::is_none) {
+            true => Audited::Confirmed,
+            false => Audited::Impossible,
+        },
+    ))
 }

@@ -2,20 +2,33 @@
 
 use std::ops::ControlFlow;
 
+use dalembert::audit::Finding;
 use dalembert::describe::{Description, Topology};
 use dalembert::integrate::Counters;
-use dalembert::{Observer, Outcome, Segment, StateVector};
+use dalembert::{Event, Observer, Outcome, Segment, StateVector};
 
 use super::TIMES;
-use crate::driver::Solved;
+use crate::driver::{Ending, Solved};
 use crate::entry::Model;
+use crate::names;
 use crate::record::Grid;
 
-/// Keeps positions at equally spaced times.
+/// Impacts of a run that are kept to be compared; of later ones only the number is.
+const KEPT: usize = 1 << 20;
+
+/// Keeps positions at equally spaced times, and the sequence of impacts.
 pub struct Probe<'a, M> {
     model: &'a M,
     times: Grid,
     positions: Vec<Vec<f64>>,
+    impacts: Vec<Met>,
+}
+
+/// An impact: when, and the index of the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Met {
+    pub t: f64,
+    pub surface: usize,
 }
 
 impl<'a, M: Model> Probe<'a, M> {
@@ -28,6 +41,7 @@ impl<'a, M: Model> Probe<'a, M> {
                 count: TIMES + 1,
             },
             positions: Vec::new(),
+            impacts: Vec::new(),
         }
     }
 
@@ -35,12 +49,14 @@ impl<'a, M: Model> Probe<'a, M> {
         self.times.time(self.positions.len() as u64)
     }
 
-    /// The track of the run that was watched.
-    pub fn track(self, solved: &Solved<M::State>) -> Track {
+    /// The track of the run that was watched, and audited with this result.
+    pub fn track(self, solved: &Solved<M::State>, audit: Audited) -> Track {
         let last = self.model.position(&solved.run.state);
         Track {
             description: M::DESCRIPTION,
             positions: self.positions,
+            impacts: self.impacts,
+            audit,
             last: last.as_slice().to_vec(),
             outcome: solved.run.outcome,
             t: solved.run.t,
@@ -62,6 +78,63 @@ impl<M: Model> Observer<M> for Probe<'_, M> {
         }
         ControlFlow::Continue(())
     }
+
+    fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
+        if self.impacts.len() < KEPT {
+            self.impacts.push(Met {
+                t: event.t,
+                surface: event.surface,
+            });
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// What the audit of a run says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Audited {
+    /// The run was not audited.
+    Not,
+    /// The scene has surfaces, and no audit of them.
+    Impossible,
+    /// No surface is met between impacts.
+    Confirmed,
+    /// One may be, or something else is wrong.
+    Doubted(Finding),
+}
+
+impl Audited {
+    /// Why the events of a run are not confirmed.
+    fn doubt(self, description: &Description) -> Option<String> {
+        let surface = |index| names::surfaces(description).nth(index).unwrap_or_default();
+        match self {
+            Self::Confirmed => None,
+            Self::Not => Some("its impacts were not audited".to_owned()),
+            Self::Impossible => {
+                Some("the effects of this scene allow no independent search for impacts".to_owned())
+            }
+            Self::Doubted(Finding::MayBeMet { surface: index, t }) => Some(format!(
+                "`{}` may be met at t = {t}, where the run has no impact",
+                surface(index)
+            )),
+            Self::Doubted(Finding::Misplaced { surface: index, t }) => Some(format!(
+                "the impact at t = {t} is not on `{}`",
+                surface(index)
+            )),
+            Self::Doubted(Finding::NoDenseOutput { t }) => Some(format!(
+                "the step at t = {t} has no dense output to search for impacts"
+            )),
+            Self::Doubted(_) => Some("its impacts are not confirmed".to_owned()),
+        }
+    }
+}
+
+/// The first difference between two runs.
+enum Difference {
+    /// An impact; `None` where a run has no more.
+    Impact([Option<Met>; 2]),
+    /// How they end.
+    End,
 }
 
 /// A run in a few numbers.
@@ -70,6 +143,9 @@ pub struct Track {
     description: Description,
     /// At each time that was reached.
     positions: Vec<Vec<f64>>,
+    /// The first impacts, in order.
+    impacts: Vec<Met>,
+    audit: Audited,
     /// At the end.
     last: Vec<f64>,
     pub outcome: Outcome,
@@ -79,10 +155,67 @@ pub struct Track {
 }
 
 impl Track {
-    /// Whether both end for the same reason after as many impacts.
+    /// Whether both meet the same surfaces and end for the same reason.
     pub fn ends_as(&self, other: &Self) -> bool {
-        self.outcome.kind() == other.outcome.kind()
-            && self.counters.impacts == other.counters.impacts
+        self.difference(other).is_none()
+    }
+
+    /// The first difference between the events of both; a text calls the runs by these names.
+    pub fn difference_from(&self, other: &Self, names: [&str; 2]) -> Option<String> {
+        let [own, others] = names;
+        match self.difference(other)? {
+            Difference::Impact(met) => {
+                let [met, other_met] = met.map(|met| self.told(met));
+                Some(format!("{own} {met}, {others} {other_met}"))
+            }
+            Difference::End => Some(format!(
+                "{own} ends as {} after {} impacts, {others} as {} after {}",
+                self.outcome.kind(),
+                self.counters.impacts,
+                other.outcome.kind(),
+                other.counters.impacts
+            )),
+        }
+    }
+
+    fn difference(&self, other: &Self) -> Option<Difference> {
+        let at = |index: usize| [self, other].map(|track| track.impacts.get(index).copied());
+        let longest = self.impacts.len().max(other.impacts.len());
+        let surfaces = |[a, b]: [Option<Met>; 2]| [a, b].map(|met| met.map(|met| met.surface));
+        let mut pairs = (0..longest).map(at);
+        let differs = |pair: &[Option<Met>; 2]| {
+            let [own, others] = surfaces(*pair);
+            own != others
+        };
+        if let Some(pair) = pairs.find(differs) {
+            return Some(Difference::Impact(pair));
+        }
+        let ends = |track: &Self| (track.outcome.kind(), track.counters.impacts);
+        (ends(self) != ends(other)).then_some(Difference::End)
+    }
+
+    /// An impact in words.
+    fn told(&self, met: Option<Met>) -> String {
+        match met {
+            None => "meets nothing more".to_owned(),
+            Some(Met { t, surface }) => {
+                let name = names::surfaces(&self.description).nth(surface);
+                format!("meets `{}` at t = {t}", name.unwrap_or_default())
+            }
+        }
+    }
+
+    /// Why the events of the run are not confirmed independently of the search that found them; `None` if they are.
+    pub fn doubt(&self) -> Option<String> {
+        self.audit.doubt(&self.description)
+    }
+
+    /// Whether this is the run that ended so, to the last digit. Coordinates that a mode does not have are not compared.
+    pub fn is_run_of(&self, ending: &Ending) -> bool {
+        let mut pairs = self.last.iter().zip(&ending.last.q);
+        self.t == ending.t
+            && self.outcome.kind() == ending.kind
+            && pairs.all(|(own, right)| own == right || right.is_nan())
     }
 
     /// The largest difference of a position, or of the times at the end, as a share of what `reference` has there.
@@ -114,5 +247,36 @@ impl Track {
             _ if largest > 0.0 => largest,
             _ => 1.0,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_without_an_audit_is_not_confirmed() {
+        let description = Description {
+            type_name: "",
+            name: "",
+            documentation: "",
+            source: "",
+            is_first_order: false,
+            coordinates: &[],
+            parameters: &[],
+            constraints: &[],
+            quasi_velocities: &[],
+            forces: &[],
+            surfaces: &[],
+            outputs: &[],
+            scenes: &[],
+            modes: &[],
+            view: None,
+        };
+        let finding = Finding::NoDenseOutput { t: 1.0 };
+        for audit in [Audited::Not, Audited::Impossible, Audited::Doubted(finding)] {
+            assert!(audit.doubt(&description).is_some(), "{audit:?}");
+        }
+        assert_eq!(Audited::Confirmed.doubt(&description), None);
     }
 }

@@ -44,7 +44,7 @@ pub fn draw(models: &[Entry], args: &AccuracyArgs) -> Result<Drawn, CliError> {
 ///
 /// # Errors
 /// Bad flags, a state that is refused, a file that cannot be written. A wanted error that nothing reaches is not an error
-/// but an [`Exit`].
+/// but an [`Exit`], and so is a reference that is not confirmed.
 pub fn run(
     models: &[Entry],
     args: &AccuracyArgs,
@@ -73,9 +73,10 @@ pub fn run(
     if !run_request::uses_stdout([&args.csv, &args.json]) {
         write(streams.output, &finished)?;
     }
-    Ok(match finished.choice() {
-        Some(Err(_)) => Exit::Other,
-        _ => Exit::Reached,
+    let is_answered = !matches!(finished.choice(), Some(Err(_)));
+    Ok(match is_answered && finished.study.doubt.is_none() {
+        true => Exit::Reached,
+        false => Exit::Other,
     })
 }
 
@@ -137,9 +138,11 @@ impl Finished<'_> {
     fn subtitle(&self) -> String {
         let Study { until, floor, .. } = self.study;
         let form = self.settings.form.name();
-        format!(
-            "{form} form, until t = {until}; reference known to {floor:.1e}; rings: the fastest of a decade"
-        )
+        let reference = match self.study.doubt {
+            None => format!("reference known to {floor:.1e}; rings: the fastest of a decade"),
+            Some(_) => "reference not confirmed".to_owned(),
+        };
+        format!("{form} form, until t = {until}; {reference}")
     }
 
     /// The diagram.
@@ -158,6 +161,12 @@ impl Finished<'_> {
 fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let study = &finished.study;
     writeln!(output, "{}", finished.title())?;
+    if let Some(doubt) = &study.doubt {
+        return writeln!(
+            output,
+            "nothing is measured: the reference is not confirmed: {doubt}"
+        );
+    }
     writeln!(
         output,
         "{} form, until t = {}; reference: {} after {} impacts, known to {:.1e}",

@@ -71,10 +71,10 @@ pub fn run(
     if !run_request::uses_stdout([&args.csv, &args.json]) {
         summary::write(streams.output, &finished)?;
     }
-    Ok(if finished.ending.reached {
-        Exit::Reached
-    } else {
-        Exit::Other
+    let is_doubted = matches!(finished.verified, Some(Verified::Doubted { .. }));
+    Ok(match finished.ending.reached && !is_doubted {
+        true => Exit::Reached,
+        false => Exit::Other,
     })
 }
 
@@ -151,7 +151,11 @@ fn finish<'a>(
         settings, origin, ..
     } = prepared;
     let verified = match args.verify {
-        true => Some(verify(model, &origin, &settings, &ending)?),
+        true => Some(
+            model
+                .verify(&origin, &settings, &ending)
+                .map_err(CliError::Start)?,
+        ),
         false => None,
     };
     Ok(Finished {
@@ -162,26 +166,6 @@ fn finish<'a>(
         ending,
         verified,
     })
-}
-
-/// Measures the error of a run up to where it ended.
-fn verify(
-    model: &dyn AnyModel,
-    origin: &Origin,
-    settings: &Settings,
-    ending: &Ending,
-) -> Result<Verified, CliError> {
-    let until = match settings.impacts {
-        // The horizon is far beyond the last impact that was asked for; positions are compared on the way to it, and
-        // a little later, where other runs may have it.
-        Some(_) => ending.t * 1.01,
-        None => settings.until,
-    };
-    let settings = Settings {
-        until,
-        ..settings.clone()
-    };
-    model.verify(origin, &settings).map_err(CliError::Start)
 }
 
 /// Makes the run. Where the end time is not known beforehand the same run is made twice, first to find the end

@@ -275,7 +275,7 @@ fn run<M: Model>(
 }
 
 /// The effects of a scene as the settings want them, and the law in force on each surface.
-fn effects<M: Model>(model: &M, settings: &Settings) -> (M::Effects, Vec<Option<Law>>) {
+pub(crate) fn effects<M: Model>(model: &M, settings: &Settings) -> (M::Effects, Vec<Option<Law>>) {
     let mut effects = model.effects();
     for &(surface, law) in &settings.laws {
         effects.set_law(surface, law);

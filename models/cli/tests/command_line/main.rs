@@ -15,6 +15,7 @@ mod pictures;
 mod simulate;
 mod stability;
 mod systems;
+mod verify;
 
 use dalembert_cli::{Entry, Exit, Streams, models, run_with};
 use serde_json::Value;

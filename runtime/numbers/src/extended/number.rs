@@ -278,6 +278,10 @@ impl<const PARTS: usize> Numbers for Extended<PARTS> {
         self.parts[0]
     }
 
+    fn is_below_zero(&self) -> Option<bool> {
+        crate::numbers::sign_of(self.parts[0])
+    }
+
     #[inline]
     fn mul_add(self, b: Self, c: Self) -> Self {
         self.fused(b, c)

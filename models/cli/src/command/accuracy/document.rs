@@ -33,6 +33,8 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         "outcome": study.outcome.kind(),
         "impacts": study.impacts,
         "floor": number(study.floor),
+        "confirmed": study.doubt.is_none(),
+        "doubt": study.doubt,
     });
     document.field("reference", reference)?;
     document.rows("cases", study.samples.iter().map(case))?;

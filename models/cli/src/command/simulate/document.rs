@@ -7,6 +7,7 @@ use dalembert::describe::Description;
 use serde_json::{Map, Value, json};
 
 use super::Finished;
+use crate::accuracy::Verified;
 use crate::driver::{Contact, Impact};
 use crate::entry::Point;
 use crate::error::CliError;
@@ -99,12 +100,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>, rows: &Rows) -> io
     }
     document.field("outcome", outcome(finished))?;
     if let Some(verified) = verified {
-        let error = json!({
-            "measured": number(verified.error),
-            "floor": number(verified.floor),
-            "ends_as_reference": verified.agrees,
-        });
-        document.field("error", error)?;
+        document.field("error", error(verified))?;
     }
     document.spooled("events", &rows.events)?;
     document.spooled("contacts", &rows.contacts)?;
@@ -116,6 +112,25 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>, rows: &Rows) -> io
     document.field("counters", counters.collect::<Map<_, _>>())?;
     document.field("warnings", ending.warnings.clone())?;
     document.end()
+}
+
+/// The measured error, or why there is none.
+fn error(verified: &Verified) -> Value {
+    match verified {
+        Verified::Measured { error, floor } => json!({
+            "verified": true,
+            "measured": number(*error),
+            "floor": number(*floor),
+            "ends_as_reference": true,
+        }),
+        Verified::Doubted { reason, agrees } => json!({
+            "verified": false,
+            "reason": reason,
+            "measured": null,
+            "floor": null,
+            "ends_as_reference": agrees,
+        }),
+    }
 }
 
 /// `kind` and `t`, the details of the kind, and the last state.

@@ -42,24 +42,16 @@ pub fn outcome(ending: &Ending) -> String {
     format!("{} at t = {}{}", ending.kind, ending.t, details(ending))
 }
 
-/// The measured error, and what it was measured by.
+/// The measured error and what it was measured by, or why there is none.
 fn error(verified: &Verified) -> String {
-    let Verified {
-        error,
-        floor,
-        agrees,
-        outcome,
-        impacts,
-    } = verified;
-    if !agrees {
-        return format!(
-            "{error:.1e}: the reference ends otherwise, {} after {impacts} impacts",
-            outcome.kind()
-        );
-    }
-    match error <= floor {
-        true => format!("at most {floor:.1e}, to which the reference is known"),
-        false => format!("{error:.1e} of the positions (reference known to {floor:.1e})"),
+    match verified {
+        Verified::Measured { error, floor } if error <= floor => {
+            format!("at most {floor:.1e}, to which the reference is known")
+        }
+        Verified::Measured { error, floor } => {
+            format!("{error:.1e} of the positions (reference known to {floor:.1e})")
+        }
+        Verified::Doubted { reason, .. } => format!("not verified: {reason}"),
     }
 }
 

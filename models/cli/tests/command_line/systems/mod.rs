@@ -5,6 +5,7 @@
 
 mod particle;
 mod pushed;
+mod unsure;
 
 use dalembert::describe::{
     Assumption, ConstraintInfo, CoordinateInfo, Described, Description, Initial, ParameterInfo,
@@ -13,7 +14,7 @@ use dalembert::describe::{
 use dalembert::error::ParameterError;
 use dalembert::impacts::law::{Contact, Law};
 use dalembert::jet::LENGTH;
-use dalembert::numbers::{Numbers, TaylorModel};
+use dalembert::numbers::{Bent, Numbers, TaylorModel};
 use dalembert::{
     Fault, Impacting, Impacts, Lagrangian, Scene, StateError, System, TaylorField, VectorField,
 };
@@ -21,6 +22,7 @@ use nalgebra::SVector;
 
 use particle::{Particle, field, free, particle, system};
 pub use pushed::Pushed;
+pub use unsure::Unsure;
 
 /// What every model reports.
 fn inspect_common<S: System>(
@@ -110,6 +112,10 @@ impl Impacting for BouncingBall {
         _t: TaylorModel,
         component: &dyn Fn(usize) -> TaylorModel,
     ) -> TaylorModel {
+        component(0)
+    }
+
+    fn gap_about(&self, _surface: usize, _t: Bent, component: &dyn Fn(usize) -> Bent) -> Bent {
         component(0)
     }
 

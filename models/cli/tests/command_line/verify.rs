@@ -1,0 +1,218 @@
+//! `--verify` and `accuracy` give no error for a run that misses an impact, also where every run misses it.
+
+use dalembert_cli::{Entry, models};
+
+use super::systems::Unsure;
+use super::*;
+
+dalembert::model! {
+    /// Two wheels joined by a rod of variable length.
+    pub TwoWheelsRod {
+        coordinates { x1; x2; theta1; theta2; }
+        parameters { r1 > 0 = 1/2; r2 > 0 = 1; a > 0 = 1; b > 0 = 3; }
+        let length = sqrt((r2 - r1)^2 + (x2 - x1)^2);
+        lagrangian = 1/2*(dot(x1)^2 + dot(x2)^2 + dot(theta1)^2 + dot(theta2)^2);
+        constraints { wheel1: d(x1) - r1*d(theta1) = 0; wheel2: d(x2) - r2*d(theta2) = 0; }
+        impacts { rod_max: b - length >= 0; rod_min: length - a >= 0; }
+        initial { x2 = 2; dot(theta1) = 1; dot(theta2) = -0.25; }
+    }
+}
+
+dalembert::model! {
+    /// The same with a rod that is arrested at its extreme lengths.
+    pub TwoWheelsArrested {
+        coordinates { x1; x2; theta1; theta2; }
+        parameters { r1 > 0 = 1/2; r2 > 0 = 1; a > 0 = 1; b > 0 = 3; }
+        let length = sqrt((r2 - r1)^2 + (x2 - x1)^2);
+        lagrangian = 1/2*(dot(x1)^2 + dot(x2)^2 + dot(theta1)^2 + dot(theta2)^2);
+        constraints { wheel1: d(x1) - r1*d(theta1) = 0; wheel2: d(x2) - r2*d(theta2) = 0; }
+        modes {
+            sliding { initial { x2 = 2; dot(theta1) = 1; dot(theta2) = -0.25; } }
+            arrested { constraints { rod: d(x2 - x1) = 0; } }
+        }
+        transitions {
+            longest: sliding -> arrested when length >= b;
+            shortest: sliding -> arrested when length <= a;
+        }
+    }
+}
+
+dalembert::model! {
+    /// A point over a bump.
+    pub Bump {
+        coordinates { x; y; }
+        parameters { s > 0 = 0.1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts { wall: y - exp(-(x/s)^2) >= 0; }
+        initial { x = -1; y = 1/2; dot(x) = 1; }
+    }
+}
+
+dalembert::model! {
+    /// A point that falls on a peg.
+    pub Peg {
+        coordinates { x; y; }
+        parameters { r > 0 = 0.5826313654547983; g > 0 = 1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - g*y;
+        impacts { peg: sqrt(x^2 + y^2) - r >= 0; }
+        initial { x = 0.31066917005121814; y = 16.26406912456683; }
+    }
+}
+
+dalembert::model! {
+    /// A mass on a spring, before a wall a little nearer than its amplitude.
+    pub Spring {
+        coordinates { x; }
+        lagrangian = dot(x)^2/2 - x^2/2;
+        impacts { wall: 0.9999 - x >= 0; }
+        initial { dot(x) = 1; }
+    }
+}
+
+/// A command line with the first impact of the right run.
+struct Case {
+    line: &'static str,
+    surface: &'static str,
+    t: f64,
+}
+
+const CASES: [Case; 5] = [
+    Case {
+        line: "two_wheels_rod --integrator taylor --until 500",
+        surface: "rod_min",
+        t: 1.512,
+    },
+    Case {
+        line: "two_wheels_arrested --integrator taylor --until 1000",
+        surface: "shortest",
+        t: 1.512,
+    },
+    Case {
+        line: "two_wheels_rod --set b=1e7 --initial x2=500,theta1_dot=1,theta2_dot=-0.25 --until 2000",
+        surface: "rod_min",
+        t: 665.512,
+    },
+    Case {
+        line: "bump --until 2.5",
+        surface: "wall",
+        t: 0.91674,
+    },
+    Case {
+        line: "peg --integrator taylor --until 7.7",
+        surface: "peg",
+        t: 5.616,
+    },
+];
+
+fn sure() -> Vec<Entry> {
+    models![TwoWheelsRod, TwoWheelsArrested, Bump, Peg, Spring]
+}
+
+/// The same models, with a search that misses impacts.
+fn unsure() -> Vec<Entry> {
+    models![
+        Unsure<TwoWheelsRod>,
+        Unsure<TwoWheelsArrested>,
+        Unsure<Bump>,
+        Unsure<Peg>
+    ]
+}
+
+/// Runs a command over some models.
+fn over(models: &[Entry], line: &str) -> Done {
+    run_over(models, "", &line.split_whitespace().collect::<Vec<_>>())
+}
+
+/// The line of the summary that tells of the error.
+fn error_of(done: &Done) -> &str {
+    let mut lines = done.output.lines();
+    lines.find(|line| line.contains("  error ")).unwrap()
+}
+
+impl Case {
+    /// Whether the first impact of a document is the right one.
+    fn is_right(&self, document: &Value) -> bool {
+        let first = &document["events"][0];
+        first["surface"] == self.surface
+            && first["t"]
+                .as_f64()
+                .is_some_and(|t| (t - self.t).abs() < 1e-3)
+    }
+
+    fn simulate(&self, flags: &str) -> String {
+        format!("simulate {} --verify {flags}", self.line)
+    }
+}
+
+#[test]
+fn runs_with_the_right_impacts_are_verified() {
+    for case in CASES {
+        let document = over(&sure(), &case.simulate("--samples 2 --json -")).json();
+        assert!(case.is_right(&document), "{}: {document}", case.line);
+        assert_eq!(document["error"]["verified"], true, "{document}");
+        let done = over(&sure(), &case.simulate(""));
+        assert_eq!(done.exit, Exit::Reached, "{}", done.output);
+        assert!(error_of(&done).contains("reference"), "{}", done.output);
+    }
+}
+
+#[test]
+fn a_run_that_misses_an_impact_is_not_verified_by_others_that_miss_it() {
+    for case in CASES {
+        let document = over(&unsure(), &case.simulate("--samples 2 --json -")).json();
+        assert!(!case.is_right(&document), "{}: {document}", case.line);
+        let error = &document["error"];
+        // All runs agree on what is wrong: their comparison shows nothing.
+        assert_eq!(error["ends_as_reference"], true, "{}: {error}", case.line);
+        assert_eq!(error["verified"], false, "{}: {error}", case.line);
+        assert!(error["measured"].is_null(), "{}: {error}", case.line);
+
+        let done = over(&unsure(), &case.simulate(""));
+        assert_eq!(done.exit, Exit::Other, "{}", done.output);
+        let (line, met) = (
+            error_of(&done),
+            format!("`{}` may be met at t = ", case.surface),
+        );
+        let (_, rest) = line.split_once(&met).unwrap_or_else(|| panic!("{line}"));
+        let t: f64 = rest.split(',').next().unwrap().parse().unwrap();
+        assert!((t - case.t).abs() < 1e-3, "{}: {line}", case.line);
+        assert!(line.contains("not verified"), "{line}");
+    }
+}
+
+#[test]
+fn nothing_is_measured_by_a_reference_that_misses_an_impact() {
+    let line = "accuracy peg --until 7.7 --rounds 1 --patience 0.05 --integrator dop853";
+    let done = over(&sure(), line);
+    assert_eq!(done.exit, Exit::Reached, "{}", done.output);
+    assert!(done.output.contains("dop853"), "{}", done.output);
+
+    let done = over(&unsure(), line);
+    assert_eq!(done.exit, Exit::Other, "{}", done.output);
+    assert!(!done.output.contains("dop853"), "{}", done.output);
+    let told = "the reference is not confirmed: the reference: `peg` may be met at t = 5.6";
+    assert!(done.output.contains(told), "{}", done.output);
+    let document = over(&unsure(), &format!("{line} --wanted 1e-6 --json -")).json();
+    assert_eq!(document["reference"]["confirmed"], false);
+    assert_eq!(document["cases"].as_array().unwrap().len(), 0);
+    let reason = document["wanted"]["reason"].as_str().unwrap();
+    assert!(reason.contains("not confirmed"), "{reason}");
+}
+
+#[test]
+fn runs_that_meet_other_surfaces_are_not_verified() {
+    // Steps that are too long take so much of the amplitude that the wall is not reached.
+    let line = "simulate spring --until 6 --integrator rk4 --step 0.5 --verify";
+    let done = over(&sure(), line);
+    assert_eq!(done.exit, Exit::Other, "{}", done.output);
+    let told = "not verified: the run meets nothing more, the reference meets `wall` at t = 1.55";
+    assert!(done.output.contains(told), "{}", done.output);
+}
+
+#[test]
+fn a_run_to_its_last_impact_is_verified() {
+    let line = "simulate two_wheels_rod --impacts 12 --tol 1e-9 --verify";
+    let done = over(&sure(), line);
+    assert_eq!(done.exit, Exit::Reached, "{}", done.output);
+    assert!(error_of(&done).contains("reference"), "{}", done.output);
+}

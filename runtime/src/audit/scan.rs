@@ -1,0 +1,138 @@
+//! Scan of one gap along a step: bisection into pieces on which an enclosure decides its sign.
+
+use super::motion::Motion;
+use crate::contract::Impacting;
+use crate::numbers::{Bent, Interval, Rated};
+
+/// Halvings of a step; the scan of a piece that is shorter ends.
+const DEPTH: u32 = 44;
+
+/// Pieces of a step.
+const PIECES: u32 = 1 << 14;
+
+/// Where in a piece the conditions of a surface are sampled.
+const SAMPLES: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// One gap along a step.
+pub(super) struct Scan<'a, Sys: Impacting> {
+    pub(super) system: &'a Sys,
+    pub(super) motion: &'a Motion<Sys::State>,
+    pub(super) surface: usize,
+    /// True if the gap may be negative, and only falls count.
+    pub(super) is_passable: bool,
+    /// How far the gap may be negative by rounding errors of the motion before.
+    pub(super) slack: f64,
+}
+
+/// The sign of a gap on a piece, beyond its rounding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    Positive,
+    NotNegative,
+    Negative,
+    Unclear,
+}
+
+/// The rounding of a gap with these values at one state: twice what the rounding of the state makes of it.
+pub(super) fn floor(gap: Interval) -> f64 {
+    2.0 * gap.width()
+}
+
+/// Values and rates of which it is not asked how they bend.
+pub(super) fn bent(Rated { value, rate }: Rated) -> Bent {
+    Bent {
+        value,
+        rate,
+        ..Bent::ANYTHING
+    }
+}
+
+impl<Sys: Impacting> Scan<'_, Sys> {
+    /// All values and rates of the gap on a piece.
+    pub(super) fn along(&self, piece: [f64; 2]) -> Rated {
+        let component = |i: usize| bent(self.motion.component(i, piece));
+        let time = bent(self.motion.time(piece));
+        let Bent { value, rate, .. } = self.system.gap_about(self.surface, time, &component);
+        Rated { value, rate }
+    }
+
+    /// The gap at a part of the step.
+    pub(super) fn at(&self, part: f64) -> Interval {
+        self.along([part, part]).value
+    }
+
+    /// Shows that the surface is not met from the start of the step up to `part` of it.
+    ///
+    /// # Errors
+    /// The first place where it may be met.
+    pub(super) fn exclude_falls(&self, part: f64) -> Result<(), f64> {
+        let start = self.at(0.0);
+        let mut is_above = start.lo > self.slack.max(floor(start));
+        let (mut index, mut depth) = (0_u64, 0);
+        for _ in 0..PIECES {
+            let piece = piece(part, index, depth);
+            let sign = self.sign(piece);
+            if sign == Sign::Unclear && depth < DEPTH {
+                (index, depth) = (2 * index, depth + 1);
+                continue;
+            }
+            let may_be_negative = matches!(sign, Sign::Negative | Sign::Unclear);
+            let matters = is_above || !self.is_passable;
+            if may_be_negative && matters && self.counts_on(piece) {
+                return Err(piece[0]);
+            }
+            is_above = match sign {
+                Sign::Positive => true,
+                Sign::Negative => false,
+                Sign::NotNegative | Sign::Unclear => is_above,
+            };
+            index += 1;
+            while index % 2 == 0 && depth > 0 {
+                (index, depth) = (index / 2, depth - 1);
+            }
+            if depth == 0 {
+                return Ok(());
+            }
+        }
+        Err(piece(part, index, depth)[0])
+    }
+
+    /// The sign on a piece, from all values there and from the values at both ends with all rates between.
+    fn sign(&self, [from, to]: [f64; 2]) -> Sign {
+        let Rated { value, rate } = self.along([from, to]);
+        // Of a wall it does not matter how far it is.
+        if value.lo > 0.0 && !self.is_passable {
+            return Sign::NotNegative;
+        }
+        let ends = [from, to].map(|part| self.at(part));
+        let width = Interval::new(0.0, (to - from) * (1.0 + f64::EPSILON));
+        let (forwards, backwards) = (ends[0] + rate * width, ends[1] - rate * width);
+        let lowest = value.lo.max(forwards.lo).max(backwards.lo);
+        let highest = value.hi.min(forwards.hi).min(backwards.hi);
+        let rounding = self.slack.max(floor(ends[0])).max(floor(ends[1]));
+        match rounding.is_finite() {
+            true if lowest > rounding => Sign::Positive,
+            true if lowest >= -rounding => Sign::NotNegative,
+            true if highest < -rounding => Sign::Negative,
+            _ => Sign::Unclear,
+        }
+    }
+
+    /// Whether the surface counts somewhere on a piece, as far as samples tell.
+    fn counts_on(&self, [from, to]: [f64; 2]) -> bool {
+        SAMPLES.into_iter().any(|sample| {
+            let part = from + sample * (to - from);
+            let (t, state) = (self.motion.time_at(part), self.motion.state(part));
+            self.system.surface_active(self.surface, t, &state)
+        })
+    }
+}
+
+/// The ends of a piece.
+fn piece(part: f64, index: u64, depth: u32) -> [f64; 2] {
+    let count = (1_u64 << depth) as f64;
+    [index, index + 1].map(|end| match end as f64 == count {
+        true => part,
+        false => part * (end as f64 / count),
+    })
+}

@@ -1,0 +1,264 @@
+//! Gaps of all surfaces along a step of certified motion.
+//!
+//! A step is passed in parts. Of each part the states, their rates, and with them all values and rates of every gap are enclosed. A
+//! surface is certainly not met in a part where its gap is positive, where it does not count, and where its gap rises from a surface
+//! just left. A passable surface is met from above only.
+
+use super::frame::Bounds;
+use super::lost::Reason;
+use super::series::{Arc, Field, bounds, rated_row, row};
+use crate::contract::{Impacting, Variational};
+use crate::numbers::{Interval, Rated, Row};
+use crate::state::StateVector;
+
+/// The shortest part of a step that is looked at.
+const SHORTEST: f64 = 1.0 / (1_u64 << 44) as f64;
+
+/// Sides of the surfaces that all motions are known to be on.
+pub(super) struct Sides<Sys: Impacting>(Sys::Gaps);
+
+impl<Sys: Impacting> Clone for Sides<Sys> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys: Impacting> Copy for Sides<Sys> {}
+
+/// The side of one surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    /// Anything.
+    Unknown,
+    /// The gap is not negative.
+    Above,
+    /// The gap is not positive.
+    Below,
+}
+
+impl<Sys: Impacting> Sides<Sys> {
+    pub(super) fn unknown() -> Self {
+        Self(Sys::Gaps::zeros())
+    }
+
+    pub(super) fn of(&self, surface: usize) -> Side {
+        match self.0.as_slice()[surface] {
+            1.0 => Side::Above,
+            -1.0 => Side::Below,
+            _ => Side::Unknown,
+        }
+    }
+
+    pub(super) fn set(&mut self, surface: usize, side: Side) {
+        self.0.as_mut_slice()[surface] = match side {
+            Side::Above => 1.0,
+            Side::Below => -1.0,
+            Side::Unknown => 0.0,
+        };
+    }
+}
+
+/// What may be met, and where: all before that part of the step is certainly passed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Met {
+    pub(super) surface: usize,
+    pub(super) reason: Reason,
+    pub(super) at: f64,
+}
+
+/// States, times and their rates on a part of a step.
+pub(super) struct Part<S> {
+    pub(super) times: Interval,
+    pub(super) states: Bounds<S>,
+    pub(super) rates: Bounds<S>,
+    /// Time and states in the middle, and all lengths from there.
+    middle: (Interval, Bounds<S>, Interval),
+}
+
+/// All motions of a box along a step.
+pub(super) struct Course<'f, 'a, Sys: Variational> {
+    field: &'f Field<'a, Sys>,
+    arc: Arc<Sys, Interval>,
+    /// Times that the motions begin at.
+    start: Interval,
+    unit: Interval,
+}
+
+impl<'f, 'a, Sys: Variational> Course<'f, 'a, Sys> {
+    /// From a box at these times, in a tube that holds it for so many `units` of time, 1 or less.
+    pub(super) fn new(
+        field: &'f Field<'a, Sys>,
+        from: &Bounds<Sys::State>,
+        tube: &Bounds<Sys::State>,
+        start: Interval,
+        unit: Interval,
+        order: usize,
+    ) -> Option<Self> {
+        let series = field.series(from, start, unit, order)?;
+        let times = start + unit * Interval::new(0.0, 1.0);
+        let remainder = field.series(tube, times, unit, order)?;
+        Some(Self {
+            field,
+            arc: Arc::new(&series, &remainder, order),
+            start,
+            unit,
+        })
+    }
+
+    /// All times after so many units.
+    pub(super) fn times(&self, units: Interval) -> Interval {
+        self.start + self.unit * units
+    }
+
+    /// All states after so many units.
+    pub(super) fn at(&self, units: Interval) -> Bounds<Sys::State> {
+        bounds(self.arc.at(units).as_slice())
+    }
+
+    /// A part of the step.
+    pub(super) fn part(&self, units: Interval) -> Option<Part<Sys::State>> {
+        let times = self.times(units);
+        let middle = Interval::point(units.middle());
+        let from_middle = self.unit * (units - middle);
+        let (crude, centre) = (self.at(units), self.at(middle));
+        let rates = self.field.rates(times, &crude)?;
+        let centred = Bounds::of(|i| centre.at(i) + from_middle * rates.at(i));
+        let states = crude.within(&centred);
+        Some(Part {
+            times,
+            rates: self.field.rates(times, &states)?,
+            states,
+            middle: (self.times(middle), centre, from_middle),
+        })
+    }
+}
+
+impl<Sys: Variational> Field<'_, Sys> {
+    /// All gaps and their rates on a part of a step.
+    pub(super) fn gaps(&self, part: &Part<Sys::State>) -> Option<Sys::Clearances<Rated>> {
+        let times = Rated {
+            value: part.times,
+            rate: Interval::point(1.0),
+        };
+        let states = rated_row::<Sys>(&part.states, &part.rates);
+        let mut gaps = Sys::clearances(&self.steady_parameters(), times, &states).ok()?;
+        let (time, states, from_middle) = &part.middle;
+        let centred = self.gaps_at(*time, states)?;
+        let all = gaps.as_mut_slice().iter_mut().zip(centred.as_slice());
+        for (gap, centre) in all {
+            let centred = *centre + gap.rate * *from_middle;
+            gap.value = gap.value.intersection(centred).unwrap_or(centred);
+        }
+        Some(gaps)
+    }
+
+    /// All gaps of states at some times.
+    pub(super) fn gaps_at(
+        &self,
+        times: Interval,
+        states: &Bounds<Sys::State>,
+    ) -> Option<Sys::Clearances<Interval>> {
+        Sys::clearances(self.parameters(), times, &row::<Sys>(states)).ok()
+    }
+}
+
+/// Surfaces, and which of them may be passed from above to below.
+pub(super) struct Surfaces<'f, 'a, Sys: Variational + Impacting> {
+    pub(super) field: &'f Field<'a, Sys>,
+    /// 1 for passable surfaces.
+    pub(super) passable: <Sys as Impacting>::Gaps,
+}
+
+impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
+    pub(super) fn is_passable(&self, surface: usize) -> bool {
+        self.passable.as_slice()[surface] == 1.0
+    }
+
+    /// Passes a whole step, or what may be met in it.
+    pub(super) fn passed(
+        &self,
+        course: &Course<'_, '_, Sys>,
+        sides: &Sides<Sys>,
+    ) -> Result<Sides<Sys>, Met> {
+        let mut sides = *sides;
+        let (mut from, mut length, mut is_easy) = (0.0, 1.0, true);
+        while from < 1.0 {
+            let to = f64::min(from + length, 1.0);
+            match self.passed_in(course.part(Interval::new(from, to)), &sides, None) {
+                Ok(later) => {
+                    (sides, from) = (later, to);
+                    length *= if is_easy { 2.0 } else { 1.0 };
+                    is_easy = true;
+                }
+                Err((surface, reason)) => {
+                    length *= 0.5;
+                    is_easy = false;
+                    if length < SHORTEST || from + length == from {
+                        let at = from;
+                        return Err(Met {
+                            surface,
+                            reason,
+                            at,
+                        });
+                    }
+                }
+            }
+        }
+        Ok(sides)
+    }
+
+    /// Passes a part of a step, from these sides to those at its end; else a surface that may be met.
+    pub(super) fn passed_in(
+        &self,
+        part: Option<Part<Sys::State>>,
+        sides: &Sides<Sys>,
+        except: Option<usize>,
+    ) -> Result<Sides<Sys>, (usize, Reason)> {
+        let surface = 0;
+        let unknown = (surface, Reason::MayGraze { surface });
+        let part = part.ok_or(unknown)?;
+        let gaps = self.field.gaps(&part).ok_or(unknown)?;
+        let mut later = *sides;
+        for (surface, gap) in gaps.as_slice().iter().enumerate() {
+            if except == Some(surface) {
+                continue;
+            }
+            let side = self.side_after(surface, gap, sides.of(surface), &part);
+            later.set(surface, side.map_err(|reason| (surface, reason))?);
+        }
+        Ok(later)
+    }
+
+    /// The side of a surface at the end of a part in which it is certainly not met.
+    fn side_after(
+        &self,
+        surface: usize,
+        gap: &Rated,
+        side: Side,
+        part: &Part<Sys::State>,
+    ) -> Result<Side, Reason> {
+        if gap.value.lo > 0.0 {
+            return Ok(Side::Unknown);
+        }
+        let (rises, falls) = (gap.rate.lo > 0.0, gap.rate.hi < 0.0);
+        if side == Side::Above && rises {
+            return Ok(Side::Above);
+        }
+        let is_behind = gap.value.hi < 0.0;
+        if self.is_passable(surface) {
+            match (is_behind, side) {
+                (true, _) => return Ok(Side::Unknown),
+                (_, Side::Below) if falls => return Ok(Side::Below),
+                _ if rises => return Ok(Side::Unknown),
+                _ => {}
+            }
+        }
+        let states = row::<Sys>(&part.states);
+        match Sys::counts_throughout(self.field.parameters(), surface, part.times, &states) {
+            Some(false) => Ok(Side::Unknown),
+            None => Err(Reason::UnsureCondition { surface }),
+            Some(true) if is_behind => Err(Reason::MayBeBehind { surface }),
+            Some(true) => Err(Reason::MayGraze { surface }),
+        }
+    }
+}

@@ -1,0 +1,619 @@
+//! The map of a box of states across an impact, to one time after it.
+//!
+//! From a time `t_0` shortly before, all motions of a box `Y` are continued over the surface. Where the gap is positive at `t_0`, negative
+//! at `t_1` and falls all the time between, each of them meets the surface once; Newton's method over intervals narrows the
+//! times of that to `[t_a, t_b]`. With the time `tau(y)` of the motion from `y`, the flow `phi` before, the flow `psi` after and the law `R`
+//!
+//! ```text
+//! P(y) = psi_(t_b - tau) R(tau, phi_tau(y))   is in   P(y_c) + DP(Y) (Y - y_c)
+//! DP q = Dpsi (DR (v + f^- tau') + d_t R tau' - f^+ tau'),   v = Dphi q,   tau' = -dh(v) / (dh(f^-) + d_t h)
+//! ```
+//!
+//! along each axis `q` of the frame: the saltation matrix between both derivatives of the flow. The centre alone is mapped to an
+//! enclosure as narrow as rounding.
+//!
+//! Reference: M. A. Aizerman, F. R. Gantmakher, *Determination of stability by linear approximation of a periodic solution of a system of
+//! differential equations with discontinuous right-hand sides*, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958).
+
+use super::course::{Course, Part, Side, Sides, Surfaces};
+use super::frame::{BLOCKS, Bounds, Frame, Matrix, Slopes, Turned};
+use super::lost::Reason;
+use super::series::{Arc, Field, bounds, rated_row, row};
+use crate::contract::{Impacting, Variational};
+use crate::numbers::{Interval, Numbers, Rated, Row};
+use crate::outcome::Outcome;
+use crate::state::StateVector;
+use crate::variations::transition::Strike;
+
+/// Order of the series about an impact.
+const ORDER: usize = 8;
+
+/// Lengths of time that are tried, each twice the last.
+const TRIALS: u32 = 8;
+
+/// Steps of Newton's method.
+const STEPS: u32 = 6;
+
+/// Least length of time in units of rounding.
+const UNITS: f64 = 32.0;
+
+/// All states at an impact, and what goes on after it.
+pub(super) struct Crossed<Sys: Variational + Impacting> {
+    /// All times of the impact.
+    pub(super) time: Interval,
+    pub(super) before: Bounds<Sys::State>,
+    pub(super) after: Bounds<Sys::State>,
+    /// A time after all of these, and the states at that time.
+    pub(super) t: f64,
+    pub(super) frame: Frame<Sys>,
+    pub(super) sides: Sides<Sys>,
+    /// The sides before the impact.
+    pub(super) sides_before: Sides<Sys>,
+    /// Derivatives that were given: where the surface is met, and at the later time.
+    pub(super) derivatives: Option<[Matrix<Sys>; 2]>,
+}
+
+/// Motion from `t_0` over a surface.
+struct Approach<'s, 'f, 'a, Sys: Variational + Impacting> {
+    surfaces: &'s Surfaces<'f, 'a, Sys>,
+    surface: usize,
+    frame: &'s Frame<Sys>,
+    t: f64,
+    unit: Interval,
+    tube: Bounds<Sys::State>,
+    /// All motions, and that of the centre.
+    all: Course<'f, 'a, Sys>,
+    centre: Course<'f, 'a, Sys>,
+    /// Changes of the states at any time until `t_1` along each axis, and those of the gap.
+    turned: Turned<Sys>,
+    slopes: Slopes<Sys>,
+    /// All motions until `t_1`, and all rates of the gap by units of time.
+    whole: Part<Sys::State>,
+    rate: Interval,
+}
+
+/// An impact of all motions: times in units from `t_0`, and derivatives along the axes.
+struct Meeting<Sys: Variational> {
+    units: Interval,
+    centre_units: Interval,
+    before: Bounds<Sys::State>,
+    rates_before: Bounds<Sys::State>,
+    /// Changes of the time along each axis.
+    delays: Slopes<Sys>,
+    /// All rates of the gap by units of time, while it is met.
+    rate: Interval,
+}
+
+/// The impact of the centre.
+struct Centre<S> {
+    time: Interval,
+    before: Bounds<S>,
+    after: Bounds<S>,
+    /// At the time after all impacts.
+    moved: Bounds<S>,
+}
+
+/// Maps the states of a frame at the time `t`, at which the gap of a surface is positive and falls, across the impact there, and with them
+/// the columns of a derivative.
+///
+/// # Errors
+/// The condition that could not be proved.
+pub(super) fn cross<Sys: Variational + Impacting>(
+    surfaces: &Surfaces<'_, '_, Sys>,
+    strike: &Strike,
+    (t, frame): (f64, &Frame<Sys>),
+    sides: &Sides<Sys>,
+    derivative: Option<&Matrix<Sys>>,
+) -> Result<Crossed<Sys>, Reason> {
+    let surface = strike.surface;
+    let approach = Approach::new(surfaces, surface, (t, frame))?;
+    let meeting = approach.meeting()?;
+    let sides_before = approach.pass_others(&meeting, sides)?;
+    approach.struck(strike, &meeting, &sides_before, derivative)
+}
+
+impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
+    /// A length of time after which all motions have certainly passed.
+    fn new(
+        surfaces: &'s Surfaces<'f, 'a, Sys>,
+        surface: usize,
+        (t, frame): (f64, &'s Frame<Sys>),
+    ) -> Result<Self, Reason> {
+        let hull = frame.hull();
+        let [gap, rate] = gap_now(surfaces, surface, t, &hull).ok_or(Reason::NoTube)?;
+        let graze = Reason::MayGraze { surface };
+        if rate.hi >= 0.0 {
+            return Err(graze);
+        }
+        if gap.hi <= 0.0 {
+            return Err(Reason::MayBeBehind { surface });
+        }
+        let least = UNITS * f64::EPSILON * t.abs() + f64::MIN_POSITIVE;
+        let mut length = 1.5 * gap.hi / rate.hi.abs() + least;
+        for _ in 0..TRIALS {
+            let later = t + length;
+            let unit = Interval::point(later) - Interval::point(t);
+            let approach = Self::over(surfaces, surface, (t, frame), unit);
+            let approach = approach.ok_or(Reason::NoTube)?;
+            if approach.rate.hi >= 0.0 {
+                return Err(graze);
+            }
+            if approach.gap(Interval::point(1.0)).ok_or(graze)?.hi < 0.0 {
+                return match approach.gap(Interval::ZERO).ok_or(graze)?.lo > 0.0 {
+                    true => Ok(approach),
+                    false => Err(graze),
+                };
+            }
+            length *= 2.0;
+        }
+        Err(graze)
+    }
+
+    /// Motion for one unit of time.
+    fn over(
+        surfaces: &'s Surfaces<'f, 'a, Sys>,
+        surface: usize,
+        (t, frame): (f64, &'s Frame<Sys>),
+        unit: Interval,
+    ) -> Option<Self> {
+        let field = surfaces.field;
+        let (hull, now) = (frame.hull(), Interval::point(t));
+        let during = Interval::new(0.0, unit.hi);
+        let tube = field.tube(&hull, now + during, during)?;
+        let all = Course::new(field, &hull, &tube, now, unit, ORDER)?;
+        let point = Bounds::point(&frame.centre);
+        let centre = Course::new(field, &point, &tube, now, unit, ORDER)?;
+        let whole = all.part(Interval::new(0.0, 1.0))?;
+        let rate = field.gaps(&whole)?.as_slice()[surface].rate * unit;
+        let mut approach = Self {
+            surfaces,
+            surface,
+            frame,
+            t,
+            unit,
+            tube,
+            all,
+            centre,
+            turned: [Matrix::zero(), Matrix::zero()],
+            slopes: [Bounds::point(&Sys::State::zeros()); BLOCKS],
+            whole,
+            rate,
+        };
+        for (block, k, axis) in frame.axes() {
+            let (column, slope) = approach.swept(&axis)?;
+            approach.slopes[block].set(k, slope);
+            approach.turned[block].set_column(k, &column);
+        }
+        Some(approach)
+    }
+
+    /// `Dphi q`: all changes of the states along a direction, at any time until `t_1`, and those of the gap.
+    fn swept(&self, direction: &Bounds<Sys::State>) -> Option<(Bounds<Sys::State>, Interval)> {
+        let (field, whole) = (self.surfaces.field, &self.whole);
+        let hull = self.frame.hull();
+        let from = [&hull, &self.tube, direction];
+        let (now, units) = (Interval::point(self.t), Interval::new(0.0, 1.0));
+        let column = carried(field, from, now, self.unit, units, ORDER)?;
+        let states = rated_row::<Sys>(&whole.states, &column);
+        let steady = Rated::steady(whole.times);
+        let gaps = Sys::clearances(&field.steady_parameters(), steady, &states).ok()?;
+        Some((column, gaps.as_slice()[self.surface].rate))
+    }
+
+    /// The gap of all motions after so many units of time.
+    fn gap(&self, units: Interval) -> Option<Interval> {
+        let of_all = self.gap_of(&self.all, units)?;
+        let of_centre = self.gap_of(&self.centre, units)?;
+        let gap = of_centre + self.frame.along(|block, k| self.slopes[block].at(k));
+        Some(gap.intersection(of_all).unwrap_or(of_all))
+    }
+
+    fn gap_of(&self, course: &Course<'_, '_, Sys>, units: Interval) -> Option<Interval> {
+        let (times, states) = (course.times(units), course.at(units));
+        let gaps = self.surfaces.field.gaps_at(times, &states)?;
+        let gap = gaps.as_slice()[self.surface];
+        (!gap.is_whole()).then_some(gap)
+    }
+
+    /// The rate of the gap on a part of the time.
+    fn rate_in(&self, units: Interval) -> Option<Interval> {
+        let part = self.all.part(units)?;
+        let rate = self.surfaces.field.gaps(&part)?.as_slice()[self.surface].rate * self.unit;
+        rate.intersection(self.rate)
+    }
+
+    /// Narrows the units of time in which a gap vanishes (Newton's method over intervals).
+    fn narrowed(
+        &self,
+        mut units: Interval,
+        gap: impl Fn(Interval) -> Option<Interval>,
+    ) -> Option<Interval> {
+        for _ in 0..STEPS {
+            let middle = Interval::point(units.middle());
+            let newton = middle - gap(middle)? / self.rate_in(units)?;
+            let narrower = units.intersection(newton)?;
+            let is_last = narrower.width() > 0.75 * units.width();
+            units = narrower;
+            if is_last {
+                break;
+            }
+        }
+        Some(units)
+    }
+
+    /// Where and when all motions meet the surface.
+    fn meeting(&self) -> Result<Meeting<Sys>, Reason> {
+        let surface = self.surface;
+        let meeting = self.find_meeting();
+        let meeting = meeting.ok_or(Reason::MayGraze { surface })?;
+        let (field, times) = (self.surfaces.field, self.all.times(meeting.units));
+        let states = row::<Sys>(&meeting.before);
+        match Sys::counts_throughout(field.parameters(), surface, times, &states) {
+            Some(true) => Ok(meeting),
+            _ => Err(Reason::UnsureCondition { surface }),
+        }
+    }
+
+    fn find_meeting(&self) -> Option<Meeting<Sys>> {
+        let units = self.narrowed(Interval::new(0.0, 1.0), |units| self.gap(units))?;
+        let centre_units = self.narrowed(units, |units| self.gap_of(&self.centre, units))?;
+        let part = self.all.part(units)?;
+        let rate = self.rate_in(units)?;
+        let delays = [0, 1]
+            .map(|block: usize| Bounds::of(|k| -(self.slopes[block].at(k) / rate) * self.unit));
+        Some(Meeting {
+            units,
+            centre_units,
+            before: part.states,
+            rates_before: part.rates,
+            delays,
+            rate,
+        })
+    }
+
+    /// Passes all other surfaces until the last motion meets this one.
+    fn pass_others(
+        &self,
+        meeting: &Meeting<Sys>,
+        sides: &Sides<Sys>,
+    ) -> Result<Sides<Sys>, Reason> {
+        let surface = self.surface;
+        let part = self.all.part(Interval::new(0.0, meeting.units.hi));
+        let passed = self.surfaces.passed_in(part, sides, Some(surface));
+        passed.map_err(|(other, reason)| together(surface, other, reason))
+    }
+
+    /// Applies the law, and goes on to a time after all impacts.
+    fn struck(
+        &self,
+        strike: &Strike,
+        meeting: &Meeting<Sys>,
+        sides_before: &Sides<Sys>,
+        derivative: Option<&Matrix<Sys>>,
+    ) -> Result<Crossed<Sys>, Reason> {
+        let surface = self.surface;
+        let unsure = Reason::UnsureLaw { surface };
+        let is_map = self.check_map(strike, meeting)?;
+        let times = self.all.times(meeting.units);
+        let later = times.hi;
+        let rest = (Interval::point(later) - Interval::point(self.t)) / self.unit;
+        let centre = self.struck_centre(strike, meeting, rest).ok_or(unsure)?;
+        let mut changes = [Matrix::<Sys>::zero(), Matrix::zero()];
+        let mut after = self.applied(strike, times, &meeting.before).ok_or(unsure)?;
+        for (block, k, _) in self.frame.axes() {
+            let along = self.met_along(meeting, &self.turned[block], &meeting.delays[block], k);
+            let delay = meeting.delays[block].at(k);
+            let met = (times, &meeting.before);
+            let column = applied_along(self.surfaces.field, strike, met, &along, delay);
+            changes[block].set_column(k, &column.ok_or(unsure)?);
+        }
+        let centred = Bounds::of(|i| {
+            centre.after.at(i) + self.frame.along(|block, k| changes[block].at(i, k))
+        });
+        after = after.within(&centred);
+        let before = Bounds::of(|i| {
+            let along = |block: usize, k: usize| {
+                self.met_along(meeting, &self.turned[block], &meeting.delays[block], k)
+                    .at(i)
+            };
+            centre.before.at(i) + self.frame.along(along)
+        });
+        let time = centre.time + self.frame.along(|block, k| meeting.delays[block].at(k));
+        let sides = match is_map {
+            true => {
+                let mut sides = Sides::unknown();
+                // The state stays the same, at the surface of both.
+                if let Some(back) = self.surfaces.field.system.opposite(surface) {
+                    sides.set(back, Side::Above);
+                }
+                sides
+            }
+            false => {
+                let mut sides = *sides_before;
+                sides.set(surface, Side::Above);
+                sides
+            }
+        };
+        let departure = Departure {
+            surfaces: self.surfaces,
+            surface,
+            times,
+            unit: self.unit,
+            rest: Interval::new(0.0, ahead(rest, meeting.units).hi),
+        };
+        let departed = departure.departed(&after, &sides)?;
+        let column = |along: &Bounds<Sys::State>, delay: Interval| {
+            let column = departure.carried(&departed, &after, along, delay);
+            column.ok_or(Reason::NoTube)
+        };
+        let mut turned = [Matrix::<Sys>::zero(), Matrix::zero()];
+        for (block, k, _) in self.frame.axes() {
+            let along = changes[block].column(k);
+            let later = column(&along, meeting.delays[block].at(k))?;
+            turned[block].set_column(k, &later);
+        }
+        let mut derivatives = None;
+        if let Some(derivative) = derivative {
+            let mut both = [Matrix::<Sys>::zero(), Matrix::zero()];
+            for k in 0..Sys::State::LEN {
+                let struck = self.struck_along(strike, meeting, &derivative.column(k));
+                let (along, delay) = struck.ok_or(unsure)?;
+                both[0].set_column(k, &along);
+                both[1].set_column(k, &column(&along, delay)?);
+            }
+            derivatives = Some(both);
+        }
+        Ok(Crossed {
+            time: time.intersection(times).unwrap_or(times),
+            before: meeting.before.within(&before),
+            after,
+            t: later,
+            frame: self.frame.moved(&centre.moved, &turned),
+            sides: departed.sides,
+            sides_before: *sides_before,
+            derivatives,
+        })
+    }
+
+    /// Changes of the state after the law along a direction from `t_0`, and of the time.
+    fn struck_along(
+        &self,
+        strike: &Strike,
+        meeting: &Meeting<Sys>,
+        direction: &Bounds<Sys::State>,
+    ) -> Option<(Bounds<Sys::State>, Interval)> {
+        let (column, slope) = self.swept(direction)?;
+        let delay = -(slope / meeting.rate) * self.unit;
+        let along = Bounds::of(|i| column.at(i) + meeting.rates_before.at(i) * delay);
+        let met = (self.all.times(meeting.units), &meeting.before);
+        let after = applied_along(self.surfaces.field, strike, met, &along, delay)?;
+        Some((after, delay))
+    }
+
+    /// The impact of the centre, and where it is when `rest` units of time have passed from `t_0`.
+    ///
+    /// All of this is a function of the time `tau` and of the state `x` there. It is evaluated at one time and one state, and its derivatives by
+    /// both enclose what it differs by elsewhere.
+    fn struck_centre(
+        &self,
+        strike: &Strike,
+        meeting: &Meeting<Sys>,
+        rest: Interval,
+    ) -> Option<Centre<Sys::State>> {
+        let (field, course, units) = (self.surfaces.field, &self.centre, meeting.centre_units);
+        let middle = Interval::point(units.middle());
+        let (time, time_in_middle) = (course.times(units), course.times(middle));
+        let late = (units - middle) * self.unit;
+        let near = course.at(middle);
+        let arriving = course.at(units);
+        let before = Bounds::of(|i| arriving.at(i).hull(near.at(i)));
+        let all_after = self.applied(strike, time, &before)?;
+        let point = Bounds::point(&near.middle());
+        let after_in_middle = self.applied(strike, time_in_middle, &point)?;
+        let [rates_before, rates_after] = [&before, &all_after].map(|at| field.rates(time, at));
+        let (rates_before, rates_after) = (rates_before?, rates_after?);
+        let offset = Bounds::of(|i| near.at(i) - point.at(i));
+        let along = |along: &Bounds<Sys::State>, delay: f64| {
+            applied_along(
+                field,
+                strike,
+                (time, &before),
+                along,
+                Interval::point(delay),
+            )
+        };
+        let (by_offset, by_time) = (along(&offset, 0.0)?, along(&rates_before, 1.0)?);
+        let after = Bounds::of(|i| after_in_middle.at(i) + by_offset.at(i) + by_time.at(i) * late);
+        let ahead_of = |units: Interval| ahead(rest, units);
+        let during = Interval::new(0.0, (self.unit * ahead_of(units)).hi);
+        let tube = field.tube(&all_after, time + during, during)?;
+        let from = Course::new(
+            field,
+            &after_in_middle,
+            &tube,
+            time_in_middle,
+            self.unit,
+            ORDER,
+        )?;
+        let end = from.at(ahead_of(middle));
+        let shift = Bounds::of(|i| by_time.at(i) - rates_after.at(i));
+        let carried = |along: &Bounds<Sys::State>| {
+            let from = [&all_after, &tube, along];
+            carried(field, from, time, self.unit, ahead_of(units), ORDER)
+        };
+        let (by_offset, by_time) = (carried(&by_offset)?, carried(&shift)?);
+        let moved = Bounds::of(|i| end.at(i) + by_offset.at(i) + by_time.at(i) * late);
+        moved.is_finite().then_some(Centre {
+            time,
+            before: arriving,
+            after,
+            moved,
+        })
+    }
+
+    /// Whether the law is a map; refuses one that a run in doubles refuses at the centre.
+    fn check_map(&self, strike: &Strike, meeting: &Meeting<Sys>) -> Result<bool, Reason> {
+        let (surface, field) = (self.surface, self.surfaces.field);
+        let is_map = strike.law::<Sys, Interval>(field.parameters()).is_map();
+        if is_map {
+            let t = self.centre.times(meeting.centre_units).middle();
+            let centre = self.centre.at(meeting.centre_units).middle();
+            let landing = Impacting::landing(field.system, surface, t, &centre);
+            landing.map_err(|outcome| match outcome {
+                Outcome::ResetOffConstraint { .. } => Reason::OffConstraint { surface },
+                _ => Reason::UnsureLaw { surface },
+            })?;
+        }
+        Ok(is_map)
+    }
+
+    /// The law over a box.
+    fn applied(
+        &self,
+        strike: &Strike,
+        times: Interval,
+        states: &Bounds<Sys::State>,
+    ) -> Option<Bounds<Sys::State>> {
+        let parameters = self.surfaces.field.parameters();
+        let after = strike.applied::<Sys, Interval>(parameters, times, &row::<Sys>(states));
+        let after = bounds::<Sys::State>(after.ok()??.as_slice());
+        after.is_finite().then_some(after)
+    }
+
+    /// Changes of the state along an axis where the surface is met.
+    fn met_along(
+        &self,
+        meeting: &Meeting<Sys>,
+        turned: &Matrix<Sys>,
+        delays: &Bounds<Sys::State>,
+        k: usize,
+    ) -> Bounds<Sys::State> {
+        Bounds::of(|i| turned.at(i, k) + meeting.rates_before.at(i) * delays.at(k))
+    }
+}
+
+/// Changes of the state after the law along a change of the state before it and of the time.
+fn applied_along<Sys: Variational + Impacting>(
+    field: &Field<'_, Sys>,
+    strike: &Strike,
+    (times, states): (Interval, &Bounds<Sys::State>),
+    along: &Bounds<Sys::State>,
+    delay: Interval,
+) -> Option<Bounds<Sys::State>> {
+    let times = Rated {
+        value: times,
+        rate: delay,
+    };
+    let states = rated_row::<Sys>(states, along);
+    let after = strike.applied::<Sys, Rated>(&field.steady_parameters(), times, &states);
+    let after = after.ok()??;
+    let changes = Bounds::of(|i| after.as_slice()[i].rate);
+    changes.is_finite().then_some(changes)
+}
+
+/// What is left of some units of time after others, which are less.
+fn ahead(rest: Interval, units: Interval) -> Interval {
+    let rest = rest - units;
+    Interval::new(rest.lo.max(0.0), rest.hi.max(0.0))
+}
+
+/// Motion from an impact, at whatever time it comes, to one time after it.
+struct Departure<'f, 'a, Sys: Variational + Impacting> {
+    surfaces: &'f Surfaces<'f, 'a, Sys>,
+    surface: usize,
+    /// All times of the impact.
+    times: Interval,
+    unit: Interval,
+    /// All lengths of time from it, in units.
+    rest: Interval,
+}
+
+/// All motions after an impact.
+struct Departed<Sys: Variational + Impacting> {
+    tube: Bounds<Sys::State>,
+    rates: Bounds<Sys::State>,
+    sides: Sides<Sys>,
+}
+
+impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
+    /// Passes all surfaces.
+    fn departed(
+        &self,
+        after: &Bounds<Sys::State>,
+        sides: &Sides<Sys>,
+    ) -> Result<Departed<Sys>, Reason> {
+        let (field, unit, surface) = (self.surfaces.field, self.unit, self.surface);
+        let during = Interval::new(0.0, (unit * self.rest).hi);
+        let times = self.times + during;
+        let tube = field.tube(after, times, during).ok_or(Reason::NoTube)?;
+        let course = Course::new(field, after, &tube, self.times, unit, ORDER);
+        let course = course.ok_or(Reason::NoTube)?;
+        let passed = self.surfaces.passed_in(course.part(self.rest), sides, None);
+        let sides = passed.map_err(|(other, reason)| match other == surface {
+            true => Reason::MayStay { surface },
+            false => together(surface, other, reason),
+        })?;
+        let rates = field.rates(self.times, after).ok_or(Reason::NoTube)?;
+        Ok(Departed { tube, rates, sides })
+    }
+
+    /// Changes of the state at the time after all impacts, from those where the surface is met.
+    fn carried(
+        &self,
+        departed: &Departed<Sys>,
+        after: &Bounds<Sys::State>,
+        along: &Bounds<Sys::State>,
+        delay: Interval,
+    ) -> Option<Bounds<Sys::State>> {
+        let along = Bounds::of(|i| along.at(i) - departed.rates.at(i) * delay);
+        let from = [after, &departed.tube, &along];
+        let (field, unit) = (self.surfaces.field, self.unit);
+        carried(field, from, self.times, unit, self.rest, ORDER)
+    }
+}
+
+/// All changes of the states along directions after so many units of time, from all states of a box with a tube.
+pub(super) fn carried<Sys: Variational>(
+    field: &Field<'_, Sys>,
+    [from, tube, along]: [&Bounds<Sys::State>; 3],
+    start: Interval,
+    unit: Interval,
+    units: Interval,
+    order: usize,
+) -> Option<Bounds<Sys::State>> {
+    let during = Interval::new(0.0, (unit * units).hi);
+    let times = start + during;
+    let tube_along = field.tube_along(tube, along, times, during)?;
+    let series = field.series_along(from, along, start, unit, order)?;
+    let remainder = field.series_along(tube, &tube_along, times, unit, order)?;
+    let end = Arc::new(&series, &remainder, order).at(Rated::steady(units));
+    let changes = Bounds::of(|i| end.as_slice()[i].rate);
+    changes.is_finite().then_some(changes)
+}
+
+/// The gap of a surface and its rate at a time.
+fn gap_now<Sys: Variational + Impacting>(
+    surfaces: &Surfaces<'_, '_, Sys>,
+    surface: usize,
+    t: f64,
+    states: &Bounds<Sys::State>,
+) -> Option<[Interval; 2]> {
+    let (field, now) = (surfaces.field, Interval::point(t));
+    let rates = field.rates(now, states)?;
+    let times = Rated {
+        value: now,
+        rate: Interval::point(1.0),
+    };
+    let states = rated_row::<Sys>(states, &rates);
+    let gaps = Sys::clearances(&field.steady_parameters(), times, &states).ok()?;
+    let gap = gaps.as_slice()[surface];
+    Some([gap.value, gap.rate])
+}
+
+/// The reason why a surface is not certainly passed at the impact on another.
+fn together(surface: usize, other: usize, reason: Reason) -> Reason {
+    match reason {
+        Reason::UnsureCondition { .. } => reason,
+        _ => Reason::MayMeetTogether { surface, other },
+    }
+}

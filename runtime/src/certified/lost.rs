@@ -1,0 +1,115 @@
+//! Ends of certified motion: the time up to which it is certified, and the reason.
+
+use core::fmt;
+
+/// The motion is not certified any further.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lost {
+    /// The time up to which the motion is certified.
+    pub t: f64,
+    /// The condition that could not be proved.
+    pub reason: Reason,
+}
+
+/// A condition that could not be proved of all motions of a box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// No box was found that holds the motion for the shortest step: it may end, or its rate may not exist.
+    NoTube,
+    /// The box has no finite ends any more.
+    NotFinite,
+    /// The surface may be met at a gap rate of 0, more than once, or by a part of the motions alone.
+    MayGraze {
+        /// The surface.
+        surface: usize,
+    },
+    /// Two surfaces may be met at one time, or in either order.
+    MayMeetTogether {
+        /// The surface that is met.
+        surface: usize,
+        /// The other one.
+        other: usize,
+    },
+    /// The conditions of a surface may hold or not where its gap may be 0.
+    UnsureCondition {
+        /// The surface.
+        surface: usize,
+    },
+    /// The motion may be behind a surface that counts, or at it and approaching.
+    MayBeBehind {
+        /// The surface.
+        surface: usize,
+    },
+    /// The gap may not rise after the impact: the motion may stay at the surface, or the law may leave it approaching.
+    MayStay {
+        /// The surface.
+        surface: usize,
+    },
+    /// The law of the surface is not known over intervals, is not the same for all motions, or has no finite result.
+    UnsureLaw {
+        /// The surface.
+        surface: usize,
+    },
+    /// The reset leads off the constraints.
+    OffConstraint {
+        /// The surface.
+        surface: usize,
+    },
+    /// The box has states of several modes.
+    SeveralModes,
+    /// The end of the time asked for may lie before an impact or after it.
+    EndsAtImpact {
+        /// The surface.
+        surface: usize,
+    },
+}
+
+impl fmt::Display for Lost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { t, reason } = self;
+        write!(
+            f,
+            "the motion is certified up to t = {t} and no further: {reason}"
+        )
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NoTube => write!(f, "no box holds the motion for the shortest step"),
+            Self::SeveralModes => write!(f, "the box has states of several modes"),
+            Self::NotFinite => write!(f, "the box is not finite"),
+            Self::MayGraze { surface } => write!(f, "surface {surface} may be grazed"),
+            Self::MayMeetTogether { surface, other } => {
+                write!(f, "surfaces {surface} and {other} may be met together")
+            }
+            Self::UnsureCondition { surface } => {
+                write!(f, "the conditions of surface {surface} may hold or not")
+            }
+            Self::MayBeBehind { surface } => {
+                write!(f, "the motion may be behind surface {surface}")
+            }
+            Self::MayStay { surface } => {
+                write!(f, "the motion may stay at surface {surface}")
+            }
+            Self::UnsureLaw { surface } => write!(
+                f,
+                "the law of surface {surface} does not certainly give one finite state"
+            ),
+            Self::OffConstraint { surface } => {
+                write!(
+                    f,
+                    "the reset of surface {surface} leads off the constraints"
+                )
+            }
+            Self::EndsAtImpact { surface } => write!(
+                f,
+                "the end of the time may lie before the impact on surface {surface} or after it"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for Lost {}

@@ -1,0 +1,337 @@
+//! Periodic orbits that exist by proof: fixed points of the map from one impact to a later one.
+//!
+//! `F` maps the state after an impact on a surface to that after a later one. For a box `Z` about a point `z`, with `Y` near
+//! `(DF(z) - I)^-1`,
+//!
+//! ```text
+//! K = z - Y (F(z) - z) + (I - Y (DF(Z) - I)) (Z - z)
+//! ```
+//!
+//! If `K` lies inside `Z`, there is one fixed point in `Z`, and it lies in `K` (Krawczyk). `DF` is that in all directions of the state: along the
+//! motion it is 0, as all states of one motion have the same image. With an eigenvalue 1, as a conserved quantity or a
+//! coordinate that nothing depends on gives, nothing is proved.
+//!
+//! Reference: R. Krawczyk, *Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken*, Computing 4 (1969); R. E. Moore,
+//! R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 8.
+
+use core::fmt;
+
+use super::frame::{Bounds, Matrix, product};
+use super::lost::Lost;
+use super::run::{CertifiedImpact, CertifiedRun};
+use super::series::Field;
+use crate::contract::{Impacting, Variational};
+use crate::numbers::{Interval, Numbers, Rated, Row};
+use crate::state::StateVector;
+use crate::variations::transition::Strike;
+
+/// Squarings of the derivative, for a bound of its eigenvalues.
+const SQUARINGS: u32 = 8;
+
+/// Boxes that are tried: each is about the image of the last.
+const TRIALS: u32 = 4;
+
+/// Times that a proved orbit is enclosed anew, at most.
+const REFINEMENTS: u32 = 8;
+
+/// A surface whose impacts are the section of an orbit.
+pub struct CertifiedSection<'a, Sys: Variational + Impacting> {
+    field: Field<'a, Sys>,
+    surface: usize,
+    returns: u32,
+    horizon: f64,
+}
+
+/// A periodic orbit that exists.
+pub struct CertifiedOrbit<Sys: Variational> {
+    point: Bounds<Sys::State>,
+    derivative: Matrix<Sys>,
+    /// All values that the period may have.
+    pub period: Interval,
+    /// A bound of the absolute values of all multipliers. Less than 1, the orbit attracts all motions that begin near it.
+    pub largest_multiplier: f64,
+}
+
+/// Why no orbit is proved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum NotProved {
+    /// The motion from the box is not certified as far as the section.
+    Lost(Lost),
+    /// The section is not met again within the time allowed.
+    NotMet,
+    /// The motion, the surfaces or the laws may depend on time: no return is the beginning of the next.
+    DependsOnTime,
+    /// The map of the section may have an eigenvalue 1.
+    Singular,
+    /// No box there is mapped into itself: they are too wide, or hold no orbit.
+    NotContained,
+}
+
+impl fmt::Display for NotProved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Lost(lost) => lost.fmt(f),
+            Self::NotMet => write!(f, "the section is not met within the time allowed"),
+            Self::DependsOnTime => write!(f, "the system may depend on time"),
+            Self::Singular => write!(f, "the map of the section may have an eigenvalue 1"),
+            Self::NotContained => write!(f, "the box is not mapped into itself"),
+        }
+    }
+}
+
+impl core::error::Error for NotProved {}
+
+impl From<Lost> for NotProved {
+    fn from(lost: Lost) -> Self {
+        Self::Lost(lost)
+    }
+}
+
+impl<Sys: Variational> CertifiedOrbit<Sys> {
+    /// All values of component `i` of the orbit's state just after the impact on the section.
+    pub fn point(&self, i: usize) -> Interval {
+        self.point.at(i)
+    }
+
+    /// All values of the derivative of component `i` of the image by component `j` of the state, from one impact to the next.
+    pub fn derivative(&self, i: usize, j: usize) -> Interval {
+        self.derivative.at(i, j)
+    }
+}
+
+impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
+    /// The section at a surface. A return may take the time `horizon`.
+    pub fn new(system: &'a Sys, surface: usize, horizon: f64) -> Self {
+        Self {
+            field: Field::new(system),
+            surface,
+            returns: 1,
+            horizon,
+        }
+    }
+
+    /// With so many returns, 1 or more, for one.
+    #[must_use]
+    pub fn with_returns(mut self, returns: u32) -> Self {
+        self.returns = returns.max(1);
+        self
+    }
+
+    /// With all values in a range for a parameter: there is an orbit for each of them. As
+    /// [`CertifiedFlow::with_parameter`](super::CertifiedFlow::with_parameter) takes it.
+    #[must_use]
+    pub fn with_parameter(mut self, index: usize, range: Interval) -> Self {
+        self.field.set_parameter(index, range);
+        self
+    }
+
+    /// Proves that a periodic orbit leaves the section within `radius` of a state, in each component. The state is one just after an
+    /// impact, such as that of an [`Orbit`](crate::variations::Orbit).
+    ///
+    /// # Errors
+    /// [`NotProved`].
+    pub fn periodic(
+        &self,
+        near: &Sys::State,
+        radius: f64,
+    ) -> Result<CertifiedOrbit<Sys>, NotProved> {
+        let whole = Bounds::of(|i| Interval::point(near.as_slice()[i]).widened(radius));
+        let mut region = whole;
+        for _ in 0..TRIALS {
+            let (image, orbit) = self.contraction(&region)?;
+            if !image.is_finite() {
+                return Err(NotProved::Singular);
+            }
+            let is_inside = |i: usize| {
+                let (image, region) = (image.at(i), region.at(i));
+                image.lo > region.lo && image.hi < region.hi
+            };
+            if (0..Sys::State::LEN).all(is_inside) {
+                return Ok(self.refined(orbit));
+            }
+            // A box of another shape about the image.
+            let wider = |i: usize| {
+                let range = image.at(i);
+                let range = range.widened(0.25 * range.width() + f64::MIN_POSITIVE);
+                range.intersection(whole.at(i))
+            };
+            if (0..Sys::State::LEN).any(|i| wider(i).is_none()) {
+                return Err(NotProved::NotContained);
+            }
+            region = Bounds::of(|i| wider(i).unwrap_or(whole.at(i)));
+        }
+        Err(NotProved::NotContained)
+    }
+
+    /// An orbit with narrower enclosures: its point lies in the image of every box that contains it.
+    fn refined(&self, mut orbit: CertifiedOrbit<Sys>) -> CertifiedOrbit<Sys> {
+        for _ in 0..REFINEMENTS {
+            match self.contraction(&orbit.point) {
+                Ok((image, narrower)) if image.width() < 0.5 * orbit.point.width() => {
+                    let point = image.within(&orbit.point);
+                    orbit = CertifiedOrbit { point, ..narrower };
+                }
+                _ => break,
+            }
+        }
+        orbit
+    }
+
+    /// Krawczyk's image of a box, and the orbit that there is if the box contains it.
+    fn contraction(
+        &self,
+        region: &Bounds<Sys::State>,
+    ) -> Result<(Bounds<Sys::State>, CertifiedOrbit<Sys>), NotProved> {
+        let n = Sys::State::LEN;
+        let whole = self.returned(region)?;
+        let derivative = whole.derivative.ok_or(NotProved::Singular)?;
+        let centre = region.middle();
+        let point = Bounds::point(&centre);
+        let end = self.returned(&point)?.after;
+        let unit = |i: usize, j: usize| Interval::point(if i == j { 1.0 } else { 0.0 });
+        let mut excess = Matrix::<Sys>::zero();
+        for i in 0..n {
+            for j in 0..n {
+                excess.set(i, j, derivative.at(i, j) - unit(i, j));
+            }
+        }
+        let inverse = inverted::<Sys>(excess.middle()).ok_or(NotProved::Singular)?;
+        let inverse = Matrix::<Sys>::of(&inverse);
+        let mut rest = product(&inverse, &excess);
+        for i in 0..n {
+            for j in 0..n {
+                rest.set(i, j, unit(i, j) - rest.at(i, j));
+            }
+        }
+        let missing = Bounds::of(|i| end.at(i) - point.at(i));
+        let around = Bounds::of(|i| region.at(i) - point.at(i));
+        let (newton, linear) = (inverse.times_bounds(&missing), rest.times_bounds(&around));
+        let image = Bounds::of(|i| point.at(i) - newton.at(i) + linear.at(i));
+        let orbit = CertifiedOrbit {
+            point: image,
+            derivative,
+            period: whole.time,
+            largest_multiplier: spectral_bound(&derivative),
+        };
+        Ok((image, orbit))
+    }
+
+    /// The impact on the section that all motions from a box return with.
+    fn returned(&self, from: &Bounds<Sys::State>) -> Result<CertifiedImpact<Sys>, NotProved> {
+        let mut run = CertifiedRun::new(self.field.system, 0.0, |i| from.at(i)).with_derivative();
+        run.set_field(&self.field);
+        let mut left = self.returns;
+        loop {
+            let impact = run.next_impact(self.horizon)?.ok_or(NotProved::NotMet)?;
+            if self.depends_on_time(&impact) {
+                return Err(NotProved::DependsOnTime);
+            }
+            if impact.surface == self.surface {
+                left -= 1;
+                if left == 0 {
+                    return Ok(impact);
+                }
+            }
+        }
+    }
+
+    /// False if neither rates nor gaps nor the law depend on time. What takes the time at all gets all times here, and all rates of it.
+    fn depends_on_time(&self, impact: &CertifiedImpact<Sys>) -> bool {
+        let surface = impact.surface;
+        let times = Rated {
+            value: Interval::WHOLE,
+            rate: Interval::WHOLE,
+        };
+        let mut states = Sys::Row::<Rated>::ZERO;
+        for (i, entry) in states.as_mut_slice().iter_mut().enumerate() {
+            *entry = Rated::steady(impact.before(i));
+        }
+        let parameters = self.field.steady_parameters();
+        let mut firsts = Sys::Firsts::<Rated>::ZERO;
+        let begun = Sys::begin(&parameters, times, &states, &mut firsts);
+        let gaps = Sys::clearances(&parameters, times, &states);
+        let strike = Strike {
+            surface,
+            chosen: None,
+            motion_start: self.field.system.motion_start(&impact.before.middle()),
+        };
+        let after = strike.applied::<Sys, Rated>(&parameters, times, &states);
+        let (Ok(()), Ok(gaps), Ok(Some(after))) = (begun, gaps, after) else {
+            return true;
+        };
+        let rates = &firsts.as_slice()[..Sys::State::LEN];
+        let parts = [rates, gaps.as_slice(), after.as_slice()];
+        let mut all = parts.into_iter().flatten();
+        all.any(|own| own.rate != Interval::ZERO || own.value.is_whole())
+    }
+}
+
+/// A bound of the absolute values of all eigenvalues of all matrices: the root of the norm of a power.
+fn spectral_bound<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
+    let mut power = *matrix;
+    let mut bound = norm(&power);
+    let mut exponent = 1.0;
+    for _ in 0..SQUARINGS {
+        power = product(&power, &power);
+        exponent *= 2.0;
+        let norm = Interval::point(norm(&power));
+        let root = Numbers::powf(norm, 1.0 / exponent).hi;
+        // Not a comparison that NaN passes.
+        if root < bound {
+            bound = root;
+        }
+    }
+    bound
+}
+
+/// The largest sum of absolute values in a row.
+fn norm<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
+    (0..Sys::State::LEN).fold(0.0, |most, i| {
+        let row = (0..Sys::State::LEN).map(|j| Interval::point(matrix.at(i, j).magnitude()));
+        f64::max(most, row.fold(Interval::ZERO, |sum, entry| sum + entry).hi)
+    })
+}
+
+/// The inverse of a matrix by its columns, as far as rounding lets it (Gauss and Jordan, with pivots by columns).
+fn inverted<Sys: Variational>(mut columns: Sys::Columns) -> Option<Sys::Columns> {
+    let n = Sys::State::LEN;
+    let mut inverse = Sys::columns();
+    for (j, column) in inverse.as_mut().iter_mut().enumerate() {
+        column.as_mut_slice()[j] = 1.0;
+    }
+    // Columns are combined until the matrix is the identity: what that does to the identity is the inverse.
+    for row in 0..n {
+        let size = |j: usize, columns: &Sys::Columns| columns.as_ref()[j].as_slice()[row].abs();
+        let pivot = (row..n).fold(row, |best, j| {
+            match size(j, &columns) > size(best, &columns) {
+                true => j,
+                false => best,
+            }
+        });
+        columns.as_mut().swap(row, pivot);
+        inverse.as_mut().swap(row, pivot);
+        let value = columns.as_ref()[row].as_slice()[row];
+        if value == 0.0 || !value.is_finite() {
+            return None;
+        }
+        for both in [&mut columns, &mut inverse] {
+            for entry in both.as_mut()[row].as_mut_slice() {
+                *entry /= value;
+            }
+        }
+        let (own, own_inverse) = (columns.as_ref()[row], inverse.as_ref()[row]);
+        for j in (0..n).filter(|&j| j != row) {
+            let factor = columns.as_ref()[j].as_slice()[row];
+            subtract(&mut columns.as_mut()[j], factor, &own);
+            subtract(&mut inverse.as_mut()[j], factor, &own_inverse);
+        }
+    }
+    Some(inverse)
+}
+
+fn subtract<S: StateVector>(from: &mut S, factor: f64, vector: &S) {
+    for (entry, own) in from.as_mut_slice().iter_mut().zip(vector.as_slice()) {
+        *entry -= factor * own;
+    }
+}

@@ -1,0 +1,433 @@
+//! Certified runs: smooth motion and impacts by turns.
+
+use core::ops::ControlFlow;
+
+use super::course::{Course, Met, Side, Sides, Surfaces};
+use super::crossing::{Crossed, carried, cross};
+use super::flow::{CertifiedFlow, ORDER, Step};
+use super::frame::{Bounds, Matrix};
+use super::lost::{Lost, Reason};
+use super::series::Field;
+use crate::contract::{Impacting, Variational};
+use crate::error::Fault;
+use crate::impacts::law::Law;
+use crate::impacts::override_table::Overrides;
+use crate::numbers::{Interval, Row};
+use crate::state::StateVector;
+use crate::variations::transition::Strike;
+
+/// How far before an impact it is approached: parts of a step, each tried after the last.
+const MARGINS: [f64; 4] = [
+    1.0 / (1_u64 << 40) as f64,
+    1.0 / (1_u64 << 32) as f64,
+    1.0 / (1_u64 << 22) as f64,
+    1.0 / (1_u64 << 12) as f64,
+];
+
+/// An impact that every motion of a box has.
+pub struct CertifiedImpact<Sys: Variational> {
+    /// The surface, by its place in the declaration.
+    pub surface: usize,
+    /// All times of the impact.
+    pub time: Interval,
+    pub(super) before: Bounds<Sys::State>,
+    pub(super) after: Bounds<Sys::State>,
+    /// All derivatives of the state after the impact by the start, where they are asked for.
+    pub(super) derivative: Option<Matrix<Sys>>,
+}
+
+impl<Sys: Variational> CertifiedImpact<Sys> {
+    /// All values of component `i` of the state that arrives.
+    pub fn before(&self, i: usize) -> Interval {
+        self.before.at(i)
+    }
+
+    /// All values of component `i` of the state after the impact, at the time of the impact.
+    pub fn after(&self, i: usize) -> Interval {
+        self.after.at(i)
+    }
+}
+
+/// A box of states that is followed through time and impacts.
+///
+/// Every surface is enclosed along every step. An impact is certified if every motion of the box meets the same surface once,
+/// transversally, and no other surface at about that time; then the declared law, or the one chosen for the run, is applied to all of
+/// them. What cannot be proved ends the run as [`Lost`], which says what that is.
+///
+/// ```
+/// use core::ops::ControlFlow;
+///
+/// use dalembert::certified::CertifiedRun;
+/// use dalembert::model;
+/// use dalembert::numbers::Interval;
+///
+/// model! {
+///     /// A ball over a floor that takes half of its speed.
+///     pub Ball {
+///         coordinates { x; }
+///         lagrangian = dot(x)^2/2 - x;
+///         impacts { floor: x >= 0 => newton(1/2); }
+///     }
+/// }
+///
+/// let ball = Ball {};
+/// let start = [0.5, 0.0];
+/// let mut run = CertifiedRun::new(&ball, 0.0, |i| Interval::point(start[i]));
+/// let mut times = [Interval::point(0.0); 2];
+/// run.run(2.5, |impact| {
+///     times[run_index(impact.time)] = impact.time;
+///     ControlFlow::Continue(())
+/// })?;
+/// // It falls for the time 1, and flies for the time 1 after that.
+/// assert!(times[0].contains(Interval::point(1.0)) && times[0].width() < 1e-15);
+/// assert!(times[1].contains(Interval::point(2.0)) && times[1].width() < 1e-14);
+/// # fn run_index(time: Interval) -> usize { usize::from(time.lo > 1.5) }
+/// # Ok::<(), dalembert::certified::Lost>(())
+/// ```
+pub struct CertifiedRun<'a, Sys: Variational + Impacting> {
+    progress: Progress<'a, Sys>,
+    laws: Overrides<<Sys as Impacting>::Gaps>,
+    is_begun: bool,
+    impacts: u64,
+}
+
+/// The motion up to a time.
+struct Progress<'a, Sys: Variational + Impacting> {
+    flow: CertifiedFlow<'a, Sys>,
+    sides: Sides<Sys>,
+    /// All derivatives by the start, where they are asked for.
+    derivative: Option<Matrix<Sys>>,
+}
+
+impl<Sys: Variational + Impacting> Clone for Progress<'_, Sys> {
+    fn clone(&self) -> Self {
+        Self {
+            flow: self.flow.clone(),
+            sides: self.sides,
+            derivative: self.derivative,
+        }
+    }
+}
+
+impl<Sys: Variational + Impacting> Progress<'_, Sys> {
+    /// Makes a step that was prepared here, at the end of which surfaces are on these sides.
+    fn make(&mut self, step: &Step<Sys>, sides: Sides<Sys>) -> Result<(), Reason> {
+        let flow = &self.flow;
+        if let Some(derivative) = &mut self.derivative {
+            let (now, hull) = (Interval::point(flow.t), flow.frame.hull());
+            for k in 0..Sys::State::LEN {
+                let column = derivative.column(k);
+                let from = [&hull, &step.tube, &column];
+                let (unit, end) = (step.length, Interval::point(1.0));
+                let column = carried(&flow.field, from, now, unit, end, ORDER);
+                derivative.set_column(k, &column.ok_or(Reason::NoTube)?);
+            }
+        }
+        self.flow.make(step);
+        self.sides = sides;
+        Ok(())
+    }
+}
+
+impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
+    /// Begins at the time `t` with all states whose component `i` lies in `start(i)`.
+    pub fn new(system: &'a Sys, t: f64, start: impl Fn(usize) -> Interval) -> Self {
+        let progress = Progress {
+            flow: CertifiedFlow::new(system, t, start),
+            sides: Sides::unknown(),
+            derivative: None,
+        };
+        Self {
+            progress,
+            laws: Overrides::none(),
+            is_begun: false,
+            impacts: 0,
+        }
+    }
+
+    /// With all values in a range for a parameter, as [`CertifiedFlow::with_parameter`] takes it.
+    #[must_use]
+    pub fn with_parameter(mut self, index: usize, range: Interval) -> Self {
+        self.progress.flow.field.set_parameter(index, range);
+        self
+    }
+
+    /// With steps as [`CertifiedFlow::with_remainder`] has them.
+    #[must_use]
+    pub fn with_remainder(mut self, part: f64) -> Self {
+        self.progress.flow = self.progress.flow.with_remainder(part);
+        self
+    }
+
+    /// With another law that is an impulse for a surface; one past the end changes nothing.
+    #[must_use]
+    pub fn with_law(mut self, surface: usize, law: Law) -> Self {
+        self.laws.set(surface, law);
+        self
+    }
+
+    /// The time that was reached.
+    pub fn t(&self) -> f64 {
+        self.progress.flow.t
+    }
+
+    /// Steps made so far.
+    pub fn steps(&self) -> u64 {
+        self.progress.flow.steps()
+    }
+
+    /// Impacts so far.
+    pub fn impacts(&self) -> u64 {
+        self.impacts
+    }
+
+    /// All values that component `i` of the state may have now.
+    pub fn component(&self, i: usize) -> Interval {
+        self.progress.flow.component(i)
+    }
+
+    /// The width of the widest component.
+    pub fn width(&self) -> f64 {
+        self.progress.flow.width()
+    }
+
+    /// All positions and velocities that the state may have now, as [`CertifiedFlow::velocities`] gives them.
+    ///
+    /// # Errors
+    /// [`Fault`] where a velocity may not exist.
+    pub fn velocities(&self) -> Result<Sys::Configuration<Interval>, Fault> {
+        self.progress.flow.velocities()
+    }
+
+    /// Follows the motion to the time `t_end`, or until `observer` breaks after an impact.
+    ///
+    /// # Errors
+    /// [`Lost`]; the box is that of the time up to which the motion is certified.
+    pub fn run(
+        &mut self,
+        t_end: f64,
+        mut observer: impl FnMut(&CertifiedImpact<Sys>) -> ControlFlow<()>,
+    ) -> Result<(), Lost> {
+        while let Some(impact) = self.next_impact(t_end)? {
+            if observer(&impact).is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Follows the motion to a time just after its next impact, or to the time `t_end` if there is none before.
+    ///
+    /// # Errors
+    /// As [`CertifiedRun::run`].
+    pub fn next_impact(&mut self, t_end: f64) -> Result<Option<CertifiedImpact<Sys>>, Lost> {
+        self.begin()?;
+        while self.t() < t_end {
+            let step = self.progress.flow.prepare(t_end)?;
+            let made = match self.watched(&self.progress, &step) {
+                Ok(sides) => self.progress.make(&step, sides).map(|()| None),
+                Err(met) => self.meet(&step, met, t_end),
+            };
+            let t = self.t();
+            let impact = made.map_err(|reason| Lost { t, reason })?;
+            if impact.is_some() {
+                return Ok(impact);
+            }
+        }
+        Ok(None)
+    }
+
+    /// With all derivatives by the start; they are those at [`CertifiedRun::t`].
+    pub(super) fn with_derivative(mut self) -> Self {
+        let mut identity = Sys::columns();
+        for (j, column) in identity.as_mut().iter_mut().enumerate() {
+            column.as_mut_slice()[j] = 1.0;
+        }
+        self.progress.derivative = Some(Matrix::of(&identity));
+        self
+    }
+
+    pub(super) fn field(&self) -> &Field<'a, Sys> {
+        &self.progress.flow.field
+    }
+
+    pub(super) fn set_field(&mut self, field: &Field<'a, Sys>) {
+        self.progress.flow.field = *field;
+    }
+
+    /// At the start, surfaces at which the gap is exactly 0 are known to be left or entered.
+    fn begin(&mut self) -> Result<(), Lost> {
+        if core::mem::replace(&mut self.is_begun, true) {
+            return Ok(());
+        }
+        let Progress { flow, sides, .. } = &mut self.progress;
+        let (t, hull) = (flow.t, flow.frame.hull());
+        let [one, other] = [hull.lo, hull.hi].map(|corner| flow.field.system.mode(&corner));
+        if one != other {
+            let reason = Reason::SeveralModes;
+            return Err(Lost { t, reason });
+        }
+        let Some(gaps) = flow.field.gaps_at(Interval::point(t), &hull) else {
+            return Ok(());
+        };
+        for (surface, gap) in gaps.as_slice().iter().enumerate() {
+            if gap.lo >= 0.0 {
+                sides.set(surface, Side::Above);
+            } else if gap.hi <= 0.0 {
+                sides.set(surface, Side::Below);
+            }
+        }
+        Ok(())
+    }
+
+    /// What may be met in a step, or the sides of all surfaces at its end.
+    fn watched(&self, progress: &Progress<'a, Sys>, step: &Step<Sys>) -> Result<Sides<Sys>, Met> {
+        let flow = &progress.flow;
+        let (now, hull) = (Interval::point(flow.t), flow.frame.hull());
+        let (tube, length) = (&step.tube, step.length);
+        match Course::new(&flow.field, &hull, tube, now, length, ORDER) {
+            Some(course) => self.surfaces(flow).passed(&course, &progress.sides),
+            None => Err(Met {
+                surface: 0,
+                reason: Reason::NoTube,
+                at: 0.0,
+            }),
+        }
+    }
+
+    fn surfaces<'f>(&self, flow: &'f CertifiedFlow<'a, Sys>) -> Surfaces<'f, 'a, Sys> {
+        let field = &flow.field;
+        let mut passable = <Sys as Impacting>::Gaps::zeros();
+        for (surface, entry) in passable.as_mut_slice().iter_mut().enumerate() {
+            let law = self.laws.get(surface);
+            let is_map = law.is_none_or(|law| law.is_map());
+            let is_passable = is_map && field.system.is_passable(surface);
+            *entry = f64::from(u8::from(is_passable));
+        }
+        Surfaces { field, passable }
+    }
+
+    /// Crosses the surface that may be met in a step; `None` where the motion only went on to `t_end`.
+    fn meet(
+        &mut self,
+        step: &Step<Sys>,
+        met: Met,
+        t_end: f64,
+    ) -> Result<Option<CertifiedImpact<Sys>>, Reason> {
+        let mut last = met.at == 0.0;
+        let mut reason = met.reason;
+        let mut nearest = None;
+        for margin in MARGINS {
+            let part = met.at - margin * f64::max(met.at, 1.0 / 1024.0);
+            let t = (Interval::point(self.t()) + step.length * Interval::point(part)).lo;
+            last |= t <= self.t();
+            let Some(near) = self.brought_to(if last { self.t() } else { t }) else {
+                continue;
+            };
+            let is_behind = matches!(met.reason, Reason::MayBeBehind { .. });
+            let crossed = match is_behind {
+                true => Err(met.reason),
+                false => self.crossed(&near, met.surface),
+            };
+            match crossed {
+                Ok((surface, crossed)) => return self.take(near, surface, &crossed, t_end),
+                Err(found) => reason = found,
+            }
+            nearest.get_or_insert(near);
+            if last || is_behind {
+                break;
+            }
+        }
+        if let Some(near) = nearest {
+            self.progress = near;
+        }
+        Err(reason)
+    }
+
+    /// The motion at a time before which nothing is met.
+    fn brought_to(&self, t: f64) -> Option<Progress<'a, Sys>> {
+        let mut progress = self.progress.clone();
+        while progress.flow.t < t {
+            let step = progress.flow.prepare(t).ok()?;
+            let sides = self.watched(&progress, &step).ok()?;
+            progress.make(&step, sides).ok()?;
+        }
+        Some(progress)
+    }
+
+    /// The impact on a surface from the motion shortly before it, or on another that may be first.
+    fn crossed(
+        &self,
+        near: &Progress<'a, Sys>,
+        surface: usize,
+    ) -> Result<(usize, Crossed<Sys>), Reason> {
+        let flow = &near.flow;
+        let at = |surface: usize| {
+            let strike = Strike {
+                surface,
+                chosen: self.chosen(surface)?,
+                motion_start: flow.field.system.motion_start(&flow.frame.centre),
+            };
+            let (surfaces, start) = (self.surfaces(flow), (flow.t, &flow.frame));
+            cross(
+                &surfaces,
+                &strike,
+                start,
+                &near.sides,
+                near.derivative.as_ref(),
+            )
+        };
+        match at(surface) {
+            Ok(crossed) => Ok((surface, crossed)),
+            Err(reason @ Reason::MayMeetTogether { other, .. }) => match at(other) {
+                Ok(crossed) => Ok((other, crossed)),
+                Err(_) => Err(reason),
+            },
+            Err(reason) => Err(reason),
+        }
+    }
+
+    /// The law chosen for a surface, if there is one. A map is not to be chosen.
+    fn chosen(&self, surface: usize) -> Result<Option<Law>, Reason> {
+        let declared = self.field().system.law(surface);
+        match self.laws.get(surface).filter(|law| *law != declared) {
+            Some(law) if law.is_map() => Err(Reason::UnsureLaw { surface }),
+            chosen => Ok(chosen),
+        }
+    }
+
+    /// Goes on after an impact, if it is certainly not after `t_end`.
+    fn take(
+        &mut self,
+        near: Progress<'a, Sys>,
+        surface: usize,
+        crossed: &Crossed<Sys>,
+        t_end: f64,
+    ) -> Result<Option<CertifiedImpact<Sys>>, Reason> {
+        self.progress = near;
+        if crossed.time.lo > t_end {
+            // Until then no surface is met.
+            while self.t() < t_end {
+                let step = self.progress.flow.prepare(t_end);
+                let step = step.map_err(|lost| lost.reason)?;
+                self.progress.make(&step, crossed.sides_before)?;
+            }
+            return Ok(None);
+        }
+        if crossed.t > t_end {
+            return Err(Reason::EndsAtImpact { surface });
+        }
+        let derivatives = crossed.derivatives.as_ref();
+        self.progress.flow.jump(crossed.t, crossed.frame);
+        self.progress.sides = crossed.sides;
+        self.progress.derivative = derivatives.map(|[_, later]| *later);
+        self.impacts += 1;
+        Ok(Some(CertifiedImpact {
+            surface,
+            time: crossed.time,
+            before: crossed.before,
+            after: crossed.after,
+            derivative: derivatives.map(|[at_impact, _]| *at_impact),
+        }))
+    }
+}

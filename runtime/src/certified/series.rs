@@ -1,0 +1,251 @@
+//! Taylor series of all motions of a box and of their derivatives, with remainder.
+//!
+//! A motion `y` that stays in a tube `B` for the time `h` is, with the Taylor coefficients `c_k`,
+//!
+//! ```text
+//! y(t + s) is in  sum_(k<p) s^k c_k(y(t))  +  s^p c_p(B),   0 <= s <= h
+//! ```
+//!
+//! Over [`Rated`] numbers the same holds of the derivative along a direction: its tube is found in the same way, for the equation of
+//! variations.
+
+use super::frame::Bounds;
+use crate::contract::Variational;
+use crate::integrate::taylor::expansion::Expansion;
+use crate::jet::LENGTH;
+use crate::numbers::{Interval, Numbers, Rated, Row};
+use crate::state::StateVector;
+
+/// Trials to find a tube.
+const TRIALS: u32 = 6;
+
+/// Parts that a tube is made larger by than its last trial.
+const ROOM: f64 = 0.1;
+
+/// A system with all parameters of a box.
+pub(super) struct Field<'a, Sys: Variational> {
+    pub(super) system: &'a Sys,
+    parameters: Sys::Parameters<Interval>,
+}
+
+impl<Sys: Variational> Clone for Field<'_, Sys> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys: Variational> Copy for Field<'_, Sys> {}
+
+impl<'a, Sys: Variational> Field<'a, Sys> {
+    /// A system with its own parameters.
+    pub(super) fn new(system: &'a Sys) -> Self {
+        let mut parameters = Sys::Parameters::<Interval>::ZERO;
+        let values = system.parameters();
+        for (parameter, value) in parameters.as_mut_slice().iter_mut().zip(values.as_slice()) {
+            *parameter = Interval::of(*value);
+        }
+        Self { system, parameters }
+    }
+
+    /// Puts a range in place of a parameter; one past the end changes nothing.
+    pub(super) fn set_parameter(&mut self, index: usize, range: Interval) {
+        if let Some(parameter) = self.parameters.as_mut_slice().get_mut(index) {
+            *parameter = range;
+        }
+    }
+
+    pub(super) fn parameters(&self) -> &Sys::Parameters<Interval> {
+        &self.parameters
+    }
+
+    /// The parameters, which no direction changes.
+    pub(super) fn steady_parameters(&self) -> Sys::Parameters<Rated> {
+        let mut parameters = Sys::Parameters::<Rated>::ZERO;
+        let values = self.parameters.as_slice();
+        for (parameter, value) in parameters.as_mut_slice().iter_mut().zip(values) {
+            *parameter = Rated::steady(*value);
+        }
+        parameters
+    }
+
+    /// All rates in a box.
+    pub(super) fn rates(
+        &self,
+        times: Interval,
+        states: &Bounds<Sys::State>,
+    ) -> Option<Bounds<Sys::State>> {
+        let mut firsts = Sys::Firsts::<Interval>::ZERO;
+        Sys::begin(&self.parameters, times, &row::<Sys>(states), &mut firsts).ok()?;
+        let rates = Bounds::of(|i| firsts.as_slice()[i]);
+        rates.is_finite().then_some(rates)
+    }
+
+    /// All changes of the rates along changes of the state.
+    fn changes(
+        &self,
+        times: Interval,
+        states: &Bounds<Sys::State>,
+        along: &Bounds<Sys::State>,
+    ) -> Option<Bounds<Sys::State>> {
+        let mut firsts = Sys::Firsts::<Rated>::ZERO;
+        let states = rated_row::<Sys>(states, along);
+        let (parameters, times) = (self.steady_parameters(), Rated::steady(times));
+        Sys::begin(&parameters, times, &states, &mut firsts).ok()?;
+        let changes = Bounds::of(|i| firsts.as_slice()[i].rate);
+        changes.is_finite().then_some(changes)
+    }
+
+    /// A box that holds every motion from a box until the end of a step; `times` are those of the whole step.
+    pub(super) fn tube(
+        &self,
+        start: &Bounds<Sys::State>,
+        times: Interval,
+        during: Interval,
+    ) -> Option<Bounds<Sys::State>> {
+        held(start, during, |tube| self.rates(times, tube))
+    }
+
+    /// A box that holds the derivatives of all motions in a tube until the end of a step, from a box of directions.
+    pub(super) fn tube_along(
+        &self,
+        tube: &Bounds<Sys::State>,
+        along: &Bounds<Sys::State>,
+        times: Interval,
+        during: Interval,
+    ) -> Option<Bounds<Sys::State>> {
+        held(along, during, |along| self.changes(times, tube, along))
+    }
+
+    /// The series of all motions from a box at a time, in units of `unit`, up to an order.
+    pub(super) fn series(
+        &self,
+        from: &Bounds<Sys::State>,
+        times: Interval,
+        unit: Interval,
+        order: usize,
+    ) -> Option<Expansion<Sys, Interval>> {
+        expanded(&self.parameters, times, &row::<Sys>(from), unit, order)
+    }
+
+    /// The same, with the derivatives along directions.
+    pub(super) fn series_along(
+        &self,
+        from: &Bounds<Sys::State>,
+        along: &Bounds<Sys::State>,
+        times: Interval,
+        unit: Interval,
+        order: usize,
+    ) -> Option<Expansion<Sys, Rated>> {
+        let parameters = self.steady_parameters();
+        let start = rated_row::<Sys>(from, along);
+        expanded(
+            &parameters,
+            Rated::steady(times),
+            &start,
+            unit_of(unit),
+            order,
+        )
+    }
+}
+
+fn unit_of(unit: Interval) -> Rated {
+    Rated::steady(unit)
+}
+
+fn expanded<Sys: Variational, L: Numbers>(
+    parameters: &Sys::Parameters<L>,
+    t: L,
+    start: &Sys::Row<L>,
+    unit: L,
+    order: usize,
+) -> Option<Expansion<Sys, L>> {
+    let mut series = Expansion::new();
+    series.begin(parameters, t, start).ok()?;
+    series.advance(parameters, unit, order, start);
+    Some(series)
+}
+
+/// A box that solutions with rates in `rates(box)` do not leave for the time `during`, which begins with 0 (Picard, Lindelof).
+fn held<S: StateVector>(
+    start: &Bounds<S>,
+    during: Interval,
+    rates: impl Fn(&Bounds<S>) -> Option<Bounds<S>>,
+) -> Option<Bounds<S>> {
+    let reached = |tube: &Bounds<S>| {
+        let rates = rates(tube)?;
+        let reached = Bounds::of(|i| start.at(i) + during * rates.at(i));
+        reached.is_finite().then_some(reached)
+    };
+    let mut tube = reached(start)?;
+    for _ in 0..TRIALS {
+        let wider = Bounds::of(|i| {
+            let range = tube.at(i).hull(start.at(i));
+            range.widened(ROOM * range.width() + f64::MIN_POSITIVE)
+        });
+        let found = reached(&wider)?;
+        if (0..S::LEN).all(|i| wider.at(i).contains(found.at(i))) {
+            return reached(&found);
+        }
+        tube = Bounds::of(|i| found.at(i).hull(tube.at(i)));
+    }
+    None
+}
+
+/// A series with its remainder.
+pub(super) struct Arc<Sys: Variational, L: Numbers> {
+    rows: [Sys::Row<L>; LENGTH],
+    order: usize,
+}
+
+impl<Sys: Variational, L: Numbers> Arc<Sys, L> {
+    /// The first `order` coefficients of a series, and the next one of the remainder.
+    pub(super) fn new(
+        series: &Expansion<Sys, L>,
+        remainder: &Expansion<Sys, L>,
+        order: usize,
+    ) -> Self {
+        let mut rows = series.coefficients;
+        rows[order] = remainder.coefficients[order];
+        Self { rows, order }
+    }
+
+    /// All values after so many units of time (Horner).
+    pub(super) fn at(&self, units: L) -> Sys::Row<L> {
+        let mut sums = self.rows[self.order];
+        for row in self.rows[..self.order].iter().rev() {
+            for (sum, entry) in sums.as_mut_slice().iter_mut().zip(row.as_slice()) {
+                *sum = *sum * units + *entry;
+            }
+        }
+        sums
+    }
+}
+
+/// A box as numbers.
+pub(super) fn row<Sys: Variational>(bounds: &Bounds<Sys::State>) -> Sys::Row<Interval> {
+    let mut row = Sys::Row::<Interval>::ZERO;
+    for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
+        *entry = bounds.at(i);
+    }
+    row
+}
+
+/// A box as numbers that change along directions.
+pub(super) fn rated_row<Sys: Variational>(
+    bounds: &Bounds<Sys::State>,
+    along: &Bounds<Sys::State>,
+) -> Sys::Row<Rated> {
+    let mut row = Sys::Row::<Rated>::ZERO;
+    for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
+        *entry = Rated {
+            value: bounds.at(i),
+            rate: along.at(i),
+        };
+    }
+    row
+}
+
+/// Numbers as a box.
+pub(super) fn bounds<S: StateVector>(row: &[Interval]) -> Bounds<S> {
+    Bounds::of(|i| row[i])
+}

@@ -1,0 +1,173 @@
+//! Periodic orbits that exist by proof: in enclosures that contain references of many digits, and refused where there are none.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+use std::time::Instant;
+
+use dalembert::certified::{CertifiedSection, NotProved};
+use dalembert::extended::Extended;
+use dalembert::numbers::Interval;
+
+dalembert::model! {
+    /// A walker on a slope whose foot slips, in dimensionless form (W. Clark, thesis, section 4.2).
+    pub Walker {
+        coordinates { theta; xi; eta; }
+        parameters { mu > 0 = 5/2; eps > 0 = 1/2; alpha = 2/5; delta > 0 = 2/5; }
+        let foot = eta + xi*cos(theta);
+        let weight = mu/(1 + mu*sin(theta)^2);
+        field {
+            dot(theta) = eps*xi;
+            dot(xi) = weight*(sin(theta)*(cos(alpha) - eps*xi^2*cos(theta)) - cos(theta)*foot);
+            dot(eta) = sin(alpha) - foot;
+        }
+        impacts {
+            step: theta >= -delta => reset {
+                theta = theta + 2*delta;
+                xi = cos(2*delta)*xi;
+                eta = eta + cos(delta)*(1 - cos(2*delta))*xi;
+            };
+        }
+    }
+}
+
+dalembert::model! {
+    /// A conveyor: `x` falls from 1 to 0 in one unit of time, while `y` grows by the factor `e^k`.
+    pub Conveyor {
+        coordinates { x; y; }
+        parameters { k = 1/2; }
+        field { dot(x) = -1; dot(y) = k*y; }
+        impacts { end: x >= 0 => reset { x = 1; y = y; }; }
+    }
+}
+
+dalembert::model! {
+    /// The same, driven.
+    pub Driven {
+        coordinates { x; y; }
+        field { dot(x) = -1; dot(y) = sin(t) - y/2; }
+        impacts { end: x >= 0 => reset { x = 1; y = y; }; }
+    }
+}
+
+/// Whether a number of many digits lies between the ends of an interval.
+fn holds(range: Interval, digits: &str) -> bool {
+    let number: Extended<3> = digits.parse().unwrap();
+    let [lo, hi] = [range.lo, range.hi].map(Extended::<3>::from);
+    (number - lo).nearest() >= 0.0 && (hi - number).nearest() >= 0.0
+}
+
+fn about(digits: &str) -> Interval {
+    let nearest: f64 = digits.parse().unwrap();
+    Interval::new(nearest.next_down(), nearest.next_up())
+}
+
+/// `walker_orbits.json`: fixed point after the step, period, and derivative in its last two components.
+const POINT: [&str; 3] = [
+    "0.4",
+    "-0.902057449429909744803474157606",
+    "0.991308369223558488691152728714",
+];
+const PERIOD: &str = "1.54496586406140337334630114218";
+const DERIVATIVE: [[&str; 2]; 2] = [
+    ["0.139944460399612839852821", "-0.291146549873031763103688"],
+    ["-0.173354661929623761889794", "0.388121570702451501829324"],
+];
+const MULTIPLIER: f64 = 0.520_683_714_448_936_2;
+
+#[test]
+fn a_walkers_cycle_exists_and_attracts() {
+    let walker = Walker::default();
+    let near = POINT.map(|digits| digits.parse::<f64>().unwrap());
+    for radius in [1e-4, 1e-6, 1e-10] {
+        let begun = Instant::now();
+        let section = CertifiedSection::new(&walker, 0, 10.0)
+            .with_parameter(2, about("0.4"))
+            .with_parameter(3, about("0.4"));
+        let orbit = section.periodic(&near.into(), radius).unwrap();
+        let width = (0..3).map(|i| orbit.point(i).width()).fold(0.0, f64::max);
+        println!(
+            "radius {radius}: width {width:.1e}, period {:?}, multipliers below {} in {:.1?}",
+            orbit.period,
+            orbit.largest_multiplier,
+            begun.elapsed()
+        );
+        for i in 0..3 {
+            assert!(holds(orbit.point(i), POINT[i]), "{i}: {:?}", orbit.point(i));
+        }
+        assert!(holds(orbit.period, PERIOD), "{:?}", orbit.period);
+        for i in 0..2 {
+            for j in 0..2 {
+                let (found, digits) = (orbit.derivative(i + 1, j + 1), DERIVATIVE[i][j]);
+                assert!(holds(found, digits), "{i}, {j}: {found:?}, {digits}");
+            }
+        }
+        assert!(orbit.largest_multiplier > MULTIPLIER && orbit.largest_multiplier < 0.53);
+        assert!(width < 1e-12, "{width:e}");
+    }
+}
+
+#[test]
+fn there_is_no_orbit_elsewhere() {
+    let walker = Walker::default();
+    let section = CertifiedSection::new(&walker, 0, 10.0);
+    let Err(error) = section.periodic(&[0.4, -0.95, 1.05].into(), 1e-4) else {
+        panic!("an orbit that is not there");
+    };
+    assert_eq!(error, NotProved::NotContained);
+}
+
+#[test]
+fn a_cycle_of_two_returns_is_one_of_one() {
+    let walker = Walker::default();
+    let near = POINT.map(|digits| digits.parse::<f64>().unwrap());
+    let [once, twice] = [1, 2].map(|returns| {
+        let section = CertifiedSection::new(&walker, 0, 10.0).with_returns(returns);
+        section.periodic(&near.into(), 1e-8).unwrap()
+    });
+    assert!(
+        twice
+            .period
+            .contains(Interval::point(2.0 * once.period.middle()))
+    );
+    assert!(twice.largest_multiplier < once.largest_multiplier * once.largest_multiplier * 1.01);
+}
+
+#[test]
+fn motion_that_depends_on_time_has_no_cycle() {
+    let found = CertifiedSection::new(&Driven {}, 0, 20.0).periodic(&[1.0, 0.0].into(), 1e-3);
+    assert_eq!(found.err(), Some(NotProved::DependsOnTime));
+}
+
+#[test]
+fn multipliers_of_a_cycle_are_bounded_whether_it_attracts_or_not() {
+    for k in [-0.5_f64, 0.5] {
+        let conveyor = Conveyor { k };
+        let section = CertifiedSection::new(&conveyor, 0, 20.0);
+        let orbit = section.periodic(&[1.0, 1e-4].into(), 1e-3).unwrap();
+        assert!(orbit.point(1).contains(Interval::point(0.0)) && orbit.point(1).width() < 1e-12);
+        assert!(orbit.period.contains(Interval::point(1.0)) && orbit.period.width() < 1e-12);
+        let exact = k.exp();
+        assert!(
+            orbit
+                .derivative(1, 1)
+                .widened(1e-15)
+                .contains(Interval::point(exact))
+        );
+        assert!(
+            orbit.largest_multiplier >= exact && orbit.largest_multiplier < 1.01 * exact,
+            "{} beside {exact}",
+            orbit.largest_multiplier
+        );
+    }
+    // With k = 0 every y belongs to a cycle.
+    let conveyor = Conveyor { k: 0.0 };
+    let found = CertifiedSection::new(&conveyor, 0, 20.0).periodic(&[1.0, 0.0].into(), 1e-3);
+    assert_eq!(found.err(), Some(NotProved::Singular));
+}
+
+#[test]
+fn a_section_that_is_not_met_again_proves_nothing() {
+    let conveyor = Conveyor::default();
+    let section = CertifiedSection::new(&conveyor, 0, 0.5);
+    let found = section.periodic(&[1.0, 0.0].into(), 1e-3);
+    assert_eq!(found.err(), Some(NotProved::NotMet));
+}

@@ -1,0 +1,327 @@
+//! Certified runs end where what happens is not certain, before it happens, and say why.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+use core::ops::ControlFlow;
+
+use dalembert::certified::{CertifiedRun, Lost, Reason};
+use dalembert::impacts::law::Law;
+use dalembert::numbers::Interval;
+use dalembert::{Impacting, Variational};
+
+dalembert::model! {
+    /// A point that rises from a parabola's lowest place, over a floor.
+    pub Skimmer {
+        coordinates { x; }
+        parameters { depth = 0; }
+        lagrangian = dot(x)^2/2 + x;
+        impacts { floor: x >= -depth; }
+    }
+}
+
+dalembert::model! {
+    /// A point between two walls.
+    pub Corner {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts { right: x <= 1; upper: y <= 1; }
+    }
+}
+
+dalembert::model! {
+    /// A ball over a ledge that ends at `x = 1`, and a floor.
+    pub Ledge {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        impacts {
+            ledge: y >= 0 when x <= 1;
+            floor: y >= -1;
+        }
+    }
+}
+
+dalembert::model! {
+    /// A ball over a floor.
+    pub Ball {
+        coordinates { x; }
+        lagrangian = dot(x)^2/2 - x;
+        impacts { floor: x >= 0 => newton(1/2); }
+    }
+}
+
+dalembert::model! {
+    /// A point that is stopped where it passes 1.
+    pub Section {
+        coordinates { x; }
+        lagrangian = dot(x)^2/2 - x^2/2;
+        impacts { stop: x <= 1 => reset { dot(x) = dot(x); }; }
+    }
+}
+
+dalembert::model! {
+    /// Light and heavy halves of a line, which are passed at a price.
+    pub Halves {
+        coordinates { x; }
+        modes {
+            left { lagrangian = dot(x)^2/2; }
+            right { lagrangian = dot(x)^2/2 - 1/2; }
+        }
+        transitions {
+            to_right: left -> right when x >= 0;
+            to_left: right -> left when x <= -1/2;
+        }
+    }
+}
+
+dalembert::model! {
+    /// A point that goes faster above 0, or back there.
+    pub Relay {
+        parameters { speed = 2; }
+        coordinates { x; }
+        modes {
+            below { field { dot(x) = 1; } }
+            above { field { dot(x) = speed; } }
+        }
+        transitions {
+            up: below -> above when x >= 0;
+            down: above -> below when x <= 0;
+        }
+    }
+}
+
+/// Impacts until the end, and how it came.
+fn run<S: Variational + Impacting>(
+    system: &S,
+    start: &[Interval],
+    t_end: f64,
+) -> (Vec<usize>, Result<(), Lost>) {
+    let mut surfaces = Vec::new();
+    let mut run = CertifiedRun::new(system, 0.0, |i| start[i]);
+    let ended = run.run(t_end, |impact| {
+        surfaces.push(impact.surface);
+        ControlFlow::Continue(())
+    });
+    if let Err(lost) = ended {
+        assert_eq!(run.t(), lost.t);
+    }
+    (surfaces, ended)
+}
+
+fn points<const D: usize>(values: [f64; D]) -> [Interval; D] {
+    values.map(Interval::point)
+}
+
+fn lost(ended: Result<(), Lost>) -> Lost {
+    let lost = ended.unwrap_err();
+    println!("{lost}");
+    lost
+}
+
+#[test]
+fn a_graze_is_refused_before_it_comes() {
+    // `x = (1 - t)^2/2` touches 0 at the time 1.
+    let start = points([0.5, -1.0]);
+    let (surfaces, ended) = run(&Skimmer { depth: 0.0 }, &start, 3.0);
+    let lost = lost(ended);
+    assert_eq!(lost.reason, Reason::MayGraze { surface: 0 });
+    assert!(
+        surfaces.is_empty() && lost.t <= 1.0 && lost.t > 0.99,
+        "{lost}"
+    );
+    // A little lower it passes, and the floor a little higher is met.
+    let (surfaces, ended) = run(&Skimmer { depth: 1e-9 }, &start, 3.0);
+    assert!(surfaces.is_empty() && ended.is_ok(), "{ended:?}");
+    let (surfaces, _) = run(&Skimmer { depth: -1e-9 }, &start, 1.0);
+    assert_eq!(surfaces, [0]);
+}
+
+#[test]
+fn a_box_of_which_a_part_misses_is_refused() {
+    let start = [Interval::new(0.49, 0.51), Interval::point(-1.0)];
+    let (surfaces, ended) = run(&Skimmer { depth: 0.0 }, &start, 3.0);
+    let lost = lost(ended);
+    assert_eq!(lost.reason, Reason::MayGraze { surface: 0 });
+    assert!(surfaces.is_empty() && lost.t < 1.0, "{lost}");
+}
+
+#[test]
+fn two_walls_at_one_time_are_refused() {
+    let start = points([0.0, 0.0, 1.0, 1.0]);
+    let (surfaces, ended) = run(&Corner {}, &start, 3.0);
+    let lost = lost(ended);
+    assert!(
+        matches!(lost.reason, Reason::MayMeetTogether { .. }),
+        "{lost}"
+    );
+    assert!(surfaces.is_empty() && lost.t <= 1.0, "{lost}");
+    // One after the other, whichever comes first.
+    for (place, order) in [(1e-9, [0, 1]), (-1e-9, [1, 0])] {
+        let (surfaces, ended) = run(&Corner {}, &points([place, 0.0, 1.0, 1.0]), 2.5);
+        assert!(
+            surfaces == order && ended.is_ok(),
+            "{surfaces:?}, {ended:?}"
+        );
+    }
+    // Of a box that is wider, either.
+    let start = [
+        Interval::new(-1e-3, 2e-3),
+        Interval::point(0.0),
+        Interval::point(1.0),
+        Interval::point(1.0),
+    ];
+    assert!(run(&Corner {}, &start, 2.5).1.is_err());
+}
+
+#[test]
+fn a_condition_that_is_not_certain_is_refused() {
+    // It falls to the ledge within the time sqrt(2) and goes a little more than 1 in the meantime.
+    let falling = |x: f64, radius: f64| {
+        let x = Interval::point(x).widened(radius);
+        [
+            x,
+            Interval::point(1.0),
+            Interval::point(0.5),
+            Interval::point(0.0),
+        ]
+    };
+    let edge = 1.0 - core::f64::consts::SQRT_2 / 2.0;
+    let (surfaces, ended) = run(&Ledge {}, &falling(edge, 1e-6), 1.5);
+    let lost = lost(ended);
+    assert_eq!(lost.reason, Reason::UnsureCondition { surface: 0 });
+    assert!(
+        surfaces.is_empty() && lost.t < core::f64::consts::SQRT_2,
+        "{lost}"
+    );
+    let (surfaces, ended) = run(&Ledge {}, &falling(edge - 2e-6, 1e-6), 1.5);
+    assert!(surfaces == [0] && ended.is_ok(), "{surfaces:?}, {ended:?}");
+    let (surfaces, ended) = run(&Ledge {}, &falling(edge + 2e-6, 1e-6), 2.1);
+    assert!(surfaces == [1] && ended.is_ok(), "{surfaces:?}, {ended:?}");
+}
+
+#[test]
+fn motion_behind_a_surface_that_begins_to_count_is_refused() {
+    // Below the ledge, beyond its end, and back.
+    let start = points([2.0, -0.5, -1.0, 0.0]);
+    let (surfaces, ended) = run(&Ledge {}, &start, 5.0);
+    let lost = lost(ended);
+    // It meets the floor at the time 1, at x = 1, on its way to the ledge.
+    assert!(surfaces.len() <= 1 && lost.t <= 1.0, "{surfaces:?}, {lost}");
+}
+
+#[test]
+fn a_start_inside_a_wall_is_refused() {
+    let (_, ended) = run(&Ball {}, &points([-0.1, 1.0]), 1.0);
+    assert_eq!(
+        lost(ended),
+        Lost {
+            t: 0.0,
+            reason: Reason::MayBeBehind { surface: 0 }
+        }
+    );
+    let (_, ended) = run(&Ball {}, &points([0.0, -1.0]), 1.0);
+    assert_eq!(lost(ended).t, 0.0);
+    let (_, ended) = run(&Ball {}, &[Interval::WHOLE, Interval::point(0.0)], 1.0);
+    assert_eq!(
+        lost(ended),
+        Lost {
+            t: 0.0,
+            reason: Reason::NotFinite
+        }
+    );
+}
+
+#[test]
+fn impacts_that_accumulate_are_followed_until_they_cannot_be_told() {
+    let (surfaces, ended) = run(&Ball {}, &points([0.5, 0.0]), 4.0);
+    let lost = lost(ended);
+    assert!(
+        surfaces.len() > 20 && lost.t < 3.0 && lost.t > 2.9999,
+        "{lost}"
+    );
+}
+
+#[test]
+fn a_law_that_leaves_the_motion_at_the_surface_is_refused() {
+    for law in [Law::ImpactPlastic, Law::Newton(0.0)] {
+        let start = points([0.5, 0.0]);
+        let mut run = CertifiedRun::new(&Ball {}, 0.0, |i| start[i]).with_law(0, law);
+        let lost = lost(run.next_impact(2.0).map(|_| ()));
+        assert_eq!(lost.reason, Reason::MayStay { surface: 0 });
+        assert!(lost.t <= 1.0, "{lost}");
+    }
+    let start = points([0.5, 0.0]);
+    let mut run = CertifiedRun::new(&Ball {}, 0.0, |i| start[i]).with_law(0, Law::Elastic);
+    let impact = run.next_impact(2.0).unwrap().unwrap();
+    let after = impact.after(1);
+    assert!(
+        after.contains(Interval::point(1.0)) && after.width() < 1e-13,
+        "{after:?}"
+    );
+    let mut run = CertifiedRun::new(&Ball {}, 0.0, |i| start[i]).with_law(0, Law::Reset);
+    let lost = lost(run.next_impact(2.0).map(|_| ()));
+    assert_eq!(lost.reason, Reason::UnsureLaw { surface: 0 });
+}
+
+#[test]
+fn an_end_within_the_times_of_an_impact_is_refused() {
+    let start = [Interval::new(0.45, 0.55), Interval::point(0.0)];
+    let (surfaces, ended) = run(&Ball {}, &start, 1.0);
+    let lost = lost(ended);
+    assert_eq!(lost.reason, Reason::EndsAtImpact { surface: 0 });
+    assert!(surfaces.is_empty() && lost.t < 0.95, "{lost}");
+    let (surfaces, ended) = run(&Ball {}, &start, 0.94);
+    assert!(surfaces.is_empty() && ended.is_ok(), "{ended:?}");
+    let (surfaces, ended) = run(&Ball {}, &start, 1.06);
+    assert!(surfaces == [0] && ended.is_ok(), "{ended:?}");
+}
+
+#[test]
+fn a_reset_that_stays_at_its_surface_is_refused() {
+    let (_, ended) = run(&Section {}, &points([0.0, 2.0]), 3.0);
+    let lost = lost(ended);
+    assert!(lost.t < core::f64::consts::FRAC_PI_6, "{lost}");
+}
+
+#[test]
+fn refraction_and_reflection_are_told_apart() {
+    // Energies of both modes are enclosed by themselves: ranges of speeds are narrow beside what they differ by.
+    let mode = |speed: Interval| {
+        let start = [Interval::point(-1.0), speed, Interval::point(0.0)];
+        let halves = Halves::default();
+        let mut run = CertifiedRun::new(&halves, 0.0, |i| start[i]);
+        let impact = run.next_impact(3.0).map_err(|lost| lost.reason)?;
+        Ok(impact.map(|_| run.component(2).middle().round()))
+    };
+    assert_eq!(mode(Interval::new(1.01, 1.0101)), Ok(Some(1.0)));
+    // Reflected, it is at the surface that it came to, and nothing says on which side.
+    assert_eq!(
+        mode(Interval::new(0.9899, 0.99)),
+        Err(Reason::MayStay { surface: 0 })
+    );
+    assert_eq!(
+        mode(Interval::new(0.99, 1.01)),
+        Err(Reason::UnsureLaw { surface: 0 })
+    );
+}
+
+#[test]
+fn modes_that_meet_are_passed_and_sliding_is_refused() {
+    let start = points([-1.0, 0.0]);
+    let relay = Relay::default();
+    let mut run = CertifiedRun::new(&relay, 0.0, |i| start[i]);
+    run.run(2.0, |_| ControlFlow::Continue(())).unwrap();
+    let x = run.component(0);
+    assert!(
+        run.impacts() == 1 && x.contains(Interval::point(2.0)) && x.width() < 1e-14,
+        "{x:?}"
+    );
+    let relay = Relay {
+        speed: -1.0,
+        ..Relay::default()
+    };
+    let mut run = CertifiedRun::new(&relay, 0.0, |i| start[i]);
+    let lost = lost(run.run(2.0, |_| ControlFlow::Continue(())));
+    assert!(
+        matches!(lost.reason, Reason::MayMeetTogether { .. }) && lost.t <= 1.0,
+        "{lost}"
+    );
+}
