@@ -116,6 +116,10 @@ impl<Sys: Impacting> Watch<Sys> {
     /// The surfaces that the motion is held on from now on.
     pub(super) fn hold(&mut self, held: &Held<Sys::Gaps>) {
         self.haven.forget();
+        // A slide may end in another mode.
+        if (0..Sys::Gaps::LEN).any(|surface| held.is_held(surface) != self.held.is_held(surface)) {
+            self.limits.forget();
+        }
         self.held = *held;
     }
 
