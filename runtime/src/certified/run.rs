@@ -257,7 +257,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
 
     /// At the start, surfaces at which the gap is exactly 0 are known to be left or entered.
     fn begin(&mut self) -> Result<(), Lost> {
-        if core::mem::replace(&mut self.is_begun, true) {
+        if self.is_begun {
             return Ok(());
         }
         let Progress { flow, sides, .. } = &mut self.progress;
@@ -267,6 +267,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
             let reason = Reason::SeveralModes;
             return Err(Lost { t, reason });
         }
+        self.is_begun = true;
         let Some(gaps) = flow.field.gaps_at(Interval::point(t), &hull) else {
             return Ok(());
         };
