@@ -88,6 +88,15 @@ dalembert::model! {
     }
 }
 
+dalembert::model! {
+    /// A point under a wall, which is put back where it passes 1.
+    pub Treadmill {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts { end: x <= 1 => reset { x = -1; y = -1; }; upper: y <= 1; }
+    }
+}
+
 /// Impacts until the end, and how it came.
 fn run<S: Variational + Impacting>(
     system: &S,
@@ -169,6 +178,19 @@ fn two_walls_at_one_time_are_refused() {
         Interval::point(1.0),
     ];
     assert!(run(&Corner {}, &start, 2.5).1.is_err());
+}
+
+#[test]
+fn a_surface_that_may_be_met_before_a_reset_is_not_forgotten() {
+    let (surfaces, ended) = run(&Treadmill {}, &points([0.0, 0.0, 1.0, 1.0]), 2.0);
+    let lost = lost(ended);
+    assert!(surfaces.is_empty() && lost.t <= 1.0, "{surfaces:?}, {lost}");
+    assert!(
+        matches!(lost.reason, Reason::MayMeetTogether { .. }),
+        "{lost}"
+    );
+    let (surfaces, ended) = run(&Treadmill {}, &points([1e-9, 0.0, 1.0, 1.0]), 2.0);
+    assert!(surfaces == [0] && ended.is_ok(), "{surfaces:?}, {ended:?}");
 }
 
 #[test]

@@ -67,7 +67,6 @@ impl Bent {
 impl Add for Bent {
     type Output = Self;
 
-    #[inline]
     fn add(self, other: Self) -> Self {
         Self {
             value: self.value + other.value,
@@ -80,7 +79,6 @@ impl Add for Bent {
 impl Sub for Bent {
     type Output = Self;
 
-    #[inline]
     fn sub(self, other: Self) -> Self {
         Self {
             value: self.value - other.value,
@@ -93,7 +91,6 @@ impl Sub for Bent {
 impl Neg for Bent {
     type Output = Self;
 
-    #[inline]
     fn neg(self) -> Self {
         Self {
             value: -self.value,
@@ -106,7 +103,6 @@ impl Neg for Bent {
 impl Mul for Bent {
     type Output = Self;
 
-    #[inline]
     fn mul(self, other: Self) -> Self {
         let value = self.value * other.value;
         match (self.is_steady(), other.is_steady()) {
@@ -138,7 +134,6 @@ impl Div for Bent {
 
     // A quotient is the product with the inverse.
     #[allow(clippy::suspicious_arithmetic_impl)]
-    #[inline]
     fn div(self, other: Self) -> Self {
         let inverse = other.value.inverse();
         let square = inverse.square();
@@ -151,49 +146,40 @@ impl Numbers for Bent {
     const LANES: usize = 1;
     const ZERO: Self = Self::steady(Interval::ZERO);
 
-    #[inline]
     fn of(number: f64) -> Self {
         Self::steady(Interval::of(number))
     }
 
-    #[inline]
     fn constant(parts: [f64; 4]) -> Self {
         Self::steady(<Interval as Numbers>::constant(parts))
     }
 
-    #[inline]
     fn inverse(k: usize) -> Self {
         Self::steady(<Interval as Numbers>::inverse(k))
     }
 
-    #[inline]
     fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
         Self::steady(Interval::gathered(of_lane))
     }
 
     /// A number inside. Nothing that is to hold for the whole box may be asked of it.
-    #[inline]
     fn lane(&self, lane: usize) -> f64 {
         self.value.lane(lane)
     }
 
-    #[inline]
     fn is_below_zero(&self) -> Option<bool> {
         self.value.is_below_zero()
     }
 
-    #[inline]
     fn mul_add(self, b: Self, c: Self) -> Self {
         self * b + c
     }
 
-    #[inline]
     fn square(self) -> Self {
         let two = Interval::point(2.0);
         self.chain(self.value.square(), self.value + self.value, two)
     }
 
-    #[inline]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         let first = (root + root).inverse();
@@ -202,12 +188,10 @@ impl Numbers for Bent {
         self.chain(root, first, -(four * cubed).inverse())
     }
 
-    #[inline]
     fn abs(self) -> Self {
         self.turned(self)
     }
 
-    #[inline]
     fn max(self, other: Self) -> Self {
         let ahead = self.value - other.value;
         match (ahead.lo >= 0.0, ahead.hi <= 0.0) {
@@ -221,7 +205,6 @@ impl Numbers for Bent {
     }
 
     /// Where the sign changes there is a kink.
-    #[inline]
     fn turned(self, sign: Self) -> Self {
         match (sign.value.lo < 0.0, sign.value.hi < 0.0) {
             (false, _) => self,
@@ -236,7 +219,6 @@ impl Numbers for Bent {
         }
     }
 
-    #[inline]
     fn atan2(self, x: Self) -> Self {
         let value = self.value.atan2(x.value);
         let is_off_the_cut = x.value.lo > 0.0 || self.value.excludes_zero();
@@ -259,7 +241,6 @@ impl Numbers for Bent {
         }
     }
 
-    #[inline]
     fn powf(self, exponent: f64) -> Self {
         let factor = Interval::point(exponent);
         let below = Interval::point(exponent) - Interval::point(1.0);
@@ -268,12 +249,10 @@ impl Numbers for Bent {
         self.chain(self.value.powf(exponent), first, second)
     }
 
-    #[inline]
     fn power(self, exponent: Self) -> Self {
         (exponent * self.ln()).exp()
     }
 
-    #[inline]
     fn sin_cos(self) -> (Self, Self) {
         let (sine, cosine) = self.value.sin_cos();
         (
@@ -282,17 +261,14 @@ impl Numbers for Bent {
         )
     }
 
-    #[inline]
     fn sin(self) -> Self {
         self.sin_cos().0
     }
 
-    #[inline]
     fn cos(self) -> Self {
         self.sin_cos().1
     }
 
-    #[inline]
     fn tan(self) -> Self {
         let tangent = self.value.tan();
         let first = Interval::point(1.0) + tangent.square();
@@ -300,7 +276,6 @@ impl Numbers for Bent {
         self.chain(tangent, first, second + second)
     }
 
-    #[inline]
     fn asin(self) -> Self {
         let one = Interval::point(1.0);
         let squared = (one - self.value) * (one + self.value);
@@ -312,7 +287,6 @@ impl Numbers for Bent {
         )
     }
 
-    #[inline]
     fn acos(self) -> Self {
         let arc = self.asin();
         Self {
@@ -322,38 +296,32 @@ impl Numbers for Bent {
         }
     }
 
-    #[inline]
     fn atan(self) -> Self {
         let first = (Interval::point(1.0) + self.value.square()).inverse();
         let second = self.value * first.square();
         self.chain(self.value.atan(), first, -(second + second))
     }
 
-    #[inline]
     fn exp(self) -> Self {
         let power = self.value.exp();
         self.chain(power, power, power)
     }
 
-    #[inline]
     fn ln(self) -> Self {
         let inverse = self.value.inverse();
         self.chain(self.value.ln(), inverse, -inverse.square())
     }
 
-    #[inline]
     fn sinh(self) -> Self {
         let (sine, cosine) = (self.value.sinh(), self.value.cosh());
         self.chain(sine, cosine, sine)
     }
 
-    #[inline]
     fn cosh(self) -> Self {
         let (sine, cosine) = (self.value.sinh(), self.value.cosh());
         self.chain(cosine, sine, cosine)
     }
 
-    #[inline]
     fn tanh(self) -> Self {
         let tangent = self.value.tanh();
         let one = Interval::point(1.0);

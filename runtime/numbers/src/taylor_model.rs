@@ -21,6 +21,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// The same with elementary functions, which err by less than four units in the last place.
 const CALL: f64 = 32.0 * f64::EPSILON;
 
+// NOTE: operations are calls: inlined they would be compiled again for every gap of every model.
+
 /// A cubic and a remainder; see the module.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TaylorModel {
@@ -125,7 +127,6 @@ impl TaylorModel {
     }
 
     /// A number that does not change along the stretch.
-    #[inline]
     pub fn steady(value: Interval) -> Self {
         let middle = value.middle();
         Self {
@@ -137,7 +138,6 @@ impl TaylorModel {
     }
 
     /// All values on the stretch.
-    #[inline]
     pub fn range(&self) -> Interval {
         let [middle, first, second, third] = self.powers;
         let reach = (first.abs() + third.abs() + self.error) * (1.0 + ROUNDING);
@@ -150,7 +150,6 @@ impl TaylorModel {
     }
 
     /// All rates by `s`, and all slopes of chords.
-    #[inline]
     pub fn rates(&self) -> Interval {
         let [_, first, second, third] = self.powers;
         let turns = Interval::new(first + 3.0 * third.min(0.0), first + 3.0 * third.max(0.0));
@@ -158,7 +157,6 @@ impl TaylorModel {
     }
 
     /// Values and rates by `s`.
-    #[inline]
     pub fn rated(&self) -> Rated {
         Rated {
             value: self.range(),
@@ -315,7 +313,6 @@ impl TaylorModel {
     }
 
     /// What intervals say: of all values and rates, and of the value in the middle. A line, or a number where that is closer.
-    #[inline]
     fn of_rated(found: Rated, middle: Interval) -> Self {
         let (rate, value) = (found.rate.middle(), found.value.middle());
         let steady = Self {
@@ -337,14 +334,12 @@ impl TaylorModel {
     }
 
     /// A function by intervals.
-    #[inline]
     fn enclosed(self, rated: fn(Rated) -> Rated, interval: fn(Interval) -> Interval) -> Self {
         let middle = Interval::point(self.powers[0]).widened(self.error);
         Self::of_rated(rated(self.rated()), interval(middle))
     }
 
     /// A function by its series, or by intervals where they say more.
-    #[inline]
     fn function(
         self,
         expansion: impl FnOnce(f64, f64) -> Expansion,
@@ -390,7 +385,6 @@ impl TaylorModel {
 impl Add for TaylorModel {
     type Output = Self;
 
-    #[inline]
     fn add(self, other: Self) -> Self {
         self.plus(other)
     }
@@ -399,7 +393,6 @@ impl Add for TaylorModel {
 impl Sub for TaylorModel {
     type Output = Self;
 
-    #[inline]
     fn sub(self, other: Self) -> Self {
         self.plus(-other)
     }
@@ -421,7 +414,6 @@ impl Neg for TaylorModel {
 impl Mul for TaylorModel {
     type Output = Self;
 
-    #[inline]
     fn mul(self, other: Self) -> Self {
         match (self.is_steady(), other.is_steady()) {
             (_, true) => self.scaled(other),
@@ -434,7 +426,6 @@ impl Mul for TaylorModel {
 impl Div for TaylorModel {
     type Output = Self;
 
-    #[inline]
     fn div(self, other: Self) -> Self {
         if other.is_steady() {
             return self.scaled(other.inverted());
@@ -497,7 +488,6 @@ impl Numbers for TaylorModel {
         self.powers[0]
     }
 
-    #[inline]
     fn is_below_zero(&self) -> Option<bool> {
         self.range().is_below_zero()
     }
@@ -507,7 +497,6 @@ impl Numbers for TaylorModel {
         self * b + c
     }
 
-    #[inline]
     fn square(self) -> Self {
         match self.is_steady() {
             true => self.scaled(self).nonnegative(),
@@ -515,7 +504,6 @@ impl Numbers for TaylorModel {
         }
     }
 
-    #[inline]
     fn sqrt(self) -> Self {
         self.function(
             |c, radius| {
@@ -539,12 +527,10 @@ impl Numbers for TaylorModel {
         .nonnegative()
     }
 
-    #[inline]
     fn abs(self) -> Self {
         self.turned(self).nonnegative()
     }
 
-    #[inline]
     fn max(self, other: Self) -> Self {
         let ahead = (self - other).range();
         match (ahead.lo >= 0.0, ahead.hi <= 0.0) {
@@ -561,7 +547,6 @@ impl Numbers for TaylorModel {
     }
 
     /// `|x|` where `sign` is `x` itself; of others the values jump where the sign changes, and so the rates are anything.
-    #[inline]
     fn turned(self, sign: Self) -> Self {
         let range = sign.range();
         match (range.lo < 0.0, range.hi < 0.0) {
@@ -575,13 +560,11 @@ impl Numbers for TaylorModel {
         }
     }
 
-    #[inline]
     fn atan2(self, x: Self) -> Self {
         let middle = |model: Self| Interval::point(model.powers[0]).widened(model.error);
         Self::of_rated(self.rated().atan2(x.rated()), middle(self).atan2(middle(x)))
     }
 
-    #[inline]
     fn powf(self, exponent: f64) -> Self {
         let range = self.range();
         if self.is_steady() {
@@ -615,12 +598,10 @@ impl Numbers for TaylorModel {
         composed.or_closer(enclosed).nonnegative()
     }
 
-    #[inline]
     fn power(self, exponent: Self) -> Self {
         (exponent * self.ln()).exp()
     }
 
-    #[inline]
     fn sin_cos(self) -> (Self, Self) {
         if self.is_steady() {
             let (sine, cosine) = self.range().sin_cos();
@@ -644,17 +625,14 @@ impl Numbers for TaylorModel {
         (sines, cosines)
     }
 
-    #[inline]
     fn sin(self) -> Self {
         self.sin_cos().0
     }
 
-    #[inline]
     fn cos(self) -> Self {
         self.sin_cos().1
     }
 
-    #[inline]
     fn tan(self) -> Self {
         let most = self.range().tan().magnitude();
         self.function(
@@ -677,7 +655,6 @@ impl Numbers for TaylorModel {
         )
     }
 
-    #[inline]
     fn asin(self) -> Self {
         self.function(
             |c, radius| {
@@ -707,12 +684,10 @@ impl Numbers for TaylorModel {
         )
     }
 
-    #[inline]
     fn acos(self) -> Self {
         Self::steady(Interval::pi() * Interval::point(0.5)) - self.asin()
     }
 
-    #[inline]
     fn atan(self) -> Self {
         self.function(
             |c, _| {
@@ -733,7 +708,6 @@ impl Numbers for TaylorModel {
         )
     }
 
-    #[inline]
     fn exp(self) -> Self {
         self.function(
             |c, radius| {
@@ -751,7 +725,6 @@ impl Numbers for TaylorModel {
         .nonnegative()
     }
 
-    #[inline]
     fn ln(self) -> Self {
         self.function(
             |c, radius| {
@@ -775,7 +748,6 @@ impl Numbers for TaylorModel {
         )
     }
 
-    #[inline]
     fn sinh(self) -> Self {
         let most = self.range().sinh().magnitude();
         self.function(
@@ -791,7 +763,6 @@ impl Numbers for TaylorModel {
         )
     }
 
-    #[inline]
     fn cosh(self) -> Self {
         let most = self.range().cosh().magnitude();
         self.function(
@@ -808,7 +779,6 @@ impl Numbers for TaylorModel {
         .nonnegative()
     }
 
-    #[inline]
     fn tanh(self) -> Self {
         self.function(
             |c, _| {

@@ -214,8 +214,7 @@ impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
         sides: &Sides<Sys>,
         except: Option<usize>,
     ) -> Result<Sides<Sys>, (usize, Reason)> {
-        let surface = 0;
-        let unknown = (surface, Reason::MayGraze { surface });
+        let unknown = (0, Reason::NoTube);
         let part = part.ok_or(unknown)?;
         let gaps = self.field.gaps(&part).ok_or(unknown)?;
         let mut later = *sides;

@@ -11,6 +11,9 @@
 //! | `orbit.rs` | periodic orbits that exist and attract by proof |
 //! | `lost.rs` | where certified motion ends, and why |
 //!
+//! What is certified is the motion by the equations, the surfaces and the laws of the model, with the doubles of its parameters or with
+//! ranges about them. Intervals of coordinates (charts) are not looked at, and nothing is held at a surface.
+//!
 //! References: R. J. Lohner, *Computation of guaranteed enclosures for the solutions of ordinary initial and boundary value problems*,
 //! in Computational Ordinary Differential Equations (1992); N. S. Nedialkov, K. R. Jackson, G. F. Corliss, *Validated solutions of
 //! initial value problems for ordinary differential equations*, Applied Mathematics and Computation 105 (1999).

@@ -35,6 +35,28 @@ const TRIALS: u32 = 4;
 const REFINEMENTS: u32 = 8;
 
 /// A surface whose impacts are the section of an orbit.
+///
+/// ```
+/// use dalembert::certified::CertifiedSection;
+/// use dalembert::model;
+/// use dalembert::numbers::Interval;
+///
+/// model! {
+///     /// `x` falls from 1 to 0 in one unit of time, while `y` goes to 0.
+///     pub Conveyor {
+///         coordinates { x; y; }
+///         field { dot(x) = -1; dot(y) = -y; }
+///         impacts { end: x >= 0 => reset { x = 1; y = y; }; }
+///     }
+/// }
+///
+/// let section = CertifiedSection::new(&Conveyor {}, 0, 2.0);
+/// let orbit = section.periodic(&[1.0, 0.001].into(), 0.01)?;
+/// assert!(orbit.point(1).contains(Interval::point(0.0)));
+/// // `1/e`
+/// assert!(orbit.largest_multiplier < 0.37);
+/// # Ok::<(), dalembert::certified::NotProved>(())
+/// ```
 pub struct CertifiedSection<'a, Sys: Variational + Impacting> {
     field: Field<'a, Sys>,
     surface: usize,
