@@ -426,6 +426,8 @@ impl Mul for TaylorModel {
 impl Div for TaylorModel {
     type Output = Self;
 
+    // A quotient is the product with the inverse.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     fn div(self, other: Self) -> Self {
         if other.is_steady() {
             return self.scaled(other.inverted());
@@ -883,6 +885,7 @@ mod tests {
     #[test]
     fn what_may_have_no_value_is_anything() {
         let stretch = |lo: f64, hi: f64| paths(lo, hi)[0];
+        let is_vague = |model: TaylorModel| model.error.is_nan() || model.error > 1e9;
         for outside in [
             stretch(-0.1, 0.2).sqrt(),
             stretch(-0.1, 0.2).ln(),
@@ -892,8 +895,8 @@ mod tests {
             TaylorModel::of(1.0) / stretch(-1.0, 1.0),
             TaylorModel::ANYTHING.sin() * TaylorModel::ANYTHING,
         ] {
-            assert!(!(outside.error < 1e9), "{outside:?}");
-            assert!(!((TaylorModel::ZERO * outside).error < 1e9));
+            assert!(is_vague(outside), "{outside:?}");
+            assert!(is_vague(TaylorModel::ZERO * outside));
             assert!((outside - TaylorModel::of(1.0)).range().is_whole());
         }
     }
