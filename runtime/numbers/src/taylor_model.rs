@@ -263,6 +263,8 @@ impl TaylorModel {
             true => 0.5 * products,
             false => 0.0,
         };
+        // Sizes of the products that are none of the constant term.
+        let changing = self.spread() * own + self.powers[0].abs() * other.spread();
         let error = (products - lift) + (d * own + e * size) + (fourth + fifth + sixth);
         let slope = (self.steepness() * e + other.steepness() * d)
             + (size * other.slope + own * self.slope)
@@ -276,7 +278,7 @@ impl TaylorModel {
                 (a[0] * b[3] + a[3] * b[0]) + (a[1] * b[2] + a[2] * b[1]),
             ],
             error: error * (1.0 + ROUNDING) + (ROUNDING * (size * own + lift) + f64::MIN_POSITIVE),
-            slope: slope * (1.0 + ROUNDING) + (3.0 * ROUNDING * size * own + f64::MIN_POSITIVE),
+            slope: slope * (1.0 + ROUNDING) + (3.0 * ROUNDING * changing + f64::MIN_POSITIVE),
             is_nonnegative: is_square || (self.is_nonnegative && other.is_nonnegative),
         }
     }
