@@ -263,6 +263,8 @@ impl TaylorModel {
             true => 0.5 * products,
             false => 0.0,
         };
+        // Sizes of the products that are none of the constant term.
+        let changing = self.spread() * own + self.powers[0].abs() * other.spread();
         let error = (products - lift) + (d * own + e * size) + (fourth + fifth + sixth);
         let slope = (self.steepness() * e + other.steepness() * d)
             + (size * other.slope + own * self.slope)
@@ -276,7 +278,7 @@ impl TaylorModel {
                 (a[0] * b[3] + a[3] * b[0]) + (a[1] * b[2] + a[2] * b[1]),
             ],
             error: error * (1.0 + ROUNDING) + (ROUNDING * (size * own + lift) + f64::MIN_POSITIVE),
-            slope: slope * (1.0 + ROUNDING) + (3.0 * ROUNDING * size * own + f64::MIN_POSITIVE),
+            slope: slope * (1.0 + ROUNDING) + (3.0 * ROUNDING * changing + f64::MIN_POSITIVE),
             is_nonnegative: is_square || (self.is_nonnegative && other.is_nonnegative),
         }
     }
@@ -426,6 +428,8 @@ impl Mul for TaylorModel {
 impl Div for TaylorModel {
     type Output = Self;
 
+    // A quotient is the product with the inverse.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     fn div(self, other: Self) -> Self {
         if other.is_steady() {
             return self.scaled(other.inverted());
@@ -883,6 +887,7 @@ mod tests {
     #[test]
     fn what_may_have_no_value_is_anything() {
         let stretch = |lo: f64, hi: f64| paths(lo, hi)[0];
+        let is_vague = |model: TaylorModel| model.error.is_nan() || model.error > 1e9;
         for outside in [
             stretch(-0.1, 0.2).sqrt(),
             stretch(-0.1, 0.2).ln(),
@@ -892,8 +897,8 @@ mod tests {
             TaylorModel::of(1.0) / stretch(-1.0, 1.0),
             TaylorModel::ANYTHING.sin() * TaylorModel::ANYTHING,
         ] {
-            assert!(!(outside.error < 1e9), "{outside:?}");
-            assert!(!((TaylorModel::ZERO * outside).error < 1e9));
+            assert!(is_vague(outside), "{outside:?}");
+            assert!(is_vague(TaylorModel::ZERO * outside));
             assert!((outside - TaylorModel::of(1.0)).range().is_whole());
         }
     }

@@ -64,7 +64,7 @@ pub(crate) fn along(samples: &[f64; SAMPLES]) -> TaylorModel {
             size => size,
         });
     let doubt = a[7].abs() + a[8].abs() + ROUNDING * largest;
-    if !(doubt < f64::INFINITY) {
+    if doubt.is_nan() || doubt == f64::INFINITY {
         return TaylorModel::ANYTHING;
     }
     let (mut error, mut slope) = (doubt, STEEPER * doubt);
