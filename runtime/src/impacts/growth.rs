@@ -10,7 +10,7 @@ use crate::state::StateVector;
 
 /// Flights shorter than this many units in the last place of the time are too short to tell the next ones: where they hardly
 /// shrink from one to the next, and where they do.
-const RESOLVED: [f64; 2] = [4096.0 * f64::EPSILON, 4.0 * f64::EPSILON];
+const RESOLVED: [f64; 2] = [4096.0 * f64::EPSILON, 8.0 * f64::EPSILON];
 
 /// Part of the flight before that the next is less than where flights are said to shrink from one to the next.
 const QUICK: f64 = 0.875;
