@@ -231,14 +231,14 @@ pub(super) fn over_intervals(body: &TokenStream) -> TokenStream {
     }
 }
 
-/// Whether every condition of a list holds, of which the margins come next.
+/// Code that tells if every condition of a list holds, from the margins of all conditions in order.
 fn all_certain<'a>(
     conditions: &[Condition],
     margins: &mut impl Iterator<Item = &'a TokenStream>,
 ) -> TokenStream {
     let certain = quote!(::dalembert::__private::certain);
-    let holds = conditions.iter().zip(margins).map(|(own, margin)| {
-        let is_closed = own.is_closed;
+    let holds = conditions.iter().zip(margins).map(|(condition, margin)| {
+        let is_closed = condition.is_closed;
         quote!(#certain::holds(#margin, #is_closed))
     });
     quote!(#certain::all(&[#(#holds),*]))

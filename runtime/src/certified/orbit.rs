@@ -285,7 +285,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         let rates = &firsts.as_slice()[..Sys::State::LEN];
         let parts = [rates, gaps.as_slice(), after.as_slice()];
         let mut all = parts.into_iter().flatten();
-        all.any(|own| own.rate != Interval::ZERO || own.value.is_whole())
+        all.any(|entry| entry.rate != Interval::ZERO || entry.value.is_whole())
     }
 }
 

@@ -6,6 +6,7 @@
 
 use super::crossing::Signs;
 use super::piece::Piece;
+use super::stretches::Stretches;
 use crate::numbers::TaylorModel;
 
 /// Halvings before the ends of a stretch decide: `2^-40` of a step.
@@ -16,13 +17,6 @@ const DOUBTFUL: u32 = 3;
 
 /// Stretches looked at before the search stops where it is; the step is cut there.
 const STRETCHES: u32 = 4096;
-
-/// Where stretches end, in parts of the way to where a fall is expected: before it, and behind.
-const BEFORE: f64 = 0.875;
-const BEHIND: f64 = 1.125;
-
-/// No stretches are chosen about falls that are expected within this part of the step: halves get there.
-const NEAR: f64 = 1.0 / (1_u64 << 36) as f64;
 
 /// A gap this many times larger next to a change of sign than anywhere else in the step belongs to a pole.
 const PEAK: f64 = (1 << 10) as f64;
@@ -126,71 +120,6 @@ struct Fall {
     guess: f64,
 }
 
-/// The stretches of a search: a few that are chosen, parted into `2^depth` each.
-struct Stretches {
-    cuts: [f64; 4],
-    /// The chosen one, and the number of the part of it.
-    chosen: usize,
-    index: u64,
-    depth: u32,
-}
-
-impl Stretches {
-    /// Of a part of the step, with cuts about where a fall is expected.
-    fn of([from, until]: [f64; 2], expected: Option<f64>) -> Self {
-        let at = |part: f64| match expected {
-            Some(fall) if fall - from > NEAR * (until - from) => {
-                (from + part * (fall - from)).min(until)
-            }
-            _ => until,
-        };
-        Self {
-            cuts: [from, at(BEFORE), at(BEHIND), until],
-            chosen: 0,
-            index: 0,
-            depth: 0,
-        }
-    }
-
-    /// The ends of the stretch to look at.
-    fn ends(&self) -> [f64; 2] {
-        let [from, until] = [self.cuts[self.chosen], self.cuts[self.chosen + 1]];
-        let count = (1_u64 << self.depth) as f64;
-        let end = |index: u64| {
-            if index as f64 == count {
-                until
-            } else {
-                from + (until - from) * (index as f64 / count)
-            }
-        };
-        [end(self.index), end(self.index + 1)]
-    }
-
-    fn halve(&mut self) {
-        (self.index, self.depth) = (2 * self.index, self.depth + 1);
-    }
-
-    /// Goes on behind the stretch. Returns false at the end.
-    fn advance(&mut self) -> bool {
-        self.index += 1;
-        while self.index.is_multiple_of(2) && self.depth > 0 {
-            (self.index, self.depth) = (self.index / 2, self.depth - 1);
-        }
-        if self.depth > 0 {
-            return true;
-        }
-        self.index = 0;
-        loop {
-            self.chosen += 1;
-            match self.cuts.get(self.chosen..self.chosen + 2) {
-                None => return false,
-                Some(&[from, until]) if until > from => return true,
-                Some(_) => {}
-            }
-        }
-    }
-}
-
 /// What stands at the end of a search that has found a fall.
 enum Isolated {
     Fall(Fall),
@@ -244,7 +173,7 @@ impl Line<'_> {
         let mut stretches = Stretches::of(limits, self.expected(&coarse.piece(limits)));
         for _ in 0..STRETCHES {
             let ends = stretches.ends();
-            let depth = stretches.depth;
+            let depth = stretches.depth();
             let [left, right] = ends;
             let is_at_hand = left == 0.0 && self.start.slope.is_some();
             let view = match fine.holds(ends) {

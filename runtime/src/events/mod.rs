@@ -13,3 +13,4 @@ pub(crate) mod piece;
 pub(crate) mod resolution;
 pub(crate) mod room;
 pub(crate) mod sampled;
+mod stretches;

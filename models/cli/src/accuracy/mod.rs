@@ -101,7 +101,7 @@ pub struct Sample {
     pub step: Option<f64>,
     /// The measured error.
     pub error: f64,
-    /// Whether it met the same surfaces as the reference, and ended as it did.
+    /// True if it met the same surfaces as the reference, and ended as it did.
     pub agrees: bool,
     /// How it ended.
     pub outcome: Outcome,

@@ -90,7 +90,7 @@ impl<M: Model> Observer<M> for Probe<'_, M> {
     }
 }
 
-/// What the audit of a run says.
+/// The finding of the audit of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Audited {
     /// The run was not audited.
@@ -133,7 +133,7 @@ impl Audited {
 enum Difference {
     /// An impact; `None` where a run has no more.
     Impact([Option<Met>; 2]),
-    /// How they end.
+    /// The kinds of their ends.
     End,
 }
 
@@ -155,7 +155,7 @@ pub struct Track {
 }
 
 impl Track {
-    /// Whether both meet the same surfaces and end for the same reason.
+    /// True if both meet the same surfaces and end for the same reason.
     pub fn ends_as(&self, other: &Self) -> bool {
         self.difference(other).is_none()
     }
@@ -210,7 +210,7 @@ impl Track {
         self.audit.doubt(&self.description)
     }
 
-    /// Whether this is the run that ended so, to the last digit. Coordinates that a mode does not have are not compared.
+    /// True if this is the run that ended so, to the last digit. Coordinates that a mode does not have are not compared.
     pub fn is_run_of(&self, ending: &Ending) -> bool {
         let mut pairs = self.last.iter().zip(&ending.last.q);
         self.t == ending.t

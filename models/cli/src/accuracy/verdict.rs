@@ -6,7 +6,7 @@
 use super::{Model, Settings, audited, reference};
 use crate::driver::Ending;
 
-/// What is known of the error of a run.
+/// The verdict on a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Verified {
     /// The measured error, and how far the reference is known.
@@ -15,7 +15,7 @@ pub(crate) enum Verified {
     Doubted {
         /// Why, in words.
         reason: String,
-        /// Whether the reference meets the same surfaces and ends alike.
+        /// True if the reference meets the same surfaces and ends alike.
         agrees: bool,
     },
 }
