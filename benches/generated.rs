@@ -2,14 +2,14 @@
 //!
 //! All panic on a fault; at the states that are compared and timed there is none.
 
-use dalembert::{Impacting, StateVector, System, VectorField};
+use dalembert::{Impacting, System, VectorField};
 
 use crate::State;
 
 /// The rate of a state.
 #[inline(always)]
 pub fn rate<S: VectorField>(system: &S, state: &State<S>) -> State<S> {
-    let mut rate = State::<S>::zeros();
+    let mut rate = system.zero_state();
     system
         .rate(0.0, state, &mut rate)
         .expect("no fault at this state");

@@ -50,11 +50,7 @@ dalembert::model! {
 }
 
 fn start<Sys: System>(system: &Sys, q: &[f64], v: &[f64]) -> Result<Sys::State, StateError> {
-    let vector = |values: &[f64]| {
-        let mut vector = Sys::Vector::zeros();
-        vector.as_mut_slice().copy_from_slice(values);
-        vector
-    };
+    let vector = |values: &[f64]| Sys::Vector::of(values);
     system.state(0.0, &vector(q), &vector(v))
 }
 

@@ -113,7 +113,7 @@ impl Visitor for SameMotion {
             let mut reported = Reported::default();
             global.inspect(t, &other, &mut reported).expect("a report");
             let expected = &reported.0["acceleration"];
-            let mut rate = S::State::zeros();
+            let mut rate = S::State::zeros(S::State::CAPACITY);
             system.rate(t, &state, &mut rate).expect("a rate");
             let actual = acceleration(&system, t, &state, &rate);
             let size = expected

@@ -79,7 +79,7 @@ where
     let run = |system: &S, start: &S::State, mut seen: &mut dyn Observer<S>| {
         end(system, start, law, until, &mut seen)
     };
-    let impacts = differences::check_differences(system, start, S::State::LEN, run);
+    let impacts = differences::check_differences(system, start, S::State::CAPACITY, run);
     assert!(impacts > 0, "{}", S::DESCRIPTION.name);
 }
 

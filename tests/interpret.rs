@@ -197,7 +197,7 @@ fn the_field_keeps_the_constraints_everywhere() {
                 );
                 let t = 0.3;
                 let state = system.state_unchecked(t, &q, &qdot).expect("a state");
-                let mut rate = <S::Global as VectorField>::State::zeros();
+                let mut rate = system.zero_state();
                 system.rate(t, &state, &mut rate).expect("a rate");
                 let residual = |h: f64| {
                     let mut moved = state;

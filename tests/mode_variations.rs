@@ -137,7 +137,7 @@ dalembert::model! {
 
 /// A state of the first mode.
 fn state<S: Described>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
-    let [mut position, mut velocity] = [S::Vector::zeros(); 2];
+    let [mut position, mut velocity] = [S::Vector::zeros(S::Vector::CAPACITY); 2];
     position.as_mut_slice()[..q.len()].copy_from_slice(q);
     velocity.as_mut_slice()[..qdot.len()].copy_from_slice(qdot);
     system.state(0.0, &position, &velocity).expect("a state")

@@ -117,7 +117,7 @@ fn moved<S: System>(state: &S::State, rate: &S::State, step: f64) -> S::State {
 fn check_kept<S: Described + Constrained>(system: &S) {
     for state in near(system, 8) {
         let (t, h) = (0.0, 1e-5);
-        let mut rate = S::State::zeros();
+        let mut rate = S::State::zeros(S::State::CAPACITY);
         system.rate(t, &state, &mut rate).expect("a rate");
         let ahead = residuals(system, t + h, &moved::<S>(&state, &rate, h));
         let behind = residuals(system, t - h, &moved::<S>(&state, &rate, -h));
@@ -143,11 +143,11 @@ fn check_rule<S: Described + Constrained + Lagrangian>(system: &S) {
             system.position(&state),
             system.velocity(t, &state).expect("one"),
         );
-        let mut rate = S::State::zeros();
+        let mut rate = S::State::zeros(S::State::CAPACITY);
         system.rate(t, &state, &mut rate).expect("a rate");
         let force = system.force(t, &q, &qdot);
         let multipliers = system.multipliers(t, &state).expect("multipliers");
-        for k in 0..S::Vector::LEN {
+        for k in 0..S::Vector::CAPACITY {
             let at = |step: f64| {
                 let mut qdot = qdot;
                 qdot.as_mut_slice()[k] += step;
@@ -159,7 +159,7 @@ fn check_rule<S: Described + Constrained + Lagrangian>(system: &S) {
                 .zip(multipliers.as_slice())
                 .map(|((ahead, behind), lambda)| lambda * (ahead - behind) / (2.0 * h))
                 .sum();
-            let pdot = rate.as_slice()[S::Vector::LEN + k];
+            let pdot = rate.as_slice()[S::Vector::CAPACITY + k];
             let expected = force.as_slice()[k] + reaction;
             assert!(
                 (pdot - expected).abs() < 1e-8 * (1.0 + expected.abs()),

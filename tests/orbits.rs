@@ -54,7 +54,10 @@ fn orbit<S: Described + Variational + Scene>(
 
 /// Positions and velocities as a state.
 fn state<S: Described>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
-    let (mut position, mut velocity) = (S::Vector::zeros(), S::Vector::zeros());
+    let (mut position, mut velocity) = (
+        S::Vector::zeros(S::Vector::CAPACITY),
+        S::Vector::zeros(S::Vector::CAPACITY),
+    );
     position.as_mut_slice().copy_from_slice(q);
     velocity.as_mut_slice().copy_from_slice(qdot);
     system.state(0.0, &position, &velocity).expect("a state")

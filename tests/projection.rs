@@ -56,11 +56,7 @@ fn check<M>(model: &M, law: Option<Law>, q: [f64; 2], qdot: [f64; 2])
 where
     M: Scene + Constrained + Lagrangian + TaylorField,
 {
-    let vector = |values: [f64; 2]| {
-        let mut vector = M::Vector::zeros();
-        vector.as_mut_slice().copy_from_slice(&values);
-        vector
-    };
+    let vector = |values: [f64; 2]| M::Vector::of(&values);
     let tolerance = Tolerance::new(1e-9).expect("a tolerance");
     macro_rules! runs {
         ($($stepper:ident)*) => {$({

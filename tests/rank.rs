@@ -175,9 +175,7 @@ impl<'a, M: Scene + TaylorField + Lagrangian> Start<'a, M> {
 }
 
 fn vector<V: StateVector>(values: &[f64]) -> V {
-    let mut vector = V::zeros();
-    vector.as_mut_slice().copy_from_slice(values);
-    vector
+    V::of(values)
 }
 
 /// The run ended where this constraint depends on the others, with this component of its state near a value.

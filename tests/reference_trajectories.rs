@@ -483,11 +483,7 @@ fn check_free_runs<S: Described + Constrained + TaylorField>(system: &S, bound: 
     let runs = file["free_runs"].as_array().cloned();
     let runs = runs.unwrap_or_else(|| vec![file["free_run"].clone()]);
     for run in &runs {
-        let vector = |key: &str| {
-            let mut vector = <S::Vector as dalembert::StateVector>::zeros();
-            dalembert::StateVector::as_mut_slice(&mut vector).copy_from_slice(&numbers(&run[key]));
-            vector
-        };
+        let vector = |key: &str| <S::Vector as dalembert::StateVector>::of(&numbers(&run[key]));
         let t0 = run.get("t_initial").map_or(0.0, number);
         let state = system
             .state(t0, &vector("q_initial"), &vector("qdot_initial"))

@@ -71,7 +71,7 @@ dalembert::model! {
 
 /// Emitted resets do what the interpreter does, to the bit.
 fn compare<S: Described + Impacting>(system: &S, program: &Program) -> usize {
-    let (t, n) = (0.25, S::Vector::LEN);
+    let (t, n) = (0.25, S::Vector::CAPACITY);
     let resets = &program.impacting.as_ref().expect("surfaces").resets;
     let mut compared = 0;
     for state in states(system, 5, 3) {

@@ -24,7 +24,7 @@ fn input<'a, S: Described>(
     t: f64,
     state: &'a S::State,
 ) -> impl Fn(Input) -> f64 + 'a {
-    let n = S::Vector::LEN;
+    let n = S::Vector::CAPACITY;
     move |input| match input {
         Input::Time => t,
         Input::Parameter(k) => system.parameter(k),

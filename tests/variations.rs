@@ -101,7 +101,7 @@ fn unfolded<S: Described + Variational>(
 ) -> Vec<f64> {
     let (parameters, row) = dual(system, state, direction);
     let velocities = S::velocities(&parameters, Dual::of(t), &row).expect("velocities");
-    let n = S::Vector::LEN;
+    let n = S::Vector::CAPACITY;
     let q = row.as_slice()[..n].iter();
     q.chain(velocities.as_slice())
         .map(|entry| entry.slopes()[0])
@@ -122,10 +122,10 @@ fn allowed_directions<S: Described + Variational>(
             .first()
             .map_or(0.0, |own| own.slopes()[0])
     };
-    let components: Vec<Tangent<S>> = (0..S::State::LEN).map(Tangent::of_component).collect();
+    let components: Vec<Tangent<S>> = (0..S::State::CAPACITY).map(Tangent::of_component).collect();
     let deviations: Vec<f64> = components.iter().map(|own| deviation(&own.state)).collect();
-    let worst =
-        (0..S::State::LEN).max_by(|&i, &j| deviations[i].abs().total_cmp(&deviations[j].abs()));
+    let worst = (0..S::State::CAPACITY)
+        .max_by(|&i, &j| deviations[i].abs().total_cmp(&deviations[j].abs()));
     let worst = worst.filter(|&i| deviations[i] != 0.0);
     let mut directions = components;
     for (i, direction) in directions.iter_mut().enumerate() {
@@ -171,8 +171,11 @@ where
             .clone()
             .position(|own| own.name == impact["surface"])
             .expect("surface");
-        let mut before = S::State::zeros();
-        let (mut q, mut qdot) = (S::Vector::zeros(), S::Vector::zeros());
+        let mut before = S::State::zeros(S::State::CAPACITY);
+        let (mut q, mut qdot) = (
+            S::Vector::zeros(S::Vector::CAPACITY),
+            S::Vector::zeros(S::Vector::CAPACITY),
+        );
         q.as_mut_slice().copy_from_slice(&numbers(&impact["q"]));
         qdot.as_mut_slice()
             .copy_from_slice(&numbers(&impact["qdot_minus"]));
@@ -275,7 +278,7 @@ fn state<S: Described>(
     first: usize,
     velocities: &[f64],
 ) -> S::State {
-    let [mut q, mut qdot, mut named] = [S::Vector::zeros(); 3];
+    let [mut q, mut qdot, mut named] = [S::Vector::zeros(S::Vector::CAPACITY); 3];
     q.as_mut_slice().copy_from_slice(positions);
     qdot.as_mut_slice()[first..].copy_from_slice(velocities);
     named.as_mut_slice()[first..].fill(1.0);
@@ -303,7 +306,7 @@ where
         let stepper = Taylor::new(Tolerance::new(1e-15).expect("a tolerance"));
         end(system, stepper, laws, start, until, &mut seen)
     };
-    let impacts = differences::check_differences(system, start, S::State::LEN, run);
+    let impacts = differences::check_differences(system, start, S::State::CAPACITY, run);
     assert!(impacts > 0, "{}", S::DESCRIPTION.name);
 }
 

@@ -74,11 +74,7 @@ impl<M: System> Observer<M> for Times {
 }
 
 fn start<M: System>(model: &M, q: &[f64], qdot: &[f64]) -> M::State {
-    let vector = |values: &[f64]| {
-        let mut vector = M::Vector::zeros();
-        vector.as_mut_slice().copy_from_slice(values);
-        vector
-    };
+    let vector = |values: &[f64]| M::Vector::of(values);
     model
         .state_unchecked(0.0, &vector(q), &vector(qdot))
         .expect("a state")

@@ -47,7 +47,7 @@ fn halves<const N: usize>(state: &impl StateVector) -> ([f64; N], [f64; N]) {
 /// The state with these halves.
 #[inline(always)]
 fn join<const N: usize, S: StateVector>(first: [f64; N], second: [f64; N]) -> S {
-    let mut state = S::zeros();
+    let mut state = S::zeros(2 * N);
     let components = state.as_mut_slice();
     components[..N].copy_from_slice(&first);
     components[N..2 * N].copy_from_slice(&second);

@@ -41,11 +41,11 @@ pub fn complete_positions<Sys: Constrained>(
         Ok(()) => return Ok(*q),
         Err(error) => error,
     };
-    if Sys::Vector::LEN * Sys::Multipliers::LEN > ENTRIES {
+    if system.coordinate_count() * system.constraint_count() > ENTRIES {
         return Err(StateError::TooLarge { limit: 64 });
     }
     let is_free = |i: usize| placed.as_slice()[i] == 0.0;
-    if !(0..Sys::Vector::LEN).any(is_free) {
+    if !(0..system.coordinate_count()).any(is_free) {
         return Err(refused);
     }
     if let Some(found) = solved_from(system, t, *q, &is_free) {
@@ -70,13 +70,13 @@ fn solved_from<Sys: Constrained>(
     mut q: Sys::Vector,
     is_free: &dyn Fn(usize) -> bool,
 ) -> Option<Sys::Vector> {
-    let n = Sys::Vector::LEN;
+    let n = system.coordinate_count();
     let mut buffer = [0.0; ENTRIES];
     for _ in 0..STEPS {
         let values = system.levels(t, &q);
-        let forms = &mut buffer[..n * Sys::Multipliers::LEN];
-        system.constraint_forms(t, &q, forms, &mut Sys::Multipliers::zeros());
-        let (mut rows, mut wanted) = (0, Sys::Levels::zeros());
+        let forms = &mut buffer[..n * system.constraint_count()];
+        system.constraint_forms(t, &q, forms, &mut system.zero_multipliers());
+        let (mut rows, mut wanted) = (0, system.zero_levels());
         for (level, value) in Sys::LEVELS.iter().zip(values.as_slice()) {
             if !level.is_zero {
                 continue;
@@ -89,7 +89,7 @@ fn solved_from<Sys: Constrained>(
             wanted.as_mut_slice()[rows] = -value;
             rows += 1;
         }
-        let mut change = Sys::Vector::zeros();
+        let mut change = system.zero_vector();
         let wanted = &wanted.as_slice()[..rows];
         least_norm(&mut forms[..rows * n], n, wanted, change.as_mut_slice());
         let before = q;
@@ -100,7 +100,7 @@ fn solved_from<Sys: Constrained>(
             break;
         }
     }
-    let state = system.state_unchecked(t, &q, &Sys::Vector::zeros()).ok()?;
+    let state = system.state_unchecked(t, &q, &system.zero_vector()).ok()?;
     let is_inside = system.outside_chart(&state).is_none();
     (is_inside && check_positions(system, t, &q).is_ok()).then_some(q)
 }
@@ -120,7 +120,7 @@ pub fn complete_velocities<Sys: Constrained>(
     qdot: &Sys::Vector,
     named: &Sys::Vector,
 ) -> Result<Sys::Vector, StateError> {
-    let (n, m) = (Sys::Vector::LEN, Sys::Multipliers::LEN);
+    let (n, m) = (system.coordinate_count(), system.constraint_count());
     if n * m > ENTRIES || m > n {
         return Err(StateError::TooLarge { limit: 64 });
     }
@@ -134,10 +134,10 @@ pub fn complete_velocities<Sys: Constrained>(
     }
     let mut buffer = [0.0; ENTRIES];
     let forms = &mut buffer[..n * m];
-    let mut affine = Sys::Multipliers::zeros();
+    let mut affine = system.zero_multipliers();
     for _ in 0..if Sys::IS_LINEAR { 1 } else { STEPS } {
         system.linearised_forms(t, q, &velocities, forms, &mut affine);
-        let mut wanted = Sys::Multipliers::zeros();
+        let mut wanted = system.zero_multipliers();
         for (a, row) in forms.chunks_exact_mut(n.max(1)).enumerate() {
             wanted.as_mut_slice()[a] = -residual(row, affine.as_slice()[a], &velocities).0;
             for (entry, named) in row.iter_mut().zip(named.as_slice()) {
@@ -146,7 +146,7 @@ pub fn complete_velocities<Sys: Constrained>(
                 }
             }
         }
-        let mut chosen = Sys::Vector::zeros();
+        let mut chosen = system.zero_vector();
         least_norm(forms, n, wanted.as_slice(), chosen.as_mut_slice());
         let before = velocities;
         for i in 0..n {
@@ -176,7 +176,7 @@ fn check<Sys: Constrained>(
     affine: &Sys::Multipliers,
     velocities: &Sys::Vector,
 ) -> Result<(), StateError> {
-    let rows = forms.chunks_exact(Sys::Vector::LEN.max(1));
+    let rows = forms.chunks_exact(velocities.count().max(1));
     for (constraint, (form, affine)) in rows.zip(affine.as_slice()).enumerate() {
         let (residual, scale) = residual(form, *affine, velocities);
         let holds = residual.abs() <= ACCEPTED * scale;

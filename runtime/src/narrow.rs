@@ -49,14 +49,14 @@ pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
     if step.length() <= SAME_MOMENT * step.t_end().abs() {
         return Ok(1.0);
     }
-    let mut path = Path::new();
+    let mut path = Path::new(step.start());
     path.follow(step)?;
     let mut along = Along {
         system: step.system,
         path: &path,
         length: step.length(),
         allowed: allowed(step, &path),
-        gained: [Sys::State::zeros(); 2],
+        gained: [step.start().zeroed(); 2],
         has_pole: false,
     };
     let least = match step.stepper.fixed_step() {
@@ -138,7 +138,7 @@ impl<Sys: System> Along<'_, Sys> {
             let allowed = self.allowed.as_slice()[i];
             least - allowed <= change && change <= most + allowed
         };
-        self.has_pole || (0..Sys::State::LEN).all(is_within)
+        self.has_pole || (0..start.count()).all(is_within)
     }
 
     /// Compares the rates on a part of the step with those that it assumed; what the components gain there is added if they are.
@@ -146,12 +146,12 @@ impl<Sys: System> Along<'_, Sys> {
         let (path, width) = (self.path, part[1] - part[0]);
         let mut gained = self.gained;
         let middle = 0.5 * (part[0] + part[1]);
-        let mut state = Sys::State::zeros();
+        let mut state = self.allowed.zeroed();
         for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
             *entry = path.at(i, middle);
         }
         let t = path.time([middle, middle]).value.middle();
-        let mut centre = Sys::State::zeros();
+        let mut centre = state.zeroed();
         if self.system.rate(t, &state, &mut centre).is_err() {
             return Rates::Unbounded;
         }

@@ -34,7 +34,7 @@ impl<Sys: Constrained> Projection<Sys> {
     pub fn new() -> Self {
         Self {
             on: true,
-            levels: Sys::Levels::zeros(),
+            levels: StateVector::zeros(0),
         }
     }
 
@@ -157,10 +157,10 @@ fn largest_velocities<Sys: Constrained>(
         .sum();
     let q = system.position(state);
     let velocity = |p: &Sys::Vector| system.velocity(t, &system.state_from_momenta(t, &q, p)?);
-    let at_rest = velocity(&Sys::Vector::zeros())?;
-    let mut largest = Sys::Vector::zeros();
-    for i in 0..Sys::Vector::LEN {
-        let mut unit = Sys::Vector::zeros();
+    let at_rest = velocity(&system.zero_vector())?;
+    let mut largest = system.zero_vector();
+    for i in 0..system.coordinate_count() {
+        let mut unit = system.zero_vector();
         unit.as_mut_slice()[i] = 1.0;
         let cometric = velocity(&unit)?.as_slice()[i] - at_rest.as_slice()[i];
         largest.as_mut_slice()[i] = math::sqrt(cometric.abs()) * speed;
@@ -220,7 +220,7 @@ impl<Sys: Constrained> Effect<Sys> for Projection<Sys> {
         // NOTE: this moves a state that lies on a surface off it by as much as integration erred. It has to be done
         // there too, or a motion of which every step is cut would never be mended; the surface just hit counts as met
         // exactly, whatever its gap.
-        let moved = if Sys::Levels::LEN > 0 {
+        let moved = if self.levels.count() > 0 {
             self.settle_levels(now)?
         } else {
             Change::Kept

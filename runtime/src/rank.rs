@@ -9,7 +9,6 @@
 
 use crate::contract::{Constrained, RankDrop};
 use crate::math::{abs, sqrt};
-use crate::state::StateVector;
 
 /// Places at which a step is looked at. A minimum between two of them shows in the values at three: distances grow by no
 /// more than three times from one to the next.
@@ -140,7 +139,7 @@ pub fn rank_drop<S: Constrained, const M: usize, const N: usize>(
     let plane = |theta: f64| {
         let (t, state) = motion(theta);
         let mut forms = [[0.0; N]; M];
-        let mut affine = S::Multipliers::zeros();
+        let mut affine = system.zero_multipliers();
         let q = system.position(&state);
         system.constraint_forms(t, &q, forms.as_flattened_mut(), &mut affine);
         Plane::of(theta, t, forms)

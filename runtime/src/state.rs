@@ -1,20 +1,40 @@
-//! Fixed-size vectors of numbers: all that an integrator knows of a state.
+//! Vectors of numbers on the stack: all that an integrator knows of a state.
 
 use core::fmt::Debug;
 
 use nalgebra::SVector;
 
-/// A fixed number of `f64` components, stored in a row on the stack.
+/// `f64` components, stored in a row on the stack.
 ///
 /// Integrators work on these and on nothing else; what the components mean is the system's affair
-/// (see [`System`](crate::System)). Implemented by nalgebra's `SVector<f64, D>` for every `D`,
-/// zero included.
+/// (see [`System`](crate::System)). Implemented by nalgebra's `SVector<f64, D>` for every `D`, zero included, whose number of
+/// components is part of its type. Other vectors have room for some numbers and use as many as the system says
+/// ([`VectorField::state_len`](crate::VectorField::state_len) and its relatives).
 pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
-    /// Number of components.
-    const LEN: usize;
+    /// The largest number of components; of a vector of a fixed size, their number.
+    const CAPACITY: usize;
 
-    /// The vector of zeros.
-    fn zeros() -> Self;
+    /// A vector of `count` zeros. Where the type fixes the number of components, `count` is ignored.
+    fn zeros(count: usize) -> Self;
+
+    /// The vector of these components. Where the type fixes their number, it must be theirs.
+    fn of(components: &[f64]) -> Self {
+        let mut vector = Self::zeros(components.len());
+        vector.as_mut_slice().copy_from_slice(components);
+        vector
+    }
+
+    /// The vector of as many zeros.
+    #[inline(always)]
+    fn zeroed(&self) -> Self {
+        Self::zeros(self.count())
+    }
+
+    /// The number of components.
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.as_slice().len()
+    }
 
     /// The components in order.
     fn as_slice(&self) -> &[f64];
@@ -31,11 +51,16 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
 }
 
 impl<const D: usize> StateVector for SVector<f64, D> {
-    const LEN: usize = D;
+    const CAPACITY: usize = D;
 
     #[inline(always)]
-    fn zeros() -> Self {
+    fn zeros(_: usize) -> Self {
         Self::repeat(0.0)
+    }
+
+    #[inline(always)]
+    fn count(&self) -> usize {
+        D
     }
 
     #[inline(always)]

@@ -25,7 +25,7 @@ impl<'a, Sys: Powered> Work<'a, Sys> {
     pub fn of(system: &'a Sys) -> Self {
         Self {
             system,
-            done: Sys::Powers::zeros(),
+            done: StateVector::zeros(system.power_count()),
             fault: None,
         }
     }

@@ -93,9 +93,7 @@ struct Audited {
 }
 
 fn vector<V: StateVector>(components: &[f64]) -> V {
-    let mut vector = V::zeros();
-    vector.as_mut_slice().copy_from_slice(components);
-    vector
+    V::of(components)
 }
 
 /// Runs a system with effects, under an audit of its surfaces.

@@ -49,11 +49,7 @@ dalembert::model! {
 }
 
 fn state<S: System>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
-    let vector = |values: &[f64]| {
-        let mut vector = S::Vector::zeros();
-        vector.as_mut_slice().copy_from_slice(values);
-        vector
-    };
+    let vector = |values: &[f64]| S::Vector::of(values);
     system
         .state_unchecked(0.0, &vector(q), &vector(qdot))
         .unwrap()

@@ -832,7 +832,7 @@ fn follow<S: Variational + Impacting>(
 
 fn state<S: System>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
     let vector = |values: &[f64]| {
-        let mut vector = S::Vector::zeros();
+        let mut vector = S::Vector::zeros(S::Vector::CAPACITY);
         vector.as_mut_slice()[..values.len()].copy_from_slice(values);
         vector
     };
@@ -875,7 +875,7 @@ fn beside<S: Variational + Scene + Impacting>(
             impact.time
         );
         late = late.max(impact.time.width());
-        for i in 0..S::State::LEN {
+        for i in 0..S::State::CAPACITY {
             let ranges = [impact.before(i), impact.after(i)];
             let values = [exact.before, exact.after].map(|row| row.as_slice()[i]);
             assert!(

@@ -50,7 +50,7 @@ fn run<M: System + TaylorField>(
     start: [f64; 2],
     until: f64,
 ) -> Run<M::State> {
-    let mut state = M::State::zeros();
+    let mut state = M::State::zeros(M::State::CAPACITY);
     state.as_mut_slice().copy_from_slice(&start);
     Simulation::new(model, stepper, ())
         .run(0.0, state, until, &mut ())

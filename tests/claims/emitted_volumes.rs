@@ -126,9 +126,7 @@ fn a_volume_is_emitted_and_reported_where_a_density_is_claimed_and_nowhere_else(
 }
 
 fn vector<S: Described>(values: &[f64]) -> S::Vector {
-    let mut q = S::Vector::zeros();
-    q.as_mut_slice().copy_from_slice(values);
-    q
+    S::Vector::of(values)
 }
 
 /// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms, with what

@@ -150,10 +150,10 @@ fn constraints_that_depend_on_others_somewhere_end_the_run_there() {
 /// The force of the trace against differences of the constraints along the motion.
 fn check_trace<S: Described + Impacting>(system: &S, forms: impl Fn(&[f64]) -> [[f64; 4]; 2]) {
     for state in states(system, 6, 9) {
-        let mut rate = S::State::zeros();
+        let mut rate = S::State::zeros(S::State::CAPACITY);
         system.rate(0.0, &state, &mut rate).expect("a rate");
-        let mut motion = S::Impulse::zeros();
-        let parts = &rate.as_slice()[S::Vector::LEN..];
+        let mut motion = S::Impulse::zeros(S::Impulse::CAPACITY);
+        let parts = &rate.as_slice()[S::Vector::CAPACITY..];
         motion.as_mut_slice().copy_from_slice(parts);
         let force = system
             .trace(0, 0.0, &state, &motion)

@@ -160,9 +160,7 @@ fn check_ball<S: Scene + Impacting>(system: &S, variant: &str) -> usize {
 /// A vector from a slice of its length.
 trait FromSlice: StateVector {
     fn from_slice_of(values: &[f64]) -> Self {
-        let mut vector = Self::zeros();
-        vector.as_mut_slice().copy_from_slice(values);
-        vector
+        Self::of(values)
     }
 }
 

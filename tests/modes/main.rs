@@ -35,11 +35,7 @@ fn run<S>(system: &S, q: &[f64], qdot: &[f64], until: f64) -> (Vec<Event<S::Stat
 where
     S: Scene + TaylorField + Impacting,
 {
-    let vector = |values: &[f64]| {
-        let mut vector = <S::Vector as dalembert::StateVector>::zeros();
-        dalembert::StateVector::as_mut_slice(&mut vector).copy_from_slice(values);
-        vector
-    };
+    let vector = |values: &[f64]| <S::Vector as dalembert::StateVector>::of(values);
     let state = system
         .state(0.0, &vector(q), &vector(qdot))
         .expect("a state");

@@ -13,15 +13,15 @@ const DIFFERENCE: f64 = 2e-9;
 pub fn difference<V: StateVector>(step: f64, f: impl Fn(f64) -> V) -> V {
     let central = |h: f64| {
         let (ahead, behind) = (f(h), f(-h));
-        let mut slope = V::zeros();
-        for i in 0..V::LEN {
+        let mut slope = V::zeros(V::CAPACITY);
+        for i in 0..V::CAPACITY {
             slope.as_mut_slice()[i] = (ahead.as_slice()[i] - behind.as_slice()[i]) / (2.0 * h);
         }
         slope
     };
     let [one, two, four] = [1.0, 2.0, 4.0].map(|factor| central(factor * step));
-    let mut slope = V::zeros();
-    for i in 0..V::LEN {
+    let mut slope = V::zeros(V::CAPACITY);
+    for i in 0..V::CAPACITY {
         let [one, two, four] = [&one, &two, &four].map(|own| own.as_slice()[i]);
         slope.as_mut_slice()[i] = (64.0 * one - 20.0 * two + four) / 45.0;
     }

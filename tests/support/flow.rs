@@ -20,7 +20,7 @@ impl<S: Described> Flow<'_, S> {
     /// Where the other velocities do not follow from the independent ones.
     pub fn velocities(&self, t: f64, at: &[f64]) -> [S::Vector; 2] {
         let (positions, velocities) = at.split_at(S::DESCRIPTION.coordinates.len());
-        let [mut q, mut qdot, mut named] = [S::Vector::zeros(); 3];
+        let [mut q, mut qdot, mut named] = [S::Vector::zeros(S::Vector::CAPACITY); 3];
         q.as_mut_slice().copy_from_slice(positions);
         for (&i, &v) in self.independent.iter().zip(velocities) {
             qdot.as_mut_slice()[i] = v;
@@ -38,7 +38,7 @@ impl<S: Described> Flow<'_, S> {
     pub fn motion(&self, t: f64, at: &[f64]) -> Vec<f64> {
         let [q, qdot] = self.velocities(t, at);
         let state = self.system.state_unchecked(t, &q, &qdot).expect("a state");
-        let mut rate = S::State::zeros();
+        let mut rate = S::State::zeros(S::State::CAPACITY);
         self.system.rate(t, &state, &mut rate).expect("a rate");
         // Fast motion is followed for a short time.
         let size = rate

@@ -16,7 +16,7 @@ pub fn input<'a, S: Described>(
     t: f64,
     state: &'a S::State,
 ) -> impl Fn(Input) -> f64 + 'a {
-    let n = S::Vector::LEN;
+    let n = S::Vector::CAPACITY;
     let qdot = system.velocity(t, state).expect("a velocity");
     move |input| match input {
         Input::Time => t,
@@ -36,7 +36,7 @@ pub fn compare_motion<S: Described>(system: &S, program: &Program) -> usize {
     for state in &states {
         let at = input(system, t, state);
         let run = |function: &Function| interpret(function, &at).expect("a value");
-        let mut rate = S::State::zeros();
+        let mut rate = S::State::zeros(S::State::CAPACITY);
         VectorField::rate(system, t, state, &mut rate).expect("a rate");
         assert_eq!(rate.as_slice(), run(&program.rate), "{name}: rate");
         let energy = System::energy(system, t, state).expect("an energy");

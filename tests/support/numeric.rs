@@ -115,8 +115,8 @@ impl<S: Described> Numeric for S {
     }
 
     fn rate(&self, t: f64, state: &[f64]) -> Vec<f64> {
-        let mut rate = <S::Global as VectorField>::State::zeros();
         let global = self.global();
+        let mut rate = global.zero_state();
         VectorField::rate(&global, t, &vector(state), &mut rate).expect("a rate");
         rate.as_slice().to_vec()
     }
@@ -160,10 +160,7 @@ impl<S: Described> Numeric for S {
 }
 
 fn vector<V: StateVector>(values: &[f64]) -> V {
-    assert_eq!(values.len(), V::LEN);
-    let mut vector = V::zeros();
-    vector.as_mut_slice().copy_from_slice(values);
-    vector
+    V::of(values)
 }
 
 /// Steps of the stencil [`slope`]: its error is `STEP^6` times a seventh derivative over 140, and `1e-15/STEP` of the

@@ -28,7 +28,7 @@ impl Random {
 
     /// A vector with components in `[low, high)`.
     pub fn vector<V: StateVector>(&mut self, low: f64, high: f64) -> V {
-        let mut vector = V::zeros();
+        let mut vector = V::zeros(V::CAPACITY);
         vector
             .as_mut_slice()
             .iter_mut()

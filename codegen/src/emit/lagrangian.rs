@@ -133,7 +133,7 @@ fn emit_no_reactions() -> TokenStream {
     quote! {
         #[inline]
         fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions) -> Self::Vector {
-            <Self::Vector as ::dalembert::StateVector>::zeros()
+            ::dalembert::System::zero_vector(self)
         }
 
         #[inline]
@@ -145,7 +145,7 @@ fn emit_no_reactions() -> TokenStream {
         ) -> ::core::result::Result<(Self::Vector, Self::Reactions), ::dalembert::Fault> {
             let state = <Self as ::dalembert::System>::state_from_momenta(self, t, q, p)?;
             let qdot = <Self as ::dalembert::System>::velocity(self, t, &state)?;
-            ::core::result::Result::Ok((qdot, <Self::Reactions as ::dalembert::StateVector>::zeros()))
+            ::core::result::Result::Ok((qdot, ::dalembert::Lagrangian::zero_reactions(self)))
         }
     }
 }
@@ -159,11 +159,11 @@ pub(super) fn emit_refusal(type_name: &impl ToTokens, fault: &TokenStream) -> To
             type Reactions = ::dalembert::__private::SVector<f64, 0usize>;
 
             fn force(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Self::Vector {
-                <Self::Vector as ::dalembert::StateVector>::zeros()
+                ::dalembert::System::zero_vector(self)
             }
 
             fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions) -> Self::Vector {
-                <Self::Vector as ::dalembert::StateVector>::zeros()
+                ::dalembert::System::zero_vector(self)
             }
 
             fn constrained_velocity(

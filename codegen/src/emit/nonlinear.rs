@@ -21,7 +21,7 @@ pub(super) fn emit_forms(context: &Context<'_>, functions: &Constrained) -> Toke
 
         #[inline]
         fn constraint_forms(&self, t: f64, q: &Self::Vector, forms: &mut [f64], affine: &mut Self::Multipliers) {
-            let rest = <Self::Vector as ::dalembert::StateVector>::zeros();
+            let rest = ::dalembert::System::zero_vector(self);
             ::dalembert::Constrained::linearised_forms(self, t, q, &rest, forms, affine);
         }
 
@@ -76,7 +76,7 @@ pub(super) fn emit_nearest(context: &Context<'_>, back: &Return) -> TokenStream 
 pub(super) fn emit_reactions() -> TokenStream {
     quote! {
         fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions) -> Self::Vector {
-            <Self::Vector as ::dalembert::StateVector>::zeros()
+            ::dalembert::System::zero_vector(self)
         }
 
         fn constrained_velocity(

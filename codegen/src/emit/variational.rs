@@ -76,7 +76,7 @@ impl Lengths {
                 type Columns = [Self::State; #state];
 
                 fn columns() -> Self::Columns {
-                    [<Self::State as ::dalembert::StateVector>::zeros(); #state]
+                    [<Self::State as ::dalembert::StateVector>::zeros(#state); #state]
                 }
 
                 type Tangents = [::dalembert::Tangent<Self>; #state];

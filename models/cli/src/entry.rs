@@ -271,7 +271,7 @@ impl<M: Model> Typed<M> {
     ) -> Result<S::State, StateError> {
         let mut q = vector(&origin.q);
         if origin.policy == OffConstraint::Project {
-            q = system.complete_position(t, &q, &M::Vector::zeros())?;
+            q = system.complete_position(t, &q, &system.zero_vector())?;
         }
         let qdot = self.checked_velocity(t, &q, &origin.rates)?;
         if origin.policy == OffConstraint::Error {
@@ -527,7 +527,7 @@ pub(crate) fn point<M: Described>(model: &M, t: f64, state: &M::State) -> Point 
     };
     let components = |values: Result<M::Vector, Fault>| match values {
         Ok(values) => own(values.as_slice()),
-        Err(_) => vec![f64::NAN; M::Vector::LEN],
+        Err(_) => vec![f64::NAN; M::Vector::CAPACITY],
     };
     let mut outputs = vec![f64::NAN; M::DESCRIPTION.outputs.len()];
     if model.outputs(t, state, &mut outputs).is_err() {
@@ -546,7 +546,7 @@ pub(crate) fn point<M: Described>(model: &M, t: f64, state: &M::State) -> Point 
 
 /// The vector of these components; missing ones are 0.
 fn vector<V: StateVector>(components: &[f64]) -> V {
-    let mut vector = V::zeros();
+    let mut vector = V::zeros(V::CAPACITY);
     for (component, &value) in vector.as_mut_slice().iter_mut().zip(components) {
         *component = value;
     }

@@ -69,7 +69,7 @@ impl VariationalVisitor for Finder<'_> {
             effects.set_law(surface, law);
         }
         effects.set_policies(search.policies);
-        let [mut q, mut qdot] = [S::Vector::zeros(); 2];
+        let [mut q, mut qdot] = [system.zero_vector(); 2];
         q.as_mut_slice().copy_from_slice(self.q);
         qdot.as_mut_slice().copy_from_slice(self.qdot);
         let start = system.state_unchecked(0.0, &q, &qdot);

@@ -233,10 +233,7 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
 
 /// A vector of the system's type.
 pub fn vector<V: StateVector>(values: &[f64]) -> V {
-    assert_eq!(values.len(), V::LEN);
-    let mut vector = V::zeros();
-    vector.as_mut_slice().copy_from_slice(values);
-    vector
+    V::of(values)
 }
 
 /// Keeps every impact.

@@ -106,7 +106,7 @@ fn laws_of<M: Scene + Impacting>(
     let (mut rate_error, mut energy_error, mut residual) = (0.0_f64, 0.0_f64, 0.0_f64);
     for _ in 0..64 {
         let mut draw = |low: f64, high: f64| {
-            let values: Vec<f64> = (0..M::Vector::LEN)
+            let values: Vec<f64> = (0..M::Vector::CAPACITY)
                 .map(|_| random.between(low, high))
                 .collect();
             vector::<M::Vector>(&values)
@@ -114,7 +114,7 @@ fn laws_of<M: Scene + Impacting>(
         let (q, qdot) = (draw(0.2, 0.8), draw(-1.0, 1.0));
         let state = system.state_projected(0.0, &q, &qdot).expect("a state");
         let energy = system.energy(0.0, &state).expect("an energy");
-        for surface in 0..M::Gaps::LEN {
+        for surface in 0..M::Gaps::CAPACITY {
             let contact = system.contact(surface, 0.0, &state).expect("a contact");
             let g = contact.gap_rate;
             for (law, c) in factors(&contact) {

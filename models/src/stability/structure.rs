@@ -94,11 +94,7 @@ impl Long<'_> {
         h: f64,
         (stepper, effects): (Step, E),
     ) -> Series {
-        let vector = |values: &[f64]| {
-            let mut vector = S::Vector::zeros();
-            vector.as_mut_slice().copy_from_slice(values);
-            vector
-        };
+        let vector = |values: &[f64]| S::Vector::of(values);
         let state = system
             .state_projected(0.0, &vector(q), &vector(qdot))
             .expect("a state");

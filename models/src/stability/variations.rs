@@ -97,7 +97,7 @@ pub const CASES: &[Case] = &[
 
 /// Along each component of the state.
 fn all_components<S: Variational>() -> Vec<Tangent<S>> {
-    (0..S::State::LEN).map(Tangent::of_component).collect()
+    (0..S::State::CAPACITY).map(Tangent::of_component).collect()
 }
 
 /// A run with the derivatives of its end.
@@ -113,7 +113,10 @@ fn vary<S: Scene + Variational>(
     (until, impacts): (f64, Option<u64>),
     mut columns: Vec<Tangent<S>>,
 ) -> Option<Varied<S>> {
-    let (mut position, mut velocity) = (S::Vector::zeros(), S::Vector::zeros());
+    let (mut position, mut velocity) = (
+        S::Vector::zeros(S::Vector::CAPACITY),
+        S::Vector::zeros(S::Vector::CAPACITY),
+    );
     position.as_mut_slice().copy_from_slice(q);
     velocity.as_mut_slice().copy_from_slice(qdot);
     let state = system.state(0.0, &position, &velocity).ok()?;

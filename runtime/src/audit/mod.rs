@@ -110,16 +110,16 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
 
     /// The same, of surfaces that the motion may be on both sides of where `is_passable` says so.
     pub(crate) fn passing(system: &'a Sys, is_passable: impl Fn(usize) -> bool) -> Self {
-        let mut passable = Sys::Gaps::zeros();
+        let mut passable = system.zero_gaps();
         for (surface, passable) in passable.as_mut_slice().iter_mut().enumerate() {
             *passable = f64::from(u8::from(is_passable(surface)));
         }
         Self {
             system,
             passable,
-            held: Sys::Gaps::zeros(),
-            slack: Sys::Gaps::zeros(),
-            motion: Motion::new(),
+            held: system.zero_gaps(),
+            slack: system.zero_gaps(),
+            motion: Motion::new(&system.zero_state()),
             finding: None,
         }
     }
@@ -221,7 +221,7 @@ impl<Sys: Impacting, Run: System<State = Sys::State>> Observer<Run> for Audit<'_
             self.finding = Some(Finding::NoDenseOutput { t });
             return ControlFlow::Continue(());
         }
-        for surface in 0..Sys::Gaps::LEN {
+        for surface in 0..self.held.count() {
             if self.held.as_slice()[surface] == 0.0 {
                 self.follow(surface, segment.part(), segment.end());
             }
@@ -234,7 +234,7 @@ impl<Sys: Impacting, Run: System<State = Sys::State>> Observer<Run> for Audit<'_
         if self.finding.is_none() && !self.is_placed(event) {
             self.finding = Some(Finding::Misplaced { surface, t });
         }
-        for surface in 0..Sys::Gaps::LEN {
+        for surface in 0..self.held.count() {
             self.allow(surface, t, &event.after, 2.0);
         }
         ControlFlow::Continue(())

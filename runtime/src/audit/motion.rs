@@ -26,14 +26,14 @@ pub(super) struct Motion<S> {
 }
 
 impl<S: StateVector> Motion<S> {
-    /// No step.
-    pub(super) fn new() -> Self {
+    /// No step, of states with as many components as this one.
+    pub(super) fn new(like: &S) -> Self {
         Self {
             start: 0.0,
             length: 0.0,
-            coefficients: [S::zeros(); LENGTH],
+            coefficients: [like.zeroed(); LENGTH],
             order: 0,
-            doubts: [S::zeros(); 2],
+            doubts: [like.zeroed(); 2],
         }
     }
 
@@ -44,7 +44,7 @@ impl<S: StateVector> Motion<S> {
     pub(super) fn follow(&mut self, segment: &mut Segment<'_, S>) -> Result<(), Fault> {
         (self.start, self.length) = (segment.t_start(), segment.step_length());
         self.order = segment.powers(&mut self.coefficients)?;
-        self.doubts = [S::zeros(); 2];
+        self.doubts = [self.coefficients[0].zeroed(); 2];
         for (k, coefficient) in self.coefficients[..=self.order].iter().enumerate() {
             for (i, value) in coefficient.as_slice().iter().enumerate() {
                 self.doubts[0].as_mut_slice()[i] += ROUNDING * value.abs();
@@ -66,7 +66,7 @@ impl<S: StateVector> Motion<S> {
 
     /// State at a part of the step.
     pub(super) fn state(&self, part: f64) -> S {
-        let mut state = S::zeros();
+        let mut state = self.coefficients[0].zeroed();
         for coefficient in self.coefficients[..=self.order].iter().rev() {
             let pairs = state.as_mut_slice().iter_mut().zip(coefficient.as_slice());
             pairs.for_each(|(value, coefficient)| *value = *value * part + coefficient);
@@ -149,7 +149,7 @@ mod tests {
     fn values_and_rates_of_a_polynomial_lie_in_their_intervals() {
         type Scalar = SVector<f64, 1>;
         let coefficients = [0.25, -3.0, 2.5, 0.75, -1.5, 0.5];
-        let mut motion = Motion::<Scalar>::new();
+        let mut motion = Motion::new(&Scalar::zeros());
         motion.order = 5;
         for (to, from) in motion.coefficients.iter_mut().zip(coefficients) {
             to[0] = from;

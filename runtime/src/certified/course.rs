@@ -38,7 +38,7 @@ pub(super) enum Side {
 
 impl<Sys: Impacting> Sides<Sys> {
     pub(super) fn unknown() -> Self {
-        Self(Sys::Gaps::zeros())
+        Self(Sys::Gaps::zeros(Sys::Gaps::CAPACITY))
     }
 
     pub(super) fn of(&self, surface: usize) -> Side {

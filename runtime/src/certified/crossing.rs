@@ -175,7 +175,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             all,
             centre,
             turned: [Matrix::zero(), Matrix::zero()],
-            slopes: [Bounds::point(&Sys::State::zeros()); BLOCKS],
+            slopes: [Bounds::point(&Sys::State::zeros(Sys::State::CAPACITY)); BLOCKS],
             whole,
             rate,
         };
@@ -355,7 +355,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let mut derivatives = None;
         if let Some(derivative) = derivative {
             let mut both = [Matrix::<Sys>::zero(), Matrix::zero()];
-            for k in 0..Sys::State::LEN {
+            for k in 0..Sys::State::CAPACITY {
                 let struck = self.struck_along(strike, meeting, &derivative.column(k));
                 let (along, delay) = struck.ok_or(unsure)?;
                 both[0].set_column(k, &along);

@@ -251,7 +251,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
             self.frame.hull(),
         );
         let last = remainder.coefficients[ORDER].as_slice();
-        let excess = (0..Sys::State::LEN).fold(0.0_f64, |most, i| {
+        let excess = (0..Sys::State::CAPACITY).fold(0.0_f64, |most, i| {
             let size = self.frame.centre.as_slice()[i].abs() + scale.as_slice()[i];
             let allowed = self.remainder * size + SHARE * hull.at(i).width();
             most.max(last[i].width() / allowed)

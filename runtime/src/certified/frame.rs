@@ -27,8 +27,8 @@ impl<S: StateVector> Bounds<S> {
 
     /// The box whose component `i` is `of(i)`.
     pub(super) fn of(of: impl Fn(usize) -> Interval) -> Self {
-        let mut bounds = Self::point(&S::zeros());
-        for i in 0..S::LEN {
+        let mut bounds = Self::point(&S::zeros(S::CAPACITY));
+        for i in 0..S::CAPACITY {
             bounds.set(i, of(i));
         }
         bounds
@@ -45,7 +45,7 @@ impl<S: StateVector> Bounds<S> {
 
     /// The point in the middle.
     pub(super) fn middle(&self) -> S {
-        let mut middle = S::zeros();
+        let mut middle = S::zeros(S::CAPACITY);
         for (i, entry) in middle.as_mut_slice().iter_mut().enumerate() {
             *entry = self.at(i).middle();
         }
@@ -54,7 +54,7 @@ impl<S: StateVector> Bounds<S> {
 
     /// The width of the widest component.
     pub(super) fn width(&self) -> f64 {
-        (0..S::LEN).fold(0.0, |most, i| most.max(self.at(i).width()))
+        (0..S::CAPACITY).fold(0.0, |most, i| most.max(self.at(i).width()))
     }
 
     /// What both boxes contain; the other one where they do not meet.
@@ -132,7 +132,8 @@ impl<Sys: Variational> Matrix<Sys> {
     /// The product with a box.
     pub(super) fn times_bounds(&self, bounds: &Bounds<Sys::State>) -> Bounds<Sys::State> {
         Bounds::of(|i| {
-            (0..Sys::State::LEN).fold(Interval::ZERO, |sum, k| sum + self.at(i, k) * bounds.at(k))
+            (0..Sys::State::CAPACITY)
+                .fold(Interval::ZERO, |sum, k| sum + self.at(i, k) * bounds.at(k))
         })
     }
 }
@@ -160,7 +161,7 @@ impl<Sys: Variational> Block<Sys> {
         }
         Self {
             axes,
-            rest: Bounds::point(&Sys::State::zeros()),
+            rest: Bounds::point(&Sys::State::zeros(Sys::State::CAPACITY)),
         }
     }
 
@@ -252,7 +253,7 @@ impl<Sys: Variational> Frame<Sys> {
                 (turned[0].at(i, k) - middle) * first.rest.at(k)
             };
             let from_centre = moved.at(i) - Interval::point(centre.as_slice()[i]);
-            (0..Sys::State::LEN).fold(from_centre, |sum, k| sum + rounded(k))
+            (0..Sys::State::CAPACITY).fold(from_centre, |sum, k| sum + rounded(k))
         });
         let added = Block::<Sys> {
             axes: turned[1].middle(),
@@ -276,7 +277,7 @@ fn joined<Sys: Variational>(first: &Block<Sys>, second: &Block<Sys>) -> Block<Sy
     let axes = orthonormal(&[first, second]);
     let [one, other] = [first, second].map(|block| Matrix::<Sys>::of(&block.axes));
     let parts = [(&one, &first.rest), (&other, &second.rest)];
-    let none = Bounds::point(&Sys::State::zeros());
+    let none = Bounds::point(&Sys::State::zeros(Sys::State::CAPACITY));
     Block {
         axes,
         rest: components::<Sys>(&axes, &parts, &none),
@@ -285,9 +286,9 @@ fn joined<Sys: Variational>(first: &Block<Sys>, second: &Block<Sys>) -> Block<Sy
 
 pub(super) fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Matrix<Sys> {
     let mut product = Matrix::zero();
-    for i in 0..Sys::State::LEN {
-        for j in 0..Sys::State::LEN {
-            let terms = (0..Sys::State::LEN).map(|k| a.at(i, k) * b.at(k, j));
+    for i in 0..Sys::State::CAPACITY {
+        for j in 0..Sys::State::CAPACITY {
+            let terms = (0..Sys::State::CAPACITY).map(|k| a.at(i, k) * b.at(k, j));
             product.set(i, j, terms.fold(Interval::ZERO, |sum, term| sum + term));
         }
     }
@@ -297,10 +298,10 @@ pub(super) fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Mat
 /// Orthonormal axes along the edges of boxes: at each turn along the edge that reaches furthest beyond those before it (modified
 /// Gram-Schmidt, twice).
 fn orthonormal<Sys: Variational>(blocks: &[&Block<Sys>]) -> Sys::Columns {
-    let n = Sys::State::LEN;
+    let n = Sys::State::CAPACITY;
     let mut axes = Sys::columns();
     for j in 0..n {
-        let mut longest = (0.0, Sys::State::zeros());
+        let mut longest = (0.0, Sys::State::zeros(Sys::State::CAPACITY));
         for block in blocks {
             for (k, edge) in block.axes.as_ref().iter().enumerate() {
                 let mut edge = scaled(edge, block.rest.at(k).magnitude());
@@ -327,9 +328,9 @@ fn orthonormal<Sys: Variational>(blocks: &[&Block<Sys>]) -> Sys::Columns {
 
 /// An axis normal to the first `count`: the axis of the state of which most is left.
 fn another<Sys: Variational>(axes: &Sys::Columns, count: usize) -> Sys::State {
-    let mut best = (0.0, Sys::State::zeros());
-    for i in 0..Sys::State::LEN {
-        let mut axis = Sys::State::zeros();
+    let mut best = (0.0, Sys::State::zeros(Sys::State::CAPACITY));
+    for i in 0..Sys::State::CAPACITY {
+        let mut axis = Sys::State::zeros(Sys::State::CAPACITY);
         axis.as_mut_slice()[i] = 1.0;
         for _ in 0..2 {
             let before = &axes.as_ref()[..count];
@@ -371,7 +372,7 @@ fn components<Sys: Variational>(
     parts: &[(&Matrix<Sys>, &Bounds<Sys::State>)],
     shift: &Bounds<Sys::State>,
 ) -> Bounds<Sys::State> {
-    let n = Sys::State::LEN;
+    let n = Sys::State::CAPACITY;
     let mut transpose = Matrix::<Sys>::zero();
     for i in 0..n {
         for j in 0..n {

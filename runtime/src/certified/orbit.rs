@@ -169,7 +169,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
                 let (image, region) = (image.at(i), region.at(i));
                 image.lo > region.lo && image.hi < region.hi
             };
-            if (0..Sys::State::LEN).all(is_inside) {
+            if (0..Sys::State::CAPACITY).all(is_inside) {
                 return Ok(self.refined(orbit));
             }
             // A box of another shape about the image.
@@ -178,7 +178,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
                 let range = range.widened(0.25 * range.width() + f64::MIN_POSITIVE);
                 range.intersection(whole.at(i))
             };
-            if (0..Sys::State::LEN).any(|i| wider(i).is_none()) {
+            if (0..Sys::State::CAPACITY).any(|i| wider(i).is_none()) {
                 return Err(NotProved::NotContained);
             }
             region = Bounds::of(|i| wider(i).unwrap_or(whole.at(i)));
@@ -205,7 +205,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         &self,
         region: &Bounds<Sys::State>,
     ) -> Result<(Bounds<Sys::State>, CertifiedOrbit<Sys>), NotProved> {
-        let n = Sys::State::LEN;
+        let n = Sys::State::CAPACITY;
         let whole = self.returned(region)?;
         let derivative = whole.derivative.ok_or(NotProved::Singular)?;
         let centre = region.middle();
@@ -282,7 +282,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         let (Ok(()), Ok(gaps), Ok(Some(after))) = (begun, gaps, after) else {
             return true;
         };
-        let rates = &firsts.as_slice()[..Sys::State::LEN];
+        let rates = &firsts.as_slice()[..Sys::State::CAPACITY];
         let parts = [rates, gaps.as_slice(), after.as_slice()];
         let mut all = parts.into_iter().flatten();
         all.any(|entry| entry.rate != Interval::ZERO || entry.value.is_whole())
@@ -309,15 +309,15 @@ fn spectral_bound<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
 
 /// The largest sum of absolute values in a row.
 fn norm<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
-    (0..Sys::State::LEN).fold(0.0, |most, i| {
-        let row = (0..Sys::State::LEN).map(|j| Interval::point(matrix.at(i, j).magnitude()));
+    (0..Sys::State::CAPACITY).fold(0.0, |most, i| {
+        let row = (0..Sys::State::CAPACITY).map(|j| Interval::point(matrix.at(i, j).magnitude()));
         f64::max(most, row.fold(Interval::ZERO, |sum, entry| sum + entry).hi)
     })
 }
 
 /// The inverse of a matrix by its columns, as far as rounding lets it (Gauss and Jordan, with pivots by columns).
 fn inverted<Sys: Variational>(mut columns: Sys::Columns) -> Option<Sys::Columns> {
-    let n = Sys::State::LEN;
+    let n = Sys::State::CAPACITY;
     let mut inverse = Sys::columns();
     for (j, column) in inverse.as_mut().iter_mut().enumerate() {
         column.as_mut_slice()[j] = 1.0;

@@ -132,7 +132,7 @@ impl<Sys: Variational + Impacting> Progress<'_, Sys> {
         let (now, hull) = (Interval::point(flow.t), flow.frame.hull());
         let (unit, end) = (step.length, Interval::point(1.0));
         let mut later = Matrix::zero();
-        for k in 0..Sys::State::LEN {
+        for k in 0..Sys::State::CAPACITY {
             let column = derivative.column(k);
             let from = [&hull, &step.tube, &column];
             later.set_column(k, &carried(&flow.field, from, now, unit, end, ORDER)?);
@@ -164,7 +164,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         };
         Self {
             progress,
-            laws: Overrides::none(),
+            laws: Overrides::none(&system.zero_gaps()),
             is_begun: false,
             impacts: 0,
         }
@@ -325,7 +325,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
 
     fn surfaces<'f>(&self, flow: &'f CertifiedFlow<'a, Sys>) -> Surfaces<'f, 'a, Sys> {
         let field = &flow.field;
-        let mut passable = <Sys as Impacting>::Gaps::zeros();
+        let mut passable = field.system.zero_gaps();
         for (surface, entry) in passable.as_mut_slice().iter_mut().enumerate() {
             let law = self.laws.get(surface);
             let is_map = law.is_none_or(|law| law.is_map());

@@ -183,7 +183,7 @@ fn held<S: StateVector>(
             range.widened(ROOM * range.width() + f64::MIN_POSITIVE)
         });
         let found = reached(&wider)?;
-        if (0..S::LEN).all(|i| wider.at(i).contains(found.at(i))) {
+        if (0..S::CAPACITY).all(|i| wider.at(i).contains(found.at(i))) {
             return reached(&found);
         }
         tube = Bounds::of(|i| found.at(i).hull(tube.at(i)));

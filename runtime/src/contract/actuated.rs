@@ -36,6 +36,12 @@ pub trait Powered: System {
     /// One number per cause.
     type Powers: StateVector;
 
+    /// The number of causes. Of powers of fixed number it is known.
+    #[inline(always)]
+    fn power_count(&self) -> usize {
+        Self::Powers::CAPACITY
+    }
+
     /// The causes: the named forces in the order of declaration; then `constraints`, where constraints are affine or not
     /// linear in the velocities, and `time`, where the Lagrangian depends on it.
     const POWERS: &'static [&'static str];

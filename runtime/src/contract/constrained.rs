@@ -26,6 +26,30 @@ pub trait Constrained: System {
     /// [`ConstraintInfo::level`](crate::describe::ConstraintInfo::level)).
     type Levels: StateVector;
 
+    /// M, the number of constraints. Of multipliers of fixed number it is known.
+    #[inline(always)]
+    fn constraint_count(&self) -> usize {
+        Self::Multipliers::CAPACITY
+    }
+
+    /// The number of levels. Where it is fixed it is known.
+    #[inline(always)]
+    fn level_count(&self) -> usize {
+        Self::Levels::CAPACITY
+    }
+
+    /// M zeros.
+    #[inline(always)]
+    fn zero_multipliers(&self) -> Self::Multipliers {
+        StateVector::zeros(self.constraint_count())
+    }
+
+    /// As many zeros as there are levels.
+    #[inline(always)]
+    fn zero_levels(&self) -> Self::Levels {
+        StateVector::zeros(self.level_count())
+    }
+
     /// The multipliers `lambda_a`; the constraint force is `lambda_a eta^a`.
     ///
     /// # Errors
@@ -87,7 +111,7 @@ pub trait Constrained: System {
     /// cosines counted as 1. 0 for the others.
     fn level_scales(&self, t: f64, q: &Self::Vector) -> Self::Levels {
         let _ = (t, q);
-        Self::Levels::zeros()
+        self.zero_levels()
     }
 
     /// The position-level values `f^k(t, q)` of the integrable constraints; the motion keeps them.

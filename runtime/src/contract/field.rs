@@ -13,6 +13,18 @@ pub trait VectorField {
     /// The state; its components mean what the system says.
     type State: StateVector;
 
+    /// The number of components of a state. Of a state of fixed size it is known.
+    #[inline(always)]
+    fn state_len(&self) -> usize {
+        Self::State::CAPACITY
+    }
+
+    /// A state of zeros, to be filled.
+    #[inline(always)]
+    fn zero_state(&self) -> Self::State {
+        StateVector::zeros(self.state_len())
+    }
+
     /// Writes the time derivative of `state` at time `t`.
     ///
     /// # Errors
@@ -23,7 +35,7 @@ pub trait VectorField {
     /// the same for a momentum as for the velocity it belongs to. Ones unless overridden.
     fn scale(&self, t: f64, state: &Self::State) -> Self::State {
         let _ = (t, state);
-        let mut ones = Self::State::zeros();
+        let mut ones = state.zeroed();
         ones.as_mut_slice().fill(1.0);
         ones
     }

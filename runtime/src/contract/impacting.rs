@@ -16,6 +16,18 @@ pub trait Impacting: System {
     /// S numbers, one per surface, in the order of declaration.
     type Gaps: StateVector;
 
+    /// S, the number of surfaces. Of gaps of fixed number it is known.
+    #[inline(always)]
+    fn surface_count(&self) -> usize {
+        Self::Gaps::CAPACITY
+    }
+
+    /// S zeros.
+    #[inline(always)]
+    fn zero_gaps(&self) -> Self::Gaps {
+        StateVector::zeros(self.surface_count())
+    }
+
     /// The gaps `h_s`; motion is allowed where they are not negative, and everywhere at a surface with a reset.
     fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps;
 

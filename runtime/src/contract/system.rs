@@ -26,6 +26,30 @@ pub trait System: VectorField {
     /// quasi-velocities in the form reduced to D.
     type Impulse: StateVector;
 
+    /// N, the number of coordinates. Of vectors of fixed size it is known.
+    #[inline(always)]
+    fn coordinate_count(&self) -> usize {
+        Self::Vector::CAPACITY
+    }
+
+    /// The number of components of an impulse. Of impulses of fixed size it is known.
+    #[inline(always)]
+    fn impulse_len(&self) -> usize {
+        Self::Impulse::CAPACITY
+    }
+
+    /// N zeros.
+    #[inline(always)]
+    fn zero_vector(&self) -> Self::Vector {
+        StateVector::zeros(self.coordinate_count())
+    }
+
+    /// No impulse.
+    #[inline(always)]
+    fn zero_impulse(&self) -> Self::Impulse {
+        StateVector::zeros(self.impulse_len())
+    }
+
     /// Positions q.
     fn position(&self, state: &Self::State) -> Self::Vector;
 
@@ -89,7 +113,7 @@ pub trait System: VectorField {
     /// How many components of a state, positions, come before those that hold its motion.
     fn motion_start(&self, state: &Self::State) -> usize {
         let _ = state;
-        Self::Vector::LEN
+        self.coordinate_count()
     }
 
     /// The mode that a state is of (see [`modes`](crate::modes)); 0 for systems without modes.
@@ -203,7 +227,7 @@ pub trait System: VectorField {
         q: &Self::Vector,
         qdot: &Self::Vector,
     ) -> Result<Self::State, StateError> {
-        let q = self.complete_position(t, q, &Self::Vector::zeros())?;
+        let q = self.complete_position(t, q, &self.zero_vector())?;
         self.checked(t, &q, qdot)?;
         Ok(self.state_nearest(t, &q, qdot)?)
     }
@@ -278,6 +302,18 @@ pub struct RankDrop {
 pub trait Lagrangian: System {
     /// M numbers, one per constraint, in the order of declaration; none without constraints.
     type Reactions: StateVector;
+
+    /// M, the number of constraints; 0 without constraints. Of reactions of fixed number it is known.
+    #[inline(always)]
+    fn reaction_count(&self) -> usize {
+        Self::Reactions::CAPACITY
+    }
+
+    /// M zeros.
+    #[inline(always)]
+    fn zero_reactions(&self) -> Self::Reactions {
+        StateVector::zeros(self.reaction_count())
+    }
 
     /// `f = dL/dq + F`: the force besides that of the constraints.
     fn force(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Self::Vector;

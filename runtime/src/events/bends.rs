@@ -54,15 +54,15 @@ pub(crate) struct Bends<S, G> {
 }
 
 impl<S: StateVector, G: StateVector> Bends<S, G> {
-    /// No box yet, for systems with so many positions.
-    pub(crate) fn new(positions: usize) -> Self {
+    /// No box yet, for systems with so many positions, and as many components and gaps as these have.
+    pub(crate) fn new(positions: usize, state: &S, gaps: &G) -> Self {
         Self {
-            room: Room::new(positions),
-            ways: S::zeros(),
+            room: Room::new(positions, state),
+            ways: state.zeroed(),
             time: 0.0,
-            slopes: G::zeros(),
-            bends: G::zeros(),
-            measured: S::zeros(),
+            slopes: gaps.zeroed(),
+            bends: gaps.zeroed(),
+            measured: state.zeroed(),
             measured_time: 0.0,
             speed: 0.0,
             turn: 0.0,
@@ -137,7 +137,7 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
             false => Bent::line(path.range(i), 0.0),
         };
         let time = Bent::line(room.times(), self.time);
-        for surface in 0..G::LEN {
+        for surface in 0..self.slopes.count() {
             let gap = system.gap_about(surface, time, &component);
             self.slopes.as_mut_slice()[surface] = gap.rate.magnitude();
             self.bends.as_mut_slice()[surface] = gap.bend.magnitude();

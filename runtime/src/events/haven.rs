@@ -29,10 +29,10 @@ pub(crate) struct Haven<S> {
 }
 
 impl<S: StateVector> Haven<S> {
-    /// None yet, for systems with so many positions.
-    pub(crate) fn new(positions: usize) -> Self {
+    /// None yet, for systems with so many positions, and as many components as this state has.
+    pub(crate) fn new(positions: usize, like: &S) -> Self {
         Self {
-            room: Room::new(positions),
+            room: Room::new(positions, like),
             margin: 4.0,
             wait: 0,
             patience: 0,
@@ -80,7 +80,7 @@ impl<S: StateVector> Haven<S> {
             gap.lo > 0.0 || (is_passable(surface) && gap.hi < 0.0)
         };
         *evaluations += 1;
-        let are_off = (0..Sys::Gaps::LEN).all(is_off);
+        let are_off = (0..system.surface_count()).all(is_off);
         self.room.keep(taken.get());
         match are_off {
             true => {

@@ -49,9 +49,9 @@ struct Whole<S> {
 }
 
 impl<S: StateVector> Path<S> {
-    /// Of no step.
-    pub(crate) fn new() -> Self {
-        let zeros = S::zeros();
+    /// Of no step, of states with as many components as this one.
+    pub(crate) fn new(like: &S) -> Self {
+        let zeros = like.zeroed();
         Self {
             start: 0.0,
             length: 0.0,
@@ -116,7 +116,7 @@ impl<S: StateVector> Path<S> {
         (self.start, self.length) = (step.t_start(), step.length());
         self.order = step.stepper.powers(&mut self.coefficients);
         self.is_dense = true;
-        self.doubts = [S::zeros(); 2];
+        self.doubts = [self.coefficients[0].zeroed(); 2];
         self.add_rounding();
     }
 
@@ -127,7 +127,7 @@ impl<S: StateVector> Path<S> {
     ) {
         (self.start, self.length) = (step.t_start(), step.length());
         let (start, end, [first, last]) = (step.start(), step.end(), step.rates());
-        for i in 0..S::LEN {
+        for i in 0..sway.count() {
             let at = |state: &S| state.as_slice()[i];
             let rates = [first, last].map(|rate| self.length * at(rate));
             let bend = at(end) - at(start) - rates[0];
@@ -147,21 +147,21 @@ impl<S: StateVector> Path<S> {
     /// whole step.
     #[inline]
     fn add_rounding(&mut self) {
-        let zeros = S::zeros();
+        let zeros = self.coefficients[0].zeroed();
         let (mut sizes, mut slopes) = (zeros, zeros);
         self.tails = [zeros; 2];
         for (k, coefficient) in self.coefficients[..=self.order].iter().enumerate() {
             if k == FEW {
                 self.tails = [sizes, slopes];
             }
-            for i in 0..S::LEN {
+            for i in 0..zeros.count() {
                 let size = coefficient.as_slice()[i].abs();
                 sizes.as_mut_slice()[i] += size;
                 slopes.as_mut_slice()[i] += k as f64 * size;
             }
         }
         let has_tails = self.order >= FEW;
-        for i in 0..S::LEN {
+        for i in 0..zeros.count() {
             let [size, slope] = [sizes.as_slice()[i], slopes.as_slice()[i]];
             self.doubts[0].as_mut_slice()[i] += ROUNDING * size;
             self.doubts[1].as_mut_slice()[i] += 2.0 * ROUNDING * slope;
@@ -183,7 +183,8 @@ impl<S: StateVector> Path<S> {
     /// As [`Path::component`] of the whole step, for all components side by side, with the first `COUNT` terms centred.
     #[inline]
     fn fill_whole<const COUNT: usize>(&mut self) {
-        let mut powers = [S::zeros(); COUNT];
+        let zeros = self.coefficients[0].zeroed();
+        let mut powers = [zeros; COUNT];
         let terms = (self.order + 1).min(COUNT);
         powers[..terms].copy_from_slice(&self.coefficients[..terms]);
         for first in 0..COUNT.saturating_sub(1) {
@@ -202,7 +203,7 @@ impl<S: StateVector> Path<S> {
             bend,
         } = &mut self.whole;
         let last = self.order as f64 - 1.0;
-        for i in 0..S::LEN {
+        for i in 0..zeros.count() {
             let mut scale = 1.0;
             let (mut beyond, mut steep, mut bent) = (0.0, 0.0, 0.0);
             for (k, power) in powers.iter().enumerate() {
@@ -379,7 +380,7 @@ mod tests {
     type Scalar = SVector<f64, 1>;
 
     fn path(coefficients: &[f64]) -> Path<Scalar> {
-        let mut path = Path::<Scalar>::new();
+        let mut path = Path::new(&Scalar::zeros());
         path.length = 2.0;
         path.order = coefficients.len() - 1;
         for (to, from) in path.coefficients.iter_mut().zip(coefficients) {

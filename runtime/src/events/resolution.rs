@@ -41,12 +41,12 @@ fn sum_of_terms<Sys: Impacting>(
     evaluations: &mut u64,
 ) -> f64 {
     let mut sum = 0.0;
-    for i in 0..Sys::State::LEN {
+    for i in 0..system.state_len() {
         let mut moved = *state;
         moved.as_mut_slice()[i] += PART * sizes.as_slice()[i].abs();
         sum += (system.gaps(t, &moved).as_slice()[surface] - here).abs();
     }
-    *evaluations += 1 + Sys::State::LEN as u64;
+    *evaluations += 1 + system.state_len() as u64;
     sum / PART
 }
 
@@ -77,13 +77,13 @@ pub(crate) fn counts_beyond_rounding<Sys: Impacting>(
     state: &Sys::State,
     sizes: &Sys::State,
 ) -> bool {
-    let part = 2.0 * UNITS * (1.0 + Sys::State::LEN as f64);
+    let part = 2.0 * UNITS * (1.0 + system.state_len() as f64);
     let later = [0.0, part * t, -part * t];
     let counts_throughout = later
         .into_iter()
         .all(|later| system.surface_active(surface, t + later, state));
     counts_throughout
-        && (0..Sys::State::LEN).all(|i| {
+        && (0..system.state_len()).all(|i| {
             [part, -part].into_iter().all(|part| {
                 let mut moved = *state;
                 moved.as_mut_slice()[i] += part * sizes.as_slice()[i].abs();

@@ -24,13 +24,13 @@ pub(crate) fn place(i: usize) -> u64 {
 }
 
 impl<S: StateVector> Room<S> {
-    /// None yet, for systems with so many positions.
-    pub(crate) fn new(positions: usize) -> Self {
+    /// None yet, for systems with so many positions, and as many components as this state has.
+    pub(crate) fn new(positions: usize, like: &S) -> Self {
         Self {
-            lowest: S::zeros(),
-            highest: S::zeros(),
+            lowest: like.zeroed(),
+            highest: like.zeroed(),
             times: Interval::point(0.0),
-            positions: positions.min(S::LEN),
+            positions: positions.min(like.count()),
             kept: u64::MAX,
             is_known: false,
         }

@@ -301,7 +301,7 @@ fn undefined(failure: StepFailure, t: f64) -> Undefined {
 
 /// The state of the nearest doubles.
 pub(super) fn rounded<S: StateVector, const PARTS: usize>(row: &[Extended<PARTS>]) -> S {
-    let mut values = S::zeros();
+    let mut values = S::zeros(S::CAPACITY);
     for (own, number) in values.as_mut_slice().iter_mut().zip(row) {
         *own = number.nearest();
     }

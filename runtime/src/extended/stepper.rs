@@ -37,7 +37,7 @@ pub(super) struct Rounded<'r, 'a, Sys: Variational, const PARTS: usize> {
 
 impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
     pub(super) fn new(flight: &'r RefCell<Flight<'a, Sys, PARTS>>) -> Self {
-        let zeros = Sys::State::zeros();
+        let zeros = Sys::State::zeros(Sys::State::CAPACITY);
         Self {
             flight,
             order: 1,
@@ -238,7 +238,7 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
 
     fn interpolate(&self, theta: f64) -> Sys::State {
         let s = theta * self.theta;
-        let mut state = Sys::State::zeros();
+        let mut state = Sys::State::zeros(Sys::State::CAPACITY);
         for coefficient in self.coefficients[1..=self.order].iter().rev() {
             for (sum, entry) in state.as_mut_slice().iter_mut().zip(coefficient.as_slice()) {
                 *sum = math::mul_add(*sum, s, *entry);

@@ -93,17 +93,15 @@ pub(super) struct Accumulation<V> {
 }
 
 impl<V: StateVector> Accumulation<V> {
-    /// No impacts yet.
-    pub(super) fn none() -> Self {
-        let mut times = V::zeros();
+    /// No impacts yet, on as many surfaces as there are components here.
+    pub(super) fn none(like: &V) -> Self {
+        let zeros = like.zeroed();
+        let [mut times, mut infinite, mut unknown] = [zeros; 3];
         times.as_mut_slice().fill(f64::NEG_INFINITY);
-        let mut infinite = V::zeros();
         infinite.as_mut_slice().fill(f64::INFINITY);
-        let mut unknown = V::zeros();
         unknown.as_mut_slice().fill(f64::NAN);
-        let zeros = V::zeros();
         Self {
-            growth: Growth::none(),
+            growth: Growth::none(like),
             last: f64::NEG_INFINITY,
             repeated: 0,
             on_each: zeros,
@@ -248,8 +246,8 @@ impl<V: StateVector> Accumulation<V> {
             self.repeated += 1;
         } else {
             self.repeated = 0;
-            (self.on_each, self.unequal) = (V::zeros(), 0);
-            self.fastest = V::zeros();
+            (self.on_each, self.unequal) = (self.on_each.zeroed(), 0);
+            self.fastest = self.on_each.zeroed();
         }
         self.on_each.as_mut_slice()[surface] += 1.0;
         self.last = t;

@@ -76,10 +76,10 @@ impl<G: StateVector> Glance<G> {
 
 /// The gaps, if all are finite.
 #[inline(always)]
-pub(super) fn finite<Sys: Impacting>(gaps: Sys::Gaps) -> Result<Sys::Gaps, Outcome> {
+pub(super) fn finite<Sys: Impacting>(system: &Sys, gaps: Sys::Gaps) -> Result<Sys::Gaps, Outcome> {
     match gaps.as_slice().iter().position(|gap| !gap.is_finite()) {
         Some(surface) => Err(Outcome::NonFinite {
-            component: Sys::State::LEN + surface,
+            component: system.state_len() + surface,
         }),
         None => Ok(gaps),
     }
@@ -92,10 +92,10 @@ pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<Glance<Sys::Gaps>, Outcome> {
     let (t, length) = (step.t_end(), step.length());
     let known = step.stepper.end_gaps();
-    let has_series = known.len() == Sys::Gaps::LEN;
+    let has_series = known.len() == step.system.surface_count();
     let gaps = match has_series {
         true => {
-            let mut gaps = Sys::Gaps::zeros();
+            let mut gaps = step.system.zero_gaps();
             gaps.as_mut_slice().copy_from_slice(known);
             gaps
         }
@@ -105,7 +105,7 @@ pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
         }
     };
     Ok(Glance {
-        gaps: finite::<Sys>(gaps)?,
+        gaps: finite(step.system, gaps)?,
         close: None,
         has_series,
         length,

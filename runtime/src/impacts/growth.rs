@@ -45,8 +45,8 @@ struct Flight {
 }
 
 impl<V: StateVector> Growth<V> {
-    pub(super) fn none() -> Self {
-        let zeros = V::zeros();
+    pub(super) fn none(like: &V) -> Self {
+        let zeros = like.zeroed();
         Self {
             counts: zeros,
             firsts: zeros,
@@ -155,7 +155,7 @@ mod tests {
 
     /// When flights end that shrink as `length` says.
     fn end(length: impl Fn(u32) -> f64) -> Option<f64> {
-        let mut growth = Growth::<nalgebra::SVector<f64, 1>>::none();
+        let mut growth = Growth::none(&nalgebra::SVector::<f64, 1>::zeros());
         let (mut t, mut before) = (0.0, f64::INFINITY);
         for n in 1..20_000_000 {
             let flight = length(n);
@@ -191,7 +191,7 @@ mod tests {
             let n = f64::from(n) - 1e3;
             1e-20 + n * n
         };
-        let mut growth = Growth::<nalgebra::SVector<f64, 1>>::none();
+        let mut growth = Growth::none(&nalgebra::SVector::<f64, 1>::zeros());
         for n in 1..2000 {
             let flights = [cusp(n - 1), cusp(n)];
             assert_eq!(growth.add(0, 1e9, flights, || 1.0), None);

@@ -35,10 +35,10 @@ pub struct Held<G> {
 }
 
 impl<G: StateVector> Held<G> {
-    /// None.
-    pub(super) fn none() -> Self {
+    /// None, of as many as there are components here.
+    pub(super) fn none(like: &G) -> Self {
         Self {
-            surfaces: G::zeros(),
+            surfaces: like.zeroed(),
             slide: None,
         }
     }
@@ -73,7 +73,7 @@ impl<G: StateVector> Held<G> {
 
     /// Those held, in order of index.
     pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..G::LEN).filter(|&surface| self.is_held(surface))
+        (0..self.surfaces.count()).filter(|&surface| self.is_held(surface))
     }
 
     /// The components of those held, zeros elsewhere.
@@ -97,7 +97,7 @@ impl<G: StateVector> Held<G> {
         if let Some(slide) = self.slide {
             return slide.pressures(system, t, state).map(Some);
         }
-        let mut rate = Sys::State::zeros();
+        let mut rate = system.zero_state();
         system.rate(t, state, &mut rate)?;
         self.sizes_at(system, t, state, &rate)
     }
@@ -147,7 +147,7 @@ impl<G: StateVector> Held<G> {
         let Some(with) = self.trace(system, t, state, motion)? else {
             return Ok(None);
         };
-        let without = self.trace(system, t, state, &Sys::Impulse::zeros())?;
+        let without = self.trace(system, t, state, &system.zero_impulse())?;
         Ok(without.map(|without| sum(&with, -1.0, &without)))
     }
 
@@ -159,8 +159,7 @@ impl<G: StateVector> Held<G> {
         state: &Sys::State,
         rates: &G,
     ) -> Result<Option<G>, Fault> {
-        let mut sizes = G::zeros();
-        let mut weights = G::zeros();
+        let (mut sizes, mut weights) = (rates.zeroed(), rates.zeroed());
         for surface in self.iter() {
             let contact = system.contact(surface, t, state)?;
             weights.as_mut_slice()[surface] = 1.0 / contact.constrained_compliance;
@@ -170,7 +169,7 @@ impl<G: StateVector> Held<G> {
         let mut search = times(&weights, &missing);
         let mut squared = product(&search, &missing);
         let least = NEGLIGIBLE * NEGLIGIBLE * squared;
-        for _ in 0..2 * G::LEN {
+        for _ in 0..2 * rates.count() {
             if squared <= least {
                 break;
             }
@@ -215,7 +214,7 @@ impl<G: StateVector> Held<G> {
         state: &Sys::State,
         sizes: &G,
     ) -> Result<Sys::Impulse, Fault> {
-        let mut motion = Sys::Impulse::zeros();
+        let mut motion = system.zero_impulse();
         for surface in self.iter() {
             let contact = system.contact(surface, t, state)?;
             motion = sum(&motion, sizes.as_slice()[surface], &contact.direction);
@@ -352,7 +351,7 @@ pub(super) fn second_rates<Sys: Impacting>(
 
 /// The rates of momenta or quasi-velocities in the rate of a state.
 fn motion_of<Sys: Impacting>(system: &Sys, state: &Sys::State, rate: &Sys::State) -> Sys::Impulse {
-    let mut motion = Sys::Impulse::zeros();
+    let mut motion = system.zero_impulse();
     let parts = rate.as_slice().iter().skip(system.motion_start(state));
     for (part, rate) in motion.as_mut_slice().iter_mut().zip(parts) {
         *part = *rate;

@@ -29,19 +29,20 @@ pub(super) struct Hits<G> {
 }
 
 impl<G: StateVector> Hits<G> {
-    /// No surface.
-    pub(super) fn none() -> Self {
+    /// No surface, of as many as there are components here.
+    pub(super) fn none(like: &G) -> Self {
+        let none = like.zeroed();
         Self {
-            at_hand: G::zeros(),
-            still: G::zeros(),
-            due: G::zeros(),
-            struck: G::zeros(),
+            at_hand: none,
+            still: none,
+            due: none,
+            struck: none,
         }
     }
 
-    /// These surfaces.
-    pub(super) fn all_of(surfaces: impl Iterator<Item = usize>) -> Self {
-        let mut hits = Self::none();
+    /// These surfaces, of as many as there are components here.
+    pub(super) fn all_of(surfaces: impl Iterator<Item = usize>, like: &G) -> Self {
+        let mut hits = Self::none(like);
         hits.add(surfaces);
         hits
     }
@@ -66,14 +67,15 @@ impl<G: StateVector> Hits<G> {
 
     /// Number of surfaces at hand that are approached.
     pub(super) fn approached(&self, rates: &G) -> usize {
-        (0..G::LEN)
+        (0..rates.count())
             .filter(|&surface| self.is_approached(surface, rates))
             .count()
     }
 
     /// The first and the last of them.
     pub(super) fn ends(&self, rates: &G) -> Option<[usize; 2]> {
-        let mut approached = (0..G::LEN).filter(|&surface| self.is_approached(surface, rates));
+        let mut approached =
+            (0..rates.count()).filter(|&surface| self.is_approached(surface, rates));
         let first = approached.next()?;
         Some([first, approached.next_back().unwrap_or(first)])
     }
@@ -83,7 +85,7 @@ impl<G: StateVector> Hits<G> {
         if self.due(rates).next().is_some() {
             return 0;
         }
-        for surface in 0..G::LEN {
+        for surface in 0..rates.count() {
             let is_due = f64::from(u8::from(self.is_approached(surface, rates)));
             self.due.as_mut_slice()[surface] = is_due;
         }
@@ -103,7 +105,8 @@ impl<G: StateVector> Hits<G> {
     /// Surfaces of this round that have not had their turn and are still approached.
     fn due<'a>(&'a self, rates: &'a G) -> impl DoubleEndedIterator<Item = usize> + 'a {
         let is_due = |surface: usize| self.due.as_slice()[surface] == 1.0;
-        (0..G::LEN).filter(move |&surface| is_due(surface) && self.is_approached(surface, rates))
+        (0..rates.count())
+            .filter(move |&surface| is_due(surface) && self.is_approached(surface, rates))
     }
 
     /// Notes an impact on a surface. Returns whether it was struck at this moment before.

@@ -105,14 +105,14 @@ impl Passages {
 impl<Sys: Impacting> Impacts<Sys> {
     /// The declared laws.
     pub fn declared(system: &Sys) -> Self {
-        let _ = system;
+        let gaps = system.zero_gaps();
         Self {
-            overrides: Overrides::none(),
+            overrides: Overrides::none(&gaps),
             budget: IMPACT_BUDGET,
             policies: Policies::default(),
-            watch: Watch::new(),
-            accumulation: Accumulation::none(),
-            resting: Resting::none(),
+            watch: Watch::new(system),
+            accumulation: Accumulation::none(&gaps),
+            resting: Resting::none(&gaps),
         }
     }
 
@@ -499,9 +499,10 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
-        self.accumulation = Accumulation::none();
-        self.resting = Resting::none();
-        for surface in 0..Sys::Gaps::LEN {
+        let gaps = now.system.zero_gaps();
+        self.accumulation = Accumulation::none(&gaps);
+        self.resting = Resting::none(&gaps);
+        for surface in 0..gaps.count() {
             let (law, declared) = (self.law_of(now.system, surface), now.system.law(surface));
             if law.is_map() && law != declared {
                 return Err(Outcome::NoReset { surface });
@@ -545,7 +546,7 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         if self.resting.turn(now, observer)? {
             let rates = now.system.gap_rates(now.t, now.state)?;
             self.watch.hold(self.resting.held());
-            let at_hand = Hits::all_of(held.iter().chain(self.resting.held().iter()));
+            let at_hand = Hits::all_of(held.iter().chain(self.resting.held().iter()), &rates);
             return self.watch.leave(&at_hand, now, rates);
         }
         let mut hits = self.watch.hits(theta, now)?;
@@ -563,7 +564,7 @@ impl<Sys: Impacting> SceneEffects<Sys> for Impacts<Sys> {
     }
 
     fn law(&self, system: &Sys, surface: usize) -> Option<Law> {
-        (surface < Sys::Gaps::LEN).then(|| self.law_of(system, surface))
+        (surface < system.surface_count()).then(|| self.law_of(system, surface))
     }
 
     fn set_impact_budget(&mut self, budget: Option<u64>) {

@@ -15,20 +15,20 @@ pub(crate) struct Overrides<V> {
 const DECLARED: f64 = -1.0;
 
 impl<V: StateVector> Overrides<V> {
-    /// Every declared law stands.
-    pub(crate) fn none() -> Self {
-        let mut places = V::zeros();
+    /// Every declared law stands, of as many surfaces as there are components here.
+    pub(crate) fn none(like: &V) -> Self {
+        let mut places = like.zeroed();
         places.as_mut_slice().fill(DECLARED);
         Self {
             places,
-            coefficients: V::zeros(),
+            coefficients: like.zeroed(),
         }
     }
 
     /// Puts a law in place of the declared one; a surface past the end changes nothing.
     pub(crate) fn set(&mut self, surface: usize, law: Law) {
         let place = Law::NAMES.iter().position(|(name, _)| *name == law.name());
-        if let (Some(place), true) = (place, surface < V::LEN) {
+        if let (Some(place), true) = (place, surface < self.places.count()) {
             self.places.as_mut_slice()[surface] = place as f64;
             self.coefficients.as_mut_slice()[surface] = law.coefficient().unwrap_or(0.0);
         }
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn every_law_is_kept_as_it_was_given() {
-        let mut overrides = Overrides::<nalgebra::SVector<f64, 2>>::none();
+        let mut overrides = Overrides::none(&nalgebra::SVector::<f64, 2>::zeros());
         for (name, _) in Law::NAMES {
             let law = Law::from_name(name, 0.25);
             overrides.set(1, law.unwrap_or(Law::Elastic));

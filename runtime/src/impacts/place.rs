@@ -26,7 +26,7 @@ impl<Sys: Impacting> Place<Sys> {
     ) -> Result<Self, Fault> {
         // NOTE: one after the other, so that what both are made of is computed once.
         let rates = system.gap_rates(t, &state)?;
-        let gaps = (Sys::Gaps::LEN > 1).then(|| {
+        let gaps = (rates.count() > 1).then(|| {
             *evaluations += 1;
             system.gaps(t, &state)
         });

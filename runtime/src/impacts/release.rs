@@ -26,7 +26,7 @@ pub(super) fn first_release<Sys: Impacting, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
 ) -> Result<Option<Release>, Outcome> {
     step.prepare()?;
-    let mut samples = [Sys::Gaps::zeros(); SAMPLES];
+    let mut samples = [step.system.zero_gaps(); SAMPLES];
     for (sample, node) in samples.iter_mut().zip(NODES) {
         *sample = sizes(held, step, node)?;
     }
@@ -51,7 +51,7 @@ fn sizes<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<Sys::Gaps, Fault> {
     step.counters.rate_evaluations += 1;
     let sizes = held.sizes(step.system, step.time(part), &step.state(part))?;
-    Ok(sizes.unwrap_or(Sys::Gaps::zeros()))
+    Ok(sizes.unwrap_or_else(|| step.system.zero_gaps()))
 }
 
 /// The first fall of the force of one surface.

@@ -44,12 +44,12 @@ pub(super) struct Resting<G> {
 }
 
 impl<G: StateVector> Resting<G> {
-    /// On none.
-    pub(super) fn none() -> Self {
-        let mut accumulated = G::zeros();
+    /// On none, of as many as there are components here.
+    pub(super) fn none(like: &G) -> Self {
+        let mut accumulated = like.zeroed();
         accumulated.as_mut_slice().fill(f64::NAN);
         Self {
-            held: Held::none(),
+            held: Held::none(like),
             turn: Turn::Nothing,
             accumulated,
             changed: (f64::NEG_INFINITY, 0),
@@ -84,7 +84,7 @@ impl<G: StateVector> Resting<G> {
     fn count(&mut self, surface: usize, t: f64) -> Result<(), Outcome> {
         let (last, times) = self.changed;
         self.changed = (t, if t == last { times + 1 } else { 0 });
-        if self.changed.1 > CHANGES * (G::LEN as u32 + 1) {
+        if self.changed.1 > CHANGES * (self.accumulated.count() as u32 + 1) {
             return Err(Outcome::Contact { surface });
         }
         Ok(())
@@ -169,7 +169,7 @@ impl<G: StateVector> Resting<G> {
         );
         let pairs = qdot.as_slice().iter().zip(p.as_slice());
         let energy: f64 = pairs.map(|(v, p)| (v * p).abs()).sum();
-        for surface in 0..G::LEN {
+        for surface in 0..self.accumulated.count() {
             let rate = rates.as_slice()[surface];
             if self.held.is_held(surface) && rate > 0.0 {
                 let contact = system.contact(surface, t, now.state)?;
@@ -196,7 +196,7 @@ impl<G: StateVector> Resting<G> {
                 false => Ok(()),
             };
         }
-        for surface in 0..G::LEN {
+        for surface in 0..self.accumulated.count() {
             if self.held.is_held(surface) && is_left(surface) {
                 self.leave(surface, now, observer)?;
             }
@@ -246,7 +246,7 @@ impl<G: StateVector> Resting<G> {
         now: &Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
-        self.held = Held::none();
+        self.held = Held::none(&self.accumulated);
         show(
             observer,
             Hold {

@@ -48,7 +48,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         self.length = glance.length;
         self.parts.as_mut_slice().fill(f64::INFINITY);
-        for surface in first..Sys::Gaps::LEN {
+        for surface in first..self.parts.count() {
             if surface != first {
                 match self.told(surface, step, glance) {
                     Told::Passed | Told::Clear => continue,

@@ -44,17 +44,17 @@ impl<G: StateVector> GapSeries<G> {
     ) -> Option<Self> {
         let Series { unit, order } = step.stepper.series()?;
         // NOTE: terms above the order stay zero.
-        let mut gaps = [G::zeros(); LENGTH];
+        let mut gaps = [last.zeroed(); LENGTH];
         let theta = step.length() / unit;
         let mut power = 1.0;
-        let (mut sums, mut sizes, mut tails) = (G::zeros(), G::zeros(), G::zeros());
-        let mut slopes = G::zeros();
+        let (mut sums, mut sizes, mut tails) = (last.zeroed(), last.zeroed(), last.zeroed());
+        let mut slopes = last.zeroed();
         for (k, gap) in gaps[..=order].iter_mut().enumerate() {
             if k == 5 {
                 tails = sizes;
             }
             let coefficient = step.stepper.gap_coefficient(k);
-            for i in 0..G::LEN {
+            for i in 0..last.count() {
                 let term = coefficient[i] * power;
                 gap.as_mut_slice()[i] = term;
                 sums.as_mut_slice()[i] += term;
@@ -63,8 +63,8 @@ impl<G: StateVector> GapSeries<G> {
             }
             power *= theta;
         }
-        let mut doubts = G::zeros();
-        for i in 0..G::LEN {
+        let mut doubts = last.zeroed();
+        for i in 0..last.count() {
             let missed = (sums.as_slice()[i] - last.as_slice()[i]).abs();
             let size = sizes.as_slice()[i];
             let first = match order < 5 {

@@ -53,7 +53,7 @@ impl Slide {
         let other = self
             .across(system, t, state)
             .map_err(|_| Fault::SingularSurface { surface: self.back })?;
-        let mut rates = [Sys::State::zeros(); 2];
+        let mut rates = [system.zero_state(); 2];
         system.rate(t, state, &mut rates[0])?;
         system.rate(t, &other, &mut rates[1])?;
         let back = system.gap_rates(t, state)?.as_slice()[self.back];
@@ -73,7 +73,7 @@ impl Slide {
         state: &Sys::State,
     ) -> Result<Sys::Gaps, Fault> {
         let [back, across] = self.sides(system, t, state)?.rates;
-        let mut pressures = Sys::Gaps::zeros();
+        let mut pressures = system.zero_gaps();
         pressures.as_mut_slice()[self.back] = -back;
         pressures.as_mut_slice()[self.across] = -across;
         Ok(pressures)

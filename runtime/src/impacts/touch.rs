@@ -16,12 +16,12 @@ impl<Sys: Impacting> Watch<Sys> {
         rates: &Sys::Gaps,
         now: &mut Moment<'_, Sys>,
     ) -> Result<(), Outcome> {
-        if Sys::Gaps::LEN == 1 {
+        if rates.count() == 1 {
             return Ok(());
         }
         let before = hits.at_hand;
         self.add_touching(hits, rates, now)?;
-        for surface in 0..Sys::Gaps::LEN {
+        for surface in 0..rates.count() {
             if hits.at_hand.as_slice()[surface] != before.as_slice()[surface] {
                 // What was found out about the last hit on it is of another place.
                 self.grazes.as_mut_slice()[surface] = 0.0;
@@ -38,7 +38,7 @@ impl<Sys: Impacting> Watch<Sys> {
         rates: &Sys::Gaps,
         now: &mut Moment<'_, Sys>,
     ) -> Result<(), Outcome> {
-        for surface in 0..Sys::Gaps::LEN {
+        for surface in 0..rates.count() {
             let is_candidate = hits.at_hand.as_slice()[surface] == 0.0
                 && rates.as_slice()[surface] < 0.0
                 && !self.is_passable(surface);
@@ -60,7 +60,7 @@ impl<Sys: Impacting> Watch<Sys> {
             Some(gaps) => gaps,
             None => {
                 now.counters.event_evaluations += 1;
-                finite::<Sys>(now.system.gaps(now.t, now.state))?
+                finite(now.system, now.system.gaps(now.t, now.state))?
             }
         };
         self.here = Some(gaps);

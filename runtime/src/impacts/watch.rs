@@ -86,8 +86,9 @@ pub(super) enum Told {
 }
 
 impl<Sys: Impacting> Watch<Sys> {
-    pub(super) fn new() -> Self {
-        let zeros = Sys::Gaps::zeros();
+    pub(super) fn new(system: &Sys) -> Self {
+        let (state, zeros) = (system.zero_state(), system.zero_gaps());
+        let positions = system.coordinate_count();
         Self {
             gaps: zeros,
             passable: zeros,
@@ -100,15 +101,15 @@ impl<Sys: Impacting> Watch<Sys> {
             length: 0.0,
             place: None,
             here: None,
-            sizes: Sys::State::zeros(),
-            sizes_at_start: Sys::State::zeros(),
+            sizes: state,
+            sizes_at_start: state,
             steps: 0,
             errors: 0.0,
-            held: Held::none(),
+            held: Held::none(&zeros),
             behind: None,
-            path: Path::new(),
-            haven: Haven::new(Sys::Vector::LEN),
-            limits: Bends::new(Sys::Vector::LEN),
+            path: Path::new(&state),
+            haven: Haven::new(positions, &state),
+            limits: Bends::new(positions, &state, &zeros),
             is_stale: false,
         }
     }
@@ -117,7 +118,8 @@ impl<Sys: Impacting> Watch<Sys> {
     pub(super) fn hold(&mut self, held: &Held<Sys::Gaps>) {
         self.haven.forget();
         // A slide may end in another mode.
-        if (0..Sys::Gaps::LEN).any(|surface| held.is_held(surface) != self.held.is_held(surface)) {
+        if (0..self.gaps.count()).any(|surface| held.is_held(surface) != self.held.is_held(surface))
+        {
             self.limits.forget();
         }
         self.held = *held;
@@ -135,11 +137,13 @@ impl<Sys: Impacting> Watch<Sys> {
     /// The surfaces at hand at the first instant of a run.
     pub(super) fn begin(&mut self, now: &mut Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
         (self.proposed, self.place) = (None, None);
-        self.held = Held::none();
-        (self.haven, self.limits) = (Haven::new(Sys::Vector::LEN), Bends::new(Sys::Vector::LEN));
+        self.held = Held::none(&self.gaps);
+        let positions = now.system.coordinate_count();
+        self.haven = Haven::new(positions, now.state);
+        self.limits = Bends::new(positions, now.state, &self.gaps);
         self.is_stale = false;
         let rates = now.system.gap_rates(now.t, now.state)?;
-        let mut hits = Hits::<Sys::Gaps>::none();
+        let mut hits = Hits::none(&rates);
         (self.sizes, self.sizes_at_start) = (*now.state, *now.state);
         self.relocate(&mut hits, &rates, now)?;
         Ok(hits)
@@ -163,11 +167,10 @@ impl<Sys: Impacting> Watch<Sys> {
         rates: &Sys::Gaps,
         now: &mut Moment<'_, Sys>,
     ) -> Result<(), Outcome> {
-        self.grazes = Sys::Gaps::zeros();
-        self.bends = Sys::Gaps::zeros();
         let gaps = measured(now)?;
+        (self.grazes, self.bends) = (gaps.zeroed(), gaps.zeroed());
         self.here = Some(gaps);
-        let mut at_hand = Sys::Gaps::zeros();
+        let mut at_hand = gaps.zeroed();
         for (surface, &gap) in gaps.as_slice().iter().enumerate() {
             if now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (rates.as_slice()[surface] * now.t).abs();
@@ -182,7 +185,7 @@ impl<Sys: Impacting> Watch<Sys> {
 
     /// In a mode that was just entered, a surface at hand that motion may pass has been dealt with: it was entered there.
     pub(super) fn pass_by(&self, hits: &mut Hits<Sys::Gaps>) {
-        for surface in 0..Sys::Gaps::LEN {
+        for surface in 0..self.gaps.count() {
             if self.is_passable(surface) && hits.at_hand.as_slice()[surface] == 1.0 {
                 hits.set_done(surface);
             }
@@ -200,7 +203,7 @@ impl<Sys: Impacting> Watch<Sys> {
         self.haven.forget();
         let leads_on =
             |surface: usize| matches!(now.system.law(surface), Law::Reset | Law::Transition);
-        if (0..Sys::Gaps::LEN).any(|s| hits.at_hand.as_slice()[s] == 1.0 && leads_on(s)) {
+        if (0..self.gaps.count()).any(|s| hits.at_hand.as_slice()[s] == 1.0 && leads_on(s)) {
             self.limits.forget();
         }
         self.is_stale = false;
@@ -208,8 +211,8 @@ impl<Sys: Impacting> Watch<Sys> {
         let (held, here) = (self.held, self.here.take());
         let is_at_hand =
             |surface: usize| hits.at_hand.as_slice()[surface] == 1.0 || held.is_held(surface);
-        self.gaps = Sys::Gaps::zeros();
-        if (0..Sys::Gaps::LEN).all(is_at_hand) {
+        self.gaps = rates.zeroed();
+        if (0..self.gaps.count()).all(is_at_hand) {
             self.sizes = *now.state;
             return Ok(());
         }
@@ -217,7 +220,7 @@ impl<Sys: Impacting> Watch<Sys> {
             Some(gaps) => gaps,
             None => measured(now)?,
         };
-        for surface in (0..Sys::Gaps::LEN).filter(|&surface| !is_at_hand(surface)) {
+        for surface in (0..self.gaps.count()).filter(|&surface| !is_at_hand(surface)) {
             self.gaps.as_mut_slice()[surface] = gaps.as_slice()[surface];
         }
         // A gap that should be 0 has the rounding errors of the flight that ended; the next ones are those of the next.
@@ -232,7 +235,7 @@ impl<Sys: Impacting> Watch<Sys> {
         theta: f64,
         now: &mut Moment<'_, Sys>,
     ) -> Result<Hits<Sys::Gaps>, Outcome> {
-        let mut hits = Hits::<Sys::Gaps>::none();
+        let mut hits = Hits::none(&self.parts);
         self.here = None;
         if self.proposed.is_none() {
             return Ok(hits);
@@ -245,7 +248,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
             }
         }
-        if Sys::Gaps::LEN > 1 && hits.is_some() {
+        if self.parts.count() > 1 && hits.is_some() {
             self.add_beside(&mut hits, now)?;
         }
         Ok(hits)
@@ -261,12 +264,12 @@ impl<Sys: Impacting> Watch<Sys> {
         let rates = self.rates_here(now)?;
         let known = self.known_here(now).and_then(|place| place.gaps);
         let gaps = match known {
-            Some(gaps) => finite::<Sys>(gaps)?,
+            Some(gaps) => finite(now.system, gaps)?,
             None => measured(now)?,
         };
         self.here = Some(gaps);
         let roundings = 2.0 + f64::from(self.steps) / 16.0;
-        for surface in 0..Sys::Gaps::LEN {
+        for surface in 0..self.gaps.count() {
             if hits.at_hand.as_slice()[surface] == 1.0 {
                 continue;
             }
@@ -364,7 +367,7 @@ impl<Sys: Impacting> Watch<Sys> {
         if self.may_be_due(&glance) {
             glance.look_closer(step)?;
         }
-        let mut surfaces = 0..Sys::Gaps::LEN;
+        let mut surfaces = 0..self.gaps.count();
         let Self { limits, path, .. } = self;
         limits.follow(step.system, path, &mut step.counters.enclosures);
         let mut has_told = true;
@@ -394,7 +397,7 @@ impl<Sys: Impacting> Watch<Sys> {
     /// Whether a gap is so small at the end of the step that it may vanish there as far as times can tell.
     #[inline]
     fn may_be_due(&self, glance: &Glance<Sys::Gaps>) -> bool {
-        (0..Sys::Gaps::LEN).any(|surface| {
+        (0..self.gaps.count()).any(|surface| {
             let at = |values: &Sys::Gaps| values.as_slice()[surface];
             let rise = match self.has_rates {
                 true => at(&self.rates) * glance.length,
@@ -410,7 +413,7 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<(), Outcome> {
         step.counters.event_evaluations += 1;
-        self.gaps = finite::<Sys>(step.system.gaps(step.t_start(), step.start()))?;
+        self.gaps = finite(step.system, step.system.gaps(step.t_start(), step.start()))?;
         self.has_rates = self.gaps.as_slice().iter().any(|&gap| gap <= 0.0);
         if self.has_rates {
             self.rates = step.system.gap_rates(step.t_start(), step.start())?;
@@ -454,13 +457,13 @@ impl<Sys: Impacting> Watch<Sys> {
             );
             return Ok(());
         }
-        for surface in 0..Sys::Gaps::LEN {
+        for surface in 0..self.gaps.count() {
             if self.is_passable(surface) {
                 let start = before.as_slice()[surface];
                 self.keep_side(surface, start, step, glance);
             }
         }
-        for surface in 0..Sys::Gaps::LEN {
+        for surface in 0..self.gaps.count() {
             let (gap, at_hand) = (
                 self.gaps.as_slice()[surface],
                 before.as_slice()[surface] == 0.0,
@@ -586,7 +589,7 @@ impl<Sys: Impacting> Watch<Sys> {
     /// Surfaces that count have a gap that is not negative beyond rounding; within rounding they are at hand. One that
     /// counts by rounding alone does not yet: so a ball that lands on a ledge is not inside the wall below.
     fn check_negative(&mut self, now: &mut Moment<'_, Sys>) -> Result<(), Outcome> {
-        for surface in 0..Sys::Gaps::LEN {
+        for surface in 0..self.gaps.count() {
             let gap = self.gaps.as_slice()[surface];
             let is_wall = !self.is_passable(surface);
             if is_wall && gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
@@ -606,7 +609,7 @@ impl<Sys: Impacting> Watch<Sys> {
 /// Gaps at a moment, all finite.
 fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outcome> {
     now.counters.event_evaluations += 1;
-    finite::<Sys>(now.system.gaps(now.t, now.state))
+    finite(now.system, now.system.gaps(now.t, now.state))
 }
 
 /// The size of a gap's rounding errors at a moment, from components that have had these sizes.

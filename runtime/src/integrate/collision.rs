@@ -70,7 +70,7 @@ pub(super) fn meet<F: VectorField, M: Advance<F>>(
             field,
             counters: &mut *counters,
         };
-        step.memory = M::memory();
+        step.memory = M::memory(&step.ends.start.value);
         let pieces = step.arriving_pieces(length);
         step.cross_pieces(&mut field, pieces.lengths).ok()?;
         gap(start.t + length, &step.ends.end.value).ok()
@@ -152,7 +152,7 @@ impl Pieces {
         energy: &EnergyAt<'_, F::State>,
     ) -> Option<f64> {
         let (mut t, mut state, mut rate) = (departure.t, *departure.state, *departure.rate);
-        let (mut memory, mut sum) = (M::memory(), 0.0);
+        let (mut memory, mut sum) = (M::memory(&state.value), 0.0);
         for (length, slope) in self.lengths.into_iter().zip(self.slopes) {
             if length == 0.0 {
                 sum += slope * energy(t, &state.value).ok()?;
@@ -211,7 +211,7 @@ pub(super) fn rebound<F: VectorField, M: Advance<F>>(
     let arrived = step.ends.end.value;
     let jump = |scale: f64| {
         let mut state = arrived;
-        for i in rebound.motion_start..F::State::LEN {
+        for i in rebound.motion_start..state.count() {
             let change = struck.as_slice()[i] - arrived.as_slice()[i];
             state.as_mut_slice()[i] += scale * change;
         }
@@ -238,7 +238,7 @@ pub(super) fn rebound<F: VectorField, M: Advance<F>>(
     let pieces = after.departing_pieces(h);
     let scale = solve(1.0, 1.0, |scale| {
         let state = step.ends.kept(&jump(scale));
-        let mut rate = F::State::zeros();
+        let mut rate = arrived.zeroed();
         evaluate(&mut field, now.t, &state.value, &mut rate).ok()?;
         let departing = Departure {
             t: now.t,

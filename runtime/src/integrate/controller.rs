@@ -117,7 +117,7 @@ impl<S: StateVector> Weights<S> {
 
     /// The largest of `value(i)` over the error allowed at a state.
     pub(super) fn norm(&self, at: &S, value: impl Fn(usize) -> f64) -> f64 {
-        let ratios = (0..S::LEN).map(|i| (value(i) / self.allowed(i, at, at)).abs());
+        let ratios = (0..at.count()).map(|i| (value(i) / self.allowed(i, at, at)).abs());
         ratios.fold(0.0, larger)
     }
 }

@@ -33,11 +33,11 @@ pub(super) struct Cubic {
 }
 
 impl<S: StateVector, const K: usize> Polynomial<S, K> {
-    /// The polynomial 0.
-    pub(super) fn zero() -> Self {
+    /// The polynomial 0, of states with as many components as this one.
+    pub(super) fn zero(like: &S) -> Self {
         Self {
-            base: Precise::new(S::zeros()),
-            coefficients: [S::zeros(); K],
+            base: Precise::new(like.zeroed()),
+            coefficients: [like.zeroed(); K],
         }
     }
 
@@ -69,10 +69,10 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
 
     /// The coefficients in powers of `theta`; returns the number of the last one.
     pub(super) fn powers(&self, powers: &mut [S; LENGTH]) -> usize {
-        powers[..=K].fill(S::zeros());
+        powers[..=K].fill(self.base.value.zeroed());
         for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
             let degree = K - 1 - k;
-            for i in 0..S::LEN {
+            for i in 0..coefficient.count() {
                 powers[0].as_mut_slice()[i] += coefficient.as_slice()[i];
                 for j in (0..=degree).rev() {
                     let power = powers[j].as_slice()[i];
@@ -86,7 +86,7 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
                 }
             }
         }
-        for i in 0..S::LEN {
+        for i in 0..self.base.value.count() {
             powers[0].as_mut_slice()[i] += self.base.value.as_slice()[i];
         }
         K
@@ -101,10 +101,10 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
     /// The state at `theta`, and what it is rounded off.
     #[inline(always)]
     pub(super) fn precisely_at(&self, theta: f64) -> Precise<S> {
-        let mut value = S::zeros();
+        let mut value = self.base.value.zeroed();
         for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
             let factor = if is_along(k) { theta } else { 1.0 - theta };
-            for i in 0..S::LEN {
+            for i in 0..coefficient.count() {
                 let sum = value.as_slice()[i] + coefficient.as_slice()[i];
                 value.as_mut_slice()[i] = sum * factor;
             }
@@ -132,7 +132,7 @@ impl<S: StateVector> Polynomial<S, 5> {
         // The slopes of theta^2 s^2 and theta^3 s^2 at A; at B that of the first has the opposite sign.
         const FOURTH: f64 = 2.0 * A * B * (1.0 - 2.0 * A);
         const FIFTH: [f64; 2] = [A * A * B * (3.0 - 5.0 * A), B * B * A * (3.0 - 5.0 * B)];
-        for i in 0..S::LEN {
+        for i in 0..self.base.value.count() {
             let first = self.coefficients[0].as_slice()[i];
             let missing = [(0, A), (1, B)]
                 .map(|(k, node)| self.beside_cubic(node, h * rates[k].as_slice()[i] - first, i));
@@ -158,7 +158,7 @@ mod tests {
         let rate = |x: f64| {
             Scalar::new((1.0 - 4.0 * x + 3.0 * x * x - 12.0 * x.powi(3) + 10.0 * x.powi(4)) / h)
         };
-        let mut dense = Polynomial::<Scalar, 5>::zero();
+        let mut dense = Polynomial::<Scalar, 5>::zero(&Scalar::zeros());
         let [start, end] = [rate(0.0)[0], rate(1.0)[0]].map(|rate| h * rate);
         let bend = value(1.0)[0] - value(0.0)[0] - start;
         let cubic = Cubic {

@@ -45,12 +45,12 @@ impl Scheme for Dop853Scheme {
     type Stages<S: StateVector> = [S; STAGES];
     type Dense<S: StateVector> = Polynomial<S, 7>;
 
-    fn stages<S: StateVector>() -> Self::Stages<S> {
-        [S::zeros(); STAGES]
+    fn stages<S: StateVector>(like: &S) -> Self::Stages<S> {
+        [like.zeroed(); STAGES]
     }
 
-    fn dense<S: StateVector>() -> Self::Dense<S> {
-        Polynomial::zero()
+    fn dense<S: StateVector>(like: &S) -> Self::Dense<S> {
+        Polynomial::zero(like)
     }
 
     #[inline(always)]
@@ -70,7 +70,7 @@ impl Scheme for Dop853Scheme {
     #[inline(always)]
     fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64 {
         let (mut fifth, mut third) = (0.0, 0.0);
-        for i in 0..S::LEN {
+        for i in 0..stages[0].count() {
             let weight = 1.0 / allowed(i);
             let e5 = sum(stages, &E5, i) * weight;
             let e3 = sum(stages, &E3, i) * weight;
@@ -118,7 +118,7 @@ fn fill_dense<F: VectorField>(
     let Span { t, h, start, .. } = span;
     let mut inside = start.value;
     make_stages!(field, (t, h, &start.value), stages, &mut inside, NODES: 13 A13 14 A14 15 A15);
-    for i in 0..F::State::LEN {
+    for i in 0..stages[0].count() {
         let mut gains = [0.0; STAGES];
         let mut size = (h * stages[0].as_slice()[i]).abs();
         for &(j, _) in &D3[1..] {

@@ -95,12 +95,12 @@ impl Scheme for DormandPrince5Scheme {
     type Stages<S: StateVector> = [S; STAGES];
     type Dense<S: StateVector> = Polynomial<S, 4>;
 
-    fn stages<S: StateVector>() -> Self::Stages<S> {
-        [S::zeros(); STAGES]
+    fn stages<S: StateVector>(like: &S) -> Self::Stages<S> {
+        [like.zeroed(); STAGES]
     }
 
-    fn dense<S: StateVector>() -> Self::Dense<S> {
-        Polynomial::zero()
+    fn dense<S: StateVector>(like: &S) -> Self::Dense<S> {
+        Polynomial::zero(like)
     }
 
     #[inline(always)]
@@ -119,7 +119,7 @@ impl Scheme for DormandPrince5Scheme {
     #[inline(always)]
     fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64 {
         let mut largest = 0.0;
-        for i in 0..S::LEN {
+        for i in 0..stages[0].count() {
             // The last stage is a rate; the entries add up to 0.
             let ending = stages[Self::LAST].as_slice()[i] - stages[0].as_slice()[i];
             let error = sum(stages, &E[..5], i) + E_LAST * ending;
@@ -137,7 +137,7 @@ impl Scheme for DormandPrince5Scheme {
         dense: &mut Self::Dense<F::State>,
     ) -> Result<(), Fault> {
         let h = span.h;
-        for i in 0..F::State::LEN {
+        for i in 0..stages[0].count() {
             let first = stages[0].as_slice()[i];
             let mut gains = [0.0; STAGES];
             let mut size = (h * first).abs();

@@ -81,11 +81,11 @@ pub trait Scheme {
     /// The dense output of a step.
     type Dense<S: StateVector>: Copy;
 
-    /// Stages of zeros.
-    fn stages<S: StateVector>() -> Self::Stages<S>;
+    /// Stages of zeros, with as many components as this state has.
+    fn stages<S: StateVector>(like: &S) -> Self::Stages<S>;
 
-    /// Dense output that is zero.
-    fn dense<S: StateVector>() -> Self::Dense<S>;
+    /// Dense output that is zero, of states with as many components as this one.
+    fn dense<S: StateVector>(like: &S) -> Self::Dense<S>;
 
     /// Weights of the solution at the end.
     #[doc(hidden)]
@@ -150,7 +150,7 @@ pub struct Embedded<S: StateVector, M: Scheme> {
 impl<S: StateVector, M: Scheme> Embedded<S, M> {
     /// An integrator with this tolerance.
     pub fn new(tolerance: Tolerance) -> Self {
-        let zeros = S::zeros();
+        let zeros = S::zeros(0);
         Self {
             tolerance,
             max_step: f64::INFINITY,
@@ -160,8 +160,8 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
             next: 0.0,
             error: 0.0,
             ends: Ends::new(),
-            stages: M::stages(),
-            dense: M::dense(),
+            stages: M::stages(&zeros),
+            dense: M::dense(&zeros),
             dense_ready: false,
         }
     }
@@ -284,14 +284,15 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
     ) -> Result<(), StepFailure> {
         let t = now.t;
         let mut field = Counted { field, counters };
+        (self.stages, self.dense) = (M::stages(state), M::dense(state));
         self.place(&mut field, now, Precise::new(*state))?;
         let rate = self.stages.as_ref()[M::LAST];
         let rate_after = |h: f64| {
             let mut moved = *state;
-            for i in 0..F::State::LEN {
+            for i in 0..state.count() {
                 moved.as_mut_slice()[i] += h * rate.as_slice()[i];
             }
-            let mut after = F::State::zeros();
+            let mut after = state.zeroed();
             let known = field.rate(t + h, &moved, &mut after).is_ok();
             (known && after.is_finite()).then_some(after)
         };
@@ -437,16 +438,16 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
     fn sway(&self) -> Option<F::State> {
         let (h, stages) = (self.ends.length(), self.stages.as_ref());
         let first = stages[0].as_slice();
-        let (mut bends, mut twists) = (F::State::zeros(), F::State::zeros());
-        for i in 0..F::State::LEN {
+        let (mut bends, mut twists) = (stages[0].zeroed(), stages[0].zeroed());
+        for i in 0..first.len() {
             let gained = h * (stages[M::LAST].as_slice()[i] - first[i]);
             let bend = self.ends.end.minus(&self.ends.start, i) - h * first[i];
             bends.as_mut_slice()[i] = bend;
             twists.as_mut_slice()[i] = 2.0 * bend - gained;
         }
-        let mut sway = F::State::zeros();
+        let mut sway = stages[0].zeroed();
         for (stage, &node) in stages[1..M::LAST].iter().zip(&M::NODES[1..]) {
-            for i in 0..F::State::LEN {
+            for i in 0..first.len() {
                 let cubic =
                     node * (2.0 * bends.as_slice()[i] + (2.0 - 3.0 * node) * twists.as_slice()[i]);
                 let apart = (h * stage.as_slice()[i] - cubic).abs();

@@ -15,9 +15,9 @@ pub struct Ends<S> {
 }
 
 impl<S: StateVector> Ends<S> {
-    /// No step.
+    /// No step yet, of states that [`Ends::place`] brings.
     pub(super) fn new() -> Self {
-        let zeros = Precise::new(S::zeros());
+        let zeros = Precise::new(S::zeros(0));
         Self {
             t: [Instant::default(); 2],
             start: zeros,

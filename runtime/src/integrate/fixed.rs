@@ -70,8 +70,8 @@ pub trait Method: Copy {
         None
     }
 
-    /// Nothing kept.
-    fn memory<S: StateVector>() -> Self::Memory<S>;
+    /// Nothing kept, of states with as many components as this one.
+    fn memory<S: StateVector>(like: &S) -> Self::Memory<S>;
 }
 
 /// One step of a method on a system.
@@ -139,7 +139,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     /// tolerance and the method's order, from the rate at the start alone, and then kept; long enough for [`AUTOMATIC_STEPS`] to
     /// make the run. Prefer [`FixedStep::with_step`] where the motion becomes faster.
     pub fn new(tolerance: Tolerance) -> Self {
-        let zeros = S::zeros();
+        let zeros = S::zeros(0);
         Self {
             tolerance,
             given: None,
@@ -157,8 +157,8 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
             units: zeros,
             ends: Ends::new(),
             rates: [zeros; 2],
-            memory: M::memory(),
-            dense: Polynomial::zero(),
+            memory: M::memory(&zeros),
+            dense: Polynomial::zero(&zeros),
             dense_ready: false,
         }
     }
@@ -185,9 +185,9 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         }
         self.has_met = false;
         self.dense_ready = false;
-        self.memory = M::memory();
+        self.memory = M::memory(state);
         self.units = usable(field.field.scale(t, state));
-        self.rates[1] = S::zeros();
+        self.rates = [state.zeroed(); 2];
         evaluate(field, t, state, &mut self.rates[1])?;
         check_finite(state, &self.rates[1])
     }
@@ -206,10 +206,10 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         let span = t_end - t;
         let step = first_step(power, t_end - t, &weights, (state, &rate), |h| {
             let mut moved = *state;
-            for i in 0..S::LEN {
+            for i in 0..state.count() {
                 moved.as_mut_slice()[i] += h * rate.as_slice()[i];
             }
-            let mut after = S::zeros();
+            let mut after = state.zeroed();
             let known = evaluate(field, t + h, &moved, &mut after).is_ok();
             (known && after.is_finite()).then_some(after)
         });
@@ -558,8 +558,8 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
         counters.dense_constructions += 1;
         let mut field = Counted { field, counters };
         let h = self.made;
-        self.dense = Polynomial::zero();
-        for i in 0..F::State::LEN {
+        self.dense = Polynomial::zero(&self.ends.start.value);
+        for i in 0..self.rates[0].count() {
             let [first, last] = [0, 1].map(|end| h * self.rates[end].as_slice()[i]);
             let cubic = Cubic {
                 rate: first,
@@ -570,7 +570,7 @@ impl<F: VectorField, M: Advance<F>> Stepper<F> for FixedStep<F::State, M> {
             self.dense.set_cubic(i, &self.ends.start, cubic);
         }
         for _ in 0..M::REFINEMENTS {
-            let mut inner = [F::State::zeros(); 2];
+            let mut inner = [self.rates[0].zeroed(); 2];
             for (theta, rate) in [INNER, 1.0 - INNER].into_iter().zip(&mut inner) {
                 evaluate(
                     &mut field,

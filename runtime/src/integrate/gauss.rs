@@ -109,7 +109,7 @@ impl<const STAGES: usize> Table<STAGES> {
         slopes: &[S; STAGES],
     ) -> S {
         let mut inside = start.value;
-        for i in 0..S::LEN {
+        for i in 0..inside.count() {
             let increment: f64 = (0..STAGES)
                 .map(|j| self.couplings[stage][j] * (weights[j] * slopes[j].as_slice()[i]))
                 .sum();
@@ -196,9 +196,9 @@ pub struct Slopes<S, const STAGES: usize> {
 }
 
 impl<S: StateVector, const STAGES: usize> Slopes<S, STAGES> {
-    fn none() -> Self {
+    fn none(like: &S) -> Self {
         Self {
-            stages: [S::zeros(); STAGES],
+            stages: [like.zeroed(); STAGES],
             h: 0.0,
         }
     }
@@ -212,7 +212,7 @@ impl<S: StateVector, const STAGES: usize> Slopes<S, STAGES> {
             if !known {
                 continue;
             }
-            for i in 0..S::LEN {
+            for i in 0..rate.count() {
                 let carried: f64 = (0..STAGES).map(|j| row[j] * last[j].as_slice()[i]).sum();
                 stage.as_mut_slice()[i] = end * rate.as_slice()[i] + carried;
             }
@@ -250,7 +250,7 @@ fn advance<F: VectorField, const STAGES: usize>(
                 &inside,
                 &mut stages[stage],
             )?;
-            for i in 0..F::State::LEN {
+            for i in 0..inside.count() {
                 let (new, old) = (stages[stage].as_slice()[i], before.as_slice()[i]);
                 let unit = units.as_slice()[i];
                 change = largest(change, h * (new - old) / unit);
@@ -307,8 +307,8 @@ macro_rules! collocation {
                 $table.mean_energy(place, start, &memory.stages, energy)
             }
 
-            fn memory<S: StateVector>() -> Self::Memory<S> {
-                Slopes::none()
+            fn memory<S: StateVector>(like: &S) -> Self::Memory<S> {
+                Slopes::none(like)
             }
         }
 

@@ -24,7 +24,7 @@ use super::precise::Precise;
 use super::stepper::StepFailure;
 use crate::contract::Lagrangian;
 use crate::error::Fault;
-use crate::state::StateVector;
+use crate::state::{StateVector, scaled};
 
 /// The discrete Lagrange-d'Alembert midpoint rule: order 2 with dense output of order 2.
 ///
@@ -88,8 +88,8 @@ macro_rules! principle {
             /// What was rounded off the positions: N numbers, for which a state has room.
             type Memory<S: StateVector> = S;
 
-            fn memory<S: StateVector>() -> Self::Memory<S> {
-                S::zeros()
+            fn memory<S: StateVector>(like: &S) -> Self::Memory<S> {
+                like.zeroed()
             }
         }
 
@@ -164,7 +164,7 @@ fn depart<F: Lagrangian>(
     let Departure { t, state, rate, .. } = *departure;
     let state = &state.value;
     let mut ahead = *state;
-    for i in 0..F::State::LEN {
+    for i in 0..ahead.count() {
         ahead.as_mut_slice()[i] += 0.5 * h * rate.as_slice()[i];
     }
     let qdot = system.velocity(t, state)?;
@@ -175,7 +175,7 @@ fn depart<F: Lagrangian>(
         p: system.momentum(t, state)?,
         qdot,
         bend: combined(&later, 2.0 / h, &qdot, -2.0 / h),
-        reactions: F::Reactions::zeros(),
+        reactions: system.zero_reactions(),
     })
 }
 
@@ -188,7 +188,7 @@ fn midpoint_step<F: Lagrangian>(
 ) -> Result<Point<F>, StepFailure> {
     let (middle, t) = (from.t + 0.5 * h, from.t + h);
     let mut qdot = combined(&from.qdot, 1.0, &from.bend, 0.5 * h);
-    let mut reactions = combined(&F::Reactions::zeros(), 0.0, &from.reactions, h);
+    let mut reactions = scaled(&from.reactions, h);
     let mut iteration = Iteration::new();
     // What the momenta gain over the step but for the reaction at its end.
     let gain = loop {
@@ -202,7 +202,7 @@ fn midpoint_step<F: Lagrangian>(
         let momenta = combined(&from.p, 1.0, &half, 1.0);
         let (next, missing) = field.field.constrained_velocity(middle, &qm, &momenta)?;
         reactions = combined(&reactions, 1.0, &missing, 1.0);
-        let (change, size) = (distance(&next, &qdot), distance(&next, &F::Vector::zeros()));
+        let (change, size) = (distance(&next, &qdot), distance(&next, &next.zeroed()));
         qdot = next;
         match iteration.judge(change, size) {
             Verdict::GoOn => {}
@@ -226,7 +226,7 @@ fn midpoint_step<F: Lagrangian>(
         p: combined(&free, 1.0, &reaction, 1.0),
         qdot: arriving,
         bend: combined(&arriving, 2.0 / h, &qdot, -2.0 / h),
-        reactions: combined(&F::Reactions::zeros(), 0.0, &last, 1.0 / h),
+        reactions: scaled(&last, 1.0 / h),
     })
 }
 

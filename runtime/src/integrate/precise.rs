@@ -16,7 +16,7 @@ impl<S: StateVector> Precise<S> {
     pub(super) fn new(value: S) -> Self {
         Self {
             value,
-            rest: S::zeros(),
+            rest: value.zeroed(),
         }
     }
 
@@ -24,7 +24,7 @@ impl<S: StateVector> Precise<S> {
     #[inline]
     pub(super) fn kept(&self, state: &S) -> Self {
         let mut kept = Self::new(*state);
-        for i in 0..S::LEN {
+        for i in 0..state.count() {
             if state.as_slice()[i] == self.value.as_slice()[i] {
                 kept.rest.as_mut_slice()[i] = self.rest.as_slice()[i];
             }
@@ -49,7 +49,7 @@ impl<S: StateVector> Precise<S> {
     #[inline]
     pub(super) fn advanced(&self, increment: impl Fn(usize) -> f64) -> Self {
         let mut sum = *self;
-        for i in 0..S::LEN {
+        for i in 0..sum.value.count() {
             let before = self.value.as_slice()[i];
             let change = self.rest.as_slice()[i] + increment(i);
             let after = before + change;

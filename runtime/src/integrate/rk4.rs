@@ -36,7 +36,7 @@ impl Method for ClassicalRungeKutta {
 
     type Memory<S: StateVector> = ();
 
-    fn memory<S: StateVector>() -> Self::Memory<S> {}
+    fn memory<S: StateVector>(_: &S) -> Self::Memory<S> {}
 }
 
 /// The stages after the first: the part of the step that leads to each, and six times its weight.
@@ -53,11 +53,11 @@ impl<F: VectorField> Advance<F> for ClassicalRungeKutta {
         let (mut slope, mut sum) = (*rate, *rate);
         for (part, weight) in STAGES {
             let mut inside = state.value;
-            for i in 0..F::State::LEN {
+            for i in 0..inside.count() {
                 inside.as_mut_slice()[i] = state.plus(i, part * h * slope.as_slice()[i]);
             }
             evaluate(field, t + part * h, &inside, &mut slope)?;
-            for i in 0..F::State::LEN {
+            for i in 0..sum.count() {
                 sum.as_mut_slice()[i] += weight * slope.as_slice()[i];
             }
         }

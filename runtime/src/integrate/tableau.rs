@@ -53,7 +53,7 @@ pub(super) fn combine<S: StateVector>(
     (node, terms): (f64, &[Term]),
     out: &mut S,
 ) {
-    for i in 0..S::LEN {
+    for i in 0..base.count() {
         let rate = node * stages[0].as_slice()[i] + sum(stages, terms, i);
         out.as_mut_slice()[i] = base.as_slice()[i] + h * rate;
     }

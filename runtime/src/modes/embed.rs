@@ -49,7 +49,7 @@ pub fn write<T: Copy>(to: &mut [T], values: &[T]) {
 /// The state of the mode in a state of the model.
 #[inline(always)]
 pub fn taken<M: Mode>(state: &StateOf<M>) -> M::State {
-    let mut own = M::State::zeros();
+    let mut own = M::State::zeros(M::State::CAPACITY);
     for (own, value) in own.as_mut_slice().iter_mut().zip(state.as_slice()) {
         *own = *value;
     }
@@ -59,7 +59,7 @@ pub fn taken<M: Mode>(state: &StateOf<M>) -> M::State {
 /// The state of the model that is this one of the mode.
 #[inline(always)]
 pub fn placed<M: Mode>(own: &M::State) -> StateOf<M> {
-    let mut state = StateOf::<M>::zeros();
+    let mut state = StateOf::<M>::zeros(StateOf::<M>::CAPACITY);
     for (value, own) in state.as_mut_slice().iter_mut().zip(own.as_slice()) {
         *value = *own;
     }
@@ -78,7 +78,7 @@ fn scattered<V: StateVector>(values: &[f64], places: &[usize]) -> V {
 /// Values of the mode at their places among those of the model, and this number elsewhere.
 #[inline(always)]
 fn filled<V: StateVector>(values: &[f64], places: &[usize], elsewhere: f64) -> V {
-    let mut all = V::zeros();
+    let mut all = V::zeros(V::CAPACITY);
     all.as_mut_slice().fill(elsewhere);
     for (&place, value) in places.iter().zip(values) {
         all.as_mut_slice()[place] = *value;
@@ -89,7 +89,7 @@ fn filled<V: StateVector>(values: &[f64], places: &[usize], elsewhere: f64) -> V
 /// Those of the model's values that the mode has.
 #[inline(always)]
 fn gathered<V: StateVector>(values: &impl StateVector, places: &[usize]) -> V {
-    let mut own = V::zeros();
+    let mut own = V::zeros(V::CAPACITY);
     for (own, &place) in own.as_mut_slice().iter_mut().zip(places) {
         *own = values.as_slice()[place];
     }
@@ -99,7 +99,7 @@ fn gathered<V: StateVector>(values: &impl StateVector, places: &[usize]) -> V {
 /// The first components of a longer vector.
 #[inline(always)]
 fn beginning<V: StateVector>(values: &impl StateVector) -> V {
-    let mut own = V::zeros();
+    let mut own = V::zeros(V::CAPACITY);
     for (own, value) in own.as_mut_slice().iter_mut().zip(values.as_slice()) {
         *own = *value;
     }
@@ -114,7 +114,7 @@ pub fn rate<M: Mode>(
     state: &StateOf<M>,
     rate: &mut StateOf<M>,
 ) -> Result<(), Fault> {
-    let mut own = M::State::zeros();
+    let mut own = M::State::zeros(M::State::CAPACITY);
     M::of(model).rate(t, &taken::<M>(state), &mut own)?;
     *rate = beginning(&own);
     Ok(())
@@ -124,7 +124,7 @@ pub fn rate<M: Mode>(
 #[inline(always)]
 pub fn scale<M: Mode>(model: &M::Model, t: f64, state: &StateOf<M>) -> StateOf<M> {
     let own = M::of(model).scale(t, &taken::<M>(state));
-    let mut scale = StateOf::<M>::zeros();
+    let mut scale = StateOf::<M>::zeros(StateOf::<M>::CAPACITY);
     scale.as_mut_slice().fill(1.0);
     for (value, own) in scale.as_mut_slice().iter_mut().zip(own.as_slice()) {
         *value = *own;
@@ -347,7 +347,7 @@ pub fn gap_over<M: Mode + OverNumbers, L: Numbers>(
     t: L,
     component: &dyn Fn(usize) -> L,
 ) -> L {
-    let number = component(StateOf::<M>::LEN - 1).lane(0);
+    let number = component(StateOf::<M>::CAPACITY - 1).lane(0);
     match (number + 0.5) as usize == M::INDEX {
         true => M::of(model).gap_over(surface, t, component),
         false => no_gap(),

@@ -78,7 +78,7 @@ where
 
 /// The same components, of a vector of another name.
 fn converted<V: StateVector, W: StateVector>(values: &V) -> W {
-    let mut converted = W::zeros();
+    let mut converted = W::zeros(W::CAPACITY);
     for (own, value) in converted.as_mut_slice().iter_mut().zip(values.as_slice()) {
         *own = *value;
     }
@@ -101,7 +101,7 @@ fn checked<T: Mode>(
             coordinate: T::COORDINATES[coordinate],
         });
     }
-    let mut fixed = T::Vector::zeros();
+    let mut fixed = T::Vector::zeros(T::Vector::CAPACITY);
     fixed.as_mut_slice().fill(1.0);
     let kept = entered.complete_position(t, &entered.position(&after), &fixed);
     kept.map_err(|error| off(error, place))?;
@@ -116,7 +116,10 @@ fn declared<M: Mode + Impacting, T: Mode>(
     t: f64,
     own: &M::State,
 ) -> Result<T::State, Outcome> {
-    let (mut q, mut qdot) = (T::Vector::zeros(), T::Vector::zeros());
+    let (mut q, mut qdot) = (
+        T::Vector::zeros(T::Vector::CAPACITY),
+        T::Vector::zeros(T::Vector::CAPACITY),
+    );
     left.entry(surface, t, own, q.as_mut_slice(), qdot.as_mut_slice())?;
     let after = entered.state_unchecked(t, &q, &qdot)?;
     match entered.admit(t, &q, &qdot) {
@@ -220,7 +223,7 @@ fn covector<M: Mode>(
     own: &M::State,
 ) -> Result<M::Vector, Fault> {
     let q = left.position(own);
-    let mut kicked = left.state_unchecked(t, &q, &M::Vector::zeros())?;
+    let mut kicked = left.state_unchecked(t, &q, &M::Vector::zeros(M::Vector::CAPACITY))?;
     let rest = left.momentum(t, &kicked)?;
     left.kick(&mut kicked, 1.0, direction);
     let mut covector = left.momentum(t, &kicked)?;
@@ -255,7 +258,10 @@ impl<V: StateVector> Along<V> {
         let velocity_at = |p: &V| -> Result<V, Fault> {
             global.velocity(t, &global.state_from_momenta(t, q, p)?)
         };
-        let (steep, still) = (velocity_at(direction)?, velocity_at(&V::zeros())?);
+        let (steep, still) = (
+            velocity_at(direction)?,
+            velocity_at(&V::zeros(V::CAPACITY))?,
+        );
         let pairs = steep.as_slice().iter().zip(still.as_slice());
         let pairs = direction.as_slice().iter().zip(pairs);
         Ok(Self {

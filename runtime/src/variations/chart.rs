@@ -92,9 +92,9 @@ impl<Sys: Variational> Chart<Sys> {
     ) -> Result<(Self, Sys::State), Undefined> {
         let scale = system.scale(t, point);
         let mut frame = Sys::columns();
-        let mut values = Sys::State::zeros();
+        let mut values = Sys::State::zeros(Sys::State::CAPACITY);
         let mut equations = 0;
-        for first in (0..Sys::State::LEN).step_by(DIRECTIONS) {
+        for first in (0..Sys::State::CAPACITY).step_by(DIRECTIONS) {
             let along: [Tangent<Sys>; DIRECTIONS] = core::array::from_fn(|k| {
                 let mut tangent = Tangent::<Sys>::of_component(first + k);
                 for (own, scale) in tangent
@@ -116,7 +116,7 @@ impl<Sys: Variational> Chart<Sys> {
                 }
             })?;
         }
-        let mut correction = Sys::State::zeros();
+        let mut correction = Sys::State::zeros(Sys::State::CAPACITY);
         let left_out = orthonormalise(frame.as_mut(), equations, &values, &mut correction);
         complete(frame.as_mut(), left_out);
         for (own, scale) in correction.as_mut_slice().iter_mut().zip(scale.as_slice()) {
@@ -153,7 +153,7 @@ impl<Sys: Variational> Chart<Sys> {
 
     /// Number of directions.
     pub(super) fn dimension(&self) -> usize {
-        Sys::State::LEN - self.left_out
+        Sys::State::CAPACITY - self.left_out
     }
 
     /// A direction, in units of the state.
@@ -175,7 +175,7 @@ impl<Sys: Variational> Chart<Sys> {
         for (own, scale) in scaled.as_mut_slice().iter_mut().zip(self.scale.as_slice()) {
             *own /= scale;
         }
-        let mut components = Sys::State::zeros();
+        let mut components = Sys::State::zeros(Sys::State::CAPACITY);
         let directions = &self.frame.as_ref()[self.left_out..];
         for (own, direction) in components.as_mut_slice().iter_mut().zip(directions) {
             *own = dot(&scaled, direction);
@@ -213,7 +213,7 @@ fn orthonormalise<S: StateVector>(
         }
         let left = math::sqrt(dot(&row, &row));
         let is_new = left > DEPENDENT * before;
-        rows[index] = S::zeros();
+        rows[index] = S::zeros(S::CAPACITY);
         if is_new {
             for own in row.as_mut_slice() {
                 *own /= left;
@@ -228,10 +228,10 @@ fn orthonormalise<S: StateVector>(
 
 /// Completes `count` orthonormal rows to a basis, by the unit vectors of which most is left.
 fn complete<S: StateVector>(rows: &mut [S], count: usize) {
-    for kept in count..S::LEN {
-        let mut best = (0.0, S::zeros());
-        for component in 0..S::LEN {
-            let mut row = S::zeros();
+    for kept in count..S::CAPACITY {
+        let mut best = (0.0, S::zeros(S::CAPACITY));
+        for component in 0..S::CAPACITY {
+            let mut row = S::zeros(S::CAPACITY);
             row.as_mut_slice()[component] = 1.0;
             for _ in 0..2 {
                 for earlier in &rows[..kept] {
@@ -266,7 +266,7 @@ pub(super) fn least_squares<S: StateVector>(
     damping: f64,
 ) -> S {
     for (i, column) in turned.iter_mut().enumerate() {
-        *column = S::zeros();
+        *column = S::zeros(S::CAPACITY);
         column.as_mut_slice()[i] = 1.0;
     }
     for _ in 0..SWEEPS {
@@ -292,7 +292,7 @@ pub(super) fn least_squares<S: StateVector>(
     }
     let squares = columns[..size].iter().map(|column| dot(column, column));
     let largest = squares.fold(1.0, f64::max);
-    let mut solution = S::zeros();
+    let mut solution = S::zeros(S::CAPACITY);
     for (column, direction) in columns[..size].iter().zip(turned.iter()) {
         let square = dot(column, column);
         if square > RANK * RANK * largest {
@@ -309,7 +309,7 @@ pub(super) fn least_squares<S: StateVector>(
 /// Two columns turned by the angle of this cosine and sine.
 fn turn<S: StateVector>(columns: &mut [S], [i, j]: [usize; 2], [cosine, sine]: [f64; 2]) {
     let (one, other) = (columns[i], columns[j]);
-    for k in 0..S::LEN {
+    for k in 0..S::CAPACITY {
         let (x, y) = (one.as_slice()[k], other.as_slice()[k]);
         columns[i].as_mut_slice()[k] = cosine * x - sine * y;
         columns[j].as_mut_slice()[k] = sine * x + cosine * y;

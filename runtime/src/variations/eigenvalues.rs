@@ -38,8 +38,8 @@ impl<S: StateVector> Multipliers<S> {
 
     fn none() -> Self {
         Self {
-            real: S::zeros(),
-            imaginary: S::zeros(),
+            real: S::zeros(S::CAPACITY),
+            imaginary: S::zeros(S::CAPACITY),
             count: 0,
         }
     }

@@ -31,7 +31,7 @@ impl<Sys: Variational> Flow<Sys> {
             expansion: Expansion::new(),
             order: order(f64::EPSILON, Sys::WORK),
             unit: 1.0,
-            scale: Sys::State::zeros(),
+            scale: Sys::State::zeros(Sys::State::CAPACITY),
         }
     }
 

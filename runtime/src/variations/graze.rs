@@ -73,7 +73,7 @@ impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
     }
 
     fn state_at(&self, part: f64) -> Sys::State {
-        let mut state = Sys::State::zeros();
+        let mut state = Sys::State::zeros(Sys::State::CAPACITY);
         for row in self.expansion.coefficients[..=self.order].iter().rev() {
             for (sum, entry) in state.as_mut_slice().iter_mut().zip(row.as_slice()) {
                 *sum = *sum * part + entry.lane(0);

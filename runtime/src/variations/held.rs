@@ -82,7 +82,7 @@ impl<Sys: Variational> Flow<Sys> {
         state: &Sys::State,
     ) -> Result<Sys::State, Undefined> {
         let Some(holder) = holder else {
-            let mut rate = Sys::State::zeros();
+            let mut rate = Sys::State::zeros(Sys::State::CAPACITY);
             system.rate(t, state, &mut rate)?;
             return Ok(rate);
         };
@@ -180,7 +180,7 @@ impl<Sys: Variational> Flow<Sys> {
 
 /// The numbers of a row without their derivatives.
 fn values<Sys: Variational>(row: &Sys::Row<Dual>) -> Sys::State {
-    let mut values = Sys::State::zeros();
+    let mut values = Sys::State::zeros(Sys::State::CAPACITY);
     for (own, entry) in values.as_mut_slice().iter_mut().zip(row.as_slice()) {
         *own = entry.value;
     }

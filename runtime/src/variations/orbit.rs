@@ -164,7 +164,7 @@ where
     /// Whether a point is its own image, as far as can be told: by rounding, and beside the way from one to the other. A
     /// motion that ceases comes back to where it is without being an orbit.
     fn is_closed(&self, trial: &Trial<Sys>) -> Result<bool, Undefined> {
-        let mut rate = Sys::State::zeros();
+        let mut rate = Sys::State::zeros(Sys::State::CAPACITY);
         self.system.rate(0.0, &trial.point, &mut rate)?;
         let way = trial.chart.size(&rate) * trial.time;
         let size = trial.chart.size(&trial.point) * amplification::<Sys>(trial);
@@ -260,7 +260,7 @@ fn newton<Sys: Variational>(trial: &Trial<Sys>) -> Sys::State {
     let damping = crate::math::sqrt(dot(&trial.miss, &trial.miss));
     let (columns, turned) = (matrix.as_mut(), turned.as_mut());
     let solution = least_squares(columns, turned, dimension, &trial.miss, damping);
-    let mut step = Sys::State::zeros();
+    let mut step = Sys::State::zeros(Sys::State::CAPACITY);
     for (index, component) in solution.as_slice()[..dimension].iter().enumerate() {
         add(&mut step, -component, &trial.chart.direction(index));
     }

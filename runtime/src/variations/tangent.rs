@@ -36,7 +36,7 @@ impl<F: TaylorField> Tangent<F> {
     /// No variation.
     pub fn zero() -> Self {
         Self {
-            state: F::State::zeros(),
+            state: F::State::zeros(F::State::CAPACITY),
             parameters: F::Parameters::<f64>::ZERO,
         }
     }

@@ -156,7 +156,7 @@ pub(crate) fn arrival<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
 ) -> Result<Arrival<Sys>, Undefined> {
-    let mut rate = Sys::State::zeros();
+    let mut rate = Sys::State::zeros(Sys::State::CAPACITY);
     system.rate(event.t, &event.before, &mut rate)?;
     arrival_at(system, event, rate)
 }

@@ -155,7 +155,7 @@ fn across(theta: &[f64], accelerations: &[f64]) -> Vec<f64> {
 }
 
 fn state<S: System>(chain: &S, q: &[f64], qdot: &[f64]) -> State<S> {
-    let (mut place, mut velocity) = (S::Vector::zeros(), S::Vector::zeros());
+    let (mut place, mut velocity) = (S::Vector::zeros(S::Vector::CAPACITY), S::Vector::zeros(S::Vector::CAPACITY));
     place.as_mut_slice().copy_from_slice(q);
     velocity.as_mut_slice().copy_from_slice(qdot);
     chain

@@ -17,11 +17,11 @@ pub(super) fn emit_sizes(whole: &Whole<'_>) -> TokenStream {
     quote! {
         /// Components of a state: those of the longest mode, and the number of the mode.
         const __STATE: usize = 1 + ::dalembert::__private::modes::longest(&[
-            #(<<#types as ::dalembert::VectorField>::State as ::dalembert::StateVector>::LEN),*
+            #(<<#types as ::dalembert::VectorField>::State as ::dalembert::StateVector>::CAPACITY),*
         ]);
         /// Components of an impulse.
         const __IMPULSE: usize = ::dalembert::__private::modes::longest(&[
-            #(<<#types as ::dalembert::System>::Impulse as ::dalembert::StateVector>::LEN),*
+            #(<<#types as ::dalembert::System>::Impulse as ::dalembert::StateVector>::CAPACITY),*
         ]);
     }
 }
@@ -285,7 +285,7 @@ fn emit_readings(whole: &Whole<'_>) -> TokenStream {
         |_, mode| quote!(::dalembert::__private::modes::carried::<#mode>(self, from, t, state, keep)),
     );
     let motion = whole.of_state(
-        |_, mode| quote!(<<#mode as ::dalembert::System>::Vector as ::dalembert::StateVector>::LEN),
+        |_, mode| quote!(<<#mode as ::dalembert::System>::Vector as ::dalembert::StateVector>::CAPACITY),
     );
     let vector = quote!(::core::result::Result<Self::Vector, ::dalembert::Fault>);
     quote! {

@@ -46,7 +46,7 @@ pub(super) fn emit_impacting(whole: &Whole<'_>) -> TokenStream {
 
 /// Gaps and their derivatives, and which of them are limits of the motion.
 fn emit_gaps(whole: &Whole<'_>) -> TokenStream {
-    let zeros = quote!(<Self::Gaps as ::dalembert::StateVector>::zeros());
+    let zeros = quote!(::dalembert::Impacting::zero_gaps(self));
     let none = quote!(::core::result::Result::Ok(::core::option::Option::None));
     let gaps = whole.of_surfaces(
         &quote!(::dalembert::__private::modes::no_gaps()),

@@ -110,7 +110,7 @@ impl Balance {
 
 fn known<M: System>(model: &M, t: f64, state: &M::State, length: f64) -> Known {
     let energy = |t: f64, state: &M::State| model.energy(t, state).unwrap_or(f64::NAN);
-    let mut rate = M::State::zeros();
+    let mut rate = model.zero_state();
     if model.rate(t, state, &mut rate).is_err() {
         return Known {
             energy: energy(t, state),

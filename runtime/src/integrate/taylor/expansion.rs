@@ -129,7 +129,7 @@ pub(crate) fn row<F: TaylorField>(state: &F::State) -> F::Row<f64> {
 /// The state with these components.
 #[inline(always)]
 pub(crate) fn state<F: TaylorField>(components: &[f64]) -> F::State {
-    let mut state = F::State::zeros();
+    let mut state = F::State::zeros(components.len());
     state.as_mut_slice().copy_from_slice(components);
     state
 }

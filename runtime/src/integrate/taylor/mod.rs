@@ -109,7 +109,7 @@ impl<F: TaylorField> fmt::Debug for Taylor<F> {
 impl<F: TaylorField> Taylor<F> {
     /// An integrator with this tolerance, of the order that belongs to it.
     pub fn new(tolerance: Tolerance) -> Self {
-        let zeros = F::State::zeros();
+        let zeros = F::State::zeros(0);
         Self {
             tolerance,
             order: order(tolerance.relative(), F::WORK),
@@ -294,7 +294,7 @@ impl<F: TaylorField> Taylor<F> {
     #[inline(always)]
     fn is_motion(&self, theta: f64, slope: &F::Row<f64>) -> bool {
         let length = theta * self.unit;
-        (0..F::State::LEN).all(|i| {
+        (0..self.rates[1].count()).all(|i| {
             let rate = self.rates[1].as_slice()[i];
             let defect = (rate - slope.as_slice()[i] / self.unit).abs() * length;
             let size = self.ends.end.value.as_slice()[i].abs() + rate.abs() * length;
@@ -311,7 +311,7 @@ impl<F: TaylorField> Taylor<F> {
     #[inline(always)]
     fn state_at(&self, theta: f64) -> Precise<F::State> {
         let s = theta * (self.ends.length() / self.unit);
-        let mut change = F::State::zeros();
+        let mut change = self.rates[1].zeroed();
         for coefficient in self.expansion.coefficients[1..=self.order].iter().rev() {
             for (i, entry) in coefficient.as_slice().iter().enumerate() {
                 let sum = &mut change.as_mut_slice()[i];

@@ -273,7 +273,7 @@ impl<M: Impacting> Effect<Unsure<M>> for NineSamples {
             system.gaps(t, &state).as_slice()[surface]
         };
         let mut first: Option<(f64, usize)> = None;
-        for surface in 0..M::Gaps::LEN {
+        for surface in 0..M::Gaps::CAPACITY {
             let is_above =
                 |part: f64| (part == 0.0 && self.left == Some(surface)) || gap(surface, part) > 0.0;
             let fall = PLACES
@@ -339,7 +339,7 @@ impl<M: Impacting> Effect<Unsure<M>> for NineSamples {
 
 impl<M: Impacting> SceneEffects<Unsure<M>> for NineSamples {
     fn law(&self, system: &Unsure<M>, surface: usize) -> Option<Law> {
-        (surface < M::Gaps::LEN).then(|| system.0.law(surface))
+        (surface < M::Gaps::CAPACITY).then(|| system.0.law(surface))
     }
 
     fn audit(&self, system: &Unsure<M>, work: &mut dyn FnMut(&mut dyn Auditor<Unsure<M>>)) -> bool {
