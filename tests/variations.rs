@@ -76,7 +76,7 @@ fn dual<S: Described + Variational>(
     state: &S::State,
     direction: &S::State,
 ) -> (S::Parameters<Dual>, S::Row<Dual>) {
-    let mut parameters = S::Parameters::<Dual>::ZERO;
+    let mut parameters = S::Parameters::<Dual>::zeros(S::Parameters::<Dual>::CAPACITY);
     for (entry, value) in parameters
         .as_mut_slice()
         .iter_mut()
@@ -84,7 +84,7 @@ fn dual<S: Described + Variational>(
     {
         *entry = Dual::of(*value);
     }
-    let mut row = S::Row::<Dual>::ZERO;
+    let mut row = S::Row::<Dual>::zeros(S::Row::<Dual>::CAPACITY);
     for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
         let (value, slope) = (state.as_slice()[i], direction.as_slice()[i]);
         *entry = Dual::new(value, [slope, 0.0, 0.0, 0.0]);

@@ -219,12 +219,12 @@ pub(crate) fn check_positions<S: Constrained>(
     t: f64,
     q: &S::Vector,
 ) -> Result<(), StateError> {
-    if !S::LEVELS.iter().any(|level| level.is_zero) {
+    if !system.declared_levels().iter().any(|level| level.is_zero) {
         return Ok(());
     }
     let (values, scales) = (system.levels(t, q), system.level_scales(t, q));
     let sizes = values.as_slice().iter().zip(scales.as_slice());
-    for (level, (&residual, &scale)) in S::LEVELS.iter().zip(sizes) {
+    for (level, (&residual, &scale)) in system.declared_levels().iter().zip(sizes) {
         let holds = residual.abs() <= ADMITTED_RESIDUAL * scale;
         if level.is_zero && !holds {
             return Err(StateError::OffPosition {
@@ -295,18 +295,18 @@ pub fn rates_along<F: TaylorField>(
     component: &dyn Fn(usize) -> Rated,
     rate: &mut dyn FnMut(usize, Rated),
 ) -> Result<(), Fault> {
-    let mut parameters = F::Parameters::<Rated>::ZERO;
     let values = field.parameters();
+    let mut parameters = F::Parameters::<Rated>::zeros(values.as_slice().len());
     for (parameter, value) in parameters.as_mut_slice().iter_mut().zip(values.as_slice()) {
         *parameter = Rated::of(*value);
     }
-    let mut state = F::Row::<Rated>::ZERO;
+    let mut state = F::Row::<Rated>::zeros(field.state_len());
     for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
         *entry = component(i);
     }
-    let mut firsts = F::Firsts::<Rated>::ZERO;
-    F::begin(&parameters, t, &state, &mut firsts)?;
-    let rates = &firsts.as_slice()[..F::Row::<Rated>::LEN];
+    let mut firsts = F::Firsts::<Rated>::zeros(field.firsts_len());
+    field.begin(&parameters, t, &state, &mut firsts)?;
+    let rates = &firsts.as_slice()[..field.state_len()];
     for (i, own) in rates.iter().enumerate() {
         rate(i, *own);
     }

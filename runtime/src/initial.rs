@@ -77,7 +77,7 @@ fn solved_from<Sys: Constrained>(
         let forms = &mut buffer[..n * system.constraint_count()];
         system.constraint_forms(t, &q, forms, &mut system.zero_multipliers());
         let (mut rows, mut wanted) = (0, system.zero_levels());
-        for (level, value) in Sys::LEVELS.iter().zip(values.as_slice()) {
+        for (level, value) in system.declared_levels().iter().zip(values.as_slice()) {
             if !level.is_zero {
                 continue;
             }
@@ -127,7 +127,7 @@ pub fn complete_velocities<Sys: Constrained>(
     let mut velocities = *qdot;
     for i in 0..n {
         if named.as_slice()[i] == 0.0 {
-            velocities.as_mut_slice()[i] = if Sys::IS_LINEAR { 0.0 } else { 1.0 };
+            velocities.as_mut_slice()[i] = if system.is_linear() { 0.0 } else { 1.0 };
         } else if !velocities.as_slice()[i].is_finite() {
             return Err(StateError::NotFinite { component: n + i });
         }
@@ -135,7 +135,7 @@ pub fn complete_velocities<Sys: Constrained>(
     let mut buffer = [0.0; ENTRIES];
     let forms = &mut buffer[..n * m];
     let mut affine = system.zero_multipliers();
-    for _ in 0..if Sys::IS_LINEAR { 1 } else { STEPS } {
+    for _ in 0..if system.is_linear() { 1 } else { STEPS } {
         system.linearised_forms(t, q, &velocities, forms, &mut affine);
         let mut wanted = system.zero_multipliers();
         for (a, row) in forms.chunks_exact_mut(n.max(1)).enumerate() {

@@ -93,7 +93,9 @@ impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> System for Steered<S
         self.system.outside_chart(state)
     }
 
-    const CAN_LOSE_RANK: bool = Sys::CAN_LOSE_RANK;
+    fn can_lose_rank(&self) -> bool {
+        self.system.can_lose_rank()
+    }
 
     fn rank_drop(
         &self,
@@ -144,8 +146,13 @@ where
     type Multipliers = Sys::Multipliers;
     type Levels = Sys::Levels;
 
-    const IS_REDUCED: bool = Sys::IS_REDUCED;
-    const IS_LINEAR: bool = Sys::IS_LINEAR;
+    fn is_reduced(&self) -> bool {
+        self.system.is_reduced()
+    }
+
+    fn is_linear(&self) -> bool {
+        self.system.is_linear()
+    }
 
     fn multipliers(&self, t: f64, state: &Self::State) -> Result<Self::Multipliers, Fault> {
         self.at(t, state).multipliers(t, state)
@@ -185,7 +192,9 @@ where
         self.system.restore(t, state)
     }
 
-    const LEVELS: &'static [Level] = Sys::LEVELS;
+    fn declared_levels(&self) -> &'static [Level] {
+        self.system.declared_levels()
+    }
 
     fn level_scales(&self, t: f64, q: &Self::Vector) -> Self::Levels {
         self.system.level_scales(t, q)

@@ -131,7 +131,7 @@ fn run_in_lanes<'a, Sys, Effects, O>(
     O: Observer<Sys>,
 {
     let mut lanes: ArrayVec<Lane<'a, Sys, Effects, O>, MOST> = ArrayVec::new();
-    let mut abreast = Abreast::<Sys, f64x8>::new();
+    let mut abreast: Option<Abreast<Sys, f64x8>> = None;
     loop {
         let mut is_new = false;
         let mut place = 0;
@@ -163,9 +163,11 @@ fn run_in_lanes<'a, Sys, Effects, O>(
         }
         let mut made = [false; MOST];
         if lanes.len() > FEW {
+            let systems: ArrayVec<&Sys, MOST> =
+                lanes.iter().map(|lane| lane.member.system).collect();
+            is_new |= abreast.is_none();
+            let abreast = abreast.get_or_insert_with(|| Abreast::new(systems[0]));
             if is_new {
-                let systems: ArrayVec<&Sys, MOST> =
-                    lanes.iter().map(|lane| lane.member.system).collect();
                 abreast.set_parameters(&systems);
             }
             made = abreast.step(&mut lanes);
@@ -285,6 +287,10 @@ impl<Sys: System + TaylorField, Effects, O> Walker<Sys> for Lane<'_, Sys, Effect
 
     fn at_work(&mut self) -> (&mut Taylor<Sys>, &mut Counters) {
         (&mut self.member.stepper, &mut self.progress.counters)
+    }
+
+    fn field(&self) -> &Sys {
+        self.member.system
     }
 
     fn t_end(&self) -> f64 {

@@ -86,7 +86,7 @@ impl<Sys: Constrained> Projection<Sys> {
     fn settle_velocities(&self, now: &mut Moment<'_, Sys>, cut: bool) -> Result<Change, Outcome> {
         // NOTE: where the step was cut for an impact even rounding is mended: it costs nothing there, as the rate is
         // evaluated anew anyway, and what an impact law makes of a residual adds up over many impacts.
-        if Sys::IS_REDUCED || (!cut && violated(now)?.is_none()) {
+        if now.system.is_reduced() || (!cut && violated(now)?.is_none()) {
             return Ok(Change::Kept);
         }
         let before = *now.state;
@@ -203,7 +203,12 @@ impl<Sys: Constrained> Effect<Sys> for Projection<Sys> {
         let q = now.system.position(now.state);
         self.levels = now.system.levels(now.t, &q);
         if check_positions(now.system, now.t, &q).is_ok() {
-            for (value, level) in self.levels.as_mut_slice().iter_mut().zip(Sys::LEVELS) {
+            for (value, level) in self
+                .levels
+                .as_mut_slice()
+                .iter_mut()
+                .zip(now.system.declared_levels())
+            {
                 if level.is_zero {
                     *value = 0.0;
                 }

@@ -262,10 +262,10 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         forces: &Option<Effects::Forces>,
         observer: &mut O,
     ) -> Result<Next, Outcome> {
-        if Sys::CAN_LOSE_RANK && self.shorten_where_dependent()? {
+        if self.system.can_lose_rank() && self.shorten_where_dependent()? {
             return Ok(Next::Step);
         }
-        if Sys::CAN_BE_NARROW && forces.is_none() && self.shorten_where_narrow()? {
+        if self.system.can_be_narrow() && forces.is_none() && self.shorten_where_narrow()? {
             return Ok(Next::Step);
         }
         let mut view = StepView {
@@ -274,7 +274,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             stepper: &mut *self.stepper,
         };
         let proposed = self.effects.propose(&mut view)?;
-        if Sys::CAN_LOSE_RANK {
+        if self.system.can_lose_rank() {
             self.keep_rank(proposed.unwrap_or(1.0), observer)?;
         }
         let Some(theta) = proposed else {

@@ -76,7 +76,9 @@ impl System for Circle {
 impl Constrained for Circle {
     type Multipliers = One;
     type Levels = One;
-    const IS_REDUCED: bool = false;
+    fn is_reduced(&self) -> bool {
+        false
+    }
 
     fn multipliers(&self, _: f64, _: &State) -> Result<One, Fault> {
         Ok(One::new(0.0))

@@ -30,7 +30,9 @@ pub(super) fn emit_constrained(context: &Context<'_>) -> TokenStream {
         impl ::dalembert::Constrained for #type_name {
             type Multipliers = ::dalembert::__private::SVector<f64, #m>;
             type Levels = ::dalembert::__private::SVector<f64, #levels>;
-            const IS_REDUCED: bool = #is_reduced;
+
+            #[inline(always)]
+            fn is_reduced(&self) -> bool { #is_reduced }
             #solve
             #forms
             #restore
@@ -174,7 +176,8 @@ fn emit_declared_levels(context: &Context<'_>, functions: &Constrained) -> Token
         outputs,
     } = context.position_body(scales);
     quote! {
-        const LEVELS: &'static [::dalembert::Level] = &[#(#levels),*];
+        #[inline(always)]
+        fn declared_levels(&self) -> &'static [::dalembert::Level] { &[#(#levels),*] }
 
         #[inline]
         fn level_scales(&self, t: f64, q: &Self::Vector) -> Self::Levels {
@@ -264,7 +267,8 @@ pub(super) fn emit_system_hooks(context: &Context<'_>) -> TokenStream {
 fn emit_rank_drop(context: &Context<'_>) -> TokenStream {
     let (m, n) = (context.model.constraints.len(), context.dimension());
     quote! {
-        const CAN_LOSE_RANK: bool = true;
+        #[inline(always)]
+        fn can_lose_rank(&self) -> bool { true }
 
         fn rank_drop(
             &self,

@@ -253,7 +253,8 @@ pub(super) fn emit_field(context: &Context<'_>) -> TokenStream {
 /// `rates_along`, where the rate may have narrow features.
 pub(super) fn emit_rates_along() -> TokenStream {
     quote! {
-        const CAN_BE_NARROW: bool = true;
+        #[inline(always)]
+        fn can_be_narrow(&self) -> bool { true }
 
         fn rates_along(
             &self,

@@ -17,7 +17,8 @@ pub(super) fn emit_forms(context: &Context<'_>, functions: &Constrained) -> Toke
     } = context.velocity_body(&functions.forms);
     let (forms, affine) = outputs.split_at(n * m);
     quote! {
-        const IS_LINEAR: bool = false;
+        #[inline(always)]
+        fn is_linear(&self) -> bool { false }
 
         #[inline]
         fn constraint_forms(&self, t: f64, q: &Self::Vector, forms: &mut [f64], affine: &mut Self::Multipliers) {

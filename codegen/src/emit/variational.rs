@@ -310,7 +310,7 @@ fn emit_deviations(context: &Context<'_>) -> TokenStream {
         let (statements, values) = (body.statements, body.outputs);
         quote!({ #statements values[#off..].copy_from_slice(&[#(#values),*]); })
     });
-    let values = quote!(<Self::Deviations<L> as ::dalembert::numbers::Row<L>>::ZERO);
+    let values = quote!(<Self::Deviations<L> as ::dalembert::numbers::Row<L>>::zeros(0));
     let body = match off + levels(context) {
         0 => quote!(::core::result::Result::Ok(#values)),
         _ => quote! {

@@ -54,6 +54,7 @@ impl<const S: usize> TaylorField for Point<S> {
     }
 
     fn begin<L: Numbers>(
+        &self,
         [ax, ay]: &[L; 2],
         _t: L,
         [_, _, vx, vy]: &[L; 4],
@@ -64,6 +65,7 @@ impl<const S: usize> TaylorField for Point<S> {
     }
 
     fn advance<L: Numbers>(
+        &self,
         _parameters: &[L; 2],
         unit: L,
         order: usize,

@@ -263,13 +263,20 @@ impl Numbers for f64 {
     functions_of_lanes!();
 }
 
-/// A fixed number of [`Numbers`]. Implemented by arrays.
+/// [`Numbers`] in a row on the stack. Implemented by arrays, whose number of entries is part of their type.
 pub trait Row<L>: Copy + Debug + Send + Sync + 'static {
-    /// How many.
-    const LEN: usize;
+    /// The largest number of entries; of a row of fixed length, their number.
+    const CAPACITY: usize;
 
-    /// All of them zero.
-    const ZERO: Self;
+    /// A row of `count` zeros. Where the type fixes the number of entries, `count` is ignored.
+    fn zeros(count: usize) -> Self;
+
+    /// The row of as many zeros.
+    #[must_use]
+    #[inline(always)]
+    fn zeroed(&self) -> Self {
+        Self::zeros(self.as_slice().len())
+    }
 
     /// All of them, in order.
     fn as_slice(&self) -> &[L];
@@ -279,8 +286,12 @@ pub trait Row<L>: Copy + Debug + Send + Sync + 'static {
 }
 
 impl<L: Numbers, const D: usize> Row<L> for [L; D] {
-    const LEN: usize = D;
-    const ZERO: Self = [L::ZERO; D];
+    const CAPACITY: usize = D;
+
+    #[inline(always)]
+    fn zeros(_: usize) -> Self {
+        [L::ZERO; D]
+    }
 
     #[inline(always)]
     fn as_slice(&self) -> &[L] {

@@ -265,13 +265,16 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
             value: Interval::WHOLE,
             rate: Interval::WHOLE,
         };
-        let mut states = Sys::Row::<Rated>::ZERO;
+        let mut states = Sys::Row::<Rated>::zeros(Sys::Row::<Rated>::CAPACITY);
         for (i, entry) in states.as_mut_slice().iter_mut().enumerate() {
             *entry = Rated::steady(impact.before(i));
         }
         let parameters = self.field.steady_parameters();
-        let mut firsts = Sys::Firsts::<Rated>::ZERO;
-        let begun = Sys::begin(&parameters, times, &states, &mut firsts);
+        let mut firsts = Sys::Firsts::<Rated>::zeros(Sys::Firsts::<Rated>::CAPACITY);
+        let begun = self
+            .field
+            .system
+            .begin(&parameters, times, &states, &mut firsts);
         let gaps = Sys::clearances(&parameters, times, &states);
         let strike = Strike {
             surface,

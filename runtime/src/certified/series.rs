@@ -39,7 +39,8 @@ impl<Sys: Variational> Copy for Field<'_, Sys> {}
 impl<'a, Sys: Variational> Field<'a, Sys> {
     /// A system with its own parameters.
     pub(super) fn new(system: &'a Sys) -> Self {
-        let mut parameters = Sys::Parameters::<Interval>::ZERO;
+        let mut parameters =
+            Sys::Parameters::<Interval>::zeros(Sys::Parameters::<Interval>::CAPACITY);
         let values = system.parameters();
         for (parameter, value) in parameters.as_mut_slice().iter_mut().zip(values.as_slice()) {
             *parameter = Interval::of(*value);
@@ -60,7 +61,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
 
     /// The parameters, which no direction changes.
     pub(super) fn steady_parameters(&self) -> Sys::Parameters<Rated> {
-        let mut parameters = Sys::Parameters::<Rated>::ZERO;
+        let mut parameters = Sys::Parameters::<Rated>::zeros(Sys::Parameters::<Rated>::CAPACITY);
         let values = self.parameters.as_slice();
         for (parameter, value) in parameters.as_mut_slice().iter_mut().zip(values) {
             *parameter = Rated::steady(*value);
@@ -74,8 +75,10 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         times: Interval,
         states: &Bounds<Sys::State>,
     ) -> Option<Bounds<Sys::State>> {
-        let mut firsts = Sys::Firsts::<Interval>::ZERO;
-        Sys::begin(&self.parameters, times, &row::<Sys>(states), &mut firsts).ok()?;
+        let mut firsts = Sys::Firsts::<Interval>::zeros(Sys::Firsts::<Interval>::CAPACITY);
+        self.system
+            .begin(&self.parameters, times, &row::<Sys>(states), &mut firsts)
+            .ok()?;
         let rates = Bounds::of(|i| firsts.as_slice()[i]);
         rates.is_finite().then_some(rates)
     }
@@ -87,10 +90,12 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         states: &Bounds<Sys::State>,
         along: &Bounds<Sys::State>,
     ) -> Option<Bounds<Sys::State>> {
-        let mut firsts = Sys::Firsts::<Rated>::ZERO;
+        let mut firsts = Sys::Firsts::<Rated>::zeros(Sys::Firsts::<Rated>::CAPACITY);
         let states = rated_row::<Sys>(states, along);
         let (parameters, times) = (self.steady_parameters(), Rated::steady(times));
-        Sys::begin(&parameters, times, &states, &mut firsts).ok()?;
+        self.system
+            .begin(&parameters, times, &states, &mut firsts)
+            .ok()?;
         let changes = Bounds::of(|i| firsts.as_slice()[i].rate);
         changes.is_finite().then_some(changes)
     }
@@ -124,7 +129,14 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         unit: Interval,
         order: usize,
     ) -> Option<Expansion<Sys, Interval>> {
-        expanded(&self.parameters, times, &row::<Sys>(from), unit, order)
+        expanded(
+            self.system,
+            &self.parameters,
+            times,
+            &row::<Sys>(from),
+            unit,
+            order,
+        )
     }
 
     /// The same, with the derivatives along directions.
@@ -139,6 +151,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         let parameters = self.steady_parameters();
         let start = rated_row::<Sys>(from, along);
         expanded(
+            self.system,
             &parameters,
             Rated::steady(times),
             &start,
@@ -153,15 +166,16 @@ fn unit_of(unit: Interval) -> Rated {
 }
 
 fn expanded<Sys: Variational, L: Numbers>(
+    system: &Sys,
     parameters: &Sys::Parameters<L>,
     t: L,
     start: &Sys::Row<L>,
     unit: L,
     order: usize,
 ) -> Option<Expansion<Sys, L>> {
-    let mut series = Expansion::new();
-    series.begin(parameters, t, start).ok()?;
-    series.advance(parameters, unit, order, start);
+    let mut series = Expansion::of(system);
+    series.begin(system, parameters, t, start).ok()?;
+    series.advance(system, parameters, unit, order, start);
     Some(series)
 }
 
@@ -223,7 +237,7 @@ impl<Sys: Variational, L: Numbers> Arc<Sys, L> {
 
 /// A box as numbers.
 pub(super) fn row<Sys: Variational>(bounds: &Bounds<Sys::State>) -> Sys::Row<Interval> {
-    let mut row = Sys::Row::<Interval>::ZERO;
+    let mut row = Sys::Row::<Interval>::zeros(Sys::Row::<Interval>::CAPACITY);
     for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
         *entry = bounds.at(i);
     }
@@ -235,7 +249,7 @@ pub(super) fn rated_row<Sys: Variational>(
     bounds: &Bounds<Sys::State>,
     along: &Bounds<Sys::State>,
 ) -> Sys::Row<Rated> {
-    let mut row = Sys::Row::<Rated>::ZERO;
+    let mut row = Sys::Row::<Rated>::zeros(Sys::Row::<Rated>::CAPACITY);
     for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
         *entry = Rated {
             value: bounds.at(i),

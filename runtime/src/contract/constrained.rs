@@ -76,7 +76,10 @@ pub trait Constrained: System {
     );
 
     /// Whether every constraint is linear or affine in the velocities.
-    const IS_LINEAR: bool = true;
+    #[inline(always)]
+    fn is_linear(&self) -> bool {
+        true
+    }
 
     /// The constraints linearised at a velocity: forms and affine parts as [`Constrained::constraint_forms`] gives them, with
     /// `eta^a(qdot) + eta^a_0` the residual at this velocity. Of linear constraints they are the same at all of them.
@@ -93,11 +96,11 @@ pub trait Constrained: System {
     }
 
     /// Whether every state satisfies the constraints by its construction: the form reduced to D.
-    const IS_REDUCED: bool;
+    fn is_reduced(&self) -> bool;
 
     /// Brings the velocity back to the constraints after a step. Unlike [`System::state_nearest`] it need not move it
     /// as little as possible: where some velocities follow from the others at every state, those are recomputed
-    /// and the others kept to the last digit. Does nothing where [`Constrained::IS_REDUCED`].
+    /// and the others kept to the last digit. Does nothing where [`Constrained::is_reduced`].
     ///
     /// # Errors
     /// [`Fault`]; the state is unchanged then.
@@ -105,7 +108,10 @@ pub trait Constrained: System {
 
     /// Which constraint each level belongs to, and whether it is declared to be 0. Empty where none is: then every motion
     /// keeps the levels that it starts with.
-    const LEVELS: &'static [Level] = &[];
+    #[inline(always)]
+    fn declared_levels(&self) -> &'static [Level] {
+        &[]
+    }
 
     /// The natural sizes of the levels that are declared to be 0: the sum of the absolute values of their terms, sines and
     /// cosines counted as 1. 0 for the others.

@@ -42,10 +42,13 @@ pub trait VectorField {
 
     /// Whether rates may have features that are narrow beside what a step passes, as bumps of an exponential are. Steps are
     /// compared with [`VectorField::rates_along`] then.
-    const CAN_BE_NARROW: bool = false;
+    #[inline(always)]
+    fn can_be_narrow(&self) -> bool {
+        false
+    }
 
     /// All rates along a stretch of motion: `component(i)` gives all values of component `i` of the state, `rate(i, ..)` takes all
-    /// values of its rate. Nothing where [`VectorField::CAN_BE_NARROW`] is false.
+    /// values of its rate. Nothing where [`VectorField::can_be_narrow`] is false.
     ///
     /// # Errors
     /// [`Fault`] where the rates do not exist.
@@ -84,16 +87,32 @@ pub trait TaylorField: VectorField {
     type Jets<L: Numbers>: Jets;
 
     /// What an expansion takes, if it is known: the order of series is chosen by it.
-    const WORK: Option<Work> = None;
+    #[inline(always)]
+    fn work(&self) -> Option<Work> {
+        None
+    }
+
+    /// The number of gaps with series. Of gaps of fixed number it is known.
+    #[inline(always)]
+    fn series_gap_count(&self) -> usize {
+        Self::Gaps::<f64>::CAPACITY
+    }
+
+    /// How many numbers are known at one moment. Where it is fixed it is known.
+    #[inline(always)]
+    fn firsts_len(&self) -> usize {
+        Self::Firsts::<f64>::CAPACITY
+    }
 
     /// The parameters.
     fn parameters(&self) -> Self::Parameters<f64>;
 
-    /// Writes what is known at `(t, state)`.
+    /// Writes what is known at `(t, state)` with these parameters, which need not be the system's own.
     ///
     /// # Errors
     /// A [`Fault`] where the derivative does not exist, in whatever lane; `firsts` is unspecified then.
     fn begin<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         t: L,
         state: &Self::Row<L>,
@@ -101,14 +120,19 @@ pub trait TaylorField: VectorField {
     ) -> Result<(), Fault>;
 
     /// Writes the power series of the motion that is at `coefficients[0]`, where `firsts` is known, and of the gaps along
-    /// it:
+    /// it, with these parameters:
     ///
     /// ```text
     /// state(t + unit s) = coefficients[0] + coefficients[1] s + .. + coefficients[order] s^order + ..
     /// ```
     ///
     /// `order` is 1 or more; orders above 32 are not computed. What `jets` holds before does not matter.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "a series takes what is known and gives state, gaps and intermediate values"
+    )]
     fn advance<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         unit: L,
         order: usize,

@@ -130,10 +130,13 @@ pub trait System: VectorField {
 
     /// Whether the constraint forms may become dependent somewhere: not proved otherwise while building. A run watches such
     /// systems in every step, and only them.
-    const CAN_LOSE_RANK: bool = false;
+    #[inline(always)]
+    fn can_lose_rank(&self) -> bool {
+        false
+    }
 
     /// The first place in `[0, reach]` along a piece of smooth motion at which the constraint forms become dependent;
-    /// `motion` gives time and state at a part of it. None where [`System::CAN_LOSE_RANK`] is false.
+    /// `motion` gives time and state at a part of it. None where [`System::can_lose_rank`] is false.
     fn rank_drop(
         &self,
         motion: impl Fn(f64) -> (f64, Self::State),

@@ -49,7 +49,7 @@ pub(super) struct Flight<'a, Sys: Variational, const PARTS: usize> {
 
 /// Numbers as a row of extended ones.
 pub(super) fn widened<const PARTS: usize, R: Row<Extended<PARTS>>>(values: &[f64]) -> R {
-    let mut row = R::ZERO;
+    let mut row = R::zeros(R::CAPACITY);
     for (own, value) in row.as_mut_slice().iter_mut().zip(values) {
         *own = Extended::from(*value);
     }
@@ -62,8 +62,8 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         Self {
             system,
             parameters: widened(system.parameters().as_slice()),
-            expansion: Expansion::new(),
-            order: order(Extended::<PARTS>::ROUNDING, Sys::WORK),
+            expansion: Expansion::of(system),
+            order: order(Extended::<PARTS>::ROUNDING, system.work()),
             unit: power_of_two(length),
             next_unit: power_of_two(length),
             theta: 0.0,
@@ -76,7 +76,8 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
     /// Evaluates what is known at the end of the last step.
     pub(super) fn begin(&mut self) -> Result<(), StepFailure> {
         let At { t, state } = &self.ends[1];
-        self.expansion.begin(&self.parameters, *t, state)?;
+        self.expansion
+            .begin(self.system, &self.parameters, *t, state)?;
         let all = [state.as_slice(), self.expansion.rate()];
         for numbers in all {
             let is_finite = |number: &Extended<PARTS>| number.nearest().is_finite();
@@ -95,7 +96,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         loop {
             let unit = Extended::from(self.unit);
             self.expansion
-                .advance(&self.parameters, unit, self.order, &state);
+                .advance(self.system, &self.parameters, unit, self.order, &state);
             if let Some(theta) = self.reach(length / self.unit) {
                 self.is_expanded = true;
                 return Ok(theta * self.unit);

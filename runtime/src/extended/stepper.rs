@@ -49,8 +49,8 @@ impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
             rates: [zeros; 2],
             rest: zeros,
             coefficients: [zeros; LENGTH],
-            gaps: [Sys::Gaps::ZERO; LENGTH],
-            end_gaps: Sys::Gaps::ZERO,
+            gaps: [Sys::Gaps::<f64>::zeros(Sys::Gaps::<f64>::CAPACITY); LENGTH],
+            end_gaps: Sys::Gaps::<f64>::zeros(Sys::Gaps::<f64>::CAPACITY),
         }
     }
 

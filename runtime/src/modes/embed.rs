@@ -35,7 +35,7 @@ pub const fn longest(lengths: &[usize]) -> usize {
 
 /// What a mode knows at a moment besides rates and gaps.
 pub const fn rest<M: Mode>() -> usize {
-    M::Firsts::<f64>::LEN - M::Row::<f64>::LEN - M::Gaps::<f64>::LEN
+    M::Firsts::<f64>::CAPACITY - M::Row::<f64>::CAPACITY - M::Gaps::<f64>::CAPACITY
 }
 
 /// Writes values to where they belong; both have the same length.

@@ -79,6 +79,7 @@ fn is_in<L: Numbers>(mode: usize, number: &L, lane: usize) -> bool {
 /// That of the mode.
 #[inline(never)]
 pub fn begin<M: Mode, L: Numbers>(
+    mode: &M,
     shape: Shape,
     parameters: &[L],
     t: L,
@@ -91,11 +92,11 @@ pub fn begin<M: Mode, L: Numbers>(
     };
     let parameters = row::<L, M::Parameters<L>>(parameters, &lanes, &number);
     let own = row::<L, M::Row<L>>(state, &lanes, &number);
-    let mut known = M::Firsts::<L>::ZERO;
-    M::begin(&parameters, lanes.picked(t, &number), &own, &mut known)?;
+    let mut known = M::Firsts::<L>::zeros(M::Firsts::<L>::CAPACITY);
+    mode.begin(&parameters, lanes.picked(t, &number), &own, &mut known)?;
     let known = known.as_slice();
-    let (rates, rest) = known.split_at(M::Row::<L>::LEN);
-    let (gaps, rest) = rest.split_at(M::Gaps::<L>::LEN);
+    let (rates, rest) = known.split_at(M::Row::<L>::CAPACITY);
+    let (gaps, rest) = rest.split_at(M::Gaps::<L>::CAPACITY);
     let mut put = |place: usize, value: L| {
         firsts[place] = lanes.merged(firsts[place], value, &number);
     };
@@ -126,6 +127,7 @@ pub fn begin<M: Mode, L: Numbers>(
     reason = "those of `advance`, and the shape"
 )]
 pub fn advance<M: Mode, L: Numbers, const D: usize, const G: usize>(
+    mode: &M,
     parameters: &[L],
     unit: L,
     order: usize,
@@ -139,8 +141,8 @@ pub fn advance<M: Mode, L: Numbers, const D: usize, const G: usize>(
         return;
     };
     let parameters = row::<L, M::Parameters<L>>(parameters, &lanes, &number);
-    let (d, g) = (M::Row::<L>::LEN, M::Gaps::<L>::LEN);
-    let mut known = M::Firsts::<L>::ZERO;
+    let (d, g) = (M::Row::<L>::CAPACITY, M::Gaps::<L>::CAPACITY);
+    let mut known = M::Firsts::<L>::zeros(M::Firsts::<L>::CAPACITY);
     for (place, value) in known.as_mut_slice().iter_mut().enumerate() {
         let from = match place {
             place if place < d => place,
@@ -150,11 +152,11 @@ pub fn advance<M: Mode, L: Numbers, const D: usize, const G: usize>(
         };
         *value = lanes.picked(firsts[from], &number);
     }
-    let mut own = [M::Row::<L>::ZERO; LENGTH];
+    let mut own = [M::Row::<L>::zeros(M::Row::<L>::CAPACITY); LENGTH];
     own[0] = row::<L, M::Row<L>>(&coefficients[0], &lanes, &number);
-    let mut own_gaps = [M::Gaps::<L>::ZERO; LENGTH];
+    let mut own_gaps = [M::Gaps::<L>::zeros(M::Gaps::<L>::CAPACITY); LENGTH];
     let unit = lanes.picked(unit, &number);
-    M::advance(
+    mode.advance(
         &parameters,
         unit,
         order,
@@ -185,7 +187,7 @@ pub fn advance<M: Mode, L: Numbers, const D: usize, const G: usize>(
 /// The first numbers of a row, in the lanes of a mode.
 #[inline(always)]
 fn row<L: Numbers, R: Row<L>>(values: &[L], lanes: &Lanes, number: &L) -> R {
-    let mut row = R::ZERO;
+    let mut row = R::zeros(R::CAPACITY);
     for (own, value) in row.as_mut_slice().iter_mut().zip(values) {
         *own = lanes.picked(*value, number);
     }

@@ -63,7 +63,7 @@ pub fn index_of<L: Numbers>(state: &[L]) -> usize {
 
 /// The first numbers of a row.
 fn beginning<L: Numbers, R: Row<L>>(values: &[L]) -> R {
-    let mut row = R::ZERO;
+    let mut row = R::zeros(R::CAPACITY);
     for (own, value) in row.as_mut_slice().iter_mut().zip(values) {
         *own = *value;
     }
@@ -72,7 +72,7 @@ fn beginning<L: Numbers, R: Row<L>>(values: &[L]) -> R {
 
 /// Numbers of the mode at their places among those of the model, and this number elsewhere.
 fn filled<L: Numbers, R: Row<L>>(values: &[L], places: &[usize], elsewhere: f64) -> R {
-    let mut row = R::ZERO;
+    let mut row = R::zeros(R::CAPACITY);
     row.as_mut_slice().fill(L::of(elsewhere));
     for (&place, value) in places.iter().zip(values) {
         row.as_mut_slice()[place] = *value;
@@ -113,8 +113,8 @@ pub fn deviations_of<M: VariationalMode, L: Numbers, R: Row<L>>(
     state: &[L],
 ) -> Result<R, Fault> {
     let own = M::deviations(&beginning(parameters), t, &beginning(state))?;
-    let unused = &state[M::Row::<L>::LEN..];
-    let mut all = R::ZERO;
+    let unused = &state[M::Row::<L>::CAPACITY..];
+    let mut all = R::zeros(R::CAPACITY);
     let values = own.as_slice().iter().chain(unused);
     for (place, value) in all.as_mut_slice().iter_mut().zip(values) {
         *place = *value;
@@ -234,7 +234,8 @@ pub fn passed_into<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>
     let own: M::Row<L> = beginning(state);
     let entered: T::Row<L> = match passage {
         Passage::Declared => {
-            let [mut q, mut qdot] = [T::Configuration::<L>::ZERO; 2];
+            let [mut q, mut qdot] =
+                [T::Configuration::<L>::zeros(T::Configuration::<L>::CAPACITY); 2];
             let places = (q.as_mut_slice(), qdot.as_mut_slice());
             M::entered(&before, surface, t, &own, places.0, places.1)?;
             T::composed(&after, t, &q, &qdot)?
@@ -262,7 +263,7 @@ fn refracted<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>>(
     t: L,
     own: &M::Row<L>,
 ) -> Result<Option<R>, Fault> {
-    let n = M::Configuration::<L>::LEN;
+    let n = M::Configuration::<L>::CAPACITY;
     let collision = M::collision(before, surface, t, own)?;
     // NOTE: the third number of a contact is the rate of the surface itself, behind the fifth comes the direction.
     let (surface_rate, direction) = (collision.as_slice()[2], &collision.as_slice()[5..]);

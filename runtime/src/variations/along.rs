@@ -50,12 +50,12 @@ impl<Sys: Variational> Neighbours<Sys> {
     fn parts(&self) -> impl Iterator<Item = Self> {
         let still = self.still();
         let by_time = Self { t: self.t, ..still };
-        let by_state = (0..Sys::Row::<Dual>::LEN).map(move |i| {
+        let by_state = (0..Sys::Row::<Dual>::CAPACITY).map(move |i| {
             let mut part = still;
             part.state.as_mut_slice()[i] = self.state.as_slice()[i];
             part
         });
-        let by_parameters = (0..Sys::Parameters::<Dual>::LEN).map(move |k| {
+        let by_parameters = (0..Sys::Parameters::<Dual>::CAPACITY).map(move |k| {
             let mut part = still;
             part.parameters.as_mut_slice()[k] = self.parameters.as_slice()[k];
             part

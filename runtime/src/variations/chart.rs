@@ -53,7 +53,7 @@ impl<Sys: Variational> Fixed<Sys> {
         let parameters = dual_parameters(system, &[]);
         let row = dual_state::<Sys>(point, &[]);
         let found = Sys::deviations(&parameters, Dual::of(t), &row)?;
-        let mut kept = Sys::Deviations::<f64>::ZERO;
+        let mut kept = Sys::Deviations::<f64>::zeros(Sys::Deviations::<f64>::CAPACITY);
         for (own, found) in kept.as_mut_slice().iter_mut().zip(found.as_slice()) {
             *own = found.value;
         }

@@ -75,11 +75,11 @@ impl<Sys: Variational> Flow<Sys> {
         state: &Sys::Row<Dual>,
     ) -> Result<Option<Sys::Row<Dual>>, Undefined> {
         let first = self.rate(system, parameters, holder, t, state)?;
-        let mut combined = [Sys::Row::<Dual>::ZERO; RULES];
+        let mut combined = [first.zeroed(); RULES];
         for rule in 0..RULES {
             let parts = 2 * (rule + 1);
             let h = length / parts as f64;
-            let (mut before, mut now) = (Sys::Row::ZERO, sum(&Sys::Row::ZERO, &first, h));
+            let (mut before, mut now) = (first.zeroed(), sum(&first.zeroed(), &first, h));
             for part in 1..parts {
                 let there = sum(state, &now, 1.0);
                 let rate = self.rate(system, parameters, holder, t + part as f64 * h, &there)?;

@@ -26,12 +26,12 @@ pub(super) struct Flow<Sys: Variational> {
 }
 
 impl<Sys: Variational> Flow<Sys> {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(system: &Sys) -> Self {
         Self {
-            expansion: Expansion::new(),
-            order: order(f64::EPSILON, Sys::WORK),
+            expansion: Expansion::of(system),
+            order: order(f64::EPSILON, system.work()),
             unit: 1.0,
-            scale: Sys::State::zeros(Sys::State::CAPACITY),
+            scale: system.zero_state(),
         }
     }
 
@@ -71,7 +71,7 @@ impl<Sys: Variational> Flow<Sys> {
         let mut state = dual_state(start, tangents);
         self.unit = power_of_two(end - t);
         while t < end {
-            let theta = self.step(&parameters, t, &state, end - t)?;
+            let theta = self.step(system, &parameters, t, &state, end - t)?;
             let seen = Seen {
                 system,
                 expansion: &self.expansion,
@@ -96,15 +96,17 @@ impl<Sys: Variational> Flow<Sys> {
     /// Expands the motion from a state; the part of `length` that its series reach, in units of time.
     fn step(
         &mut self,
+        system: &Sys,
         parameters: &Sys::Parameters<Dual>,
         t: f64,
         state: &Sys::Row<Dual>,
         length: f64,
     ) -> Result<f64, Undefined> {
-        self.expansion.begin(parameters, Dual::of(t), state)?;
+        self.expansion
+            .begin(system, parameters, Dual::of(t), state)?;
         loop {
             self.expansion
-                .advance(parameters, Dual::of(self.unit), self.order, state);
+                .advance(system, parameters, Dual::of(self.unit), self.order, state);
             if let Some(theta) = self.reach(length / self.unit) {
                 return Ok(theta);
             }
@@ -150,7 +152,7 @@ pub(super) fn dual_parameters<Sys: Variational>(
     system: &Sys,
     tangents: &[Tangent<Sys>],
 ) -> Sys::Parameters<Dual> {
-    let mut row = Sys::Parameters::<Dual>::ZERO;
+    let mut row = Sys::Parameters::<Dual>::zeros(Sys::Parameters::<Dual>::CAPACITY);
     let values = system.parameters();
     for (i, (entry, value)) in row
         .as_mut_slice()
@@ -168,7 +170,7 @@ pub(super) fn dual_state<Sys: Variational>(
     state: &Sys::State,
     tangents: &[Tangent<Sys>],
 ) -> Sys::Row<Dual> {
-    let mut row = Sys::Row::<Dual>::ZERO;
+    let mut row = Sys::Row::<Dual>::zeros(Sys::Row::<Dual>::CAPACITY);
     for (i, (entry, value)) in row
         .as_mut_slice()
         .iter_mut()

@@ -24,7 +24,7 @@ pub(crate) struct Seen<'a, Sys: Variational, L: Numbers> {
 impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
     /// Refuses a step from `t`, of `theta` units, in which the gap of a surface falls to 0 within rounding, and rises.
     pub(crate) fn look_for_grazes(&self, t: f64, theta: f64) -> Result<(), Undefined> {
-        for surface in 0..Sys::Gaps::<L>::LEN {
+        for surface in 0..Sys::Gaps::<L>::CAPACITY {
             let mut falls_from = None;
             for place in 0..=PLACES {
                 let part = theta * place as f64 / PLACES as f64;

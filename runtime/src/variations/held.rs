@@ -69,7 +69,9 @@ impl<Sys: Variational> Flow<Sys> {
     ) -> Result<Sys::Row<Dual>, Undefined> {
         match holder {
             Holder::Surface(surface) => self.pressed(system, parameters, surface, t, state),
-            Holder::Slide { back, across } => self.slid(parameters, [back, across], t, state),
+            Holder::Slide { back, across } => {
+                self.slid(system, parameters, [back, across], t, state)
+            }
         }
     }
 
@@ -95,13 +97,16 @@ impl<Sys: Variational> Flow<Sys> {
     /// The rate of a state, and coefficient `k` of the gap of a surface along its free motion.
     fn free(
         &mut self,
+        system: &Sys,
         parameters: &Sys::Parameters<Dual>,
         (surface, k): (usize, usize),
         t: f64,
         state: &Sys::Row<Dual>,
     ) -> Result<(Sys::Row<Dual>, Dual), Undefined> {
-        self.expansion.begin(parameters, Dual::of(t), state)?;
-        self.expansion.advance(parameters, Dual::of(1.0), k, state);
+        self.expansion
+            .begin(system, parameters, Dual::of(t), state)?;
+        self.expansion
+            .advance(system, parameters, Dual::of(1.0), k, state);
         let gaps = self.expansion.gaps[k].as_slice();
         let gap = *gaps.get(surface).ok_or(Undefined::Held { t, surface })?;
         Ok((self.expansion.coefficients[1], gap))
@@ -116,7 +121,7 @@ impl<Sys: Variational> Flow<Sys> {
         t: f64,
         state: &Sys::Row<Dual>,
     ) -> Result<Sys::Row<Dual>, Undefined> {
-        let (mut rate, half) = self.free(parameters, (surface, 2), t, state)?;
+        let (mut rate, half) = self.free(system, parameters, (surface, 2), t, state)?;
         let now = Dual::of(t);
         let collision = Sys::collision(parameters, surface, now, state)?;
         let [gap_rate, _, _, compliance, ..] = *collision.as_slice() else {
@@ -142,15 +147,16 @@ impl<Sys: Variational> Flow<Sys> {
     /// The rate between two modes that lead into each other.
     fn slid(
         &mut self,
+        system: &Sys,
         parameters: &Sys::Parameters<Dual>,
         [back, across]: [usize; 2],
         t: f64,
         state: &Sys::Row<Dual>,
     ) -> Result<Sys::Row<Dual>, Undefined> {
-        let (own, leaves) = self.free(parameters, (back, 1), t, state)?;
+        let (own, leaves) = self.free(system, parameters, (back, 1), t, state)?;
         let other = Sys::passed(parameters, back, Dual::of(t), state)?;
         let other = other.ok_or(Undefined::Unlawful { t, surface: back })?;
-        let (other, enters) = self.free(parameters, (across, 1), t, &other)?;
+        let (other, enters) = self.free(system, parameters, (across, 1), t, &other)?;
         let share = leaves / (leaves + enters);
         let mut rate = own;
         for (entry, other) in rate.as_mut_slice().iter_mut().zip(other.as_slice()) {

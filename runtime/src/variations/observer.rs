@@ -32,7 +32,7 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
         Self {
             system,
             tangents,
-            flow: Flow::new(),
+            flow: Flow::new(system),
             holder: None,
             crossing: None,
             end: None,

@@ -37,7 +37,7 @@ impl<F: TaylorField> Tangent<F> {
     pub fn zero() -> Self {
         Self {
             state: F::State::zeros(F::State::CAPACITY),
-            parameters: F::Parameters::<f64>::ZERO,
+            parameters: F::Parameters::<f64>::zeros(F::Parameters::<f64>::CAPACITY),
         }
     }
 

@@ -135,8 +135,8 @@ pub(super) fn depends_on_time<Sys: Variational>(
     let parameters = dual_parameters(system, &[]);
     let t = passing(SOME_TIME);
     let state = dual_state::<Sys>(&event.before, &[]);
-    let mut firsts = Sys::Firsts::<Dual>::ZERO;
-    Sys::begin(&parameters, t, &state, &mut firsts)?;
+    let mut firsts = Sys::Firsts::<Dual>::zeros(Sys::Firsts::<Dual>::CAPACITY);
+    system.begin(&parameters, t, &state, &mut firsts)?;
     let gaps = Sys::clearances(&parameters, t, &state)?;
     let after = struck::<Sys, Dual>(system, &parameters, event, t, &state)?;
     let parts = [firsts.as_slice(), gaps.as_slice(), after.as_slice()];

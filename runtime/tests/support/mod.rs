@@ -100,6 +100,7 @@ impl<const S: usize> TaylorField for Particle<S> {
     }
 
     fn begin<L: Numbers>(
+        &self,
         [fx, fy]: &[L; 2],
         _: L,
         [_, _, vx, vy]: &[L; 4],
@@ -110,6 +111,7 @@ impl<const S: usize> TaylorField for Particle<S> {
     }
 
     fn advance<L: Numbers>(
+        &self,
         _: &[L; 2],
         unit: L,
         order: usize,

@@ -48,7 +48,8 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
             type Firsts<L: ::dalembert::numbers::Numbers> = [L; #known];
             type Jets<L: ::dalembert::numbers::Numbers> = #room;
 
-            const WORK: ::core::option::Option<::dalembert::jet::Work> = #work;
+            #[inline(always)]
+            fn work(&self) -> ::core::option::Option<::dalembert::jet::Work> { #work }
 
             #[inline]
             fn parameters(&self) -> [f64; #parameters] {
@@ -57,6 +58,7 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
 
             #[inline]
             fn begin<L: ::dalembert::numbers::Numbers>(
+                &self,
                 parameters: &[L; #parameters],
                 t: L,
                 state: &[L; #components],
@@ -69,6 +71,7 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
             #documentation
             #[inline]
             fn advance<L: ::dalembert::numbers::Numbers>(
+                &self,
                 parameters: &[L; #parameters],
                 unit: L,
                 order: usize,

@@ -157,12 +157,13 @@ pub(super) fn emit_taylor(whole: &Whole<'_>) -> TokenStream {
         |rest, mode| quote!((<#mode as ::dalembert::TaylorField>::Jets<L>, #rest)),
     );
     let begin = types.iter().map(|mode| {
-        quote!(::dalembert::__private::modes::begin::<#mode, L>(shape, parameters, t, state, firsts)?;)
+        quote!(::dalembert::__private::modes::begin::<#mode, L>(&<#mode as ::dalembert::Mode>::of(self), shape, parameters, t, state, firsts)?;)
     });
     let advance = types.iter().enumerate().map(|(index, mode)| {
         let rest = (0..index).map(|_| quote!(.1));
         quote! {
             ::dalembert::__private::modes::advance::<#mode, L, __STATE, #gaps>(
+                &<#mode as ::dalembert::Mode>::of(self),
                 parameters, unit, order, firsts, coefficients, gaps, &mut jets #(#rest)* .0,
             );
         }
@@ -182,14 +183,18 @@ pub(super) fn emit_taylor(whole: &Whole<'_>) -> TokenStream {
             type Firsts<L: ::dalembert::numbers::Numbers> = [L; __FIRSTS];
             type Jets<L: ::dalembert::numbers::Numbers> = #rooms;
 
-            const WORK: ::core::option::Option<::dalembert::jet::Work> =
-                ::dalembert::__private::modes::work(&[#(<#types as ::dalembert::TaylorField>::WORK),*]);
+            fn work(&self) -> ::core::option::Option<::dalembert::jet::Work> {
+                ::dalembert::__private::modes::work(&[
+                    #(::dalembert::TaylorField::work(&<#types as ::dalembert::Mode>::of(self))),*
+                ])
+            }
 
             #[inline]
             fn parameters(&self) -> [f64; #parameters] { [#(#places),*] }
 
             #[inline]
             fn begin<L: ::dalembert::numbers::Numbers>(
+                &self,
                 parameters: &[L; #parameters],
                 t: L,
                 state: &[L; __STATE],
@@ -202,6 +207,7 @@ pub(super) fn emit_taylor(whole: &Whole<'_>) -> TokenStream {
 
             #[inline]
             fn advance<L: ::dalembert::numbers::Numbers>(
+                &self,
                 parameters: &[L; #parameters],
                 unit: L,
                 order: usize,
@@ -336,7 +342,8 @@ fn emit_rank_drop(whole: &Whole<'_>) -> TokenStream {
         |_, mode| quote!(::dalembert::__private::modes::rank_drop::<#mode>(self, motion, reach)),
     );
     quote! {
-        const CAN_LOSE_RANK: bool = true;
+        #[inline(always)]
+        fn can_lose_rank(&self) -> bool { true }
 
         fn rank_drop(
             &self,

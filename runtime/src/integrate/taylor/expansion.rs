@@ -23,12 +23,33 @@ impl<F: TaylorField, L: Numbers> Clone for Expansion<F, L> {
 impl<F: TaylorField, L: Numbers> Copy for Expansion<F, L> {}
 
 impl<F: TaylorField, L: Numbers> Expansion<F, L> {
-    pub(crate) fn new() -> Self {
+    /// Room for the series of a system.
+    pub(crate) fn of(field: &F) -> Self {
+        Self::sized(
+            field.state_len(),
+            field.series_gap_count(),
+            field.firsts_len(),
+        )
+    }
+
+    /// Room that a system has yet to be known for.
+    pub(crate) fn unset() -> Self {
+        Self::sized(0, 0, 0)
+    }
+
+    fn sized(components: usize, gaps: usize, firsts: usize) -> Self {
         Self {
-            coefficients: [F::Row::ZERO; LENGTH],
-            gaps: [F::Gaps::ZERO; LENGTH],
-            firsts: F::Firsts::ZERO,
+            coefficients: [F::Row::<L>::zeros(components); LENGTH],
+            gaps: [F::Gaps::<L>::zeros(gaps); LENGTH],
+            firsts: F::Firsts::<L>::zeros(firsts),
             jets: F::Jets::ZERO,
+        }
+    }
+
+    /// Makes the room that a system takes, unless it is there.
+    pub(crate) fn make_room(&mut self, field: &F) {
+        if self.coefficients[0].as_slice().len() != field.state_len() {
+            *self = Self::of(field);
         }
     }
 
@@ -36,24 +57,26 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
     #[inline(always)]
     pub(crate) fn begin(
         &mut self,
+        field: &F,
         parameters: &F::Parameters<L>,
         t: L,
         state: &F::Row<L>,
     ) -> Result<(), Fault> {
-        F::begin(parameters, t, state, &mut self.firsts)
+        field.begin(parameters, t, state, &mut self.firsts)
     }
 
     /// The coefficients from the state that was begun with.
     #[inline(always)]
     pub(crate) fn advance(
         &mut self,
+        field: &F,
         parameters: &F::Parameters<L>,
         unit: L,
         order: usize,
         start: &F::Row<L>,
     ) {
         self.coefficients[0] = *start;
-        F::advance(
+        field.advance(
             parameters,
             unit,
             order,
@@ -67,13 +90,14 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
     /// The rate of the state that was begun with.
     #[inline(always)]
     pub(crate) fn rate(&self) -> &[L] {
-        &self.firsts.as_slice()[..F::Row::<L>::LEN]
+        &self.firsts.as_slice()[..self.coefficients[0].as_slice().len()]
     }
 
     /// The gaps of the state that was begun with.
     #[inline(always)]
     pub(crate) fn begun_gaps(&self) -> &[L] {
-        &self.firsts.as_slice()[F::Row::<L>::LEN..][..F::Gaps::<L>::LEN]
+        let (components, gaps) = (&self.coefficients[0], &self.gaps[0]);
+        &self.firsts.as_slice()[components.as_slice().len()..][..gaps.as_slice().len()]
     }
 
     /// The largest entries of the last coefficient and the one before it, each times its factor.
@@ -92,7 +116,8 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
     /// What the polynomial adds to the start after `theta` units of time, and its derivative there.
     #[inline(always)]
     pub(crate) fn change(&self, order: usize, theta: L) -> [F::Row<L>; 2] {
-        let (mut change, mut slope) = (F::Row::<L>::ZERO, F::Row::<L>::ZERO);
+        let (mut change, mut slope) =
+            (self.coefficients[0].zeroed(), self.coefficients[0].zeroed());
         for coefficient in self.coefficients[1..=order].iter().rev() {
             let sums = change.as_mut_slice().iter_mut().zip(slope.as_mut_slice());
             for ((sum, slope), entry) in sums.zip(coefficient.as_slice()) {
@@ -121,7 +146,7 @@ pub(crate) fn sum<L: Numbers>(start: L, change: L, rest: L) -> [L; 2] {
 /// A state as a row.
 #[inline(always)]
 pub(crate) fn row<F: TaylorField>(state: &F::State) -> F::Row<f64> {
-    let mut row = F::Row::<f64>::ZERO;
+    let mut row = F::Row::<f64>::zeros(state.count());
     row.as_mut_slice().copy_from_slice(state.as_slice());
     row
 }

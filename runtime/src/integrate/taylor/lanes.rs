@@ -32,6 +32,9 @@ pub(crate) trait Walker<F: TaylorField> {
     /// Its integrator, and the work done so far.
     fn at_work(&mut self) -> (&mut Taylor<F>, &mut Counters);
 
+    /// Its system.
+    fn field(&self) -> &F;
+
     /// Where it is heading.
     fn t_end(&self) -> f64;
 
@@ -48,19 +51,21 @@ struct Plan {
 }
 
 impl<F: TaylorField, L: Numbers> Abreast<F, L> {
-    pub(crate) fn new() -> Self {
+    /// Room for the steps of systems like this one.
+    pub(crate) fn new(field: &F) -> Self {
+        let components = field.state_len();
         Self {
-            parameters: F::Parameters::ZERO,
-            expansion: Expansion::new(),
-            end: F::Row::ZERO,
-            rests: F::Row::ZERO,
-            slope: F::Row::ZERO,
+            parameters: F::Parameters::<L>::zeros(field.parameters().as_slice().len()),
+            expansion: Expansion::of(field),
+            end: F::Row::<L>::zeros(components),
+            rests: F::Row::<L>::zeros(components),
+            slope: F::Row::<L>::zeros(components),
         }
     }
 
     /// The parameters of the system in each lane.
     pub(crate) fn set_parameters(&mut self, fields: &[&F]) {
-        let mut of_lanes = [F::Parameters::<f64>::ZERO; MOST];
+        let mut of_lanes = [fields[0].parameters(); MOST];
         for (lane, own) in of_lanes.iter_mut().enumerate() {
             *own = fields[lane.min(fields.len() - 1)].parameters();
         }
@@ -84,7 +89,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             made[lane] =
                 walker.taylor().order == order && self.hand_over(lane, walker, plans[lane], order);
             if made[lane] {
-                let is_wanted = walker.looks_inside() || F::Gaps::<f64>::LEN > 0;
+                let is_wanted = walker.looks_inside() || !self.expansion.begun_gaps().is_empty();
                 let (taylor, _) = walker.at_work();
                 taylor.is_expanded = is_wanted;
                 if taylor.is_expanded {
@@ -96,7 +101,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
     }
 
     fn expand(&mut self, walkers: &[impl Walker<F>], order: usize) {
-        let mut start = F::Row::<L>::ZERO;
+        let mut start = self.end.zeroed();
         gather(&mut start, |lane, i| {
             of(walkers, lane).ends.start.value.as_slice()[i]
         });
@@ -107,12 +112,13 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             of(walkers, lane).expansion.firsts.as_slice()[i]
         });
         let unit = L::gathered(|lane| of(walkers, lane).unit);
+        let field = walkers[0].field();
         self.expansion
-            .advance(&self.parameters, unit, order, &start);
+            .advance(field, &self.parameters, unit, order, &start);
     }
 
     fn plan(&self, walkers: &[impl Walker<F>], order: usize) -> [Plan; MOST] {
-        let mut factors = F::Row::<L>::ZERO;
+        let mut factors = self.end.zeroed();
         gather(&mut factors, |lane, i| {
             let taylor = of(walkers, lane);
             taylor
@@ -158,7 +164,9 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             [self.end.as_mut_slice()[i], *rest] = sum(start, *change, *rest);
         }
         let arrival = L::gathered(|lane| plans[lane.min(walkers.len() - 1)].arrival.t);
-        self.expansion.begin(&self.parameters, arrival, &self.end)
+        let field = walkers[0].field();
+        self.expansion
+            .begin(field, &self.parameters, arrival, &self.end)
     }
 
     /// Gives an integrator the end of its step, if that is accepted.
@@ -175,10 +183,10 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             return false;
         }
         let (taylor, counters) = walker.at_work();
-        let mut slope = F::Row::<f64>::ZERO;
+        let mut slope = taylor.expansion.coefficients[0].zeroed();
         scatter(&mut slope, &self.slope, lane);
         let firsts = self.expansion.firsts.as_slice();
-        for i in 0..F::Row::<L>::LEN {
+        for i in 0..self.end.as_slice().len() {
             taylor.ends.end.value.as_mut_slice()[i] = self.end.as_slice()[i].lane(lane);
             taylor.ends.end.rest.as_mut_slice()[i] = self.rests.as_slice()[i].lane(lane);
             taylor.rates[1].as_mut_slice()[i] = firsts[i].lane(lane);

@@ -69,7 +69,9 @@ const NOISE: f64 = 64.0 * f64::EPSILON;
 /// Generated Taylor series at work.
 pub struct Taylor<F: TaylorField> {
     tolerance: Tolerance,
+    /// The order of the series, once a run has begun.
     order: usize,
+    given_order: Option<usize>,
     max_step: f64,
     first_step: Option<f64>,
     weights: Weights<F::State>,
@@ -112,7 +114,8 @@ impl<F: TaylorField> Taylor<F> {
         let zeros = F::State::zeros(0);
         Self {
             tolerance,
-            order: order(tolerance.relative(), F::WORK),
+            order: 0,
+            given_order: None,
             max_step: f64::INFINITY,
             first_step: None,
             weights: Weights::new(tolerance, &zeros),
@@ -122,7 +125,7 @@ impl<F: TaylorField> Taylor<F> {
             error: 0.0,
             ends: Ends::new(),
             rates: [zeros; 2],
-            expansion: Expansion::new(),
+            expansion: Expansion::unset(),
             is_expanded: true,
         }
     }
@@ -130,7 +133,7 @@ impl<F: TaylorField> Taylor<F> {
     /// With series of this order, between 3 and 32, instead of the one that belongs to the tolerance.
     #[must_use]
     pub fn with_order(mut self, order: usize) -> Self {
-        self.order = order.clamp(LEAST_ORDER, LENGTH - 1);
+        self.given_order = Some(order.clamp(LEAST_ORDER, LENGTH - 1));
         self
     }
 
@@ -151,9 +154,10 @@ impl<F: TaylorField> Taylor<F> {
         self
     }
 
-    /// The order of the series.
-    pub fn order(&self) -> usize {
-        self.order
+    /// The order of the series of a system.
+    pub fn order_for(&self, field: &F) -> usize {
+        let chosen = || order(self.tolerance.relative(), field.work());
+        self.given_order.unwrap_or_else(chosen)
     }
 
     /// Takes `(now, state)` for the end of a step, as a start does.
@@ -176,6 +180,7 @@ impl<F: TaylorField> Taylor<F> {
     #[inline(always)]
     fn begin(&mut self, field: &F) -> Result<(), StepFailure> {
         self.expansion.begin(
+            field,
             &field.parameters(),
             self.ends.t[1].t,
             &row::<F>(&self.ends.end.value),
@@ -194,7 +199,7 @@ impl<F: TaylorField> Taylor<F> {
             counters.coefficients += self.order as u64;
             let start = row::<F>(&self.ends.start.value);
             self.expansion
-                .advance(&field.parameters(), self.unit, self.order, &start);
+                .advance(field, &field.parameters(), self.unit, self.order, &start);
             let last = |j: usize| self.expansion.coefficients[self.order - j].as_slice();
             let Some(component) = not_finite(last(0)).or(not_finite(last(1))) else {
                 return Ok(self.reach());
@@ -210,7 +215,7 @@ impl<F: TaylorField> Taylor<F> {
     /// The step that the last two coefficients allow, in units of time.
     #[inline(always)]
     fn reach(&self) -> f64 {
-        let mut factors = F::Row::<f64>::ZERO;
+        let mut factors = self.expansion.coefficients[0].zeroed();
         for (i, factor) in factors.as_mut_slice().iter_mut().enumerate() {
             *factor = 1.0
                 / self
@@ -326,9 +331,9 @@ impl<F: TaylorField> Taylor<F> {
         let (parameters, start) = (field.parameters(), row::<F>(&self.ends.start.value));
         let end = self.expansion.firsts;
         self.expansion
-            .begin(&parameters, self.ends.t[0].t, &start)?;
+            .begin(field, &parameters, self.ends.t[0].t, &start)?;
         self.expansion
-            .advance(&parameters, self.unit, self.order, &start);
+            .advance(field, &parameters, self.unit, self.order, &start);
         self.expansion.firsts = end;
         self.is_expanded = true;
         Ok(())

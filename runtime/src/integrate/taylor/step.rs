@@ -36,6 +36,8 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         counters: &mut Counters,
     ) -> Result<(), StepFailure> {
         counters.rate_evaluations += 1;
+        self.order = self.order_for(field);
+        self.expansion.make_room(field);
         self.place(field, now, Precise::new(*state))?;
         self.limit = self.first_step.unwrap_or(f64::INFINITY);
         let size = self.weights.norm(state, |i| state.as_slice()[i]);

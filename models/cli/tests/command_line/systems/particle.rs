@@ -49,6 +49,7 @@ macro_rules! field {
             }
 
             fn begin<L: Numbers>(
+                &self,
                 parameters: &Self::Parameters<L>,
                 _t: L,
                 state: &Self::Row<L>,
@@ -62,6 +63,7 @@ macro_rules! field {
             }
 
             fn advance<L: Numbers>(
+                &self,
                 parameters: &Self::Parameters<L>,
                 unit: L,
                 order: usize,

@@ -54,6 +54,7 @@ impl TaylorField for Pushed {
     }
 
     fn begin<L: Numbers>(
+        &self,
         _parameters: &Self::Parameters<L>,
         t: L,
         state: &Self::Row<L>,
@@ -66,6 +67,7 @@ impl TaylorField for Pushed {
 
     /// Of `f' = -2 u u' f` with constant `u'`.
     fn advance<L: Numbers>(
+        &self,
         _parameters: &Self::Parameters<L>,
         unit: L,
         order: usize,

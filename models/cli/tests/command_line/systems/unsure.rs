@@ -29,7 +29,9 @@ impl<M: VectorField> VectorField for Unsure<M> {
         self.0.scale(t, state)
     }
 
-    const CAN_BE_NARROW: bool = M::CAN_BE_NARROW;
+    fn can_be_narrow(&self) -> bool {
+        self.0.can_be_narrow()
+    }
 
     fn rates_along(
         &self,
@@ -48,22 +50,26 @@ impl<M: TaylorField> TaylorField for Unsure<M> {
     type Firsts<L: Numbers> = M::Firsts<L>;
     type Jets<L: Numbers> = M::Jets<L>;
 
-    const WORK: Option<Work> = M::WORK;
+    fn work(&self) -> Option<Work> {
+        self.0.work()
+    }
 
     fn parameters(&self) -> M::Parameters<f64> {
         self.0.parameters()
     }
 
     fn begin<L: Numbers>(
+        &self,
         parameters: &M::Parameters<L>,
         t: L,
         state: &M::Row<L>,
         firsts: &mut M::Firsts<L>,
     ) -> Result<(), Fault> {
-        M::begin(parameters, t, state, firsts)
+        self.0.begin(parameters, t, state, firsts)
     }
 
     fn advance<L: Numbers>(
+        &self,
         parameters: &M::Parameters<L>,
         unit: L,
         order: usize,
@@ -72,7 +78,8 @@ impl<M: TaylorField> TaylorField for Unsure<M> {
         gaps: &mut [M::Gaps<L>; LENGTH],
         jets: &mut M::Jets<L>,
     ) {
-        M::advance(parameters, unit, order, firsts, coefficients, gaps, jets);
+        self.0
+            .advance(parameters, unit, order, firsts, coefficients, gaps, jets);
     }
 }
 
@@ -128,7 +135,9 @@ impl<M: System> System for Unsure<M> {
         self.0.outside_chart(state)
     }
 
-    const CAN_LOSE_RANK: bool = M::CAN_LOSE_RANK;
+    fn can_lose_rank(&self) -> bool {
+        self.0.can_lose_rank()
+    }
 
     fn rank_drop(&self, motion: impl Fn(f64) -> (f64, M::State), reach: f64) -> Option<RankDrop> {
         self.0.rank_drop(motion, reach)
