@@ -37,6 +37,8 @@ pub enum Fault {
         /// Index of the surface.
         surface: usize,
     },
+    /// A function was asked for that was not derived of this system.
+    NotDerived,
     /// Momenta, an energy or an impulse were asked of a first-order system, which has none.
     FirstOrder,
     /// The parts of Lagrange and d'Alembert's principle, or a state over numbers of positions and velocities alone, were asked
@@ -86,6 +88,7 @@ impl fmt::Display for Fault {
                 "what was asked for (a step of a discrete principle, a state of positions and velocities) belongs to one mode, \
                  and the system has several"
             ),
+            Self::NotDerived => write!(f, "this was not derived of the system"),
             Self::FirstOrder => {
                 write!(
                     f,

@@ -25,6 +25,36 @@ pub fn vector<const D: usize>(components: [f64; D]) -> SVector<f64, D> {
     SVector::from_array_storage(nalgebra::ArrayStorage([components]))
 }
 
+/// The first `D` numbers of a kernel's place.
+///
+/// # Panics
+/// If there are fewer.
+#[inline(always)]
+pub fn numbers<L, const D: usize>(numbers: &[L]) -> &[L; D] {
+    match numbers.first_chunk() {
+        Some(numbers) => numbers,
+        None => too_few(D, numbers.len()),
+    }
+}
+
+/// The first `D` places for the values of a kernel.
+///
+/// # Panics
+/// If there are fewer.
+#[inline(always)]
+pub fn places<L, const D: usize>(places: &mut [L]) -> &mut [L; D] {
+    let count = places.len();
+    match places.first_chunk_mut() {
+        Some(places) => places,
+        None => too_few(D, count),
+    }
+}
+
+#[cold]
+fn too_few(wanted: usize, found: usize) -> ! {
+    panic!("a kernel of {wanted} numbers was given {found}")
+}
+
 /// N components of a state, from `OFFSET` on.
 #[inline(always)]
 pub fn part<const OFFSET: usize, const D: usize, const N: usize>(

@@ -130,6 +130,7 @@ pub mod initial;
 pub mod inputs;
 pub mod integrate;
 pub mod jet;
+pub mod kernels;
 #[cfg(feature = "lanes")]
 pub mod lanes;
 mod linalg;
@@ -182,6 +183,7 @@ pub use dalembert_macros::model;
 #[doc(hidden)]
 pub mod __private {
     pub use crate::generated::*;
+    pub use crate::kernels::nearest_of_declared;
     pub use crate::initial::{complete_positions, complete_velocities};
     pub use crate::math;
     pub use crate::modes;

@@ -117,6 +117,8 @@ pub enum Outcome {
         /// Index of the surface.
         surface: usize,
     },
+    /// See [`Fault::NotDerived`].
+    NotDerived,
     /// See [`Fault::FirstOrder`].
     FirstOrder,
     /// See [`Fault::SeveralModes`].
@@ -177,6 +179,7 @@ impl Outcome {
             Self::SingularConstraint { .. } => "singular_constraint",
             Self::SingularFrame { .. } => "singular_frame",
             Self::SingularSurface { .. } => "singular_surface",
+            Self::NotDerived => "not_derived",
             Self::FirstOrder => "first_order",
             Self::SeveralModes => "several_modes",
             Self::NonlinearConstraints => "nonlinear_constraints",
@@ -270,6 +273,7 @@ impl fmt::Display for Outcome {
             .fmt(f),
             Self::SingularFrame { quasi } => Fault::SingularFrame { quasi }.fmt(f),
             Self::SingularSurface { surface } => Fault::SingularSurface { surface }.fmt(f),
+            Self::NotDerived => Fault::NotDerived.fmt(f),
             Self::FirstOrder => Fault::FirstOrder.fmt(f),
             Self::SeveralModes => Fault::SeveralModes.fmt(f),
             Self::NonlinearConstraints => Fault::NonlinearConstraints.fmt(f),
@@ -302,6 +306,7 @@ impl From<Fault> for Outcome {
             },
             Fault::SingularFrame { quasi } => Self::SingularFrame { quasi },
             Fault::SingularSurface { surface } => Self::SingularSurface { surface },
+            Fault::NotDerived => Self::NotDerived,
             Fault::FirstOrder => Self::FirstOrder,
             Fault::SeveralModes => Self::SeveralModes,
             Fault::NonlinearConstraints => Self::NonlinearConstraints,

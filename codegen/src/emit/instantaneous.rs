@@ -1,74 +1,10 @@
 //! `focus` and `trace`, of `Impacting` and of `Variational`: constraints that hold in the moment of an impact only.
 
-use proc_macro2::{Ident, Span, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::function::joined;
-use super::{Context, doc};
-use crate::program::{Function, Impacting};
-
-/// Both functions, where a surface has such constraints.
-pub(super) fn emit_instantaneous(context: &Context<'_>, functions: &Impacting) -> TokenStream {
-    if functions.focuses.iter().all(Option::is_none) {
-        return TokenStream::new();
-    }
-    let focus = emit(
-        context,
-        "focus",
-        "The impulse after which the instantaneous constraints hold.",
-        &TokenStream::new(),
-        &functions.focuses,
-    );
-    let trace = emit(
-        context,
-        "trace",
-        "The force under which the instantaneous constraints go on holding at these rates of momenta or quasi-velocities.",
-        &quote!(motion: &Self::Impulse,),
-        &functions.traces,
-    );
-    joined([focus, trace])
-}
-
-fn emit(
-    context: &Context<'_>,
-    name: &str,
-    title: &str,
-    argument: &TokenStream,
-    functions: &[Option<Function>],
-) -> TokenStream {
-    let arms = functions.iter().enumerate().filter_map(|(s, function)| {
-        let body = context.state_body(function.as_ref()?);
-        let (statements, outputs) = (body.statements, body.outputs);
-        Some(quote!(#s => { #statements ::dalembert::__private::vector([#(#outputs),*]) }))
-    });
-    let mut lines = vec![title.to_owned(), String::new()];
-    for (surface, function) in context.model.surfaces.iter().zip(functions) {
-        if let Some(function) = function {
-            let names = surface.instantaneous.iter();
-            let names: Vec<&str> = names.map(|own| own.name.display.as_str()).collect();
-            let (surface, names) = (&surface.name.display, names.join("`, `"));
-            lines.push(format!("* `{surface}`: `{names}`, {}.", function.cost));
-        }
-    }
-    let (documentation, name) = (doc::lines(&lines), Ident::new(name, Span::call_site()));
-    quote! {
-        #documentation
-        #[inline]
-        fn #name(
-            &self,
-            surface: usize,
-            t: f64,
-            state: &Self::State,
-            #argument
-        ) -> ::core::result::Result<::core::option::Option<Self::Impulse>, ::dalembert::Fault> {
-            let impulse = match surface {
-                #(#arms)*
-                _ => return ::core::result::Result::Ok(::core::option::Option::None),
-            };
-            ::core::result::Result::Ok(::core::option::Option::Some(impulse))
-        }
-    }
-}
+use super::Context;
+use crate::program::Function;
 
 /// Both functions over numbers, where a surface has such constraints. They give states and rates, not what is added to them.
 pub(super) fn emit_varied(context: &Context<'_>) -> TokenStream {

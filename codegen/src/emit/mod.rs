@@ -4,21 +4,19 @@
 
 mod actuation;
 mod constraint;
+mod declared;
 mod describe;
 mod doc;
 mod field;
-mod first_order;
 mod function;
 mod impact;
 mod indices;
 mod instantaneous;
 mod jet;
-mod lagrangian;
+mod kernels;
 pub mod modes;
 mod names;
-mod nonlinear;
 mod parameters;
-mod reduced;
 mod scene;
 mod variational;
 mod volume;
@@ -72,7 +70,8 @@ pub fn tokens(compiled: &Compiled) -> TokenStream {
     ];
     let shadows = names::emit_shadows(core::iter::once(model));
     let contexts = contexts.iter().chain(scenes.iter().flatten());
-    let items = contexts.flat_map(implementations);
+    let mut written = kernels::Written::default();
+    let items = contexts.flat_map(|context| implementations(context, &mut written));
     quote! {
         #(#own)*
         const _: () = {
@@ -125,17 +124,13 @@ fn contexts_of_scene<'a>(
 }
 
 /// What is implemented for a type of the model.
-fn implementations(context: &Context<'_>) -> [TokenStream; 13] {
+fn implementations(context: &Context<'_>, written: &mut kernels::Written) -> [TokenStream; 9] {
     [
-        field::emit_field(context),
-        field::emit_system(context),
+        kernels::emit_kernels(context, written),
+        declared::emit_declared(context),
         jet::emit_taylor(context),
-        constraint::emit_constrained(context),
-        lagrangian::emit_lagrangian(context),
-        impact::emit_impacting(context),
         actuation::emit_actuated(context),
         actuation::emit_powered(context),
-        volume::emit_divergence(context),
         volume::emit_invariant_volume(context),
         variational::emit_variational(context),
         describe::emit_described(context),

@@ -7,45 +7,6 @@ use super::function::number;
 use super::{Context, doc};
 use crate::program::Function;
 
-/// `impl Divergence`, where volumes are asked for.
-pub(super) fn emit_divergence(context: &Context<'_>) -> TokenStream {
-    let Some(density) = &context.program.density else {
-        return TokenStream::new();
-    };
-    let type_name = &context.names.type_name;
-    let divergence = context.state_body(&density.divergence);
-    let formula = "-theta(qdot) - m_ab W^b(eta_0^a) - m_ab (d_t eta^a)(W^b) + m_ab (d_t g)(W^a, W^b) \
-                   + tr(dF/dqdot . pi_D g^-1)";
-    let divergence_doc = doc::formula(formula, &density.divergence.cost);
-    let (divergence_statements, value) = (divergence.statements, &divergence.outputs[0]);
-    let form = context.position_body(&density.form);
-    let form_doc = doc::formula("theta = m_ab L_{W^a} eta^b", &density.form.cost);
-    let (form_statements, theta) = (form.statements, form.outputs);
-    let attributes = super::attributes();
-    quote! {
-        #attributes
-        impl ::dalembert::Divergence for #type_name {
-            #divergence_doc
-            #[inline]
-            fn divergence(&self, t: f64, state: &Self::State) -> ::core::result::Result<f64, ::dalembert::Fault> {
-                #divergence_statements
-                ::core::result::Result::Ok(#value)
-            }
-
-            #form_doc
-            #[inline]
-            fn density_form(
-                &self,
-                t: f64,
-                q: &Self::Vector,
-            ) -> ::core::result::Result<Self::Vector, ::dalembert::Fault> {
-                #form_statements
-                ::core::result::Result::Ok(::dalembert::__private::vector([#(#theta),*]))
-            }
-        }
-    }
-}
-
 /// `impl InvariantVolume`, if a volume was found.
 pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
     let Some(volume) = &context.program.volume else {

@@ -13,6 +13,7 @@ pub mod expression;
 pub mod interpret;
 pub mod jet;
 pub mod kernel;
+pub mod kernels;
 pub mod linear;
 pub mod lower;
 pub mod mass;

@@ -9,6 +9,7 @@
 //! | `rated.rs` | intervals of values and of rates along a stretch of motion |
 //! | `bent.rs` | intervals of values, rates and bends along lines through a box |
 //! | `taylor_model.rs` | cubics along a stretch of motion, and how far from them values and rates may be |
+//! | `kernel.rs` | the functions of a model by name, on which generator and runtime agree |
 //! | `extended/` | sums of a few doubles: arithmetic, elementary functions, decimal text |
 
 #![cfg_attr(not(feature = "std"), no_std)]
@@ -17,6 +18,7 @@
 pub mod bent;
 pub mod extended;
 pub mod interval;
+pub mod kernel;
 #[cfg(feature = "lanes")]
 mod lanes;
 pub mod math;
@@ -27,6 +29,7 @@ pub mod taylor_model;
 pub use bent::Bent;
 pub use extended::{Extended, MOST_PARTS, NotDecimal};
 pub use interval::Interval;
+pub use kernel::Kernel;
 pub use numbers::Numbers;
 pub use rated::Rated;
 pub use taylor_model::TaylorModel;

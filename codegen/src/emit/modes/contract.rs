@@ -1,12 +1,11 @@
 //! The contract of the whole: each trait asks the mode of the state.
 
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use super::Whole;
 use crate::emit::field::emit_rates_along;
 use crate::emit::function::Body;
-use crate::emit::lagrangian::emit_refusal;
 use crate::emit::{Context, attributes};
 use crate::model::Mode;
 use crate::program::Function;
@@ -401,6 +400,34 @@ fn emit_makers(whole: &Whole<'_>) -> TokenStream {
             named: &Self::Vector,
         ) -> ::core::result::Result<Self::Vector, ::dalembert::StateError> {
             #complete
+        }
+    }
+}
+
+/// `impl Lagrangian` of what has no principle that can be put to work: it answers this fault.
+fn emit_refusal(type_name: &impl ToTokens, fault: &TokenStream) -> TokenStream {
+    let attributes = attributes();
+    quote! {
+        #attributes
+        impl ::dalembert::Lagrangian for #type_name {
+            type Reactions = ::dalembert::__private::SVector<f64, 0usize>;
+
+            fn force(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Self::Vector {
+                ::dalembert::System::zero_vector(self)
+            }
+
+            fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions) -> Self::Vector {
+                ::dalembert::System::zero_vector(self)
+            }
+
+            fn constrained_velocity(
+                &self,
+                t: f64,
+                q: &Self::Vector,
+                p: &Self::Vector,
+            ) -> ::core::result::Result<(Self::Vector, Self::Reactions), ::dalembert::Fault> {
+                ::core::result::Result::Err(#fault)
+            }
         }
     }
 }

@@ -9,6 +9,7 @@ mod variational;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
+use super::kernels::Written;
 use super::{Context, contexts_of_scene, implementations, names};
 use crate::CompiledModes;
 use crate::model::{Mode, ModeGraph, Model};
@@ -35,7 +36,10 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
     };
     let own = [types::emit_struct(&whole), types::emit_module(&whole)];
     let shadows = names::emit_shadows(graph.modes.iter().map(|mode| &mode.model));
-    let of_modes = whole.contexts.iter().flatten().flat_map(implementations);
+    let mut written = Written::default();
+    let contexts = whole.contexts.iter().flatten();
+    let of_modes = contexts.flat_map(|context| implementations(context, &mut written));
+    let of_modes: Vec<TokenStream> = of_modes.collect();
     let of_whole = [
         contract::emit_sizes(&whole),
         contract::emit_modes(&whole),

@@ -1,0 +1,166 @@
+//! The functions that a generator derives of a model, by name: what generator and runtime agree on.
+
+/// A function of a model in one form of its equations. Its values are numbers one after the other; what it reads is a time, numbers
+/// in a first place and numbers in a second one ([`Kernel::first`], [`Kernel::second`]), and the parameters.
+///
+/// `n` is the number of coordinates, `m` that of constraints, `k` that of momenta or quasi-velocities in a state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kernel {
+    /// The rate of the state.
+    Rate,
+    /// The unit of each component of the state.
+    Scale,
+    /// The velocities: n.
+    Velocity,
+    /// The momenta of a state that does not hold them: n.
+    Momentum,
+    /// Momenta or quasi-velocities of velocities: k.
+    Motion,
+    /// Those of the allowed velocities that are nearest to velocities, in the metric: k.
+    Nearest,
+    /// The quasi-velocities of the allowed momenta that are nearest to momenta: k.
+    NearestMomenta,
+    /// Kinetic and potential energy.
+    Energy,
+    /// `dL/dq + F`: n.
+    Force,
+    /// The multipliers: m.
+    Multipliers,
+    /// The residuals of the constraints, then the sums of the absolute values of their terms: 2 m.
+    Residuals,
+    /// The constraint forms row after row, then their affine parts: m n + m. At velocities where constraints are not linear in them.
+    Forms,
+    /// The momenta after a step, brought back to the constraints: k.
+    Restore,
+    /// The values of integrable constraints.
+    Levels,
+    /// The sizes of those whose value is declared.
+    LevelScales,
+    /// The change of positions that takes an excess of levels: n.
+    LevelCorrection,
+    /// The force of the constraints for multipliers: n.
+    ReactionForce,
+    /// The allowed velocities for momenta, then the multipliers that make them so: n + m.
+    ConstrainedVelocity,
+    /// All gaps.
+    Gaps,
+    /// The gap of one surface.
+    Gap(usize),
+    /// The rates of all gaps.
+    GapRates,
+    /// Their second rates, where the motion changes at given rates.
+    GapAccelerations,
+    /// What an impulse changes the rates of all gaps by.
+    GapResponses,
+    /// The margins of the conditions of a surface: its own, then those of others that it depends on.
+    Conditions(usize),
+    /// The coefficient of the law of a surface.
+    Coefficient(usize),
+    /// The blow by the law of a surface: size, share, direction.
+    Blow(usize),
+    /// What an impact on a surface needs: gap rate, constrained rate, rate of the surface, constrained and free compliance, direction.
+    Contact(usize),
+    /// Positions and velocities after the reset of a surface: 2 n.
+    Reset(usize),
+    /// Positions and velocities in the mode that a surface leads to.
+    Entry(usize),
+    /// The impulse after which the instantaneous constraints of a surface hold: k.
+    Focus(usize),
+    /// What is to be added to rates of the motion for them to go on holding: k.
+    Trace(usize),
+    /// The divergence of the motion.
+    Divergence,
+    /// The density form: n.
+    DensityForm,
+    /// The logarithm of an invariant density, but for an integral.
+    LogDensity,
+    /// The logarithm of the density of the invariant volume, but for an integral.
+    LogVolume,
+    /// The gradient of what is integrated: n.
+    DensityGradient,
+    /// What changes the energy, by cause.
+    Powers,
+    /// The declared outputs.
+    Outputs,
+    /// The point of the view.
+    ViewPath,
+    /// The region of the view.
+    ViewRegion,
+    /// Declared positions, then velocities: 2 n.
+    Initial,
+    /// The declared time.
+    Until,
+    /// All that is derived at a state.
+    Geometry,
+}
+
+/// What a kernel reads in its first place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum First {
+    /// Nothing.
+    Nothing,
+    /// Positions; a state begins with them.
+    Positions,
+    /// A state.
+    State,
+}
+
+/// What a kernel reads in its second place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Second {
+    /// Nothing.
+    Nothing,
+    /// Velocities.
+    Velocities,
+    /// Momenta.
+    Momenta,
+    /// Changes, or rates, of momenta or quasi-velocities.
+    Motion,
+    /// An excess of levels.
+    Excess,
+    /// Multipliers.
+    Multipliers,
+}
+
+impl Kernel {
+    /// What it reads in its first place.
+    pub const fn first(self) -> First {
+        match self {
+            Self::Scale
+            | Self::Motion
+            | Self::Nearest
+            | Self::NearestMomenta
+            | Self::Force
+            | Self::Residuals
+            | Self::Forms
+            | Self::Levels
+            | Self::LevelScales
+            | Self::LevelCorrection
+            | Self::ReactionForce
+            | Self::ConstrainedVelocity
+            | Self::Gaps
+            | Self::Gap(_)
+            | Self::DensityForm
+            | Self::LogDensity
+            | Self::LogVolume
+            | Self::DensityGradient
+            | Self::ViewRegion => First::Positions,
+            Self::Coefficient(_) | Self::Initial | Self::Until => First::Nothing,
+            _ => First::State,
+        }
+    }
+
+    /// What it reads in its second place.
+    pub const fn second(self) -> Second {
+        match self {
+            Self::Motion | Self::Nearest | Self::Force | Self::Residuals | Self::Forms => {
+                Second::Velocities
+            }
+            Self::NearestMomenta | Self::ConstrainedVelocity => Second::Momenta,
+            Self::GapAccelerations | Self::GapResponses | Self::Trace(_) => Second::Motion,
+            Self::LevelCorrection => Second::Excess,
+            Self::ReactionForce => Second::Multipliers,
+            _ => Second::Nothing,
+        }
+    }
+}

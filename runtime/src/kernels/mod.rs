@@ -1,0 +1,66 @@
+//! What a generator gives of a model: kernels over any numbers, and tables. Everything else is made of them, once.
+//!
+//! | file | job |
+//! |---|---|
+//! | `tables.rs` | what is known of a form besides its kernels: sizes, laws, conditions, charts |
+//! | `declared.rs` | a model with values for its parameters: kernels, tables and the types of its vectors |
+//! | `system.rs`, `constrained.rs`, `impacting.rs`, .. | the traits of `contract`, of every declared model |
+
+mod constrained;
+mod declared;
+mod impacting;
+mod system;
+mod tables;
+
+use crate::error::Fault;
+use crate::numbers::Numbers;
+pub use dalembert_numbers::kernel::{First, Kernel, Second};
+pub use declared::Declared;
+pub use system::nearest_of_declared;
+pub use tables::{Beside, Chart, Condition, Dimensions, Form, Surface, Tables};
+
+/// What a kernel reads.
+#[derive(Debug, Clone, Copy)]
+pub struct At<'a, L> {
+    /// The parameters, in the order of declaration.
+    pub parameters: &'a [L],
+    /// The time.
+    pub t: L,
+    /// Positions or a state ([`Kernel::first`]).
+    pub first: &'a [L],
+    /// Velocities, momenta and the like ([`Kernel::second`]).
+    pub second: &'a [L],
+}
+
+/// A declared form with constraints.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no constraints: declare `constraints {{ .. }}` in its `model!`"
+)]
+pub trait HasConstraints: Declared {}
+
+/// A declared form with surfaces.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no impact surfaces: declare `impacts {{ .. }}` in its `model!`"
+)]
+pub trait HasSurfaces: Declared {}
+
+/// A declared form whose divergence was derived.
+#[diagnostic::on_unimplemented(message = "the divergence of `{Self}` was not derived")]
+pub trait HasDivergence: Declared {}
+
+/// The kernels of one form of a model.
+pub trait Kernels {
+    /// Writes the values of a kernel; `values` has exactly as many places.
+    ///
+    /// # Errors
+    /// The guard that does not hold; [`Fault::NotDerived`] for a kernel that the form does not have.
+    ///
+    /// # Panics
+    /// If a slice is shorter than the kernel's.
+    fn call<L: Numbers>(
+        &self,
+        kernel: Kernel,
+        at: At<'_, L>,
+        values: &mut [L],
+    ) -> Result<(), Fault>;
+}
