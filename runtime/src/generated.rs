@@ -359,27 +359,29 @@ pub mod certain {
 
     /// Whether all of these hold.
     #[inline]
-    pub fn all(conditions: &[Option<bool>]) -> Option<bool> {
-        match conditions.contains(&Some(false)) {
-            true => Some(false),
-            false => (!conditions.contains(&None)).then_some(true),
+    pub fn all(conditions: impl Iterator<Item = Option<bool>>) -> Option<bool> {
+        let mut all = Some(true);
+        for condition in conditions {
+            match condition {
+                Some(false) => return Some(false),
+                Some(true) => {}
+                None => all = None,
+            }
         }
+        all
     }
 
     /// Whether none of these holds.
     #[inline]
-    pub fn none(conditions: &[Option<bool>]) -> Option<bool> {
-        match conditions.contains(&Some(true)) {
-            true => Some(false),
-            false => (!conditions.contains(&None)).then_some(true),
-        }
+    pub fn none(conditions: impl Iterator<Item = Option<bool>>) -> Option<bool> {
+        all(conditions.map(|condition| condition.map(|holds| !holds)))
     }
 
-    /// Whether the last of several transitions counts and is taken. Where none of them is, the motion ends, which is not certain
-    /// motion.
+    /// Whether the last of several transitions counts and is taken, where its own conditions hold and no other's do. Where none of them is
+    /// taken, the motion ends, which is not certain motion.
     #[inline]
-    pub fn last(own: Option<bool>, others: &[Option<bool>]) -> Option<bool> {
-        match (own, none(others)) {
+    pub fn last(own: Option<bool>, no_other: Option<bool>) -> Option<bool> {
+        match (own, no_other) {
             (Some(true), _) => Some(true),
             (Some(false), Some(false)) => Some(false),
             _ => None,

@@ -3,8 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::function::Body;
-use super::{Context, doc};
+use super::Context;
 
 /// The names of the inputs, if there are any.
 pub(super) fn emit_names(context: &Context<'_>) -> TokenStream {
@@ -49,11 +48,6 @@ pub(super) fn emit_powered(context: &Context<'_>) -> TokenStream {
     };
     let (type_name, names) = (&context.names.type_name, &powers.names);
     let count = names.len();
-    let documentation = doc::formula("F_a(qdot), lambda eta(qdot), -d_t L", &powers.function.cost);
-    let Body {
-        statements,
-        outputs,
-    } = context.state_body(&powers.function);
     let attributes = super::attributes();
     quote! {
         #attributes
@@ -61,15 +55,16 @@ pub(super) fn emit_powered(context: &Context<'_>) -> TokenStream {
             type Powers = ::dalembert::__private::SVector<f64, #count>;
             const POWERS: &'static [&'static str] = &[#(#names),*];
 
-            #documentation
             #[inline]
             fn powers(
                 &self,
                 t: f64,
                 state: &Self::State,
             ) -> ::core::result::Result<Self::Powers, ::dalembert::Fault> {
-                #statements
-                ::core::result::Result::Ok(::dalembert::__private::vector([#(#outputs),*]))
+                let mut powers = [0.0; #count];
+                let place = [::dalembert::StateVector::as_slice(state), &[]];
+                ::dalembert::__private::write(self, ::dalembert::kernels::Kernel::Powers, t, place, &mut powers)?;
+                ::core::result::Result::Ok(::dalembert::__private::vector(powers))
             }
         }
     }

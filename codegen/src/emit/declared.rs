@@ -14,7 +14,10 @@ pub(super) fn emit_declared(context: &Context<'_>) -> TokenStream {
     let (type_name, kernels) = (&context.names.type_name, kernels::type_name(context));
     let places = &context.names.parameters;
     let (n, k) = (context.dimension(), context.motion_dimension());
-    let (m, s) = (context.model.constraints.len(), context.model.surfaces.len());
+    let (m, s) = (
+        context.model.constraints.len(),
+        context.model.surfaces.len(),
+    );
     let [size, parameters, levels, room] = [n + k, places.len(), levels(context), room(context)];
     let tables = emit_tables(context);
     let hooks = super::constraint::emit_hooks(context);
@@ -33,7 +36,7 @@ pub(super) fn emit_declared(context: &Context<'_>) -> TokenStream {
             type Positions<#numbers> = [L; #n];
             type Components<#numbers> = [L; #size];
             type Arguments<#numbers> = [L; #parameters];
-            type Room = [f64; #room];
+            type Room<#numbers> = [L; #room];
             type Kernels = #kernels;
 
             const KERNELS: #kernels = #kernels;
@@ -80,11 +83,15 @@ fn room(context: &Context<'_>) -> usize {
                 | Kernel::Blow(_)
                 | Kernel::Contact(_)
                 | Kernel::Reset(_)
+                | Kernel::Initial
         )
     });
     let counts = several.map(|(_, function)| function.outputs.len());
     // NOTE: blows and contacts are asked for where there are none too.
-    counts.max().unwrap_or(0).max(5 + context.motion_dimension())
+    counts
+        .max()
+        .unwrap_or(0)
+        .max(5 + context.motion_dimension())
 }
 
 fn emit_tables(context: &Context<'_>) -> TokenStream {
@@ -170,7 +177,11 @@ fn emit_surface(context: &Context<'_>, index: usize, surface: &Surface) -> Token
         false => quote!(::core::option::Option::None),
     };
     let conditions = emit_conditions(&surface.conditions);
-    let others = surface.beside.others().iter().map(|own| emit_conditions(own));
+    let others = surface
+        .beside
+        .others()
+        .iter()
+        .map(|own| emit_conditions(own));
     let beside = match &surface.beside {
         Beside::Independent => quote!(Independent),
         Beside::Otherwise(_) => quote!(Otherwise),

@@ -4,7 +4,7 @@ use dalembert_expr::ExprId;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
-use super::function::{Body, emit_body, number};
+use super::function::number;
 use super::{Context, doc, parameters, scene};
 use crate::model::{Assumption, Constraint, Coordinate, Model, Topology};
 use crate::program::Form;
@@ -244,11 +244,6 @@ pub(super) fn emit_access(places: &[TokenStream]) -> TokenStream {
 
 fn emit_initial(context: &Context<'_>) -> TokenStream {
     let (model, program) = (context.model, context.program);
-    let Body {
-        statements,
-        outputs,
-    } = emit_body(&program.initial, &context.names);
-    let (q, qdot) = outputs.split_at(context.dimension());
     let declared = |values: &[Option<ExprId>]| -> Vec<_> {
         let marks = values
             .iter()
@@ -256,22 +251,20 @@ fn emit_initial(context: &Context<'_>) -> TokenStream {
         marks.map(number).collect()
     };
     let (placed, named) = (declared(&model.initial.q), declared(&model.initial.qdot));
+    let kernel = quote!(::dalembert::kernels::Kernel);
     let until = match &program.until {
-        Some(function) => {
-            let Body {
-                statements,
-                outputs,
-            } = emit_body(function, &context.names);
-            quote!({ #statements ::core::option::Option::Some(#(#outputs)*) })
+        Some(_) => {
+            quote!(::dalembert::__private::number(self, #kernel::Until, 0.0, [&[], &[]]).ok())
         }
         None => quote!(::core::option::Option::None),
     };
     quote! {
         fn initial(&self) -> ::dalembert::describe::Initial<Self::Vector> {
-            #statements
+            let declared = ::dalembert::__private::pair(self, #kernel::Initial, 0.0, [&[], &[]]);
+            let [q, qdot] = declared.unwrap_or([::dalembert::System::zero_vector(self); 2]);
             ::dalembert::describe::Initial {
-                q: ::dalembert::__private::vector([#(#q),*]),
-                qdot: ::dalembert::__private::vector([#(#qdot),*]),
+                q,
+                qdot,
                 placed: ::dalembert::__private::vector([#(#placed),*]),
                 named: ::dalembert::__private::vector([#(#named),*]),
                 until: #until,
@@ -283,39 +276,25 @@ fn emit_initial(context: &Context<'_>) -> TokenStream {
 /// Outputs and view.
 fn emit_declared(context: &Context<'_>) -> TokenStream {
     let program = context.program;
+    let kernel = quote!(::dalembert::kernels::Kernel);
+    let state = quote!([::dalembert::StateVector::as_slice(state), &[]]);
     let outputs = match &program.outputs {
-        Some(function) => {
-            let Body {
-                statements,
-                outputs,
-            } = context.state_body(function);
-            quote! {
-                #statements
-                for (entry, value) in values.iter_mut().zip([#(#outputs),*]) {
-                    *entry = value;
-                }
-            }
-        }
-        None => TokenStream::new(),
+        Some(_) => quote!(::dalembert::__private::write(self, #kernel::Outputs, t, #state, values)),
+        None => quote!(::core::result::Result::Ok(())),
     };
     let path = match &program.view_path {
-        Some(function) => {
-            let Body {
-                statements,
-                outputs,
-            } = context.state_body(function);
-            quote!(#statements ::core::option::Option::Some([#(#outputs),*]))
-        }
+        Some(_) => quote! {
+            let mut point = [0.0; 2];
+            ::dalembert::__private::write(self, #kernel::ViewPath, t, #state, &mut point).ok()?;
+            ::core::option::Option::Some(point)
+        },
         None => quote!(::core::option::Option::None),
     };
     let region = match &program.view_region {
-        Some(function) => {
-            let Body {
-                statements,
-                outputs,
-            } = context.position_body(function);
-            quote!(#statements ::core::option::Option::Some(#(#outputs)*))
-        }
+        Some(_) => quote! {
+            let q = [::dalembert::StateVector::as_slice(q), &[]];
+            ::dalembert::__private::number(self, #kernel::ViewRegion, t, q).ok()
+        },
         None => quote!(::core::option::Option::None),
     };
     quote! {
@@ -326,7 +305,6 @@ fn emit_declared(context: &Context<'_>) -> TokenStream {
             values: &mut [f64],
         ) -> ::core::result::Result<(), ::dalembert::Fault> {
             #outputs
-            ::core::result::Result::Ok(())
         }
 
         fn view_path(&self, t: f64, state: &Self::State) -> ::core::option::Option<[f64; 2]> { #path }
@@ -338,20 +316,22 @@ fn emit_declared(context: &Context<'_>) -> TokenStream {
 fn emit_inspect(context: &Context<'_>) -> TokenStream {
     let geometry = &context.program.geometry;
     let n = context.dimension();
-    let Body {
-        statements,
-        outputs,
-    } = context.state_body(&geometry.function);
-    let mut rest = outputs.as_slice();
+    let count = geometry.function.outputs.len();
+    let statements = quote! {
+        let mut values = [0.0; #count];
+        let place = [::dalembert::StateVector::as_slice(state), &[]];
+        ::dalembert::__private::write(self, ::dalembert::kernels::Kernel::Geometry, t, place, &mut values)?;
+    };
+    let mut next = 0;
     let reports = geometry.groups.iter().map(|group| {
-        let (values, tail) = rest.split_at(group.shape.count());
-        rest = tail;
-        let name = &group.name;
+        let first = next;
+        next += group.shape.count();
+        let (name, last) = (&group.name, next);
         match group.shape {
-            Shape::Scalar => quote!(report.scalar(#name, #(#values)*);),
-            Shape::Vector(_) => quote!(report.vector(#name, &[#(#values),*]);),
+            Shape::Scalar => quote!(report.scalar(#name, values[#first]);),
+            Shape::Vector(_) => quote!(report.vector(#name, &values[#first..#last]);),
             Shape::Matrix(rows, columns) => {
-                quote!(report.matrix(#name, #rows, #columns, &[#(#values),*]);)
+                quote!(report.matrix(#name, #rows, #columns, &values[#first..#last]);)
             }
         }
     });

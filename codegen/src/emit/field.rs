@@ -3,8 +3,8 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-use super::function::{Body, emit_body, joined, uses};
 use super::Context;
+use super::function::{Body, emit_body, joined, uses};
 use crate::program::{Form, Function, Input};
 
 impl Context<'_> {
@@ -26,14 +26,6 @@ impl Context<'_> {
     pub(super) fn quasi_names(&self) -> Vec<String> {
         let quasi = self.frame.iter().flat_map(|frame| &frame.quasi);
         quasi.map(|own| own.name.clone()).collect()
-    }
-
-    /// `let [x, y, _] = components(q);` with the coordinates that the function uses.
-    pub(super) fn bind_coordinates(&self, function: &Function) -> TokenStream {
-        let pattern = pattern(&self.names.coordinates, |i| {
-            uses(function, |input| input == Input::Coordinate(i))
-        });
-        bind(&[pattern], &quote!(q))
     }
 
     /// `let [x, _, p_x, p_y] = components(state);` with what the function uses.
@@ -89,11 +81,6 @@ impl Context<'_> {
         })
     }
 
-    /// `let [p_x, _] = components(p);` with what the function uses.
-    pub(super) fn bind_momenta(&self, function: &Function) -> TokenStream {
-        bind(&[self.momentum_pattern(function)], &quote!(p))
-    }
-
     /// `let [x_dot, _] = components(qdot);` with the velocities that the function uses.
     pub(super) fn bind_velocities(&self, function: &Function) -> TokenStream {
         let velocities = pattern(&self.names.velocities, |i| {
@@ -112,37 +99,6 @@ impl Context<'_> {
         let velocities = self.bind_velocities(function);
         let compute = quote!(let qdot = &<Self as ::dalembert::System>::velocity(self, t, state)?;);
         self.body(quote!(#compute #velocities #state), function)
-    }
-
-    /// The statements of a function of `(t, q, qdot)` and its results.
-    pub(super) fn velocity_body(&self, function: &Function) -> Body {
-        let bindings = [
-            self.bind_coordinates(function),
-            self.bind_velocities(function),
-        ];
-        self.body(quote!(#(#bindings)*), function)
-    }
-
-    /// The statements of a function of `(t, q)` and its results.
-    pub(super) fn position_body(&self, function: &Function) -> Body {
-        self.body(self.bind_coordinates(function), function)
-    }
-
-    /// The statements of a function of `(t, q)` over numbers that enclose, and its results; `component` gives positions.
-    pub(super) fn enclosed_body(&self, function: &Function) -> Body {
-        let names = self.names.enclosed();
-        let coordinates = names.coordinates.iter().enumerate();
-        let used = coordinates.filter(|(i, _)| uses(function, |own| own == Input::Coordinate(*i)));
-        let bindings = used.map(|(i, name)| quote!(let #name = component(#i);));
-        let bindings = quote!(#(#bindings)*);
-        let Body {
-            statements,
-            outputs,
-        } = emit_body(function, &names);
-        Body {
-            statements: joined([bindings, statements]),
-            outputs,
-        }
     }
 
     /// The statements of a function after what binds its arguments.

@@ -30,6 +30,7 @@ struct Key {
 pub(super) fn emit_kernels(context: &Context<'_>, written: &mut Written) -> TokenStream {
     let type_name = type_name(context);
     let (mut functions, mut arms) = (TokenStream::new(), TokenStream::new());
+    let mut velocity = TokenStream::new();
     for (kernel, function) in context.program.kernels() {
         if context.model.is_nonlinear() && is_of_impulses(kernel) {
             continue;
@@ -37,9 +38,12 @@ pub(super) fn emit_kernels(context: &Context<'_>, written: &mut Written) -> Toke
         let name = function_name(kernel);
         let key = key(context, kernel, function);
         let path = written.0.entry(key).or_insert_with(|| {
-            functions.extend(emit_function(context, kernel, function, &name));
+            functions.extend(emit_function(context, (kernel, function), &name, &velocity));
             quote!(#type_name::#name)
         });
+        if kernel == Kernel::Velocity {
+            velocity = path.clone();
+        }
         let pattern = pattern(kernel);
         arms.extend(quote!(#pattern => #path(at, values),));
     }
@@ -73,7 +77,10 @@ pub(super) fn emit_kernels(context: &Context<'_>, written: &mut Written) -> Toke
 /// The type that has the kernels of a form.
 pub(super) fn type_name(context: &Context<'_>) -> Ident {
     let name = context.names.type_name.to_string();
-    let name: String = name.chars().filter(|c| c.is_alphanumeric() || *c == '_').collect();
+    let name: String = name
+        .chars()
+        .filter(|c| c.is_alphanumeric() || *c == '_')
+        .collect();
     Ident::new(&format!("{name}Kernels"), Span::call_site())
 }
 
@@ -105,20 +112,22 @@ fn key(context: &Context<'_>, kernel: Kernel, function: &Function) -> Key {
 
 /// Whether velocities are to be computed from the state first.
 fn takes_velocities(kernel: Kernel, function: &Function) -> bool {
-    kernel.second() != Second::Velocities && uses(function, |input| matches!(input, Input::Velocity(_)))
+    kernel.second() != Second::Velocities
+        && uses(function, |input| matches!(input, Input::Velocity(_)))
 }
 
+/// The function of a kernel; `velocity` calls the one that gives velocities.
 fn emit_function(
     context: &Context<'_>,
-    kernel: Kernel,
-    function: &Function,
+    (kernel, function): (Kernel, &Function),
     name: &Ident,
+    velocity: &TokenStream,
 ) -> TokenStream {
     let documentation = documentation(context, kernel, function);
     let bindings = [
         bind_parameters(context, function),
         bind_time(function),
-        bind_first(context, kernel, function),
+        bind_first(context, (kernel, function), velocity),
         bind_second(context, kernel, function),
     ];
     let Body {
@@ -144,7 +153,9 @@ fn emit_function(
 fn bind_parameters(context: &Context<'_>, function: &Function) -> TokenStream {
     let count = context.names.parameters.len();
     match uses(function, |input| matches!(input, Input::Parameter(_))) {
-        true => quote!(let parameters = ::dalembert::__private::numbers::<L, #count>(at.parameters);),
+        true => {
+            quote!(let parameters = ::dalembert::__private::numbers::<L, #count>(at.parameters);)
+        }
         false => TokenStream::new(),
     }
 }
@@ -157,7 +168,11 @@ fn bind_time(function: &Function) -> TokenStream {
 }
 
 /// The locals of what stands in the first place, and velocities where they are to be computed from it.
-fn bind_first(context: &Context<'_>, kernel: Kernel, function: &Function) -> TokenStream {
+fn bind_first(
+    context: &Context<'_>,
+    (kernel, function): (Kernel, &Function),
+    velocity: &TokenStream,
+) -> TokenStream {
     let coordinates = locals(&context.names.coordinates, function, Input::Coordinate);
     let motion = match (kernel.first(), context.program.form) {
         (First::State, Form::Global) => locals(&context.names.momenta, function, Input::Momentum),
@@ -169,12 +184,11 @@ fn bind_first(context: &Context<'_>, kernel: Kernel, function: &Function) -> Tok
         return bound;
     }
     let n = context.dimension();
-    let own = type_name(context);
     let velocities = locals(&context.names.velocities, function, Input::Velocity);
     let velocities = bind(&velocities, &quote!(&qdot));
     quote! {
         let mut qdot = [L::ZERO; #n];
-        #own::velocity(at, &mut qdot)?;
+        #velocity(at, &mut qdot)?;
         #velocities
         #bound
     }

@@ -132,7 +132,7 @@ fn implementations(context: &Context<'_>, written: &mut kernels::Written) -> [To
         actuation::emit_actuated(context),
         actuation::emit_powered(context),
         volume::emit_invariant_volume(context),
-        variational::emit_variational(context),
+        variational::emit_variations(context),
         describe::emit_described(context),
         describe::emit_scene(context),
     ]

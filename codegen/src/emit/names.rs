@@ -185,16 +185,6 @@ impl Names {
         }
     }
 
-    /// Those inside functions of numbers that enclose, with the parameters of the system.
-    pub fn enclosed(&self) -> Self {
-        let places = self.parameters.iter();
-        Self {
-            parameters: places.map(|place| quote!(L::of(#place))).collect(),
-            numbers: Numbers::SideBySide,
-            ..self.clone()
-        }
-    }
-
     /// Those of a scene of the model, whose type stands in the module of indices and holds the model.
     pub fn of_scene(self, model: &Model, scene: &Scene) -> Self {
         let module = Ident::new(&model.snake_name, Span::call_site());

@@ -3,9 +3,8 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use super::Context;
 use super::function::number;
-use super::{Context, doc};
-use crate::program::Function;
 
 /// `impl InvariantVolume`, if a volume was found.
 pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
@@ -17,22 +16,10 @@ pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
         return emit_delegated_volume(context);
     }
     let (independent, is_single_valued) = (&volume.independent, volume.is_single_valued);
-    let density = context.position_body(&volume.log_density);
-    let density_doc = match &volume.gradient {
-        None => doc::formula("G", &volume.log_density.cost),
-        Some((_, gradient)) => doc::formula(
-            "G, numeric: the integral of dG from a configuration, by Gauss and Legendre's rule; at each of its nodes",
-            &gradient.cost,
-        ),
-    };
-    let (density_statements, log_density) = (density.statements, &density.outputs[0]);
-    let total = context.position_body(&volume.log_volume);
-    let total_doc = doc::formula("G + ln det g - ln |det A_dep|", &volume.log_volume.cost);
-    let (total_statements, log_volume) = (total.statements, &total.outputs[0]);
     let is_integral = volume.gradient.is_some();
     let (integral, added) = match &volume.gradient {
-        Some(gradient) => {
-            let integral = emit_integral(context, gradient);
+        Some((reference, _)) => {
+            let integral = emit_integral(reference);
             let density = quote!(::dalembert::InvariantVolume::log_density(self, t, q)?);
             (quote!(+ #integral), quote!(+ #density))
         }
@@ -46,18 +33,18 @@ pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
             const IS_SINGLE_VALUED: bool = #is_single_valued;
             const IS_INTEGRAL: bool = #is_integral;
 
-            #density_doc
             #[inline]
             fn log_density(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
-                #density_statements
-                ::core::result::Result::Ok(#log_density #integral)
+                let place = [::dalembert::StateVector::as_slice(q), &[]];
+                let density = ::dalembert::__private::number(self, ::dalembert::kernels::Kernel::LogDensity, t, place)?;
+                ::core::result::Result::Ok(density #integral)
             }
 
-            #total_doc
             #[inline]
             fn log_volume(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
-                #total_statements
-                ::core::result::Result::Ok(#log_volume #added)
+                let place = [::dalembert::StateVector::as_slice(q), &[]];
+                let volume = ::dalembert::__private::number(self, ::dalembert::kernels::Kernel::LogVolume, t, place)?;
+                ::core::result::Result::Ok(volume #added)
             }
         }
     }
@@ -88,18 +75,16 @@ fn emit_delegated_volume(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// `line_integral(..)?`, the part of `G` that has no closed form.
-fn emit_integral(
-    context: &Context<'_>,
-    (reference, gradient): &(Vec<f64>, Function),
-) -> TokenStream {
-    let body = context.position_body(gradient);
-    let (statements, beta) = (body.statements, body.outputs);
+/// `line_integral(..)?`, the part of `G` that has no closed form; `reference` is the configuration that it begins at.
+fn emit_integral(reference: &[f64]) -> TokenStream {
     let reference = reference.iter().map(|own| number(*own));
     quote! {
         ::dalembert::__private::line_integral([#(#reference),*], q, |q| {
-            #statements
-            ::core::result::Result::Ok(::dalembert::__private::vector([#(#beta),*]))
+            let mut gradient = ::dalembert::System::zero_vector(self);
+            let place = [::dalembert::StateVector::as_slice(q), &[]];
+            let values = ::dalembert::StateVector::as_mut_slice(&mut gradient);
+            ::dalembert::__private::write(self, ::dalembert::kernels::Kernel::DensityGradient, t, place, values)?;
+            ::core::result::Result::Ok(gradient)
         })?
     }
 }

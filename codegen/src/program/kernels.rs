@@ -8,10 +8,11 @@ impl Program {
     /// Every function with its name, but for the power series. Functions of mechanics that a first-order system has none of are
     /// left out.
     pub fn kernels(&self) -> Vec<(Kernel, &Function)> {
+        // Velocities come first: other functions take them.
         let mut kernels = vec![
+            (Kernel::Velocity, &self.velocity),
             (Kernel::Rate, &self.rate),
             (Kernel::Scale, &self.scale),
-            (Kernel::Velocity, &self.velocity),
             (Kernel::Initial, &self.initial),
             (Kernel::Geometry, &self.geometry.function),
         ];
@@ -33,9 +34,11 @@ impl Program {
             (Kernel::ViewRegion, &self.view_region),
             (Kernel::Until, &self.until),
         ];
-        kernels.extend(declared.into_iter().filter_map(|(kernel, function)| {
-            function.as_ref().map(|function| (kernel, function))
-        }));
+        kernels.extend(
+            declared.into_iter().filter_map(|(kernel, function)| {
+                function.as_ref().map(|function| (kernel, function))
+            }),
+        );
         if let Some(constrained) = &self.constrained {
             constrained.add_kernels(&mut kernels);
         }
@@ -52,7 +55,11 @@ impl Program {
             let gradient = volume.gradient.as_ref();
             kernels.extend(gradient.map(|(_, function)| (Kernel::DensityGradient, function)));
         }
-        kernels.extend(self.powers.as_ref().map(|own| (Kernel::Powers, &own.function)));
+        kernels.extend(
+            self.powers
+                .as_ref()
+                .map(|own| (Kernel::Powers, &own.function)),
+        );
         kernels
     }
 }
@@ -68,7 +75,11 @@ impl Constrained {
             (Kernel::ReactionForce, &self.reaction_force),
             (Kernel::ConstrainedVelocity, &self.constrained_velocity),
         ]);
-        kernels.extend(self.level_scales.as_ref().map(|own| (Kernel::LevelScales, own)));
+        kernels.extend(
+            self.level_scales
+                .as_ref()
+                .map(|own| (Kernel::LevelScales, own)),
+        );
         if let Some(back) = &self.return_to_constraints {
             kernels.push((Kernel::Nearest, &back.nearest));
             kernels.push((Kernel::Restore, &back.restore));

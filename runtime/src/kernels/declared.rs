@@ -29,7 +29,7 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// One number per parameter.
     type Arguments<L: Numbers>: Row<L>;
     /// Room for the values of every kernel that gives several things at once.
-    type Room: Row<f64>;
+    type Room<L: Numbers>: Row<L>;
     /// The kernels.
     type Kernels: Kernels;
 
@@ -93,8 +93,11 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
 }
 
 /// Writes the values of a kernel.
+///
+/// # Errors
+/// As [`Kernels::call`].
 #[inline(always)]
-pub(super) fn write<S: Declared>(
+pub fn write<S: Declared>(
     system: &S,
     kernel: Kernel,
     t: f64,
@@ -125,8 +128,11 @@ pub(super) fn vector<S: Declared, V: StateVector>(
 }
 
 /// The only value of a kernel.
+///
+/// # Errors
+/// As [`Kernels::call`].
 #[inline(always)]
-pub(super) fn number<S: Declared>(
+pub fn number<S: Declared>(
     system: &S,
     kernel: Kernel,
     t: f64,
@@ -144,8 +150,24 @@ pub(super) fn several<S: Declared>(
     (kernel, count): (Kernel, usize),
     t: f64,
     places: [&[f64]; 2],
-) -> Result<S::Room, Fault> {
-    let mut room = S::Room::zeros(count);
+) -> Result<S::Room<f64>, Fault> {
+    let mut room = S::Room::<f64>::zeros(count);
     write(system, kernel, t, places, &mut room.as_mut_slice()[..count])?;
     Ok(room)
+}
+
+/// Two vectors that a kernel gives: positions and velocities.
+///
+/// # Errors
+/// As [`Kernels::call`].
+pub fn pair<S: Declared>(
+    system: &S,
+    kernel: Kernel,
+    t: f64,
+    places: [&[f64]; 2],
+) -> Result<[S::Vector; 2], Fault> {
+    let n = system.coordinate_count();
+    let both = several(system, (kernel, 2 * n), t, places)?;
+    let (first, second) = both.as_slice()[..2 * n].split_at(n);
+    Ok([S::Vector::of(first), S::Vector::of(second)])
 }

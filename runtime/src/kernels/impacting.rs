@@ -1,14 +1,14 @@
 //! `Impacting` of every declared model with surfaces.
 
-use super::declared::{number, several, vector, write};
+use super::declared::{number, pair, several, vector, write};
 use super::system::over_numbers;
 use super::tables::{Beside, Condition, Surface};
 use super::{At, Declared, Form, HasSurfaces, Kernel, Kernels};
 use crate::contract::{Impacting, System};
 use crate::error::Fault;
-use crate::generated::OverNumbers;
+use crate::generated::{OverNumbers, certain};
 use crate::impacts::law::{Blow, Contact, Jump, Law};
-use crate::numbers::{Bent, Numbers, Row, TaylorModel};
+use crate::numbers::{Bent, Interval, Numbers, Row, TaylorModel};
 use crate::state::StateVector;
 
 /// The bit of a coordinate; all from the last one on share it.
@@ -90,6 +90,64 @@ fn conditions<S: Declared>(
     [holds, other]
 }
 
+/// Whether a surface counts.
+#[inline]
+pub(super) fn counts<S: Declared>(system: &S, surface: usize, t: f64, state: &S::State) -> bool {
+    let Some(own) = S::TABLES.surfaces.get(surface) else {
+        return true;
+    };
+    let [holds, other] = conditions(system, (surface, own), t, state);
+    match own.beside {
+        Beside::Independent => holds,
+        Beside::Otherwise => !other,
+        Beside::Last => holds || !other,
+    }
+}
+
+/// The same at all times and states of a box; `None` where that is not certain.
+pub(super) fn counts_throughout<S: Declared>(
+    parameters: &[Interval],
+    surface: usize,
+    t: Interval,
+    state: &[Interval],
+) -> Option<bool> {
+    let Some(own) = S::TABLES.surfaces.get(surface) else {
+        return Some(true);
+    };
+    let lists = || core::iter::once(own.conditions).chain(own.others.iter().copied());
+    let count = lists().map(<[Condition]>::len).sum::<usize>();
+    if count == 0 {
+        return Some(true);
+    }
+    let at = At {
+        parameters,
+        t,
+        first: state,
+        second: &[],
+    };
+    let mut margins = S::Room::<Interval>::zeros(count);
+    let margins = &mut margins.as_mut_slice()[..count];
+    S::KERNELS
+        .call(Kernel::Conditions(surface), at, margins)
+        .ok()?;
+    let mut rest = &margins[..];
+    let mut holds = lists().map(|list| {
+        let (own, behind) = rest.split_at(list.len());
+        rest = behind;
+        certain::all(
+            list.iter()
+                .zip(own)
+                .map(|(one, margin)| certain::holds(*margin, one.is_closed)),
+        )
+    });
+    let own_holds = holds.next().flatten();
+    match own.beside {
+        Beside::Independent => own_holds,
+        Beside::Otherwise => certain::none(holds),
+        Beside::Last => certain::last(own_holds, certain::none(holds)),
+    }
+}
+
 impl<S: Declared + HasSurfaces> Impacting for S {
     type Gaps = S::Gaps;
 
@@ -97,7 +155,13 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     fn gaps(&self, t: f64, state: &S::State) -> S::Gaps {
         let mut gaps = self.zero_gaps();
         // Gaps have no guards.
-        let _ = write(self, Kernel::Gaps, t, [state.as_slice(), &[]], gaps.as_mut_slice());
+        let _ = write(
+            self,
+            Kernel::Gaps,
+            t,
+            [state.as_slice(), &[]],
+            gaps.as_mut_slice(),
+        );
         gaps
     }
 
@@ -148,15 +212,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     #[inline]
     fn surface_active(&self, surface: usize, t: f64, state: &S::State) -> bool {
-        let Some(own) = S::TABLES.surfaces.get(surface) else {
-            return true;
-        };
-        let [holds, other] = conditions(self, (surface, own), t, state);
-        match own.beside {
-            Beside::Independent => holds,
-            Beside::Otherwise => !other,
-            Beside::Last => holds || !other,
-        }
+        counts(self, surface, t, state)
     }
 
     #[inline]
@@ -194,22 +250,12 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         if !matches!(S::TABLES.surfaces.get(surface), Some(own) if own.law == Law::Reset) {
             return Ok(None);
         }
-        let n = self.coordinate_count();
-        let kernel = (Kernel::Reset(surface), 2 * n);
-        let both = several(self, kernel, t, [state.as_slice(), &[]])?;
-        let (q, qdot) = both.as_slice()[..2 * n].split_at(n);
-        Ok(Some(Jump {
-            position: S::Vector::of(q),
-            velocity: S::Vector::of(qdot),
-        }))
+        let places = [state.as_slice(), &[][..]];
+        let [position, velocity] = pair(self, Kernel::Reset(surface), t, places)?;
+        Ok(Some(Jump { position, velocity }))
     }
 
-    fn focus(
-        &self,
-        surface: usize,
-        t: f64,
-        state: &S::State,
-    ) -> Result<Option<S::Impulse>, Fault> {
+    fn focus(&self, surface: usize, t: f64, state: &S::State) -> Result<Option<S::Impulse>, Fault> {
         let kernel = (Kernel::Focus(surface), self.impulse_len());
         known(vector(self, kernel, t, [state.as_slice(), &[]]))
     }
@@ -222,20 +268,21 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         motion: &S::Impulse,
     ) -> Result<Option<S::Impulse>, Fault> {
         let kernel = (Kernel::Trace(surface), self.impulse_len());
-        known(vector(self, kernel, t, [state.as_slice(), motion.as_slice()]))
+        known(vector(
+            self,
+            kernel,
+            t,
+            [state.as_slice(), motion.as_slice()],
+        ))
     }
 
     #[inline]
-    fn blow(
-        &self,
-        surface: usize,
-        t: f64,
-        state: &S::State,
-    ) -> Result<Blow<S::Impulse>, Fault> {
+    fn blow(&self, surface: usize, t: f64, state: &S::State) -> Result<Blow<S::Impulse>, Fault> {
         let count = 2 + self.impulse_len();
         let kernel = (Kernel::Blow(surface), count);
         let places = [state.as_slice(), &[][..]];
-        let all = several(self, kernel, t, places).map_err(|fault| no_impulse::<S>(fault, surface))?;
+        let all =
+            several(self, kernel, t, places).map_err(|fault| no_impulse::<S>(fault, surface))?;
         let [size, share, direction @ ..] = &all.as_slice()[..count] else {
             return Err(Fault::SingularSurface { surface });
         };
@@ -256,7 +303,8 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         let count = 5 + self.impulse_len();
         let kernel = (Kernel::Contact(surface), count);
         let places = [state.as_slice(), &[][..]];
-        let all = several(self, kernel, t, places).map_err(|fault| no_impulse::<S>(fault, surface))?;
+        let all =
+            several(self, kernel, t, places).map_err(|fault| no_impulse::<S>(fault, surface))?;
         let [
             gap_rate,
             constrained_rate,
@@ -289,7 +337,7 @@ fn known<V>(found: Result<V, Fault>) -> Result<Option<V>, Fault> {
 
 /// Why a surface has no impulse.
 #[cold]
-fn no_impulse<S: Declared>(fault: Fault, surface: usize) -> Fault {
+pub(super) fn no_impulse<S: Declared>(fault: Fault, surface: usize) -> Fault {
     match fault {
         Fault::NotDerived if S::TABLES.form == Form::FirstOrder => Fault::FirstOrder,
         Fault::NotDerived if !S::TABLES.is_linear => Fault::NonlinearConstraints,

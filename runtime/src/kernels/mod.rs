@@ -11,13 +11,17 @@ mod declared;
 mod impacting;
 mod system;
 mod tables;
+mod variational;
 
+use crate::contract::TaylorField;
 use crate::error::Fault;
-use crate::numbers::Numbers;
+use crate::numbers::{Numbers, Row};
+use crate::variations::Tangent;
 pub use dalembert_numbers::kernel::{First, Kernel, Second};
-pub use declared::Declared;
+pub use declared::{Declared, number, pair, write};
 pub use system::nearest_of_declared;
 pub use tables::{Beside, Chart, Condition, Dimensions, Form, Surface, Tables};
+pub use variational::{energy_over, nearest_over};
 
 /// What a kernel reads.
 #[derive(Debug, Clone, Copy)]
@@ -47,6 +51,26 @@ pub trait HasSurfaces: Declared {}
 /// A declared form whose divergence was derived.
 #[diagnostic::on_unimplemented(message = "the divergence of `{Self}` was not derived")]
 pub trait HasDivergence: Declared {}
+
+/// A declared form whose runs can be varied: the types of what that takes.
+pub trait HasVariations: Declared + TaylorField<State = <Self as Declared>::State> {
+    /// One number per surface.
+    type Clearances<L: Numbers>: Row<L>;
+    /// See [`Variational::Collision`](crate::contract::Variational::Collision).
+    type Collision<L: Numbers>: Row<L>;
+    /// See [`Variational::Deviations`](crate::contract::Variational::Deviations).
+    type Deviations<L: Numbers>: Row<L>;
+    /// A square matrix by its columns.
+    type Columns: Copy + AsRef<[<Self as Declared>::State]> + AsMut<[<Self as Declared>::State]>;
+    /// As many directions as a state has components.
+    type Tangents: Copy + AsRef<[Tangent<Self>]> + AsMut<[Tangent<Self>]>;
+
+    /// A matrix of zeros.
+    fn columns() -> Self::Columns;
+
+    /// No directions.
+    fn tangents() -> Self::Tangents;
+}
 
 /// The kernels of one form of a model.
 pub trait Kernels {

@@ -136,12 +136,7 @@ impl<S: Declared> System for S {
     }
 
     #[inline]
-    fn state_unchecked(
-        &self,
-        t: f64,
-        q: &S::Vector,
-        qdot: &S::Vector,
-    ) -> Result<S::State, Fault> {
+    fn state_unchecked(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> Result<S::State, Fault> {
         match S::TABLES.form {
             Form::FirstOrder => Ok(joined::<S>(q.as_slice(), &[])),
             _ => state_by(self, Kernel::Motion, t, q, qdot),
@@ -149,12 +144,7 @@ impl<S: Declared> System for S {
     }
 
     #[inline]
-    fn state_from_momenta(
-        &self,
-        t: f64,
-        q: &S::Vector,
-        p: &S::Vector,
-    ) -> Result<S::State, Fault> {
+    fn state_from_momenta(&self, t: f64, q: &S::Vector, p: &S::Vector) -> Result<S::State, Fault> {
         match S::TABLES.form {
             Form::Global => Ok(joined::<S>(q.as_slice(), p.as_slice())),
             Form::Reduced => state_by(self, Kernel::NearestMomenta, t, q, p),
@@ -163,12 +153,7 @@ impl<S: Declared> System for S {
     }
 
     #[inline]
-    fn state_nearest(
-        &self,
-        t: f64,
-        q: &S::Vector,
-        qdot: &S::Vector,
-    ) -> Result<S::State, Fault> {
+    fn state_nearest(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> Result<S::State, Fault> {
         let tables = S::TABLES;
         match tables.form {
             Form::Reduced => state_by(self, Kernel::Nearest, t, q, qdot),
@@ -236,11 +221,7 @@ impl<S: Declared> System for S {
         S::TABLES.can_lose_rank
     }
 
-    fn rank_drop(
-        &self,
-        motion: impl Fn(f64) -> (f64, S::State),
-        reach: f64,
-    ) -> Option<RankDrop> {
+    fn rank_drop(&self, motion: impl Fn(f64) -> (f64, S::State), reach: f64) -> Option<RankDrop> {
         self.rank_drop_along(motion, reach)
     }
 

@@ -6,10 +6,11 @@ use super::{Mode, Passage};
 use crate::contract::Variational;
 use crate::error::Fault;
 use crate::impacts::law::Law;
+use crate::kernels::{Declared, energy_over, nearest_over};
 use crate::numbers::{Interval, Numbers, Row};
 
 /// A mode whose transitions can be computed in any [`Numbers`]. Implemented by `model!`.
-pub trait VariationalMode: Mode + Variational {
+pub trait VariationalMode: Mode + Variational + Declared {
     /// Whether the state holds momenta behind the positions: it is not reduced to the constraints, and of second order.
     const HOLDS_MOMENTA: bool;
 
@@ -39,7 +40,8 @@ pub trait VariationalMode: Mode + Variational {
         q: &Self::Configuration<L>,
         qdot: &Self::Configuration<L>,
     ) -> Result<Self::Row<L>, Fault> {
-        Self::composed(parameters, t, q, qdot)
+        let places = [q.as_slice(), qdot.as_slice()];
+        nearest_over::<Self, L, _>((parameters.as_slice(), t), places)
     }
 
     /// As [`System::energy`](crate::System::energy).
@@ -50,7 +52,9 @@ pub trait VariationalMode: Mode + Variational {
         parameters: &Self::Parameters<L>,
         t: L,
         state: &Self::Row<L>,
-    ) -> Result<L, Fault>;
+    ) -> Result<L, Fault> {
+        energy_over::<Self, L>((parameters.as_slice(), t), state.as_slice())
+    }
 }
 
 /// The mode that a row of numbers is a state of.

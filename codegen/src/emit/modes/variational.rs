@@ -6,7 +6,6 @@ use quote::quote;
 use super::Whole;
 use super::contract::emit_entries;
 use super::impacting::{is_rough, passage};
-use crate::emit::function::Body;
 use crate::emit::instantaneous::over_numbers;
 use crate::emit::variational::{Lengths, emit_counts, over_intervals};
 use crate::emit::{Context, attributes};
@@ -20,17 +19,13 @@ pub(super) fn emit_modes(whole: &Whole<'_>) -> TokenStream {
     let modes = modes.map(|(mode, context)| {
         let type_name = &context.names.type_name;
         let holds_momenta = context.program.form == Form::Global;
-        let parts = [
-            emit_entered(mode, context),
-            emit_nearest(context),
-            emit_energy(context),
-        ];
+        let entered = emit_entered(mode, context);
         quote! {
             #attributes
             impl ::dalembert::__private::modes::VariationalMode for #type_name {
                 const HOLDS_MOMENTA: bool = #holds_momenta;
 
-                #(#parts)*
+                #entered
             }
         }
     });
@@ -57,52 +52,6 @@ fn emit_entered(mode: &Mode, context: &Context<'_>) -> TokenStream {
                 _ => {}
             }
             ::core::result::Result::Ok(())
-        }
-    }
-}
-
-/// The state with the nearest velocity under the constraints, if there are some.
-fn emit_nearest(context: &Context<'_>) -> TokenStream {
-    let program = context.program;
-    let constrained = program.constrained.as_ref();
-    let function = match &program.reduced {
-        Some(reduced) => &reduced.nearest_velocities,
-        None => match constrained.and_then(|own| own.return_to_constraints.as_ref()) {
-            Some(back) => &back.nearest,
-            None => return TokenStream::new(),
-        },
-    };
-    let Body {
-        statements,
-        outputs,
-    } = context.varied_velocity_body(function);
-    let positions = 0..context.dimension();
-    quote! {
-        fn nearest<L: ::dalembert::numbers::Numbers>(
-            parameters: &Self::Parameters<L>,
-            t: L,
-            q: &Self::Configuration<L>,
-            qdot: &Self::Configuration<L>,
-        ) -> ::core::result::Result<Self::Row<L>, ::dalembert::Fault> {
-            #statements
-            ::core::result::Result::Ok([#(q[#positions],)* #(#outputs),*])
-        }
-    }
-}
-
-fn emit_energy(context: &Context<'_>) -> TokenStream {
-    let Body {
-        statements,
-        outputs,
-    } = context.varied_body(&context.program.energy);
-    quote! {
-        fn energy_of<L: ::dalembert::numbers::Numbers>(
-            parameters: &Self::Parameters<L>,
-            t: L,
-            state: &Self::Row<L>,
-        ) -> ::core::result::Result<L, ::dalembert::Fault> {
-            #statements
-            ::core::result::Result::Ok(#(#outputs)*)
         }
     }
 }

@@ -1,0 +1,300 @@
+//! `Variational` of every declared model whose runs can be varied.
+
+use super::impacting::{counts, counts_throughout};
+use super::{At, Declared, Form, HasVariations, Kernel, Kernels};
+use crate::contract::{TaylorField, Variational};
+use crate::error::Fault;
+use crate::impacts::law::Law;
+use crate::numbers::{Interval, Numbers, Row};
+
+/// The values of a kernel over numbers, as many as a row has.
+fn row<S: Declared, L: Numbers, R: Row<L>>(
+    kernel: Kernel,
+    (parameters, t): (&[L], L),
+    [first, second]: [&[L]; 2],
+) -> Result<R, Fault> {
+    let at = At {
+        parameters,
+        t,
+        first,
+        second,
+    };
+    let mut values = R::zeros(R::CAPACITY);
+    S::KERNELS.call(kernel, at, values.as_mut_slice())?;
+    Ok(values)
+}
+
+/// A row whose numbers from a place on are those of a kernel, added to what is there.
+fn added<S: Declared, L: Numbers, R: Row<L>>(
+    kernel: Kernel,
+    arguments: (&[L], L),
+    places: [&[L]; 2],
+    to: &R,
+) -> Result<Option<R>, Fault> {
+    let (n, k) = (
+        S::TABLES.dimensions.coordinates,
+        S::TABLES.dimensions.motion,
+    );
+    let found: Result<S::Room<L>, Fault> = row_of::<S, L, S::Room<L>>(kernel, k, arguments, places);
+    let found = match found {
+        Err(Fault::NotDerived) => return Ok(None),
+        found => found?,
+    };
+    let mut sum = *to;
+    for (entry, added) in sum.as_mut_slice()[n..].iter_mut().zip(found.as_slice()) {
+        *entry = *entry + *added;
+    }
+    Ok(Some(sum))
+}
+
+/// So many values of a kernel at the beginning of a row.
+fn row_of<S: Declared, L: Numbers, R: Row<L>>(
+    kernel: Kernel,
+    count: usize,
+    (parameters, t): (&[L], L),
+    [first, second]: [&[L]; 2],
+) -> Result<R, Fault> {
+    let at = At {
+        parameters,
+        t,
+        first,
+        second,
+    };
+    let mut values = R::zeros(R::CAPACITY);
+    S::KERNELS.call(kernel, at, &mut values.as_mut_slice()[..count])?;
+    Ok(values)
+}
+
+/// Positions, and motion by a kernel of positions and velocities.
+fn state_by<S: Declared, L: Numbers, R: Row<L>>(
+    kernel: Kernel,
+    (parameters, t): (&[L], L),
+    [q, qdot]: [&[L]; 2],
+) -> Result<R, Fault> {
+    let mut state = R::zeros(R::CAPACITY);
+    let (positions, motion) = state.as_mut_slice().split_at_mut(q.len());
+    positions.copy_from_slice(q);
+    if S::TABLES.form != Form::FirstOrder {
+        let at = At {
+            parameters,
+            t,
+            first: q,
+            second: qdot,
+        };
+        S::KERNELS.call(kernel, at, motion)?;
+    }
+    Ok(state)
+}
+
+/// As [`System::state_nearest`], over numbers.
+///
+/// # Errors
+/// [`Fault`].
+pub fn nearest_over<S: Declared, L: Numbers, R: Row<L>>(
+    arguments: (&[L], L),
+    places: [&[L]; 2],
+) -> Result<R, Fault> {
+    let tables = S::TABLES;
+    let is_free = tables.form == Form::Global && tables.dimensions.constraints == 0;
+    let kernel = match is_free {
+        true => Kernel::Motion,
+        false => Kernel::Nearest,
+    };
+    state_by::<S, L, R>(kernel, arguments, places)
+}
+
+/// As [`System::energy`], over numbers.
+///
+/// # Errors
+/// [`Fault`].
+pub fn energy_over<S: Declared, L: Numbers>(
+    (parameters, t): (&[L], L),
+    state: &[L],
+) -> Result<L, Fault> {
+    let at = At {
+        parameters,
+        t,
+        first: state,
+        second: &[],
+    };
+    let mut energy = [L::ZERO];
+    S::KERNELS.call(Kernel::Energy, at, &mut energy)?;
+    Ok(energy[0])
+}
+
+impl<S: HasVariations> Variational for S {
+    type Configuration<L: Numbers> = S::Positions<L>;
+    type Clearances<L: Numbers> = <S as HasVariations>::Clearances<L>;
+    type Collision<L: Numbers> = <S as HasVariations>::Collision<L>;
+    type Deviations<L: Numbers> = <S as HasVariations>::Deviations<L>;
+    type Columns = <S as HasVariations>::Columns;
+    type Tangents = <S as HasVariations>::Tangents;
+
+    fn columns() -> Self::Columns {
+        <S as HasVariations>::columns()
+    }
+
+    fn tangents() -> Self::Tangents {
+        <S as HasVariations>::tangents()
+    }
+
+    #[inline]
+    fn counts(&self, surface: usize, t: f64, state: &<S as Declared>::State) -> bool {
+        counts(self, surface, t, state)
+    }
+
+    fn counts_throughout(
+        parameters: &<S as TaylorField>::Parameters<Interval>,
+        surface: usize,
+        t: Interval,
+        state: &<S as TaylorField>::Row<Interval>,
+    ) -> Option<bool> {
+        counts_throughout::<S>(parameters.as_slice(), surface, t, state.as_slice())
+    }
+
+    fn velocities<L: Numbers>(
+        parameters: &<S as TaylorField>::Parameters<L>,
+        t: L,
+        state: &<S as TaylorField>::Row<L>,
+    ) -> Result<S::Positions<L>, Fault> {
+        let arguments = (parameters.as_slice(), t);
+        row::<S, L, _>(Kernel::Velocity, arguments, [state.as_slice(), &[]])
+    }
+
+    fn composed<L: Numbers>(
+        parameters: &<S as TaylorField>::Parameters<L>,
+        t: L,
+        q: &S::Positions<L>,
+        qdot: &S::Positions<L>,
+    ) -> Result<<S as TaylorField>::Row<L>, Fault> {
+        let arguments = (parameters.as_slice(), t);
+        state_by::<S, L, _>(Kernel::Motion, arguments, [q.as_slice(), qdot.as_slice()])
+    }
+
+    fn deviations<L: Numbers>(
+        parameters: &<S as TaylorField>::Parameters<L>,
+        t: L,
+        state: &<S as TaylorField>::Row<L>,
+    ) -> Result<<S as HasVariations>::Deviations<L>, Fault> {
+        let dimensions = S::TABLES.dimensions;
+        let arguments = (parameters.as_slice(), t);
+        let state = state.as_slice();
+        let mut values = <S as HasVariations>::Deviations::<L>::zeros(0);
+        let off = match S::TABLES.form {
+            Form::Global => dimensions.constraints,
+            _ => 0,
+        };
+        if off > 0 {
+            let qdot: S::Positions<L> = row::<S, L, _>(Kernel::Velocity, arguments, [state, &[]])?;
+            let places = [state, qdot.as_slice()];
+            let both: S::Room<L> =
+                row_of::<S, L, _>(Kernel::Residuals, 2 * off, arguments, places)?;
+            values.as_mut_slice()[..off].copy_from_slice(&both.as_slice()[..off]);
+        }
+        if dimensions.levels > 0 {
+            let at = At {
+                parameters: arguments.0,
+                t,
+                first: state,
+                second: &[],
+            };
+            S::KERNELS.call(Kernel::Levels, at, &mut values.as_mut_slice()[off..])?;
+        }
+        Ok(values)
+    }
+
+    fn clearances<L: Numbers>(
+        parameters: &<S as TaylorField>::Parameters<L>,
+        t: L,
+        state: &<S as TaylorField>::Row<L>,
+    ) -> Result<<S as HasVariations>::Clearances<L>, Fault> {
+        if S::TABLES.dimensions.surfaces == 0 {
+            return Ok(Row::zeros(0));
+        }
+        let arguments = (parameters.as_slice(), t);
+        row::<S, L, _>(Kernel::Gaps, arguments, [state.as_slice(), &[]])
+    }
+
+    fn collision<L: Numbers>(
+        parameters: &<S as TaylorField>::Parameters<L>,
+        surface: usize,
+        t: L,
+        state: &<S as TaylorField>::Row<L>,
+    ) -> Result<<S as HasVariations>::Collision<L>, Fault> {
+        let arguments = (parameters.as_slice(), t);
+        let found = row::<S, L, _>(Kernel::Contact(surface), arguments, [state.as_slice(), &[]]);
+        found.map_err(|fault| super::impacting::no_impulse::<S>(fault, surface))
+    }
+
+    fn focus<L: Numbers>(
+        parameters: &<S as TaylorField>::Parameters<L>,
+        surface: usize,
+        t: L,
+        state: &<S as TaylorField>::Row<L>,
+    ) -> Result<Option<<S as TaylorField>::Row<L>>, Fault> {
+        let arguments = (parameters.as_slice(), t);
+        let places = [state.as_slice(), &[][..]];
+        added::<S, L, _>(Kernel::Focus(surface), arguments, places, state)
+    }
+
+    fn trace<L: Numbers>(
+        parameters: &<S as TaylorField>::Parameters<L>,
+        surface: usize,
+        t: L,
+        state: &<S as TaylorField>::Row<L>,
+        rate: &<S as TaylorField>::Row<L>,
+    ) -> Result<Option<<S as TaylorField>::Row<L>>, Fault> {
+        let arguments = (parameters.as_slice(), t);
+        let motion = &rate.as_slice()[S::TABLES.dimensions.coordinates..];
+        let places = [state.as_slice(), motion];
+        added::<S, L, _>(Kernel::Trace(surface), arguments, places, rate)
+    }
+
+    fn landing<L: Numbers>(
+        parameters: &<S as TaylorField>::Parameters<L>,
+        surface: usize,
+        t: L,
+        state: &<S as TaylorField>::Row<L>,
+    ) -> Result<Option<[S::Positions<L>; 2]>, Fault> {
+        if !matches!(S::TABLES.surfaces.get(surface), Some(own) if own.law == Law::Reset) {
+            return Ok(None);
+        }
+        let n = S::TABLES.dimensions.coordinates;
+        let arguments = (parameters.as_slice(), t);
+        let places = [state.as_slice(), &[][..]];
+        let both: S::Room<L> = row_of::<S, L, _>(Kernel::Reset(surface), 2 * n, arguments, places)?;
+        let mut landing = [S::Positions::<L>::zeros(n); 2];
+        for (own, values) in landing
+            .iter_mut()
+            .zip(both.as_slice().chunks_exact(n.max(1)))
+        {
+            own.as_mut_slice().copy_from_slice(values);
+        }
+        Ok(Some(landing))
+    }
+
+    fn declared_law<L: Numbers>(
+        parameters: &<S as TaylorField>::Parameters<L>,
+        surface: usize,
+    ) -> (Law, L) {
+        let Some(own) = S::TABLES.surfaces.get(surface) else {
+            return (Law::Elastic, L::ZERO);
+        };
+        let at = At {
+            parameters: parameters.as_slice(),
+            t: L::ZERO,
+            first: &[],
+            second: &[],
+        };
+        let mut coefficient = [L::ZERO];
+        // Coefficients have no guards.
+        let _ = S::KERNELS.call(Kernel::Coefficient(surface), at, &mut coefficient);
+        let value = coefficient[0].lane(0);
+        let law = match own.law {
+            Law::Restitution(_) => Law::Restitution(value),
+            Law::Newton(_) => Law::Newton(value),
+            law => law,
+        };
+        (law, coefficient[0])
+    }
+}
