@@ -185,7 +185,7 @@ pub mod __private {
     pub use crate::generated::*;
     pub use crate::initial::{complete_positions, complete_velocities};
     pub use crate::kernels::nearest_of_declared;
-    pub use crate::kernels::{number, pair, write};
+    pub use crate::kernels::{enter, number, pair, write};
     pub use crate::math;
     pub use crate::modes;
     pub use crate::nearest::nearest_by_steps;

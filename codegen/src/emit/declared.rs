@@ -84,6 +84,7 @@ fn room(context: &Context<'_>) -> usize {
                 | Kernel::Contact(_)
                 | Kernel::Reset(_)
                 | Kernel::Initial
+                | Kernel::Entry(_)
         )
     });
     let counts = several.map(|(_, function)| function.outputs.len());

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::quote;
 
-use super::names::{Names, Numbers, claim};
+use super::names::{Names, claim, pi, rational};
 use crate::program::{Function, Guard, Input, Op, Value};
 use dalembert_expr::{Function as Elementary, Rational};
 
@@ -154,9 +154,8 @@ impl<'a> Writer<'a> {
             (&second, &first)
         };
         let argument = &self.pieces[argument.index()].tokens;
-        let functions = self.names.numbers.functions();
         self.statements
-            .extend(quote!(let (#sine, #cosine) = #functions::sin_cos(#argument);));
+            .extend(quote!(let (#sine, #cosine) = L::sin_cos(#argument);));
         self.pieces.push(atom(quote!(#first)));
         self.paired[other] = Some(second);
         true
@@ -179,9 +178,8 @@ impl<'a> Writer<'a> {
 
     fn write_guard(&mut self, guard: &Guard) {
         let at = |value: &Value| self.pieces[value.index()].tokens.clone();
-        let numbers = self.names.numbers;
-        let guards = numbers.guards();
-        let zero = || numbers.constant(quote!(0.0));
+        let guards = quote!(::dalembert::__private::lanes);
+        let zero = || quote!(L::ZERO);
         let statement = match guard {
             Guard::Pivot { pivot, value } => {
                 let value = at(value);
@@ -275,19 +273,15 @@ impl<'a> Writer<'a> {
 
     fn call(&mut self, name: &str, arguments: &[Value]) -> Piece {
         let name = Ident::new(name, Span::call_site());
-        let functions = self.names.numbers.functions();
         let arguments = arguments.iter().map(|&value| self.tokens_of(value));
-        atom(quote!(#functions::#name(#(#arguments),*)))
+        atom(quote!(L::#name(#(#arguments),*)))
     }
 
     fn piece(&mut self, op: &Op) -> Piece {
         match op {
             Op::Input(input) => atom(self.input(*input)),
-            Op::Number(number) => match self.names.numbers {
-                Numbers::One => literal(number.to_f64()),
-                numbers => atom(numbers.rational(number)),
-            },
-            Op::Pi => atom(self.names.numbers.pi()),
+            Op::Number(number) => atom(rational(number)),
+            Op::Pi => atom(pi()),
             Op::Neg(a) => {
                 let (tokens, size) = self.operand(*a, Binding::Product);
                 Piece {
@@ -299,9 +293,7 @@ impl<'a> Writer<'a> {
             Op::Add(a, b) => self.binary(*a, *b, quote!(+), Binding::Sum),
             Op::Sub(a, b) => self.binary(*a, *b, quote!(-), Binding::Sum),
             // An interval's square is never negative, which its product with itself does not know.
-            Op::Mul(a, b) if a == b && self.names.numbers == Numbers::SideBySide => {
-                self.call("square", &[*a])
-            }
+            Op::Mul(a, b) if a == b => self.call("square", &[*a]),
             Op::Mul(a, b) => self.binary(*a, *b, quote!(*), Binding::Product),
             Op::Div(a, b) => self.binary(*a, *b, quote!(/), Binding::Product),
             Op::Sqrt(a) => self.call("sqrt", &[*a]),
@@ -314,15 +306,12 @@ impl<'a> Writer<'a> {
 
     fn power(&mut self, base: Value, exponent: &Rational) -> Piece {
         let base = self.tokens_of(base);
-        let numbers = self.names.numbers;
-        let is_double = exponent.to_parts()[1] == 0.0;
-        if numbers == Numbers::SideBySide && !is_double {
-            let exponent = numbers.rational(exponent);
+        if exponent.to_parts()[1] != 0.0 {
+            let exponent = rational(exponent);
             return atom(quote!(L::power(#base, #exponent)));
         }
         let exponent = literal(exponent.to_f64()).tokens;
-        let functions = numbers.functions();
-        atom(quote!(#functions::powf(#base, #exponent)))
+        atom(quote!(L::powf(#base, #exponent)))
     }
 
     fn input(&self, input: Input) -> TokenStream {
@@ -333,7 +322,10 @@ impl<'a> Writer<'a> {
             Input::Velocity(i) => local(&self.names.velocities[i]),
             Input::Momentum(i) => local(&self.names.momenta[i]),
             Input::Quasi(i) => local(&self.names.quasi[i]),
-            Input::Parameter(k) => self.names.parameters[k].clone(),
+            Input::Parameter(k) => {
+                let index = Literal::usize_unsuffixed(k);
+                quote!(parameters[#index])
+            }
             Input::MotionRate(i) => {
                 let index = Literal::usize_unsuffixed(i);
                 quote!(motion[#index])

@@ -133,7 +133,7 @@ fn emit_function(
     let Body {
         statements,
         outputs,
-    } = emit_body(function, &context.names.side_by_side());
+    } = emit_body(function, &context.names);
     let bindings = joined(bindings);
     quote! {
         #documentation

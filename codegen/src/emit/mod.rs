@@ -7,17 +7,15 @@ mod constraint;
 mod declared;
 mod describe;
 mod doc;
-mod field;
 mod function;
-mod impact;
 mod indices;
-mod instantaneous;
 mod jet;
 mod kernels;
 pub mod modes;
 mod names;
 mod parameters;
 mod scene;
+mod state;
 mod variational;
 mod volume;
 

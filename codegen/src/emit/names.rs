@@ -33,63 +33,26 @@ pub(super) struct Names {
     pub quasi: Vec<Ident>,
     /// Places of parameters: `self.m`, `self.m[2]`.
     pub parameters: Vec<TokenStream>,
-    /// What functions compute in.
-    pub numbers: Numbers,
 }
 
-/// What a generated function computes in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Numbers {
-    /// `f64`
-    One,
-    /// `L`, one number or several side by side.
-    SideBySide,
+/// An exact number, in as many parts as numbers may have.
+pub(super) fn rational(exact: &Rational) -> TokenStream {
+    let parts = exact.to_parts();
+    match parts[1] == 0.0 {
+        true => {
+            let constant = number(parts[0]);
+            quote!(L::of(#constant))
+        }
+        false => {
+            let parts = parts.map(number);
+            quote!(L::constant([#(#parts),*]))
+        }
+    }
 }
 
-impl Numbers {
-    /// An exact number: rounded, or in as many parts as numbers may have.
-    pub(super) fn rational(self, exact: &Rational) -> TokenStream {
-        let parts = exact.to_parts();
-        match self == Self::One || parts[1] == 0.0 {
-            true => self.constant(number(parts[0])),
-            false => {
-                let parts = parts.map(number);
-                quote!(L::constant([#(#parts),*]))
-            }
-        }
-    }
-
-    /// The circle constant.
-    pub(super) fn pi(self) -> TokenStream {
-        match self {
-            Self::One => quote!(::core::f64::consts::PI),
-            Self::SideBySide => quote!(L::constant(::dalembert::numbers::PI)),
-        }
-    }
-
-    /// A constant.
-    pub(super) fn constant(self, constant: TokenStream) -> TokenStream {
-        match self {
-            Self::One => constant,
-            Self::SideBySide => quote!(L::of(#constant)),
-        }
-    }
-
-    /// Where elementary functions are.
-    pub(super) fn functions(self) -> TokenStream {
-        match self {
-            Self::One => quote!(::dalembert::__private::math),
-            Self::SideBySide => quote!(L),
-        }
-    }
-
-    /// Where guards are.
-    pub(super) fn guards(self) -> TokenStream {
-        match self {
-            Self::One => quote!(::dalembert::__private),
-            Self::SideBySide => quote!(::dalembert::__private::lanes),
-        }
-    }
+/// The circle constant.
+pub(super) fn pi() -> TokenStream {
+    quote!(L::constant(::dalembert::numbers::PI))
 }
 
 /// Names that generated functions use for their own arguments and locals; `dalembert::__private::arguments` has each of them.
@@ -171,17 +134,6 @@ impl Names {
             velocities,
             quasi,
             parameters: places(model, &quote!(self)),
-            numbers: Numbers::One,
-        }
-    }
-
-    /// Those inside functions of numbers side by side, which are given the parameters as an array.
-    pub fn side_by_side(&self) -> Self {
-        let places = (0..self.parameters.len()).map(Literal::usize_unsuffixed);
-        Self {
-            parameters: places.map(|place| quote!(parameters[#place])).collect(),
-            numbers: Numbers::SideBySide,
-            ..self.clone()
         }
     }
 

@@ -21,7 +21,7 @@ pub use dalembert_numbers::kernel::{First, Kernel, Second};
 pub use declared::{Declared, number, pair, write};
 pub use system::nearest_of_declared;
 pub use tables::{Beside, Chart, Condition, Dimensions, Form, Surface, Tables};
-pub use variational::{energy_over, nearest_over};
+pub use variational::{energy_over, enter, enter_over, nearest_over};
 
 /// What a kernel reads.
 #[derive(Debug, Clone, Copy)]

@@ -6,6 +6,7 @@ use crate::contract::{TaylorField, Variational};
 use crate::error::Fault;
 use crate::impacts::law::Law;
 use crate::numbers::{Interval, Numbers, Row};
+use crate::state::StateVector;
 
 /// The values of a kernel over numbers, as many as a row has.
 fn row<S: Declared, L: Numbers, R: Row<L>>(
@@ -101,6 +102,48 @@ pub fn nearest_over<S: Declared, L: Numbers, R: Row<L>>(
         false => Kernel::Nearest,
     };
     state_by::<S, L, R>(kernel, arguments, places)
+}
+
+/// Writes positions and velocities in the mode that a surface leads to, where they are declared.
+///
+/// # Errors
+/// [`Fault`].
+pub fn enter_over<S: Declared, L: Numbers>(
+    surface: usize,
+    at: At<'_, L>,
+    [q, qdot]: [&mut [L]; 2],
+) -> Result<(), Fault> {
+    let count = q.len() + qdot.len();
+    let mut both = S::Room::<L>::zeros(count);
+    let both = &mut both.as_mut_slice()[..count];
+    match S::KERNELS.call(Kernel::Entry(surface), at, both) {
+        Err(Fault::NotDerived) => return Ok(()),
+        found => found?,
+    }
+    q.copy_from_slice(&both[..q.len()]);
+    qdot.copy_from_slice(&both[count - qdot.len()..]);
+    Ok(())
+}
+
+/// The same of a system.
+///
+/// # Errors
+/// [`Fault`].
+pub fn enter<S: Declared>(
+    system: &S,
+    surface: usize,
+    t: f64,
+    state: &<S as Declared>::State,
+    after: [&mut [f64]; 2],
+) -> Result<(), Fault> {
+    let arguments = system.arguments();
+    let at = At {
+        parameters: arguments.as_slice(),
+        t,
+        first: state.as_slice(),
+        second: &[],
+    };
+    enter_over::<S, f64>(surface, at, after)
 }
 
 /// As [`System::energy`], over numbers.

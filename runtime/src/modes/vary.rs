@@ -6,29 +6,13 @@ use super::{Mode, Passage};
 use crate::contract::Variational;
 use crate::error::Fault;
 use crate::impacts::law::Law;
-use crate::kernels::{Declared, energy_over, nearest_over};
+use crate::kernels::{At, Declared, energy_over, enter_over, nearest_over};
 use crate::numbers::{Interval, Numbers, Row};
 
 /// A mode whose transitions can be computed in any [`Numbers`]. Implemented by `model!`.
 pub trait VariationalMode: Mode + Variational + Declared {
     /// Whether the state holds momenta behind the positions: it is not reduced to the constraints, and of second order.
     const HOLDS_MOMENTA: bool;
-
-    /// As [`Mode::entry`].
-    ///
-    /// # Errors
-    /// [`Fault`].
-    fn entered<L: Numbers>(
-        parameters: &Self::Parameters<L>,
-        surface: usize,
-        t: L,
-        state: &Self::Row<L>,
-        q: &mut [L],
-        qdot: &mut [L],
-    ) -> Result<(), Fault> {
-        let _ = (parameters, surface, t, state, q, qdot);
-        Ok(())
-    }
 
     /// As [`System::state_nearest`](crate::System::state_nearest).
     ///
@@ -240,8 +224,13 @@ pub fn passed_into<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>
         Passage::Declared => {
             let [mut q, mut qdot] =
                 [T::Configuration::<L>::zeros(T::Configuration::<L>::CAPACITY); 2];
-            let places = (q.as_mut_slice(), qdot.as_mut_slice());
-            M::entered(&before, surface, t, &own, places.0, places.1)?;
+            let at = At {
+                parameters: before.as_slice(),
+                t,
+                first: own.as_slice(),
+                second: &[],
+            };
+            enter_over::<M, L>(surface, at, [q.as_mut_slice(), qdot.as_mut_slice()])?;
             T::composed(&after, t, &q, &qdot)?
         }
         Passage::Kept => beginning(own.as_slice()),

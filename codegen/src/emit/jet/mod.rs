@@ -160,7 +160,7 @@ fn begin(jet: &Jet, outputs: Vec<Value>, context: &Context<'_>) -> TokenStream {
     let Body {
         statements,
         outputs,
-    } = emit_body(&extended, &context.names.side_by_side());
+    } = emit_body(&extended, &context.names);
     joined([bindings, statements, quote!(*firsts = [#(#outputs),*];)])
 }
 

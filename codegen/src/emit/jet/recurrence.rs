@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::super::function::joined;
-use super::super::names::Numbers;
+use super::super::names::rational;
 use super::layout::Sum;
 use super::writer::{Room, Writer, parenthesised};
 use crate::program::Value;
@@ -51,7 +51,7 @@ impl Writer<'_> {
                 quote!((L::of(0.5) * #a - #half) * #inverse)
             }
             Recurrence::Power(a, exponent) => {
-                let exponent = Numbers::SideBySide.rational(exponent);
+                let exponent = rational(exponent);
                 let rising = self.weighted_sum(*a, value);
                 let known = self.middle(History::weighted(value), History::plain(*a));
                 let inverse = self.inverse(*a);

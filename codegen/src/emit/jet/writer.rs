@@ -7,7 +7,7 @@ use quote::{ToTokens, quote};
 
 use super::super::Context;
 use super::super::function::joined;
-use super::super::names::Numbers;
+use super::super::names::{pi, rational};
 use super::layout::{Layout, local};
 use crate::program::jet::{History, Jet, Recurrence};
 use crate::program::{Input, Op, Value};
@@ -189,8 +189,8 @@ impl<'a> Writer<'a> {
     /// Order 0 of a value.
     pub(super) fn first(&mut self, value: Value) -> TokenStream {
         match &self.jet.function.ops[value.index()] {
-            Op::Number(own) => Numbers::SideBySide.rational(own),
-            Op::Pi => Numbers::SideBySide.pi(),
+            Op::Number(own) => rational(own),
+            Op::Pi => pi(),
             Op::Input(Input::Parameter(k)) => {
                 let place = Literal::usize_unsuffixed(*k);
                 quote!(parameters[#place])

@@ -4,11 +4,7 @@ use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 
 use super::Whole;
-use crate::emit::field::emit_rates_along;
-use crate::emit::function::Body;
-use crate::emit::{Context, attributes};
-use crate::model::Mode;
-use crate::program::Function;
+use crate::emit::attributes;
 
 /// Lengths of the vectors of the whole, from those of its modes.
 pub(super) fn emit_sizes(whole: &Whole<'_>) -> TokenStream {
@@ -38,25 +34,9 @@ pub(super) fn emit_modes(whole: &Whole<'_>) -> TokenStream {
             [&places.coordinates, &places.surfaces, &places.outputs]
                 .map(|own| quote!(&[#(#own),*]));
         let can_leave = context.program.constrained.is_some() && context.program.reduced.is_none();
-        let arms = emit_entries(mode, context, |function| context.state_body(function));
-        let entry = (!arms.is_empty()).then(|| {
-            quote! {
-                fn entry(
-                    &self,
-                    surface: usize,
-                    t: f64,
-                    state: &Self::State,
-                    after_q: &mut [f64],
-                    after_qdot: &mut [f64],
-                ) -> ::core::result::Result<(), ::dalembert::Fault> {
-                    match surface {
-                        #(#arms)*
-                        _ => {}
-                    }
-                    ::core::result::Result::Ok(())
-                }
-            }
-        });
+        let functions = context.program.impacting.iter();
+        let mut entries = functions.flat_map(|functions| &functions.entries);
+        let entry = entries.any(Option::is_some).then(emit_entry);
         quote! {
             #attributes
             impl ::dalembert::Mode for #type_name {
@@ -77,32 +57,20 @@ pub(super) fn emit_modes(whole: &Whole<'_>) -> TokenStream {
     modes.collect()
 }
 
-/// An arm for each surface of a mode for which a state of another is declared: it writes that state.
-pub(super) fn emit_entries(
-    mode: &Mode,
-    context: &Context<'_>,
-    body: impl Fn(&Function) -> Body,
-) -> Vec<TokenStream> {
-    let functions = context.program.impacting.iter();
-    let entries = functions.flat_map(|functions| &functions.entries);
-    let arms = entries.enumerate().filter_map(|(surface, function)| {
-        let function = function.as_ref()?;
-        let transition = mode.model.surfaces[surface].transition.as_ref()?;
-        let count = transition.map.as_ref()?.q.len();
-        let Body {
-            statements,
-            outputs,
-        } = body(function);
-        let (q_after, qdot_after) = outputs.split_at(count);
-        Some(quote! {
-            #surface => {
-                #statements
-                ::dalembert::__private::modes::write(after_q, &[#(#q_after),*]);
-                ::dalembert::__private::modes::write(after_qdot, &[#(#qdot_after),*]);
-            }
-        })
-    });
-    arms.collect()
+/// `entry`, by the kernels of surfaces for which a state of another mode is declared.
+fn emit_entry() -> TokenStream {
+    quote! {
+        fn entry(
+            &self,
+            surface: usize,
+            t: f64,
+            state: &Self::State,
+            q: &mut [f64],
+            qdot: &mut [f64],
+        ) -> ::core::result::Result<(), ::dalembert::Fault> {
+            ::dalembert::__private::enter(self, surface, t, state, [q, qdot])
+        }
+    }
 }
 
 /// `impl VectorField`
@@ -428,6 +396,23 @@ fn emit_refusal(type_name: &impl ToTokens, fault: &TokenStream) -> TokenStream {
             ) -> ::core::result::Result<(Self::Vector, Self::Reactions), ::dalembert::Fault> {
                 ::core::result::Result::Err(#fault)
             }
+        }
+    }
+}
+
+/// `rates_along`, where the rate may have narrow features.
+fn emit_rates_along() -> TokenStream {
+    quote! {
+        #[inline(always)]
+        fn can_be_narrow(&self) -> bool { true }
+
+        fn rates_along(
+            &self,
+            t: ::dalembert::numbers::Rated,
+            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::Rated,
+            rate: &mut dyn ::core::ops::FnMut(usize, ::dalembert::numbers::Rated),
+        ) -> ::core::result::Result<(), ::dalembert::Fault> {
+            ::dalembert::__private::rates_along(self, t, component, rate)
         }
     }
 }

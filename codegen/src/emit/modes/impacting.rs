@@ -1,11 +1,10 @@
 //! `impl Impacting` of the whole: surfaces and transitions are those of the present mode.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use super::Whole;
 use crate::emit::attributes;
-use crate::emit::impact::{emit_gap_along, emit_over_numbers};
 use crate::model::{Law, Mode, Transition};
 
 /// `impl Impacting`, if there are surfaces or transitions.
@@ -262,5 +261,55 @@ pub(super) fn passage(transition: &Transition, is_first_order: bool) -> TokenStr
         (false, _) if is_first_order => quote!(Kept),
         (false, true) => quote!(Focused),
         (false, false) => quote!(Refracted),
+    }
+}
+
+/// The gaps along stretches of motion and in boxes, which [`emit_over_numbers`] writes once.
+fn emit_gap_along() -> TokenStream {
+    quote! {
+        fn gap_along(
+            &self,
+            surface: usize,
+            t: ::dalembert::numbers::TaylorModel,
+            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::TaylorModel,
+        ) -> ::dalembert::numbers::TaylorModel {
+            ::dalembert::__private::OverNumbers::gap_over(self, surface, t, component)
+        }
+
+        fn gap_about(
+            &self,
+            surface: usize,
+            t: ::dalembert::numbers::Bent,
+            component: &dyn ::core::ops::Fn(usize) -> ::dalembert::numbers::Bent,
+        ) -> ::dalembert::numbers::Bent {
+            ::dalembert::__private::OverNumbers::gap_over(self, surface, t, component)
+        }
+    }
+}
+
+/// Every gap by itself, over any kind of number. `gaps` gives it with numbers of the kind `L`.
+fn emit_over_numbers(
+    type_name: &impl ToTokens,
+    gaps: impl Iterator<Item = TokenStream>,
+) -> TokenStream {
+    let arms = gaps
+        .enumerate()
+        .map(|(surface, gap)| quote!(#surface => #gap,));
+    let attributes = attributes();
+    quote! {
+        #attributes
+        impl ::dalembert::__private::OverNumbers for #type_name {
+            fn gap_over<L: ::dalembert::numbers::Numbers>(
+                &self,
+                surface: usize,
+                t: L,
+                component: &dyn ::core::ops::Fn(usize) -> L,
+            ) -> L {
+                match surface {
+                    #(#arms)*
+                    _ => ::dalembert::__private::modes::no_gap(),
+                }
+            }
+        }
     }
 }

@@ -1,59 +1,28 @@
 //! `Variational` of the whole, and what its modes add over numbers: how they are entered, and their energy.
 
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use super::Whole;
-use super::contract::emit_entries;
 use super::impacting::{is_rough, passage};
-use crate::emit::instantaneous::over_numbers;
-use crate::emit::variational::{Lengths, emit_counts, over_intervals};
-use crate::emit::{Context, attributes};
+use crate::emit::attributes;
 use crate::model::Mode;
 use crate::program::Form;
 
 /// `impl VariationalMode` for each mode.
 pub(super) fn emit_modes(whole: &Whole<'_>) -> TokenStream {
     let attributes = attributes();
-    let modes = whole.graph.modes.iter().zip(whole.own());
-    let modes = modes.map(|(mode, context)| {
+    let modes = whole.own().map(|context| {
         let type_name = &context.names.type_name;
         let holds_momenta = context.program.form == Form::Global;
-        let entered = emit_entered(mode, context);
         quote! {
             #attributes
             impl ::dalembert::__private::modes::VariationalMode for #type_name {
                 const HOLDS_MOMENTA: bool = #holds_momenta;
-
-                #entered
             }
         }
     });
     modes.collect()
-}
-
-/// The states that are declared for other modes, if some are.
-fn emit_entered(mode: &Mode, context: &Context<'_>) -> TokenStream {
-    let arms = emit_entries(mode, context, |function| context.varied_body(function));
-    if arms.is_empty() {
-        return TokenStream::new();
-    }
-    quote! {
-        fn entered<L: ::dalembert::numbers::Numbers>(
-            parameters: &Self::Parameters<L>,
-            surface: usize,
-            t: L,
-            state: &Self::Row<L>,
-            after_q: &mut [L],
-            after_qdot: &mut [L],
-        ) -> ::core::result::Result<(), ::dalembert::Fault> {
-            match surface {
-                #(#arms)*
-                _ => {}
-            }
-            ::core::result::Result::Ok(())
-        }
-    }
 }
 
 /// `impl Variational`, where each function asks the mode of the state.
@@ -247,6 +216,110 @@ fn emit_declared_law(whole: &Whole<'_>) -> TokenStream {
                 #(#arms)*
                 _ => (::dalembert::impacts::law::Law::Elastic, L::ZERO),
             }
+        }
+    }
+}
+
+/// Lengths of the vectors of `Variational`.
+struct Lengths {
+    configuration: usize,
+    clearances: usize,
+    collision: TokenStream,
+    deviations: TokenStream,
+    state: TokenStream,
+}
+
+impl Lengths {
+    /// `impl Variational` with these functions.
+    fn emit_implementation(
+        &self,
+        type_name: &impl ToTokens,
+        functions: &[TokenStream],
+    ) -> TokenStream {
+        let Self {
+            configuration,
+            clearances,
+            collision,
+            deviations,
+            state,
+        } = self;
+        let attributes = attributes();
+        quote! {
+            #attributes
+            impl ::dalembert::Variational for #type_name {
+                type Configuration<L: ::dalembert::numbers::Numbers> = [L; #configuration];
+                type Clearances<L: ::dalembert::numbers::Numbers> = [L; #clearances];
+                type Collision<L: ::dalembert::numbers::Numbers> = [L; #collision];
+                type Deviations<L: ::dalembert::numbers::Numbers> = [L; #deviations];
+                type Columns = [Self::State; #state];
+
+                fn columns() -> Self::Columns {
+                    [<Self::State as ::dalembert::StateVector>::zeros(#state); #state]
+                }
+
+                type Tangents = [::dalembert::Tangent<Self>; #state];
+
+                fn tangents() -> Self::Tangents {
+                    [::dalembert::Tangent::zero(); #state]
+                }
+
+                #(#functions)*
+            }
+        }
+    }
+}
+
+/// `counts`, of a system with or without surfaces.
+fn emit_counts(has_surfaces: bool) -> TokenStream {
+    let counts = match has_surfaces {
+        true => quote!(<Self as ::dalembert::Impacting>::surface_active(
+            self, surface, t, state
+        )),
+        false => quote!(true),
+    };
+    quote! {
+        #[inline]
+        fn counts(&self, surface: usize, t: f64, state: &Self::State) -> bool { #counts }
+    }
+}
+
+/// `counts_throughout` with this body.
+fn over_intervals(body: &TokenStream) -> TokenStream {
+    quote! {
+        fn counts_throughout(
+            parameters: &Self::Parameters<::dalembert::numbers::Interval>,
+            surface: usize,
+            t: ::dalembert::numbers::Interval,
+            state: &Self::Row<::dalembert::numbers::Interval>,
+        ) -> ::core::option::Option<bool> {
+            #body
+        }
+    }
+}
+
+/// Both functions of `Variational`, with these bodies.
+fn over_numbers(focus: &TokenStream, trace: &TokenStream) -> TokenStream {
+    let result = quote! {
+        ::core::result::Result<::core::option::Option<Self::Row<L>>, ::dalembert::Fault>
+    };
+    quote! {
+        fn focus<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+        ) -> #result {
+            #focus
+        }
+
+        fn trace<L: ::dalembert::numbers::Numbers>(
+            parameters: &Self::Parameters<L>,
+            surface: usize,
+            t: L,
+            state: &Self::Row<L>,
+            rate: &Self::Row<L>,
+        ) -> #result {
+            #trace
         }
     }
 }

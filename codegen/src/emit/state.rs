@@ -1,0 +1,70 @@
+//! What a state consists of, and the locals that its numbers are bound to.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+use super::Context;
+use super::function::uses;
+use crate::program::{Form, Function, Input};
+
+impl Context<'_> {
+    /// Number of coordinates.
+    pub(super) fn dimension(&self) -> usize {
+        self.model.coordinates.len()
+    }
+
+    /// Number of components of the state beside the positions.
+    pub(super) fn motion_dimension(&self) -> usize {
+        match self.program.form {
+            Form::Global => self.dimension(),
+            Form::Reduced => self.names.quasi.len(),
+            Form::FirstOrder => 0,
+        }
+    }
+
+    /// The names of the quasi-velocities.
+    pub(super) fn quasi_names(&self) -> Vec<String> {
+        let quasi = self.frame.iter().flat_map(|frame| &frame.quasi);
+        quasi.map(|own| own.name.clone()).collect()
+    }
+
+    /// `let [x, _, p_x, p_y] = *state;` with what the function uses.
+    pub(super) fn bind_row(&self, function: &Function) -> TokenStream {
+        let patterns = self.state_patterns(function);
+        if !patterns.iter().any(|(_, any)| *any) {
+            return TokenStream::new();
+        }
+        let parts = patterns.iter().map(|(tokens, _)| tokens);
+        quote!(let [#(#parts),*] = *state;)
+    }
+
+    fn state_patterns(&self, function: &Function) -> [(TokenStream, bool); 2] {
+        let coordinates = pattern(&self.names.coordinates, |i| {
+            uses(function, |input| input == Input::Coordinate(i))
+        });
+        let motion = match self.program.form {
+            Form::Global => pattern(&self.names.momenta, |i| {
+                uses(function, |input| input == Input::Momentum(i))
+            }),
+            Form::Reduced => pattern(&self.names.quasi, |i| {
+                uses(function, |input| input == Input::Quasi(i))
+            }),
+            Form::FirstOrder => (TokenStream::new(), false),
+        };
+        [coordinates, motion]
+    }
+}
+
+/// A pattern of locals, `_` where nothing is used; and whether anything is.
+fn pattern(locals: &[Ident], used: impl Fn(usize) -> bool) -> (TokenStream, bool) {
+    let mut any = false;
+    let parts = locals.iter().enumerate().map(|(i, local)| match used(i) {
+        true => {
+            any = true;
+            quote!(#local)
+        }
+        false => quote!(_),
+    });
+    let parts: Vec<TokenStream> = parts.collect();
+    (quote!(#(#parts),*), any)
+}
