@@ -63,7 +63,7 @@ pub(super) fn emit_powered(context: &Context<'_>) -> TokenStream {
             ) -> ::core::result::Result<Self::Powers, ::dalembert::Fault> {
                 let mut powers = [0.0; #count];
                 let place = [::dalembert::StateVector::as_slice(state), &[]];
-                ::dalembert::__private::write(self, ::dalembert::kernels::Kernel::Powers, t, place, &mut powers)?;
+                ::dalembert::__private::write(self, ::dalembert::kernels::Kernels::powers, t, place, &mut powers)?;
                 ::core::result::Result::Ok(::dalembert::__private::vector(powers))
             }
         }

@@ -251,16 +251,16 @@ fn emit_initial(context: &Context<'_>) -> TokenStream {
         marks.map(number).collect()
     };
     let (placed, named) = (declared(&model.initial.q), declared(&model.initial.qdot));
-    let kernel = quote!(::dalembert::kernels::Kernel);
+    let kernels = quote!(::dalembert::kernels::Kernels);
     let until = match &program.until {
         Some(_) => {
-            quote!(::dalembert::__private::number(self, #kernel::Until, 0.0, [&[], &[]]).ok())
+            quote!(::dalembert::__private::number(self, #kernels::until, 0.0, [&[], &[]]).ok())
         }
         None => quote!(::core::option::Option::None),
     };
     quote! {
         fn initial(&self) -> ::dalembert::describe::Initial<Self::Vector> {
-            let declared = ::dalembert::__private::pair(self, #kernel::Initial, 0.0, [&[], &[]]);
+            let declared = ::dalembert::__private::pair(self, #kernels::initial, 0.0, [&[], &[]]);
             let [q, qdot] = declared.unwrap_or([::dalembert::System::zero_vector(self); 2]);
             ::dalembert::describe::Initial {
                 q,
@@ -276,16 +276,18 @@ fn emit_initial(context: &Context<'_>) -> TokenStream {
 /// Outputs and view.
 fn emit_declared(context: &Context<'_>) -> TokenStream {
     let program = context.program;
-    let kernel = quote!(::dalembert::kernels::Kernel);
+    let kernels = quote!(::dalembert::kernels::Kernels);
     let state = quote!([::dalembert::StateVector::as_slice(state), &[]]);
     let outputs = match &program.outputs {
-        Some(_) => quote!(::dalembert::__private::write(self, #kernel::Outputs, t, #state, values)),
+        Some(_) => {
+            quote!(::dalembert::__private::write(self, #kernels::outputs, t, #state, values))
+        }
         None => quote!(::core::result::Result::Ok(())),
     };
     let path = match &program.view_path {
         Some(_) => quote! {
             let mut point = [0.0; 2];
-            ::dalembert::__private::write(self, #kernel::ViewPath, t, #state, &mut point).ok()?;
+            ::dalembert::__private::write(self, #kernels::view_path, t, #state, &mut point).ok()?;
             ::core::option::Option::Some(point)
         },
         None => quote!(::core::option::Option::None),
@@ -293,7 +295,7 @@ fn emit_declared(context: &Context<'_>) -> TokenStream {
     let region = match &program.view_region {
         Some(_) => quote! {
             let q = [::dalembert::StateVector::as_slice(q), &[]];
-            ::dalembert::__private::number(self, #kernel::ViewRegion, t, q).ok()
+            ::dalembert::__private::number(self, #kernels::view_region, t, q).ok()
         },
         None => quote!(::core::option::Option::None),
     };
@@ -320,7 +322,7 @@ fn emit_inspect(context: &Context<'_>) -> TokenStream {
     let statements = quote! {
         let mut values = [0.0; #count];
         let place = [::dalembert::StateVector::as_slice(state), &[]];
-        ::dalembert::__private::write(self, ::dalembert::kernels::Kernel::Geometry, t, place, &mut values)?;
+        ::dalembert::__private::write(self, ::dalembert::kernels::Kernels::geometry, t, place, &mut values)?;
     };
     let mut next = 0;
     let reports = geometry.groups.iter().map(|group| {

@@ -1,9 +1,9 @@
 //! `Kernels`: every function of a program, once, over `L: Numbers`.
 //!
-//! The functions of one form are associated functions of a type without fields; `call` finds them by name. A function that is the
+//! The functions of one form are associated functions of a type without fields; methods of `Kernels` call them. A function that is the
 //! same as one written before, in another form or scene, is that one.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use dalembert_numbers::Kernel;
 use dalembert_numbers::kernel::{First, Second};
@@ -29,24 +29,48 @@ struct Key {
 /// The type of the kernels of a form, and its implementation.
 pub(super) fn emit_kernels(context: &Context<'_>, written: &mut Written) -> TokenStream {
     let type_name = type_name(context);
-    let (mut functions, mut arms) = (TokenStream::new(), TokenStream::new());
+    let mut functions = TokenStream::new();
     let mut velocity = TokenStream::new();
+    let (mut plain, mut of_surfaces) = (TokenStream::new(), BTreeMap::new());
     for (kernel, function) in context.program.kernels() {
         if context.model.is_nonlinear() && is_of_impulses(kernel) {
             continue;
         }
-        let name = function_name(kernel);
+        let (name, surface) = name(kernel);
+        let own = match surface {
+            Some(surface) => Ident::new(&format!("{name}_{surface}"), Span::call_site()),
+            None => name.clone(),
+        };
         let key = key(context, kernel, function);
         let path = written.0.entry(key).or_insert_with(|| {
-            functions.extend(emit_function(context, (kernel, function), &name, &velocity));
-            quote!(#type_name::#name)
+            functions.extend(emit_function(context, (kernel, function), &own, &velocity));
+            quote!(#type_name::#own)
         });
         if kernel == Kernel::Velocity {
             velocity = path.clone();
         }
-        let pattern = pattern(kernel);
-        arms.extend(quote!(#pattern => #path(at, values),));
+        match surface {
+            None => plain.extend(emit_method(
+                &name,
+                &TokenStream::new(),
+                &quote!(#path(at, values)),
+            )),
+            Some(surface) => {
+                let surface = Literal::usize_unsuffixed(surface);
+                let arms: &mut TokenStream = of_surfaces.entry(name).or_default();
+                arms.extend(quote!(#surface => #path(at, values),));
+            }
+        }
     }
+    let of_surfaces = of_surfaces.iter().map(|(name, arms)| {
+        let body = quote! {
+            match surface {
+                #arms
+                _ => ::core::result::Result::Err(::dalembert::Fault::NotDerived),
+            }
+        };
+        emit_method(name, &quote!(surface: usize,), &body)
+    });
     let attributes = super::attributes();
     quote! {
         /// Kernels of a form.
@@ -58,18 +82,23 @@ pub(super) fn emit_kernels(context: &Context<'_>, written: &mut Written) -> Toke
 
         #attributes
         impl ::dalembert::kernels::Kernels for #type_name {
-            #[inline(always)]
-            fn call<L: ::dalembert::numbers::Numbers>(
-                &self,
-                kernel: ::dalembert::kernels::Kernel,
-                at: ::dalembert::kernels::At<'_, L>,
-                values: &mut [L],
-            ) -> ::core::result::Result<(), ::dalembert::Fault> {
-                match kernel {
-                    #arms
-                    _ => ::core::result::Result::Err(::dalembert::Fault::NotDerived),
-                }
-            }
+            #plain
+            #(#of_surfaces)*
+        }
+    }
+}
+
+/// A method of `Kernels`.
+fn emit_method(name: &Ident, surface: &TokenStream, body: &TokenStream) -> TokenStream {
+    quote! {
+        #[inline(always)]
+        fn #name<L: ::dalembert::numbers::Numbers>(
+            &self,
+            #surface
+            at: ::dalembert::kernels::At<'_, L>,
+            values: &mut [L],
+        ) -> ::core::result::Result<(), ::dalembert::Fault> {
+            #body
         }
     }
 }
@@ -234,39 +263,21 @@ fn bind(locals: &[Option<Ident>], source: &TokenStream) -> TokenStream {
     quote!(let [#(#names),*] = *::dalembert::__private::numbers::<L, #count>(#source);)
 }
 
-/// The name of the function of a kernel: `gap_rates`, `contact_0`.
-fn function_name(kernel: Kernel) -> Ident {
-    let text = format!("{kernel:?}");
-    let mut name = String::new();
-    for c in text.chars() {
-        match c {
-            '(' => name.push('_'),
-            ')' => {}
-            c if c.is_uppercase() && !name.is_empty() => {
-                name.push('_');
-                name.extend(c.to_lowercase());
-            }
-            c => name.extend(c.to_lowercase()),
-        }
-    }
-    Ident::new(&name, Span::call_site())
-}
-
-/// `Kernel::Contact(0)`
-fn pattern(kernel: Kernel) -> TokenStream {
+/// The name of a kernel's method, `gap_rates` or `contact`, and the surface that it is of.
+fn name(kernel: Kernel) -> (Ident, Option<usize>) {
     let text = format!("{kernel:?}");
     let (name, surface) = match text.trim_end_matches(')').split_once('(') {
-        Some((name, surface)) => (name.to_owned(), surface.parse::<usize>().ok()),
-        None => (text, None),
+        Some((name, surface)) => (name, surface.parse().ok()),
+        None => (text.as_str(), None),
     };
-    let name = Ident::new(&name, Span::call_site());
-    match surface {
-        Some(surface) => {
-            let surface = Literal::usize_unsuffixed(surface);
-            quote!(::dalembert::kernels::Kernel::#name(#surface))
+    let mut snake = String::new();
+    for c in name.chars() {
+        if c.is_uppercase() && !snake.is_empty() {
+            snake.push('_');
         }
-        None => quote!(::dalembert::kernels::Kernel::#name),
+        snake.extend(c.to_lowercase());
     }
+    (Ident::new(&snake, Span::call_site()), surface)
 }
 
 /// The formula of a kernel and what it costs.

@@ -36,14 +36,14 @@ pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
             #[inline]
             fn log_density(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
                 let place = [::dalembert::StateVector::as_slice(q), &[]];
-                let density = ::dalembert::__private::number(self, ::dalembert::kernels::Kernel::LogDensity, t, place)?;
+                let density = ::dalembert::__private::number(self, ::dalembert::kernels::Kernels::log_density, t, place)?;
                 ::core::result::Result::Ok(density #integral)
             }
 
             #[inline]
             fn log_volume(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
                 let place = [::dalembert::StateVector::as_slice(q), &[]];
-                let volume = ::dalembert::__private::number(self, ::dalembert::kernels::Kernel::LogVolume, t, place)?;
+                let volume = ::dalembert::__private::number(self, ::dalembert::kernels::Kernels::log_volume, t, place)?;
                 ::core::result::Result::Ok(volume #added)
             }
         }
@@ -83,7 +83,7 @@ fn emit_integral(reference: &[f64]) -> TokenStream {
             let mut gradient = ::dalembert::System::zero_vector(self);
             let place = [::dalembert::StateVector::as_slice(q), &[]];
             let values = ::dalembert::StateVector::as_mut_slice(&mut gradient);
-            ::dalembert::__private::write(self, ::dalembert::kernels::Kernel::DensityGradient, t, place, values)?;
+            ::dalembert::__private::write(self, ::dalembert::kernels::Kernels::density_gradient, t, place, values)?;
             ::core::result::Result::Ok(gradient)
         })?
     }

@@ -1,7 +1,7 @@
 //! `Constrained` of every declared model with constraints.
 
 use super::declared::{several, vector, write};
-use super::{Declared, Form, HasConstraints, Kernel};
+use super::{Declared, Form, HasConstraints, Kernels};
 use crate::contract::{Constrained, Level, System};
 use crate::error::Fault;
 use crate::numbers::Row;
@@ -16,7 +16,7 @@ fn write_forms<S: Declared>(
     affine: &mut S::Multipliers,
 ) {
     let (n, m) = (system.coordinate_count(), affine.count());
-    let kernel = (Kernel::Forms, n * m + m);
+    let kernel = (S::Kernels::forms, n * m + m);
     // Forms have no guards.
     if let Ok(both) = several(system, kernel, t, places) {
         let (own, rest) = both.as_slice()[..n * m + m].split_at(n * m);
@@ -31,7 +31,7 @@ impl<S: Declared + HasConstraints> Constrained for S {
 
     #[inline]
     fn multipliers(&self, t: f64, state: &S::State) -> Result<S::Multipliers, Fault> {
-        let kernel = (Kernel::Multipliers, self.constraint_count());
+        let kernel = (S::Kernels::multipliers, self.constraint_count());
         vector(self, kernel, t, [state.as_slice(), &[]])
     }
 
@@ -43,7 +43,7 @@ impl<S: Declared + HasConstraints> Constrained for S {
         qdot: &S::Vector,
     ) -> (S::Multipliers, S::Multipliers) {
         let m = self.constraint_count();
-        let kernel = (Kernel::Residuals, 2 * m);
+        let kernel = (S::Kernels::residuals, 2 * m);
         // Residuals have no guards.
         match several(self, kernel, t, [q.as_slice(), qdot.as_slice()]) {
             Ok(both) => {
@@ -93,7 +93,13 @@ impl<S: Declared + HasConstraints> Constrained for S {
         }
         let before = *state;
         let motion = &mut state.as_mut_slice()[self.coordinate_count()..];
-        let restored = write(self, Kernel::Restore, t, [before.as_slice(), &[]], motion);
+        let restored = write(
+            self,
+            S::Kernels::restore,
+            t,
+            [before.as_slice(), &[]],
+            motion,
+        );
         if restored.is_err() {
             *state = before;
         }
@@ -109,14 +115,14 @@ impl<S: Declared + HasConstraints> Constrained for S {
         if S::TABLES.levels.is_empty() {
             return self.zero_levels();
         }
-        let kernel = (Kernel::LevelScales, self.level_count());
+        let kernel = (S::Kernels::level_scales, self.level_count());
         let scales = vector(self, kernel, t, [q.as_slice(), &[]]);
         scales.unwrap_or_else(|_| self.zero_levels())
     }
 
     #[inline]
     fn levels(&self, t: f64, q: &S::Vector) -> S::Levels {
-        let kernel = (Kernel::Levels, self.level_count());
+        let kernel = (S::Kernels::levels, self.level_count());
         let levels = vector(self, kernel, t, [q.as_slice(), &[]]);
         levels.unwrap_or_else(|_| self.zero_levels())
     }
@@ -127,7 +133,7 @@ impl<S: Declared + HasConstraints> Constrained for S {
         q: &S::Vector,
         excess: &S::Levels,
     ) -> Result<S::Vector, Fault> {
-        let kernel = (Kernel::LevelCorrection, self.coordinate_count());
+        let kernel = (S::Kernels::level_correction, self.coordinate_count());
         vector(self, kernel, t, [q.as_slice(), excess.as_slice()])
     }
 }

@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use super::{At, Kernel, Kernels, Tables};
+use super::{At, Kernels, Tables};
 use crate::contract::{RankDrop, System};
 use crate::error::{Fault, StateError};
 use crate::numbers::{Numbers, Row};
@@ -99,7 +99,7 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
 #[inline(always)]
 pub fn write<S: Declared>(
     system: &S,
-    kernel: Kernel,
+    kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
     t: f64,
     [first, second]: [&[f64]; 2],
     values: &mut [f64],
@@ -111,14 +111,17 @@ pub fn write<S: Declared>(
         first,
         second,
     };
-    S::KERNELS.call(kernel, at, values)
+    kernel(&S::KERNELS, at, values)
 }
 
 /// The values of a kernel as a vector of this length.
 #[inline(always)]
 pub(super) fn vector<S: Declared, V: StateVector>(
     system: &S,
-    (kernel, count): (Kernel, usize),
+    (kernel, count): (
+        impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
+        usize,
+    ),
     t: f64,
     places: [&[f64]; 2],
 ) -> Result<V, Fault> {
@@ -134,7 +137,7 @@ pub(super) fn vector<S: Declared, V: StateVector>(
 #[inline(always)]
 pub fn number<S: Declared>(
     system: &S,
-    kernel: Kernel,
+    kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
     t: f64,
     places: [&[f64]; 2],
 ) -> Result<f64, Fault> {
@@ -147,7 +150,10 @@ pub fn number<S: Declared>(
 #[inline(always)]
 pub(super) fn several<S: Declared>(
     system: &S,
-    (kernel, count): (Kernel, usize),
+    (kernel, count): (
+        impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
+        usize,
+    ),
     t: f64,
     places: [&[f64]; 2],
 ) -> Result<S::Room<f64>, Fault> {
@@ -162,7 +168,7 @@ pub(super) fn several<S: Declared>(
 /// As [`Kernels::call`].
 pub fn pair<S: Declared>(
     system: &S,
-    kernel: Kernel,
+    kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
     t: f64,
     places: [&[f64]; 2],
 ) -> Result<[S::Vector; 2], Fault> {

@@ -3,7 +3,7 @@
 use super::declared::{number, pair, several, vector, write};
 use super::system::over_numbers;
 use super::tables::{Beside, Condition, Surface};
-use super::{At, Declared, Form, HasSurfaces, Kernel, Kernels};
+use super::{At, Declared, Form, HasSurfaces, Kernels};
 use crate::contract::{Impacting, System};
 use crate::error::Fault;
 use crate::generated::{OverNumbers, certain};
@@ -48,7 +48,7 @@ fn gap_over<S: Declared, L: Numbers>(
     };
     let mut gap = [L::ZERO];
     // Gaps have no guards.
-    let _ = S::KERNELS.call(Kernel::Gap(surface), at, &mut gap);
+    let _ = S::KERNELS.gap(surface, at, &mut gap);
     gap[0]
 }
 
@@ -75,7 +75,12 @@ fn conditions<S: Declared>(
     if count == 0 {
         return [true, false];
     }
-    let kernel = (Kernel::Conditions(index), count);
+    let kernel = (
+        |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+            kernels.conditions(index, at, values)
+        },
+        count,
+    );
     // Conditions have no guards.
     let Ok(margins) = several(system, kernel, t, [state.as_slice(), &[]]) else {
         return [false; 2];
@@ -127,9 +132,7 @@ pub(super) fn counts_throughout<S: Declared>(
     };
     let mut margins = S::Room::<Interval>::zeros(count);
     let margins = &mut margins.as_mut_slice()[..count];
-    S::KERNELS
-        .call(Kernel::Conditions(surface), at, margins)
-        .ok()?;
+    S::KERNELS.conditions(surface, at, margins).ok()?;
     let mut rest = &margins[..];
     let mut holds = lists().map(|list| {
         let (own, behind) = rest.split_at(list.len());
@@ -157,7 +160,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         // Gaps have no guards.
         let _ = write(
             self,
-            Kernel::Gaps,
+            S::Kernels::gaps,
             t,
             [state.as_slice(), &[]],
             gaps.as_mut_slice(),
@@ -180,7 +183,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     #[inline]
     fn gap_rates(&self, t: f64, state: &S::State) -> Result<S::Gaps, Fault> {
-        let kernel = (Kernel::GapRates, self.surface_count());
+        let kernel = (S::Kernels::gap_rates, self.surface_count());
         vector(self, kernel, t, [state.as_slice(), &[]])
     }
 
@@ -193,7 +196,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         if S::TABLES.form == Form::FirstOrder {
             return Ok(None);
         }
-        let kernel = (Kernel::GapAccelerations, self.surface_count());
+        let kernel = (S::Kernels::gap_accelerations, self.surface_count());
         vector(self, kernel, t, [state.as_slice(), motion.as_slice()]).map(Some)
     }
 
@@ -206,7 +209,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         if S::TABLES.form == Form::FirstOrder {
             return Ok(None);
         }
-        let kernel = (Kernel::GapResponses, self.surface_count());
+        let kernel = (S::Kernels::gap_responses, self.surface_count());
         vector(self, kernel, t, [state.as_slice(), motion.as_slice()]).map(Some)
     }
 
@@ -231,7 +234,9 @@ impl<S: Declared + HasSurfaces> Impacting for S {
             return Law::Elastic;
         };
         let coefficient = || {
-            let kernel = Kernel::Coefficient(surface);
+            let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+                kernels.coefficient(surface, at, values)
+            };
             number(self, kernel, 0.0, [&[], &[]]).unwrap_or(f64::NAN)
         };
         match own.law {
@@ -251,12 +256,24 @@ impl<S: Declared + HasSurfaces> Impacting for S {
             return Ok(None);
         }
         let places = [state.as_slice(), &[][..]];
-        let [position, velocity] = pair(self, Kernel::Reset(surface), t, places)?;
+        let [position, velocity] = pair(
+            self,
+            |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+                kernels.reset(surface, at, values)
+            },
+            t,
+            places,
+        )?;
         Ok(Some(Jump { position, velocity }))
     }
 
     fn focus(&self, surface: usize, t: f64, state: &S::State) -> Result<Option<S::Impulse>, Fault> {
-        let kernel = (Kernel::Focus(surface), self.impulse_len());
+        let kernel = (
+            |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+                kernels.focus(surface, at, values)
+            },
+            self.impulse_len(),
+        );
         known(vector(self, kernel, t, [state.as_slice(), &[]]))
     }
 
@@ -267,7 +284,12 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         state: &S::State,
         motion: &S::Impulse,
     ) -> Result<Option<S::Impulse>, Fault> {
-        let kernel = (Kernel::Trace(surface), self.impulse_len());
+        let kernel = (
+            |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+                kernels.trace(surface, at, values)
+            },
+            self.impulse_len(),
+        );
         known(vector(
             self,
             kernel,
@@ -279,7 +301,12 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     #[inline]
     fn blow(&self, surface: usize, t: f64, state: &S::State) -> Result<Blow<S::Impulse>, Fault> {
         let count = 2 + self.impulse_len();
-        let kernel = (Kernel::Blow(surface), count);
+        let kernel = (
+            |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+                kernels.blow(surface, at, values)
+            },
+            count,
+        );
         let places = [state.as_slice(), &[][..]];
         let all =
             several(self, kernel, t, places).map_err(|fault| no_impulse::<S>(fault, surface))?;
@@ -301,7 +328,12 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         state: &S::State,
     ) -> Result<Contact<S::Impulse>, Fault> {
         let count = 5 + self.impulse_len();
-        let kernel = (Kernel::Contact(surface), count);
+        let kernel = (
+            |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+                kernels.contact(surface, at, values)
+            },
+            count,
+        );
         let places = [state.as_slice(), &[][..]];
         let all =
             several(self, kernel, t, places).map_err(|fault| no_impulse::<S>(fault, surface))?;

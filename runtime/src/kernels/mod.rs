@@ -72,19 +72,98 @@ pub trait HasVariations: Declared + TaylorField<State = <Self as Declared>::Stat
     fn tangents() -> Self::Tangents;
 }
 
-/// The kernels of one form of a model.
-pub trait Kernels {
-    /// Writes the values of a kernel; `values` has exactly as many places.
-    ///
-    /// # Errors
-    /// The guard that does not hold; [`Fault::NotDerived`] for a kernel that the form does not have.
-    ///
-    /// # Panics
-    /// If a slice is shorter than the kernel's.
-    fn call<L: Numbers>(
-        &self,
-        kernel: Kernel,
-        at: At<'_, L>,
-        values: &mut [L],
-    ) -> Result<(), Fault>;
+/// A function per kernel, in a trait: what a form does not have is [`Fault::NotDerived`].
+macro_rules! kernels {
+    (
+        $(#[$doc:meta])*
+        plain { $($plain:ident: $name:ident,)* }
+        of_surface { $($of_surface:ident: $surface_name:ident,)* }
+    ) => {
+        $(#[$doc])*
+        pub trait Kernels {
+            $(
+                #[doc = concat!("[`Kernel::", stringify!($name), "`].")]
+                ///
+                /// # Errors
+                /// The guard that does not hold; [`Fault::NotDerived`].
+                #[inline(always)]
+                fn $plain<L: Numbers>(
+                    &self,
+                    at: At<'_, L>,
+                    values: &mut [L],
+                ) -> Result<(), Fault> {
+                    let _ = (at, values);
+                    Err(Fault::NotDerived)
+                }
+            )*
+            $(
+                #[doc = concat!("[`Kernel::", stringify!($surface_name), "`] of a surface.")]
+                ///
+                /// # Errors
+                /// The guard that does not hold; [`Fault::NotDerived`].
+                #[inline(always)]
+                fn $of_surface<L: Numbers>(
+                    &self,
+                    surface: usize,
+                    at: At<'_, L>,
+                    values: &mut [L],
+                ) -> Result<(), Fault> {
+                    let _ = (surface, at, values);
+                    Err(Fault::NotDerived)
+                }
+            )*
+        }
+    };
+}
+
+kernels! {
+    /// The kernels of one form of a model: each writes its values, of which `values` has exactly as many places. A slice shorter than
+    /// what a kernel reads or writes is a mistake of the caller, and panics.
+    plain {
+        rate: Rate,
+        scale: Scale,
+        velocity: Velocity,
+        momentum: Momentum,
+        motion: Motion,
+        nearest: Nearest,
+        nearest_momenta: NearestMomenta,
+        energy: Energy,
+        force: Force,
+        multipliers: Multipliers,
+        residuals: Residuals,
+        forms: Forms,
+        restore: Restore,
+        levels: Levels,
+        level_scales: LevelScales,
+        level_correction: LevelCorrection,
+        reaction_force: ReactionForce,
+        constrained_velocity: ConstrainedVelocity,
+        gaps: Gaps,
+        gap_rates: GapRates,
+        gap_accelerations: GapAccelerations,
+        gap_responses: GapResponses,
+        divergence: Divergence,
+        density_form: DensityForm,
+        log_density: LogDensity,
+        log_volume: LogVolume,
+        density_gradient: DensityGradient,
+        powers: Powers,
+        outputs: Outputs,
+        view_path: ViewPath,
+        view_region: ViewRegion,
+        initial: Initial,
+        until: Until,
+        geometry: Geometry,
+    }
+    of_surface {
+        gap: Gap,
+        conditions: Conditions,
+        coefficient: Coefficient,
+        blow: Blow,
+        contact: Contact,
+        reset: Reset,
+        entry: Entry,
+        focus: Focus,
+        trace: Trace,
+    }
 }

@@ -1,7 +1,7 @@
 //! `VectorField`, `System`, `Lagrangian` and `Divergence` of every declared model.
 
 use super::declared::{number, several, vector, write};
-use super::{At, Declared, Form, HasConstraints, HasDivergence, Kernel, Kernels};
+use super::{At, Declared, Form, HasConstraints, HasDivergence, Kernels};
 use crate::contract::{Divergence, Lagrangian, RankDrop, System, VectorField};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::generated::check_coefficient;
@@ -15,7 +15,7 @@ impl<S: Declared> VectorField for S {
     #[inline]
     fn rate(&self, t: f64, state: &S::State, rate: &mut S::State) -> Result<(), Fault> {
         let places = [state.as_slice(), &[]];
-        write(self, Kernel::Rate, t, places, rate.as_mut_slice())
+        write(self, S::Kernels::rate, t, places, rate.as_mut_slice())
     }
 
     #[inline]
@@ -23,7 +23,7 @@ impl<S: Declared> VectorField for S {
         let mut scale = state.zeroed();
         let places = [state.as_slice(), &[]];
         // Units have no guards.
-        let _ = write(self, Kernel::Scale, t, places, scale.as_mut_slice());
+        let _ = write(self, S::Kernels::scale, t, places, scale.as_mut_slice());
         scale
     }
 
@@ -50,7 +50,7 @@ impl<S: Declared> VectorField for S {
             first: state.as_slice(),
             second: &[],
         };
-        S::KERNELS.call(Kernel::Rate, at, rates.as_mut_slice())?;
+        S::KERNELS.rate(at, rates.as_mut_slice())?;
         for (i, own) in rates.as_slice().iter().enumerate() {
             rate(i, *own);
         }
@@ -83,7 +83,7 @@ fn joined<S: Declared>(q: &[f64], motion: &[f64]) -> S::State {
 #[inline(always)]
 fn state_by<S: Declared>(
     system: &S,
-    kernel: Kernel,
+    kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
     t: f64,
     q: &S::Vector,
     other: &S::Vector,
@@ -106,7 +106,7 @@ pub fn nearest_of_declared<S: Declared + HasConstraints>(
     qdot: &S::Vector,
 ) -> Result<S::State, Fault> {
     nearest_by_steps(system, t, q, qdot, |qdot| {
-        state_by(system, Kernel::Nearest, t, q, qdot)
+        state_by(system, S::Kernels::nearest, t, q, qdot)
     })
 }
 
@@ -121,7 +121,7 @@ impl<S: Declared> System for S {
 
     #[inline]
     fn velocity(&self, t: f64, state: &S::State) -> Result<S::Vector, Fault> {
-        let kernel = (Kernel::Velocity, self.coordinate_count());
+        let kernel = (S::Kernels::velocity, self.coordinate_count());
         vector(self, kernel, t, [state.as_slice(), &[]])
     }
 
@@ -130,7 +130,7 @@ impl<S: Declared> System for S {
         let n = self.coordinate_count();
         match S::TABLES.form {
             Form::Global => Ok(S::Vector::of(&state.as_slice()[n..])),
-            Form::Reduced => vector(self, (Kernel::Momentum, n), t, [state.as_slice(), &[]]),
+            Form::Reduced => vector(self, (S::Kernels::momentum, n), t, [state.as_slice(), &[]]),
             Form::FirstOrder => Err(Fault::FirstOrder),
         }
     }
@@ -139,7 +139,7 @@ impl<S: Declared> System for S {
     fn state_unchecked(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> Result<S::State, Fault> {
         match S::TABLES.form {
             Form::FirstOrder => Ok(joined::<S>(q.as_slice(), &[])),
-            _ => state_by(self, Kernel::Motion, t, q, qdot),
+            _ => state_by(self, S::Kernels::motion, t, q, qdot),
         }
     }
 
@@ -147,7 +147,7 @@ impl<S: Declared> System for S {
     fn state_from_momenta(&self, t: f64, q: &S::Vector, p: &S::Vector) -> Result<S::State, Fault> {
         match S::TABLES.form {
             Form::Global => Ok(joined::<S>(q.as_slice(), p.as_slice())),
-            Form::Reduced => state_by(self, Kernel::NearestMomenta, t, q, p),
+            Form::Reduced => state_by(self, S::Kernels::nearest_momenta, t, q, p),
             Form::FirstOrder => Err(Fault::FirstOrder),
         }
     }
@@ -156,10 +156,10 @@ impl<S: Declared> System for S {
     fn state_nearest(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> Result<S::State, Fault> {
         let tables = S::TABLES;
         match tables.form {
-            Form::Reduced => state_by(self, Kernel::Nearest, t, q, qdot),
+            Form::Reduced => state_by(self, S::Kernels::nearest, t, q, qdot),
             Form::Global if tables.dimensions.constraints == 0 => self.state_unchecked(t, q, qdot),
             Form::Global if !tables.is_linear => self.nearest_by_steps(t, q, qdot),
-            Form::Global => state_by(self, Kernel::Nearest, t, q, qdot),
+            Form::Global => state_by(self, S::Kernels::nearest, t, q, qdot),
             Form::FirstOrder => self.state_unchecked(t, q, qdot),
         }
     }
@@ -168,7 +168,7 @@ impl<S: Declared> System for S {
     fn energy(&self, t: f64, state: &S::State) -> Result<f64, Fault> {
         match S::TABLES.form {
             Form::FirstOrder => Err(Fault::FirstOrder),
-            _ => number(self, Kernel::Energy, t, [state.as_slice(), &[]]),
+            _ => number(self, S::Kernels::energy, t, [state.as_slice(), &[]]),
         }
     }
 
@@ -198,7 +198,9 @@ impl<S: Declared> System for S {
         }
         for (index, surface) in S::TABLES.surfaces.iter().enumerate() {
             if let Some(name) = surface.coefficient {
-                let kernel = Kernel::Coefficient(index);
+                let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+                    kernels.coefficient(index, at, values)
+                };
                 let value = number(self, kernel, 0.0, [&[], &[]]).unwrap_or(f64::NAN);
                 check_coefficient(name, value)?;
             }
@@ -257,7 +259,7 @@ impl<S: Declared> Lagrangian for S {
 
     #[inline]
     fn force(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> S::Vector {
-        let kernel = (Kernel::Force, self.coordinate_count());
+        let kernel = (S::Kernels::force, self.coordinate_count());
         let force = vector(self, kernel, t, [q.as_slice(), qdot.as_slice()]);
         force.unwrap_or_else(|_| self.zero_vector())
     }
@@ -267,7 +269,7 @@ impl<S: Declared> Lagrangian for S {
         if S::TABLES.dimensions.constraints == 0 {
             return self.zero_vector();
         }
-        let kernel = (Kernel::ReactionForce, self.coordinate_count());
+        let kernel = (S::Kernels::reaction_force, self.coordinate_count());
         let force = vector(self, kernel, t, [q.as_slice(), reactions.as_slice()]);
         force.unwrap_or_else(|_| self.zero_vector())
     }
@@ -290,7 +292,7 @@ impl<S: Declared> Lagrangian for S {
             let state = self.state_from_momenta(t, q, p)?;
             return Ok((self.velocity(t, &state)?, self.zero_reactions()));
         }
-        let kernel = (Kernel::ConstrainedVelocity, n + m);
+        let kernel = (S::Kernels::constrained_velocity, n + m);
         let both = several(self, kernel, t, [q.as_slice(), p.as_slice()])?;
         let (qdot, multipliers) = both.as_slice()[..n + m].split_at(n);
         Ok((S::Vector::of(qdot), S::Multipliers::of(multipliers)))
@@ -300,12 +302,12 @@ impl<S: Declared> Lagrangian for S {
 impl<S: Declared + HasDivergence> Divergence for S {
     #[inline]
     fn divergence(&self, t: f64, state: &S::State) -> Result<f64, Fault> {
-        number(self, Kernel::Divergence, t, [state.as_slice(), &[]])
+        number(self, S::Kernels::divergence, t, [state.as_slice(), &[]])
     }
 
     #[inline]
     fn density_form(&self, t: f64, q: &S::Vector) -> Result<S::Vector, Fault> {
-        let kernel = (Kernel::DensityForm, self.coordinate_count());
+        let kernel = (S::Kernels::density_form, self.coordinate_count());
         vector(self, kernel, t, [q.as_slice(), &[]])
     }
 }

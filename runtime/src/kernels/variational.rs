@@ -1,7 +1,7 @@
 //! `Variational` of every declared model whose runs can be varied.
 
 use super::impacting::{counts, counts_throughout};
-use super::{At, Declared, Form, HasVariations, Kernel, Kernels};
+use super::{At, Declared, Form, HasVariations, Kernels};
 use crate::contract::{TaylorField, Variational};
 use crate::error::Fault;
 use crate::impacts::law::Law;
@@ -10,7 +10,7 @@ use crate::state::StateVector;
 
 /// The values of a kernel over numbers, as many as a row has.
 fn row<S: Declared, L: Numbers, R: Row<L>>(
-    kernel: Kernel,
+    kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
     (parameters, t): (&[L], L),
     [first, second]: [&[L]; 2],
 ) -> Result<R, Fault> {
@@ -21,13 +21,13 @@ fn row<S: Declared, L: Numbers, R: Row<L>>(
         second,
     };
     let mut values = R::zeros(R::CAPACITY);
-    S::KERNELS.call(kernel, at, values.as_mut_slice())?;
+    kernel(&S::KERNELS, at, values.as_mut_slice())?;
     Ok(values)
 }
 
 /// A row whose numbers from a place on are those of a kernel, added to what is there.
 fn added<S: Declared, L: Numbers, R: Row<L>>(
-    kernel: Kernel,
+    kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
     arguments: (&[L], L),
     places: [&[L]; 2],
     to: &R,
@@ -50,7 +50,7 @@ fn added<S: Declared, L: Numbers, R: Row<L>>(
 
 /// So many values of a kernel at the beginning of a row.
 fn row_of<S: Declared, L: Numbers, R: Row<L>>(
-    kernel: Kernel,
+    kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
     count: usize,
     (parameters, t): (&[L], L),
     [first, second]: [&[L]; 2],
@@ -62,13 +62,13 @@ fn row_of<S: Declared, L: Numbers, R: Row<L>>(
         second,
     };
     let mut values = R::zeros(R::CAPACITY);
-    S::KERNELS.call(kernel, at, &mut values.as_mut_slice()[..count])?;
+    kernel(&S::KERNELS, at, &mut values.as_mut_slice()[..count])?;
     Ok(values)
 }
 
 /// Positions, and motion by a kernel of positions and velocities.
 fn state_by<S: Declared, L: Numbers, R: Row<L>>(
-    kernel: Kernel,
+    kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
     (parameters, t): (&[L], L),
     [q, qdot]: [&[L]; 2],
 ) -> Result<R, Fault> {
@@ -82,7 +82,7 @@ fn state_by<S: Declared, L: Numbers, R: Row<L>>(
             first: q,
             second: qdot,
         };
-        S::KERNELS.call(kernel, at, motion)?;
+        kernel(&S::KERNELS, at, motion)?;
     }
     Ok(state)
 }
@@ -98,8 +98,8 @@ pub fn nearest_over<S: Declared, L: Numbers, R: Row<L>>(
     let tables = S::TABLES;
     let is_free = tables.form == Form::Global && tables.dimensions.constraints == 0;
     let kernel = match is_free {
-        true => Kernel::Motion,
-        false => Kernel::Nearest,
+        true => S::Kernels::motion,
+        false => S::Kernels::nearest,
     };
     state_by::<S, L, R>(kernel, arguments, places)
 }
@@ -116,7 +116,7 @@ pub fn enter_over<S: Declared, L: Numbers>(
     let count = q.len() + qdot.len();
     let mut both = S::Room::<L>::zeros(count);
     let both = &mut both.as_mut_slice()[..count];
-    match S::KERNELS.call(Kernel::Entry(surface), at, both) {
+    match S::KERNELS.entry(surface, at, both) {
         Err(Fault::NotDerived) => return Ok(()),
         found => found?,
     }
@@ -161,7 +161,7 @@ pub fn energy_over<S: Declared, L: Numbers>(
         second: &[],
     };
     let mut energy = [L::ZERO];
-    S::KERNELS.call(Kernel::Energy, at, &mut energy)?;
+    S::KERNELS.energy(at, &mut energy)?;
     Ok(energy[0])
 }
 
@@ -201,7 +201,7 @@ impl<S: HasVariations> Variational for S {
         state: &<S as TaylorField>::Row<L>,
     ) -> Result<S::Positions<L>, Fault> {
         let arguments = (parameters.as_slice(), t);
-        row::<S, L, _>(Kernel::Velocity, arguments, [state.as_slice(), &[]])
+        row::<S, L, _>(S::Kernels::velocity, arguments, [state.as_slice(), &[]])
     }
 
     fn composed<L: Numbers>(
@@ -211,7 +211,11 @@ impl<S: HasVariations> Variational for S {
         qdot: &S::Positions<L>,
     ) -> Result<<S as TaylorField>::Row<L>, Fault> {
         let arguments = (parameters.as_slice(), t);
-        state_by::<S, L, _>(Kernel::Motion, arguments, [q.as_slice(), qdot.as_slice()])
+        state_by::<S, L, _>(
+            S::Kernels::motion,
+            arguments,
+            [q.as_slice(), qdot.as_slice()],
+        )
     }
 
     fn deviations<L: Numbers>(
@@ -228,10 +232,11 @@ impl<S: HasVariations> Variational for S {
             _ => 0,
         };
         if off > 0 {
-            let qdot: S::Positions<L> = row::<S, L, _>(Kernel::Velocity, arguments, [state, &[]])?;
+            let qdot: S::Positions<L> =
+                row::<S, L, _>(S::Kernels::velocity, arguments, [state, &[]])?;
             let places = [state, qdot.as_slice()];
             let both: S::Room<L> =
-                row_of::<S, L, _>(Kernel::Residuals, 2 * off, arguments, places)?;
+                row_of::<S, L, _>(S::Kernels::residuals, 2 * off, arguments, places)?;
             values.as_mut_slice()[..off].copy_from_slice(&both.as_slice()[..off]);
         }
         if dimensions.levels > 0 {
@@ -241,7 +246,7 @@ impl<S: HasVariations> Variational for S {
                 first: state,
                 second: &[],
             };
-            S::KERNELS.call(Kernel::Levels, at, &mut values.as_mut_slice()[off..])?;
+            S::KERNELS.levels(at, &mut values.as_mut_slice()[off..])?;
         }
         Ok(values)
     }
@@ -255,7 +260,7 @@ impl<S: HasVariations> Variational for S {
             return Ok(Row::zeros(0));
         }
         let arguments = (parameters.as_slice(), t);
-        row::<S, L, _>(Kernel::Gaps, arguments, [state.as_slice(), &[]])
+        row::<S, L, _>(S::Kernels::gaps, arguments, [state.as_slice(), &[]])
     }
 
     fn collision<L: Numbers>(
@@ -265,7 +270,13 @@ impl<S: HasVariations> Variational for S {
         state: &<S as TaylorField>::Row<L>,
     ) -> Result<<S as HasVariations>::Collision<L>, Fault> {
         let arguments = (parameters.as_slice(), t);
-        let found = row::<S, L, _>(Kernel::Contact(surface), arguments, [state.as_slice(), &[]]);
+        let found = row::<S, L, _>(
+            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
+                kernels.contact(surface, at, values)
+            },
+            arguments,
+            [state.as_slice(), &[]],
+        );
         found.map_err(|fault| super::impacting::no_impulse::<S>(fault, surface))
     }
 
@@ -277,7 +288,14 @@ impl<S: HasVariations> Variational for S {
     ) -> Result<Option<<S as TaylorField>::Row<L>>, Fault> {
         let arguments = (parameters.as_slice(), t);
         let places = [state.as_slice(), &[][..]];
-        added::<S, L, _>(Kernel::Focus(surface), arguments, places, state)
+        added::<S, L, _>(
+            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
+                kernels.focus(surface, at, values)
+            },
+            arguments,
+            places,
+            state,
+        )
     }
 
     fn trace<L: Numbers>(
@@ -290,7 +308,14 @@ impl<S: HasVariations> Variational for S {
         let arguments = (parameters.as_slice(), t);
         let motion = &rate.as_slice()[S::TABLES.dimensions.coordinates..];
         let places = [state.as_slice(), motion];
-        added::<S, L, _>(Kernel::Trace(surface), arguments, places, rate)
+        added::<S, L, _>(
+            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
+                kernels.trace(surface, at, values)
+            },
+            arguments,
+            places,
+            rate,
+        )
     }
 
     fn landing<L: Numbers>(
@@ -305,7 +330,14 @@ impl<S: HasVariations> Variational for S {
         let n = S::TABLES.dimensions.coordinates;
         let arguments = (parameters.as_slice(), t);
         let places = [state.as_slice(), &[][..]];
-        let both: S::Room<L> = row_of::<S, L, _>(Kernel::Reset(surface), 2 * n, arguments, places)?;
+        let both: S::Room<L> = row_of::<S, L, _>(
+            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
+                kernels.reset(surface, at, values)
+            },
+            2 * n,
+            arguments,
+            places,
+        )?;
         let mut landing = [S::Positions::<L>::zeros(n); 2];
         for (own, values) in landing
             .iter_mut()
@@ -331,7 +363,7 @@ impl<S: HasVariations> Variational for S {
         };
         let mut coefficient = [L::ZERO];
         // Coefficients have no guards.
-        let _ = S::KERNELS.call(Kernel::Coefficient(surface), at, &mut coefficient);
+        let _ = S::KERNELS.coefficient(surface, at, &mut coefficient);
         let value = coefficient[0].lane(0);
         let law = match own.law {
             Law::Restitution(_) => Law::Restitution(value),

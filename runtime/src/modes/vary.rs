@@ -218,7 +218,8 @@ pub fn passed_into<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>
     t: L,
     state: &[L],
 ) -> Result<Option<R>, Fault> {
-    let (before, after) = (beginning(parameters), beginning(parameters));
+    let before: M::Parameters<L> = beginning(parameters);
+    let after: T::Parameters<L> = beginning(parameters);
     let own: M::Row<L> = beginning(state);
     let entered: T::Row<L> = match passage {
         Passage::Declared => {
