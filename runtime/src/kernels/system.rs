@@ -38,6 +38,10 @@ impl<S: Declared> VectorField for S {
         component: &dyn Fn(usize) -> Rated,
         rate: &mut dyn FnMut(usize, Rated),
     ) -> Result<(), Fault> {
+        // NOTE: a constant, so that kernels over intervals are compiled only where they are asked for.
+        if const { !S::TABLES.can_be_narrow } {
+            return Err(Fault::NotDerived);
+        }
         let mut state = S::Components::<Rated>::zeros(self.state_len());
         for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
             *entry = component(i);
