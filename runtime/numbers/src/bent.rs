@@ -20,7 +20,7 @@ pub struct Bent {
 }
 
 impl Bent {
-    /// Of what may have no value.
+    /// The bounds of a function that may have no value.
     pub const ANYTHING: Self = Self {
         value: Interval::WHOLE,
         rate: Interval::WHOLE,

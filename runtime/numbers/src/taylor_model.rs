@@ -32,7 +32,7 @@ pub struct TaylorModel {
     pub error: f64,
     /// The largest change of the remainder, by the change of `s`.
     pub slope: f64,
-    /// Whether no value is negative, whatever the remainder says.
+    /// True if no value is negative, whatever the remainder says.
     pub is_nonnegative: bool,
 }
 
@@ -108,7 +108,7 @@ impl Change {
 }
 
 impl TaylorModel {
-    /// Of what may have no value.
+    /// The model of a function that may have no value.
     pub const ANYTHING: Self = Self {
         powers: [0.0; 4],
         error: f64::INFINITY,
@@ -164,7 +164,7 @@ impl TaylorModel {
         }
     }
 
-    /// How far values are from the middle one by the cubic, at most.
+    /// The largest distance of the cubic from its middle value.
     #[inline(always)]
     fn spread(&self) -> f64 {
         self.powers[1].abs() + self.powers[2].abs() + self.powers[3].abs()
@@ -283,7 +283,7 @@ impl TaylorModel {
         }
     }
 
-    /// How far values are from the middle of the cubic, at most.
+    /// The largest distance of all values from the middle of the cubic.
     #[inline(always)]
     fn radius(&self) -> f64 {
         (self.spread() + self.error) * (1.0 + ROUNDING)
@@ -314,7 +314,7 @@ impl TaylorModel {
         }
     }
 
-    /// What intervals say: of all values and rates, and of the value in the middle. A line, or a number where that is closer.
+    /// The model that intervals of all values and rates, and of the value in the middle, give: a line, or a number where that is closer.
     fn of_rated(found: Rated, middle: Interval) -> Self {
         let (rate, value) = (found.rate.middle(), found.value.middle());
         let steady = Self {
@@ -359,7 +359,7 @@ impl TaylorModel {
         }
     }
 
-    /// Whether the cubic is most of the change.
+    /// True if the cubic is most of the change.
     #[inline(always)]
     fn is_sharp(&self) -> bool {
         self.error <= 0.5 * self.spread()

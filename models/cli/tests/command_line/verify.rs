@@ -130,7 +130,7 @@ fn error_of(done: &Done) -> &str {
 }
 
 impl Case {
-    /// Whether the first impact of a document is the right one.
+    /// True if the first impact of a document is the right one.
     fn is_right(&self, document: &Value) -> bool {
         let first = &document["events"][0];
         first["surface"] == self.surface
