@@ -8,6 +8,8 @@ use dalembert::{
     System, TaylorField, Tolerance,
 };
 use dalembert_cli::Exit;
+use dalembert_codegen::Compiled;
+use dalembert_codegen::program::Program;
 use dalembert_tests::command::dalembert;
 use quote::ToTokens;
 
@@ -37,7 +39,7 @@ const LID: &str = "lid: 2 - y >= 0 when x > t;";
 /// The functions, types and constants of the traits of a type.
 type Implemented = BTreeMap<(String, String), String>;
 
-/// What is implemented for a type, but for the trait by which it describes itself.
+/// What is implemented for a type, but for its kernels and the trait by which it describes itself.
 fn implemented(source: &str, type_name: &str) -> Implemented {
     let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens")).expect(source);
     let file: syn::File = syn::parse2(tokens).expect("items");
@@ -59,11 +61,14 @@ fn implemented(source: &str, type_name: &str) -> Implemented {
             continue;
         };
         let name = last(path);
-        if last(&of.path) == type_name && name != "Described" {
-            all.extend(own.items.iter().map(|item| {
+        if last(&of.path) == type_name && name != "Documented" {
+            let items = own.items.iter().map(|item| {
                 let (item, text) = named(item);
                 ((name.clone(), item), text)
-            }));
+            });
+            all.extend(items.filter(|((_, item), _)| !item.eq_ignore_ascii_case("kernels")));
+            // What a trait without items says is said by its being there.
+            all.entry((name, String::new())).or_default();
         }
     }
     assert!(!all.is_empty(), "{type_name} of {source}");
@@ -81,12 +86,26 @@ fn named(item: &syn::ImplItem) -> (String, String) {
     (name.to_string(), tokens.to_string())
 }
 
+/// The kernels of both forms, as the operations that they consist of.
+fn kernels(compiled: &Compiled) -> Vec<String> {
+    let programs = &compiled.programs;
+    let programs = core::iter::once(&programs.main).chain(&programs.global);
+    let kernels = programs.flat_map(Program::kernels);
+    kernels
+        .map(|(kernel, function)| format!("{kernel:?} {:?} {:?}", function.ops, function.outputs))
+        .collect()
+}
+
 /// Asserts that a scene that uses these parts has what the model has that was declared with them alone.
 fn assert_same(body: &str, [forces, impacts]: [&str; 2], uses: &str) {
     let plain = format!("P {{ {body} forces {{ {forces} }} impacts {{ {impacts} }} }}");
     let all = format!("forces {{ {DRAG} {DAMPING} }} impacts {{ {LID} {SIDES} }}");
     let scene =
         format!("P {{ {body} {all} scenes {{ only: {uses} projection, volume, variations; }} }}");
+    let compile =
+        |source: &str| dalembert_codegen::compile(source.parse().expect("tokens")).expect(uses);
+    let kernels_of_scene = kernels(&compile(&scene).scenes[0]);
+    assert_eq!(kernels_of_scene, kernels(&compile(&plain)), "{uses}");
     for [type_name, plain_name] in [["Only", "P"], ["OnlyGlobal", "PGlobal"]] {
         if plain_name == "PGlobal" && body == TWISTED {
             continue;
@@ -215,7 +234,7 @@ fn densities_are_there_where_they_are_asked_for() {
     let has = |scene: &str| {
         let all = implemented(source, scene);
         all.keys()
-            .any(|(name, _)| name == "Divergence" || name == "InvariantVolume")
+            .any(|(name, _)| name == "HasDivergence" || name == "InvariantVolume")
     };
     assert!(has("SlowedRight") && has("Thrown"));
     assert!(!has("Free") && !has("Slowed") && !has("Walls"));

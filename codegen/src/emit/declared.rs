@@ -105,7 +105,6 @@ fn emit_tables(context: &Context<'_>) -> TokenStream {
     let (n, k) = (context.dimension(), context.motion_dimension());
     let (m, s) = (model.constraints.len(), model.surfaces.len());
     let (count, levels) = (context.names.parameters.len(), levels(context));
-    let parameters = describe::emit_parameter_infos(model);
     let charts = model.coordinates.iter().enumerate();
     let charts = charts.filter_map(|(i, coordinate)| {
         let Topology::Interval { low, high } = coordinate.topology else {
@@ -121,26 +120,42 @@ fn emit_tables(context: &Context<'_>) -> TokenStream {
     let can_lose_rank = constrained.is_some_and(|own| own.can_lose_rank);
     let is_linear = !model.is_nonlinear();
     let declared_levels = super::constraint::emit_levels(context);
+    let dimensions = quote! {
+        ::dalembert::kernels::Dimensions {
+            coordinates: #n,
+            motion: #k,
+            constraints: #m,
+            levels: #levels,
+            surfaces: #s,
+            parameters: #count,
+        }
+    };
+    let of_program = quote! {
+        form: ::dalembert::kernels::Form::#form,
+        dimensions: #dimensions,
+        can_be_narrow: #can_be_narrow,
+        can_lose_rank: #can_lose_rank,
+        levels: &[#declared_levels],
+    };
+    if context.is_wrapped() {
+        let own = &context.names.own;
+        return quote! {
+            ::dalembert::kernels::Tables {
+                #of_program
+                ..<#own as ::dalembert::kernels::Declared>::TABLES
+            }
+        };
+    }
+    let parameters = describe::emit_parameter_infos(model);
     let surfaces = model.surfaces.iter().enumerate();
     let surfaces = surfaces.map(|(index, surface)| emit_surface(context, index, surface));
     quote! {
         ::dalembert::kernels::Tables {
-            form: ::dalembert::kernels::Form::#form,
-            dimensions: ::dalembert::kernels::Dimensions {
-                coordinates: #n,
-                motion: #k,
-                constraints: #m,
-                levels: #levels,
-                surfaces: #s,
-                parameters: #count,
-            },
+            #of_program
             parameters: &[#parameters],
             charts: &[#(#charts),*],
             conserves_energy: #conserves_energy,
-            can_be_narrow: #can_be_narrow,
-            can_lose_rank: #can_lose_rank,
             is_linear: #is_linear,
-            levels: &[#declared_levels],
             surfaces: &[#(#surfaces),*],
         }
     }

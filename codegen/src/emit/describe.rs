@@ -1,7 +1,7 @@
-//! `Described` and `Scene`: what the model says of itself, and the effects it comes with.
+//! `Documented` and `Scene`: what the model says of itself, and the effects it comes with.
 
 use dalembert_expr::ExprId;
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::function::number;
@@ -10,49 +10,111 @@ use crate::model::{Assumption, Constraint, Coordinate, Model, Topology};
 use crate::program::Form;
 use crate::program::recipes::geometry::Shape;
 
-/// `impl Described`
-pub(super) fn emit_described(context: &Context<'_>) -> TokenStream {
-    let type_name = &context.names.type_name;
-    let (own, global_name) = (&context.names.own, &context.names.global);
-    let description = match context.is_wrapped() {
-        true => quote!(<#own as ::dalembert::Described>::DESCRIPTION),
-        false => emit_description(context),
+/// `impl Documented`
+pub(super) fn emit_documented(context: &Context<'_>) -> TokenStream {
+    let (type_name, own, global_name) = (
+        &context.names.type_name,
+        &context.names.own,
+        &context.names.global,
+    );
+    let model = context.model;
+    let of_own = |name: TokenStream| quote!(<#own as ::dalembert::kernels::Documented>::#name);
+    let (description, placed, named) = match context.is_wrapped() {
+        true => (
+            of_own(quote!(DESCRIPTION)),
+            of_own(quote!(PLACED)),
+            of_own(quote!(NAMED)),
+        ),
+        false => (
+            emit_description(context),
+            emit_marks(&model.initial.q),
+            emit_marks(&model.initial.qdot),
+        ),
     };
     let defaults = match &context.names.held {
         Some(held) => quote!(Self(<#held as ::dalembert::Described>::with_defaults())),
-        None => parameters::with_defaults(context.model),
+        None => parameters::with_defaults(model),
     };
     let (global_type, global) = match context.program.form {
         Form::Global | Form::FirstOrder => (quote!(Self), quote!(*self)),
         Form::Reduced => (quote!(#global_name), quote!(#global_name(*self))),
     };
-    let access = emit_parameter_access(context);
+    let set = match &context.names.held {
+        Some(held) => {
+            quote!(<#held as ::dalembert::Described>::set_parameter(&mut self.0, index, value);)
+        }
+        None => emit_set(&context.names.parameters),
+    };
     let inputs = super::actuation::emit_names(context);
-    let initial = emit_initial(context);
-    let declared = emit_declared(context);
-    let inspect = emit_inspect(context);
+    let geometry = emit_geometry(context);
+    let density = emit_integrated_density(context);
     let scenes = scene::emit_visit(context);
     let variational = super::variational::emit_visit(context);
     let attributes = super::attributes();
     quote! {
         #attributes
-        impl ::dalembert::Described for #type_name {
+        impl ::dalembert::kernels::Documented for #type_name {
             const DESCRIPTION: ::dalembert::describe::Description = #description;
+            #inputs
+            const PLACED: &'static [bool] = #placed;
+            const NAMED: &'static [bool] = #named;
+            #geometry
 
             type Global = #global_type;
 
             #[inline]
-            fn global(&self) -> Self::Global { #global }
+            fn globally(&self) -> Self::Global { #global }
 
-            fn with_defaults() -> Self { #defaults }
+            fn declared() -> Self { #defaults }
 
-            #access
-            #inputs
-            #initial
-            #declared
-            #inspect
+            fn set_argument(&mut self, index: usize, value: f64) { #set }
+
+            #density
             #scenes
             #variational
+        }
+    }
+}
+
+/// Which values were declared.
+fn emit_marks(values: &[Option<ExprId>]) -> TokenStream {
+    let marks = values.iter().map(Option::is_some);
+    quote!(&[#(#marks),*])
+}
+
+/// What the geometry at a state consists of.
+fn emit_geometry(context: &Context<'_>) -> TokenStream {
+    let geometry = &context.program.geometry;
+    let count = geometry.function.outputs.len();
+    let quantities = geometry.groups.iter().map(|group| {
+        let name = &group.name;
+        let shape = match group.shape {
+            Shape::Scalar => quote!(Scalar),
+            Shape::Vector(count) => quote!(Vector(#count)),
+            Shape::Matrix(rows, columns) => quote!(Matrix(#rows, #columns)),
+        };
+        quote!(::dalembert::kernels::Quantity { name: #name, shape: ::dalembert::kernels::Shape::#shape })
+    });
+    quote! {
+        const GEOMETRY: &'static [::dalembert::kernels::Quantity] = &[#(#quantities),*];
+        type Geometry = [f64; #count];
+    }
+}
+
+/// The density of an invariant volume that takes an integral.
+fn emit_integrated_density(context: &Context<'_>) -> TokenStream {
+    let volume = context.program.volume.as_ref();
+    let is_global = context.program.form != Form::Reduced;
+    if !is_global || volume.is_none_or(|own| own.gradient.is_none()) {
+        return TokenStream::new();
+    }
+    quote! {
+        fn integrated_density(
+            &self,
+            t: f64,
+            q: &Self::Vector,
+        ) -> ::core::option::Option<::core::result::Result<f64, ::dalembert::Fault>> {
+            ::core::option::Option::Some(::dalembert::InvariantVolume::log_density(self, t, q))
         }
     }
 }
@@ -67,7 +129,6 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
         .coordinates
         .iter()
         .map(|own| emit_coordinate_info(model, own));
-    let parameters = emit_parameter_infos(model);
     let constraints = emit_constraint_infos(model);
     let forces = model.forces.iter().map(|force| &force.name.display);
     let surfaces = (0..model.surfaces.len()).map(|s| emit_surface_info(model, s));
@@ -87,7 +148,7 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
             source: #source,
             is_first_order: #is_first_order,
             coordinates: &[#(#coordinates)*],
-            parameters: &[#parameters],
+            parameters: <Self as ::dalembert::kernels::Declared>::TABLES.parameters,
             constraints: &[#constraints],
             forces: &[#(#forces),*],
             quasi_velocities: &[#(#quasi),*],
@@ -210,21 +271,13 @@ pub(super) fn emit_view_info(model: &Model, places: &[usize]) -> TokenStream {
     }
 }
 
-/// `parameter` and `set_parameter`.
-fn emit_parameter_access(context: &Context<'_>) -> TokenStream {
-    emit_access(&context.names.parameters)
-}
-
 /// `parameter` and `set_parameter`, of parameters at these places.
 pub(super) fn emit_access(places: &[TokenStream]) -> TokenStream {
     let get = places
         .iter()
         .enumerate()
         .map(|(k, place)| quote!(#k => #place,));
-    let set = places
-        .iter()
-        .enumerate()
-        .map(|(k, place)| quote!(#k => #place = value,));
+    let set = emit_set(places);
     quote! {
         fn parameter(&self, index: usize) -> f64 {
             match index {
@@ -233,164 +286,20 @@ pub(super) fn emit_access(places: &[TokenStream]) -> TokenStream {
             }
         }
 
-        fn set_parameter(&mut self, index: usize, value: f64) {
-            match index {
-                #(#set)*
-                _ => {}
-            }
-        }
+        fn set_parameter(&mut self, index: usize, value: f64) { #set }
     }
 }
 
-fn emit_initial(context: &Context<'_>) -> TokenStream {
-    let (model, program) = (context.model, context.program);
-    let declared = |values: &[Option<ExprId>]| -> Vec<_> {
-        let marks = values
-            .iter()
-            .map(|value| f64::from(u8::from(value.is_some())));
-        marks.map(number).collect()
-    };
-    let (placed, named) = (declared(&model.initial.q), declared(&model.initial.qdot));
-    let kernels = quote!(::dalembert::kernels::Kernels);
-    let until = match &program.until {
-        Some(_) => {
-            quote!(::dalembert::__private::number(self, #kernels::until, 0.0, [&[], &[]]).ok())
-        }
-        None => quote!(::core::option::Option::None),
-    };
+/// The statement that sets one of the parameters at these places.
+fn emit_set(places: &[TokenStream]) -> TokenStream {
+    let set = places
+        .iter()
+        .enumerate()
+        .map(|(k, place)| quote!(#k => #place = value,));
     quote! {
-        fn initial(&self) -> ::dalembert::describe::Initial<Self::Vector> {
-            let declared = ::dalembert::__private::pair(self, #kernels::initial, 0.0, [&[], &[]]);
-            let [q, qdot] = declared.unwrap_or([::dalembert::System::zero_vector(self); 2]);
-            ::dalembert::describe::Initial {
-                q,
-                qdot,
-                placed: ::dalembert::__private::vector([#(#placed),*]),
-                named: ::dalembert::__private::vector([#(#named),*]),
-                until: #until,
-            }
-        }
-    }
-}
-
-/// Outputs and view.
-fn emit_declared(context: &Context<'_>) -> TokenStream {
-    let program = context.program;
-    let kernels = quote!(::dalembert::kernels::Kernels);
-    let state = quote!([::dalembert::StateVector::as_slice(state), &[]]);
-    let outputs = match &program.outputs {
-        Some(_) => {
-            quote!(::dalembert::__private::write(self, #kernels::outputs, t, #state, values))
-        }
-        None => quote!(::core::result::Result::Ok(())),
-    };
-    let path = match &program.view_path {
-        Some(_) => quote! {
-            let mut point = [0.0; 2];
-            ::dalembert::__private::write(self, #kernels::view_path, t, #state, &mut point).ok()?;
-            ::core::option::Option::Some(point)
-        },
-        None => quote!(::core::option::Option::None),
-    };
-    let region = match &program.view_region {
-        Some(_) => quote! {
-            let q = [::dalembert::StateVector::as_slice(q), &[]];
-            ::dalembert::__private::number(self, #kernels::view_region, t, q).ok()
-        },
-        None => quote!(::core::option::Option::None),
-    };
-    quote! {
-        fn outputs(
-            &self,
-            t: f64,
-            state: &Self::State,
-            values: &mut [f64],
-        ) -> ::core::result::Result<(), ::dalembert::Fault> {
-            #outputs
-        }
-
-        fn view_path(&self, t: f64, state: &Self::State) -> ::core::option::Option<[f64; 2]> { #path }
-
-        fn view_region(&self, t: f64, q: &Self::Vector) -> ::core::option::Option<f64> { #region }
-    }
-}
-
-fn emit_inspect(context: &Context<'_>) -> TokenStream {
-    let geometry = &context.program.geometry;
-    let n = context.dimension();
-    let count = geometry.function.outputs.len();
-    let statements = quote! {
-        let mut values = [0.0; #count];
-        let place = [::dalembert::StateVector::as_slice(state), &[]];
-        ::dalembert::__private::write(self, ::dalembert::kernels::Kernels::geometry, t, place, &mut values)?;
-    };
-    let mut next = 0;
-    let reports = geometry.groups.iter().map(|group| {
-        let first = next;
-        next += group.shape.count();
-        let (name, last) = (&group.name, next);
-        match group.shape {
-            Shape::Scalar => quote!(report.scalar(#name, values[#first]);),
-            Shape::Vector(_) => quote!(report.vector(#name, &values[#first..#last]);),
-            Shape::Matrix(rows, columns) => {
-                quote!(report.matrix(#name, #rows, #columns, &values[#first..#last]);)
-            }
-        }
-    });
-    let reports: Vec<TokenStream> = reports.collect();
-    if context.program.form == Form::Reduced {
-        return emit_reduced_inspect(&statements, &reports);
-    }
-    let volume = context.program.volume.as_ref();
-    let integral = volume.is_some_and(|own| own.gradient.is_some()).then(|| {
-        quote! {
-            let density = ::dalembert::InvariantVolume::log_density(self, t, &::dalembert::System::position(self, state))?;
-            report.scalar("log_density", density);
-        }
-    });
-    let end = Literal::usize_unsuffixed(n);
-    let p = Ident::new("p", Span::mixed_site());
-    let momenta = (!context.is_first_order()).then(|| quote!(report.vector("p", #p);));
-    quote! {
-        fn inspect(
-            &self,
-            t: f64,
-            state: &Self::State,
-            report: &mut dyn ::dalembert::describe::Report,
-        ) -> ::core::result::Result<(), ::dalembert::Fault> {
-            let (q, #p) = ::dalembert::StateVector::as_slice(state).split_at(#end);
-            report.vector("q", q);
-            #momenta
-            #statements
-            #(#reports)*
-            #integral
-            ::core::result::Result::Ok(())
-        }
-    }
-}
-
-/// What is derived on D after what the global form derives.
-fn emit_reduced_inspect(statements: &TokenStream, reports: &[TokenStream]) -> TokenStream {
-    quote! {
-        fn inspect(
-            &self,
-            t: f64,
-            state: &Self::State,
-            report: &mut dyn ::dalembert::describe::Report,
-        ) -> ::core::result::Result<(), ::dalembert::Fault> {
-            ::dalembert::__private::inspect_globally(self, t, state, report)?;
-            ::dalembert::Described::inspect_frame(self, t, state, report)
-        }
-
-        fn inspect_frame(
-            &self,
-            t: f64,
-            state: &Self::State,
-            report: &mut dyn ::dalembert::describe::Report,
-        ) -> ::core::result::Result<(), ::dalembert::Fault> {
-            #statements
-            #(#reports)*
-            ::core::result::Result::Ok(())
+        match index {
+            #(#set)*
+            _ => {}
         }
     }
 }

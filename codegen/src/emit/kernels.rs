@@ -1,9 +1,11 @@
 //! `Kernels`: every function of a program, once, over `L: Numbers`.
 //!
-//! The functions of one form are associated functions of a type without fields; methods of `Kernels` call them. A function that is the
-//! same as one written before, in another form or scene, is that one.
+//! The functions of one form are the methods of a type without fields. A form has a base, whose functions it takes where they are the
+//! same: the global form that of its model or scene, a scene the model. Any other function that is the same as one written before
+//! calls that one.
 
 use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
 
 use dalembert_numbers::Kernel;
 use dalembert_numbers::kernel::{First, Second};
@@ -14,84 +16,185 @@ use super::function::{Body, emit_body, joined, uses};
 use super::{Context, doc};
 use crate::program::{Form, Function, Input, Op, Value};
 
-/// Functions that were written, by what they compute, with the path that calls them.
+/// What was written.
 #[derive(Default)]
-pub(super) struct Written(HashMap<Key, TokenStream>);
+pub(super) struct Written {
+    /// Where each function stands.
+    places: HashMap<Rc<Key>, Place>,
+    /// What the methods of each type compute, those of its base among them.
+    methods: HashMap<Ident, HashMap<Kernel, Rc<Key>>>,
+}
 
 /// What tells functions apart.
 #[derive(PartialEq, Eq, Hash)]
 struct Key {
     ops: Vec<Op>,
     outputs: Vec<Value>,
-    reads: [usize; 4],
+    reads: [usize; 3],
+    /// The function that gives it velocities.
+    velocity: Option<Rc<Key>>,
 }
 
-/// The type of the kernels of a form, and its implementation.
-pub(super) fn emit_kernels(context: &Context<'_>, written: &mut Written) -> TokenStream {
-    let type_name = type_name(context);
-    let mut functions = TokenStream::new();
-    let mut velocity = TokenStream::new();
-    let (mut plain, mut of_surfaces) = (TokenStream::new(), BTreeMap::new());
-    for (kernel, function) in context.program.kernels() {
-        if context.model.is_nonlinear() && is_of_impulses(kernel) {
-            continue;
-        }
-        let (name, surface) = name(kernel);
-        let own = match surface {
-            Some(surface) => Ident::new(&format!("{name}_{surface}"), Span::call_site()),
-            None => name.clone(),
+/// Where a function was written.
+#[derive(Clone, PartialEq)]
+struct Place {
+    type_name: Ident,
+    method: Ident,
+    surface: Option<usize>,
+}
+
+impl Place {
+    /// A call from a method of the kernels called `caller`.
+    fn call(&self, caller: &Ident, values: &TokenStream) -> TokenStream {
+        let (type_name, method) = (&self.type_name, &self.method);
+        let kernels = match type_name == caller {
+            true => quote!(self),
+            false => quote!(&#type_name),
         };
-        let key = key(context, kernel, function);
-        let path = written.0.entry(key).or_insert_with(|| {
-            functions.extend(emit_function(context, (kernel, function), &own, &velocity));
-            quote!(#type_name::#own)
-        });
-        if kernel == Kernel::Velocity {
-            velocity = path.clone();
-        }
-        match surface {
-            None => plain.extend(emit_method(
-                &name,
-                &TokenStream::new(),
-                &quote!(#path(at, values)),
-            )),
+        let surface = self.surface.map(Literal::usize_unsuffixed);
+        let surface = surface.iter();
+        quote!(::dalembert::kernels::Kernels::#method(#kernels, #(#surface,)* at, #values))
+    }
+}
+
+/// The surfaces that an arm of a method is for, and its statements.
+type Arms = Vec<(Vec<usize>, TokenStream)>;
+
+/// The type of the kernels of a form, and its implementation; `base` is the form that it shares functions with.
+pub(super) fn emit_kernels(
+    context: &Context<'_>,
+    base: Option<&Context<'_>>,
+    written: &mut Written,
+) -> TokenStream {
+    let type_name = type_name(context);
+    let base = base.map(self::type_name);
+    let kernels = kernels(context);
+    let inherited = base.as_ref().and_then(|own| written.methods.get(own));
+    let mut methods = inherited.cloned().unwrap_or_default();
+    let is_inherited = |name: &Ident| {
+        let mut own = kernels.iter().filter(|own| own.method == *name);
+        own.all(|own| methods.get(&own.kernel) == Some(&own.key))
+    };
+    let news: Vec<&Own<'_>> = kernels
+        .iter()
+        .filter(|own| !is_inherited(&own.method))
+        .collect();
+    let mut plain = TokenStream::new();
+    let mut of_surfaces = BTreeMap::<Ident, Arms>::new();
+    for own in news {
+        let here = Place {
+            type_name: type_name.clone(),
+            method: own.method.clone(),
+            surface: own.surface,
+        };
+        let place = written.places.entry(own.key.clone());
+        let place = place.or_insert_with(|| here.clone()).clone();
+        let body = match place == here {
+            true => {
+                let velocity = kernels.first().and_then(|own| written.places.get(&own.key));
+                emit_statements(context, (own.kernel, own.function), velocity)
+            }
+            false => place.call(&type_name, &quote!(values)),
+        };
+        match own.surface {
+            None => {
+                let documentation = documentation(context, own.kernel, own.function);
+                let none = TokenStream::new();
+                plain.extend(emit_method(&documentation, &own.method, &none, &body));
+            }
             Some(surface) => {
-                let surface = Literal::usize_unsuffixed(surface);
-                let arms: &mut TokenStream = of_surfaces.entry(name).or_default();
-                arms.extend(quote!(#surface => #path(at, values),));
+                let arms = of_surfaces.entry(own.method.clone()).or_default();
+                let is_beside = place.type_name == type_name && place.method == own.method;
+                let arm = arms.iter_mut().find(|(surfaces, _)| {
+                    is_beside && place.surface.is_some_and(|first| surfaces.contains(&first))
+                });
+                match arm {
+                    Some((surfaces, _)) => surfaces.push(surface),
+                    None => arms.push((vec![surface], body)),
+                }
             }
         }
     }
-    let of_surfaces = of_surfaces.iter().map(|(name, arms)| {
-        let body = quote! {
-            match surface {
-                #arms
-                _ => ::core::result::Result::Err(::dalembert::Fault::NotDerived),
-            }
-        };
-        emit_method(name, &quote!(surface: usize,), &body)
+    let of_surfaces = of_surfaces.iter().map(|(method, arms)| {
+        let none = TokenStream::new();
+        emit_method(&none, method, &quote!(surface: usize,), &emit_arms(arms))
     });
+    let base = match &base {
+        Some(base) => quote!(#base),
+        None => quote!(::dalembert::kernels::NoKernels),
+    };
     let attributes = super::attributes();
-    quote! {
+    let emitted = quote! {
         /// Kernels of a form.
         #[derive(Debug, Clone, Copy)]
         pub struct #type_name;
 
         #attributes
-        impl #type_name { #functions }
-
-        #attributes
         impl ::dalembert::kernels::Kernels for #type_name {
+            type Base = #base;
+            const BASE: #base = #base;
+
             #plain
             #(#of_surfaces)*
+        }
+    };
+    methods.extend(kernels.into_iter().map(|own| (own.kernel, own.key)));
+    written.methods.insert(type_name, methods);
+    emitted
+}
+
+/// A function of a form.
+struct Own<'a> {
+    kernel: Kernel,
+    function: &'a Function,
+    method: Ident,
+    surface: Option<usize>,
+    key: Rc<Key>,
+}
+
+/// Every function of a form that is emitted, that of velocities first.
+fn kernels<'a>(context: &'a Context<'_>) -> Vec<Own<'a>> {
+    let mut kernels: Vec<Own<'a>> = Vec::new();
+    for (kernel, function) in context.program.kernels() {
+        if context.model.is_nonlinear() && is_of_impulses(kernel) {
+            continue;
+        }
+        let (method, surface) = name(kernel);
+        let velocity = kernels.first().map(|own| own.key.clone());
+        kernels.push(Own {
+            kernel,
+            function,
+            method,
+            surface,
+            key: Rc::new(key(context, (kernel, function), velocity)),
+        });
+    }
+    kernels
+}
+
+fn emit_arms(arms: &Arms) -> TokenStream {
+    let arms = arms.iter().map(|(surfaces, body)| {
+        let surfaces = surfaces.iter().map(|own| Literal::usize_unsuffixed(*own));
+        quote!(#(#surfaces)|* => { #body })
+    });
+    quote! {
+        match surface {
+            #(#arms)*
+            _ => ::core::result::Result::Err(::dalembert::Fault::NotDerived),
         }
     }
 }
 
 /// A method of `Kernels`.
-fn emit_method(name: &Ident, surface: &TokenStream, body: &TokenStream) -> TokenStream {
+fn emit_method(
+    documentation: &TokenStream,
+    name: &Ident,
+    surface: &TokenStream,
+    body: &TokenStream,
+) -> TokenStream {
     quote! {
-        #[inline(always)]
+        #documentation
+        #[inline]
         fn #name<L: ::dalembert::numbers::Numbers>(
             &self,
             #surface
@@ -121,8 +224,11 @@ fn is_of_impulses(kernel: Kernel) -> bool {
     )
 }
 
-fn key(context: &Context<'_>, kernel: Kernel, function: &Function) -> Key {
-    let takes_velocities = takes_velocities(kernel, function);
+fn key(
+    context: &Context<'_>,
+    (kernel, function): (Kernel, &Function),
+    velocity: Option<Rc<Key>>,
+) -> Key {
     let motion = match kernel.first() {
         First::State => context.motion_dimension(),
         _ => 0,
@@ -130,12 +236,8 @@ fn key(context: &Context<'_>, kernel: Kernel, function: &Function) -> Key {
     Key {
         ops: function.ops.clone(),
         outputs: function.outputs.clone(),
-        reads: [
-            kernel.first() as usize,
-            kernel.second() as usize,
-            motion,
-            usize::from(takes_velocities),
-        ],
+        reads: [kernel.first() as usize, kernel.second() as usize, motion],
+        velocity: velocity.filter(|_| takes_velocities(kernel, function)),
     }
 }
 
@@ -145,14 +247,12 @@ fn takes_velocities(kernel: Kernel, function: &Function) -> bool {
         && uses(function, |input| matches!(input, Input::Velocity(_)))
 }
 
-/// The function of a kernel; `velocity` calls the one that gives velocities.
-fn emit_function(
+/// The statements of a kernel; velocities come from where `velocity` was written.
+fn emit_statements(
     context: &Context<'_>,
     (kernel, function): (Kernel, &Function),
-    name: &Ident,
-    velocity: &TokenStream,
+    velocity: Option<&Place>,
 ) -> TokenStream {
-    let documentation = documentation(context, kernel, function);
     let bindings = [
         bind_parameters(context, function),
         bind_time(function),
@@ -165,17 +265,10 @@ fn emit_function(
     } = emit_body(function, &context.names);
     let bindings = joined(bindings);
     quote! {
-        #documentation
-        #[inline]
-        fn #name<L: ::dalembert::numbers::Numbers>(
-            at: ::dalembert::kernels::At<'_, L>,
-            values: &mut [L],
-        ) -> ::core::result::Result<(), ::dalembert::Fault> {
-            #bindings
-            #statements
-            *::dalembert::__private::places(values) = [#(#outputs),*];
-            ::core::result::Result::Ok(())
-        }
+        #bindings
+        #statements
+        *::dalembert::__private::places(values) = [#(#outputs),*];
+        ::core::result::Result::Ok(())
     }
 }
 
@@ -200,7 +293,7 @@ fn bind_time(function: &Function) -> TokenStream {
 fn bind_first(
     context: &Context<'_>,
     (kernel, function): (Kernel, &Function),
-    velocity: &TokenStream,
+    velocity: Option<&Place>,
 ) -> TokenStream {
     let coordinates = locals(&context.names.coordinates, function, Input::Coordinate);
     let motion = match (kernel.first(), context.program.form) {
@@ -215,9 +308,10 @@ fn bind_first(
     let n = context.dimension();
     let velocities = locals(&context.names.velocities, function, Input::Velocity);
     let velocities = bind(&velocities, &quote!(&qdot));
+    let velocity = velocity.map(|place| place.call(&type_name(context), &quote!(&mut qdot)));
     quote! {
         let mut qdot = [L::ZERO; #n];
-        #velocity(at, &mut qdot)?;
+        #velocity?;
         #velocities
         #bound
     }

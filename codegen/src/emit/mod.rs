@@ -45,10 +45,6 @@ impl Context<'_> {
     fn is_wrapped(&self) -> bool {
         self.frame.is_some() && self.program.form == Form::Global
     }
-
-    fn is_first_order(&self) -> bool {
-        self.program.form == Form::FirstOrder
-    }
 }
 
 /// The generated items of a model: those of its type and of the types of its scenes, and where one of them is reduced
@@ -67,16 +63,35 @@ pub fn tokens(compiled: &Compiled) -> TokenStream {
         indices::emit_indices(&contexts[0], &scenes),
     ];
     let shadows = names::emit_shadows(core::iter::once(model));
-    let contexts = contexts.iter().chain(scenes.iter().flatten());
+    let allowances = allowances();
     let mut written = kernels::Written::default();
-    let items = contexts.flat_map(|context| implementations(context, &mut written));
+    let mut items = forms(&contexts, &[], &mut written);
+    for scene in &scenes {
+        items.extend(forms(scene, &contexts, &mut written));
+    }
     quote! {
         #(#own)*
+        #allowances
         const _: () = {
             #shadows
-            #(#items)*
+            #items
         };
     }
+}
+
+/// What is implemented for the types of a model, a scene or a mode; `base` are those that it shares kernels with.
+fn forms(
+    contexts: &[Context<'_>],
+    base: &[Context<'_>],
+    written: &mut kernels::Written,
+) -> TokenStream {
+    let items = contexts.iter().enumerate().flat_map(|(index, context)| {
+        // The global form of a scene is like that of the model, the global form of a model like its own.
+        let base = base.get(index).or(base.first());
+        let base = base.or(contexts[..index].first());
+        implementations(context, base, written)
+    });
+    items.collect()
 }
 
 /// What is emitted of a model or a scene: its own form, then the global one if that is another.
@@ -122,25 +137,33 @@ fn contexts_of_scene<'a>(
 }
 
 /// What is implemented for a type of the model.
-fn implementations(context: &Context<'_>, written: &mut kernels::Written) -> [TokenStream; 9] {
+fn implementations(
+    context: &Context<'_>,
+    base: Option<&Context<'_>>,
+    written: &mut kernels::Written,
+) -> [TokenStream; 9] {
     [
-        kernels::emit_kernels(context, written),
+        kernels::emit_kernels(context, base, written),
         declared::emit_declared(context),
         jet::emit_taylor(context),
         actuation::emit_actuated(context),
         actuation::emit_powered(context),
         volume::emit_invariant_volume(context),
         variational::emit_variations(context),
-        describe::emit_described(context),
+        describe::emit_documented(context),
         describe::emit_scene(context),
     ]
 }
 
-/// What every generated item says of itself: it was not written by hand, so lints on style have nothing to say,
-/// and a function need not use all that the contract hands it.
+/// What every generated implementation says of itself.
 fn attributes() -> TokenStream {
+    quote!(#[automatically_derived])
+}
+
+/// What all generated code asks for: it was not written by hand, so lints on style have nothing to say, and a function need not use
+/// all that the contract hands it.
+fn allowances() -> TokenStream {
     quote! {
-        #[automatically_derived]
         #[allow(non_snake_case, unused_variables, clippy::all, clippy::pedantic, clippy::nursery)]
     }
 }

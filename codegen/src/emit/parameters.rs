@@ -150,9 +150,10 @@ fn emit_default(context: &Context<'_>) -> TokenStream {
     }
     let type_name = &context.names.own;
     let value = with_defaults(model);
-    let attributes = super::attributes();
+    let (attributes, allowances) = (super::attributes(), super::allowances());
     quote! {
         #attributes
+        #allowances
         impl ::core::default::Default for #type_name {
             /// The declared defaults.
             fn default() -> Self { #value }

@@ -81,7 +81,7 @@ pub(super) fn emit_infos(context: &Context<'_>) -> TokenStream {
     quote!(#(#names),*)
 }
 
-/// `visit_scenes`, of the model's own type.
+/// `show_scenes`, of the model's own type.
 pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
     if context.scenes.is_empty() || context.names.held.is_some() {
         return TokenStream::new();
@@ -93,7 +93,7 @@ pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
         quote!(visitor.visit::<#module::#type_name>(#name);)
     });
     quote! {
-        fn visit_scenes<Visitor: ::dalembert::describe::SceneVisitor>(visitor: &mut Visitor) {
+        fn show_scenes<Visitor: ::dalembert::describe::SceneVisitor>(visitor: &mut Visitor) {
             #(#visits)*
         }
     }

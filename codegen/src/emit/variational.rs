@@ -36,13 +36,13 @@ pub(super) fn emit_variations(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// `visit_variational`, of what is.
+/// `show_variational`, of what is.
 pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
     if !is_variational(context) {
         return TokenStream::new();
     }
     quote! {
-        fn visit_variational<Visitor: ::dalembert::describe::VariationalVisitor>(
+        fn show_variational<Visitor: ::dalembert::describe::VariationalVisitor>(
             &self,
             visitor: Visitor,
         ) -> ::core::option::Option<Visitor::Output> {

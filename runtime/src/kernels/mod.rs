@@ -5,9 +5,11 @@
 //! | `tables.rs` | what is known of a form besides its kernels: sizes, laws, conditions, charts |
 //! | `declared.rs` | a model with values for its parameters: kernels, tables and the types of its vectors |
 //! | `system.rs`, `constrained.rs`, `impacting.rs`, .. | the traits of `contract`, of every declared model |
+//! | `described.rs` | names, declared values and inspection |
 
 mod constrained;
 mod declared;
+mod described;
 mod impacting;
 mod system;
 mod tables;
@@ -19,6 +21,7 @@ use crate::numbers::{Numbers, Row};
 use crate::variations::Tangent;
 pub use dalembert_numbers::kernel::{First, Kernel, Second};
 pub use declared::{Declared, number, pair, write};
+pub use described::{Documented, Quantity, Shape};
 pub use system::nearest_of_declared;
 pub use tables::{Beside, Chart, Condition, Dimensions, Form, Surface, Tables};
 pub use variational::{energy_over, enter, enter_over, nearest_over};
@@ -72,7 +75,7 @@ pub trait HasVariations: Declared + TaylorField<State = <Self as Declared>::Stat
     fn tangents() -> Self::Tangents;
 }
 
-/// A function per kernel, in a trait: what a form does not have is [`Fault::NotDerived`].
+/// A function per kernel, in a trait, and kernels that have none of them.
 macro_rules! kernels {
     (
         $(#[$doc:meta])*
@@ -81,6 +84,12 @@ macro_rules! kernels {
     ) => {
         $(#[$doc])*
         pub trait Kernels {
+            /// The kernels that this form shares with another.
+            type Base: Kernels;
+
+            /// The kernels that this form shares with another.
+            const BASE: Self::Base;
+
             $(
                 #[doc = concat!("[`Kernel::", stringify!($name), "`].")]
                 ///
@@ -92,8 +101,7 @@ macro_rules! kernels {
                     at: At<'_, L>,
                     values: &mut [L],
                 ) -> Result<(), Fault> {
-                    let _ = (at, values);
-                    Err(Fault::NotDerived)
+                    Self::BASE.$plain(at, values)
                 }
             )*
             $(
@@ -108,7 +116,34 @@ macro_rules! kernels {
                     at: At<'_, L>,
                     values: &mut [L],
                 ) -> Result<(), Fault> {
-                    let _ = (surface, at, values);
+                    Self::BASE.$of_surface(surface, at, values)
+                }
+            )*
+        }
+
+        impl Kernels for NoKernels {
+            type Base = Self;
+
+            const BASE: Self = Self;
+
+            $(
+                #[inline(always)]
+                fn $plain<L: Numbers>(
+                    &self,
+                    _: At<'_, L>,
+                    _: &mut [L],
+                ) -> Result<(), Fault> {
+                    Err(Fault::NotDerived)
+                }
+            )*
+            $(
+                #[inline(always)]
+                fn $of_surface<L: Numbers>(
+                    &self,
+                    _: usize,
+                    _: At<'_, L>,
+                    _: &mut [L],
+                ) -> Result<(), Fault> {
                     Err(Fault::NotDerived)
                 }
             )*
@@ -116,9 +151,13 @@ macro_rules! kernels {
     };
 }
 
+/// What a form that shares nothing with another begins with: every kernel is [`Fault::NotDerived`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NoKernels;
+
 kernels! {
     /// The kernels of one form of a model: each writes its values, of which `values` has exactly as many places. A slice shorter than
-    /// what a kernel reads or writes is a mistake of the caller, and panics.
+    /// what a kernel reads or writes is a mistake of the caller, and panics. What is not given is that of [`Kernels::BASE`].
     plain {
         rate: Rate,
         scale: Scale,

@@ -10,7 +10,7 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
 use super::kernels::Written;
-use super::{Context, contexts_of_scene, implementations, names};
+use super::{Context, allowances, contexts_of_scene, forms, names};
 use crate::CompiledModes;
 use crate::model::{Mode, ModeGraph, Model};
 
@@ -36,9 +36,10 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
     };
     let own = [types::emit_struct(&whole), types::emit_module(&whole)];
     let shadows = names::emit_shadows(graph.modes.iter().map(|mode| &mode.model));
+    let allowances = allowances();
     let mut written = Written::default();
-    let contexts = whole.contexts.iter().flatten();
-    let of_modes = contexts.flat_map(|context| implementations(context, &mut written));
+    let of_modes = whole.contexts.iter();
+    let of_modes = of_modes.map(|contexts| forms(contexts, &[], &mut written));
     let of_modes: Vec<TokenStream> = of_modes.collect();
     let of_whole = [
         contract::emit_sizes(&whole),
@@ -54,6 +55,7 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
     ];
     quote! {
         #(#own)*
+        #allowances
         const _: () = {
             #shadows
             #(#of_modes)*

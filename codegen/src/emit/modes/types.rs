@@ -19,9 +19,10 @@ pub(super) fn emit_struct(whole: &Whole<'_>) -> TokenStream {
     let first = first_mode(whole);
     let default = parameters::have_defaults(model).then(|| {
         let values = parameters::default_fields(model);
-        let attributes = crate::emit::attributes();
+        let (attributes, allowances) = (crate::emit::attributes(), crate::emit::allowances());
         quote! {
             #attributes
+        #allowances
             impl ::core::default::Default for #type_name {
                 /// The declared defaults; runs begin in the first mode.
                 fn default() -> Self { Self { #values mode: #first } }

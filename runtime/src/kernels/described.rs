@@ -1,0 +1,230 @@
+//! `Described` of every declared model.
+
+use super::declared::{number, pair, write};
+use super::{Declared, Form, Kernels};
+use crate::contract::System;
+use crate::describe::{Described, Description, Initial, Report, SceneVisitor, VariationalVisitor};
+use crate::effects::Scene;
+use crate::error::Fault;
+use crate::generated::inspect_globally;
+use crate::numbers::Row;
+use crate::state::StateVector;
+
+/// A quantity that [`Kernel::Geometry`](super::Kernel::Geometry) gives: its name, and how its numbers are arranged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantity {
+    /// The name, as `eval` prints it.
+    pub name: &'static str,
+    /// The shape.
+    pub shape: Shape,
+}
+
+/// How the numbers of a quantity are arranged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// One number.
+    Scalar,
+    /// So many numbers.
+    Vector(usize),
+    /// Rows and columns; row after row.
+    Matrix(usize, usize),
+}
+
+impl Shape {
+    /// How many numbers there are.
+    pub const fn count(self) -> usize {
+        match self {
+            Self::Scalar => 1,
+            Self::Vector(count) => count,
+            Self::Matrix(rows, columns) => rows * columns,
+        }
+    }
+}
+
+/// What a declared form says of itself: `model!` writes it, and [`Described`] is made of it.
+pub trait Documented: Declared {
+    /// As [`Described::DESCRIPTION`].
+    const DESCRIPTION: Description;
+
+    /// As [`Described::INPUTS`].
+    const INPUTS: &'static [&'static str] = &[];
+
+    /// Of each coordinate, whether its position was declared.
+    const PLACED: &'static [bool];
+
+    /// Of each coordinate, whether its velocity was declared.
+    const NAMED: &'static [bool];
+
+    /// What [`Kernel::Geometry`](super::Kernel::Geometry) gives, in order.
+    const GEOMETRY: &'static [Quantity];
+
+    /// As many numbers as all of these quantities have.
+    type Geometry: Row<f64>;
+
+    /// As [`Described::Global`].
+    type Global: Described<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
+
+    /// As [`Described::global`].
+    fn globally(&self) -> Self::Global;
+
+    /// As [`Described::with_defaults`].
+    fn declared() -> Self;
+
+    /// As [`Described::set_parameter`].
+    fn set_argument(&mut self, index: usize, value: f64);
+
+    /// The logarithm of the density of the invariant volume, where it takes an integral.
+    fn integrated_density(&self, t: f64, q: &Self::Vector) -> Option<Result<f64, Fault>> {
+        let _ = (t, q);
+        None
+    }
+
+    /// As [`Described::visit_scenes`].
+    fn show_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
+        let _ = visitor;
+    }
+
+    /// As [`Described::visit_variational`].
+    fn show_variational<Visitor: VariationalVisitor>(
+        &self,
+        visitor: Visitor,
+    ) -> Option<Visitor::Output> {
+        let _ = visitor;
+        None
+    }
+}
+
+impl<S: Documented> Described for S {
+    const DESCRIPTION: Description = S::DESCRIPTION;
+
+    const INPUTS: &'static [&'static str] = S::INPUTS;
+
+    type Global = S::Global;
+
+    fn visit_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
+        S::show_scenes(visitor);
+    }
+
+    fn visit_variational<Visitor: VariationalVisitor>(
+        &self,
+        visitor: Visitor,
+    ) -> Option<Visitor::Output> {
+        self.show_variational(visitor)
+    }
+
+    #[inline]
+    fn global(&self) -> S::Global {
+        self.globally()
+    }
+
+    fn with_defaults() -> S {
+        S::declared()
+    }
+
+    fn parameter(&self, index: usize) -> f64 {
+        let values = self.arguments();
+        values.as_slice().get(index).copied().unwrap_or(f64::NAN)
+    }
+
+    fn set_parameter(&mut self, index: usize, value: f64) {
+        self.set_argument(index, value);
+    }
+
+    fn initial(&self) -> Initial<S::Vector> {
+        let declared = pair(self, S::Kernels::initial, 0.0, [&[], &[]]);
+        let [q, qdot] = declared.unwrap_or([self.zero_vector(); 2]);
+        Initial {
+            q,
+            qdot,
+            placed: marks(S::PLACED),
+            named: marks(S::NAMED),
+            until: number(self, S::Kernels::until, 0.0, [&[], &[]]).ok(),
+        }
+    }
+
+    fn outputs(&self, t: f64, state: &S::State, values: &mut [f64]) -> Result<(), Fault> {
+        if values.is_empty() {
+            return Ok(());
+        }
+        let places = [state.as_slice(), &[]];
+        write(self, S::Kernels::outputs, t, places, values)
+    }
+
+    fn view_path(&self, t: f64, state: &S::State) -> Option<[f64; 2]> {
+        let mut point = [0.0; 2];
+        let places = [state.as_slice(), &[]];
+        write(self, S::Kernels::view_path, t, places, &mut point).ok()?;
+        Some(point)
+    }
+
+    fn view_region(&self, t: f64, q: &S::Vector) -> Option<f64> {
+        number(self, S::Kernels::view_region, t, [q.as_slice(), &[]]).ok()
+    }
+
+    fn inspect(&self, t: f64, state: &S::State, report: &mut dyn Report) -> Result<(), Fault> {
+        if S::TABLES.form == Form::Reduced {
+            inspect_globally(self, t, state, report)?;
+            return self.inspect_frame(t, state, report);
+        }
+        let (q, p) = state.as_slice().split_at(self.coordinate_count());
+        report.vector("q", q);
+        if S::TABLES.form == Form::Global {
+            report.vector("p", p);
+        }
+        report_geometry(self, t, state, report)?;
+        if let Some(density) = self.integrated_density(t, &self.position(state)) {
+            report.scalar("log_density", density?);
+        }
+        Ok(())
+    }
+
+    fn inspect_frame(
+        &self,
+        t: f64,
+        state: &S::State,
+        report: &mut dyn Report,
+    ) -> Result<(), Fault> {
+        match S::TABLES.form {
+            Form::Reduced => report_geometry(self, t, state, report),
+            Form::Global | Form::FirstOrder => Ok(()),
+        }
+    }
+}
+
+/// 1 where there is a mark, 0 where there is none.
+fn marks<V: StateVector>(marks: &[bool]) -> V {
+    let mut values = V::zeros(marks.len());
+    for (value, &mark) in values.as_mut_slice().iter_mut().zip(marks) {
+        *value = f64::from(u8::from(mark));
+    }
+    values
+}
+
+/// Reports what [`Kernel::Geometry`](super::Kernel::Geometry) gives.
+fn report_geometry<S: Documented>(
+    system: &S,
+    t: f64,
+    state: &S::State,
+    report: &mut dyn Report,
+) -> Result<(), Fault> {
+    let mut values = S::Geometry::zeros(S::GEOMETRY.iter().map(|own| own.shape.count()).sum());
+    let places = [state.as_slice(), &[]];
+    write(
+        system,
+        S::Kernels::geometry,
+        t,
+        places,
+        values.as_mut_slice(),
+    )?;
+    let mut rest = values.as_slice();
+    for Quantity { name, shape } in S::GEOMETRY {
+        let (own, others) = rest.split_at(shape.count());
+        rest = others;
+        match *shape {
+            Shape::Scalar => report.scalar(name, own[0]),
+            Shape::Vector(_) => report.vector(name, own),
+            Shape::Matrix(rows, columns) => report.matrix(name, rows, columns, own),
+        }
+    }
+    Ok(())
+}
