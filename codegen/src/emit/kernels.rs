@@ -57,9 +57,6 @@ impl Place {
     }
 }
 
-/// The surfaces that an arm of a method is for, and its statements.
-type Arms = Vec<(Vec<usize>, TokenStream)>;
-
 /// The type of the kernels of a form, and its implementation; `base` is the form that it shares functions with.
 pub(super) fn emit_kernels(
     context: &Context<'_>,
@@ -75,56 +72,20 @@ pub(super) fn emit_kernels(
         let mut own = kernels.iter().filter(|own| own.method == *name);
         own.all(|own| methods.get(&own.kernel) == Some(&own.key))
     };
-    let news: Vec<&Own<'_>> = kernels
-        .iter()
-        .filter(|own| !is_inherited(&own.method))
-        .collect();
-    let mut plain = TokenStream::new();
-    let mut of_surfaces = BTreeMap::<Ident, Arms>::new();
-    for own in news {
-        let here = Place {
-            type_name: type_name.clone(),
-            method: own.method.clone(),
-            surface: own.surface,
-        };
-        let place = written.places.entry(own.key.clone());
-        let place = place.or_insert_with(|| here.clone()).clone();
-        let body = match place == here {
-            true => {
-                let velocity = kernels.first().and_then(|own| written.places.get(&own.key));
-                emit_statements(context, (own.kernel, own.function), velocity)
-            }
-            false => place.call(&type_name, &quote!(values)),
-        };
-        match own.surface {
-            None => {
-                let documentation = documentation(context, own.kernel, own.function);
-                let none = TokenStream::new();
-                plain.extend(emit_method(&documentation, &own.method, &none, &body));
-            }
-            Some(surface) => {
-                let arms = of_surfaces.entry(own.method.clone()).or_default();
-                let is_beside = place.type_name == type_name && place.method == own.method;
-                let arm = arms.iter_mut().find(|(surfaces, _)| {
-                    is_beside && place.surface.is_some_and(|first| surfaces.contains(&first))
-                });
-                match arm {
-                    Some((surfaces, _)) => surfaces.push(surface),
-                    None => arms.push((vec![surface], body)),
-                }
-            }
-        }
+    let velocity = kernels.first().map(|own| &own.key);
+    let mut own = BTreeMap::<&Ident, Method>::new();
+    for kernel in kernels.iter().filter(|own| !is_inherited(&own.method)) {
+        let method = own.entry(&kernel.method).or_default();
+        method.add(context, kernel, velocity, written);
     }
-    let of_surfaces = of_surfaces.iter().map(|(method, arms)| {
-        let none = TokenStream::new();
-        emit_method(&none, method, &quote!(surface: usize,), &emit_arms(arms))
-    });
+    let own = own.iter();
+    let own = own.map(|(name, method)| method.emit(context, name));
     let base = match &base {
         Some(base) => quote!(#base),
         None => quote!(::dalembert::kernels::NoKernels),
     };
     let attributes = super::attributes();
-    let emitted = quote! {
+    let items = quote! {
         /// Kernels of a form.
         #[derive(Debug, Clone, Copy)]
         pub struct #type_name;
@@ -134,13 +95,96 @@ pub(super) fn emit_kernels(
             type Base = #base;
             const BASE: #base = #base;
 
-            #plain
-            #(#of_surfaces)*
+            #(#own)*
         }
     };
     methods.extend(kernels.into_iter().map(|own| (own.kernel, own.key)));
     written.methods.insert(type_name, methods);
-    emitted
+    items
+}
+
+/// A method of `Kernels`.
+#[derive(Default)]
+struct Method {
+    takes_parameters: bool,
+    documentation: TokenStream,
+    /// The statements of one that is told no surface.
+    plain: TokenStream,
+    /// Statements, and the surfaces that they are for.
+    arms: Vec<(Vec<usize>, TokenStream)>,
+}
+
+impl Method {
+    /// Adds a function, or a call of the same one where it was written before.
+    fn add(
+        &mut self,
+        context: &Context<'_>,
+        own: &Own<'_>,
+        velocity: Option<&Rc<Key>>,
+        written: &mut Written,
+    ) {
+        let here = Place {
+            type_name: type_name(context),
+            method: own.method.clone(),
+            surface: own.surface,
+        };
+        let place = written.places.entry(own.key.clone());
+        let place = place.or_insert_with(|| here.clone()).clone();
+        let body = if place == here {
+            self.takes_parameters |= takes_parameters(own.function);
+            let velocity = velocity.and_then(|key| written.places.get(key));
+            emit_statements(context, (own.kernel, own.function), velocity)
+        } else {
+            place.call(&here.type_name, &quote!(values))
+        };
+        let Some(surface) = own.surface else {
+            self.documentation = documentation(context, own.kernel, own.function);
+            self.plain = body;
+            return;
+        };
+        let is_beside = place.type_name == here.type_name && place.method == here.method;
+        let arm = self.arms.iter_mut().find(|(surfaces, _)| {
+            is_beside && place.surface.is_some_and(|first| surfaces.contains(&first))
+        });
+        match arm {
+            Some((surfaces, _)) => surfaces.push(surface),
+            None => self.arms.push((vec![surface], body)),
+        }
+    }
+
+    fn emit(&self, context: &Context<'_>, name: &Ident) -> TokenStream {
+        let (documentation, plain) = (&self.documentation, &self.plain);
+        let parameters = self.takes_parameters.then(|| bind_parameters(context));
+        let surface = (!self.arms.is_empty()).then(|| quote!(surface: usize,));
+        let choice = surface.as_ref().map(|_| self.emit_choice());
+        quote! {
+            #documentation
+            #[inline]
+            fn #name<L: ::dalembert::numbers::Numbers>(
+                &self,
+                #surface
+                at: ::dalembert::kernels::At<'_, L>,
+                values: &mut [L],
+            ) -> ::core::result::Result<(), ::dalembert::Fault> {
+                #parameters
+                #plain
+                #choice
+            }
+        }
+    }
+
+    fn emit_choice(&self) -> TokenStream {
+        let arms = self.arms.iter().map(|(surfaces, body)| {
+            let surfaces = surfaces.iter().map(|own| Literal::usize_unsuffixed(*own));
+            quote!(#(#surfaces)|* => { #body })
+        });
+        quote! {
+            match surface {
+                #(#arms)*
+                _ => ::core::result::Result::Err(::dalembert::Fault::NotDerived),
+            }
+        }
+    }
 }
 
 /// A function of a form.
@@ -170,40 +214,6 @@ fn kernels<'a>(context: &'a Context<'_>) -> Vec<Own<'a>> {
         });
     }
     kernels
-}
-
-fn emit_arms(arms: &Arms) -> TokenStream {
-    let arms = arms.iter().map(|(surfaces, body)| {
-        let surfaces = surfaces.iter().map(|own| Literal::usize_unsuffixed(*own));
-        quote!(#(#surfaces)|* => { #body })
-    });
-    quote! {
-        match surface {
-            #(#arms)*
-            _ => ::core::result::Result::Err(::dalembert::Fault::NotDerived),
-        }
-    }
-}
-
-/// A method of `Kernels`.
-fn emit_method(
-    documentation: &TokenStream,
-    name: &Ident,
-    surface: &TokenStream,
-    body: &TokenStream,
-) -> TokenStream {
-    quote! {
-        #documentation
-        #[inline]
-        fn #name<L: ::dalembert::numbers::Numbers>(
-            &self,
-            #surface
-            at: ::dalembert::kernels::At<'_, L>,
-            values: &mut [L],
-        ) -> ::core::result::Result<(), ::dalembert::Fault> {
-            #body
-        }
-    }
 }
 
 /// The type that has the kernels of a form.
@@ -254,7 +264,6 @@ fn emit_statements(
     velocity: Option<&Place>,
 ) -> TokenStream {
     let bindings = [
-        bind_parameters(context, function),
         bind_time(function),
         bind_first(context, (kernel, function), velocity),
         bind_second(context, kernel, function),
@@ -272,14 +281,13 @@ fn emit_statements(
     }
 }
 
-fn bind_parameters(context: &Context<'_>, function: &Function) -> TokenStream {
-    let count = context.names.parameters.len();
-    match uses(function, |input| matches!(input, Input::Parameter(_))) {
-        true => {
-            quote!(let parameters = ::dalembert::__private::numbers::<L, #count>(at.parameters);)
-        }
-        false => TokenStream::new(),
-    }
+fn takes_parameters(function: &Function) -> bool {
+    uses(function, |input| matches!(input, Input::Parameter(_)))
+}
+
+fn bind_parameters(context: &Context<'_>) -> TokenStream {
+    let count = Literal::usize_unsuffixed(context.names.parameters.len());
+    quote!(let parameters: &[L; #count] = ::dalembert::__private::numbers(at.parameters);)
 }
 
 fn bind_time(function: &Function) -> TokenStream {
@@ -349,12 +357,11 @@ fn bind(locals: &[Option<Ident>], source: &TokenStream) -> TokenStream {
         return TokenStream::new();
     };
     let used = &locals[..=last];
-    let count = Literal::usize_unsuffixed(used.len());
     let names = used.iter().map(|local| match local {
         Some(name) => quote!(#name),
         None => quote!(_),
     });
-    quote!(let [#(#names),*] = *::dalembert::__private::numbers::<L, #count>(#source);)
+    quote!(let [#(#names),*] = *::dalembert::__private::numbers(#source);)
 }
 
 /// The name of a kernel's method, `gap_rates` or `contact`, and the surface that it is of.
