@@ -54,7 +54,7 @@ const CONTACT: Policies = Policies {
     rest: Rest::Contact,
     penetration: Penetration::Stop,
     corner: Corner::Stop,
-    split: dalembert::impacts::policy::Split::First,
+    split: dalembert::policy::Split::First,
 };
 
 /// Keeps where surfaces begin and cease to hold the motion.

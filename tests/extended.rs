@@ -4,7 +4,7 @@ use core::ops::ControlFlow;
 
 use dalembert::contract::Variational;
 use dalembert::extended::{At, Extended, ExtendedRun, ExtendedSimulation, Impact};
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::numbers::Numbers;
 use dalembert::{
     Outcome, Policies, Rest, Scene, SceneEffects, StateError, StateVector, System, Undefined,

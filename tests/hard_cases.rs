@@ -1,7 +1,7 @@
 //! Stored hard cases, computed with 50 and more digits: whispering galleries, grazes, accumulations, small inertia, a
 //! glancing wall, long runs of the disk.
 
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{Constrained, Described, Impacting, System};
 use dalembert_cli::suite::{Setting, every_integrator};

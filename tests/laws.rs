@@ -1,6 +1,6 @@
 //! Properties of the impact laws at random states on random surfaces.
 
-use dalembert::impacts::law::{Blow, Law};
+use dalembert::law::{Blow, Law};
 use dalembert::{Constrained, Described, Impacting, StateVector, System};
 use dalembert_models::chaplygin_sleigh::ChaplyginSleighGlobal;
 use dalembert_models::rolling_ball_euler::RollingBallEulerGlobal;

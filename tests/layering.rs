@@ -106,6 +106,99 @@ fn a_stage_uses_only_those_to_its_left() {
     }
 }
 
+/// The modules of the runtime, each after those it uses.
+const RUNTIME: [&str; 34] = [
+    "assumption",
+    "error",
+    "state",
+    "jet",
+    "linalg",
+    "policy",
+    "quadrature",
+    "law",
+    "outcome",
+    "contract",
+    "nearest",
+    "rank",
+    "record",
+    "audit",
+    "work",
+    "integrate",
+    "run",
+    "forces",
+    "effects",
+    "events",
+    "narrow",
+    "simulation",
+    "impacts",
+    "inputs",
+    "describe",
+    "generated",
+    "initial",
+    "projection",
+    "kernels",
+    "modes",
+    "variations",
+    "extended",
+    "lanes",
+    "certified",
+];
+
+#[test]
+fn a_module_of_the_runtime_uses_only_those_before_it() {
+    let entries = std::fs::read_dir(root().join("runtime/src")).expect("a folder");
+    let names = entries.map(|entry| entry.expect("an entry").path());
+    let mut names: Vec<String> = names
+        .map(|path| {
+            path.file_stem()
+                .expect("a name")
+                .to_string_lossy()
+                .into_owned()
+        })
+        .filter(|name| name != "lib")
+        .collect();
+    names.sort();
+    let mut listed = RUNTIME;
+    listed.sort_unstable();
+    assert_eq!(names, listed);
+    for (k, module) in RUNTIME.iter().enumerate() {
+        let later: Vec<String> = RUNTIME[k + 1..]
+            .iter()
+            .map(|later| format!("crate::{later}"))
+            .collect();
+        for (path, text) in sources("runtime/src") {
+            let inside = path
+                .strip_prefix(root().join("runtime/src"))
+                .expect("inside");
+            let top = inside.iter().next().expect("a name").to_string_lossy();
+            if top.trim_end_matches(".rs") != *module {
+                continue;
+            }
+            let code = without_tests(&text);
+            assert!(!code.contains("use crate::{"), "{}", path.display());
+            for later in &later {
+                let ends = |(place, found): (usize, &str)| {
+                    let next = code[place + found.len()..].chars().next();
+                    !next.is_some_and(|c| c.is_alphanumeric() || c == '_')
+                };
+                assert!(
+                    !code.match_indices(later.as_str()).any(ends),
+                    "{}: `{later}`",
+                    path.display()
+                );
+            }
+        }
+    }
+}
+
+/// A source without its comments and without the module of its tests.
+fn without_tests(text: &str) -> String {
+    let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+    let lines = code.lines();
+    let lines = lines.map(|line| line.split("//").next().unwrap_or_default());
+    lines.collect::<Vec<_>>().join("\n")
+}
+
 #[test]
 fn the_runtime_is_bare() {
     for folder in ["runtime/src", "runtime/numbers/src"] {

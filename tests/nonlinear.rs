@@ -1,6 +1,6 @@
 //! Constraints that are not linear in the velocities: Chetaev's rule, ways back to the constraint, and what stays undefined.
 
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::projection::Projection;
 use dalembert::{
     Constrained, Described, Dla2, Dop853, Fault, Impacting, Lagrangian, Outcome, Rk4, Scene,

@@ -6,7 +6,7 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::{
     Constrained, Described, Dla2, Dla4, Dop853, DormandPrince5, Event, Gauss4, Gauss6, Impacting,
     Observer, Outcome, Projection, Rk4, Run, Scene, SceneEffects, Simulation, Stepper, System,

@@ -1,7 +1,7 @@
 //! The law `reset`, emitted: against its interpreter, as declared, in both forms, in claims and on the command line.
 
 use dalembert::describe::Described;
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::{
     Dop853, EventLog, Impacting, Outcome, Run, Scene, Simulation, StateVector, Stepper, System,
     Tolerance,

@@ -1,7 +1,7 @@
 //! Many constraints of which each meets few others: a chain declared by the places of its masses, with rods as
 //! constraints, against the same chain declared by the angles of its rods.
 
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::{Described, Fault, Impacting, System, VectorField};
 use dalembert_codegen::compile;
 use dalembert_models::Chain16;

@@ -1,7 +1,7 @@
 //! First variations: against independent augmented differentials, closed forms, and differences of runs.
 
 use dalembert::contract::Variational;
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::numbers::{Numbers, Row};
 use dalembert::variations::Dual;
 use dalembert::{

@@ -114,7 +114,7 @@ const DEFAULT: Policies = Policies {
     rest: Rest::Stop,
     penetration: dalembert::Penetration::Stop,
     corner: dalembert::Corner::Stop,
-    split: dalembert::impacts::policy::Split::First,
+    split: dalembert::policy::Split::First,
 };
 
 /// The first `arriving` of `count` balls come at speed 1 from the distance 1, the others touch at rest.

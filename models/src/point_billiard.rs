@@ -32,7 +32,7 @@ dalembert::model! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dalembert::impacts::law::Law;
+    use dalembert::law::Law;
     use dalembert::{Impacting, System};
 
     #[test]

@@ -7,11 +7,11 @@ use crate::audit::Auditor;
 use crate::contract::System;
 use crate::error::Fault;
 use crate::forces::{Forces, NoForces};
-use crate::impacts::law::Law;
-use crate::impacts::policy::Policies;
 use crate::integrate::{Counters, Stepper};
 use crate::jet::LENGTH;
+use crate::law::Law;
 use crate::outcome::Outcome;
+use crate::policy::Policies;
 use crate::record::{Interpolant, Observer};
 
 /// An accepted step, as effects look at it.

@@ -1,11 +1,32 @@
-//! A system with inputs that are functions of time and state.
+//! Systems with inputs, and inputs that are functions of time and state.
 
-use crate::contract::{
-    Actuated, Constrained, Impacting, Level, Powered, RankDrop, System, VectorField,
-};
+use crate::contract::{Constrained, Impacting, Level, Powered, RankDrop, System, VectorField};
 use crate::error::{Fault, ParameterError, StateError};
-use crate::impacts::law::{Blow, Contact, Jump, Law};
+use crate::law::{Blow, Contact, Jump, Law};
 use crate::numbers::{Bent, TaylorModel};
+
+/// A system whose `inputs` the caller supplies. It holds their values like parameters, 0 at first, until they are set.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no inputs: declare `inputs {{ u; }}` in its `model!`"
+)]
+pub trait Actuated: System + Copy {
+    /// One number per input, in the order of declaration: `[f64; K]`.
+    type Inputs: Copy;
+
+    /// Sets all inputs.
+    fn set_inputs(&mut self, inputs: &Self::Inputs);
+
+    /// The system with inputs that are a function of time and state.
+    fn with_inputs<F>(self, inputs: F) -> Steered<Self, F>
+    where
+        F: Fn(f64, &Self::State) -> Self::Inputs,
+    {
+        Steered {
+            system: self,
+            inputs,
+        }
+    }
+}
 
 /// A system whose inputs are given by a function; [`Actuated::with_inputs`] makes one.
 ///

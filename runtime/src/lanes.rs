@@ -11,8 +11,9 @@ use crate::contract::{System, TaylorField};
 use crate::effects::Effect;
 use crate::integrate::lanes::{Abreast, MOST, Walker};
 use crate::integrate::{Counters, Stepper, Taylor};
-use crate::outcome::{Outcome, Run, StartError};
+use crate::outcome::{Outcome, StartError};
 use crate::record::Observer;
+use crate::run::Run;
 use crate::simulation::{Course, Next, Progress, STEP_BUDGET, Simulation, check_start};
 
 /// Lanes that are worth a vector: fewer motions make their steps alone.

@@ -133,16 +133,19 @@ pub mod jet;
 pub mod kernels;
 #[cfg(feature = "lanes")]
 pub mod lanes;
+pub mod law;
 mod linalg;
 #[doc(hidden)]
 pub mod modes;
 mod narrow;
 mod nearest;
 pub mod outcome;
+pub mod policy;
 pub mod projection;
 mod quadrature;
 mod rank;
 pub mod record;
+pub mod run;
 pub mod simulation;
 pub mod state;
 pub mod variations;
@@ -151,29 +154,30 @@ pub mod work;
 pub use dalembert_numbers::{math, numbers};
 
 pub use contract::{
-    Actuated, Constrained, Divergence, Impacting, InvariantVolume, Keep, Lagrangian, Level,
-    Powered, RankDrop, System, TaylorField, Variational, VectorField,
+    Constrained, Divergence, Impacting, InvariantVolume, Keep, Lagrangian, Level, Powered,
+    RankDrop, System, Tangent, TaylorField, Variational, VectorField,
 };
 pub use describe::Described;
 pub use effects::{Effect, Scene, SceneEffects};
 pub use error::{Fault, ParameterError, StateError};
 pub use forces::{Forces, NoForces};
 pub use impacts::Impacts;
-pub use impacts::law::{Blow, Contact, Jump, Landing, Law};
-pub use impacts::policy::{Corner, Penetration, Policies, Rest};
 pub use initial::{complete_positions, complete_velocities};
-pub use inputs::Steered;
+pub use inputs::{Actuated, Steered};
 pub use integrate::{
     Counters, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, MaxStepError, Rk4, Stepper,
     Taylor, Tolerance, ToleranceError,
 };
+pub use law::{Blow, Contact, Jump, Landing, Law};
 pub use modes::Mode;
-pub use outcome::{Outcome, Run, StartError};
+pub use outcome::{Outcome, StartError};
+pub use policy::{Corner, Penetration, Policies, Rest};
 pub use projection::Projection;
 pub use record::{Event, EventLog, Hold, Observer, Segment};
+pub use run::Run;
 pub use simulation::Simulation;
 pub use state::StateVector;
-pub use variations::{Orbit, OrbitError, Section, SectionError, Tangent, Undefined, Variations};
+pub use variations::{Orbit, OrbitError, Section, SectionError, Undefined, Variations};
 pub use work::Work;
 
 #[cfg(feature = "macros")]

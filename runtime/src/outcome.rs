@@ -3,7 +3,6 @@
 use core::fmt;
 
 use crate::error::{Fault, ParameterError};
-use crate::integrate::{Counters, StepFailure};
 
 /// Why a run ended where it did.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -278,8 +277,11 @@ impl fmt::Display for Outcome {
             Self::SeveralModes => Fault::SeveralModes.fmt(f),
             Self::NonlinearConstraints => Fault::NonlinearConstraints.fmt(f),
             Self::NonFinite { component } => Fault::NonFinite { component }.fmt(f),
-            Self::StepUnderflow { t } => StepFailure::StepUnderflow { t }.fmt(f),
-            Self::NotConverged { t } => StepFailure::NotConverged { t }.fmt(f),
+            Self::StepUnderflow { t } => write!(f, "the step size underflows at t = {t}"),
+            Self::NotConverged { t } => write!(
+                f,
+                "the equations of the implicit step at t = {t} have no solution within reach: a shorter step may have"
+            ),
             Self::LeftDomain => f.write_str(
                 "the motion left the domain of the energy, which is no finite number there",
             ),
@@ -314,30 +316,6 @@ impl From<Fault> for Outcome {
             Fault::NonFinite { component } => Self::NonFinite { component },
         }
     }
-}
-
-impl From<StepFailure> for Outcome {
-    fn from(failure: StepFailure) -> Self {
-        match failure {
-            StepFailure::StepUnderflow { t } => Self::StepUnderflow { t },
-            StepFailure::NotConverged { t } => Self::NotConverged { t },
-            StepFailure::Fault(fault) => fault.into(),
-            StepFailure::NonFinite { component } => Self::NonFinite { component },
-        }
-    }
-}
-
-/// A finished run: why and where it ended, in what state, and what it cost.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Run<S> {
-    /// Why it ended.
-    pub outcome: Outcome,
-    /// The time it ended at.
-    pub t: f64,
-    /// The last good state, at `t`; after an impact at `t`, the state after it.
-    pub state: S,
-    /// What it cost.
-    pub counters: Counters,
 }
 
 /// A run that was not begun.

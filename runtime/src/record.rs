@@ -4,8 +4,8 @@ use core::ops::ControlFlow;
 
 use crate::contract::System;
 use crate::error::Fault;
-use crate::impacts::law::Law;
 use crate::jet::LENGTH;
+use crate::law::Law;
 
 /// One impact.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,8 +9,9 @@ use crate::forces::{Along, Driven};
 use crate::integrate::controller::least_trial;
 use crate::integrate::{Counters, Dop853, Instant, Rebound, Stepper};
 use crate::narrow;
-use crate::outcome::{Outcome, Run, StartError};
+use crate::outcome::{Outcome, StartError};
 use crate::record::{Observer, Segment};
+use crate::run::Run;
 use crate::state::StateVector;
 
 /// Steps a run may make unless told otherwise: more than a day's work for most systems, less than for ever.

@@ -14,6 +14,12 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// The largest number of components; of a vector of a fixed size, their number.
     const CAPACITY: usize;
 
+    /// A value beside each component.
+    type Each<T: Plain>: Plain + AsRef<[T]> + AsMut<[T]>;
+
+    /// The same value beside each of `count` components; where the type fixes their number, `count` is ignored.
+    fn each<T: Plain>(count: usize, value: T) -> Self::Each<T>;
+
     /// A vector of `count` zeros. Where the type fixes the number of components, `count` is ignored.
     fn zeros(count: usize) -> Self;
 
@@ -50,8 +56,20 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     }
 }
 
+/// What can stand beside a component: plain data.
+pub trait Plain: Copy + Debug + PartialEq + Send + Sync + 'static {}
+
+impl<T: Copy + Debug + PartialEq + Send + Sync + 'static> Plain for T {}
+
 impl<const D: usize> StateVector for SVector<f64, D> {
     const CAPACITY: usize = D;
+
+    type Each<T: Plain> = [T; D];
+
+    #[inline(always)]
+    fn each<T: Plain>(_: usize, value: T) -> [T; D] {
+        [value; D]
+    }
 
     #[inline(always)]
     fn zeros(_: usize) -> Self {

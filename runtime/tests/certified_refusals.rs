@@ -4,7 +4,7 @@
 use core::ops::ControlFlow;
 
 use dalembert::certified::{CertifiedRun, Lost, Reason};
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::numbers::Interval;
 use dalembert::{Impacting, Variational};
 

@@ -94,7 +94,7 @@ fn holds_numerically<S: Described>(system: &S, claim: &str, message: &str) {
                 "{message}: {rate} {divergence}"
             );
         } else if let Some((_, surface)) = head.split_once("under") {
-            let law = dalembert::impacts::law::Law::Elastic;
+            let law = dalembert::law::Law::Elastic;
             let after = system.impact(surface.trim(), law, 0.3, state);
             let after = system.snapshot(0.3, &after);
             let [old, new] = [&here, &after].map(|own| witness::at(system, value, own, None));

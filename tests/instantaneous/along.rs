@@ -2,7 +2,7 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::{
     Described, Dop853, Fault, Hold, Impacting, Observer, Outcome, Policies, Rest, Scene,
     SceneEffects, Simulation, StateVector, System, Tolerance,

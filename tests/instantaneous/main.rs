@@ -3,7 +3,7 @@
 mod along;
 
 use dalembert::impacts::Impacts;
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::{
     Described, Dop853, EventLog, Impacting, Outcome, Scene, Simulation, StateVector, System,
     Taylor, Tolerance,

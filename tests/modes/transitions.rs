@@ -1,6 +1,6 @@
 //! Transitions one by one: what they keep, what they take, what they do not depend on, and how they end a run.
 
-use dalembert::impacts::policy::{Policies, Split};
+use dalembert::policy::{Policies, Split};
 use dalembert::{Dop853, Impacting, Outcome, Scene, SceneEffects, Simulation, System, Tolerance};
 use dalembert_models::refracted_particle::refracted_particle;
 use dalembert_models::smooth_and_rough_plane::smooth_and_rough_plane;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use dalembert::describe::{Description, Report};
-use dalembert::impacts::law::{Contact, Law};
+use dalembert::law::{Contact, Law};
 use dalembert::{Described, StateVector, System, VectorField};
 
 /// What is known of a state.

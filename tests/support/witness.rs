@@ -1,6 +1,6 @@
 //! The numbers of messages about claims, computed once more by other means: differences along what a model emits.
 
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 
 use crate::claim::Witness;
 use crate::formula::{Scope, definitions, value};

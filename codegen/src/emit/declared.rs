@@ -207,7 +207,7 @@ fn emit_surface(context: &Context<'_>, index: usize, surface: &Surface) -> Token
     let takes = gaps.map_or(0, |own| coordinates_of(&own.gap_alone[index]));
     quote! {
         ::dalembert::kernels::Surface {
-            law: ::dalembert::impacts::law::Law::#law,
+            law: ::dalembert::law::Law::#law,
             coefficient: #coefficient,
             conditions: #conditions,
             others: &[#(#others),*],

@@ -9,12 +9,12 @@ use std::path::PathBuf;
 
 use clap::builder::ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use dalembert::impacts::law::Law;
-use dalembert::impacts::policy::{Corner, Penetration, Policies, Rest, Split};
 use dalembert::integrate::{
     ClassicalRungeKutta, ComposedPrinciple, Dop853Scheme, DormandPrince5Scheme, Gauss, Method,
     MidpointPrinciple, Scheme, TAYLOR,
 };
+use dalembert::law::Law;
+use dalembert::policy::{Corner, Penetration, Policies, Rest, Split};
 
 use crate::scalar;
 pub use ensemble::EnsembleArgs;

@@ -4,7 +4,7 @@
 //! crate works on slices of numbers through [`AnyModel`] and is compiled once.
 
 use dalembert::describe::{Described, Description, Report, SceneVisitor};
-use dalembert::impacts::law::{Contact, Law};
+use dalembert::law::{Contact, Law};
 use dalembert::state::StateVector;
 use dalembert::{
     Fault, Lagrangian, ParameterError, Scene, SceneEffects, StateError, System, TaylorField,

@@ -2,8 +2,8 @@
 
 use dalembert::contract::Variational;
 use dalembert::describe::{Description, VariationalVisitor};
-use dalembert::impacts::law::Law;
 use dalembert::integrate::Chosen;
+use dalembert::law::Law;
 use dalembert::variations::orbit::ITERATIONS;
 use dalembert::variations::{Orbit, OrbitError, Section, SectionError, Undefined};
 use dalembert::{

@@ -1,7 +1,7 @@
 //! From the flags that `simulate`, `ensemble` and `accuracy` share to the settings of a run.
 
 use dalembert::describe::Description;
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,7 @@
 //! A point of mass 1 in the plane, written by hand: surfaces and resets that a declaration does not offer.
 
-use dalembert::impacts::law::{Contact, Law};
 use dalembert::jet::LENGTH;
+use dalembert::law::{Contact, Law};
 use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{
     Fault, Impacting, Impacts, ParameterError, Scene, System, TaylorField, VectorField,

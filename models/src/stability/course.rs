@@ -2,8 +2,8 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::impacts::law::Law;
 use dalembert::integrate::{Chosen, Counters};
+use dalembert::law::Law;
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
     Dop853, DormandPrince5, Event, Hold, Observer, Outcome, Policies, Rest, Scene, SceneEffects,

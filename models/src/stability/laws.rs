@@ -1,6 +1,6 @@
 //! Section C, first part: single impacts by every law.
 
-use dalembert::impacts::law::{Contact, Law};
+use dalembert::law::{Contact, Law};
 use dalembert::{Constrained, Impacting, Outcome, Scene, StateVector, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 

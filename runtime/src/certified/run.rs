@@ -10,9 +10,9 @@ use super::lost::{Lost, Reason};
 use super::series::Field;
 use crate::contract::{Impacting, Variational};
 use crate::error::Fault;
-use crate::impacts::law::Law;
-use crate::impacts::override_table::Overrides;
+use crate::impacts::per_surface::PerSurface;
 use crate::integrate::controller::least_step;
+use crate::law::Law;
 use crate::numbers::{Interval, Row};
 use crate::state::StateVector;
 use crate::variations::transition::Strike;
@@ -81,7 +81,7 @@ impl<Sys: Variational> CertifiedImpact<Sys> {
 /// ```
 pub struct CertifiedRun<'a, Sys: Variational + Impacting> {
     progress: Progress<'a, Sys>,
-    laws: Overrides<<Sys as Impacting>::Gaps>,
+    laws: PerSurface<Option<Law>, <Sys as Impacting>::Gaps>,
     is_begun: bool,
     impacts: u64,
 }
@@ -164,7 +164,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         };
         Self {
             progress,
-            laws: Overrides::none(&system.zero_gaps()),
+            laws: PerSurface::all(&system.zero_gaps(), None),
             is_begun: false,
             impacts: 0,
         }
@@ -187,7 +187,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     /// With another law that is an impulse for a surface; one past the end changes nothing.
     #[must_use]
     pub fn with_law(mut self, surface: usize, law: Law) -> Self {
-        self.laws.set(surface, law);
+        self.laws.set(surface, Some(law));
         self
     }
 
@@ -327,7 +327,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         let field = &flow.field;
         let mut passable = field.system.zero_gaps();
         for (surface, entry) in passable.as_mut_slice().iter_mut().enumerate() {
-            let law = self.laws.get(surface);
+            let law = self.laws.get(surface).flatten();
             let is_map = law.is_none_or(|law| law.is_map());
             let is_passable = is_map && field.system.is_passable(surface);
             *entry = f64::from(u8::from(is_passable));
@@ -418,7 +418,12 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     /// The law chosen for a surface, if there is one. A map is not to be chosen.
     fn chosen(&self, surface: usize) -> Result<Option<Law>, Reason> {
         let declared = self.field().system.law(surface);
-        match self.laws.get(surface).filter(|law| *law != declared) {
+        match self
+            .laws
+            .get(surface)
+            .flatten()
+            .filter(|law| *law != declared)
+        {
             Some(law) if law.is_map() => Err(Reason::UnsureLaw { surface }),
             chosen => Ok(chosen),
         }

@@ -1,9 +1,9 @@
 //! Systems with surfaces.
 
 use super::System;
+use super::landing::after_reset;
 use crate::error::Fault;
-use crate::impacts::after_reset;
-use crate::impacts::law::{Blow, Contact, Jump, Landing, Law};
+use crate::law::{Blow, Contact, Jump, Landing, Law};
 use crate::numbers::{Bent, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;

@@ -2,18 +2,21 @@
 //!
 //! Only [`VectorField`] is known to integrators. Time is an argument everywhere; autonomous systems ignore it.
 
-mod actuated;
 mod constrained;
 mod field;
 mod impacting;
+mod landing;
+mod powered;
 mod system;
+mod tangent;
 mod variational;
 mod volume;
 
-pub use actuated::{Actuated, Powered};
 pub use constrained::{Constrained, Level};
 pub use field::{TaylorField, VectorField};
 pub use impacting::Impacting;
+pub use powered::Powered;
 pub use system::{Keep, Lagrangian, RankDrop, System};
+pub use tangent::Tangent;
 pub use variational::Variational;
 pub use volume::{Divergence, InvariantVolume};

@@ -1,10 +1,9 @@
 //! What first variations need besides the power series of the motion: transitions, written over numbers.
 
-use super::{System, TaylorField};
+use super::{System, Tangent, TaylorField};
 use crate::error::Fault;
-use crate::impacts::law::Law;
+use crate::law::Law;
 use crate::numbers::{Interval, Numbers, Row};
-use crate::variations::Tangent;
 
 /// A system whose states, gaps and transitions can be computed in any [`Numbers`], and so be differentiated.
 ///

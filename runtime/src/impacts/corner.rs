@@ -2,10 +2,10 @@
 
 use super::hits::{Hits, Order};
 use super::impulse::{Impacts, STILL};
-use super::policy::Corner;
 use crate::contract::Impacting;
 use crate::effects::Moment;
 use crate::outcome::Outcome;
+use crate::policy::Corner;
 use crate::state::StateVector;
 
 /// Impacts in one corner before its outcome counts as unknown. A corner of angle `pi / n` takes up to `n`.

@@ -15,6 +15,7 @@
 //! the surfaces push within them, and one surface of those held has some at most ([`super::resting`]).
 
 use super::instantaneous::{focused, is_rough};
+use super::per_surface::PerSurface;
 use super::sliding::Slide;
 use crate::contract::Impacting;
 use crate::effects::{Change, Moment};
@@ -27,9 +28,8 @@ const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
 
 /// Surfaces along which the motion is held.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Held<G> {
-    /// 1 for those held.
-    surfaces: G,
+pub struct Held<G: StateVector> {
+    surfaces: PerSurface<bool, G>,
     /// The two transitions between which the motion slides; they count as held.
     slide: Option<Slide>,
 }
@@ -38,13 +38,13 @@ impl<G: StateVector> Held<G> {
     /// None, of as many as there are components here.
     pub(super) fn none(like: &G) -> Self {
         Self {
-            surfaces: like.zeroed(),
+            surfaces: PerSurface::all(like, false),
             slide: None,
         }
     }
 
     pub(super) fn is_held(&self, surface: usize) -> bool {
-        self.surfaces.as_slice()[surface] == 1.0
+        self.surfaces[surface]
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -52,11 +52,11 @@ impl<G: StateVector> Held<G> {
     }
 
     pub(super) fn hold(&mut self, surface: usize) {
-        self.surfaces.as_mut_slice()[surface] = 1.0;
+        self.surfaces[surface] = true;
     }
 
     pub(super) fn release(&mut self, surface: usize) {
-        self.surfaces.as_mut_slice()[surface] = 0.0;
+        self.surfaces[surface] = false;
     }
 
     /// The motion slides between two modes from now on.
@@ -79,8 +79,8 @@ impl<G: StateVector> Held<G> {
     /// The components of those held, zeros elsewhere.
     fn only(&self, values: &G) -> G {
         let mut only = *values;
-        for (value, held) in only.as_mut_slice().iter_mut().zip(self.surfaces.as_slice()) {
-            if *held != 1.0 {
+        for (value, is_held) in only.as_mut_slice().iter_mut().zip(self.surfaces.iter()) {
+            if !is_held {
                 *value = 0.0;
             }
         }

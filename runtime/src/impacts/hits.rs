@@ -4,6 +4,7 @@
 //! approached, and so on. So a wave of impacts passes through bodies that touch as it does through small gaps, if every
 //! gap takes equally long.
 
+use super::per_surface::PerSurface;
 use crate::state::StateVector;
 
 /// The order in which the surfaces of one round are struck.
@@ -15,26 +16,37 @@ pub(super) enum Order {
     Descending,
 }
 
+/// From which gap rate on a surface at hand counts as approached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Still {
+    /// Where the gap falls faster than this.
+    UpTo(f64),
+    /// The gap was seen to fall through 0: it is approached, whatever its rate.
+    Fallen,
+    /// It was dealt with: it is not approached any more.
+    Done,
+}
+
 /// Surfaces at hand at one moment.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Hits<G> {
-    /// 1 for surfaces at hand.
-    pub(super) at_hand: G,
-    /// Gap rates above minus this count as not approaching.
-    still: G,
-    /// 1 for surfaces that were approached when this round began and have not had their turn.
-    due: G,
-    /// 1 for surfaces that were struck at this moment.
-    struck: G,
+pub(super) struct Hits<G: StateVector> {
+    /// Those at hand.
+    at_hand: PerSurface<bool, G>,
+    /// What counts as not approaching.
+    still: PerSurface<Still, G>,
+    /// Those that were approached when this round began and have not had their turn.
+    due: PerSurface<bool, G>,
+    /// Those that were struck at this moment.
+    struck: PerSurface<bool, G>,
 }
 
 impl<G: StateVector> Hits<G> {
     /// No surface, of as many as there are components here.
     pub(super) fn none(like: &G) -> Self {
-        let none = like.zeroed();
+        let none = PerSurface::all(like, false);
         Self {
             at_hand: none,
-            still: none,
+            still: PerSurface::all(like, Still::UpTo(0.0)),
             due: none,
             struck: none,
         }
@@ -43,26 +55,33 @@ impl<G: StateVector> Hits<G> {
     /// These surfaces, of as many as there are components here.
     pub(super) fn all_of(surfaces: impl Iterator<Item = usize>, like: &G) -> Self {
         let mut hits = Self::none(like);
-        hits.add(surfaces);
+        surfaces.for_each(|surface| hits.add(surface));
         hits
     }
 
-    /// These surfaces are at hand as well.
-    pub(super) fn add(&mut self, surfaces: impl Iterator<Item = usize>) {
-        for surface in surfaces {
-            self.at_hand.as_mut_slice()[surface] = 1.0;
-        }
+    /// A surface is at hand as well.
+    pub(super) fn add(&mut self, surface: usize) {
+        self.at_hand[surface] = true;
+    }
+
+    /// Whether a surface is at hand.
+    pub(super) fn is_at_hand(&self, surface: usize) -> bool {
+        self.at_hand[surface]
     }
 
     /// Whether any is at hand.
     pub(super) fn is_some(&self) -> bool {
-        self.at_hand.as_slice().contains(&1.0)
+        self.at_hand.iter().any(|is_at_hand| is_at_hand)
     }
 
     /// Whether a surface is at hand and approached.
     pub(super) fn is_approached(&self, surface: usize, rates: &G) -> bool {
-        self.at_hand.as_slice()[surface] == 1.0
-            && rates.as_slice()[surface] < -self.still.as_slice()[surface]
+        self.at_hand[surface]
+            && match self.still[surface] {
+                Still::UpTo(still) => rates.as_slice()[surface] < -still,
+                Still::Fallen => true,
+                Still::Done => false,
+            }
     }
 
     /// Number of surfaces at hand that are approached.
@@ -86,8 +105,7 @@ impl<G: StateVector> Hits<G> {
             return 0;
         }
         for surface in 0..rates.count() {
-            let is_due = f64::from(u8::from(self.is_approached(surface, rates)));
-            self.due.as_mut_slice()[surface] = is_due;
+            self.due[surface] = self.is_approached(surface, rates);
         }
         self.due(rates).count()
     }
@@ -98,48 +116,52 @@ impl<G: StateVector> Hits<G> {
             Order::Ascending => self.due(rates).next(),
             Order::Descending => self.due(rates).next_back(),
         }?;
-        self.due.as_mut_slice()[surface] = 0.0;
+        self.due[surface] = false;
         Some(surface)
     }
 
     /// Surfaces of this round that have not had their turn and are still approached.
     fn due<'a>(&'a self, rates: &'a G) -> impl DoubleEndedIterator<Item = usize> + 'a {
-        let is_due = |surface: usize| self.due.as_slice()[surface] == 1.0;
         (0..rates.count())
-            .filter(move |&surface| is_due(surface) && self.is_approached(surface, rates))
+            .filter(|&surface| self.due[surface] && self.is_approached(surface, rates))
     }
 
     /// Notes an impact on a surface. Returns whether it was struck at this moment before.
     pub(super) fn note_struck(&mut self, surface: usize) -> bool {
-        core::mem::replace(&mut self.struck.as_mut_slice()[surface], 1.0) == 1.0
+        core::mem::replace(&mut self.struck[surface], true)
     }
 
     /// The gap was seen to fall through 0: it counts as approached, whatever its rate.
     pub(super) fn set_fallen(&mut self, surface: usize) {
-        self.still.as_mut_slice()[surface] = f64::NEG_INFINITY;
+        self.still[surface] = Still::Fallen;
     }
 
     /// The surface is at hand and was dealt with.
     pub(super) fn set_done(&mut self, surface: usize) {
-        self.still.as_mut_slice()[surface] = f64::INFINITY;
+        self.still[surface] = Still::Done;
     }
 
     /// The surfaces at hand are others now; those dealt with stay so.
-    pub(super) fn replace(&mut self, at_hand: G) {
+    pub(super) fn replace(&mut self, at_hand: PerSurface<bool, G>) {
         self.at_hand = at_hand;
-        for still in self.still.as_mut_slice() {
-            *still = still.max(0.0);
+        for still in self.still.iter_mut() {
+            if *still == Still::Fallen {
+                *still = Still::UpTo(0.0);
+            }
         }
     }
 
-    /// Gap rates above minus this count as not approaching.
-    pub(super) fn still(&self, surface: usize) -> f64 {
-        self.still.as_slice()[surface]
-    }
-
-    /// From now on, gap rates above `-rate` count as not approaching.
-    pub(super) fn set_still(&mut self, surface: usize, rate: f64) {
-        let still = &mut self.still.as_mut_slice()[surface];
-        *still = still.max(rate);
+    /// From now on, gap rates above `-rate` count as not approaching. Returns what counts as that now.
+    pub(super) fn set_still(&mut self, surface: usize, rate: f64) -> f64 {
+        let still = &mut self.still[surface];
+        match still {
+            Still::UpTo(before) => *before = before.max(rate),
+            Still::Fallen => *still = Still::UpTo(rate),
+            Still::Done => {}
+        }
+        match *still {
+            Still::UpTo(rate) => rate,
+            Still::Fallen | Still::Done => f64::INFINITY,
+        }
     }
 }

@@ -7,9 +7,7 @@ use super::corner::Recurrence;
 use super::held::Held;
 use super::hits::Hits;
 use super::instantaneous::focused;
-use super::law::{Blow, Law};
-use super::override_table::Overrides;
-use super::policy::{Penetration, Policies, Rest, Split};
+use super::per_surface::PerSurface;
 use super::resting::Resting;
 use super::sliding::Slide;
 use super::watch::Watch;
@@ -18,7 +16,9 @@ use crate::contract::Impacting;
 use crate::effects::{Change, Effect, Moment, SceneEffects, StepView};
 use crate::error::Fault;
 use crate::integrate::Stepper;
+use crate::law::{Blow, Law};
 use crate::outcome::Outcome;
+use crate::policy::{Penetration, Policies, Rest, Split};
 use crate::record::{Event, Observer};
 use crate::state::StateVector;
 
@@ -44,7 +44,7 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 /// the position, a surface at hand counts if it is approached. No motion is held along such a surface.
 #[derive(Debug, Clone)]
 pub struct Impacts<Sys: Impacting> {
-    overrides: Overrides<Sys::Gaps>,
+    overrides: PerSurface<Option<Law>, Sys::Gaps>,
     budget: u64,
     pub(super) policies: Policies,
     pub(super) watch: Watch<Sys>,
@@ -107,7 +107,7 @@ impl<Sys: Impacting> Impacts<Sys> {
     pub fn declared(system: &Sys) -> Self {
         let gaps = system.zero_gaps();
         Self {
-            overrides: Overrides::none(&gaps),
+            overrides: PerSurface::all(&gaps, None),
             budget: IMPACT_BUDGET,
             policies: Policies::default(),
             watch: Watch::new(system),
@@ -119,7 +119,7 @@ impl<Sys: Impacting> Impacts<Sys> {
     /// With another law on a surface. A surface past the end changes nothing.
     #[must_use]
     pub fn with_law(mut self, surface: usize, law: Law) -> Self {
-        self.overrides.set(surface, law);
+        self.overrides.set(surface, Some(law));
         self
     }
 
@@ -180,9 +180,8 @@ impl<Sys: Impacting> Impacts<Sys> {
 
     /// The law in force on a surface.
     pub fn law_of(&self, system: &Sys, surface: usize) -> Law {
-        self.overrides
-            .get(surface)
-            .unwrap_or_else(|| system.law(surface))
+        let law = self.overrides.get(surface).flatten();
+        law.unwrap_or_else(|| system.law(surface))
     }
 
     /// Whether the motion may be on both sides of a surface.
@@ -213,8 +212,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                 if self.watch.is_tangential_crossing(surface) {
                     return Err(Outcome::TangentialCrossing { surface });
                 }
-                hits.set_still(surface, still);
-                still = hits.still(surface);
+                still = hits.set_still(surface, still);
             }
             let strike = Strike {
                 surface,
@@ -235,7 +233,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                 if changes || now.system.position(now.state) != now.system.position(&arrived) {
                     self.watch.resize(&arrived, now.state);
                     self.watch.relocate(&mut hits, &rates, now)?;
-                    self.resting.keep(&hits.at_hand, now, observer)?;
+                    self.resting.keep(&hits, now, observer)?;
                     self.watch.hold(self.resting.held());
                 }
                 if changes {
@@ -288,7 +286,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         t: f64,
         state: &Sys::State,
     ) -> Result<Blow<Sys::Impulse>, Fault> {
-        match self.overrides.get(surface) {
+        match self.overrides.get(surface).flatten() {
             Some(law) => Ok(system.contact(surface, t, state)?.blow(law)),
             None => system.blow(surface, t, state),
         }
@@ -550,7 +548,7 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
             return self.watch.leave(&at_hand, now, rates);
         }
         let mut hits = self.watch.hits(theta, now)?;
-        hits.add(held.iter());
+        held.iter().for_each(|surface| hits.add(surface));
         self.strike(hits, now, observer)?;
         self.resting.bounce(now, observer)?;
         self.watch.hold(self.resting.held());
@@ -560,7 +558,7 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
 
 impl<Sys: Impacting> SceneEffects<Sys> for Impacts<Sys> {
     fn set_law(&mut self, surface: usize, law: Law) {
-        self.overrides.set(surface, law);
+        self.overrides.set(surface, Some(law));
     }
 
     fn law(&self, system: &Sys, surface: usize) -> Option<Law> {

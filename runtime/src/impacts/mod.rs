@@ -1,4 +1,4 @@
-//! Impacts: the laws, and the effect that carries them out.
+//! Impacts: the effect that finds them and carries them out.
 
 mod accumulation;
 mod corner;
@@ -9,12 +9,9 @@ mod held;
 mod hits;
 mod impulse;
 mod instantaneous;
-pub mod law;
-pub(crate) mod override_table;
+pub(crate) mod per_surface;
 mod place;
-pub mod policy;
 mod release;
-mod reset;
 mod resting;
 mod root;
 mod search;
@@ -26,4 +23,3 @@ mod watch;
 
 pub use held::Held;
 pub use impulse::{IMPACT_BUDGET, Impacts};
-pub(crate) use reset::after_reset;

@@ -6,7 +6,9 @@
 use core::ops::ControlFlow;
 
 use super::held::Held;
+use super::hits::Hits;
 use super::instantaneous::is_rough;
+use super::per_surface::PerSurface;
 use super::release::first_release;
 use super::sliding::Slide;
 use crate::contract::Impacting;
@@ -34,11 +36,11 @@ enum Turn {
 
 /// The surfaces that the state rests on.
 #[derive(Debug, Clone)]
-pub(super) struct Resting<G> {
+pub(super) struct Resting<G: StateVector> {
     held: Held<G>,
     turn: Turn,
-    /// Per surface, when impacts on it accumulated, until that is told.
-    accumulated: G,
+    /// When impacts on a surface accumulated, until that is told.
+    accumulated: PerSurface<Option<f64>, G>,
     /// When surfaces were last changed, and how often at that time.
     changed: (f64, u32),
 }
@@ -46,12 +48,10 @@ pub(super) struct Resting<G> {
 impl<G: StateVector> Resting<G> {
     /// On none, of as many as there are components here.
     pub(super) fn none(like: &G) -> Self {
-        let mut accumulated = like.zeroed();
-        accumulated.as_mut_slice().fill(f64::NAN);
         Self {
             held: Held::none(like),
             turn: Turn::Nothing,
-            accumulated,
+            accumulated: PerSurface::all(like, None),
             changed: (f64::NEG_INFINITY, 0),
         }
     }
@@ -70,7 +70,7 @@ impl<G: StateVector> Resting<G> {
 
     /// Impacts on a surface accumulate at this time.
     pub(super) fn note_accumulation(&mut self, surface: usize, t: f64) {
-        self.accumulated.as_mut_slice()[surface] = t;
+        self.accumulated[surface] = Some(t);
     }
 
     /// The motion presses into a surface at the start of a step, at `t`.
@@ -134,8 +134,6 @@ impl<G: StateVector> Resting<G> {
                 }
                 self.drop_pulling(Some(surface), now, observer)?;
                 self.held.settle(now)?;
-                let accumulated = self.accumulated.as_mut_slice();
-                let accumulation = core::mem::replace(&mut accumulated[surface], f64::NAN);
                 show(
                     observer,
                     Hold {
@@ -144,7 +142,7 @@ impl<G: StateVector> Resting<G> {
                         back: None,
                         state: *now.state,
                         begins: true,
-                        accumulation: (!accumulation.is_nan()).then_some(accumulation),
+                        accumulation: self.accumulated[surface].take(),
                     },
                 )?;
             }
@@ -185,11 +183,11 @@ impl<G: StateVector> Resting<G> {
     /// After a reset of positions: leaves the surfaces that are not at hand any more.
     pub(super) fn keep<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
-        at_hand: &G,
+        hits: &Hits<G>,
         now: &Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
-        let is_left = |surface: usize| at_hand.as_slice()[surface] != 1.0;
+        let is_left = |surface: usize| !hits.is_at_hand(surface);
         if let Some(slide) = self.held.slide() {
             return match is_left(slide.back) {
                 true => self.show_end_of_slide(slide, now, observer),
@@ -246,7 +244,7 @@ impl<G: StateVector> Resting<G> {
         now: &Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
-        self.held = Held::none(&self.accumulated);
+        self.held = Held::none(&now.system.zero_gaps());
         show(
             observer,
             Hold {

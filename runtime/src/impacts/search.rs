@@ -5,7 +5,7 @@ use super::fall::{Known, first_fall};
 use super::glance::Glance;
 use super::place::Place;
 use super::tangency::{crosses_at_rest, is_accelerated};
-use super::watch::{Told, Watch};
+use super::watch::{Graze, Told, Watch};
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::events::locate::{Bracket, Search, Start};
@@ -47,7 +47,7 @@ impl<Sys: Impacting> Watch<Sys> {
             whole = None;
         }
         self.length = glance.length;
-        self.parts.as_mut_slice().fill(f64::INFINITY);
+        self.parts.fill(None);
         for surface in first..self.parts.count() {
             if surface != first {
                 match self.told(surface, step, glance) {
@@ -68,7 +68,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 Found::Nothing => continue,
             };
             if let Some(rate) = rate {
-                self.parts.as_mut_slice()[surface] = part;
+                self.parts[surface] = Some(part);
                 self.note_graze(surface, part, rate, step, glance)?;
             }
             self.proposed = Some(self.proposed.map_or(part, |earliest| earliest.min(part)));
@@ -83,11 +83,10 @@ impl<Sys: Impacting> Watch<Sys> {
         theta: f64,
         step: &mut StepView<'_, Sys, Step>,
     ) -> f64 {
-        let parts = self.parts.as_slice();
-        let Some(surface) = parts.iter().position(|&part| part == theta) else {
+        let Some(surface) = self.parts.iter().position(|part| part == Some(theta)) else {
             return theta;
         };
-        if theta <= 0.0 || self.is_passable(surface) || self.grazes.as_slice()[surface] != 0.0 {
+        if theta <= 0.0 || self.is_passable(surface) || self.grazes[surface] != Graze::None {
             return theta;
         }
         let system = step.system;
@@ -100,7 +99,7 @@ impl<Sys: Impacting> Watch<Sys> {
             return theta;
         }
         let longer = self.length / step.length();
-        for part in self.parts.as_mut_slice() {
+        for part in self.parts.iter_mut().flatten() {
             *part = if *part == theta {
                 1.0
             } else {
@@ -260,7 +259,7 @@ impl<Sys: Impacting> Watch<Sys> {
             (ends[1] - rate, 1.0 - part)
         };
         self.bends.as_mut_slice()[surface] = change.abs() / (apart * self.length);
-        let mut graze = 0.0;
+        let mut graze = Graze::None;
         let tolerance = step.stepper.tolerance();
         let missed = SAFETY * self.errors * tolerance.relative().max(tolerance.absolute());
         let slow = SLOW.max(2.0 * math::sqrt(missed));
@@ -268,7 +267,7 @@ impl<Sys: Impacting> Watch<Sys> {
             let mut evaluations = 0;
             let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
             if self.is_slow(surface, rate, || rounding) {
-                graze = 1.0;
+                graze = Graze::WithinRounding;
             } else if self.errors > 0.0 && change > 0.0 {
                 // NOTE: only a gap that bends upwards would have turned before the surface.
                 let scale = step.system.scale(step.t_end(), step.end());
@@ -276,15 +275,15 @@ impl<Sys: Impacting> Watch<Sys> {
                 let end = (step.t_end(), step.end());
                 let error = error_within(step.system, surface, end, unit, &mut evaluations);
                 if self.is_slow(surface, rate, || SAFETY * self.errors * error) {
-                    graze = 3.0;
+                    graze = Graze::WithinError;
                 }
             }
             step.counters.event_evaluations += evaluations;
         }
-        if graze == 1.0 && crosses_at_rest(surface, step, part)? {
-            graze = 2.0;
+        if graze == Graze::WithinRounding && crosses_at_rest(surface, step, part)? {
+            graze = Graze::Crossing;
         }
-        self.grazes.as_mut_slice()[surface] = graze;
+        self.grazes[surface] = graze;
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use super::glance::finite;
 use super::hits::Hits;
-use super::watch::{BESIDE, Watch};
+use super::watch::{BESIDE, Graze, Watch};
 use crate::contract::Impacting;
 use crate::effects::Moment;
 use crate::outcome::Outcome;
@@ -19,12 +19,12 @@ impl<Sys: Impacting> Watch<Sys> {
         if rates.count() == 1 {
             return Ok(());
         }
-        let before = hits.at_hand;
+        let before = *hits;
         self.add_touching(hits, rates, now)?;
         for surface in 0..rates.count() {
-            if hits.at_hand.as_slice()[surface] != before.as_slice()[surface] {
+            if hits.is_at_hand(surface) != before.is_at_hand(surface) {
                 // What was found out about the last hit on it is of another place.
-                self.grazes.as_mut_slice()[surface] = 0.0;
+                self.grazes[surface] = Graze::None;
                 self.bends.as_mut_slice()[surface] = 0.0;
             }
         }
@@ -39,11 +39,11 @@ impl<Sys: Impacting> Watch<Sys> {
         now: &mut Moment<'_, Sys>,
     ) -> Result<(), Outcome> {
         for surface in 0..rates.count() {
-            let is_candidate = hits.at_hand.as_slice()[surface] == 0.0
+            let is_candidate = !hits.is_at_hand(surface)
                 && rates.as_slice()[surface] < 0.0
                 && !self.is_passable(surface);
             if is_candidate && self.touches(surface, rates.as_slice()[surface], now)? {
-                hits.add([surface].into_iter());
+                hits.add(surface);
             }
         }
         Ok(())

@@ -10,7 +10,7 @@
 use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::Held;
 use super::hits::Hits;
-use super::law::Law;
+use super::per_surface::PerSurface;
 use super::place::Place;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
@@ -21,6 +21,7 @@ use crate::events::path::Path;
 use crate::events::piece::Piece;
 use crate::events::resolution::{counts_beyond_rounding, resolution};
 use crate::integrate::Stepper;
+use crate::law::Law;
 use crate::numbers::TaylorModel;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
@@ -34,18 +35,17 @@ pub(super) struct Watch<Sys: Impacting> {
     /// Gaps at the start of the step; 0 for surfaces at hand, negative only where the surface does not count or is
     /// passable.
     pub(super) gaps: Sys::Gaps,
-    /// 1 for passable surfaces.
-    passable: Sys::Gaps,
+    /// Whether a surface is passable.
+    passable: PerSurface<bool, Sys::Gaps>,
     /// Rates at the start of the step, where they are known; always of surfaces at hand.
     pub(super) rates: Sys::Gaps,
     has_rates: bool,
     /// The earliest proposal of the last step.
     pub(super) proposed: Option<f64>,
-    /// Per surface, the part of the last step at which it is hit; meaningful while something is proposed.
-    pub(super) parts: Sys::Gaps,
-    /// 1 where that hit is a graze within rounding, 2 where the surface is crossed there although the gap rate vanishes, 3 where
-    /// it is a graze as far as the integrator's error tells.
-    pub(super) grazes: Sys::Gaps,
+    /// The part of the last step at which a surface is hit; meaningful while something is proposed.
+    pub(super) parts: PerSurface<Option<f64>, Sys::Gaps>,
+    /// What that hit is.
+    pub(super) grazes: PerSurface<Graze, Sys::Gaps>,
     /// How fast the gap rate changes about that hit.
     pub(super) bends: Sys::Gaps,
     /// Length of the last step.
@@ -75,6 +75,19 @@ pub(super) struct Watch<Sys: Impacting> {
     is_stale: bool,
 }
 
+/// Whether a hit is a graze.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Graze {
+    /// It is none.
+    None,
+    /// It is one within the rounding of the gap.
+    WithinRounding,
+    /// The surface is crossed, although the gap rate vanishes there.
+    Crossing,
+    /// It is one as far as the error of the integrator tells.
+    WithinError,
+}
+
 /// What the first look at a step tells of a surface.
 pub(super) enum Told {
     /// The step passes it, as its ends and bounds of bends show.
@@ -91,12 +104,12 @@ impl<Sys: Impacting> Watch<Sys> {
         let positions = system.coordinate_count();
         Self {
             gaps: zeros,
-            passable: zeros,
+            passable: PerSurface::all(&zeros, false),
             rates: zeros,
             has_rates: false,
             proposed: None,
-            parts: zeros,
-            grazes: zeros,
+            parts: PerSurface::all(&zeros, None),
+            grazes: PerSurface::all(&zeros, Graze::None),
             bends: zeros,
             length: 0.0,
             place: None,
@@ -127,11 +140,11 @@ impl<Sys: Impacting> Watch<Sys> {
 
     /// Says whether a surface is passable in the coming run.
     pub(super) fn set_passable(&mut self, surface: usize, passable: bool) {
-        self.passable.as_mut_slice()[surface] = f64::from(u8::from(passable));
+        self.passable[surface] = passable;
     }
 
     pub(super) fn is_passable(&self, surface: usize) -> bool {
-        self.passable.as_slice()[surface] == 1.0
+        self.passable[surface]
     }
 
     /// The surfaces at hand at the first instant of a run.
@@ -168,14 +181,15 @@ impl<Sys: Impacting> Watch<Sys> {
         now: &mut Moment<'_, Sys>,
     ) -> Result<(), Outcome> {
         let gaps = measured(now)?;
-        (self.grazes, self.bends) = (gaps.zeroed(), gaps.zeroed());
+        self.grazes.fill(Graze::None);
+        self.bends = gaps.zeroed();
         self.here = Some(gaps);
-        let mut at_hand = gaps.zeroed();
+        let mut at_hand = PerSurface::all(&gaps, false);
         for (surface, &gap) in gaps.as_slice().iter().enumerate() {
             if now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (rates.as_slice()[surface] * now.t).abs();
                 if gap.abs() <= 2.0 * rounding(now, surface, &self.sizes) + drift {
-                    at_hand.as_mut_slice()[surface] = 1.0;
+                    at_hand[surface] = true;
                 }
             }
         }
@@ -186,7 +200,7 @@ impl<Sys: Impacting> Watch<Sys> {
     /// In a mode that was just entered, a surface at hand that motion may pass has been dealt with: it was entered there.
     pub(super) fn pass_by(&self, hits: &mut Hits<Sys::Gaps>) {
         for surface in 0..self.gaps.count() {
-            if self.is_passable(surface) && hits.at_hand.as_slice()[surface] == 1.0 {
+            if self.is_passable(surface) && hits.is_at_hand(surface) {
                 hits.set_done(surface);
             }
         }
@@ -203,14 +217,13 @@ impl<Sys: Impacting> Watch<Sys> {
         self.haven.forget();
         let leads_on =
             |surface: usize| matches!(now.system.law(surface), Law::Reset | Law::Transition);
-        if (0..self.gaps.count()).any(|s| hits.at_hand.as_slice()[s] == 1.0 && leads_on(s)) {
+        if (0..self.gaps.count()).any(|s| hits.is_at_hand(s) && leads_on(s)) {
             self.limits.forget();
         }
         self.is_stale = false;
         (self.steps, self.errors) = (0, 0.0);
         let (held, here) = (self.held, self.here.take());
-        let is_at_hand =
-            |surface: usize| hits.at_hand.as_slice()[surface] == 1.0 || held.is_held(surface);
+        let is_at_hand = |surface: usize| hits.is_at_hand(surface) || held.is_held(surface);
         self.gaps = rates.zeroed();
         if (0..self.gaps.count()).all(is_at_hand) {
             self.sizes = *now.state;
@@ -235,14 +248,14 @@ impl<Sys: Impacting> Watch<Sys> {
         theta: f64,
         now: &mut Moment<'_, Sys>,
     ) -> Result<Hits<Sys::Gaps>, Outcome> {
-        let mut hits = Hits::none(&self.parts);
+        let mut hits = Hits::none(&self.gaps);
         self.here = None;
         if self.proposed.is_none() {
             return Ok(hits);
         }
-        for (surface, part) in self.parts.as_slice().iter().enumerate() {
-            if (part - theta) * self.length <= SAME_TIME * now.t.abs() {
-                hits.at_hand.as_mut_slice()[surface] = 1.0;
+        for (surface, part) in self.parts.iter().enumerate() {
+            if part.is_some_and(|part| (part - theta) * self.length <= SAME_TIME * now.t.abs()) {
+                hits.add(surface);
                 if self.is_passable(surface) {
                     hits.set_fallen(surface);
                 }
@@ -270,7 +283,7 @@ impl<Sys: Impacting> Watch<Sys> {
         self.here = Some(gaps);
         let roundings = 2.0 + f64::from(self.steps) / 16.0;
         for surface in 0..self.gaps.count() {
-            if hits.at_hand.as_slice()[surface] == 1.0 {
+            if hits.is_at_hand(surface) {
                 continue;
             }
             let (gap, rate) = (gaps.as_slice()[surface], rates.as_slice()[surface]);
@@ -282,7 +295,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 && gap.abs() <= roundings * rounding(now, surface, &self.sizes)
                 && now.system.surface_active(surface, now.t, now.state)
             {
-                hits.add([surface].into_iter());
+                hits.add(surface);
             }
         }
         Ok(())
@@ -304,7 +317,10 @@ impl<Sys: Impacting> Watch<Sys> {
 
     /// Whether the hit on this surface is a graze.
     pub(super) fn is_graze(&self, surface: usize) -> bool {
-        matches!(self.grazes.as_slice()[surface], 1.0 | 3.0)
+        matches!(
+            self.grazes[surface],
+            Graze::WithinRounding | Graze::WithinError
+        )
     }
 
     /// Whether a gap rate at the last hit is so slow that an error of the gap, such as its rounding, may have decided its sign.
@@ -334,7 +350,7 @@ impl<Sys: Impacting> Watch<Sys> {
 
     /// Whether this surface is crossed at gap rate 0.
     pub(super) fn is_tangential_crossing(&self, surface: usize) -> bool {
-        self.grazes.as_slice()[surface] == 2.0
+        self.grazes[surface] == Graze::Crossing
     }
 
     /// Looks for the earliest hit in a step.
@@ -448,7 +464,7 @@ impl<Sys: Impacting> Watch<Sys> {
             }
             let Self { haven, path, .. } = self;
             let passable = self.passable;
-            let is_passable = |surface: usize| passable.as_slice()[surface] == 1.0;
+            let is_passable = |surface: usize| passable[surface];
             haven.settle(
                 step.system,
                 path,
@@ -510,7 +526,7 @@ impl<Sys: Impacting> Watch<Sys> {
             }
         }
         self.length = step.length();
-        self.parts.as_mut_slice().fill(f64::INFINITY);
+        self.parts.fill(None);
         (self.proposed, self.behind) = (Some(after), Some(surface));
         Ok(())
     }

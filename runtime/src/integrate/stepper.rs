@@ -8,6 +8,7 @@ use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::jet::LENGTH;
+use crate::outcome::Outcome;
 
 /// A one-step integrator with dense output, whether it chooses its steps by an error estimate or keeps a size.
 ///
@@ -245,20 +246,20 @@ pub enum StepFailure {
     },
 }
 
+impl From<StepFailure> for Outcome {
+    fn from(failure: StepFailure) -> Self {
+        match failure {
+            StepFailure::StepUnderflow { t } => Self::StepUnderflow { t },
+            StepFailure::NotConverged { t } => Self::NotConverged { t },
+            StepFailure::Fault(fault) => fault.into(),
+            StepFailure::NonFinite { component } => Self::NonFinite { component },
+        }
+    }
+}
+
 impl fmt::Display for StepFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::StepUnderflow { t } => write!(f, "the step size underflows at t = {t}"),
-            Self::NotConverged { t } => write!(
-                f,
-                "the equations of the implicit step at t = {t} have no solution within reach: a shorter step may have"
-            ),
-            Self::Fault(fault) => fault.fmt(f),
-            Self::NonFinite { component } => write!(
-                f,
-                "component {component} of the state or its rate is not finite"
-            ),
-        }
+        Outcome::from(*self).fmt(f)
     }
 }
 

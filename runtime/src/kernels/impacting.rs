@@ -7,7 +7,7 @@ use super::{At, Declared, Form, HasSurfaces, Kernels};
 use crate::contract::{Impacting, System};
 use crate::error::Fault;
 use crate::generated::{OverNumbers, certain};
-use crate::impacts::law::{Blow, Contact, Jump, Law};
+use crate::law::{Blow, Contact, Jump, Law};
 use crate::numbers::{Bent, Interval, Numbers, Row, TaylorModel};
 use crate::state::StateVector;
 

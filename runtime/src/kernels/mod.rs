@@ -15,10 +15,9 @@ mod system;
 mod tables;
 mod variational;
 
-use crate::contract::TaylorField;
+use crate::contract::{Tangent, TaylorField};
 use crate::error::Fault;
 use crate::numbers::{Numbers, Row};
-use crate::variations::Tangent;
 pub use dalembert_numbers::kernel::{First, Kernel, Second};
 pub use declared::{Declared, number, pair, write};
 pub use described::{Documented, Quantity, Shape};

@@ -62,7 +62,7 @@ pub enum Beside {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface {
     /// The law, with a coefficient of 0 where it has one.
-    pub law: crate::impacts::law::Law,
+    pub law: crate::law::Law,
     /// The name of the coefficient, for errors.
     pub coefficient: Option<&'static str>,
     /// Its conditions.

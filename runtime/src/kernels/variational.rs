@@ -4,7 +4,7 @@ use super::impacting::{counts, counts_throughout};
 use super::{At, Declared, Form, HasVariations, Kernels};
 use crate::contract::{TaylorField, Variational};
 use crate::error::Fault;
-use crate::impacts::law::Law;
+use crate::law::Law;
 use crate::numbers::{Interval, Numbers, Row};
 use crate::state::StateVector;
 

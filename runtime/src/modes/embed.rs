@@ -8,7 +8,7 @@ use crate::contract::{Impacting, Keep, RankDrop};
 use crate::describe::{Initial, Report};
 use crate::error::{Fault, StateError};
 use crate::generated::OverNumbers;
-use crate::impacts::law::{Blow, Contact, Landing};
+use crate::law::{Blow, Contact, Landing};
 use crate::numbers::{Numbers, Row};
 use crate::outcome::Outcome;
 use crate::state::StateVector;

@@ -21,7 +21,7 @@
 use super::{Mode, StateOf, placed, taken};
 use crate::contract::{Impacting, System};
 use crate::error::{Fault, StateError};
-use crate::impacts::law::{Landing, Law};
+use crate::law::{Landing, Law};
 use crate::math;
 use crate::outcome::Outcome;
 use crate::state::StateVector;

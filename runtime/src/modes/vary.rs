@@ -5,8 +5,8 @@
 use super::{Mode, Passage};
 use crate::contract::Variational;
 use crate::error::Fault;
-use crate::impacts::law::Law;
 use crate::kernels::{At, Declared, energy_over, enter_over, nearest_over};
+use crate::law::Law;
 use crate::numbers::{Interval, Numbers, Row};
 
 /// A mode whose transitions can be computed in any [`Numbers`]. Implemented by `model!`.

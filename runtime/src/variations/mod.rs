@@ -27,17 +27,16 @@ mod held;
 mod observer;
 pub mod orbit;
 pub mod section;
-mod tangent;
 pub(crate) mod transition;
 
 use core::fmt;
 
+pub use crate::contract::Tangent;
 pub use dual::{DIRECTIONS, Dual};
 pub use eigenvalues::Multipliers;
 pub use observer::Variations;
 pub use orbit::{Orbit, OrbitError};
 pub use section::{Arrival, Section, SectionError};
-pub use tangent::Tangent;
 
 use crate::error::Fault;
 

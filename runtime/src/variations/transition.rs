@@ -6,7 +6,7 @@ use super::held::Holder;
 use super::{DIRECTIONS, Dual, Tangent, Undefined};
 use crate::contract::Variational;
 use crate::error::Fault;
-use crate::impacts::law::Law;
+use crate::law::Law;
 use crate::numbers::{Numbers, Row};
 use crate::record::Event;
 use crate::state::StateVector;

@@ -110,10 +110,10 @@ fn emit_laws(whole: &Whole<'_>) -> TokenStream {
     };
     let opposite = emit_opposites(whole);
     quote! {
-        fn law(&self, surface: usize) -> ::dalembert::impacts::law::Law {
+        fn law(&self, surface: usize) -> ::dalembert::law::Law {
             match surface {
                 #(#laws)*
-                _ => ::dalembert::impacts::law::Law::Elastic,
+                _ => ::dalembert::law::Law::Elastic,
             }
         }
 
@@ -137,15 +137,15 @@ fn emit_impacts(whole: &Whole<'_>) -> TokenStream {
         &no_surface,
         |own| quote!(::dalembert::__private::modes::contact::<#own, _>(self, surface, t, state)),
     );
-    let blown = fallible(&quote!(::dalembert::impacts::law::Blow<Self::Impulse>));
-    let touched = fallible(&quote!(::dalembert::impacts::law::Contact<Self::Impulse>));
+    let blown = fallible(&quote!(::dalembert::law::Blow<Self::Impulse>));
+    let touched = fallible(&quote!(::dalembert::law::Contact<Self::Impulse>));
     quote! {
         fn landing(
             &self,
             surface: usize,
             t: f64,
             state: &Self::State,
-        ) -> ::core::result::Result<::dalembert::impacts::law::Landing<Self::State>, ::dalembert::Outcome> {
+        ) -> ::core::result::Result<::dalembert::law::Landing<Self::State>, ::dalembert::Outcome> {
             #landing
         }
 

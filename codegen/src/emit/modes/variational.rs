@@ -211,10 +211,10 @@ fn emit_declared_law(whole: &Whole<'_>) -> TokenStream {
         fn declared_law<L: ::dalembert::numbers::Numbers>(
             parameters: &Self::Parameters<L>,
             surface: usize,
-        ) -> (::dalembert::impacts::law::Law, L) {
+        ) -> (::dalembert::law::Law, L) {
             match surface {
                 #(#arms)*
-                _ => (::dalembert::impacts::law::Law::Elastic, L::ZERO),
+                _ => (::dalembert::law::Law::Elastic, L::ZERO),
             }
         }
     }

@@ -8,7 +8,7 @@ use std::io::{BufWriter, Write};
 
 use dalembert::StateError;
 use dalembert::describe::Description;
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use serde_json::{Map, Value, json};
 
 use crate::Streams;

@@ -16,11 +16,11 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use dalembert::describe::Description;
-use dalembert::impacts::law::Law;
 use dalembert::integrate::{
     AUTOMATIC_STEPS, Chosen, Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4,
     Gauss6, Method, Rk4, Taylor, Tolerance,
 };
+use dalembert::law::Law;
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
     Event, Hold, Observer, Outcome, Policies, Run, SceneEffects, Segment, Simulation, StateVector,

@@ -1,6 +1,6 @@
 //! What impacts on one surface make of a state.
 
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 use dalembert::{Fault, StateError};
 use serde_json::{Map, Value};
 

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use dalembert::impacts::law::Law;
+use dalembert::law::Law;
 
 use super::Finished;
 use crate::accuracy::Verified;

@@ -12,8 +12,8 @@ use dalembert::describe::{
     Report, SurfaceInfo, Topology, ViewInfo,
 };
 use dalembert::error::ParameterError;
-use dalembert::impacts::law::{Contact, Law};
 use dalembert::jet::LENGTH;
+use dalembert::law::{Contact, Law};
 use dalembert::numbers::{Bent, Numbers, TaylorModel};
 use dalembert::{
     Fault, Impacting, Impacts, Lagrangian, Scene, StateError, System, TaylorField, VectorField,

@@ -4,9 +4,9 @@ use dalembert::audit::{Audit, Auditor};
 use dalembert::describe::{Described, Description, Initial, Report};
 use dalembert::effects::{Moment, StepView};
 use dalembert::error::ParameterError;
-use dalembert::impacts::law::Law;
 use dalembert::integrate::Stepper;
 use dalembert::jet::{LENGTH, Work};
+use dalembert::law::Law;
 use dalembert::numbers::{Numbers, Rated};
 use dalembert::{
     Effect, Event, Fault, Impacting, Lagrangian, NoForces, Observer, Outcome, RankDrop, Scene,

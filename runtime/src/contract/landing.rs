@@ -2,12 +2,12 @@
 
 use crate::contract::Impacting;
 use crate::error::StateError;
-use crate::impacts::law::Law;
+use crate::law::Law;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
 /// The state after the reset of a surface: in its chart, and on the constraints.
-pub(crate) fn after_reset<Sys: Impacting + ?Sized>(
+pub(super) fn after_reset<Sys: Impacting + ?Sized>(
     system: &Sys,
     surface: usize,
     t: f64,
