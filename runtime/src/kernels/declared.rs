@@ -95,7 +95,7 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
 /// Writes the values of a kernel.
 ///
 /// # Errors
-/// As [`Kernels::call`].
+/// As [`Kernels`](super::Kernels).
 #[inline(always)]
 pub fn write<S: Declared>(
     system: &S,
@@ -133,7 +133,7 @@ pub(super) fn vector<S: Declared, V: StateVector>(
 /// The only value of a kernel.
 ///
 /// # Errors
-/// As [`Kernels::call`].
+/// As [`Kernels`](super::Kernels).
 #[inline(always)]
 pub fn number<S: Declared>(
     system: &S,
@@ -165,7 +165,7 @@ pub(super) fn several<S: Declared>(
 /// Two vectors that a kernel gives: positions and velocities.
 ///
 /// # Errors
-/// As [`Kernels::call`].
+/// As [`Kernels`](super::Kernels).
 pub fn pair<S: Declared>(
     system: &S,
     kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,

@@ -87,7 +87,7 @@ fn state_by<S: Declared, L: Numbers, R: Row<L>>(
     Ok(state)
 }
 
-/// As [`System::state_nearest`], over numbers.
+/// As [`System::state_nearest`](crate::System::state_nearest), over numbers.
 ///
 /// # Errors
 /// [`Fault`].
@@ -146,7 +146,7 @@ pub fn enter<S: Declared>(
     enter_over::<S, f64>(surface, at, after)
 }
 
-/// As [`System::energy`], over numbers.
+/// As [`System::energy`](crate::System::energy), over numbers.
 ///
 /// # Errors
 /// [`Fault`].
