@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use dalembert::describe::SceneVisitor;
 use dalembert::{
-    Described, Divergence, Dop853, Impacts, Lagrangian, Outcome, Projection, Scene, Simulation,
-    System, TaylorField, Tolerance,
+    Described, Divergence, Dop853, Impacting, Impacts, Lagrangian, Outcome, Projection, Scene,
+    Simulation, System, TaylorField, Tolerance,
 };
 use dalembert_cli::Exit;
 use dalembert_codegen::Compiled;
@@ -172,6 +172,50 @@ dalembert::model! {
         scenes { bare; kept: projection; }
         initial { dot(x) = 1; theta = 0.3; until = 1; }
     }
+}
+
+dalembert::model! {
+    /// A disk between a floor that it does not slip on and two smooth walls.
+    Rolled {
+        coordinates { x; y; theta; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(theta)^2)/2 - y;
+        impacts {
+            floor: y >= 1 => newton(1/2), instantaneous { roll: dot(x) - dot(theta) = 0; };
+            left: x >= 0;
+            turned: 9 - x >= 0 => reset { dot(x) = -dot(x); };
+        }
+        scenes { walls: left, turned; fast: turned; all_but_left: floor, turned; }
+        initial { x = 1; y = 2; dot(x) = 1; until = 1; }
+    }
+}
+
+#[test]
+fn a_surface_of_a_scene_has_its_own_functions_at_its_own_place() {
+    let whole = Rolled {};
+    let state = whole
+        .state(0.0, &[1.0, 2.0, 0.0].into(), &[1.0, -1.0, 0.0].into())
+        .expect("a state");
+    let has = |found: [Option<bool>; 2]| found.map(|found| found.is_some());
+    let asked = |system: &dyn Fn(usize) -> [Option<bool>; 2]| [0, 1, 2].map(|s| has(system(s)));
+    macro_rules! of {
+        ($system:expr) => {
+            asked(&|surface| {
+                let system = $system;
+                let focus = system.focus(surface, 0.0, &state).expect("no fault");
+                let reset = system.reset(surface, 0.0, &state).expect("no fault");
+                [focus.map(|_| true), reset.map(|_| true)]
+            })
+        };
+    }
+    let [rough, smooth, map, none] = [[true, false], [false; 2], [false, true], [false; 2]];
+    assert_eq!(of!(whole), [rough, smooth, map]);
+    assert_eq!(of!(rolled::Walls(whole)), [smooth, map, none]);
+    assert_eq!(of!(rolled::Fast(whole)), [map, none, none]);
+    assert_eq!(of!(rolled::AllButLeft(whole)), [rough, map, none]);
+    assert_eq!(
+        rolled::Walls(whole).gaps(0.0, &state).as_slice(),
+        [1.0, 8.0]
+    );
 }
 
 /// A run of a system with the effects it comes with.

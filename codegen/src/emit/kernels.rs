@@ -68,15 +68,13 @@ pub(super) fn emit_kernels(
     let kernels = kernels(context);
     let inherited = base.as_ref().and_then(|own| written.methods.get(own));
     let mut methods = inherited.cloned().unwrap_or_default();
-    let is_inherited = |name: &Ident| {
-        let mut own = kernels.iter().filter(|own| own.method == *name);
-        own.all(|own| methods.get(&own.kernel) == Some(&own.key))
-    };
+    let count = context.model.surfaces.len();
+    let mut own = differing(&kernels, &methods, count);
     let velocity = kernels.first().map(|own| &own.key);
-    let mut own = BTreeMap::<&Ident, Method>::new();
-    for kernel in kernels.iter().filter(|own| !is_inherited(&own.method)) {
-        let method = own.entry(&kernel.method).or_default();
-        method.add(context, kernel, velocity, written);
+    for kernel in &kernels {
+        if let Some(method) = own.get_mut(&kernel.method) {
+            method.add(context, kernel, velocity, written);
+        }
     }
     let own = own.iter();
     let own = own.map(|(name, method)| method.emit(context, name));
@@ -98,19 +96,49 @@ pub(super) fn emit_kernels(
             #(#own)*
         }
     };
+    methods.retain(|kernel, _| name(*kernel).1.is_none());
     methods.extend(kernels.into_iter().map(|own| (own.kernel, own.key)));
     written.methods.insert(type_name, methods);
     items
 }
 
+/// The methods of a form with so many surfaces that are not those of its base, still without statements.
+fn differing(
+    kernels: &[Own<'_>],
+    inherited: &HashMap<Kernel, Rc<Key>>,
+    surfaces: usize,
+) -> BTreeMap<Ident, Method> {
+    let own = kernels.iter();
+    let own: HashMap<Kernel, &Rc<Key>> = own.map(|own| (own.kernel, &own.key)).collect();
+    // NOTE: a function of a surface that the base has and this form has not is that of another surface.
+    let missing = inherited.keys().filter(|kernel| {
+        let (_, surface) = name(**kernel);
+        surface.is_some_and(|surface| surface < surfaces) && !own.contains_key(kernel)
+    });
+    let changed = own.iter();
+    let changed = changed.filter(|(kernel, key)| inherited.get(kernel) != Some(key));
+    let changed = changed.map(|(kernel, _)| kernel);
+    let methods = missing.chain(changed).map(|kernel| {
+        let (method, surface) = name(*kernel);
+        let is_of_surface = surface.is_some();
+        let empty = Method {
+            is_of_surface,
+            ..Method::default()
+        };
+        (method, empty)
+    });
+    methods.collect()
+}
+
 /// A method of `Kernels`.
 #[derive(Default)]
 struct Method {
+    is_of_surface: bool,
     takes_parameters: bool,
     documentation: TokenStream,
     /// The statements of one that is told no surface.
     plain: TokenStream,
-    /// Statements, and the surfaces that they are for.
+    /// Of one that is: statements, and the surfaces that they are for.
     arms: Vec<(Vec<usize>, TokenStream)>,
 }
 
@@ -155,7 +183,7 @@ impl Method {
     fn emit(&self, context: &Context<'_>, name: &Ident) -> TokenStream {
         let (documentation, plain) = (&self.documentation, &self.plain);
         let parameters = self.takes_parameters.then(|| bind_parameters(context));
-        let surface = (!self.arms.is_empty()).then(|| quote!(surface: usize,));
+        let surface = self.is_of_surface.then(|| quote!(surface: usize,));
         let choice = surface.as_ref().map(|_| self.emit_choice());
         quote! {
             #documentation
