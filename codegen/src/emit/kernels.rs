@@ -16,6 +16,9 @@ use super::function::{Body, emit_body, joined, uses};
 use super::{Context, doc};
 use crate::program::{Form, Function, Input, Op, Value};
 
+/// Operations of a method that is inlined wherever it is called.
+const MOST_INLINED: usize = 1000;
+
 /// What was written.
 #[derive(Default)]
 pub(super) struct Written {
@@ -134,6 +137,7 @@ fn differing(
 #[derive(Default)]
 struct Method {
     is_of_surface: bool,
+    operations: usize,
     takes_parameters: bool,
     documentation: TokenStream,
     /// The statements of one that is told no surface.
@@ -158,6 +162,7 @@ impl Method {
         };
         let place = written.places.entry(own.key.clone());
         let place = place.or_insert_with(|| here.clone()).clone();
+        self.operations += own.function.ops.len();
         let body = if place == here {
             self.takes_parameters |= takes_parameters(own.function);
             let velocity = velocity.and_then(|key| written.places.get(key));
@@ -184,10 +189,15 @@ impl Method {
         let (documentation, plain) = (&self.documentation, &self.plain);
         let parameters = self.takes_parameters.then(|| bind_parameters(context));
         let surface = self.is_of_surface.then(|| quote!(surface: usize,));
+        // A kernel has one caller for each type of system. That several share it must not keep it from being inlined there.
+        let inline = match self.operations <= MOST_INLINED {
+            true => quote!(#[inline(always)]),
+            false => quote!(#[inline]),
+        };
         let choice = surface.as_ref().map(|_| self.emit_choice());
         quote! {
             #documentation
-            #[inline]
+            #inline
             fn #name<L: ::dalembert::numbers::Numbers>(
                 &self,
                 #surface
