@@ -82,7 +82,7 @@ fn emit_marks(values: &[Option<ExprId>]) -> TokenStream {
     quote!(&[#(#marks),*])
 }
 
-/// What the geometry at a state consists of.
+/// The quantities of the geometry at a state.
 fn emit_geometry(context: &Context<'_>) -> TokenStream {
     let geometry = &context.program.geometry;
     let count = geometry.function.outputs.len();
@@ -105,7 +105,7 @@ fn emit_geometry(context: &Context<'_>) -> TokenStream {
 fn emit_integrated_density(context: &Context<'_>) -> TokenStream {
     let volume = context.program.volume.as_ref();
     let is_global = context.program.form != Form::Reduced;
-    if !is_global || volume.is_none_or(|own| own.gradient.is_none()) {
+    if !is_global || volume.is_none_or(|volume| volume.gradient.is_none()) {
         return TokenStream::new();
     }
     quote! {

@@ -19,16 +19,16 @@ use crate::program::{Form, Function, Input, Op, Value};
 /// Operations of a method that is inlined wherever it is called.
 const MOST_INLINED: usize = 1000;
 
-/// What was written.
+/// The functions written so far.
 #[derive(Default)]
 pub(super) struct Written {
-    /// Where each function stands.
+    /// The place of each function.
     places: HashMap<Rc<Key>, Place>,
-    /// What the methods of each type compute, those of its base among them.
+    /// The functions of each type by kernel, those of its base included.
     methods: HashMap<Ident, HashMap<Kernel, Rc<Key>>>,
 }
 
-/// What tells functions apart.
+/// The identity of a function: equal keys compute the same.
 #[derive(PartialEq, Eq, Hash)]
 struct Key {
     ops: Vec<Op>,
@@ -69,18 +69,19 @@ pub(super) fn emit_kernels(
     let type_name = type_name(context);
     let base = base.map(self::type_name);
     let kernels = kernels(context);
-    let inherited = base.as_ref().and_then(|own| written.methods.get(own));
+    let inherited = base.as_ref().and_then(|base| written.methods.get(base));
     let mut methods = inherited.cloned().unwrap_or_default();
     let count = context.model.surfaces.len();
-    let mut own = differing(&kernels, &methods, count);
-    let velocity = kernels.first().map(|own| &own.key);
+    let mut new_methods = differing(&kernels, &methods, count);
+    let velocity = kernels.first().map(|velocity| &velocity.key);
     for kernel in &kernels {
-        if let Some(method) = own.get_mut(&kernel.method) {
+        if let Some(method) = new_methods.get_mut(&kernel.method) {
             method.add(context, kernel, velocity, written);
         }
     }
-    let own = own.iter();
-    let own = own.map(|(name, method)| method.emit(context, name));
+    let emitted = new_methods
+        .iter()
+        .map(|(name, method)| method.emit(context, name));
     let base = match &base {
         Some(base) => quote!(#base),
         None => quote!(::dalembert::kernels::NoKernels),
@@ -96,11 +97,15 @@ pub(super) fn emit_kernels(
             type Base = #base;
             const BASE: #base = #base;
 
-            #(#own)*
+            #(#emitted)*
         }
     };
     methods.retain(|kernel, _| name(*kernel).1.is_none());
-    methods.extend(kernels.into_iter().map(|own| (own.kernel, own.key)));
+    methods.extend(
+        kernels
+            .into_iter()
+            .map(|written| (written.kernel, written.key)),
+    );
     written.methods.insert(type_name, methods);
     items
 }
@@ -142,7 +147,7 @@ struct Method {
     documentation: TokenStream,
     /// The statements of one that is told no surface.
     plain: TokenStream,
-    /// Of one that is: statements, and the surfaces that they are for.
+    /// The statements of one that is told a surface, each with its surfaces.
     arms: Vec<(Vec<usize>, TokenStream)>,
 }
 

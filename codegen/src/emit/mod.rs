@@ -79,7 +79,7 @@ pub fn tokens(compiled: &Compiled) -> TokenStream {
     }
 }
 
-/// What is implemented for the types of a model, a scene or a mode; `base` are those that it shares kernels with.
+/// Implementations for the types of a model, a scene or a mode; it shares kernels with `base`.
 fn forms(
     contexts: &[Context<'_>],
     base: &[Context<'_>],
@@ -155,12 +155,12 @@ fn implementations(
     ]
 }
 
-/// What every generated implementation says of itself.
+/// Attributes of every generated implementation.
 fn attributes() -> TokenStream {
     quote!(#[automatically_derived])
 }
 
-/// What all generated code asks for: it was not written by hand, so lints on style have nothing to say, and a function need not use
+/// Lints that generated code allows: it was not written by hand, so lints on style have nothing to say, and a function need not use
 /// all that the contract hands it.
 fn allowances() -> TokenStream {
     quote! {

@@ -94,6 +94,28 @@ pub enum Kernel {
     Geometry,
 }
 
+/// How the numbers of a quantity are arranged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// One number.
+    Scalar,
+    /// So many numbers.
+    Vector(usize),
+    /// Rows and columns; row after row.
+    Matrix(usize, usize),
+}
+
+impl Shape {
+    /// How many numbers there are.
+    pub const fn count(self) -> usize {
+        match self {
+            Self::Scalar => 1,
+            Self::Vector(count) => count,
+            Self::Matrix(rows, columns) => rows * columns,
+        }
+    }
+}
+
 /// What a kernel reads in its first place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum First {

@@ -1,4 +1,4 @@
-//! What changes the energy of a system.
+//! Powers: the rates at which named causes change the energy of a system.
 
 use super::System;
 use crate::error::Fault;

@@ -1,7 +1,7 @@
 //! `Described` of every declared model.
 
 use super::declared::{number, pair, write};
-use super::{Declared, Form, Kernels};
+use super::{Declared, Form, Kernels, Shape};
 use crate::contract::System;
 use crate::describe::{Described, Description, Initial, Report, SceneVisitor, VariationalVisitor};
 use crate::effects::Scene;
@@ -19,29 +19,7 @@ pub struct Quantity {
     pub shape: Shape,
 }
 
-/// How the numbers of a quantity are arranged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
-    /// One number.
-    Scalar,
-    /// So many numbers.
-    Vector(usize),
-    /// Rows and columns; row after row.
-    Matrix(usize, usize),
-}
-
-impl Shape {
-    /// How many numbers there are.
-    pub const fn count(self) -> usize {
-        match self {
-            Self::Scalar => 1,
-            Self::Vector(count) => count,
-            Self::Matrix(rows, columns) => rows * columns,
-        }
-    }
-}
-
-/// What a declared form says of itself: `model!` writes it, and [`Described`] is made of it.
+/// The description of a declared form: `model!` writes it, and [`Described`] is made of it.
 pub trait Documented: Declared {
     /// As [`Described::DESCRIPTION`].
     const DESCRIPTION: Description;
@@ -55,7 +33,7 @@ pub trait Documented: Declared {
     /// Of each coordinate, whether its velocity was declared.
     const NAMED: &'static [bool];
 
-    /// What [`Kernel::Geometry`](super::Kernel::Geometry) gives, in order.
+    /// The quantities of [`Kernel::Geometry`](super::Kernel::Geometry), in order.
     const GEOMETRY: &'static [Quantity];
 
     /// As many numbers as all of these quantities have.
@@ -200,7 +178,7 @@ fn marks<V: StateVector>(marks: &[bool]) -> V {
     values
 }
 
-/// Reports what [`Kernel::Geometry`](super::Kernel::Geometry) gives.
+/// Reports every quantity of [`Kernel::Geometry`](super::Kernel::Geometry).
 fn report_geometry<S: Documented>(
     system: &S,
     t: f64,

@@ -11,18 +11,10 @@ use crate::state::StateVector;
 /// The values of a kernel over numbers, as many as a row has.
 fn row<S: Declared, L: Numbers, R: Row<L>>(
     kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
-    (parameters, t): (&[L], L),
-    [first, second]: [&[L]; 2],
+    arguments: (&[L], L),
+    places: [&[L]; 2],
 ) -> Result<R, Fault> {
-    let at = At {
-        parameters,
-        t,
-        first,
-        second,
-    };
-    let mut values = R::zeros(R::CAPACITY);
-    kernel(&S::KERNELS, at, values.as_mut_slice())?;
-    Ok(values)
+    row_of::<S, L, R>(kernel, R::CAPACITY, arguments, places)
 }
 
 /// A row whose numbers from a place on are those of a kernel, added to what is there.

@@ -2,6 +2,8 @@
 //!
 //! Formulas of the density form and the divergence: [`crate::mechanics::density`].
 
+pub use dalembert_numbers::kernel::Shape;
+
 use crate::claims::Volume;
 use crate::mechanics::{Derivation, Entry};
 use crate::model::Model;
@@ -16,28 +18,6 @@ pub struct Group {
     pub name: String,
     /// Its shape.
     pub shape: Shape,
-}
-
-/// The shape of a group.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
-    /// One number.
-    Scalar,
-    /// Numbers in a row.
-    Vector(usize),
-    /// Rows of numbers.
-    Matrix(usize, usize),
-}
-
-impl Shape {
-    /// Number of results.
-    pub fn count(self) -> usize {
-        match self {
-            Self::Scalar => 1,
-            Self::Vector(n) => n,
-            Self::Matrix(rows, columns) => rows * columns,
-        }
-    }
 }
 
 /// A function whose results are the groups, one after the other.
