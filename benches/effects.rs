@@ -8,7 +8,7 @@
 
 use std::process::{Command, ExitCode};
 
-use dalembert::{Described, Dop853, Effect, Scene, Simulation, Tolerance};
+use dalembert::{Described, Dop853, Effect, Instance, Scene, Simulation, Tolerance};
 use dalembert_benches::table::{Layout, Table};
 use dalembert_benches::timing::is_benchmark;
 

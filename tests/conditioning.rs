@@ -1,7 +1,7 @@
 //! Constraints that are nearly dependent, and inertias far apart: the field keeps its digits because the constraint
 //! mass matrix is never formed.
 
-use dalembert::{Described, Fault, System, VectorField};
+use dalembert::{Fault, Instance, System, VectorField};
 use dalembert_models::RollingDisk;
 
 dalembert::model! {

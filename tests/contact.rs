@@ -4,8 +4,8 @@ use core::ops::ControlFlow;
 
 use dalembert::impacts::Impacts;
 use dalembert::{
-    Corner, Described, Dop853, Event, Fault, Gauss6, Hold, Observer, Outcome, Penetration,
-    Policies, Rest, Rk4, Run, Scene, SceneEffects, Simulation, Stepper, System, Taylor, Tolerance,
+    Corner, Dop853, Event, Fault, Gauss6, Hold, Instance, Observer, Outcome, Penetration, Policies,
+    Rest, Rk4, Run, Scene, SceneEffects, Simulation, Stepper, System, Taylor, Tolerance,
 };
 use dalembert_tests::numeric::assert_near;
 

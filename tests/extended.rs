@@ -9,7 +9,7 @@ use dalembert::numbers::Numbers;
 use dalembert::{
     Outcome, Policies, Rest, Scene, SceneEffects, StateError, StateVector, System, Undefined,
 };
-use dalembert_models::stability::tables::Sinai;
+use dalembert_stability::tables::Sinai;
 
 dalembert::model! {
     /// A pendulum with a drag and a magnet: constants that are no doubles, and functions of every kind.

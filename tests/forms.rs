@@ -1,8 +1,8 @@
 //! The form reduced to D against values computed independently with 50 digits, and against the global form.
 
 use dalembert::{
-    Constrained, Described, Dop853, Event, Fault, Impacting, Observer, Scene, SceneEffects,
-    Simulation, StateVector, System, Tolerance, VectorField,
+    Constrained, Described, Dop853, Event, Fault, Impacting, Instance, Observer, Scene,
+    SceneEffects, Simulation, StateVector, System, Tolerance, VectorField,
 };
 use dalembert_cli::Exit;
 use dalembert_models::RollingBallEuler;

@@ -3,11 +3,11 @@
 
 use dalembert::law::Law;
 use dalembert::numbers::{Numbers, TaylorModel};
-use dalembert::{Constrained, Described, Impacting, System};
+use dalembert::{Constrained, Described, Impacting, Instance, System};
 use dalembert_cli::suite::{Setting, every_integrator};
-use dalembert_models::stability::by_hand::{Gap, Point, Reset};
-use dalembert_models::stability::course::{Course, End};
 use dalembert_models::{BouncingBall, ChaplyginSleigh, PointBilliard, RollingDisk};
+use dalembert_stability::by_hand::{Gap, Point, Reset};
+use dalembert_stability::course::{Course, End};
 use dalembert_tests::numeric::assert_near;
 use dalembert_tests::reference::{number, numbers, read};
 use serde_json::Value;

@@ -117,7 +117,7 @@ fn awkward_names_mean_what_was_declared() {
 
 #[test]
 fn models_compile_in_hostile_surroundings() {
-    use dalembert::{Described, System};
+    use dalembert::{Described, Instance, System};
     assert_eq!(local(), 3.0);
     assert_eq!(surroundings::Shadowed::DESCRIPTION.name, "shadowed");
     assert_eq!(surroundings::places(), [0, 2, 0]);

@@ -3,8 +3,8 @@
 use dalembert::impacts::Impacts;
 use dalembert::projection::Projection;
 use dalembert::{
-    Actuated, Described, Dop853, EventLog, Gauss6, Outcome, Powered, Simulation, System, Taylor,
-    Tolerance, VectorField, Work,
+    Actuated, Described, Dop853, EventLog, Gauss6, Instance, Outcome, Powered, Simulation, System,
+    Taylor, Tolerance, VectorField, Work,
 };
 use dalembert_cli::{Exit, models};
 use dalembert_codegen::compile;

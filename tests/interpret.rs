@@ -1,13 +1,14 @@
 //! Three routes to the same numbers: emitted code, the program's interpreter, and derivatives of the Lagrangian by
 //! differences.
 
-use dalembert::{Described, Scene, StateVector, System, VectorField};
+use dalembert::erased::Erased;
+use dalembert::{Described, Instance, Scene, StateVector, System, VectorField};
 use dalembert_codegen::model::Model;
 use dalembert_codegen::program::{Lowered, interpret::interpret, verify::verify};
 use dalembert_codegen::{compile, mechanics, spec};
 use dalembert_expr::SymbolId;
 use dalembert_tests::command::models;
-use dalembert_tests::interpreted::{compare_motion, input};
+use dalembert_tests::interpreted::{compare_motion, compare_report, input};
 use dalembert_tests::sampling::{Visitor, states, visit_all};
 
 /// Names of what is visited.
@@ -39,7 +40,7 @@ fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
     (compiled.model, compiled.derivation, compiled.programs)
 }
 
-/// Emitted code does what the interpreter does, to the bit: the same operations in the same order.
+/// Emitted code does what the interpreter does, to the bit, inlined and behind pointers: the same operations in the same order.
 struct EmittedIsInterpreted(usize);
 
 impl Visitor for EmittedIsInterpreted {
@@ -47,6 +48,14 @@ impl Visitor for EmittedIsInterpreted {
         let (_, _, programs) = derive(S::DESCRIPTION.source);
         self.0 += compare_motion(&system, &programs.main);
         self.0 += compare_motion(&system.global(), programs.global());
+        let Some(form) = S::FORM else {
+            // A model with modes.
+            return;
+        };
+        let erased = Erased::<64>::of(form).expect("room");
+        compare_motion(&erased, &programs.main);
+        compare_motion(&erased.global(), programs.global());
+        compare_report(&erased.global(), programs.global());
     }
 }
 
@@ -131,7 +140,7 @@ impl Visitor for ForceIsDifferenced {
     }
 }
 
-fn value_of<S: Described>(
+fn value_of<S: Instance>(
     model: &Model,
     system: &S,
     t: f64,

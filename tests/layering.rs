@@ -107,7 +107,7 @@ fn a_stage_uses_only_those_to_its_left() {
 }
 
 /// The modules of the runtime, each after those it uses.
-const RUNTIME: [&str; 34] = [
+const RUNTIME: [&str; 36] = [
     "assumption",
     "error",
     "state",
@@ -137,8 +137,10 @@ const RUNTIME: [&str; 34] = [
     "initial",
     "projection",
     "kernels",
-    "modes",
     "variations",
+    "erased",
+    "declaration",
+    "modes",
     "extended",
     "lanes",
     "certified",

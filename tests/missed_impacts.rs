@@ -6,8 +6,8 @@ use core::ops::ControlFlow;
 use dalembert::{Event, Observer, Scene, StateVector, TaylorField};
 use dalembert_cli::suite::{Setting, every_integrator};
 use dalembert_models::PointBilliard;
-use dalembert_models::stability::course::{Course, Random};
-use dalembert_models::stability::tables::{Rectangle, Stadium};
+use dalembert_stability::course::{Course, Random};
+use dalembert_stability::tables::{Rectangle, Stadium};
 
 /// Rounding errors allowed in a time, in units of `2^-52` of the table's terms over the gap rate.
 const UNITS: f64 = 256.0;

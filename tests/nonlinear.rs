@@ -3,8 +3,8 @@
 use dalembert::law::Law;
 use dalembert::projection::Projection;
 use dalembert::{
-    Constrained, Described, Dla2, Dop853, Fault, Impacting, Lagrangian, Outcome, Rk4, Scene,
-    SceneEffects, Simulation, StateError, StateVector, System, Tolerance, VectorField,
+    Constrained, Described, Dla2, Dop853, Fault, Impacting, Instance, Lagrangian, Outcome, Rk4,
+    Scene, SceneEffects, Simulation, StateError, StateVector, System, Tolerance, VectorField,
 };
 use dalembert_cli::Exit;
 use dalembert_codegen::compile;

@@ -1,10 +1,10 @@
 //! The law `reset`, emitted: against its interpreter, as declared, in both forms, in claims and on the command line.
 
-use dalembert::describe::Described;
+use dalembert::declaration::Described;
 use dalembert::law::Law;
 use dalembert::{
-    Dop853, EventLog, Impacting, Outcome, Run, Scene, Simulation, StateVector, Stepper, System,
-    Tolerance,
+    Dop853, EventLog, Impacting, Instance, Outcome, Run, Scene, Simulation, StateVector, Stepper,
+    System, Tolerance,
 };
 use dalembert_cli::{Exit, models};
 use dalembert_codegen::claims::Verdict;

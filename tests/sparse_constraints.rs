@@ -2,7 +2,7 @@
 //! constraints, against the same chain declared by the angles of its rods.
 
 use dalembert::law::Law;
-use dalembert::{Described, Fault, Impacting, System, VectorField};
+use dalembert::{Described, Fault, Impacting, Instance, System, VectorField};
 use dalembert_codegen::compile;
 use dalembert_models::Chain16;
 use dalembert_tests::numeric::Reported;

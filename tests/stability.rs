@@ -1,7 +1,7 @@
 //! The hard cases of `dalembert stability`: all of them hold, or are said to be pending and do not.
 
 use dalembert_cli::suite::{Case, Verdict, every_integrator, examine};
-use dalembert_models::stability;
+use dalembert_stability as stability;
 
 /// Examines cases one by one, and says what each measured.
 fn assert_hold(cases: impl Iterator<Item = Case>) {

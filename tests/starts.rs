@@ -1,8 +1,8 @@
 //! Starts that the declaration leaves open: what `check` says of them, and how equations of positions complete them.
 
 use dalembert::{
-    Described, Dop853, Keep, Outcome, ParameterError, Scene, Simulation, StateError, System,
-    Tolerance,
+    Described, Dop853, Instance, Keep, Outcome, ParameterError, Scene, Simulation, StateError,
+    System, Tolerance,
 };
 use dalembert_cli::{Exit, models};
 use dalembert_tests::command::{self, Finished};

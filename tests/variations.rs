@@ -100,7 +100,9 @@ fn unfolded<S: Described + Variational>(
     direction: &S::State,
 ) -> Vec<f64> {
     let (parameters, row) = dual(system, state, direction);
-    let velocities = S::velocities(&parameters, Dual::of(t), &row).expect("velocities");
+    let velocities = system
+        .velocities(&parameters, Dual::of(t), &row)
+        .expect("velocities");
     let n = S::Vector::CAPACITY;
     let q = row.as_slice()[..n].iter();
     q.chain(velocities.as_slice())
@@ -116,7 +118,9 @@ fn allowed_directions<S: Described + Variational>(
 ) -> Vec<Tangent<S>> {
     let deviation = |direction: &S::State| -> f64 {
         let (parameters, row) = dual(system, state, direction);
-        let deviations = S::deviations(&parameters, Dual::of(t), &row).expect("deviations");
+        let deviations = system
+            .deviations(&parameters, Dual::of(t), &row)
+            .expect("deviations");
         deviations
             .as_slice()
             .first()

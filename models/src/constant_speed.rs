@@ -27,7 +27,7 @@ dalembert::model! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dalembert::{Described, Scene, Simulation, System, Taylor, Tolerance};
+    use dalembert::{Instance, Scene, Simulation, System, Taylor, Tolerance};
 
     #[test]
     fn the_direction_falls_as_a_hyperbolic_tangent() {

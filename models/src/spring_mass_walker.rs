@@ -53,7 +53,7 @@ mod tests {
     #[test]
     fn it_walks_and_keeps_its_energy() {
         let walker = SpringMassWalker::default();
-        let initial = dalembert::Described::initial(&walker);
+        let initial = dalembert::Instance::initial(&walker);
         let state = walker.state(0.0, &initial.q, &initial.qdot).unwrap();
         let energy = walker.energy(0.0, &state).unwrap();
         let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());

@@ -3,7 +3,7 @@
 //! Implemented by `model!` for every model, so that a tool can list, set and re-derive any of them.
 
 pub use crate::assumption::Assumption;
-use crate::contract::{Lagrangian, System, TaylorField, Variational};
+use crate::contract::{System, Variational};
 use crate::effects::Scene;
 use crate::error::Fault;
 
@@ -113,7 +113,7 @@ pub struct Description {
     /// The declared outputs.
     pub outputs: &'static [&'static str],
     /// The scenes; `all`, the model itself, comes first. Of a model with modes each mode by itself is one for `derive` and
-    /// `check`; [`Described::visit_scenes`] does not show them.
+    /// `check`; `Described::visit_scenes` does not show them.
     pub scenes: &'static [&'static str],
     /// The modes; none of a model in one piece.
     pub modes: &'static [ModeInfo],
@@ -121,20 +121,17 @@ pub struct Description {
     pub view: Option<ViewInfo>,
 }
 
-/// A model's self-description. Implemented by `model!` for every model.
+/// A declared model with values for its parameters: what it tells of itself, and of its states.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a model declared with `dalembert::model!`"
 )]
-pub trait Described: System + Clone {
+pub trait Instance: System + Clone {
     /// Names, docs, topology, parameters, surfaces, scenes, source text.
-    const DESCRIPTION: Description;
+    fn description(&self) -> &'static Description;
 
     /// The inputs; their values are the parameters after those of the description.
-    const INPUTS: &'static [&'static str] = &[];
-
-    /// Shows the type of each declared scene, in order; the model itself, the scene `all`, is not among them.
-    fn visit_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
-        let _ = visitor;
+    fn inputs(&self) -> &'static [&'static str] {
+        &[]
     }
 
     /// Shows the system to a visitor if its runs can be varied: the model itself can, and scenes with `variations`.
@@ -148,13 +145,10 @@ pub trait Described: System + Clone {
 
     /// The same system in its global form, with the state (q, p) on T*Q, off the constraints too. The model itself
     /// where it has no form reduced to D.
-    type Global: Described<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
+    type Global: Instance<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
 
     /// The system in its global form.
     fn global(&self) -> Self::Global;
-
-    /// The system with declared defaults; a parameter without default is NaN until it is set.
-    fn with_defaults() -> Self;
 
     /// Value of the parameter of this index in [`Description::parameters`]; NaN past the end.
     fn parameter(&self, index: usize) -> f64;
@@ -205,21 +199,13 @@ pub trait Described: System + Clone {
     }
 }
 
-/// Sees the types of a model's scenes (see [`Described::visit_scenes`]).
-pub trait SceneVisitor {
-    /// A scene of this name: the model with what the scene leaves of its effects, and the parameters of the model.
-    fn visit<S>(&mut self, name: &'static str)
-    where
-        S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static;
-}
-
-/// Sees a system whose runs can be varied (see [`Described::visit_variational`]).
+/// Sees a system whose runs can be varied (see [`Instance::visit_variational`]).
 pub trait VariationalVisitor {
     /// What it makes of it.
     type Output;
 
     /// The system, in its own type.
-    fn visit<S: Described + Scene + Variational>(self, system: &S) -> Self::Output;
+    fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output;
 }
 
 /// The declared initial condition.

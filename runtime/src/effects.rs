@@ -249,6 +249,93 @@ impl<Sys: System> Effect<Sys> for () {
 
 impl<Sys: System> SceneEffects<Sys> for () {}
 
+/// An effect that a system may have or not, which is known only at run time.
+impl<Sys: System, E: Effect<Sys>> Effect<Sys> for Option<E> {
+    type Forces = E::Forces;
+
+    #[inline(always)]
+    fn forces(&self) -> Option<E::Forces> {
+        self.as_ref()?.forces()
+    }
+
+    fn begin<O: Observer<Sys>>(
+        &mut self,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        match self {
+            Some(effect) => effect.begin(now, observer),
+            None => Ok(()),
+        }
+    }
+
+    #[inline(always)]
+    fn propose<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<Option<f64>, Outcome> {
+        match self {
+            Some(effect) => effect.propose(step),
+            None => Ok(None),
+        }
+    }
+
+    #[inline(always)]
+    fn settle(&mut self, now: &mut Moment<'_, Sys>, cut: bool) -> Result<Change, Outcome> {
+        match self {
+            Some(effect) => effect.settle(now, cut),
+            None => Ok(Change::Kept),
+        }
+    }
+
+    fn act<O: Observer<Sys>>(
+        &mut self,
+        theta: f64,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        match self {
+            Some(effect) => effect.act(theta, now, observer),
+            None => Ok(()),
+        }
+    }
+}
+
+impl<Sys: System, E: SceneEffects<Sys>> SceneEffects<Sys> for Option<E> {
+    fn set_law(&mut self, surface: usize, law: Law) {
+        if let Some(effects) = self {
+            effects.set_law(surface, law);
+        }
+    }
+
+    fn law(&self, system: &Sys, surface: usize) -> Option<Law> {
+        self.as_ref()?.law(system, surface)
+    }
+
+    fn set_impact_budget(&mut self, budget: Option<u64>) {
+        if let Some(effects) = self {
+            effects.set_impact_budget(budget);
+        }
+    }
+
+    fn set_projection(&mut self, on: bool) {
+        if let Some(effects) = self {
+            effects.set_projection(on);
+        }
+    }
+
+    fn set_policies(&mut self, policies: Policies) {
+        if let Some(effects) = self {
+            effects.set_policies(policies);
+        }
+    }
+
+    fn audit(&self, system: &Sys, work: &mut dyn FnMut(&mut dyn Auditor<Sys>)) -> bool {
+        self.as_ref()
+            .is_some_and(|effects| effects.audit(system, work))
+    }
+}
+
 /// The earlier of two proposals.
 #[inline(always)]
 fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {

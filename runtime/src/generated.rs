@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use crate::assumption::Assumption;
 use crate::contract::{Constrained, System, TaylorField};
-use crate::describe::{Described, Report};
+use crate::describe::{Instance, Report};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::numbers::{Numbers, Rated, Row};
 use crate::state::StateVector;
@@ -164,8 +164,8 @@ pub fn independent_at(surface: usize, squared: f64, reference: f64) -> Result<()
 ///
 /// # Errors
 /// The first that contradicts it.
-pub fn check_parameters<S: Described>(system: &S) -> Result<(), ParameterError> {
-    for (index, parameter) in S::DESCRIPTION.parameters.iter().enumerate() {
+pub fn check_parameters<S: Instance>(system: &S) -> Result<(), ParameterError> {
+    for (index, parameter) in system.description().parameters.iter().enumerate() {
         let value = system.parameter(index);
         if !parameter.assumption.holds(value) {
             return Err(ParameterError {
@@ -202,7 +202,7 @@ pub fn check_coefficient(name: &'static str, value: f64) -> Result<(), Parameter
 ///
 /// # Errors
 /// A fault met on the way.
-pub fn inspect_globally<S: Described>(
+pub fn inspect_globally<S: Instance>(
     system: &S,
     t: f64,
     state: &S::State,

@@ -118,8 +118,10 @@ mod assumption;
 pub mod audit;
 pub mod certified;
 pub mod contract;
+pub mod declaration;
 pub mod describe;
 pub mod effects;
+pub mod erased;
 pub mod error;
 mod events;
 pub mod extended;
@@ -157,7 +159,8 @@ pub use contract::{
     Constrained, Divergence, Impacting, InvariantVolume, Keep, Lagrangian, Level, Powered,
     RankDrop, System, Tangent, TaylorField, Variational, VectorField,
 };
-pub use describe::Described;
+pub use declaration::Described;
+pub use describe::Instance;
 pub use effects::{Effect, Scene, SceneEffects};
 pub use error::{Fault, ParameterError, StateError};
 pub use forces::{Forces, NoForces};

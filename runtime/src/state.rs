@@ -48,6 +48,19 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// The components in order, to be written.
     fn as_mut_slice(&mut self) -> &mut [f64];
 
+    /// All components that there is room for: those in use, then zeros. Their number is known while compiling, so that sums of
+    /// multiples, which keep the zeros, had better run over all of them.
+    #[inline(always)]
+    fn padded(&self) -> &[f64] {
+        self.as_slice()
+    }
+
+    /// The same, to be written; what is behind those in use must stay 0.
+    #[inline(always)]
+    fn padded_mut(&mut self) -> &mut [f64] {
+        self.as_mut_slice()
+    }
+
     /// Whether every component is finite.
     fn is_finite(&self) -> bool {
         self.as_slice()

@@ -2,7 +2,7 @@
 //! executes and to reference values; absent where nothing is claimed or known. To accept a difference, see `golden.rs`.
 
 use dalembert::describe::Report;
-use dalembert::{Described, Fault, InvariantVolume, Scene, StateVector, System};
+use dalembert::{Described, Fault, Instance, InvariantVolume, Scene, StateVector, System};
 use dalembert_models::{
     BallOnRotatingTable, HolonomicBeadOnEllipses, RollingBallEuler, RollingBallWall, RollingDisk,
     TwoWheelsRod,

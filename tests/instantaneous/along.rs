@@ -4,7 +4,7 @@ use core::ops::ControlFlow;
 
 use dalembert::law::Law;
 use dalembert::{
-    Described, Dop853, Fault, Hold, Impacting, Observer, Outcome, Policies, Rest, Scene,
+    Described, Dop853, Fault, Hold, Impacting, Instance, Observer, Outcome, Policies, Rest, Scene,
     SceneEffects, Simulation, StateVector, System, Tolerance,
 };
 use dalembert_tests::numeric::assert_near;

@@ -5,8 +5,8 @@ mod along;
 use dalembert::impacts::Impacts;
 use dalembert::law::Law;
 use dalembert::{
-    Described, Dop853, EventLog, Impacting, Outcome, Scene, Simulation, StateVector, System,
-    Taylor, Tolerance,
+    Described, Dop853, EventLog, Impacting, Instance, Outcome, Scene, Simulation, StateVector,
+    System, Taylor, Tolerance,
 };
 use dalembert_cli::Exit;
 use dalembert_codegen::compile;

@@ -4,7 +4,7 @@ mod transitions;
 
 use core::ops::ControlFlow;
 
-use dalembert::describe::Described;
+use dalembert::declaration::Described;
 use dalembert::{
     Dop853, Event, Impacting, Observer, Outcome, Scene, Simulation, System, Taylor, TaylorField,
     Tolerance, VectorField,
@@ -352,7 +352,7 @@ fn compiled<S: Described>() -> Vec<dalembert_codegen::Compiled> {
 }
 
 /// Compares the emitted code of a mode with the interpreter of its programs.
-fn check_emitted<M: dalembert::Mode>(modes: &[dalembert_codegen::Compiled]) {
+fn check_emitted<M: dalembert::Mode + Described>(modes: &[dalembert_codegen::Compiled]) {
     let programs = &modes[M::INDEX].programs;
     let system = M::with_defaults();
     let global = compare_motion(&system.global(), programs.global());

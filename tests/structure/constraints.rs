@@ -4,8 +4,8 @@
 use core::ops::ControlFlow;
 
 use dalembert::{
-    Constrained, Described, Dla2, Dla4, Gauss4, Lagrangian, Observer, Outcome, Segment, Simulation,
-    StateVector, Stepper, System, Tolerance,
+    Constrained, Described, Dla2, Dla4, Gauss4, Instance, Lagrangian, Observer, Outcome, Segment,
+    Simulation, StateVector, Stepper, System, Tolerance,
 };
 use dalembert_models::{BallOnRotatingTable, ChaplyginSleigh, RollingBallEuler, RollingDisk};
 use dalembert_tests::sampling::states;

@@ -1,7 +1,6 @@
 //! Emitted code beside the interpreter of the program it was emitted from.
 
-use dalembert::describe::Described;
-use dalembert::{StateVector, System, VectorField};
+use dalembert::{Instance, StateVector, System, VectorField};
 use dalembert_codegen::program::{Function, Input, Program, interpret::interpret};
 
 use crate::numeric::Reported;
@@ -11,12 +10,12 @@ use crate::sampling::states;
 ///
 /// # Panics
 /// At a state without a velocity.
-pub fn input<'a, S: Described>(
+pub fn input<'a, S: Instance>(
     system: &'a S,
     t: f64,
     state: &'a S::State,
 ) -> impl Fn(Input) -> f64 + 'a {
-    let n = S::Vector::CAPACITY;
+    let n = system.coordinate_count();
     let qdot = system.velocity(t, state).expect("a velocity");
     move |input| match input {
         Input::Time => t,
@@ -30,13 +29,13 @@ pub fn input<'a, S: Described>(
 ///
 /// # Panics
 /// Where they are not.
-pub fn compare_motion<S: Described>(system: &S, program: &Program) -> usize {
-    let (name, t) = (S::DESCRIPTION.name, 0.25);
+pub fn compare_motion<S: Instance>(system: &S, program: &Program) -> usize {
+    let (name, t) = (system.description().name, 0.25);
     let states = states(system, 5, 1);
     for state in &states {
         let at = input(system, t, state);
         let run = |function: &Function| interpret(function, &at).expect("a value");
-        let mut rate = S::State::zeros(S::State::CAPACITY);
+        let mut rate = system.zero_state();
         VectorField::rate(system, t, state, &mut rate).expect("a rate");
         assert_eq!(rate.as_slice(), run(&program.rate), "{name}: rate");
         let energy = System::energy(system, t, state).expect("an energy");
@@ -51,8 +50,8 @@ pub fn compare_motion<S: Described>(system: &S, program: &Program) -> usize {
 ///
 /// # Panics
 /// Where they differ.
-pub fn compare_report<S: Described>(system: &S, program: &Program) {
-    let (name, t) = (S::DESCRIPTION.name, 0.25);
+pub fn compare_report<S: Instance>(system: &S, program: &Program) {
+    let (name, t) = (system.description().name, 0.25);
     for state in states(system, 5, 2) {
         let mut report = Reported::default();
         system.inspect(t, &state, &mut report).expect("a report");

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use dalembert::describe::{Description, Report};
 use dalembert::law::{Contact, Law};
-use dalembert::{Described, StateVector, System, VectorField};
+use dalembert::{Described, Instance, StateVector, System, VectorField};
 
 /// What is known of a state.
 #[derive(Debug, Clone, PartialEq)]

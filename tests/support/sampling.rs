@@ -1,6 +1,6 @@
 //! Random states with a fixed seed.
 
-use dalembert::{Described, Lagrangian, Scene, StateVector, TaylorField};
+use dalembert::{Described, Lagrangian, Scene, StateVector, System, TaylorField};
 
 /// A small generator (SplitMix64): the same numbers everywhere.
 #[derive(Debug, Clone)]
@@ -28,7 +28,12 @@ impl Random {
 
     /// A vector with components in `[low, high)`.
     pub fn vector<V: StateVector>(&mut self, low: f64, high: f64) -> V {
-        let mut vector = V::zeros(V::CAPACITY);
+        self.like(&V::zeros(V::CAPACITY), low, high)
+    }
+
+    /// A vector as long as another, with components in `[low, high)`.
+    pub fn like<V: StateVector>(&mut self, other: &V, low: f64, high: f64) -> V {
+        let mut vector = other.zeroed();
         vector
             .as_mut_slice()
             .iter_mut()
@@ -41,13 +46,13 @@ impl Random {
 ///
 /// # Panics
 /// When a state cannot be made.
-pub fn states<S: Described>(system: &S, count: usize, seed: u64) -> Vec<S::State> {
+pub fn states<S: System>(system: &S, count: usize, seed: u64) -> Vec<S::State> {
     let mut random = Random::new(seed);
     (0..count)
         .map(|_| {
             // Inside every shipped chart: intervals are (0, pi).
-            let q: S::Vector = random.vector(0.1, 1.4);
-            let qdot: S::Vector = random.vector(-1.0, 1.0);
+            let zero = system.zero_vector();
+            let (q, qdot) = (random.like(&zero, 0.1, 1.4), random.like(&zero, -1.0, 1.0));
             system.state_projected(0.0, &q, &qdot).expect("a state")
         })
         .collect()

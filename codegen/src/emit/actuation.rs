@@ -5,14 +5,10 @@ use quote::quote;
 
 use super::Context;
 
-/// The names of the inputs, if there are any.
-pub(super) fn emit_names(context: &Context<'_>) -> TokenStream {
+/// The names of the inputs.
+pub(super) fn names<'a>(context: &'a Context<'_>) -> impl Iterator<Item = &'a str> {
     let inputs = context.model.inputs();
-    let names: Vec<&str> = inputs.map(|(_, own)| own.name.display.as_str()).collect();
-    match names.is_empty() {
-        true => TokenStream::new(),
-        false => quote!(const INPUTS: &'static [&'static str] = &[#(#names),*];),
-    }
+    inputs.map(|(_, own)| own.name.display.as_str())
 }
 
 /// `impl Actuated`, if there are inputs.

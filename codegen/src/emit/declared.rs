@@ -5,7 +5,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::function::number;
-use super::{Context, describe, kernels};
+use super::{Context, describe, kernels, variational};
 use crate::model::{Beside, Condition, Law, Surface, Topology};
 use crate::program::{Form, Function, Input, Op};
 
@@ -19,7 +19,7 @@ pub(super) fn emit_declared(context: &Context<'_>) -> TokenStream {
         context.model.surfaces.len(),
     );
     let [size, parameters, levels, room] = [n + k, places.len(), levels(context), room(context)];
-    let tables = emit_tables(context);
+    let may_be_narrow = context.program.can_be_narrow;
     let hooks = super::constraint::emit_hooks(context);
     let parts = emit_parts(context);
     let attributes = super::attributes();
@@ -37,10 +37,18 @@ pub(super) fn emit_declared(context: &Context<'_>) -> TokenStream {
             type Components<#numbers> = [L; #size];
             type Arguments<#numbers> = [L; #parameters];
             type Room<#numbers> = [L; #room];
+            type Values<'a> = [f64; #parameters];
             type Kernels = #kernels;
 
-            const KERNELS: #kernels = #kernels;
-            const TABLES: ::dalembert::kernels::Tables = #tables;
+            const MAY_BE_NARROW: bool = #may_be_narrow;
+
+            #[inline(always)]
+            fn kernels(&self) -> #kernels { #kernels }
+
+            #[inline(always)]
+            fn tables(&self) -> &'static ::dalembert::kernels::Tables {
+                &<Self as ::dalembert::declaration::Emitted>::TABLES
+            }
 
             #[inline(always)]
             fn arguments(&self) -> [f64; #parameters] { [#(#places),*] }
@@ -95,7 +103,7 @@ fn room(context: &Context<'_>) -> usize {
         .max(5 + context.motion_dimension())
 }
 
-fn emit_tables(context: &Context<'_>) -> TokenStream {
+pub(super) fn emit_tables(context: &Context<'_>) -> TokenStream {
     let (model, program) = (context.model, context.program);
     let form = match program.form {
         Form::Global => quote!(Global),
@@ -119,6 +127,10 @@ fn emit_tables(context: &Context<'_>) -> TokenStream {
     let constrained = program.constrained.as_ref();
     let can_lose_rank = constrained.is_some_and(|own| own.can_lose_rank);
     let is_linear = !model.is_nonlinear();
+    let (drifts, varies) = (
+        describe::drifts(context),
+        variational::is_variational(context),
+    );
     let declared_levels = super::constraint::emit_levels(context);
     let dimensions = quote! {
         ::dalembert::kernels::Dimensions {
@@ -135,6 +147,8 @@ fn emit_tables(context: &Context<'_>) -> TokenStream {
         dimensions: #dimensions,
         can_be_narrow: #can_be_narrow,
         can_lose_rank: #can_lose_rank,
+        drifts: #drifts,
+        varies: #varies,
         levels: &[#declared_levels],
     };
     if context.is_wrapped() {
@@ -142,7 +156,7 @@ fn emit_tables(context: &Context<'_>) -> TokenStream {
         return quote! {
             ::dalembert::kernels::Tables {
                 #of_program
-                ..<#own as ::dalembert::kernels::Declared>::TABLES
+                ..<#own as ::dalembert::declaration::Emitted>::TABLES
             }
         };
     }

@@ -5,32 +5,15 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::function::number;
-use super::{Context, doc, parameters, scene};
+use super::{Context, declared, doc, parameters, scene};
 use crate::model::{Assumption, Constraint, Coordinate, Model, Topology};
 use crate::program::Form;
 use crate::program::recipes::geometry::Shape;
 
-/// `impl Documented`
+/// `impl Documented`, and `impl Emitted` with all that is constant of the form.
 pub(super) fn emit_documented(context: &Context<'_>) -> TokenStream {
-    let (type_name, own, global_name) = (
-        &context.names.type_name,
-        &context.names.own,
-        &context.names.global,
-    );
+    let (type_name, global_name) = (&context.names.type_name, &context.names.global);
     let model = context.model;
-    let of_own = |name: TokenStream| quote!(<#own as ::dalembert::kernels::Documented>::#name);
-    let (description, placed, named) = match context.is_wrapped() {
-        true => (
-            of_own(quote!(DESCRIPTION)),
-            of_own(quote!(PLACED)),
-            of_own(quote!(NAMED)),
-        ),
-        false => (
-            emit_description(context),
-            emit_marks(&model.initial.q),
-            emit_marks(&model.initial.qdot),
-        ),
-    };
     let defaults = match &context.names.held {
         Some(held) => quote!(Self(<#held as ::dalembert::Described>::with_defaults())),
         None => parameters::with_defaults(model),
@@ -41,12 +24,13 @@ pub(super) fn emit_documented(context: &Context<'_>) -> TokenStream {
     };
     let set = match &context.names.held {
         Some(held) => {
-            quote!(<#held as ::dalembert::Described>::set_parameter(&mut self.0, index, value);)
+            quote!(<#held as ::dalembert::describe::Instance>::set_parameter(&mut self.0, index, value);)
         }
         None => emit_set(&context.names.parameters),
     };
-    let inputs = super::actuation::emit_names(context);
-    let geometry = emit_geometry(context);
+    let tables = declared::emit_tables(context);
+    let documentation = emit_documentation(context);
+    let numbers = context.program.geometry.function.outputs.len();
     let density = emit_integrated_density(context);
     let scenes = scene::emit_visit(context);
     let variational = super::variational::emit_visit(context);
@@ -54,24 +38,58 @@ pub(super) fn emit_documented(context: &Context<'_>) -> TokenStream {
     quote! {
         #attributes
         impl ::dalembert::kernels::Documented for #type_name {
-            const DESCRIPTION: ::dalembert::describe::Description = #description;
-            #inputs
-            const PLACED: &'static [bool] = #placed;
-            const NAMED: &'static [bool] = #named;
-            #geometry
-
+            type Geometry = [f64; #numbers];
             type Global = #global_type;
+
+            #[inline]
+            fn documentation(&self) -> &'static ::dalembert::kernels::Documentation {
+                &<Self as ::dalembert::declaration::Emitted>::DOCUMENTATION
+            }
 
             #[inline]
             fn globally(&self) -> Self::Global { #global }
 
-            fn declared() -> Self { #defaults }
-
             fn set_argument(&mut self, index: usize, value: f64) { #set }
 
             #density
-            #scenes
             #variational
+        }
+
+        #attributes
+        impl ::dalembert::declaration::Emitted for #type_name {
+            const TABLES: ::dalembert::kernels::Tables = #tables;
+            const DOCUMENTATION: ::dalembert::kernels::Documentation = #documentation;
+
+            fn declared() -> Self { #defaults }
+
+            #scenes
+        }
+    }
+}
+
+/// What a form says of itself; the global form says the same as its own but for the geometry.
+fn emit_documentation(context: &Context<'_>) -> TokenStream {
+    let geometry = emit_geometry(context);
+    if context.is_wrapped() {
+        let own = &context.names.own;
+        return quote! {
+            ::dalembert::kernels::Documentation {
+                geometry: &[#geometry],
+                ..<#own as ::dalembert::declaration::Emitted>::DOCUMENTATION
+            }
+        };
+    }
+    let model = context.model;
+    let description = emit_description(context);
+    let inputs = super::actuation::names(context);
+    let [placed, named] = [&model.initial.q, &model.initial.qdot].map(|own| emit_marks(own));
+    quote! {
+        ::dalembert::kernels::Documentation {
+            description: #description,
+            inputs: &[#(#inputs),*],
+            placed: #placed,
+            named: #named,
+            geometry: &[#geometry],
         }
     }
 }
@@ -84,9 +102,7 @@ fn emit_marks(values: &[Option<ExprId>]) -> TokenStream {
 
 /// The quantities of the geometry at a state.
 fn emit_geometry(context: &Context<'_>) -> TokenStream {
-    let geometry = &context.program.geometry;
-    let count = geometry.function.outputs.len();
-    let quantities = geometry.groups.iter().map(|group| {
+    let quantities = context.program.geometry.groups.iter().map(|group| {
         let name = &group.name;
         let shape = match group.shape {
             Shape::Scalar => quote!(Scalar),
@@ -95,10 +111,7 @@ fn emit_geometry(context: &Context<'_>) -> TokenStream {
         };
         quote!(::dalembert::kernels::Quantity { name: #name, shape: ::dalembert::kernels::Shape::#shape })
     });
-    quote! {
-        const GEOMETRY: &'static [::dalembert::kernels::Quantity] = &[#(#quantities),*];
-        type Geometry = [f64; #count];
-    }
+    quote!(#(#quantities),*)
 }
 
 /// The density of an invariant volume that takes an integral.
@@ -148,7 +161,7 @@ fn emit_description(context: &Context<'_>) -> TokenStream {
             source: #source,
             is_first_order: #is_first_order,
             coordinates: &[#(#coordinates)*],
-            parameters: <Self as ::dalembert::kernels::Declared>::TABLES.parameters,
+            parameters: <Self as ::dalembert::declaration::Emitted>::TABLES.parameters,
             constraints: &[#constraints],
             forces: &[#(#forces),*],
             quasi_velocities: &[#(#quasi),*],

@@ -87,6 +87,7 @@ pub(super) fn emit_kernels(
         None => quote!(::dalembert::kernels::NoKernels),
     };
     let attributes = super::attributes();
+    let names = new_methods.keys();
     let items = quote! {
         /// Kernels of a form.
         #[derive(Debug, Clone, Copy)]
@@ -96,8 +97,14 @@ pub(super) fn emit_kernels(
         impl ::dalembert::kernels::Kernels for #type_name {
             type Base = #base;
             const BASE: #base = #base;
+            const OWN: ::dalembert::kernels::KernelSet =
+                ::dalembert::kernels::KernelSet::NONE #(.#names())*;
 
             #(#emitted)*
+        }
+
+        impl ::dalembert::kernels::Given for #type_name {
+            const GIVEN: #type_name = #type_name;
         }
     };
     methods.retain(|kernel, _| name(*kernel).1.is_none());

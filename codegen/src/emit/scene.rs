@@ -93,7 +93,7 @@ pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
         quote!(visitor.visit::<#module::#type_name>(#name);)
     });
     quote! {
-        fn show_scenes<Visitor: ::dalembert::describe::SceneVisitor>(visitor: &mut Visitor) {
+        fn show_scenes<Visitor: ::dalembert::declaration::SceneVisitor>(visitor: &mut Visitor) {
             #(#visits)*
         }
     }

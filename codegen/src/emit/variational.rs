@@ -51,7 +51,8 @@ pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
     }
 }
 
-fn is_variational(context: &Context<'_>) -> bool {
+/// Whether runs can be varied.
+pub(super) fn is_variational(context: &Context<'_>) -> bool {
     context.model.extras.variations && !context.is_wrapped()
 }
 

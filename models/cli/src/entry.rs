@@ -3,11 +3,14 @@
 //! [`Entry::of`] instantiates [`Typed`] for a model type, and with it the emitted code; everything else in this
 //! crate works on slices of numbers through [`AnyModel`] and is compiled once.
 
-use dalembert::describe::{Described, Description, Report, SceneVisitor};
+use dalembert::declaration::{Described, SceneVisitor};
+use dalembert::describe::{Description, Instance, Report};
+use dalembert::erased::{Erased, Form as ModelForm};
 use dalembert::law::{Contact, Law};
 use dalembert::state::StateVector;
 use dalembert::{
     Fault, Lagrangian, ParameterError, Scene, SceneEffects, StateError, System, TaylorField,
+    VectorField,
 };
 
 use crate::accuracy::{self, Plan, Study, Verified};
@@ -23,15 +26,60 @@ pub struct Entry {
     scenes: Vec<(&'static str, Build)>,
 }
 
-/// Makes a model with declared defaults.
-type Build = fn() -> Box<dyn AnyModel>;
+/// What makes a model with declared defaults.
+#[derive(Debug, Clone, Copy)]
+enum Build {
+    /// A form, that the systems of all forms run.
+    Erased(&'static ModelForm),
+    /// A type, which everything that runs a model is compiled for.
+    Typed(fn() -> Box<dyn AnyModel>),
+}
+
+impl Build {
+    // NOTE: evaluated while compiling, so that nothing but kernels is compiled of a type that has a form.
+    const fn of<M: Model + Described>() -> Self {
+        match M::FORM {
+            Some(form) if !cfg!(feature = "inlined") => Self::Erased(form),
+            _ => Self::Typed(typed::<M>),
+        }
+    }
+
+    fn build(self) -> Box<dyn AnyModel> {
+        match self {
+            Self::Erased(form) => erased(form),
+            Self::Typed(build) => build(),
+        }
+    }
+}
+
+fn typed<M: Model + Described>() -> Box<dyn AnyModel> {
+    Box::new(Typed {
+        model: M::with_defaults(),
+        code: Code::Inlined,
+    })
+}
+
+/// The system of a form, of the least capacity that it fits into.
+fn erased(form: &'static ModelForm) -> Box<dyn AnyModel> {
+    fn with_room<const C: usize>(form: &'static ModelForm) -> Option<Box<dyn AnyModel>> {
+        let model = Erased::<C>::of(form)?;
+        let code = Code::Pointers;
+        Some(Box::new(Typed { model, code }))
+    }
+    let system = with_room::<4>(form)
+        .or_else(|| with_room::<8>(form))
+        .or_else(|| with_room::<16>(form))
+        .or_else(|| with_room::<32>(form))
+        .or_else(|| with_room::<64>(form));
+    system.expect("a form that there is a capacity for")
+}
 
 impl Entry {
     /// The entry of a model type with its scenes; the model itself is the scene `all`.
-    pub fn of<M: Model>() -> Self {
+    pub fn of<M: Model + Described>() -> Self {
         let mut entry = Self {
             description: M::DESCRIPTION,
-            scenes: vec![("all", Typed::<M>::boxed)],
+            scenes: vec![("all", const { Build::of::<M>() })],
         };
         M::visit_scenes(&mut entry);
         entry
@@ -49,7 +97,7 @@ impl Entry {
 
     /// The model in the scene of this index, with declared defaults.
     pub(crate) fn with_defaults(&self, scene: usize) -> Box<dyn AnyModel> {
-        (self.scenes[scene].1)()
+        self.scenes[scene].1.build()
     }
 }
 
@@ -58,18 +106,18 @@ impl SceneVisitor for Entry {
     where
         S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static,
     {
-        self.scenes.push((name, Typed::<S>::boxed));
+        self.scenes.push((name, const { Build::of::<S>() }));
     }
 }
 
-/// What the command line needs of a model type: everything that `model!` implements.
+/// What the command line needs of a model with values for its parameters: everything that `model!` implements.
 pub trait Model:
-    Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static
+    Instance<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static
 {
 }
 
 impl<M> Model for M where
-    M: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static
+    M: Instance<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static
 {
 }
 
@@ -138,6 +186,7 @@ impl Point {
 
 /// A model with values for its parameters. States are those of its global form, positions and momenta.
 pub(crate) trait AnyModel: Runs {
+    fn code(&self) -> Code;
     fn description(&self) -> Description;
     /// The names of the inputs, whose values are the parameters after those of the description.
     fn inputs(&self) -> &'static [&'static str];
@@ -225,14 +274,31 @@ pub(crate) struct Contacted {
     pub direction: Vec<f64>,
 }
 
+/// How the functions of a model are called, which its speed depends on and nothing else.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Code {
+    /// They are inlined into what runs the model.
+    Inlined,
+    /// They are behind pointers.
+    Pointers,
+}
+
+impl Code {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Inlined => "inlined",
+            Self::Pointers => "behind pointers",
+        }
+    }
+}
+
 /// A model type behind [`AnyModel`].
-struct Typed<M>(M);
+struct Typed<M> {
+    model: M,
+    code: Code,
+}
 
 impl<M: Model> Typed<M> {
-    fn boxed() -> Box<dyn AnyModel> {
-        Box::new(Self(M::with_defaults()))
-    }
-
     /// The velocity that is meant, after every check but that of the constraints. Momenta are those of the global
     /// form: they may lie off the constraints.
     fn checked_velocity(
@@ -241,14 +307,14 @@ impl<M: Model> Typed<M> {
         q: &M::Vector,
         rates: &Rates,
     ) -> Result<M::Vector, StateError> {
-        let global = self.0.global();
+        let global = self.model.global();
         let p = match rates {
             Rates::Velocities(qdot) => {
-                let qdot = vector(qdot);
+                let qdot = vector(q, qdot);
                 global.checked(t, q, &qdot)?;
                 return Ok(qdot);
             }
-            Rates::Momenta(p) => vector::<M::Vector>(p),
+            Rates::Momenta(p) => vector(q, p),
         };
         global.check_parameters()?;
         let mut components = q.as_slice().iter().chain(p.as_slice());
@@ -269,7 +335,7 @@ impl<M: Model> Typed<M> {
         t: f64,
         origin: &Origin,
     ) -> Result<S::State, StateError> {
-        let mut q = vector(&origin.q);
+        let mut q = vector(&system.zero_vector(), &origin.q);
         if origin.policy == OffConstraint::Project {
             q = system.complete_position(t, &q, &system.zero_vector())?;
         }
@@ -280,7 +346,7 @@ impl<M: Model> Typed<M> {
         Ok(match (origin.policy, &origin.rates) {
             (OffConstraint::Project, _) => system.state_nearest(t, &q, &qdot)?,
             // Momenta that may be kept are kept to the last digit.
-            (_, Rates::Momenta(p)) => system.state_from_momenta(t, &q, &vector(p))?,
+            (_, Rates::Momenta(p)) => system.state_from_momenta(t, &q, &vector(&q, p))?,
             _ => system.state_unchecked(t, &q, &qdot)?,
         })
     }
@@ -299,15 +365,15 @@ fn marks(marked: &[bool]) -> Vec<f64> {
 /// What is to be done with the model in the form that the settings ask for, and the state in it.
 macro_rules! in_form {
     ($typed:ident, $origin:ident, $settings:ident, |$model:ident, $state:ident| $work:expr) => {{
-        let text = |error| state_text(&M::DESCRIPTION, &error);
+        let text = |error| state_text($typed.model.description(), &error);
         match $settings.form {
             Form::Reduced => {
-                let $model = &$typed.0;
+                let $model = &$typed.model;
                 let $state = $typed.prepare($model, 0.0, $origin).map_err(text)?;
                 $work
             }
             Form::Global => {
-                let $model = &$typed.0.global();
+                let $model = &$typed.model.global();
                 let $state = $typed.prepare($model, 0.0, $origin).map_err(text)?;
                 $work
             }
@@ -316,32 +382,36 @@ macro_rules! in_form {
 }
 
 impl<M: Model> AnyModel for Typed<M> {
+    fn code(&self) -> Code {
+        self.code
+    }
+
     fn description(&self) -> Description {
-        M::DESCRIPTION
+        *self.model.description()
     }
 
     fn inputs(&self) -> &'static [&'static str] {
-        M::INPUTS
+        self.model.inputs()
     }
 
     fn parameter(&self, index: usize) -> f64 {
-        self.0.parameter(index)
+        self.model.parameter(index)
     }
 
     fn set_parameter(&mut self, index: usize, value: f64) {
-        self.0.set_parameter(index, value);
+        self.model.set_parameter(index, value);
     }
 
     fn set_mode(&mut self, mode: usize) {
-        self.0.set_mode(mode);
+        self.model.set_mode(mode);
     }
 
     fn check_parameters(&self) -> Result<(), ParameterError> {
-        self.0.check_parameters()
+        self.model.check_parameters()
     }
 
     fn initial(&self) -> Start {
-        let initial = self.0.initial();
+        let initial = self.model.initial();
         Start {
             q: initial.q.as_slice().to_vec(),
             qdot: initial.qdot.as_slice().to_vec(),
@@ -352,8 +422,9 @@ impl<M: Model> AnyModel for Typed<M> {
     }
 
     fn complete_position(&self, q: &[f64], placed: &[bool]) -> Result<Vec<f64>, StateError> {
-        let (q, placed) = (vector(q), vector(&marks(placed)));
-        let completed = self.0.complete_position(0.0, &q, &placed)?;
+        let zero = self.model.zero_vector();
+        let (q, placed) = (vector(&zero, q), vector(&zero, &marks(placed)));
+        let completed = self.model.complete_position(0.0, &q, &placed)?;
         Ok(completed.as_slice().to_vec())
     }
 
@@ -363,53 +434,57 @@ impl<M: Model> AnyModel for Typed<M> {
         qdot: &[f64],
         named: &[bool],
     ) -> Result<Vec<f64>, StateError> {
-        let (q, qdot, named) = (vector(q), vector(qdot), vector(&marks(named)));
-        let completed = self.0.complete_velocity(0.0, &q, &qdot, &named)?;
+        let zero = self.model.zero_vector();
+        let [q, qdot, named] = [q, qdot, &marks(named)].map(|own| vector(&zero, own));
+        let completed = self.model.complete_velocity(0.0, &q, &qdot, &named)?;
         Ok(completed.as_slice().to_vec())
     }
 
     fn state(&self, t: f64, origin: &Origin) -> Result<Vec<f64>, StateError> {
-        let state = self.prepare(&self.0.global(), t, origin)?;
+        let state = self.prepare(&self.model.global(), t, origin)?;
         Ok(state.as_slice().to_vec())
     }
 
     fn region(&self, t: f64, q: &[f64]) -> Option<f64> {
-        self.0.view_region(t, &vector(q))
+        self.model
+            .view_region(t, &vector(&self.model.zero_vector(), q))
     }
 
     fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault> {
-        let (global, state) = (self.0.global(), vector(state));
+        let global = self.model.global();
+        let state = vector(&global.zero_state(), state);
         global.inspect(t, &state, report)?;
-        if M::DESCRIPTION.quasi_velocities.is_empty() {
+        if self.model.description().quasi_velocities.is_empty() {
             return Ok(());
         }
         let (q, qdot) = (global.position(&state), global.velocity(t, &state)?);
-        let state = self.0.state_unchecked(t, &q, &qdot)?;
-        self.0.inspect_frame(t, &state, report)
+        let state = self.model.state_unchecked(t, &q, &qdot)?;
+        self.model.inspect_frame(t, &state, report)
     }
 
     fn law(&self, surface: usize) -> Option<Law> {
-        self.0.effects().law(&self.0, surface)
+        self.model.effects().law(&self.model, surface)
     }
 
     fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64> {
-        let global = self.0.global();
+        let global = self.model.global();
         let contact = Contact::<<M::Global as System>::Impulse> {
             gap_rate: contact.gap_rate,
             constrained_rate: contact.constrained_rate,
             surface_rate: contact.surface_rate,
             constrained_compliance: contact.constrained_compliance,
             free_compliance: contact.free_compliance,
-            direction: vector(&contact.direction),
+            direction: vector(&global.zero_impulse(), &contact.direction),
         };
-        let mut state = vector(state);
+        let mut state = vector(&global.zero_state(), state);
         global.kick(&mut state, contact.impulse(law), &contact.direction);
         StateVector::as_slice(&state).to_vec()
     }
 
     fn kick(&self, state: &[f64], impulse: &[f64]) -> Vec<f64> {
-        let mut state = vector(state);
-        self.0.global().kick(&mut state, 1.0, &vector(impulse));
+        let global = self.model.global();
+        let mut state = vector(&global.zero_state(), state);
+        global.kick(&mut state, 1.0, &vector(&global.zero_impulse(), impulse));
         StateVector::as_slice(&state).to_vec()
     }
 }
@@ -433,8 +508,8 @@ impl<M: Model> Runs for Typed<M> {
         looks_inside: bool,
     ) -> Vec<Result<Ending, String>> {
         match settings.form {
-            Form::Reduced => abreast(runs, settings, looks_inside, |typed: Self| typed.0),
-            Form::Global => abreast(runs, settings, looks_inside, |typed: Self| typed.0.global()),
+            Form::Reduced => abreast(self, runs, settings, looks_inside, M::clone),
+            Form::Global => abreast(self, runs, settings, looks_inside, M::global),
         }
     }
 
@@ -466,45 +541,46 @@ impl<M: Model> Runs for Typed<M> {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<Found, Missed>>, String> {
-        let text = |error| state_text(&M::DESCRIPTION, &error);
-        let state = self.prepare(&self.0, 0.0, origin).map_err(text)?;
-        let velocity = self.0.velocity(0.0, &state);
+        let text = |error| state_text(self.model.description(), &error);
+        let state = self.prepare(&self.model, 0.0, origin).map_err(text)?;
+        let velocity = self.model.velocity(0.0, &state);
         let qdot = velocity.map_err(|fault| text(fault.into()))?;
-        let q = self.0.position(&state);
+        let q = self.model.position(&state);
         let finder = Finder {
             search,
             q: q.as_slice(),
             qdot: qdot.as_slice(),
         };
-        self.0.visit_variational(finder).transpose()
+        self.model.visit_variational(finder).transpose()
     }
 }
 
 /// Makes several runs at once, in a form of the model. Runs that have no state to begin with are told why.
 fn abreast<M: Model, S: Model<Vector = M::Vector>>(
+    typed: &Typed<M>,
     runs: Vec<Together<'_>>,
     settings: &Settings,
     looks_inside: bool,
-    form: impl Fn(Typed<M>) -> S,
+    form: impl Fn(&M) -> S,
 ) -> Vec<Result<Ending, String>> {
     let mut refused = Vec::new();
     let mut begun = Vec::new();
     for (index, run) in runs.into_iter().enumerate() {
-        let with_parameters = || {
-            let mut model = M::with_defaults();
-            for (index, value) in run.parameters.iter().enumerate() {
-                model.set_parameter(index, *value);
-            }
-            Typed(model)
+        let mut own = Typed {
+            model: typed.model.clone(),
+            code: typed.code,
         };
-        let (typed, model) = (with_parameters(), form(with_parameters()));
-        match typed.prepare(&model, 0.0, &run.origin) {
+        for (index, value) in run.parameters.iter().enumerate() {
+            own.model.set_parameter(index, *value);
+        }
+        let model = form(&own.model);
+        match own.prepare(&model, 0.0, &run.origin) {
             Ok(state) => begun.push(Abreast {
                 model,
                 state,
                 watch: run.watch,
             }),
-            Err(error) => refused.push((index, state_text(&M::DESCRIPTION, &error))),
+            Err(error) => refused.push((index, state_text(own.model.description(), &error))),
         }
     }
     let mut endings = driver::simulate_abreast(begun, settings, looks_inside);
@@ -515,8 +591,9 @@ fn abreast<M: Model, S: Model<Vector = M::Vector>>(
 }
 
 /// What tables and pictures show of a state.
-pub(crate) fn point<M: Described>(model: &M, t: f64, state: &M::State) -> Point {
-    let mode = M::DESCRIPTION.modes.get(model.mode(state));
+pub(crate) fn point<M: Instance>(model: &M, t: f64, state: &M::State) -> Point {
+    let description = model.description();
+    let mode = description.modes.get(model.mode(state));
     // A mode need not have all coordinates of the model.
     let has = |index: usize| mode.is_none_or(|mode| mode.coordinates.contains(&index));
     let own = |values: &[f64]| -> Vec<f64> {
@@ -527,9 +604,9 @@ pub(crate) fn point<M: Described>(model: &M, t: f64, state: &M::State) -> Point 
     };
     let components = |values: Result<M::Vector, Fault>| match values {
         Ok(values) => own(values.as_slice()),
-        Err(_) => vec![f64::NAN; M::Vector::CAPACITY],
+        Err(_) => vec![f64::NAN; model.coordinate_count()],
     };
-    let mut outputs = vec![f64::NAN; M::DESCRIPTION.outputs.len()];
+    let mut outputs = vec![f64::NAN; description.outputs.len()];
     if model.outputs(t, state, &mut outputs).is_err() {
         outputs.fill(f64::NAN);
     }
@@ -544,9 +621,9 @@ pub(crate) fn point<M: Described>(model: &M, t: f64, state: &M::State) -> Point 
     }
 }
 
-/// The vector of these components; missing ones are 0.
-fn vector<V: StateVector>(components: &[f64]) -> V {
-    let mut vector = V::zeros(V::CAPACITY);
+/// A vector like this one, of these components; missing ones are 0.
+fn vector<V: StateVector>(like: &V, components: &[f64]) -> V {
+    let mut vector = like.zeroed();
     for (component, &value) in vector.as_mut_slice().iter_mut().zip(components) {
         *component = value;
     }

@@ -6,9 +6,7 @@ use dalembert::integrate::Chosen;
 use dalembert::law::Law;
 use dalembert::variations::orbit::ITERATIONS;
 use dalembert::variations::{Orbit, OrbitError, Section, SectionError, Undefined};
-use dalembert::{
-    Described, Outcome, Policies, Scene, SceneEffects, StateVector, Taylor, Tolerance,
-};
+use dalembert::{Instance, Outcome, Policies, Scene, SceneEffects, StateVector, Taylor, Tolerance};
 use serde_json::Value;
 
 use crate::driver::details;
@@ -62,7 +60,7 @@ impl VariationalVisitor for Finder<'_> {
     /// `Err` of the inner result where there is no orbit, of the outer where no run begins.
     type Output = Result<Result<Found, Missed>, String>;
 
-    fn visit<S: Described + Scene + Variational>(self, system: &S) -> Self::Output {
+    fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
         let search = self.search;
         let mut effects = system.effects();
         for &(surface, law) in &search.laws {
@@ -90,12 +88,12 @@ impl VariationalVisitor for Finder<'_> {
         match orbit {
             Ok(orbit) => Ok(Ok(found(system, &orbit))),
             Err(OrbitError::Section(SectionError::Start(error))) => Err(error.to_string()),
-            Err(error) => Ok(Err(missed(&S::DESCRIPTION, &error))),
+            Err(error) => Ok(Err(missed(system.description(), &error))),
         }
     }
 }
 
-fn found<S: Described + Variational>(system: &S, orbit: &Orbit<S>) -> Found {
+fn found<S: Instance + Variational>(system: &S, orbit: &Orbit<S>) -> Found {
     let dimension = orbit.dimension;
     let columns = &orbit.derivative.as_ref()[..dimension];
     let rows = (0..dimension).flat_map(|i| columns.iter().map(move |column| column.as_slice()[i]));

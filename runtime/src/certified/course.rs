@@ -141,7 +141,10 @@ impl<Sys: Variational> Field<'_, Sys> {
             rate: Interval::point(1.0),
         };
         let states = rated_row::<Sys>(&part.states, &part.rates);
-        let mut gaps = Sys::clearances(&self.steady_parameters(), times, &states).ok()?;
+        let mut gaps = self
+            .system
+            .clearances(&self.steady_parameters(), times, &states)
+            .ok()?;
         let (time, states, from_middle) = &part.middle;
         let centred = self.gaps_at(*time, states)?;
         let all = gaps.as_mut_slice().iter_mut().zip(centred.as_slice());
@@ -158,7 +161,9 @@ impl<Sys: Variational> Field<'_, Sys> {
         times: Interval,
         states: &Bounds<Sys::State>,
     ) -> Option<Sys::Clearances<Interval>> {
-        Sys::clearances(self.parameters(), times, &row::<Sys>(states)).ok()
+        self.system
+            .clearances(self.parameters(), times, &row::<Sys>(states))
+            .ok()
     }
 }
 
@@ -253,7 +258,12 @@ impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
             }
         }
         let states = row::<Sys>(&part.states);
-        match Sys::counts_throughout(self.field.parameters(), surface, part.times, &states) {
+        match self.field.system.counts_throughout(
+            self.field.parameters(),
+            surface,
+            part.times,
+            &states,
+        ) {
             Some(false) => Ok(Side::Unknown),
             None => Err(Reason::UnsureCondition { surface }),
             Some(true) if is_behind => Err(Reason::MayBeBehind { surface }),

@@ -196,7 +196,10 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let column = carried(field, from, now, self.unit, units, ORDER)?;
         let states = rated_row::<Sys>(&whole.states, &column);
         let steady = Rated::steady(whole.times);
-        let gaps = Sys::clearances(&field.steady_parameters(), steady, &states).ok()?;
+        let gaps = field
+            .system
+            .clearances(&field.steady_parameters(), steady, &states)
+            .ok()?;
         Some((column, gaps.as_slice()[self.surface].rate))
     }
 
@@ -248,7 +251,10 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let meeting = meeting.ok_or(Reason::MayGraze { surface })?;
         let (field, times) = (self.surfaces.field, self.all.times(meeting.units));
         let states = row::<Sys>(&meeting.before);
-        match Sys::counts_throughout(field.parameters(), surface, times, &states) {
+        match field
+            .system
+            .counts_throughout(field.parameters(), surface, times, &states)
+        {
             Some(true) => Ok(meeting),
             _ => Err(Reason::UnsureCondition { surface }),
         }
@@ -454,7 +460,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
     /// Whether the law is a map; refuses one that a run in doubles refuses at the centre.
     fn check_map(&self, strike: &Strike, meeting: &Meeting<Sys>) -> Result<bool, Reason> {
         let (surface, field) = (self.surface, self.surfaces.field);
-        let is_map = strike.law::<Sys, Interval>(field.parameters()).is_map();
+        let is_map = strike.law(field.system, field.parameters()).is_map();
         if is_map {
             let t = self.centre.times(meeting.centre_units).middle();
             let centre = self.centre.at(meeting.centre_units).middle();
@@ -474,8 +480,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         times: Interval,
         states: &Bounds<Sys::State>,
     ) -> Option<Bounds<Sys::State>> {
-        let parameters = self.surfaces.field.parameters();
-        let after = strike.applied::<Sys, Interval>(parameters, times, &row::<Sys>(states));
+        let field = self.surfaces.field;
+        let after = strike.applied(field.system, field.parameters(), times, &row::<Sys>(states));
         let after = bounds::<Sys::State>(after.ok()??.as_slice());
         after.is_finite().then_some(after)
     }
@@ -505,7 +511,7 @@ fn applied_along<Sys: Variational + Impacting>(
         rate: delay,
     };
     let states = rated_row::<Sys>(states, along);
-    let after = strike.applied::<Sys, Rated>(&field.steady_parameters(), times, &states);
+    let after = strike.applied(field.system, &field.steady_parameters(), times, &states);
     let after = after.ok()??;
     let changes = Bounds::of(|i| after.as_slice()[i].rate);
     changes.is_finite().then_some(changes)
@@ -605,7 +611,10 @@ fn gap_now<Sys: Variational + Impacting>(
         rate: Interval::point(1.0),
     };
     let states = rated_row::<Sys>(states, &rates);
-    let gaps = Sys::clearances(&field.steady_parameters(), times, &states).ok()?;
+    let gaps = field
+        .system
+        .clearances(&field.steady_parameters(), times, &states)
+        .ok()?;
     let gap = gaps.as_slice()[surface];
     Some([gap.value, gap.rate])
 }

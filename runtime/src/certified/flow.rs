@@ -133,7 +133,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
     /// [`Fault`] where a velocity may not exist.
     pub fn velocities(&self) -> Result<Sys::Configuration<Interval>, Fault> {
         let hull = self.frame.hull();
-        Sys::velocities(
+        self.field.system.velocities(
             self.field.parameters(),
             Interval::point(self.t),
             &row::<Sys>(&hull),

@@ -275,13 +275,13 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
             .field
             .system
             .begin(&parameters, times, &states, &mut firsts);
-        let gaps = Sys::clearances(&parameters, times, &states);
+        let gaps = self.field.system.clearances(&parameters, times, &states);
         let strike = Strike {
             surface,
             chosen: None,
             motion_start: self.field.system.motion_start(&impact.before.middle()),
         };
-        let after = strike.applied::<Sys, Rated>(&parameters, times, &states);
+        let after = strike.applied(self.field.system, &parameters, times, &states);
         let (Ok(()), Ok(gaps), Ok(Some(after))) = (begun, gaps, after) else {
             return true;
         };

@@ -45,6 +45,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// Whether a surface counts, and has a law, at all times and states of a box; `None` where that is not certain. A system whose
     /// surfaces count everywhere need not say so.
     fn counts_throughout(
+        &self,
         parameters: &Self::Parameters<Interval>,
         surface: usize,
         t: Interval,
@@ -59,6 +60,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// # Errors
     /// [`Fault`].
     fn velocities<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         t: L,
         state: &Self::Row<L>,
@@ -69,6 +71,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// # Errors
     /// [`Fault`]; of a model with modes, [`Fault::SeveralModes`].
     fn composed<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         t: L,
         q: &Self::Configuration<L>,
@@ -81,6 +84,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// # Errors
     /// [`Fault`].
     fn deviations<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         t: L,
         state: &Self::Row<L>,
@@ -91,6 +95,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// # Errors
     /// [`Fault`].
     fn clearances<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         t: L,
         state: &Self::Row<L>,
@@ -101,6 +106,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// # Errors
     /// [`Fault`].
     fn collision<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         surface: usize,
         t: L,
@@ -113,6 +119,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// # Errors
     /// [`Fault`].
     fn focus<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         surface: usize,
         t: L,
@@ -128,6 +135,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// # Errors
     /// [`Fault`].
     fn trace<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         surface: usize,
         t: L,
@@ -144,6 +152,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// # Errors
     /// [`Fault`].
     fn landing<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         surface: usize,
         t: L,
@@ -156,17 +165,22 @@ pub trait Variational: TaylorField + System + Sized {
     /// # Errors
     /// [`Fault`].
     fn passed<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         surface: usize,
         t: L,
         state: &Self::Row<L>,
     ) -> Result<Option<Self::Row<L>>, Fault> {
-        match Self::landing(parameters, surface, t, state)? {
-            Some([q, qdot]) => Self::composed(parameters, t, &q, &qdot).map(Some),
+        match self.landing(parameters, surface, t, state)? {
+            Some([q, qdot]) => self.composed(parameters, t, &q, &qdot).map(Some),
             None => Ok(None),
         }
     }
 
     /// The declared law of a surface, and its coefficient as a number of the parameters; 0 for a law without one.
-    fn declared_law<L: Numbers>(parameters: &Self::Parameters<L>, surface: usize) -> (Law, L);
+    fn declared_law<L: Numbers>(
+        &self,
+        parameters: &Self::Parameters<L>,
+        surface: usize,
+    ) -> (Law, L);
 }

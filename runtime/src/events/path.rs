@@ -127,14 +127,14 @@ impl<S: StateVector> Path<S> {
     ) {
         (self.start, self.length) = (step.t_start(), step.length());
         let (start, end, [first, last]) = (step.start(), step.end(), step.rates());
-        for i in 0..sway.count() {
-            let at = |state: &S| state.as_slice()[i];
+        for i in 0..sway.padded().len() {
+            let at = |state: &S| state.padded()[i];
             let rates = [first, last].map(|rate| self.length * at(rate));
             let bend = at(end) - at(start) - rates[0];
             let twist = 2.0 * bend - (rates[1] - rates[0]);
             let powers = [at(start), rates[0], bend + twist, -twist];
             for (coefficient, power) in self.coefficients.iter_mut().zip(powers) {
-                coefficient.as_mut_slice()[i] = power;
+                coefficient.padded_mut()[i] = power;
             }
         }
         self.order = 3;
@@ -154,19 +154,19 @@ impl<S: StateVector> Path<S> {
             if k == FEW {
                 self.tails = [sizes, slopes];
             }
-            for i in 0..zeros.count() {
-                let size = coefficient.as_slice()[i].abs();
-                sizes.as_mut_slice()[i] += size;
-                slopes.as_mut_slice()[i] += k as f64 * size;
+            for i in 0..zeros.padded().len() {
+                let size = coefficient.padded()[i].abs();
+                sizes.padded_mut()[i] += size;
+                slopes.padded_mut()[i] += k as f64 * size;
             }
         }
         let has_tails = self.order >= FEW;
-        for i in 0..zeros.count() {
-            let [size, slope] = [sizes.as_slice()[i], slopes.as_slice()[i]];
-            self.doubts[0].as_mut_slice()[i] += ROUNDING * size;
-            self.doubts[1].as_mut_slice()[i] += 2.0 * ROUNDING * slope;
+        for i in 0..zeros.padded().len() {
+            let [size, slope] = [sizes.padded()[i], slopes.padded()[i]];
+            self.doubts[0].padded_mut()[i] += ROUNDING * size;
+            self.doubts[1].padded_mut()[i] += 2.0 * ROUNDING * slope;
             for (tail, sum) in self.tails.iter_mut().zip([size, slope]) {
-                let tail = &mut tail.as_mut_slice()[i];
+                let tail = &mut tail.padded_mut()[i];
                 *tail = if has_tails {
                     sum - *tail + ROUNDING * sum
                 } else {
@@ -190,9 +190,9 @@ impl<S: StateVector> Path<S> {
         for first in 0..COUNT.saturating_sub(1) {
             for k in (first..COUNT - 1).rev() {
                 let above = powers[k + 1];
-                let power = powers[k].as_mut_slice().iter_mut();
+                let power = powers[k].padded_mut().iter_mut();
                 power
-                    .zip(above.as_slice())
+                    .zip(above.padded())
                     .for_each(|(power, above)| *power += 0.5 * above);
             }
         }
@@ -203,13 +203,13 @@ impl<S: StateVector> Path<S> {
             bend,
         } = &mut self.whole;
         let last = self.order as f64 - 1.0;
-        for i in 0..zeros.count() {
+        for i in 0..zeros.padded().len() {
             let mut scale = 1.0;
             let (mut beyond, mut steep, mut bent) = (0.0, 0.0, 0.0);
             for (k, power) in powers.iter().enumerate() {
-                let term = scale * power.as_slice()[i];
+                let term = scale * power.padded()[i];
                 match k < 4 {
-                    true => cubic[k].as_mut_slice()[i] = term,
+                    true => cubic[k].padded_mut()[i] = term,
                     false => {
                         beyond += term.abs();
                         steep += k as f64 * term.abs();
@@ -218,11 +218,10 @@ impl<S: StateVector> Path<S> {
                 bent += (k * k.saturating_sub(1)) as f64 * term.abs();
                 scale *= 0.5;
             }
-            bend.as_mut_slice()[i] = 4.0 * bent + last * self.tails[1].as_slice()[i];
-            error.as_mut_slice()[i] =
-                beyond + self.tails[0].as_slice()[i] + self.doubts[0].as_slice()[i];
-            slope.as_mut_slice()[i] =
-                steep + 0.5 * (self.tails[1].as_slice()[i] + self.doubts[1].as_slice()[i]);
+            bend.padded_mut()[i] = 4.0 * bent + last * self.tails[1].padded()[i];
+            error.padded_mut()[i] = beyond + self.tails[0].padded()[i] + self.doubts[0].padded()[i];
+            slope.padded_mut()[i] =
+                steep + 0.5 * (self.tails[1].padded()[i] + self.doubts[1].padded()[i]);
         }
     }
 

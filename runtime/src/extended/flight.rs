@@ -270,7 +270,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         let mut last = f64::INFINITY;
         for _ in 0..CHORDS {
             let at = self.after(theta).0;
-            let gaps = Sys::clearances(&self.parameters, at.t, &at.state)?;
+            let gaps = self.system.clearances(&self.parameters, at.t, &at.state)?;
             let step = gaps.as_slice()[surface] / slope;
             theta = theta - step;
             let size = step.nearest().abs();

@@ -72,22 +72,22 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         powers[..=K].fill(self.base.value.zeroed());
         for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
             let degree = K - 1 - k;
-            for i in 0..coefficient.count() {
-                powers[0].as_mut_slice()[i] += coefficient.as_slice()[i];
+            for i in 0..coefficient.padded().len() {
+                powers[0].padded_mut()[i] += coefficient.padded()[i];
                 for j in (0..=degree).rev() {
-                    let power = powers[j].as_slice()[i];
-                    powers[j + 1].as_mut_slice()[i] = match is_along(k) {
+                    let power = powers[j].padded()[i];
+                    powers[j + 1].padded_mut()[i] = match is_along(k) {
                         true => power,
-                        false => powers[j + 1].as_slice()[i] - power,
+                        false => powers[j + 1].padded()[i] - power,
                     };
                 }
                 if is_along(k) {
-                    powers[0].as_mut_slice()[i] = 0.0;
+                    powers[0].padded_mut()[i] = 0.0;
                 }
             }
         }
-        for i in 0..self.base.value.count() {
-            powers[0].as_mut_slice()[i] += self.base.value.as_slice()[i];
+        for i in 0..self.base.value.padded().len() {
+            powers[0].padded_mut()[i] += self.base.value.padded()[i];
         }
         K
     }
@@ -104,12 +104,12 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         let mut value = self.base.value.zeroed();
         for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
             let factor = if is_along(k) { theta } else { 1.0 - theta };
-            for i in 0..coefficient.count() {
-                let sum = value.as_slice()[i] + coefficient.as_slice()[i];
-                value.as_mut_slice()[i] = sum * factor;
+            for i in 0..coefficient.padded().len() {
+                let sum = value.padded()[i] + coefficient.padded()[i];
+                value.padded_mut()[i] = sum * factor;
             }
         }
-        self.base.advanced(|i| value.as_slice()[i])
+        self.base.advanced(|i| value.padded()[i])
     }
 }
 

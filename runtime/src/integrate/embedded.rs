@@ -232,7 +232,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         self.ends.end = self
             .ends
             .start
-            .advanced(|i| h * (stages[0].as_slice()[i] + sum(stages, M::WEIGHTS, i)));
+            .advanced(|i| h * (stages[0].padded()[i] + sum(stages, M::WEIGHTS, i)));
         let end = &self.ends.end.value;
         if M::ERROR_TAKES_LAST {
             field.rate(t + h, end, &mut stages[M::LAST])?;
@@ -437,21 +437,21 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
     #[inline]
     fn sway(&self) -> Option<F::State> {
         let (h, stages) = (self.ends.length(), self.stages.as_ref());
-        let first = stages[0].as_slice();
+        let first = stages[0].padded();
         let (mut bends, mut twists) = (stages[0].zeroed(), stages[0].zeroed());
         for i in 0..first.len() {
-            let gained = h * (stages[M::LAST].as_slice()[i] - first[i]);
+            let gained = h * (stages[M::LAST].padded()[i] - first[i]);
             let bend = self.ends.end.minus(&self.ends.start, i) - h * first[i];
-            bends.as_mut_slice()[i] = bend;
-            twists.as_mut_slice()[i] = 2.0 * bend - gained;
+            bends.padded_mut()[i] = bend;
+            twists.padded_mut()[i] = 2.0 * bend - gained;
         }
         let mut sway = stages[0].zeroed();
         for (stage, &node) in stages[1..M::LAST].iter().zip(&M::NODES[1..]) {
             for i in 0..first.len() {
                 let cubic =
-                    node * (2.0 * bends.as_slice()[i] + (2.0 - 3.0 * node) * twists.as_slice()[i]);
-                let apart = (h * stage.as_slice()[i] - cubic).abs();
-                let largest = &mut sway.as_mut_slice()[i];
+                    node * (2.0 * bends.padded()[i] + (2.0 - 3.0 * node) * twists.padded()[i]);
+                let apart = (h * stage.padded()[i] - cubic).abs();
+                let largest = &mut sway.padded_mut()[i];
                 *largest = largest.max(apart);
             }
         }

@@ -272,7 +272,7 @@ fn advance<F: VectorField, const STAGES: usize>(
     }
     Ok(state.advanced(|i| {
         (0..STAGES)
-            .map(|j| weights[j] * stages[j].as_slice()[i])
+            .map(|j| weights[j] * stages[j].padded()[i])
             .sum()
     }))
 }

@@ -193,7 +193,7 @@ fn midpoint_step<F: Lagrangian>(
     // What the momenta gain over the step but for the reaction at its end.
     let gain = loop {
         field.counters.rate_evaluations += 1;
-        let qm = from.q.advanced(|i| 0.5 * h * qdot.as_slice()[i]).value;
+        let qm = from.q.advanced(|i| 0.5 * h * qdot.padded()[i]).value;
         let force = field.field.force(middle, &qm, &qdot);
         let reaction = field
             .field
@@ -216,7 +216,7 @@ fn midpoint_step<F: Lagrangian>(
             }
         }
     };
-    let q = from.q.advanced(|i| h * qdot.as_slice()[i]);
+    let q = from.q.advanced(|i| h * qdot.padded()[i]);
     let free = combined(&from.p, 1.0, &gain, 1.0);
     let (arriving, last) = field.field.constrained_velocity(t, &q.value, &free)?;
     let reaction = field.field.reaction_force(t, &q.value, &last);

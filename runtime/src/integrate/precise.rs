@@ -35,27 +35,27 @@ impl<S: StateVector> Precise<S> {
     /// Component `i` plus a number, rounded once.
     #[inline(always)]
     pub(super) fn plus(&self, i: usize, increment: f64) -> f64 {
-        self.value.as_slice()[i] + (self.rest.as_slice()[i] + increment)
+        self.value.padded()[i] + (self.rest.padded()[i] + increment)
     }
 
     /// Component `i` less that of another, with what both were rounded off.
     #[inline(always)]
     pub(super) fn minus(&self, other: &Self, i: usize) -> f64 {
-        let rests = self.rest.as_slice()[i] - other.rest.as_slice()[i];
-        (self.value.as_slice()[i] - other.value.as_slice()[i]) + rests
+        let rests = self.rest.padded()[i] - other.rest.padded()[i];
+        (self.value.padded()[i] - other.value.padded()[i]) + rests
     }
 
-    /// The sum with `increment(i)` in each component, and what is rounded off.
+    /// The sum with `increment(i)` in each component, also in those of [`StateVector::padded`], and what is rounded off.
     #[inline]
     pub(super) fn advanced(&self, increment: impl Fn(usize) -> f64) -> Self {
         let mut sum = *self;
-        for i in 0..sum.value.count() {
-            let before = self.value.as_slice()[i];
-            let change = self.rest.as_slice()[i] + increment(i);
+        for i in 0..sum.value.padded().len() {
+            let before = self.value.padded()[i];
+            let change = self.rest.padded()[i] + increment(i);
             let after = before + change;
             let gained = after - before;
-            sum.value.as_mut_slice()[i] = after;
-            sum.rest.as_mut_slice()[i] = (before - (after - gained)) + (change - gained);
+            sum.value.padded_mut()[i] = after;
+            sum.rest.padded_mut()[i] = (before - (after - gained)) + (change - gained);
         }
         sum
     }

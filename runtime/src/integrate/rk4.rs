@@ -53,14 +53,14 @@ impl<F: VectorField> Advance<F> for ClassicalRungeKutta {
         let (mut slope, mut sum) = (*rate, *rate);
         for (part, weight) in STAGES {
             let mut inside = state.value;
-            for i in 0..inside.count() {
-                inside.as_mut_slice()[i] = state.plus(i, part * h * slope.as_slice()[i]);
+            for i in 0..inside.padded().len() {
+                inside.padded_mut()[i] = state.plus(i, part * h * slope.padded()[i]);
             }
             evaluate(field, t + part * h, &inside, &mut slope)?;
-            for i in 0..sum.count() {
-                sum.as_mut_slice()[i] += weight * slope.as_slice()[i];
+            for i in 0..sum.padded().len() {
+                sum.padded_mut()[i] += weight * slope.padded()[i];
             }
         }
-        Ok(state.advanced(|i| h * sum.as_slice()[i] / 6.0))
+        Ok(state.advanced(|i| h * sum.padded()[i] / 6.0))
     }
 }

@@ -15,7 +15,7 @@ pub(super) fn sum<S: StateVector>(stages: &[S], terms: &[Term], i: usize) -> f64
     let mut sum = 0.0;
     for &(stage, coefficient) in terms {
         if stage > 0 {
-            sum += coefficient * stages[stage].as_slice()[i];
+            sum += coefficient * stages[stage].padded()[i];
         }
     }
     sum
@@ -53,9 +53,9 @@ pub(super) fn combine<S: StateVector>(
     (node, terms): (f64, &[Term]),
     out: &mut S,
 ) {
-    for i in 0..base.count() {
-        let rate = node * stages[0].as_slice()[i] + sum(stages, terms, i);
-        out.as_mut_slice()[i] = base.as_slice()[i] + h * rate;
+    for i in 0..base.padded().len() {
+        let rate = node * stages[0].padded()[i] + sum(stages, terms, i);
+        out.padded_mut()[i] = base.padded()[i] + h * rate;
     }
 }
 
@@ -63,11 +63,7 @@ pub(super) fn combine<S: StateVector>(
 #[inline(always)]
 pub(super) fn subtract_first<S: StateVector>(stages: &mut [S], stage: usize) {
     let first = stages[0];
-    for (entry, first) in stages[stage]
-        .as_mut_slice()
-        .iter_mut()
-        .zip(first.as_slice())
-    {
+    for (entry, first) in stages[stage].padded_mut().iter_mut().zip(first.padded()) {
         *entry -= first;
     }
 }

@@ -29,6 +29,16 @@ impl<S: Declared + HasConstraints> Constrained for S {
     type Multipliers = S::Multipliers;
     type Levels = S::Levels;
 
+    #[inline(always)]
+    fn constraint_count(&self) -> usize {
+        self.tables().dimensions.constraints
+    }
+
+    #[inline(always)]
+    fn level_count(&self) -> usize {
+        self.tables().dimensions.levels
+    }
+
     #[inline]
     fn multipliers(&self, t: f64, state: &S::State) -> Result<S::Multipliers, Fault> {
         let kernel = (S::Kernels::multipliers, self.constraint_count());
@@ -67,7 +77,7 @@ impl<S: Declared + HasConstraints> Constrained for S {
 
     #[inline(always)]
     fn is_linear(&self) -> bool {
-        S::TABLES.is_linear
+        self.tables().is_linear
     }
 
     fn linearised_forms(
@@ -83,12 +93,12 @@ impl<S: Declared + HasConstraints> Constrained for S {
 
     #[inline(always)]
     fn is_reduced(&self) -> bool {
-        S::TABLES.form == Form::Reduced
+        self.tables().form == Form::Reduced
     }
 
     #[inline]
     fn restore(&self, t: f64, state: &mut S::State) -> Result<(), Fault> {
-        if S::TABLES.form == Form::Reduced {
+        if self.tables().form == Form::Reduced {
             return Ok(());
         }
         let before = *state;
@@ -108,11 +118,11 @@ impl<S: Declared + HasConstraints> Constrained for S {
 
     #[inline(always)]
     fn declared_levels(&self) -> &'static [Level] {
-        S::TABLES.levels
+        self.tables().levels
     }
 
     fn level_scales(&self, t: f64, q: &S::Vector) -> S::Levels {
-        if S::TABLES.levels.is_empty() {
+        if self.tables().levels.is_empty() {
             return self.zero_levels();
         }
         let kernel = (S::Kernels::level_scales, self.level_count());

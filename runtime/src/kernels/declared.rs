@@ -28,19 +28,24 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
     type Components<L: Numbers>: Row<L>;
     /// One number per parameter.
     type Arguments<L: Numbers>: Row<L>;
+    /// The values of the parameters, or where they stand.
+    type Values<'a>: AsRef<[f64]>;
     /// Room for the values of every kernel that gives several things at once.
     type Room<L: Numbers>: Row<L>;
     /// The kernels.
     type Kernels: Kernels;
 
+    /// Whether rates may have narrow features ([`Tables::can_be_narrow`]), of some system of this type.
+    const MAY_BE_NARROW: bool;
+
     /// The kernels.
-    const KERNELS: Self::Kernels;
+    fn kernels(&self) -> Self::Kernels;
 
     /// What is known besides.
-    const TABLES: Tables;
+    fn tables(&self) -> &'static Tables;
 
     /// The values of the parameters.
-    fn arguments(&self) -> Self::Arguments<f64>;
+    fn arguments(&self) -> Self::Values<'_>;
 
     /// As [`System::rank_drop`], of a form whose constraint forms may become dependent.
     fn rank_drop_along(
@@ -106,12 +111,12 @@ pub fn write<S: Declared>(
 ) -> Result<(), Fault> {
     let arguments = system.arguments();
     let at = At {
-        parameters: arguments.as_slice(),
+        parameters: arguments.as_ref(),
         t,
         first,
         second,
     };
-    kernel(&S::KERNELS, at, values)
+    kernel(&system.kernels(), at, values)
 }
 
 /// The values of a kernel as a vector of this length.

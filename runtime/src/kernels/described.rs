@@ -1,9 +1,9 @@
-//! `Described` of every declared model.
+//! `Instance` of every declared model.
 
 use super::declared::{number, pair, write};
 use super::{Declared, Form, Kernels, Shape};
 use crate::contract::System;
-use crate::describe::{Described, Description, Initial, Report, SceneVisitor, VariationalVisitor};
+use crate::describe::{Description, Initial, Instance, Report, VariationalVisitor};
 use crate::effects::Scene;
 use crate::error::Fault;
 use crate::generated::inspect_globally;
@@ -19,36 +19,36 @@ pub struct Quantity {
     pub shape: Shape,
 }
 
-/// The description of a declared form: `model!` writes it, and [`Described`] is made of it.
-pub trait Documented: Declared {
-    /// As [`Described::DESCRIPTION`].
-    const DESCRIPTION: Description;
-
-    /// As [`Described::INPUTS`].
-    const INPUTS: &'static [&'static str] = &[];
-
+/// What a form says of itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Documentation {
+    /// Names, docs, topology and the like.
+    pub description: Description,
+    /// The inputs; their values are the parameters after those of the description.
+    pub inputs: &'static [&'static str],
     /// Of each coordinate, whether its position was declared.
-    const PLACED: &'static [bool];
-
+    pub placed: &'static [bool],
     /// Of each coordinate, whether its velocity was declared.
-    const NAMED: &'static [bool];
-
+    pub named: &'static [bool],
     /// The quantities of [`Kernel::Geometry`](super::Kernel::Geometry), in order.
-    const GEOMETRY: &'static [Quantity];
+    pub geometry: &'static [Quantity],
+}
 
-    /// As many numbers as all of these quantities have.
+/// A declared form that tells of itself: [`Instance`] is made of it.
+pub trait Documented: Declared {
+    /// As many numbers as all quantities of the geometry have.
     type Geometry: Row<f64>;
 
-    /// As [`Described::Global`].
-    type Global: Described<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
+    /// As [`Instance::Global`].
+    type Global: Instance<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
 
-    /// As [`Described::global`].
+    /// What it says.
+    fn documentation(&self) -> &'static Documentation;
+
+    /// As [`Instance::global`].
     fn globally(&self) -> Self::Global;
 
-    /// As [`Described::with_defaults`].
-    fn declared() -> Self;
-
-    /// As [`Described::set_parameter`].
+    /// As [`Instance::set_parameter`].
     fn set_argument(&mut self, index: usize, value: f64);
 
     /// The logarithm of the density of the invariant volume, where it takes an integral.
@@ -57,12 +57,7 @@ pub trait Documented: Declared {
         None
     }
 
-    /// As [`Described::visit_scenes`].
-    fn show_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
-        let _ = visitor;
-    }
-
-    /// As [`Described::visit_variational`].
+    /// As [`Instance::visit_variational`].
     fn show_variational<Visitor: VariationalVisitor>(
         &self,
         visitor: Visitor,
@@ -72,15 +67,15 @@ pub trait Documented: Declared {
     }
 }
 
-impl<S: Documented> Described for S {
-    const DESCRIPTION: Description = S::DESCRIPTION;
-
-    const INPUTS: &'static [&'static str] = S::INPUTS;
-
+impl<S: Documented> Instance for S {
     type Global = S::Global;
 
-    fn visit_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
-        S::show_scenes(visitor);
+    fn description(&self) -> &'static Description {
+        &self.documentation().description
+    }
+
+    fn inputs(&self) -> &'static [&'static str] {
+        self.documentation().inputs
     }
 
     fn visit_variational<Visitor: VariationalVisitor>(
@@ -95,13 +90,9 @@ impl<S: Documented> Described for S {
         self.globally()
     }
 
-    fn with_defaults() -> S {
-        S::declared()
-    }
-
     fn parameter(&self, index: usize) -> f64 {
         let values = self.arguments();
-        values.as_slice().get(index).copied().unwrap_or(f64::NAN)
+        values.as_ref().get(index).copied().unwrap_or(f64::NAN)
     }
 
     fn set_parameter(&mut self, index: usize, value: f64) {
@@ -114,8 +105,8 @@ impl<S: Documented> Described for S {
         Initial {
             q,
             qdot,
-            placed: marks(S::PLACED),
-            named: marks(S::NAMED),
+            placed: marks(self.documentation().placed),
+            named: marks(self.documentation().named),
             until: number(self, S::Kernels::until, 0.0, [&[], &[]]).ok(),
         }
     }
@@ -140,13 +131,13 @@ impl<S: Documented> Described for S {
     }
 
     fn inspect(&self, t: f64, state: &S::State, report: &mut dyn Report) -> Result<(), Fault> {
-        if S::TABLES.form == Form::Reduced {
+        if self.tables().form == Form::Reduced {
             inspect_globally(self, t, state, report)?;
             return self.inspect_frame(t, state, report);
         }
         let (q, p) = state.as_slice().split_at(self.coordinate_count());
         report.vector("q", q);
-        if S::TABLES.form == Form::Global {
+        if self.tables().form == Form::Global {
             report.vector("p", p);
         }
         report_geometry(self, t, state, report)?;
@@ -162,7 +153,7 @@ impl<S: Documented> Described for S {
         state: &S::State,
         report: &mut dyn Report,
     ) -> Result<(), Fault> {
-        match S::TABLES.form {
+        match self.tables().form {
             Form::Reduced => report_geometry(self, t, state, report),
             Form::Global | Form::FirstOrder => Ok(()),
         }
@@ -185,7 +176,8 @@ fn report_geometry<S: Documented>(
     state: &S::State,
     report: &mut dyn Report,
 ) -> Result<(), Fault> {
-    let mut values = S::Geometry::zeros(S::GEOMETRY.iter().map(|own| own.shape.count()).sum());
+    let geometry = system.documentation().geometry;
+    let mut values = S::Geometry::zeros(geometry.iter().map(|own| own.shape.count()).sum());
     let places = [state.as_slice(), &[]];
     write(
         system,
@@ -195,7 +187,7 @@ fn report_geometry<S: Documented>(
         values.as_mut_slice(),
     )?;
     let mut rest = values.as_slice();
-    for Quantity { name, shape } in S::GEOMETRY {
+    for Quantity { name, shape } in geometry {
         let (own, others) = rest.split_at(shape.count());
         rest = others;
         match *shape {

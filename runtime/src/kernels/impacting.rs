@@ -2,7 +2,7 @@
 
 use super::declared::{number, pair, several, vector, write};
 use super::system::over_numbers;
-use super::tables::{Beside, Condition, Surface};
+use super::tables::{Beside, Condition, Surface, Tables};
 use super::{At, Declared, Form, HasSurfaces, Kernels};
 use crate::contract::{Impacting, System};
 use crate::error::Fault;
@@ -30,7 +30,7 @@ fn gap_over<S: Declared, L: Numbers>(
     t: L,
     component: &dyn Fn(usize) -> L,
 ) -> L {
-    let Some(own) = S::TABLES.surfaces.get(surface) else {
+    let Some(own) = system.tables().surfaces.get(surface) else {
         return L::of(1.0);
     };
     let mut q = S::Positions::<L>::zeros(system.coordinate_count());
@@ -48,7 +48,7 @@ fn gap_over<S: Declared, L: Numbers>(
     };
     let mut gap = [L::ZERO];
     // Gaps have no guards.
-    let _ = S::KERNELS.gap(surface, at, &mut gap);
+    let _ = system.kernels().gap(surface, at, &mut gap);
     gap[0]
 }
 
@@ -98,7 +98,7 @@ fn conditions<S: Declared>(
 /// Whether a surface counts.
 #[inline]
 pub(super) fn counts<S: Declared>(system: &S, surface: usize, t: f64, state: &S::State) -> bool {
-    let Some(own) = S::TABLES.surfaces.get(surface) else {
+    let Some(own) = system.tables().surfaces.get(surface) else {
         return true;
     };
     let [holds, other] = conditions(system, (surface, own), t, state);
@@ -111,12 +111,13 @@ pub(super) fn counts<S: Declared>(system: &S, surface: usize, t: f64, state: &S:
 
 /// The same at all times and states of a box; `None` where that is not certain.
 pub(super) fn counts_throughout<S: Declared>(
+    system: &S,
     parameters: &[Interval],
     surface: usize,
     t: Interval,
     state: &[Interval],
 ) -> Option<bool> {
-    let Some(own) = S::TABLES.surfaces.get(surface) else {
+    let Some(own) = system.tables().surfaces.get(surface) else {
         return Some(true);
     };
     let lists = || core::iter::once(own.conditions).chain(own.others.iter().copied());
@@ -132,7 +133,7 @@ pub(super) fn counts_throughout<S: Declared>(
     };
     let mut margins = S::Room::<Interval>::zeros(count);
     let margins = &mut margins.as_mut_slice()[..count];
-    S::KERNELS.conditions(surface, at, margins).ok()?;
+    system.kernels().conditions(surface, at, margins).ok()?;
     let mut rest = &margins[..];
     let mut holds = lists().map(|list| {
         let (own, behind) = rest.split_at(list.len());
@@ -153,6 +154,11 @@ pub(super) fn counts_throughout<S: Declared>(
 
 impl<S: Declared + HasSurfaces> Impacting for S {
     type Gaps = S::Gaps;
+
+    #[inline(always)]
+    fn surface_count(&self) -> usize {
+        self.tables().dimensions.surfaces
+    }
 
     #[inline]
     fn gaps(&self, t: f64, state: &S::State) -> S::Gaps {
@@ -193,7 +199,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         state: &S::State,
         motion: &S::Impulse,
     ) -> Result<Option<S::Gaps>, Fault> {
-        if S::TABLES.form == Form::FirstOrder {
+        if self.tables().form == Form::FirstOrder {
             return Ok(None);
         }
         let kernel = (S::Kernels::gap_accelerations, self.surface_count());
@@ -206,7 +212,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         state: &S::State,
         motion: &S::Impulse,
     ) -> Result<Option<S::Gaps>, Fault> {
-        if S::TABLES.form == Form::FirstOrder {
+        if self.tables().form == Form::FirstOrder {
             return Ok(None);
         }
         let kernel = (S::Kernels::gap_responses, self.surface_count());
@@ -220,7 +226,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     #[inline]
     fn takes(&self, surface: usize, t: f64, state: &S::State) -> bool {
-        match S::TABLES.surfaces.get(surface) {
+        match self.tables().surfaces.get(surface) {
             Some(own) if own.beside == Beside::Last => {
                 conditions(self, (surface, own), t, state)[0]
             }
@@ -230,7 +236,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     #[inline]
     fn law(&self, surface: usize) -> Law {
-        let Some(own) = S::TABLES.surfaces.get(surface) else {
+        let Some(own) = self.tables().surfaces.get(surface) else {
             return Law::Elastic;
         };
         let coefficient = || {
@@ -252,7 +258,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         t: f64,
         state: &S::State,
     ) -> Result<Option<Jump<S::Vector>>, Fault> {
-        if !matches!(S::TABLES.surfaces.get(surface), Some(own) if own.law == Law::Reset) {
+        if !matches!(self.tables().surfaces.get(surface), Some(own) if own.law == Law::Reset) {
             return Ok(None);
         }
         let places = [state.as_slice(), &[][..]];
@@ -308,8 +314,8 @@ impl<S: Declared + HasSurfaces> Impacting for S {
             count,
         );
         let places = [state.as_slice(), &[][..]];
-        let all =
-            several(self, kernel, t, places).map_err(|fault| no_impulse::<S>(fault, surface))?;
+        let all = several(self, kernel, t, places)
+            .map_err(|fault| no_impulse(self.tables(), fault, surface))?;
         let [size, share, direction @ ..] = &all.as_slice()[..count] else {
             return Err(Fault::SingularSurface { surface });
         };
@@ -335,8 +341,8 @@ impl<S: Declared + HasSurfaces> Impacting for S {
             count,
         );
         let places = [state.as_slice(), &[][..]];
-        let all =
-            several(self, kernel, t, places).map_err(|fault| no_impulse::<S>(fault, surface))?;
+        let all = several(self, kernel, t, places)
+            .map_err(|fault| no_impulse(self.tables(), fault, surface))?;
         let [
             gap_rate,
             constrained_rate,
@@ -369,10 +375,10 @@ fn known<V>(found: Result<V, Fault>) -> Result<Option<V>, Fault> {
 
 /// Why a surface has no impulse.
 #[cold]
-pub(super) fn no_impulse<S: Declared>(fault: Fault, surface: usize) -> Fault {
+pub(super) fn no_impulse(tables: &Tables, fault: Fault, surface: usize) -> Fault {
     match fault {
-        Fault::NotDerived if S::TABLES.form == Form::FirstOrder => Fault::FirstOrder,
-        Fault::NotDerived if !S::TABLES.is_linear => Fault::NonlinearConstraints,
+        Fault::NotDerived if tables.form == Form::FirstOrder => Fault::FirstOrder,
+        Fault::NotDerived if !tables.is_linear => Fault::NonlinearConstraints,
         Fault::NotDerived => Fault::SingularSurface { surface },
         fault => fault,
     }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `tables.rs` | what is known of a form besides its kernels: sizes, laws, conditions, charts |
 //! | `declared.rs` | a model with values for its parameters: kernels, tables and the types of its vectors |
+//! | `pointers.rs` | kernels behind pointers, of a form that is known only at run time |
 //! | `system.rs`, `constrained.rs`, `impacting.rs`, .. | the traits of `contract`, of every declared model |
 //! | `described.rs` | names, declared values and inspection |
 
@@ -11,6 +12,7 @@ mod constrained;
 mod declared;
 mod described;
 mod impacting;
+mod pointers;
 mod system;
 mod tables;
 mod variational;
@@ -20,7 +22,8 @@ use crate::error::Fault;
 use crate::numbers::{Numbers, Row};
 pub use dalembert_numbers::kernel::{First, Kernel, Second, Shape};
 pub use declared::{Declared, number, pair, write};
-pub use described::{Documented, Quantity};
+pub use described::{Documentation, Documented, Quantity};
+pub use pointers::{Pointers, Tabled};
 pub use system::nearest_of_declared;
 pub use tables::{Beside, Chart, Condition, Dimensions, Form, Surface, Tables};
 pub use variational::{energy_over, enter, enter_over, nearest_over};
@@ -84,10 +87,13 @@ macro_rules! kernels {
         $(#[$doc])*
         pub trait Kernels {
             /// The kernels that this form shares with another.
-            type Base: Kernels;
+            type Base: Given;
 
             /// The kernels that this form shares with another.
             const BASE: Self::Base;
+
+            /// The kernels that it does not share.
+            const OWN: KernelSet;
 
             $(
                 #[doc = concat!("[`Kernel::", stringify!($name), "`].")]
@@ -125,6 +131,8 @@ macro_rules! kernels {
 
             const BASE: Self = Self;
 
+            const OWN: KernelSet = KernelSet::ALL;
+
             $(
                 #[inline(always)]
                 fn $plain<L: Numbers>(
@@ -147,8 +155,148 @@ macro_rules! kernels {
                 }
             )*
         }
+
+        /// Kernels by name.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub struct KernelSet(u64);
+
+        impl KernelSet {
+            /// No kernels.
+            pub const NONE: Self = Self(0);
+
+            /// All kernels.
+            pub const ALL: Self = Self(u64::MAX);
+
+            $(
+                #[doc = concat!("With [`Kernel::", stringify!($name), "`].")]
+                #[must_use]
+                pub const fn $plain(self) -> Self {
+                    Self(self.0 | 1 << Place::$name as u32)
+                }
+            )*
+            $(
+                #[doc = concat!("With [`Kernel::", stringify!($surface_name), "`].")]
+                #[must_use]
+                pub const fn $of_surface(self) -> Self {
+                    Self(self.0 | 1 << Place::$surface_name as u32)
+                }
+            )*
+
+            const fn has(self, place: Place) -> bool {
+                self.0 & (1 << place as u32) != 0
+            }
+        }
+
+        /// The places of kernels in a set.
+        #[derive(Clone, Copy)]
+        enum Place {
+            $($name,)*
+            $($surface_name,)*
+        }
+
+        /// Kernels over one kind of number behind pointers; `None` for those that are not given.
+        #[derive(Debug, Clone, Copy)]
+        pub struct KernelTable<L: Numbers> {
+            $(
+                #[doc = concat!("[`Kernel::", stringify!($name), "`].")]
+                pub $plain: Option<Plain<L>>,
+            )*
+            $(
+                #[doc = concat!("[`Kernel::", stringify!($surface_name), "`] of a surface.")]
+                pub $of_surface: Option<OfSurface<L>>,
+            )*
+        }
+
+        impl<L: Numbers> KernelTable<L> {
+            const NONE: Self = Self {
+                $($plain: None,)*
+                $($of_surface: None,)*
+            };
+
+            /// Some of the kernels of a form; those that it shares are pointers to the same functions.
+            pub const fn of<K: Given>(which: KernelSet) -> Self {
+                if K::IS_NONE {
+                    return Self::NONE;
+                }
+                let base = Self::of::<K::Base>(which);
+                Self {
+                    $($plain: match (which.has(Place::$name), K::OWN.has(Place::$name)) {
+                        (true, true) => Some(|at, values| K::GIVEN.$plain(at, values)),
+                        _ => base.$plain,
+                    },)*
+                    $($of_surface: match (
+                        which.has(Place::$surface_name),
+                        K::OWN.has(Place::$surface_name),
+                    ) {
+                        (true, true) => Some(|surface, at, values| {
+                            K::GIVEN.$of_surface(surface, at, values)
+                        }),
+                        _ => base.$of_surface,
+                    },)*
+                }
+            }
+        }
+
+        impl<T: Tabled> Kernels for Pointers<T> {
+            type Base = NoKernels;
+
+            const BASE: NoKernels = NoKernels;
+
+            const OWN: KernelSet = KernelSet::ALL;
+
+            $(
+                #[inline(always)]
+                fn $plain<L: Numbers>(
+                    &self,
+                    at: At<'_, L>,
+                    values: &mut [L],
+                ) -> Result<(), Fault> {
+                    match self.0.table() {
+                        Some(KernelTable { $plain: Some(kernel), .. }) => kernel(at, values),
+                        _ => Err(Fault::NotDerived),
+                    }
+                }
+            )*
+            $(
+                #[inline(always)]
+                fn $of_surface<L: Numbers>(
+                    &self,
+                    surface: usize,
+                    at: At<'_, L>,
+                    values: &mut [L],
+                ) -> Result<(), Fault> {
+                    match self.0.table() {
+                        Some(KernelTable { $of_surface: Some(kernel), .. }) => {
+                            kernel(surface, at, values)
+                        }
+                        _ => Err(Fault::NotDerived),
+                    }
+                }
+            )*
+        }
     };
 }
+
+/// Kernels that are given by their type alone.
+pub trait Given: Kernels {
+    /// The kernels.
+    const GIVEN: Self;
+
+    /// Whether none of them is given.
+    const IS_NONE: bool = false;
+}
+
+impl Given for NoKernels {
+    const GIVEN: Self = Self;
+
+    const IS_NONE: bool = true;
+}
+
+/// A kernel behind a pointer.
+pub type Plain<L> = fn(At<'_, L>, &mut [L]) -> Result<(), Fault>;
+
+/// A kernel of surfaces behind a pointer.
+pub type OfSurface<L> = fn(usize, At<'_, L>, &mut [L]) -> Result<(), Fault>;
 
 /// What a form that shares nothing with another begins with: every kernel is [`Fault::NotDerived`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,6 +12,12 @@ use crate::state::StateVector;
 impl<S: Declared> VectorField for S {
     type State = S::State;
 
+    #[inline(always)]
+    fn state_len(&self) -> usize {
+        let dimensions = &self.tables().dimensions;
+        dimensions.coordinates + dimensions.motion
+    }
+
     #[inline]
     fn rate(&self, t: f64, state: &S::State, rate: &mut S::State) -> Result<(), Fault> {
         let places = [state.as_slice(), &[]];
@@ -29,7 +35,7 @@ impl<S: Declared> VectorField for S {
 
     #[inline(always)]
     fn can_be_narrow(&self) -> bool {
-        S::TABLES.can_be_narrow
+        self.tables().can_be_narrow
     }
 
     fn rates_along(
@@ -39,7 +45,7 @@ impl<S: Declared> VectorField for S {
         rate: &mut dyn FnMut(usize, Rated),
     ) -> Result<(), Fault> {
         // NOTE: a constant, so that kernels over intervals are compiled only where they are asked for.
-        if const { !S::TABLES.can_be_narrow } {
+        if const { !S::MAY_BE_NARROW } {
             return Err(Fault::NotDerived);
         }
         let mut state = S::Components::<Rated>::zeros(self.state_len());
@@ -54,7 +60,7 @@ impl<S: Declared> VectorField for S {
             first: state.as_slice(),
             second: &[],
         };
-        S::KERNELS.rate(at, rates.as_mut_slice())?;
+        self.kernels().rate(at, rates.as_mut_slice())?;
         for (i, own) in rates.as_slice().iter().enumerate() {
             rate(i, *own);
         }
@@ -66,8 +72,9 @@ impl<S: Declared> VectorField for S {
 #[inline(always)]
 pub(super) fn over_numbers<S: Declared, L: Numbers>(system: &S) -> S::Arguments<L> {
     let values = system.arguments();
-    let mut numbers = S::Arguments::<L>::zeros(values.as_slice().len());
-    for (number, value) in numbers.as_mut_slice().iter_mut().zip(values.as_slice()) {
+    let values = values.as_ref();
+    let mut numbers = S::Arguments::<L>::zeros(values.len());
+    for (number, value) in numbers.as_mut_slice().iter_mut().zip(values) {
         *number = L::of(*value);
     }
     numbers
@@ -118,6 +125,16 @@ impl<S: Declared> System for S {
     type Vector = S::Vector;
     type Impulse = S::Impulse;
 
+    #[inline(always)]
+    fn coordinate_count(&self) -> usize {
+        self.tables().dimensions.coordinates
+    }
+
+    #[inline(always)]
+    fn impulse_len(&self) -> usize {
+        self.tables().dimensions.motion
+    }
+
     #[inline]
     fn position(&self, state: &S::State) -> S::Vector {
         S::Vector::of(&state.as_slice()[..self.coordinate_count()])
@@ -132,7 +149,7 @@ impl<S: Declared> System for S {
     #[inline]
     fn momentum(&self, t: f64, state: &S::State) -> Result<S::Vector, Fault> {
         let n = self.coordinate_count();
-        match S::TABLES.form {
+        match self.tables().form {
             Form::Global => Ok(S::Vector::of(&state.as_slice()[n..])),
             Form::Reduced => vector(self, (S::Kernels::momentum, n), t, [state.as_slice(), &[]]),
             Form::FirstOrder => Err(Fault::FirstOrder),
@@ -141,7 +158,7 @@ impl<S: Declared> System for S {
 
     #[inline]
     fn state_unchecked(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> Result<S::State, Fault> {
-        match S::TABLES.form {
+        match self.tables().form {
             Form::FirstOrder => Ok(joined::<S>(q.as_slice(), &[])),
             _ => state_by(self, S::Kernels::motion, t, q, qdot),
         }
@@ -149,7 +166,7 @@ impl<S: Declared> System for S {
 
     #[inline]
     fn state_from_momenta(&self, t: f64, q: &S::Vector, p: &S::Vector) -> Result<S::State, Fault> {
-        match S::TABLES.form {
+        match self.tables().form {
             Form::Global => Ok(joined::<S>(q.as_slice(), p.as_slice())),
             Form::Reduced => state_by(self, S::Kernels::nearest_momenta, t, q, p),
             Form::FirstOrder => Err(Fault::FirstOrder),
@@ -158,7 +175,7 @@ impl<S: Declared> System for S {
 
     #[inline]
     fn state_nearest(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> Result<S::State, Fault> {
-        let tables = S::TABLES;
+        let tables = self.tables();
         match tables.form {
             Form::Reduced => state_by(self, S::Kernels::nearest, t, q, qdot),
             Form::Global if tables.dimensions.constraints == 0 => self.state_unchecked(t, q, qdot),
@@ -170,7 +187,7 @@ impl<S: Declared> System for S {
 
     #[inline]
     fn energy(&self, t: f64, state: &S::State) -> Result<f64, Fault> {
-        match S::TABLES.form {
+        match self.tables().form {
             Form::FirstOrder => Err(Fault::FirstOrder),
             _ => number(self, S::Kernels::energy, t, [state.as_slice(), &[]]),
         }
@@ -178,7 +195,7 @@ impl<S: Declared> System for S {
 
     #[inline(always)]
     fn conserves_energy(&self) -> bool {
-        S::TABLES.conserves_energy
+        self.tables().conserves_energy
     }
 
     #[inline]
@@ -191,7 +208,7 @@ impl<S: Declared> System for S {
 
     fn check_parameters(&self) -> Result<(), ParameterError> {
         let values = self.arguments();
-        for (parameter, &value) in S::TABLES.parameters.iter().zip(values.as_slice()) {
+        for (parameter, &value) in self.tables().parameters.iter().zip(values.as_ref()) {
             if !parameter.assumption.holds(value) {
                 return Err(ParameterError {
                     name: parameter.name,
@@ -200,7 +217,7 @@ impl<S: Declared> System for S {
                 });
             }
         }
-        for (index, surface) in S::TABLES.surfaces.iter().enumerate() {
+        for (index, surface) in self.tables().surfaces.iter().enumerate() {
             if let Some(name) = surface.coefficient {
                 let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
                     kernels.coefficient(index, at, values)
@@ -214,7 +231,7 @@ impl<S: Declared> System for S {
 
     #[inline]
     fn outside_chart(&self, state: &S::State) -> Option<usize> {
-        let outside = S::TABLES.charts.iter().find(|chart| {
+        let outside = self.tables().charts.iter().find(|chart| {
             let value = state.as_slice()[chart.coordinate];
             let is_inside = chart.ends[0] < value && value < chart.ends[1];
             !is_inside
@@ -224,7 +241,7 @@ impl<S: Declared> System for S {
 
     #[inline(always)]
     fn can_lose_rank(&self) -> bool {
-        S::TABLES.can_lose_rank
+        self.tables().can_lose_rank
     }
 
     fn rank_drop(&self, motion: impl Fn(f64) -> (f64, S::State), reach: f64) -> Option<RankDrop> {
@@ -251,7 +268,7 @@ impl<S: Declared> System for S {
         qdot: &S::Vector,
         named: &S::Vector,
     ) -> Result<S::Vector, StateError> {
-        match S::TABLES.form {
+        match self.tables().form {
             Form::FirstOrder => Ok(self.velocity(t, &joined::<S>(q.as_slice(), &[]))?),
             _ => self.completed_velocity(t, q, qdot, named),
         }
@@ -260,6 +277,11 @@ impl<S: Declared> System for S {
 
 impl<S: Declared> Lagrangian for S {
     type Reactions = S::Multipliers;
+
+    #[inline(always)]
+    fn reaction_count(&self) -> usize {
+        self.tables().dimensions.constraints
+    }
 
     #[inline]
     fn force(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> S::Vector {
@@ -270,7 +292,7 @@ impl<S: Declared> Lagrangian for S {
 
     #[inline]
     fn reaction_force(&self, t: f64, q: &S::Vector, reactions: &S::Multipliers) -> S::Vector {
-        if S::TABLES.dimensions.constraints == 0 {
+        if self.tables().dimensions.constraints == 0 {
             return self.zero_vector();
         }
         let kernel = (S::Kernels::reaction_force, self.coordinate_count());
@@ -285,11 +307,14 @@ impl<S: Declared> Lagrangian for S {
         q: &S::Vector,
         p: &S::Vector,
     ) -> Result<(S::Vector, S::Multipliers), Fault> {
-        let (n, m) = (self.coordinate_count(), S::TABLES.dimensions.constraints);
-        if S::TABLES.form == Form::FirstOrder {
+        let (n, m) = (
+            self.coordinate_count(),
+            self.tables().dimensions.constraints,
+        );
+        if self.tables().form == Form::FirstOrder {
             return Err(Fault::FirstOrder);
         }
-        if !S::TABLES.is_linear {
+        if !self.tables().is_linear {
             return Err(Fault::NonlinearConstraints);
         }
         if m == 0 {

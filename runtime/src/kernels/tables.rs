@@ -92,8 +92,12 @@ pub struct Tables {
     pub can_be_narrow: bool,
     /// Whether constraint forms may become dependent.
     pub can_lose_rank: bool,
+    /// Whether states drift off constraints that runs bring them back to.
+    pub drifts: bool,
     /// Whether constraints are linear or affine in the velocities.
     pub is_linear: bool,
+    /// Whether its runs can be varied.
+    pub varies: bool,
     /// The levels, where some are declared.
     pub levels: &'static [Level],
     /// The surfaces.

@@ -8,27 +8,20 @@ use crate::law::Law;
 use crate::numbers::{Interval, Numbers, Row};
 use crate::state::StateVector;
 
-/// The values of a kernel over numbers, as many as a row has.
-fn row<S: Declared, L: Numbers, R: Row<L>>(
-    kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
-    arguments: (&[L], L),
-    places: [&[L]; 2],
-) -> Result<R, Fault> {
-    row_of::<S, L, R>(kernel, R::CAPACITY, arguments, places)
-}
-
 /// A row whose numbers from a place on are those of a kernel, added to what is there.
 fn added<S: Declared, L: Numbers, R: Row<L>>(
+    system: &S,
     kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
     arguments: (&[L], L),
     places: [&[L]; 2],
     to: &R,
 ) -> Result<Option<R>, Fault> {
     let (n, k) = (
-        S::TABLES.dimensions.coordinates,
-        S::TABLES.dimensions.motion,
+        system.tables().dimensions.coordinates,
+        system.tables().dimensions.motion,
     );
-    let found: Result<S::Room<L>, Fault> = row_of::<S, L, S::Room<L>>(kernel, k, arguments, places);
+    let found: Result<S::Room<L>, Fault> =
+        row_of::<S, L, S::Room<L>>(system, kernel, k, arguments, places);
     let found = match found {
         Err(Fault::NotDerived) => return Ok(None),
         found => found?,
@@ -42,6 +35,7 @@ fn added<S: Declared, L: Numbers, R: Row<L>>(
 
 /// So many values of a kernel at the beginning of a row.
 fn row_of<S: Declared, L: Numbers, R: Row<L>>(
+    system: &S,
     kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
     count: usize,
     (parameters, t): (&[L], L),
@@ -53,28 +47,30 @@ fn row_of<S: Declared, L: Numbers, R: Row<L>>(
         first,
         second,
     };
-    let mut values = R::zeros(R::CAPACITY);
-    kernel(&S::KERNELS, at, &mut values.as_mut_slice()[..count])?;
+    let mut values = R::zeros(count);
+    kernel(&system.kernels(), at, &mut values.as_mut_slice()[..count])?;
     Ok(values)
 }
 
 /// Positions, and motion by a kernel of positions and velocities.
 fn state_by<S: Declared, L: Numbers, R: Row<L>>(
+    system: &S,
     kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
     (parameters, t): (&[L], L),
     [q, qdot]: [&[L]; 2],
 ) -> Result<R, Fault> {
-    let mut state = R::zeros(R::CAPACITY);
+    let dimensions = &system.tables().dimensions;
+    let mut state = R::zeros(dimensions.coordinates + dimensions.motion);
     let (positions, motion) = state.as_mut_slice().split_at_mut(q.len());
     positions.copy_from_slice(q);
-    if S::TABLES.form != Form::FirstOrder {
+    if system.tables().form != Form::FirstOrder {
         let at = At {
             parameters,
             t,
             first: q,
             second: qdot,
         };
-        kernel(&S::KERNELS, at, motion)?;
+        kernel(&system.kernels(), at, motion)?;
     }
     Ok(state)
 }
@@ -84,16 +80,17 @@ fn state_by<S: Declared, L: Numbers, R: Row<L>>(
 /// # Errors
 /// [`Fault`].
 pub fn nearest_over<S: Declared, L: Numbers, R: Row<L>>(
+    system: &S,
     arguments: (&[L], L),
     places: [&[L]; 2],
 ) -> Result<R, Fault> {
-    let tables = S::TABLES;
+    let tables = system.tables();
     let is_free = tables.form == Form::Global && tables.dimensions.constraints == 0;
     let kernel = match is_free {
         true => S::Kernels::motion,
         false => S::Kernels::nearest,
     };
-    state_by::<S, L, R>(kernel, arguments, places)
+    state_by::<S, L, R>(system, kernel, arguments, places)
 }
 
 /// Writes positions and velocities in the mode that a surface leads to, where they are declared.
@@ -101,6 +98,7 @@ pub fn nearest_over<S: Declared, L: Numbers, R: Row<L>>(
 /// # Errors
 /// [`Fault`].
 pub fn enter_over<S: Declared, L: Numbers>(
+    system: &S,
     surface: usize,
     at: At<'_, L>,
     [q, qdot]: [&mut [L]; 2],
@@ -108,7 +106,7 @@ pub fn enter_over<S: Declared, L: Numbers>(
     let count = q.len() + qdot.len();
     let mut both = S::Room::<L>::zeros(count);
     let both = &mut both.as_mut_slice()[..count];
-    match S::KERNELS.entry(surface, at, both) {
+    match system.kernels().entry(surface, at, both) {
         Err(Fault::NotDerived) => return Ok(()),
         found => found?,
     }
@@ -130,12 +128,12 @@ pub fn enter<S: Declared>(
 ) -> Result<(), Fault> {
     let arguments = system.arguments();
     let at = At {
-        parameters: arguments.as_slice(),
+        parameters: arguments.as_ref(),
         t,
         first: state.as_slice(),
         second: &[],
     };
-    enter_over::<S, f64>(surface, at, after)
+    enter_over::<S, f64>(system, surface, at, after)
 }
 
 /// As [`System::energy`](crate::System::energy), over numbers.
@@ -143,6 +141,7 @@ pub fn enter<S: Declared>(
 /// # Errors
 /// [`Fault`].
 pub fn energy_over<S: Declared, L: Numbers>(
+    system: &S,
     (parameters, t): (&[L], L),
     state: &[L],
 ) -> Result<L, Fault> {
@@ -153,7 +152,7 @@ pub fn energy_over<S: Declared, L: Numbers>(
         second: &[],
     };
     let mut energy = [L::ZERO];
-    S::KERNELS.energy(at, &mut energy)?;
+    system.kernels().energy(at, &mut energy)?;
     Ok(energy[0])
 }
 
@@ -179,24 +178,33 @@ impl<S: HasVariations> Variational for S {
     }
 
     fn counts_throughout(
+        &self,
         parameters: &<S as TaylorField>::Parameters<Interval>,
         surface: usize,
         t: Interval,
         state: &<S as TaylorField>::Row<Interval>,
     ) -> Option<bool> {
-        counts_throughout::<S>(parameters.as_slice(), surface, t, state.as_slice())
+        counts_throughout(self, parameters.as_slice(), surface, t, state.as_slice())
     }
 
     fn velocities<L: Numbers>(
+        &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         t: L,
         state: &<S as TaylorField>::Row<L>,
     ) -> Result<S::Positions<L>, Fault> {
         let arguments = (parameters.as_slice(), t);
-        row::<S, L, _>(S::Kernels::velocity, arguments, [state.as_slice(), &[]])
+        row_of::<S, L, _>(
+            self,
+            S::Kernels::velocity,
+            self.tables().dimensions.coordinates,
+            arguments,
+            [state.as_slice(), &[]],
+        )
     }
 
     fn composed<L: Numbers>(
+        &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         t: L,
         q: &S::Positions<L>,
@@ -204,6 +212,7 @@ impl<S: HasVariations> Variational for S {
     ) -> Result<<S as TaylorField>::Row<L>, Fault> {
         let arguments = (parameters.as_slice(), t);
         state_by::<S, L, _>(
+            self,
             S::Kernels::motion,
             arguments,
             [q.as_slice(), qdot.as_slice()],
@@ -211,24 +220,26 @@ impl<S: HasVariations> Variational for S {
     }
 
     fn deviations<L: Numbers>(
+        &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         t: L,
         state: &<S as TaylorField>::Row<L>,
     ) -> Result<<S as HasVariations>::Deviations<L>, Fault> {
-        let dimensions = S::TABLES.dimensions;
+        let dimensions = &self.tables().dimensions;
+        let n = dimensions.coordinates;
         let arguments = (parameters.as_slice(), t);
         let state = state.as_slice();
-        let mut values = <S as HasVariations>::Deviations::<L>::zeros(0);
-        let off = match S::TABLES.form {
+        let off = match self.tables().form {
             Form::Global => dimensions.constraints,
             _ => 0,
         };
+        let mut values = <S as HasVariations>::Deviations::<L>::zeros(off + dimensions.levels);
         if off > 0 {
             let qdot: S::Positions<L> =
-                row::<S, L, _>(S::Kernels::velocity, arguments, [state, &[]])?;
+                row_of::<S, L, _>(self, S::Kernels::velocity, n, arguments, [state, &[]])?;
             let places = [state, qdot.as_slice()];
             let both: S::Room<L> =
-                row_of::<S, L, _>(S::Kernels::residuals, 2 * off, arguments, places)?;
+                row_of::<S, L, _>(self, S::Kernels::residuals, 2 * off, arguments, places)?;
             values.as_mut_slice()[..off].copy_from_slice(&both.as_slice()[..off]);
         }
         if dimensions.levels > 0 {
@@ -238,41 +249,54 @@ impl<S: HasVariations> Variational for S {
                 first: state,
                 second: &[],
             };
-            S::KERNELS.levels(at, &mut values.as_mut_slice()[off..])?;
+            self.kernels()
+                .levels(at, &mut values.as_mut_slice()[off..])?;
         }
         Ok(values)
     }
 
     fn clearances<L: Numbers>(
+        &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         t: L,
         state: &<S as TaylorField>::Row<L>,
     ) -> Result<<S as HasVariations>::Clearances<L>, Fault> {
-        if S::TABLES.dimensions.surfaces == 0 {
+        if self.tables().dimensions.surfaces == 0 {
             return Ok(Row::zeros(0));
         }
         let arguments = (parameters.as_slice(), t);
-        row::<S, L, _>(S::Kernels::gaps, arguments, [state.as_slice(), &[]])
+        let places = [state.as_slice(), &[][..]];
+        row_of::<S, L, _>(
+            self,
+            S::Kernels::gaps,
+            self.tables().dimensions.surfaces,
+            arguments,
+            places,
+        )
     }
 
     fn collision<L: Numbers>(
+        &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
         t: L,
         state: &<S as TaylorField>::Row<L>,
     ) -> Result<<S as HasVariations>::Collision<L>, Fault> {
         let arguments = (parameters.as_slice(), t);
-        let found = row::<S, L, _>(
+        let found = row_of::<S, L, _>(
+            self,
             |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
                 kernels.contact(surface, at, values)
             },
+            5 + self.tables().dimensions.motion,
             arguments,
             [state.as_slice(), &[]],
         );
-        found.map_err(|fault| super::impacting::no_impulse::<S>(fault, surface))
+        found.map_err(|fault| super::impacting::no_impulse(self.tables(), fault, surface))
     }
 
     fn focus<L: Numbers>(
+        &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
         t: L,
@@ -281,6 +305,7 @@ impl<S: HasVariations> Variational for S {
         let arguments = (parameters.as_slice(), t);
         let places = [state.as_slice(), &[][..]];
         added::<S, L, _>(
+            self,
             |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
                 kernels.focus(surface, at, values)
             },
@@ -291,6 +316,7 @@ impl<S: HasVariations> Variational for S {
     }
 
     fn trace<L: Numbers>(
+        &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
         t: L,
@@ -298,9 +324,10 @@ impl<S: HasVariations> Variational for S {
         rate: &<S as TaylorField>::Row<L>,
     ) -> Result<Option<<S as TaylorField>::Row<L>>, Fault> {
         let arguments = (parameters.as_slice(), t);
-        let motion = &rate.as_slice()[S::TABLES.dimensions.coordinates..];
+        let motion = &rate.as_slice()[self.tables().dimensions.coordinates..];
         let places = [state.as_slice(), motion];
         added::<S, L, _>(
+            self,
             |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
                 kernels.trace(surface, at, values)
             },
@@ -311,18 +338,20 @@ impl<S: HasVariations> Variational for S {
     }
 
     fn landing<L: Numbers>(
+        &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
         t: L,
         state: &<S as TaylorField>::Row<L>,
     ) -> Result<Option<[S::Positions<L>; 2]>, Fault> {
-        if !matches!(S::TABLES.surfaces.get(surface), Some(own) if own.law == Law::Reset) {
+        if !matches!(self.tables().surfaces.get(surface), Some(own) if own.law == Law::Reset) {
             return Ok(None);
         }
-        let n = S::TABLES.dimensions.coordinates;
+        let n = self.tables().dimensions.coordinates;
         let arguments = (parameters.as_slice(), t);
         let places = [state.as_slice(), &[][..]];
         let both: S::Room<L> = row_of::<S, L, _>(
+            self,
             |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
                 kernels.reset(surface, at, values)
             },
@@ -341,10 +370,11 @@ impl<S: HasVariations> Variational for S {
     }
 
     fn declared_law<L: Numbers>(
+        &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
     ) -> (Law, L) {
-        let Some(own) = S::TABLES.surfaces.get(surface) else {
+        let Some(own) = self.tables().surfaces.get(surface) else {
             return (Law::Elastic, L::ZERO);
         };
         let at = At {
@@ -355,7 +385,7 @@ impl<S: HasVariations> Variational for S {
         };
         let mut coefficient = [L::ZERO];
         // Coefficients have no guards.
-        let _ = S::KERNELS.coefficient(surface, at, &mut coefficient);
+        let _ = self.kernels().coefficient(surface, at, &mut coefficient);
         let value = coefficient[0].lane(0);
         let law = match own.law {
             Law::Restitution(_) => Law::Restitution(value),

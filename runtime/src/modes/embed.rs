@@ -511,7 +511,7 @@ pub fn landing<M: Mode + Impacting>(
     })
 }
 
-/// As [`Described::initial`](crate::Described::initial), of this mode.
+/// As [`Instance::initial`](crate::describe::Instance::initial), of this mode.
 pub fn initial<M: Mode, V: StateVector>(model: &M::Model) -> Initial<V> {
     let own = M::of(model).initial();
     let [q, qdot, placed, named] = [own.q, own.qdot, own.placed, own.named]
@@ -525,7 +525,7 @@ pub fn initial<M: Mode, V: StateVector>(model: &M::Model) -> Initial<V> {
     }
 }
 
-/// As [`Described::outputs`](crate::Described::outputs); NaN for what the mode does not have. `own` has room for the outputs
+/// As [`Instance::outputs`](crate::describe::Instance::outputs); NaN for what the mode does not have. `own` has room for the outputs
 /// of the mode.
 ///
 /// # Errors
@@ -547,17 +547,17 @@ pub fn outputs<M: Mode>(
     Ok(())
 }
 
-/// As [`Described::view_path`](crate::Described::view_path).
+/// As [`Instance::view_path`](crate::describe::Instance::view_path).
 pub fn view_path<M: Mode>(model: &M::Model, t: f64, state: &StateOf<M>) -> Option<[f64; 2]> {
     M::of(model).view_path(t, &taken::<M>(state))
 }
 
-/// As [`Described::view_region`](crate::Described::view_region), of this mode.
+/// As [`Instance::view_region`](crate::describe::Instance::view_region), of this mode.
 pub fn view_region<M: Mode, V: StateVector>(model: &M::Model, t: f64, q: &V) -> Option<f64> {
     M::of(model).view_region(t, &gathered(q, M::COORDINATES))
 }
 
-/// As [`Described::inspect`](crate::Described::inspect), with what the mode derives, in its own order.
+/// As [`Instance::inspect`](crate::describe::Instance::inspect), with what the mode derives, in its own order.
 ///
 /// # Errors
 /// That of the mode.

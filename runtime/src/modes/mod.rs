@@ -23,7 +23,7 @@ mod vary;
 mod within;
 
 use crate::contract::{Lagrangian, System, TaylorField, VectorField};
-use crate::describe::Described;
+use crate::describe::Instance;
 use crate::effects::Scene;
 use crate::error::Fault;
 
@@ -34,7 +34,7 @@ pub use vary::*;
 pub use within::Within;
 
 /// A mode of a model: a system whose states are some of the model's. Implemented by `model!`.
-pub trait Mode: System + TaylorField + Lagrangian + Described + Scene {
+pub trait Mode: System + TaylorField + Lagrangian + Instance + Scene {
     /// The model that it is a mode of.
     type Model: VectorField;
 

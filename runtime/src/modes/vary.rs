@@ -19,13 +19,14 @@ pub trait VariationalMode: Mode + Variational + Declared {
     /// # Errors
     /// [`Fault`].
     fn nearest<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         t: L,
         q: &Self::Configuration<L>,
         qdot: &Self::Configuration<L>,
     ) -> Result<Self::Row<L>, Fault> {
         let places = [q.as_slice(), qdot.as_slice()];
-        nearest_over::<Self, L, _>((parameters.as_slice(), t), places)
+        nearest_over::<Self, L, _>(self, (parameters.as_slice(), t), places)
     }
 
     /// As [`System::energy`](crate::System::energy).
@@ -33,11 +34,12 @@ pub trait VariationalMode: Mode + Variational + Declared {
     /// # Errors
     /// [`Fault`].
     fn energy_of<L: Numbers>(
+        &self,
         parameters: &Self::Parameters<L>,
         t: L,
         state: &Self::Row<L>,
     ) -> Result<L, Fault> {
-        energy_over::<Self, L>((parameters.as_slice(), t), state.as_slice())
+        energy_over::<Self, L>(self, (parameters.as_slice(), t), state.as_slice())
     }
 }
 
@@ -82,11 +84,12 @@ fn placed<M: Mode, L: Numbers, R: Row<L>>(own: &M::Row<L>) -> R {
 /// # Errors
 /// That of the mode.
 pub fn velocities_of<M: VariationalMode, L: Numbers, R: Row<L>>(
+    model: &M::Model,
     parameters: &[L],
     t: L,
     state: &[L],
 ) -> Result<R, Fault> {
-    let own = M::velocities(&beginning(parameters), t, &beginning(state))?;
+    let own = M::of(model).velocities(&beginning(parameters), t, &beginning(state))?;
     Ok(filled(own.as_slice(), M::COORDINATES, 0.0))
 }
 
@@ -96,11 +99,12 @@ pub fn velocities_of<M: VariationalMode, L: Numbers, R: Row<L>>(
 /// # Errors
 /// That of the mode.
 pub fn deviations_of<M: VariationalMode, L: Numbers, R: Row<L>>(
+    model: &M::Model,
     parameters: &[L],
     t: L,
     state: &[L],
 ) -> Result<R, Fault> {
-    let own = M::deviations(&beginning(parameters), t, &beginning(state))?;
+    let own = M::of(model).deviations(&beginning(parameters), t, &beginning(state))?;
     let unused = &state[M::Row::<L>::CAPACITY..];
     let mut all = R::zeros(R::CAPACITY);
     let values = own.as_slice().iter().chain(unused);
@@ -112,13 +116,16 @@ pub fn deviations_of<M: VariationalMode, L: Numbers, R: Row<L>>(
 
 /// As [`Variational::counts_throughout`]; a surface that the mode does not have does not count.
 pub fn counts_throughout_of<M: VariationalMode>(
+    model: &M::Model,
     parameters: &[Interval],
     surface: usize,
     t: Interval,
     state: &[Interval],
 ) -> Option<bool> {
     match super::embed::own_surface::<M>(surface) {
-        Some(own) => M::counts_throughout(&beginning(parameters), own, t, &beginning(state)),
+        Some(own) => {
+            M::of(model).counts_throughout(&beginning(parameters), own, t, &beginning(state))
+        }
         None => Some(false),
     }
 }
@@ -128,11 +135,12 @@ pub fn counts_throughout_of<M: VariationalMode>(
 /// # Errors
 /// That of the mode.
 pub fn clearances_of<M: VariationalMode, L: Numbers, R: Row<L>>(
+    model: &M::Model,
     parameters: &[L],
     t: L,
     state: &[L],
 ) -> Result<R, Fault> {
-    let own = M::clearances(&beginning(parameters), t, &beginning(state))?;
+    let own = M::of(model).clearances(&beginning(parameters), t, &beginning(state))?;
     Ok(filled(own.as_slice(), M::SURFACES, 1.0))
 }
 
@@ -141,13 +149,14 @@ pub fn clearances_of<M: VariationalMode, L: Numbers, R: Row<L>>(
 /// # Errors
 /// That of the mode.
 pub fn collision_of<M: VariationalMode, L: Numbers, R: Row<L>>(
+    model: &M::Model,
     parameters: &[L],
     surface: usize,
     t: L,
     state: &[L],
 ) -> Result<R, Fault> {
     let own = super::embed::known_surface::<M>(surface)?;
-    let own = M::collision(&beginning(parameters), own, t, &beginning(state))?;
+    let own = M::of(model).collision(&beginning(parameters), own, t, &beginning(state))?;
     Ok(beginning(own.as_slice()))
 }
 
@@ -156,13 +165,14 @@ pub fn collision_of<M: VariationalMode, L: Numbers, R: Row<L>>(
 /// # Errors
 /// That of the mode.
 pub fn focus_of<M: VariationalMode, L: Numbers, R: Row<L>>(
+    model: &M::Model,
     parameters: &[L],
     surface: usize,
     t: L,
     state: &[L],
 ) -> Result<Option<R>, Fault> {
     let own = super::embed::known_surface::<M>(surface)?;
-    let focused = M::focus(&beginning(parameters), own, t, &beginning(state))?;
+    let focused = M::of(model).focus(&beginning(parameters), own, t, &beginning(state))?;
     Ok(focused.map(|focused| placed::<M, L, R>(&focused)))
 }
 
@@ -171,6 +181,7 @@ pub fn focus_of<M: VariationalMode, L: Numbers, R: Row<L>>(
 /// # Errors
 /// That of the mode.
 pub fn trace_of<M: VariationalMode, L: Numbers, R: Row<L>>(
+    model: &M::Model,
     parameters: &[L],
     surface: usize,
     t: L,
@@ -179,16 +190,17 @@ pub fn trace_of<M: VariationalMode, L: Numbers, R: Row<L>>(
 ) -> Result<Option<R>, Fault> {
     let own = super::embed::known_surface::<M>(surface)?;
     let (state, rate) = (beginning(state), beginning(rate));
-    let traced = M::trace(&beginning(parameters), own, t, &state, &rate)?;
+    let traced = M::of(model).trace(&beginning(parameters), own, t, &state, &rate)?;
     Ok(traced.map(|traced| beginning(traced.as_slice())))
 }
 
 /// As [`Variational::declared_law`]; `surface` is the place in the mode.
 pub fn declared_law_of<M: VariationalMode, L: Numbers>(
+    model: &M::Model,
     parameters: &[L],
     surface: usize,
 ) -> (Law, L) {
-    M::declared_law(&beginning(parameters), surface)
+    M::of(model).declared_law(&beginning(parameters), surface)
 }
 
 /// As [`Variational::passed`], of a reset that stays in the mode.
@@ -196,13 +208,14 @@ pub fn declared_law_of<M: VariationalMode, L: Numbers>(
 /// # Errors
 /// That of the mode.
 pub fn passed_within<M: VariationalMode, L: Numbers, R: Row<L>>(
+    model: &M::Model,
     parameters: &[L],
     surface: usize,
     t: L,
     state: &[L],
 ) -> Result<Option<R>, Fault> {
     let own = super::embed::known_surface::<M>(surface)?;
-    let after = M::passed(&beginning(parameters), own, t, &beginning(state))?;
+    let after = M::of(model).passed(&beginning(parameters), own, t, &beginning(state))?;
     Ok(after.map(|after| placed::<M, L, R>(&after)))
 }
 
@@ -211,13 +224,20 @@ pub fn passed_within<M: VariationalMode, L: Numbers, R: Row<L>>(
 ///
 /// # Errors
 /// Those of the modes.
-pub fn passed_into<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>>(
+pub fn passed_into<
+    M: VariationalMode,
+    T: VariationalMode<Model = M::Model>,
+    L: Numbers,
+    R: Row<L>,
+>(
+    model: &M::Model,
     parameters: &[L],
     passage: Passage,
     surface: usize,
     t: L,
     state: &[L],
 ) -> Result<Option<R>, Fault> {
+    let (left, right) = (M::of(model), T::of(model));
     let before: M::Parameters<L> = beginning(parameters);
     let after: T::Parameters<L> = beginning(parameters);
     let own: M::Row<L> = beginning(state);
@@ -231,17 +251,17 @@ pub fn passed_into<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>
                 first: own.as_slice(),
                 second: &[],
             };
-            enter_over::<M, L>(surface, at, [q.as_mut_slice(), qdot.as_mut_slice()])?;
-            T::composed(&after, t, &q, &qdot)?
+            enter_over::<M, L>(&left, surface, at, [q.as_mut_slice(), qdot.as_mut_slice()])?;
+            right.composed(&after, t, &q, &qdot)?
         }
         Passage::Kept => beginning(own.as_slice()),
         Passage::Focused => {
-            let qdot = M::velocities(&before, t, &own)?;
+            let qdot = left.velocities(&before, t, &own)?;
             let qdot = beginning(qdot.as_slice());
-            T::nearest(&after, t, &beginning(own.as_slice()), &qdot)?
+            right.nearest(&after, t, &beginning(own.as_slice()), &qdot)?
         }
         Passage::Refracted if M::HOLDS_MOMENTA && T::HOLDS_MOMENTA => {
-            return refracted::<M, T, L, R>(&before, &after, surface, t, &own);
+            return refracted::<M, T, L, R>((&left, &before), (&right, &after), surface, t, &own);
         }
         Passage::Refracted => return Ok(None),
     };
@@ -251,14 +271,14 @@ pub fn passed_into<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>
 /// Refraction, or reflection where there is none, of momenta: the formulas are those of `passage.rs`. `None` where it is not certain
 /// which.
 fn refracted<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>>(
-    before: &M::Parameters<L>,
-    after: &T::Parameters<L>,
+    (left, before): (&M, &M::Parameters<L>),
+    (right, after): (&T, &T::Parameters<L>),
     surface: usize,
     t: L,
     own: &M::Row<L>,
 ) -> Result<Option<R>, Fault> {
     let n = M::Configuration::<L>::CAPACITY;
-    let collision = M::collision(before, surface, t, own)?;
+    let collision = left.collision(before, surface, t, own)?;
     // NOTE: the third number of a contact is the rate of the surface itself, behind the fifth comes the direction.
     let (surface_rate, direction) = (collision.as_slice()[2], &collision.as_slice()[5..]);
     let with_momenta = |momenta: &dyn Fn(usize) -> L| {
@@ -269,14 +289,14 @@ fn refracted<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>>(
         row
     };
     let through = |momenta: &dyn Fn(usize) -> L| -> Result<L, Fault> {
-        let velocities = T::velocities(after, t, &with_momenta(momenta))?;
+        let velocities = right.velocities(after, t, &with_momenta(momenta))?;
         let pairs = direction.iter().zip(velocities.as_slice());
         Ok(pairs.fold(L::ZERO, |sum, (d, v)| d.mul_add(*v, sum)))
     };
     let p = |i: usize| own.as_slice()[n + i];
     let rate = through(&p)? + surface_rate;
     let compliance = through(&|i| direction[i])? - through(&|_| L::ZERO)?;
-    let excess = T::energy_of(after, t, &with_momenta(&p))? - M::energy_of(before, t, own)?;
+    let excess = right.energy_of(after, t, &with_momenta(&p))? - left.energy_of(before, t, own)?;
     let discriminant = rate * rate - L::of(2.0) * compliance * excess;
     let Some(is_refracted) = (-discriminant).is_below_zero() else {
         return Ok(None);
@@ -299,8 +319,8 @@ fn refracted<M: VariationalMode, T: VariationalMode, L: Numbers, R: Row<L>>(
     let beyond = with_momenta(&|i| size.mul_add(direction[i], p(i)));
     let entered = match T::CAN_LEAVE_CONSTRAINTS {
         true => {
-            let qdot = T::velocities(after, t, &beyond)?;
-            T::nearest(after, t, &beginning(own.as_slice()), &qdot)?
+            let qdot = right.velocities(after, t, &beyond)?;
+            right.nearest(after, t, &beginning(own.as_slice()), &qdot)?
         }
         false => beyond,
     };

@@ -50,12 +50,12 @@ impl<Sys: Variational> Neighbours<Sys> {
     fn parts(&self) -> impl Iterator<Item = Self> {
         let still = self.still();
         let by_time = Self { t: self.t, ..still };
-        let by_state = (0..Sys::Row::<Dual>::CAPACITY).map(move |i| {
+        let by_state = (0..self.state.as_slice().len()).map(move |i| {
             let mut part = still;
             part.state.as_mut_slice()[i] = self.state.as_slice()[i];
             part
         });
-        let by_parameters = (0..Sys::Parameters::<Dual>::CAPACITY).map(move |k| {
+        let by_parameters = (0..self.parameters.as_slice().len()).map(move |k| {
             let mut part = still;
             part.parameters.as_mut_slice()[k] = self.parameters.as_slice()[k];
             part
@@ -78,23 +78,23 @@ impl<Sys: Variational> Neighbours<Sys> {
     }
 
     /// Whether all of them are at a surface if one of them is.
-    pub(super) fn share_gap(&self, surface: usize) -> Result<bool, Fault> {
+    pub(super) fn share_gap(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
         self.share(|own| {
-            let gaps = Sys::clearances(&own.parameters, own.t, &own.state)?;
+            let gaps = system.clearances(&own.parameters, own.t, &own.state)?;
             Ok(gaps.as_slice()[surface])
         })
     }
 
-    fn share_gap_rate(&self, surface: usize) -> Result<bool, Fault> {
+    fn share_gap_rate(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
         self.share(|own| {
-            let collision = Sys::collision(&own.parameters, surface, own.t, &own.state)?;
+            let collision = system.collision(&own.parameters, surface, own.t, &own.state)?;
             Ok(collision.as_slice()[0])
         })
     }
 
     /// Whether all of them keep to the instantaneous constraints of a surface if one of them does.
-    fn are_focused(&self, surface: usize) -> Result<bool, Fault> {
-        let Some(focused) = Sys::focus(&self.parameters, surface, self.t, &self.state)? else {
+    fn are_focused(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
+        let Some(focused) = system.focus(&self.parameters, surface, self.t, &self.state)? else {
             return Ok(true);
         };
         let (mut errors, mut sizes) = ([0.0; DIRECTIONS], [0.0_f64; DIRECTIONS]);
@@ -122,11 +122,11 @@ impl Holder {
         for some in tangents.chunks(DIRECTIONS) {
             let neighbours = Neighbours::at(system, t, state, some);
             let are_held = match self {
-                Self::Slide { back, .. } => neighbours.share_gap(back)?,
+                Self::Slide { back, .. } => neighbours.share_gap(system, back)?,
                 Self::Surface(surface) => {
-                    neighbours.share_gap(surface)?
-                        && neighbours.share_gap_rate(surface)?
-                        && neighbours.are_focused(surface)?
+                    neighbours.share_gap(system, surface)?
+                        && neighbours.share_gap_rate(system, surface)?
+                        && neighbours.are_focused(system, surface)?
                 }
             };
             if !are_held {

@@ -52,8 +52,8 @@ impl<Sys: Variational> Fixed<Sys> {
     ) -> Result<Self, Undefined> {
         let parameters = dual_parameters(system, &[]);
         let row = dual_state::<Sys>(point, &[]);
-        let found = Sys::deviations(&parameters, Dual::of(t), &row)?;
-        let mut kept = Sys::Deviations::<f64>::zeros(Sys::Deviations::<f64>::CAPACITY);
+        let found = system.deviations(&parameters, Dual::of(t), &row)?;
+        let mut kept = Sys::Deviations::<f64>::zeros(found.as_slice().len());
         for (own, found) in kept.as_mut_slice().iter_mut().zip(found.as_slice()) {
             *own = found.value;
         }
@@ -71,9 +71,9 @@ impl<Sys: Variational> Fixed<Sys> {
     ) -> Result<(), Undefined> {
         let parameters = dual_parameters(system, along);
         let row = dual_state(point, along);
-        let gaps = Sys::clearances(&parameters, Dual::of(t), &row)?;
+        let gaps = system.clearances(&parameters, Dual::of(t), &row)?;
         take(0, gaps.as_slice()[self.surface]);
-        let deviations = Sys::deviations(&parameters, Dual::of(t), &row)?;
+        let deviations = system.deviations(&parameters, Dual::of(t), &row)?;
         let kept = deviations.as_slice().iter().zip(self.kept.as_slice());
         for (k, (own, kept)) in kept.enumerate() {
             take(k + 1, *own - Dual::of(*kept));
@@ -91,10 +91,10 @@ impl<Sys: Variational> Chart<Sys> {
         point: &Sys::State,
     ) -> Result<(Self, Sys::State), Undefined> {
         let scale = system.scale(t, point);
-        let mut frame = Sys::columns();
-        let mut values = Sys::State::zeros(Sys::State::CAPACITY);
+        let mut frame = columns(system);
+        let mut values = system.zero_state();
         let mut equations = 0;
-        for first in (0..Sys::State::CAPACITY).step_by(DIRECTIONS) {
+        for first in (0..system.state_len()).step_by(DIRECTIONS) {
             let along: [Tangent<Sys>; DIRECTIONS] = core::array::from_fn(|k| {
                 let mut tangent = Tangent::<Sys>::of_component(first + k);
                 for (own, scale) in tangent
@@ -116,7 +116,7 @@ impl<Sys: Variational> Chart<Sys> {
                 }
             })?;
         }
-        let mut correction = Sys::State::zeros(Sys::State::CAPACITY);
+        let mut correction = system.zero_state();
         let left_out = orthonormalise(frame.as_mut(), equations, &values, &mut correction);
         complete(frame.as_mut(), left_out);
         for (own, scale) in correction.as_mut_slice().iter_mut().zip(scale.as_slice()) {
@@ -153,7 +153,7 @@ impl<Sys: Variational> Chart<Sys> {
 
     /// Number of directions.
     pub(super) fn dimension(&self) -> usize {
-        Sys::State::CAPACITY - self.left_out
+        self.scale.count() - self.left_out
     }
 
     /// A direction, in units of the state.
@@ -175,7 +175,7 @@ impl<Sys: Variational> Chart<Sys> {
         for (own, scale) in scaled.as_mut_slice().iter_mut().zip(self.scale.as_slice()) {
             *own /= scale;
         }
-        let mut components = Sys::State::zeros(Sys::State::CAPACITY);
+        let mut components = change.zeroed();
         let directions = &self.frame.as_ref()[self.left_out..];
         for (own, direction) in components.as_mut_slice().iter_mut().zip(directions) {
             *own = dot(&scaled, direction);
@@ -190,6 +190,13 @@ impl<Sys: Variational> Chart<Sys> {
             f64::max(size, (own / scale).abs())
         })
     }
+}
+
+/// A square matrix of zeros, for as many components as a state has.
+pub(super) fn columns<Sys: Variational>(system: &Sys) -> Sys::Columns {
+    let mut columns = Sys::columns();
+    columns.as_mut().fill(system.zero_state());
+    columns
 }
 
 /// Makes the first `count` of the rows orthonormal, without those that depend on others, and gives how many are left. With
@@ -213,7 +220,7 @@ fn orthonormalise<S: StateVector>(
         }
         let left = math::sqrt(dot(&row, &row));
         let is_new = left > DEPENDENT * before;
-        rows[index] = S::zeros(S::CAPACITY);
+        rows[index] = row.zeroed();
         if is_new {
             for own in row.as_mut_slice() {
                 *own /= left;
@@ -228,10 +235,11 @@ fn orthonormalise<S: StateVector>(
 
 /// Completes `count` orthonormal rows to a basis, by the unit vectors of which most is left.
 fn complete<S: StateVector>(rows: &mut [S], count: usize) {
-    for kept in count..S::CAPACITY {
-        let mut best = (0.0, S::zeros(S::CAPACITY));
-        for component in 0..S::CAPACITY {
-            let mut row = S::zeros(S::CAPACITY);
+    let dimension = rows.first().map_or(0, StateVector::count);
+    for kept in count..dimension {
+        let mut best = (0.0, rows[kept].zeroed());
+        for component in 0..dimension {
+            let mut row = rows[kept].zeroed();
             row.as_mut_slice()[component] = 1.0;
             for _ in 0..2 {
                 for earlier in &rows[..kept] {
@@ -265,8 +273,8 @@ pub(super) fn least_squares<S: StateVector>(
     b: &S,
     damping: f64,
 ) -> S {
-    for (i, column) in turned.iter_mut().enumerate() {
-        *column = S::zeros(S::CAPACITY);
+    for (i, column) in turned.iter_mut().enumerate().take(b.count()) {
+        *column = b.zeroed();
         column.as_mut_slice()[i] = 1.0;
     }
     for _ in 0..SWEEPS {
@@ -292,7 +300,7 @@ pub(super) fn least_squares<S: StateVector>(
     }
     let squares = columns[..size].iter().map(|column| dot(column, column));
     let largest = squares.fold(1.0, f64::max);
-    let mut solution = S::zeros(S::CAPACITY);
+    let mut solution = b.zeroed();
     for (column, direction) in columns[..size].iter().zip(turned.iter()) {
         let square = dot(column, column);
         if square > RANK * RANK * largest {
@@ -309,7 +317,7 @@ pub(super) fn least_squares<S: StateVector>(
 /// Two columns turned by the angle of this cosine and sine.
 fn turn<S: StateVector>(columns: &mut [S], [i, j]: [usize; 2], [cosine, sine]: [f64; 2]) {
     let (one, other) = (columns[i], columns[j]);
-    for k in 0..S::CAPACITY {
+    for k in 0..one.count() {
         let (x, y) = (one.as_slice()[k], other.as_slice()[k]);
         columns[i].as_mut_slice()[k] = cosine * x - sine * y;
         columns[j].as_mut_slice()[k] = sine * x + cosine * y;

@@ -152,8 +152,8 @@ pub(super) fn dual_parameters<Sys: Variational>(
     system: &Sys,
     tangents: &[Tangent<Sys>],
 ) -> Sys::Parameters<Dual> {
-    let mut row = Sys::Parameters::<Dual>::zeros(Sys::Parameters::<Dual>::CAPACITY);
     let values = system.parameters();
+    let mut row = Sys::Parameters::<Dual>::zeros(values.as_slice().len());
     for (i, (entry, value)) in row
         .as_mut_slice()
         .iter_mut()
@@ -170,7 +170,7 @@ pub(super) fn dual_state<Sys: Variational>(
     state: &Sys::State,
     tangents: &[Tangent<Sys>],
 ) -> Sys::Row<Dual> {
-    let mut row = Sys::Row::<Dual>::zeros(Sys::Row::<Dual>::CAPACITY);
+    let mut row = Sys::Row::<Dual>::zeros(state.count());
     for (i, (entry, value)) in row
         .as_mut_slice()
         .iter_mut()

@@ -24,7 +24,7 @@ pub(crate) struct Seen<'a, Sys: Variational, L: Numbers> {
 impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
     /// Refuses a step from `t`, of `theta` units, in which the gap of a surface falls to 0 within rounding, and rises.
     pub(crate) fn look_for_grazes(&self, t: f64, theta: f64) -> Result<(), Undefined> {
-        for surface in 0..Sys::Gaps::<L>::CAPACITY {
+        for surface in 0..self.system.series_gap_count() {
             let mut falls_from = None;
             for place in 0..=PLACES {
                 let part = theta * place as f64 / PLACES as f64;
@@ -73,7 +73,7 @@ impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
     }
 
     fn state_at(&self, part: f64) -> Sys::State {
-        let mut state = Sys::State::zeros(Sys::State::CAPACITY);
+        let mut state = self.system.zero_state();
         for row in self.expansion.coefficients[..=self.order].iter().rev() {
             for (sum, entry) in state.as_mut_slice().iter_mut().zip(row.as_slice()) {
                 *sum = *sum * part + entry.lane(0);

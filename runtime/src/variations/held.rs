@@ -84,7 +84,7 @@ impl<Sys: Variational> Flow<Sys> {
         state: &Sys::State,
     ) -> Result<Sys::State, Undefined> {
         let Some(holder) = holder else {
-            let mut rate = Sys::State::zeros(Sys::State::CAPACITY);
+            let mut rate = system.zero_state();
             system.rate(t, state, &mut rate)?;
             return Ok(rate);
         };
@@ -123,15 +123,15 @@ impl<Sys: Variational> Flow<Sys> {
     ) -> Result<Sys::Row<Dual>, Undefined> {
         let (mut rate, half) = self.free(system, parameters, (surface, 2), t, state)?;
         let now = Dual::of(t);
-        let collision = Sys::collision(parameters, surface, now, state)?;
+        let collision = system.collision(parameters, surface, now, state)?;
         let [gap_rate, _, _, compliance, ..] = *collision.as_slice() else {
             return Err(Undefined::Held { t, surface });
         };
         let mut second = half + half;
-        if let Some(traced) = Sys::trace(parameters, surface, now, state, &rate)? {
+        if let Some(traced) = system.trace(parameters, surface, now, state, &rate)? {
             // A gap rate is affine in the motion: what a force changes it by is a difference of two.
             let forced = sum(state, &sum(&traced, &rate, -1.0), 1.0);
-            let collision = Sys::collision(parameters, surface, now, &forced)?;
+            let collision = system.collision(parameters, surface, now, &forced)?;
             second = second + (collision.as_slice()[0] - gap_rate);
             rate = traced;
         }
@@ -154,7 +154,7 @@ impl<Sys: Variational> Flow<Sys> {
         state: &Sys::Row<Dual>,
     ) -> Result<Sys::Row<Dual>, Undefined> {
         let (own, leaves) = self.free(system, parameters, (back, 1), t, state)?;
-        let other = Sys::passed(parameters, back, Dual::of(t), state)?;
+        let other = system.passed(parameters, back, Dual::of(t), state)?;
         let other = other.ok_or(Undefined::Unlawful { t, surface: back })?;
         let (other, enters) = self.free(system, parameters, (across, 1), t, &other)?;
         let share = leaves / (leaves + enters);
@@ -186,7 +186,7 @@ impl<Sys: Variational> Flow<Sys> {
 
 /// The numbers of a row without their derivatives.
 fn values<Sys: Variational>(row: &Sys::Row<Dual>) -> Sys::State {
-    let mut values = Sys::State::zeros(Sys::State::CAPACITY);
+    let mut values = Sys::State::zeros(row.as_slice().len());
     for (own, entry) in values.as_mut_slice().iter_mut().zip(row.as_slice()) {
         *own = entry.value;
     }

@@ -2,13 +2,13 @@
 
 use core::fmt;
 
-use super::chart::{Chart, Fixed, add, dot, least_squares};
+use super::chart::{Chart, Fixed, add, columns, dot, least_squares};
 use super::eigenvalues::{Multipliers, eigenvalues};
 use super::section::{Arrival, Section, SectionError};
 use super::transition;
 use super::{Tangent, Undefined};
 use crate::contract::Variational;
-use crate::describe::{Described, Topology};
+use crate::describe::{Instance, Topology};
 use crate::effects::Effect;
 use crate::integrate::Stepper;
 use crate::record::Event;
@@ -118,7 +118,7 @@ struct Trial<Sys: Variational> {
 
 impl<'a, Sys, Step, Effects> Section<'a, Sys, Step, Effects>
 where
-    Sys: Variational + Described,
+    Sys: Variational + Instance,
     Step: Stepper<Sys>,
     Effects: Effect<Sys>,
 {
@@ -153,7 +153,7 @@ where
             }
         }
         match self.is_closed(&trial)? {
-            true => finish(trial, made),
+            true => finish(self.system, trial, made),
             false => Err(OrbitError::NotConverged {
                 residual: trial.residual,
                 iterations: made,
@@ -164,7 +164,7 @@ where
     /// Whether a point is its own image, as far as can be told: by rounding, and beside the way from one to the other. A
     /// motion that ceases comes back to where it is without being an orbit.
     fn is_closed(&self, trial: &Trial<Sys>) -> Result<bool, Undefined> {
-        let mut rate = Sys::State::zeros(Sys::State::CAPACITY);
+        let mut rate = self.system.zero_state();
         self.system.rate(0.0, &trial.point, &mut rate)?;
         let way = trial.chart.size(&rate) * trial.time;
         let size = trial.chart.size(&trial.point) * amplification::<Sys>(trial);
@@ -178,7 +178,7 @@ where
         fixed: &Fixed<Sys>,
         trial: &Trial<Sys>,
     ) -> Result<Option<Trial<Sys>>, OrbitError> {
-        let step = newton(trial);
+        let step = newton(self.system, trial);
         let mut factor = 1.0;
         let mut failure = None;
         for _ in 0..HALVINGS {
@@ -207,14 +207,14 @@ where
         }
         let returns = self.returns;
         let (time, event) = self.pass(&point, returns, &mut tangents.as_mut()[..dimension])?;
-        let mut derivative = Sys::columns();
+        let mut derivative = columns(self.system);
         let images = tangents.as_ref()[..dimension].iter();
         for (column, image) in derivative.as_mut().iter_mut().zip(images) {
             *column = chart.components(&image.state);
         }
         let mut change = event.before;
         add(&mut change, -1.0, &point);
-        close_angles::<Sys>(&mut change);
+        close_angles(self.system, &mut change);
         Ok(Trial {
             point,
             chart,
@@ -228,9 +228,13 @@ where
 }
 
 /// The orbit of a point that returns to itself.
-fn finish<Sys: Variational>(trial: Trial<Sys>, iterations: u32) -> Result<Orbit<Sys>, OrbitError> {
+fn finish<Sys: Variational>(
+    system: &Sys,
+    trial: Trial<Sys>,
+    iterations: u32,
+) -> Result<Orbit<Sys>, OrbitError> {
     let dimension = trial.chart.dimension();
-    let mut directions = Sys::columns();
+    let mut directions = columns(system);
     for (index, direction) in directions.as_mut()[..dimension].iter_mut().enumerate() {
         *direction = trial.chart.direction(index);
     }
@@ -251,16 +255,16 @@ fn finish<Sys: Variational>(trial: Trial<Sys>, iterations: u32) -> Result<Orbit<
 ///
 /// Along a family of orbits `derivative - 1` is as small as the miss, not 0: undamped, steps would wander along the family.
 /// With this damping they converge quadratically to an orbit near by (J. Fan, Y. Yuan, Computing 74 (2005)).
-fn newton<Sys: Variational>(trial: &Trial<Sys>) -> Sys::State {
+fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     let dimension = trial.chart.dimension();
-    let (mut matrix, mut turned) = (trial.derivative, Sys::columns());
+    let (mut matrix, mut turned) = (trial.derivative, columns(system));
     for (i, column) in matrix.as_mut()[..dimension].iter_mut().enumerate() {
         column.as_mut_slice()[i] -= 1.0;
     }
     let damping = crate::math::sqrt(dot(&trial.miss, &trial.miss));
     let (columns, turned) = (matrix.as_mut(), turned.as_mut());
     let solution = least_squares(columns, turned, dimension, &trial.miss, damping);
-    let mut step = Sys::State::zeros(Sys::State::CAPACITY);
+    let mut step = system.zero_state();
     for (index, component) in solution.as_slice()[..dimension].iter().enumerate() {
         add(&mut step, -component, &trial.chart.direction(index));
     }
@@ -275,8 +279,8 @@ fn amplification<Sys: Variational>(trial: &Trial<Sys>) -> f64 {
 }
 
 /// Takes whole turns out of the changes of angles.
-fn close_angles<Sys: Described>(change: &mut Sys::State) {
-    let coordinates = Sys::DESCRIPTION.coordinates.iter();
+fn close_angles<Sys: Instance>(system: &Sys, change: &mut Sys::State) {
+    let coordinates = system.description().coordinates.iter();
     for (own, coordinate) in change.as_mut_slice().iter_mut().zip(coordinates) {
         if coordinate.topology == Topology::Circle {
             let turn = 2.0 * core::f64::consts::PI;

@@ -40,7 +40,7 @@ pub(super) fn cross<Sys: Variational>(
     let rate = flow.rate_of(system, holders[1], event.t, &last.after)?;
     for some in tangents.chunks_mut(DIRECTIONS) {
         let parameters = dual_parameters(system, some);
-        let (t, state) = arrival.met(event, &parameters, some)?;
+        let (t, state) = arrival.met(system, event, &parameters, some)?;
         let mut now = Neighbours::<Sys> {
             parameters,
             t,
@@ -48,7 +48,7 @@ pub(super) fn cross<Sys: Variational>(
         };
         for (k, event) in sequence.iter() {
             let (t, surface) = (event.t, event.surface);
-            if k > 0 && !now.share_gap(surface)? {
+            if k > 0 && !now.share_gap(system, surface)? {
                 // Neighbouring motions meet them at different times.
                 return Err(Undefined::Corner { t, surface });
             }
@@ -117,7 +117,7 @@ pub(super) fn arrive<Sys: Variational>(
     let arrival = arrival_at(system, event, rate)?;
     for some in tangents.chunks_mut(DIRECTIONS) {
         let parameters = dual_parameters(system, some);
-        let (_, state) = arrival.met(event, &parameters, some)?;
+        let (_, state) = arrival.met(system, event, &parameters, some)?;
         take_slopes(&state, some);
         check_finite(event, some)?;
     }
@@ -135,11 +135,12 @@ pub(super) fn depends_on_time<Sys: Variational>(
     let parameters = dual_parameters(system, &[]);
     let t = passing(SOME_TIME);
     let state = dual_state::<Sys>(&event.before, &[]);
-    let mut firsts = Sys::Firsts::<Dual>::zeros(Sys::Firsts::<Dual>::CAPACITY);
+    let mut firsts = Sys::Firsts::<Dual>::zeros(system.firsts_len());
     system.begin(&parameters, t, &state, &mut firsts)?;
-    let gaps = Sys::clearances(&parameters, t, &state)?;
+    let gaps = system.clearances(&parameters, t, &state)?;
     let after = struck::<Sys, Dual>(system, &parameters, event, t, &state)?;
-    let parts = [firsts.as_slice(), gaps.as_slice(), after.as_slice()];
+    let rates = &firsts.as_slice()[..system.state_len()];
+    let parts = [rates, gaps.as_slice(), after.as_slice()];
     Ok(parts
         .into_iter()
         .flatten()
@@ -156,7 +157,7 @@ pub(crate) fn arrival<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
 ) -> Result<Arrival<Sys>, Undefined> {
-    let mut rate = Sys::State::zeros(Sys::State::CAPACITY);
+    let mut rate = system.zero_state();
     system.rate(event.t, &event.before, &mut rate)?;
     arrival_at(system, event, rate)
 }
@@ -191,7 +192,7 @@ fn gap_rate<Sys: Variational>(
     let parameters = dual_parameters(system, &along);
     let t = passing(event.t);
     let state = dual_state(&event.before, &along);
-    let gaps = Sys::clearances(&parameters, t, &state)?;
+    let gaps = system.clearances(&parameters, t, &state)?;
     Ok(gaps.as_slice()[event.surface].slopes()[0])
 }
 
@@ -199,13 +200,14 @@ impl<Sys: Variational> Arrival<Sys> {
     /// Time and state at which neighbouring motions meet the surface.
     fn met(
         &self,
+        system: &Sys,
         event: &Event<Sys::State>,
         parameters: &Sys::Parameters<Dual>,
         tangents: &[Tangent<Sys>],
     ) -> Result<(Dual, Sys::Row<Dual>), Undefined> {
         let t = Dual::of(event.t);
         let mut state = dual_state(&event.before, tangents);
-        let gaps = Sys::clearances(parameters, t, &state)?;
+        let gaps = system.clearances(parameters, t, &state)?;
         let gap = &gaps.as_slice()[event.surface];
         let later = gap.slopes().map(|slope| -slope / self.gap_rate);
         let parts = state.as_mut_slice().iter_mut().zip(self.rate.as_slice());
@@ -229,14 +231,14 @@ pub(crate) fn struck<Sys: Variational, L: Numbers>(
     state: &Sys::Row<L>,
 ) -> Result<Sys::Row<L>, Undefined> {
     let surface = event.surface;
-    let (declared, _) = Sys::declared_law(parameters, surface);
+    let (declared, _) = system.declared_law(parameters, surface);
     let strike = Strike {
         surface,
         // A law that was chosen for the run: its coefficient is a number.
         chosen: (declared != event.law).then_some(event.law),
         motion_start: system.motion_start(&event.before),
     };
-    let after = strike.applied::<Sys, L>(parameters, t, state)?;
+    let after = strike.applied(system, parameters, t, state)?;
     let t = event.t;
     after.ok_or(match event.law {
         Law::Transition => Undefined::Refracted { t, surface },
@@ -256,8 +258,12 @@ pub(crate) struct Strike {
 
 impl Strike {
     /// The law in force.
-    pub(crate) fn law<Sys: Variational, L: Numbers>(&self, parameters: &Sys::Parameters<L>) -> Law {
-        let declared = Sys::declared_law(parameters, self.surface).0;
+    pub(crate) fn law<Sys: Variational, L: Numbers>(
+        &self,
+        system: &Sys,
+        parameters: &Sys::Parameters<L>,
+    ) -> Law {
+        let declared = system.declared_law(parameters, self.surface).0;
         self.chosen.unwrap_or(declared)
     }
 
@@ -267,22 +273,23 @@ impl Strike {
     /// [`Fault`].
     pub(crate) fn applied<Sys: Variational, L: Numbers>(
         &self,
+        system: &Sys,
         parameters: &Sys::Parameters<L>,
         t: L,
         state: &Sys::Row<L>,
     ) -> Result<Option<Sys::Row<L>>, Fault> {
         let surface = self.surface;
-        let (declared, coefficient) = Sys::declared_law(parameters, surface);
+        let (declared, coefficient) = system.declared_law(parameters, surface);
         let (law, coefficient) = match self.chosen {
             Some(law) => (law, L::of(law.coefficient().unwrap_or(0.0))),
             None => (declared, coefficient),
         };
         if law.is_map() {
-            return Sys::passed(parameters, surface, t, state);
+            return system.passed(parameters, surface, t, state);
         }
-        let focused = Sys::focus(parameters, surface, t, state)?;
+        let focused = system.focus(parameters, surface, t, state)?;
         let mut after = focused.unwrap_or(*state);
-        let collision = Sys::collision(parameters, surface, t, &after)?;
+        let collision = system.collision(parameters, surface, t, &after)?;
         if focused.is_some() {
             match collision.as_slice()[0].is_below_zero() {
                 Some(true) => {}

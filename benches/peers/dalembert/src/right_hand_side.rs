@@ -164,7 +164,7 @@ fn state<S: System>(chain: &S, q: &[f64], qdot: &[f64]) -> State<S> {
 }
 
 fn rate<S: System>(chain: &S, state: &State<S>) -> State<S> {
-    let mut rate = State::<S>::zeros();
+    let mut rate = chain.zero_state();
     chain.rate(0.0, state, &mut rate).expect("a rate");
     rate
 }

@@ -1,4 +1,4 @@
-//! `Described` and `Scene` of the whole.
+//! `Described`, `Instance` and `Scene` of the whole.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
@@ -8,7 +8,7 @@ use crate::emit::describe as one;
 use crate::emit::{attributes, doc, parameters};
 use crate::spec::WHOLE;
 
-/// `impl Described`
+/// `impl Described`, `impl Instance`
 pub(super) fn emit_described(whole: &Whole<'_>) -> TokenStream {
     let own = whole.type_name();
     let attributes = attributes();
@@ -39,12 +39,20 @@ pub(super) fn emit_described(whole: &Whole<'_>) -> TokenStream {
         impl ::dalembert::Described for #own {
             const DESCRIPTION: ::dalembert::describe::Description = #description;
 
+            fn with_defaults() -> Self { Self { #defaults mode: #first } }
+        }
+
+        #attributes
+        impl ::dalembert::describe::Instance for #own {
             type Global = Self;
 
             #[inline]
-            fn global(&self) -> Self { *self }
+            fn description(&self) -> &'static ::dalembert::describe::Description {
+                &<Self as ::dalembert::Described>::DESCRIPTION
+            }
 
-            fn with_defaults() -> Self { Self { #defaults mode: #first } }
+            #[inline]
+            fn global(&self) -> Self { *self }
 
             #access
 

@@ -63,7 +63,7 @@ fn emit_counts_throughout(whole: &Whole<'_>) -> TokenStream {
     }
     let answer = of_row(
         whole,
-        |_, own| quote!(::dalembert::__private::modes::counts_throughout_of::<#own>(parameters, surface, t, state)),
+        |_, own| quote!(::dalembert::__private::modes::counts_throughout_of::<#own>(self, parameters, surface, t, state)),
     );
     over_intervals(&answer)
 }
@@ -90,10 +90,11 @@ fn emit_asked(whole: &Whole<'_>) -> TokenStream {
     let asked = asked.map(|(name, function, row)| {
         let answer = of_row(
             whole,
-            |_, own| quote!(::dalembert::__private::modes::#function::<#own, L, _>(parameters, t, state)),
+            |_, own| quote!(::dalembert::__private::modes::#function::<#own, L, _>(self, parameters, t, state)),
         );
         quote! {
             fn #name<L: ::dalembert::numbers::Numbers>(
+                &self,
                 parameters: &Self::Parameters<L>,
                 t: L,
                 state: &Self::Row<L>,
@@ -108,10 +109,11 @@ fn emit_asked(whole: &Whole<'_>) -> TokenStream {
 fn emit_collision(whole: &Whole<'_>) -> TokenStream {
     let answer = of_row(
         whole,
-        |_, own| quote!(::dalembert::__private::modes::collision_of::<#own, L, _>(parameters, surface, t, state)),
+        |_, own| quote!(::dalembert::__private::modes::collision_of::<#own, L, _>(self, parameters, surface, t, state)),
     );
     quote! {
         fn collision<L: ::dalembert::numbers::Numbers>(
+            &self,
             parameters: &Self::Parameters<L>,
             surface: usize,
             t: L,
@@ -129,11 +131,11 @@ fn emit_instantaneous(whole: &Whole<'_>) -> TokenStream {
     }
     let focus = of_row(
         whole,
-        |_, own| quote!(::dalembert::__private::modes::focus_of::<#own, L, _>(parameters, surface, t, state)),
+        |_, own| quote!(::dalembert::__private::modes::focus_of::<#own, L, _>(self, parameters, surface, t, state)),
     );
     let trace = of_row(
         whole,
-        |_, own| quote!(::dalembert::__private::modes::trace_of::<#own, L, _>(parameters, surface, t, state, rate)),
+        |_, own| quote!(::dalembert::__private::modes::trace_of::<#own, L, _>(self, parameters, surface, t, state, rate)),
     );
     over_numbers(&focus, &trace)
 }
@@ -142,6 +144,7 @@ fn emit_instantaneous(whole: &Whole<'_>) -> TokenStream {
 fn emit_resets() -> TokenStream {
     quote! {
         fn composed<L: ::dalembert::numbers::Numbers>(
+            &self,
             parameters: &Self::Parameters<L>,
             t: L,
             q: &Self::Configuration<L>,
@@ -151,6 +154,7 @@ fn emit_resets() -> TokenStream {
         }
 
         fn landing<L: ::dalembert::numbers::Numbers>(
+            &self,
             parameters: &Self::Parameters<L>,
             surface: usize,
             t: L,
@@ -174,6 +178,7 @@ fn emit_passed(whole: &Whole<'_>) -> TokenStream {
                 let passage = passage(transition, mode.model.is_first_order());
                 Some(quote! {
                     #place => ::dalembert::__private::modes::passed_into::<#own, #entered, L, _>(
+                        self,
                         parameters,
                         ::dalembert::__private::modes::Passage::#passage,
                         #index,
@@ -185,12 +190,13 @@ fn emit_passed(whole: &Whole<'_>) -> TokenStream {
         quote! {
             match surface {
                 #(#arms)*
-                _ => ::dalembert::__private::modes::passed_within::<#own, L, _>(parameters, surface, t, state),
+                _ => ::dalembert::__private::modes::passed_within::<#own, L, _>(self, parameters, surface, t, state),
             }
         }
     });
     quote! {
         fn passed<L: ::dalembert::numbers::Numbers>(
+            &self,
             parameters: &Self::Parameters<L>,
             surface: usize,
             t: L,
@@ -205,10 +211,11 @@ fn emit_declared_law(whole: &Whole<'_>) -> TokenStream {
     let types = whole.types();
     let arms = whole.graph.surfaces.iter().enumerate().map(|(place, entry)| {
         let (own, surface) = (types[entry.mode], entry.place);
-        quote!(#place => ::dalembert::__private::modes::declared_law_of::<#own, L>(parameters, #surface),)
+        quote!(#place => ::dalembert::__private::modes::declared_law_of::<#own, L>(self, parameters, #surface),)
     });
     quote! {
         fn declared_law<L: ::dalembert::numbers::Numbers>(
+            &self,
             parameters: &Self::Parameters<L>,
             surface: usize,
         ) -> (::dalembert::law::Law, L) {
@@ -287,6 +294,7 @@ fn emit_counts(has_surfaces: bool) -> TokenStream {
 fn over_intervals(body: &TokenStream) -> TokenStream {
     quote! {
         fn counts_throughout(
+            &self,
             parameters: &Self::Parameters<::dalembert::numbers::Interval>,
             surface: usize,
             t: ::dalembert::numbers::Interval,
@@ -304,6 +312,7 @@ fn over_numbers(focus: &TokenStream, trace: &TokenStream) -> TokenStream {
     };
     quote! {
         fn focus<L: ::dalembert::numbers::Numbers>(
+            &self,
             parameters: &Self::Parameters<L>,
             surface: usize,
             t: L,
@@ -313,6 +322,7 @@ fn over_numbers(focus: &TokenStream, trace: &TokenStream) -> TokenStream {
         }
 
         fn trace<L: ::dalembert::numbers::Numbers>(
+            &self,
             parameters: &Self::Parameters<L>,
             surface: usize,
             t: L,

@@ -8,7 +8,7 @@
 //! miss no impact is shown without the search that finds impacts. Nothing is measured by a reference that is not confirmed.
 //!
 //! ```
-//! use dalembert::{Described, System};
+//! use dalembert::{System};
 //! use dalembert_cli::accuracy::choose;
 //!
 //! dalembert::model! {

@@ -53,7 +53,7 @@ impl<'a, M: Model> Probe<'a, M> {
     pub fn track(self, solved: &Solved<M::State>, audit: Audited) -> Track {
         let last = self.model.position(&solved.run.state);
         Track {
-            description: M::DESCRIPTION,
+            description: *self.model.description(),
             positions: self.positions,
             impacts: self.impacts,
             audit,
@@ -72,7 +72,7 @@ impl<M: Model> Observer<M> for Probe<'_, M> {
         while let Some(t) = self.next_time().filter(|&t| t <= end) {
             let position = match segment.at(t) {
                 Ok(state) => self.model.position(&state).as_slice().to_vec(),
-                Err(_) => vec![f64::NAN; M::DESCRIPTION.coordinates.len()],
+                Err(_) => vec![f64::NAN; self.model.description().coordinates.len()],
             };
             self.positions.push(position);
         }

@@ -178,6 +178,11 @@ fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     )?;
     writeln!(
         output,
+        "times with the model's functions {}",
+        finished.model.code().name()
+    )?;
+    writeln!(
+        output,
         "\n{:8} {:>6} {:>10} {:>9} {:>9} {:>8} {:>12}",
         "", "tol", "error", "rates", "steps", "impacts", "us per unit"
     )?;

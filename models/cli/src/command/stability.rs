@@ -87,8 +87,8 @@ pub fn run(
 fn selected<'a>(suite: &'a [Case], args: &StabilityArgs) -> Result<Vec<&'a Case>, CliError> {
     if suite.is_empty() {
         return Err(CliError::Usage(
-            "stability: this command line has no cases; hand them to it with \
-             `Catalogue::of(models![..]).with_suite(cases).run()`",
+            "stability: this command line has no cases; those of dalembert are in the package `dalembert-stability`, cases of your own are \
+             handed over with `Catalogue::of(models![..]).with_suite(cases).run()`",
         ));
     }
     let mut sections: Vec<&str> = suite.iter().map(Case::section).collect();

@@ -199,7 +199,7 @@ fn ending<M: Model>(
     let Solved { run, step, laws } = solved;
     Ending {
         kind: run.outcome.kind(),
-        details: details(&M::DESCRIPTION, &run.outcome),
+        details: details(model.description(), &run.outcome),
         t: run.t,
         first,
         last: point(model, run.t, &run.state),
@@ -287,7 +287,7 @@ pub(crate) fn effects<M: Model>(model: &M, settings: &Settings) -> (M::Effects, 
     if let Some(projection) = settings.projection {
         effects.set_projection(projection);
     }
-    let laws = (0..M::DESCRIPTION.surfaces.len())
+    let laws = (0..model.description().surfaces.len())
         .map(|surface| effects.law(model, surface))
         .collect();
     (effects, laws)
@@ -368,7 +368,7 @@ impl<M: Model> Piece for SegmentPiece<'_, '_, M> {
         let state = self.segment.borrow_mut().at(t);
         match state {
             Ok(state) => point(self.model, t, &state),
-            Err(_) => Point::undefined(&M::DESCRIPTION),
+            Err(_) => Point::undefined(self.model.description()),
         }
     }
 }

@@ -319,11 +319,11 @@ impl<F: TaylorField> Taylor<F> {
         let mut change = self.rates[1].zeroed();
         for coefficient in self.expansion.coefficients[1..=self.order].iter().rev() {
             for (i, entry) in coefficient.as_slice().iter().enumerate() {
-                let sum = &mut change.as_mut_slice()[i];
+                let sum = &mut change.padded_mut()[i];
                 *sum = math::mul_add(*sum, s, *entry);
             }
         }
-        self.ends.start.advanced(|i| change.as_slice()[i] * s)
+        self.ends.start.advanced(|i| change.padded()[i] * s)
     }
 
     /// The coefficients of the last step, which was made abreast of others.

@@ -109,9 +109,10 @@ fn time(finished: &Finished<'_>) -> String {
     let seconds = finished.elapsed.as_secs_f64();
     let ran = finished.tally.members - finished.kept;
     let mut text = format!(
-        "{seconds:.2} s on {}, {:.0} members per second",
+        "{seconds:.2} s on {}, {:.0} members per second with functions {}",
         counted(finished.threads as usize, "thread"),
-        ran as f64 / seconds
+        ran as f64 / seconds,
+        finished.model.code().name()
     );
     if finished.kept > 0 {
         text += &format!(

@@ -7,8 +7,9 @@ mod particle;
 mod pushed;
 mod unsure;
 
+use dalembert::declaration::Described;
 use dalembert::describe::{
-    Assumption, ConstraintInfo, CoordinateInfo, Described, Description, Initial, ParameterInfo,
+    Assumption, ConstraintInfo, CoordinateInfo, Description, Initial, Instance, ParameterInfo,
     Report, SurfaceInfo, Topology, ViewInfo,
 };
 use dalembert::error::ParameterError;
@@ -174,14 +175,16 @@ impl Described for BouncingBall {
         ..NOTHING
     };
 
+    fn with_defaults() -> Self {
+        Self { m: 1.0, g: 1.0 }
+    }
+}
+
+impl Instance for BouncingBall {
     type Global = Self;
 
     fn global(&self) -> Self {
         self.clone()
-    }
-
-    fn with_defaults() -> Self {
-        Self { m: 1.0, g: 1.0 }
     }
 
     fn parameter(&self, index: usize) -> f64 {
@@ -240,6 +243,10 @@ impl Described for BouncingBall {
         report.vector("impacts.floor.velocity_direction", &[1.0 / self.m]);
         Ok(())
     }
+
+    fn description(&self) -> &'static Description {
+        &<Self as Described>::DESCRIPTION
+    }
 }
 
 /// Two springs of different strength in a round dish.
@@ -288,14 +295,16 @@ impl Described for Oscillator {
         ..NOTHING
     };
 
+    fn with_defaults() -> Self {
+        Self { k: f64::NAN }
+    }
+}
+
+impl Instance for Oscillator {
     type Global = Self;
 
     fn global(&self) -> Self {
         self.clone()
-    }
-
-    fn with_defaults() -> Self {
-        Self { k: f64::NAN }
     }
 
     fn parameter(&self, index: usize) -> f64 {
@@ -343,6 +352,10 @@ impl Described for Oscillator {
         report.matrix("metric", 2, 2, &[1.0, 0.0, 0.0, 1.0]);
         report.vector("stiffness", &[1.0, self.k]);
         Ok(())
+    }
+
+    fn description(&self) -> &'static Description {
+        &<Self as Described>::DESCRIPTION
     }
 }
 
@@ -467,14 +480,16 @@ impl Described for Bead {
         ..NOTHING
     };
 
+    fn with_defaults() -> Self {
+        Self
+    }
+}
+
+impl Instance for Bead {
     type Global = Self;
 
     fn global(&self) -> Self {
         self.clone()
-    }
-
-    fn with_defaults() -> Self {
-        Self
     }
 
     fn parameter(&self, _index: usize) -> f64 {
@@ -508,5 +523,9 @@ impl Described for Bead {
 
     fn inspect(&self, t: f64, state: &Self::State, report: &mut dyn Report) -> Result<(), Fault> {
         inspect_common(self, t, state, report)
+    }
+
+    fn description(&self) -> &'static Description {
+        &<Self as Described>::DESCRIPTION
     }
 }

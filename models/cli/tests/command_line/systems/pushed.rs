@@ -130,14 +130,16 @@ impl Described for Pushed {
         ..NOTHING
     };
 
+    fn with_defaults() -> Self {
+        Self
+    }
+}
+
+impl Instance for Pushed {
     type Global = Self;
 
     fn global(&self) -> Self {
         self.clone()
-    }
-
-    fn with_defaults() -> Self {
-        Self
     }
 
     fn parameter(&self, _index: usize) -> f64 {
@@ -171,5 +173,9 @@ impl Described for Pushed {
 
     fn inspect(&self, t: f64, state: &Self::State, report: &mut dyn Report) -> Result<(), Fault> {
         inspect_common(self, t, state, report)
+    }
+
+    fn description(&self) -> &'static Description {
+        &<Self as Described>::DESCRIPTION
     }
 }

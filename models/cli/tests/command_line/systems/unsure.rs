@@ -1,7 +1,8 @@
 //! Systems whose search for impacts is unsure: it looks at nine places of a step, and overlooks what lies between them.
 
 use dalembert::audit::{Audit, Auditor};
-use dalembert::describe::{Described, Description, Initial, Report};
+use dalembert::declaration::Described;
+use dalembert::describe::{Description, Initial, Instance, Report};
 use dalembert::effects::{Moment, StepView};
 use dalembert::error::ParameterError;
 use dalembert::integrate::Stepper;
@@ -194,22 +195,28 @@ impl<M: Lagrangian> Lagrangian for Unsure<M> {
 
 impl<M> Described for Unsure<M>
 where
-    M: Model + Impacting,
-    M::Global: Model + Impacting,
+    M: Model + Described + Impacting,
+    M::Global: Model + Described + Impacting,
 {
     const DESCRIPTION: Description = Description {
         scenes: &["all"],
         ..M::DESCRIPTION
     };
 
+    fn with_defaults() -> Self {
+        Self(M::with_defaults())
+    }
+}
+
+impl<M> Instance for Unsure<M>
+where
+    M: Model + Described + Impacting,
+    M::Global: Model + Described + Impacting,
+{
     type Global = Unsure<M::Global>;
 
     fn global(&self) -> Self::Global {
         Unsure(self.0.global())
-    }
-
-    fn with_defaults() -> Self {
-        Self(M::with_defaults())
     }
 
     fn parameter(&self, index: usize) -> f64 {
@@ -242,6 +249,10 @@ where
 
     fn inspect(&self, t: f64, state: &M::State, report: &mut dyn Report) -> Result<(), Fault> {
         self.0.inspect(t, state, report)
+    }
+
+    fn description(&self) -> &'static Description {
+        &<Self as Described>::DESCRIPTION
     }
 }
 

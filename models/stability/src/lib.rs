@@ -1,5 +1,7 @@
 //! Hard cases for the runtime and for what is generated: event location, accumulation, impact laws and corners,
-//! constraints that are nearly dependent, scaling, long runs, bad input. `dalembert stability` runs them.
+//! constraints that are nearly dependent, scaling, long runs, bad input.
+//!
+//! The binary of this package is the `dalembert` command with these cases behind `stability`.
 //!
 //! To add one, copy a [`Case`] and its function in the file of its section. Its number is never used again; what is
 //! right about it is a closed form, an exact count, a class of outcome, or a number that anyone can compute again with
@@ -60,4 +62,9 @@ pub fn all() -> Vec<Case> {
     let mut cases = sections.concat();
     cases.sort_by_key(|case| case.id);
     cases
+}
+
+/// What the command works on: every shipped model, the figures of the papers, and the cases.
+pub fn catalogue() -> dalembert_cli::Catalogue {
+    dalembert_models::catalogue().with_suite(all())
 }

@@ -6,7 +6,7 @@ use dalembert_cli::suite::{Case, Report, Run, Setting};
 use super::course::{Course, End, location};
 use super::location::Fall;
 use super::zeno::{Incline, SphereTop};
-use crate::{PointBilliard, RollingDisk};
+use dalembert_models::{PointBilliard, RollingDisk};
 
 dalembert::model! {
     /// A point on a spring that stiffens, over a floor.

@@ -10,7 +10,7 @@ use dalembert_cli::suite::{Case, Report, Run, Setting};
 use super::by_hand::{Gap, Point};
 use super::course::{Course, U, location};
 use super::zeno::accumulates;
-use crate::{SpasmodicHamiltonian, SuperElasticStrip};
+use dalembert_models::{SpasmodicHamiltonian, SuperElasticStrip};
 
 dalembert::model! {
     /// A point between a wall at rest and a piston that closes in.

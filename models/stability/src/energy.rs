@@ -8,7 +8,7 @@ use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, Random, U};
 use super::location::Fall;
-use crate::RollingDisk;
+use dalembert_models::RollingDisk;
 
 const WALK: &str = "rounding errors that add up like a random walk";
 const BOUND: &str = "root mean square below 16 u sqrt(n); exponent at most 0.6";

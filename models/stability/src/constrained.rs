@@ -3,7 +3,7 @@
 use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 
 use super::course::Course;
-use crate::{BallOnRotatingTable, ChaplyginSleigh, RollingBallEuler, RollingDisk};
+use dalembert_models::{BallOnRotatingTable, ChaplyginSleigh, RollingBallEuler, RollingDisk};
 
 dalembert::model! {
     /// A skate on an incline that falls along x, and a wall at x = 0 or y = 0 for those who ask.

@@ -2,13 +2,13 @@
 //! its value where theory says so; the curves of the last case show where it grows.
 
 use dalembert::{
-    Constrained, Described, Dla2, Dla4, Effect, Gauss4, Gauss6, Projection, Rk4, StateVector,
-    Stepper, Tolerance,
+    Constrained, Described, Dla2, Dla4, Effect, Gauss4, Gauss6, Instance, Projection, Rk4,
+    StateVector, Stepper, Tolerance,
 };
 use dalembert_cli::drift::{Request, Series, follow};
 use dalembert_cli::suite::{Case, Report, Run};
 
-use crate::{DoublePendulum, HarmonicOscillator, RollingDisk};
+use dalembert_models::{DoublePendulum, HarmonicOscillator, RollingDisk};
 
 dalembert::model! {
     /// A knife edge in a quadratic potential, steered by a pendulum; `c` couples the steering to the place, `b` is a

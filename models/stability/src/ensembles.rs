@@ -8,7 +8,7 @@ use dalembert_cli::{Entry, Exit, Integrator, Streams, run_with};
 
 use super::course::Course;
 use super::tables::Sinai;
-use crate::{BouncingBall, PointBilliard};
+use dalembert_models::{BouncingBall, PointBilliard};
 
 /// The cases.
 pub const CASES: &[Case] = &[

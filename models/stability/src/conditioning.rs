@@ -5,7 +5,7 @@ use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::constrained::Skate;
 use super::course::{Course, U};
-use crate::{DoublePendulum, RollingDisk};
+use dalembert_models::{DoublePendulum, RollingDisk};
 
 dalembert::model! {
     /// Two forms that span the same plane for every `delta`, and nearly coincide when it is small.

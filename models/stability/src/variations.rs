@@ -9,7 +9,7 @@ use dalembert::{
 use dalembert_cli::suite::{Case, Report, Run};
 
 use super::course::U;
-use crate::PointBilliard;
+use dalembert_models::PointBilliard;
 
 dalembert::model! {
     /// Two fields that change at a bent line: `s` says which of them moves the point.

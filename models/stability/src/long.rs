@@ -10,7 +10,7 @@ use super::course::{Course, U};
 use super::crossing::Oscillator;
 use super::scaling::Hopper;
 use super::tables::{Rectangle, Sinai};
-use crate::PointBilliard;
+use dalembert_models::PointBilliard;
 
 /// The cases.
 pub const CASES: &[Case] = &[

@@ -7,7 +7,7 @@ use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 use super::accumulation::Piston;
 use super::course::{Course, Random, U, vector};
 use super::location::Fall;
-use crate::{ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk};
+use dalembert_models::{ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk};
 
 dalembert::model! {
     /// A vertical disk that rolls towards a wall through its centre.

@@ -2,13 +2,13 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{Constrained, Described, Observer, Segment, System, VectorField};
+use dalembert::{Constrained, Instance, Observer, Segment, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::constrained::{disk_at, wide_disk};
 use super::course::{Course, Random};
-use crate::RollingDisk;
+use dalembert_models::RollingDisk;
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -47,7 +47,7 @@ fn off_the_constraint(setting: Setting, report: &mut Report) {
     let state = disk
         .state_unchecked(0.0, &[0.0; 4].into(), &qdot.into())
         .expect("a state");
-    let residuals = |state: &<<RollingDisk as Described>::Global as VectorField>::State| {
+    let residuals = |state: &<<RollingDisk as Instance>::Global as VectorField>::State| {
         let (q, qdot) = (disk.position(state), disk.velocity(0.0, state));
         disk.residuals(0.0, &q, &qdot.expect("a velocity")).0
     };

@@ -3,7 +3,7 @@
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, U};
-use crate::{FilippovField, RefractedParticle};
+use dalembert_models::{FilippovField, RefractedParticle};
 
 dalembert::model! {
     /// A slider that is caught at x = 1, while a clock goes on, and thrown back when the clock shows 2.

@@ -4,7 +4,7 @@ use core::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use dalembert::{
-    Described, Dop853, Event, EventLog, Observer, Outcome, Scene, Segment, Simulation, StartError,
+    Dop853, Event, EventLog, Instance, Observer, Outcome, Scene, Segment, Simulation, StartError,
     StateError, System, Tolerance, VectorField,
 };
 use dalembert_cli::suite::{Case, Report, Run, Setting};
@@ -12,7 +12,7 @@ use dalembert_cli::suite::{Case, Report, Run, Setting};
 use super::course::Course;
 use super::ensembles;
 use super::location::Fall;
-use crate::{BouncingBall, RollingDisk};
+use dalembert_models::{BouncingBall, RollingDisk};
 
 /// The cases.
 pub const CASES: &[Case] = &[

@@ -1,10 +1,10 @@
 //! Section E, second part: the arithmetic of what is generated.
 
-use dalembert::{Described, Impacting, System};
+use dalembert::{Described, Impacting, Instance, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting, notes, refusal};
 
 use super::course::{Course, Random, U};
-use crate::PointBilliard;
+use dalembert_models::PointBilliard;
 
 dalembert::model! {
     /// A rotor, and functions of its angle that lose digits.
@@ -128,7 +128,12 @@ fn constants(report: &mut Report) {
             words.to_owned(),
         );
     }
-    report.near("1/2", crate::DoublePendulum::default().m1 / 2.0, 0.5, 0.0);
+    report.near(
+        "1/2",
+        dalembert_models::DoublePendulum::default().m1 / 2.0,
+        0.5,
+        0.0,
+    );
 }
 
 fn cancellation(report: &mut Report) {

@@ -1,0 +1,165 @@
+//! The form of a declared type as data: its tables, and its functions behind pointers.
+
+use core::marker::PhantomData;
+
+use super::{Described, Emitted};
+use crate::contract::{RankDrop, TaylorField};
+use crate::erased::{Expanded, Form, Kinds, SeriesTable};
+use crate::error::Fault;
+use crate::jet::{Jets, LENGTH};
+use crate::kernels::{Declared, KernelSet, KernelTable};
+use crate::numbers::{Bent, Numbers, Rated, Row, TaylorModel};
+use crate::state::StateVector;
+use crate::variations::Dual;
+
+/// The form of a type, where an erased system has room for it.
+pub(super) const fn of<S: Emitted>() -> Option<&'static Form> {
+    match Of::<S>::FORM.capacity() {
+        Some(_) => Some(&Of::<S>::FORM),
+        None => None,
+    }
+}
+
+/// Functions of the form of a type, over slices.
+struct Of<S>(PhantomData<S>);
+
+impl<S: Emitted> Of<S> {
+    const FORM: Form = Form {
+        tables: S::TABLES,
+        documentation: S::DOCUMENTATION,
+        kernels: Self::kernels(KernelSet::ALL),
+        kernels_over: Self::KERNELS_OVER,
+        series: Self::series(),
+        series_over: Self::SERIES_OVER,
+        work: || S::declared().work(),
+        defaults: Self::write_defaults,
+        global: || <S::Global as Described>::FORM,
+        rank_drop: match S::TABLES.can_lose_rank {
+            true => Some(Self::rank_drop),
+            false => None,
+        },
+        integrated_density: |values, t, q| {
+            Self::with(values).integrated_density(t, &S::Vector::of(q))
+        },
+        room: <S::Room<f64> as Row<f64>>::CAPACITY,
+    };
+
+    const KERNELS_OVER: Kinds = [
+        match S::TABLES.surfaces {
+            [] => None,
+            _ => Some(&Self::kernels::<TaylorModel>(KernelSet::OF_GAPS)),
+        },
+        match S::TABLES.surfaces {
+            [] => None,
+            _ => Some(&Self::kernels::<Bent>(KernelSet::OF_GAPS)),
+        },
+        match S::TABLES.can_be_narrow {
+            false => None,
+            true => Some(&Self::kernels::<Rated>(KernelSet::OF_RATES)),
+        },
+        match S::TABLES.varies {
+            false => None,
+            true => Some(&Self::kernels::<Dual>(KernelSet::OF_VARIATIONS)),
+        },
+    ];
+
+    const SERIES_OVER: Kinds = [
+        match S::TABLES.varies {
+            false => None,
+            true => Some(&Self::series::<Dual>()),
+        },
+        #[cfg(feature = "lanes")]
+        Some(&Self::series::<wide::f64x8>()),
+        #[cfg(not(feature = "lanes"))]
+        None,
+        None,
+        None,
+    ];
+
+    const fn kernels<L: Numbers>(which: KernelSet) -> KernelTable<L> {
+        KernelTable::of::<S::Kernels>(which)
+    }
+
+    const fn series<L: Numbers>() -> SeriesTable<L> {
+        SeriesTable {
+            begin: Self::begin,
+            advance: Self::advance,
+        }
+    }
+
+    /// The system with these values of its parameters.
+    fn with(values: &[f64]) -> S {
+        let mut system = S::declared();
+        for (index, value) in values.iter().enumerate() {
+            system.set_argument(index, *value);
+        }
+        system
+    }
+
+    fn write_defaults(values: &mut [f64]) {
+        values.copy_from_slice(S::declared().arguments().as_ref());
+    }
+
+    fn begin<L: Numbers>(
+        parameters: &[L],
+        t: L,
+        state: &[L],
+        firsts: &mut [L],
+    ) -> Result<(), Fault> {
+        let system = S::declared();
+        let mut own = S::Firsts::<L>::zeros(system.firsts_len());
+        system.begin(&row(parameters), t, &row(state), &mut own)?;
+        firsts.copy_from_slice(&own.as_slice()[..firsts.len()]);
+        Ok(())
+    }
+
+    fn advance<L: Numbers>(
+        parameters: &[L],
+        t: L,
+        state: &[L],
+        (unit, order): (L, usize),
+        take: Expanded<'_, L>,
+    ) {
+        let system = S::declared();
+        let (parameters, state) = (row(parameters), row(state));
+        let mut firsts = S::Firsts::<L>::zeros(system.firsts_len());
+        // It began there before.
+        let _ = system.begin(&parameters, t, &state, &mut firsts);
+        let mut coefficients = [state; LENGTH];
+        let mut gaps = [<S as TaylorField>::Gaps::<L>::zeros(system.series_gap_count()); LENGTH];
+        let mut jets = S::Jets::<L>::ZERO;
+        system.advance(
+            &parameters,
+            unit,
+            order,
+            &firsts,
+            &mut coefficients,
+            &mut gaps,
+            &mut jets,
+        );
+        for (k, (state, gaps)) in coefficients.iter().zip(&gaps).enumerate().take(order + 1) {
+            take(k, state.as_slice(), gaps.as_slice());
+        }
+    }
+
+    fn rank_drop(
+        values: &[f64],
+        motion: &dyn Fn(f64, &mut [f64]) -> f64,
+        reach: f64,
+    ) -> Option<RankDrop> {
+        let system = Self::with(values);
+        let along = |theta: f64| {
+            let mut state = <S as Declared>::State::zeros(system.state_len());
+            let t = motion(theta, state.as_mut_slice());
+            (t, state)
+        };
+        system.rank_drop_along(along, reach)
+    }
+}
+
+/// Numbers as a row.
+fn row<L: Numbers, R: Row<L>>(numbers: &[L]) -> R {
+    let mut row = R::zeros(numbers.len());
+    row.as_mut_slice().copy_from_slice(numbers);
+    row
+}

@@ -1,0 +1,134 @@
+//! Vectors and rows of a length that is known at run time, in rooms of a fixed capacity.
+
+use core::fmt;
+
+use crate::numbers::{Numbers, Row};
+use crate::state::{Plain, StateVector};
+
+/// At most `C` values.
+#[derive(Clone, Copy)]
+pub struct Bounded<T, const C: usize> {
+    count: usize,
+    values: [T; C],
+}
+
+impl<T: Copy, const C: usize> Bounded<T, C> {
+    /// So many times this value; more than there is room for are left out.
+    #[inline(always)]
+    pub fn all(count: usize, value: T) -> Self {
+        Self {
+            count: count.min(C),
+            values: [value; C],
+        }
+    }
+}
+
+impl<T, const C: usize> AsRef<[T]> for Bounded<T, C> {
+    #[inline(always)]
+    fn as_ref(&self) -> &[T] {
+        &self.values[..self.count.min(C)]
+    }
+}
+
+impl<T, const C: usize> AsMut<[T]> for Bounded<T, C> {
+    #[inline(always)]
+    fn as_mut(&mut self) -> &mut [T] {
+        &mut self.values[..self.count.min(C)]
+    }
+}
+
+impl<T: PartialEq, const C: usize> PartialEq for Bounded<T, C> {
+    fn eq(&self, other: &Self) -> bool {
+        self.as_ref() == other.as_ref()
+    }
+}
+
+impl<T: fmt::Debug, const C: usize> fmt::Debug for Bounded<T, C> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.as_ref().fmt(f)
+    }
+}
+
+impl<const C: usize> StateVector for Bounded<f64, C> {
+    const CAPACITY: usize = C;
+
+    type Each<T: Plain> = Bounded<T, C>;
+
+    #[inline(always)]
+    fn each<T: Plain>(count: usize, value: T) -> Bounded<T, C> {
+        Bounded::all(count, value)
+    }
+
+    #[inline(always)]
+    fn zeros(count: usize) -> Self {
+        Self::all(count, 0.0)
+    }
+
+    #[inline(always)]
+    fn as_slice(&self) -> &[f64] {
+        self.as_ref()
+    }
+
+    #[inline(always)]
+    fn as_mut_slice(&mut self) -> &mut [f64] {
+        self.as_mut()
+    }
+
+    #[inline(always)]
+    fn padded(&self) -> &[f64] {
+        &self.values
+    }
+
+    #[inline(always)]
+    fn padded_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+}
+
+impl<L: Numbers, const C: usize> Row<L> for Bounded<L, C> {
+    const CAPACITY: usize = C;
+
+    #[inline(always)]
+    fn zeros(count: usize) -> Self {
+        Self::all(count, L::ZERO)
+    }
+
+    #[inline(always)]
+    fn as_slice(&self) -> &[L] {
+        self.as_ref()
+    }
+
+    #[inline(always)]
+    fn as_mut_slice(&mut self) -> &mut [L] {
+        self.as_mut()
+    }
+}
+
+/// At most `K` times `C` numbers.
+#[derive(Debug, Clone, Copy)]
+pub struct Wide<L, const C: usize, const K: usize> {
+    count: usize,
+    values: [[L; C]; K],
+}
+
+impl<L: Numbers, const C: usize, const K: usize> Row<L> for Wide<L, C, K> {
+    const CAPACITY: usize = C * K;
+
+    #[inline(always)]
+    fn zeros(count: usize) -> Self {
+        Self {
+            count: count.min(C * K),
+            values: [[L::ZERO; C]; K],
+        }
+    }
+
+    #[inline(always)]
+    fn as_slice(&self) -> &[L] {
+        &self.values.as_flattened()[..self.count]
+    }
+
+    #[inline(always)]
+    fn as_mut_slice(&mut self) -> &mut [L] {
+        &mut self.values.as_flattened_mut()[..self.count]
+    }
+}

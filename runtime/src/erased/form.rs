@@ -1,0 +1,122 @@
+//! A form of a model as data.
+
+use core::any::Any;
+use core::fmt;
+
+use super::series::SeriesTable;
+use crate::contract::RankDrop;
+use crate::error::Fault;
+use crate::jet::Work;
+use crate::kernels::{Documentation, KernelTable, Tables};
+use crate::numbers::Numbers;
+
+/// The capacities that there are systems of.
+pub const CAPACITIES: [usize; 5] = [4, 8, 16, 32, 64];
+
+/// Most parameters of an erased system, inputs among them.
+pub const PARAMETERS: usize = 64;
+
+/// Rows of the capacity in the room for parameters that are numbers of other kinds.
+pub(super) const ARGUMENTS: usize = 2;
+
+/// Rows of the capacity in the room for kernels that give several things at once.
+pub(super) const ROWS: usize = 8;
+
+/// Room for the quantities of the geometry at a state.
+pub(super) const GEOMETRY: usize = 64;
+
+/// Tables over other numbers than `f64`, each of a type of its own.
+pub type Kinds = [Option<&'static (dyn Any + Send + Sync)>; 4];
+
+/// [`System::rank_drop`](crate::System::rank_drop) with these parameters: the motion writes a state, and gives its time.
+pub type RankDropOf = fn(&[f64], &dyn Fn(f64, &mut [f64]) -> f64, f64) -> Option<RankDrop>;
+
+/// The logarithm of a density at parameters, a time and positions.
+pub type DensityOf = fn(&[f64], f64, &[f64]) -> Option<Result<f64, Fault>>;
+
+/// A form of a model, or of a scene: tables, and pointers to its functions.
+pub struct Form {
+    /// What is known of it.
+    pub tables: Tables,
+    /// What it says of itself.
+    pub documentation: Documentation,
+    /// The kernels.
+    pub kernels: KernelTable<f64>,
+    /// Tables of kernels over other numbers ([`KernelTable`]).
+    pub kernels_over: Kinds,
+    /// The power series of the motion.
+    pub series: SeriesTable<f64>,
+    /// Those over other numbers ([`SeriesTable`]).
+    pub series_over: Kinds,
+    /// What an order of the series costs.
+    pub work: fn() -> Option<Work>,
+    /// Writes the declared values of the parameters; NaN for one without.
+    pub defaults: fn(&mut [f64]),
+    /// The global form.
+    pub global: fn() -> Option<&'static Form>,
+    /// Whether constraint forms become dependent, where they may.
+    pub rank_drop: Option<RankDropOf>,
+    /// The logarithm of the density of the invariant volume, where it takes an integral.
+    pub integrated_density: DensityOf,
+    /// Numbers of the largest kernel that gives several things at once.
+    pub room: usize,
+}
+
+impl fmt::Debug for Form {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Form")
+            .field("name", &self.documentation.description.name)
+            .field("form", &self.tables.form)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Form {
+    /// The least of [`CAPACITIES`] that holds the vectors of this form and of the global one; `None` where none does.
+    pub const fn capacity(&self) -> Option<usize> {
+        let dimensions = &self.tables.dimensions;
+        let n = dimensions.coordinates;
+        let lengths = [n + dimensions.motion, 2 * n, dimensions.surfaces];
+        let (mut longest, mut k) = (0, 0);
+        while k < lengths.len() {
+            if lengths[k] > longest {
+                longest = lengths[k];
+            }
+            k += 1;
+        }
+        let mut k = 0;
+        while k < CAPACITIES.len() {
+            let capacity = CAPACITIES[k];
+            let has_room = longest <= capacity && self.room <= ROWS * capacity;
+            if has_room && dimensions.parameters <= ARGUMENTS * capacity {
+                return match dimensions.parameters <= PARAMETERS {
+                    true => Some(capacity),
+                    false => None,
+                };
+            }
+            k += 1;
+        }
+        None
+    }
+
+    /// The kernels over these numbers, if it has any.
+    #[inline(always)]
+    pub fn kernels<L: Numbers>(&'static self) -> Option<&'static KernelTable<L>> {
+        found(&self.kernels, &self.kernels_over)
+    }
+
+    /// The series over these numbers, if it has any.
+    #[inline(always)]
+    pub fn series<L: Numbers>(&'static self) -> Option<&'static SeriesTable<L>> {
+        found(&self.series, &self.series_over)
+    }
+}
+
+/// What is wanted, if it is the first or among the others.
+#[inline(always)]
+fn found<T: Any>(first: &'static dyn Any, others: &Kinds) -> Option<&'static T> {
+    match first.downcast_ref() {
+        Some(first) => Some(first),
+        None => others.iter().flatten().find_map(|own| own.downcast_ref()),
+    }
+}

@@ -1,0 +1,27 @@
+//! One type of system for all models: a model that is known only at run time, behind pointers.
+//!
+//! [`Form`] is a form of a model as data: its tables and pointers to its kernels. [`Erased`] is the system of a form with values for its
+//! parameters. Driver, integrators, effects and events run it as they run any declared model, and give the same bits; they are compiled
+//! once for all models, at the price of a call through a pointer for each kernel.
+//!
+//! Vectors lie in rooms of a fixed capacity, and know how much of it they use: `Erased<8>` runs every model whose vectors have at most 8
+//! components ([`Form::capacity`]). Nothing is allocated.
+//!
+//! | file | job |
+//! |---|---|
+//! | `bounded.rs` | vectors and rows of a length that is known at run time |
+//! | `form.rs` | a form as data |
+//! | `series.rs` | power series behind pointers |
+//! | `system.rs` | the system of a form |
+//! | `scene.rs` | its effects |
+
+mod bounded;
+mod form;
+mod scene;
+mod series;
+mod system;
+
+pub use bounded::{Bounded, Wide};
+pub use form::{CAPACITIES, DensityOf, Form, Kinds, PARAMETERS, RankDropOf};
+pub use series::{Advance, Begin, Expanded, SeriesTable};
+pub use system::Erased;

@@ -1,0 +1,224 @@
+//! The system of a form with values for its parameters.
+
+use core::fmt;
+
+use super::bounded::{Bounded, Wide};
+use super::form::{ARGUMENTS, Form, GEOMETRY, PARAMETERS, ROWS};
+use crate::contract::{RankDrop, System, Tangent};
+use crate::describe::VariationalVisitor;
+use crate::error::{Fault, StateError};
+use crate::generated::admit;
+use crate::initial::{complete_positions, complete_velocities};
+use crate::kernels::{
+    Declared, Documentation, Documented, HasConstraints, HasDivergence, HasSurfaces, HasVariations,
+    KernelTable, Pointers, Tabled, Tables, nearest_of_declared,
+};
+use crate::numbers::Numbers;
+use crate::state::StateVector;
+
+/// A model that is known only at run time, with values for its parameters; its vectors have at most `C` components.
+#[derive(Clone, Copy)]
+pub struct Erased<const C: usize> {
+    form: &'static Form,
+    values: Bounded<f64, PARAMETERS>,
+}
+
+impl<const C: usize> Erased<C> {
+    /// The model with its declared defaults; a parameter without default is NaN until it is set. `None` where the vectors of the form
+    /// are longer ([`Form::capacity`]).
+    pub fn of(form: &'static Form) -> Option<Self> {
+        if form.capacity()? > C {
+            return None;
+        }
+        let mut values = Bounded::all(form.tables.dimensions.parameters, 0.0);
+        (form.defaults)(values.as_mut());
+        Some(Self { form, values })
+    }
+
+    /// The form.
+    #[inline(always)]
+    pub fn form(&self) -> &'static Form {
+        self.form
+    }
+
+    /// The values of the parameters.
+    #[inline(always)]
+    pub(super) fn values(&self) -> &Bounded<f64, PARAMETERS> {
+        &self.values
+    }
+
+    fn constraints(&self) -> usize {
+        self.form.tables.dimensions.constraints
+    }
+}
+
+impl<const C: usize> PartialEq for Erased<C> {
+    fn eq(&self, other: &Self) -> bool {
+        core::ptr::eq(self.form, other.form) && self.values == other.values
+    }
+}
+
+impl<const C: usize> fmt::Debug for Erased<C> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Erased")
+            .field("form", self.form)
+            .field("values", &self.values)
+            .finish()
+    }
+}
+
+impl Tabled for &'static Form {
+    #[inline(always)]
+    fn table<L: Numbers>(&self) -> Option<&'static KernelTable<L>> {
+        Form::kernels(self)
+    }
+}
+
+impl<const C: usize> Declared for Erased<C> {
+    type State = Bounded<f64, C>;
+    type Vector = Bounded<f64, C>;
+    type Impulse = Bounded<f64, C>;
+    type Gaps = Bounded<f64, C>;
+    type Multipliers = Bounded<f64, C>;
+    type Levels = Bounded<f64, C>;
+    type Positions<L: Numbers> = Bounded<L, C>;
+    type Components<L: Numbers> = Bounded<L, C>;
+    type Arguments<L: Numbers> = Wide<L, C, ARGUMENTS>;
+    type Room<L: Numbers> = Wide<L, C, ROWS>;
+    type Values<'a> = &'a [f64];
+    type Kernels = Pointers<&'static Form>;
+
+    const MAY_BE_NARROW: bool = true;
+
+    #[inline(always)]
+    fn kernels(&self) -> Pointers<&'static Form> {
+        Pointers(self.form)
+    }
+
+    #[inline(always)]
+    fn tables(&self) -> &'static Tables {
+        &self.form.tables
+    }
+
+    #[inline(always)]
+    fn arguments(&self) -> &[f64] {
+        self.values.as_ref()
+    }
+
+    fn rank_drop_along(
+        &self,
+        motion: impl Fn(f64) -> (f64, Bounded<f64, C>),
+        reach: f64,
+    ) -> Option<RankDrop> {
+        let along = |theta: f64, state: &mut [f64]| {
+            let (t, own) = motion(theta);
+            state.copy_from_slice(own.as_ref());
+            t
+        };
+        (self.form.rank_drop?)(self.values.as_ref(), &along, reach)
+    }
+
+    fn admits(
+        &self,
+        t: f64,
+        q: &Bounded<f64, C>,
+        qdot: &Bounded<f64, C>,
+    ) -> Result<(), StateError> {
+        match self.constraints() {
+            0 => Ok(()),
+            _ => admit(self, t, q, qdot),
+        }
+    }
+
+    fn completed_position(
+        &self,
+        t: f64,
+        q: &Bounded<f64, C>,
+        placed: &Bounded<f64, C>,
+    ) -> Result<Bounded<f64, C>, StateError> {
+        match self.form.tables.levels {
+            [] => Ok(*q),
+            _ => complete_positions(self, t, q, placed),
+        }
+    }
+
+    fn completed_velocity(
+        &self,
+        t: f64,
+        q: &Bounded<f64, C>,
+        qdot: &Bounded<f64, C>,
+        named: &Bounded<f64, C>,
+    ) -> Result<Bounded<f64, C>, StateError> {
+        match self.constraints() {
+            0 => Ok(*qdot),
+            _ => complete_velocities(self, t, q, qdot, named),
+        }
+    }
+
+    fn nearest_by_steps(
+        &self,
+        t: f64,
+        q: &Bounded<f64, C>,
+        qdot: &Bounded<f64, C>,
+    ) -> Result<Bounded<f64, C>, Fault> {
+        match self.constraints() {
+            0 => self.state_unchecked(t, q, qdot),
+            _ => nearest_of_declared(self, t, q, qdot),
+        }
+    }
+}
+
+impl<const C: usize> HasConstraints for Erased<C> {}
+
+impl<const C: usize> HasSurfaces for Erased<C> {}
+
+impl<const C: usize> HasDivergence for Erased<C> {}
+
+impl<const C: usize> HasVariations for Erased<C> {
+    type Clearances<L: Numbers> = Bounded<L, C>;
+    type Collision<L: Numbers> = Wide<L, C, 3>;
+    type Deviations<L: Numbers> = Wide<L, C, 2>;
+    type Columns = [Bounded<f64, C>; C];
+    type Tangents = [Tangent<Self>; C];
+
+    fn columns() -> [Bounded<f64, C>; C] {
+        [StateVector::zeros(C); C]
+    }
+
+    fn tangents() -> [Tangent<Self>; C] {
+        [Tangent::zero(); C]
+    }
+}
+
+impl<const C: usize> Documented for Erased<C> {
+    type Geometry = Wide<f64, GEOMETRY, GEOMETRY>;
+    type Global = Self;
+
+    fn documentation(&self) -> &'static Documentation {
+        &self.form.documentation
+    }
+
+    fn globally(&self) -> Self {
+        Self {
+            form: (self.form.global)().unwrap_or(self.form),
+            values: self.values,
+        }
+    }
+
+    fn show_variational<Visitor: VariationalVisitor>(
+        &self,
+        visitor: Visitor,
+    ) -> Option<Visitor::Output> {
+        self.form.tables.varies.then(|| visitor.visit(self))
+    }
+
+    fn set_argument(&mut self, index: usize, value: f64) {
+        if let Some(own) = self.values.as_mut().get_mut(index) {
+            *own = value;
+        }
+    }
+
+    fn integrated_density(&self, t: f64, q: &Bounded<f64, C>) -> Option<Result<f64, Fault>> {
+        (self.form.integrated_density)(self.values.as_ref(), t, q.as_ref())
+    }
+}
