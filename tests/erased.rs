@@ -14,7 +14,7 @@ use dalembert_models::{
 };
 use std::ops::ControlFlow;
 
-/// What is compared of a run.
+/// The parts of a run that are compared.
 #[derive(Debug, PartialEq)]
 struct Course {
     outcome: Outcome,

@@ -105,7 +105,7 @@ pub fn all() -> Vec<dalembert_cli::Entry> {
     ]
 }
 
-/// What the `dalembert` command works on: every shipped model, and the figures of the papers.
+/// The catalogue of the `dalembert` command: every shipped model, and the figures of the papers.
 #[cfg(not(test))]
 pub fn catalogue() -> dalembert_cli::Catalogue {
     dalembert_cli::Catalogue::of(all()).with_figures(figures::all())

@@ -67,7 +67,7 @@ pub(super) fn emit_documented(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// What a form says of itself; the global form says the same as its own but for the geometry.
+/// The self-description of a form. That of a global form differs from that of its model in the geometry only.
 fn emit_documentation(context: &Context<'_>) -> TokenStream {
     let geometry = emit_geometry(context);
     if context.is_wrapped() {

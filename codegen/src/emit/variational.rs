@@ -51,7 +51,7 @@ pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// Whether runs can be varied.
+/// True if runs of the form can be varied.
 pub(super) fn is_variational(context: &Context<'_>) -> bool {
     context.model.extras.variations && !context.is_wrapped()
 }

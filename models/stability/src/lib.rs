@@ -64,7 +64,7 @@ pub fn all() -> Vec<Case> {
     cases
 }
 
-/// What the command works on: every shipped model, the figures of the papers, and the cases.
+/// The catalogue of the command: every shipped model, the figures of the papers, and the cases.
 pub fn catalogue() -> dalembert_cli::Catalogue {
     dalembert_models::catalogue().with_suite(all())
 }

@@ -94,7 +94,7 @@ pub enum Kernel {
     Geometry,
 }
 
-/// How the numbers of a quantity are arranged.
+/// Arrangement of the numbers of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// One number.

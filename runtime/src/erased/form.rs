@@ -112,11 +112,14 @@ impl Form {
     }
 }
 
-/// What is wanted, if it is the first or among the others.
+/// The value of the wanted type, which is the first or among the others.
 #[inline(always)]
 fn found<T: Any>(first: &'static dyn Any, others: &Kinds) -> Option<&'static T> {
     match first.downcast_ref() {
         Some(first) => Some(first),
-        None => others.iter().flatten().find_map(|own| own.downcast_ref()),
+        None => others
+            .iter()
+            .flatten()
+            .find_map(|table| table.downcast_ref()),
     }
 }

@@ -19,7 +19,7 @@ pub struct Quantity {
     pub shape: Shape,
 }
 
-/// What a form says of itself.
+/// The self-description of a form.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Documentation {
     /// Names, docs, topology and the like.
@@ -42,7 +42,7 @@ pub trait Documented: Declared {
     /// As [`Instance::Global`].
     type Global: Instance<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
 
-    /// What it says.
+    /// Its self-description.
     fn documentation(&self) -> &'static Documentation;
 
     /// As [`Instance::global`].
@@ -177,7 +177,8 @@ fn report_geometry<S: Documented>(
     report: &mut dyn Report,
 ) -> Result<(), Fault> {
     let geometry = system.documentation().geometry;
-    let mut values = S::Geometry::zeros(geometry.iter().map(|own| own.shape.count()).sum());
+    let mut values =
+        S::Geometry::zeros(geometry.iter().map(|quantity| quantity.shape.count()).sum());
     let places = [state.as_slice(), &[]];
     write(
         system,

@@ -89,8 +89,8 @@ pub fn velocities_of<M: VariationalMode, L: Numbers, R: Row<L>>(
     t: L,
     state: &[L],
 ) -> Result<R, Fault> {
-    let own = M::of(model).velocities(&beginning(parameters), t, &beginning(state))?;
-    Ok(filled(own.as_slice(), M::COORDINATES, 0.0))
+    let velocities = M::of(model).velocities(&beginning(parameters), t, &beginning(state))?;
+    Ok(filled(velocities.as_slice(), M::COORDINATES, 0.0))
 }
 
 /// As [`Variational::deviations`]: those of the mode, then the components of the state that it does not use and the number
@@ -104,10 +104,10 @@ pub fn deviations_of<M: VariationalMode, L: Numbers, R: Row<L>>(
     t: L,
     state: &[L],
 ) -> Result<R, Fault> {
-    let own = M::of(model).deviations(&beginning(parameters), t, &beginning(state))?;
+    let deviations = M::of(model).deviations(&beginning(parameters), t, &beginning(state))?;
     let unused = &state[M::Row::<L>::CAPACITY..];
     let mut all = R::zeros(R::CAPACITY);
-    let values = own.as_slice().iter().chain(unused);
+    let values = deviations.as_slice().iter().chain(unused);
     for (place, value) in all.as_mut_slice().iter_mut().zip(values) {
         *place = *value;
     }
@@ -140,8 +140,8 @@ pub fn clearances_of<M: VariationalMode, L: Numbers, R: Row<L>>(
     t: L,
     state: &[L],
 ) -> Result<R, Fault> {
-    let own = M::of(model).clearances(&beginning(parameters), t, &beginning(state))?;
-    Ok(filled(own.as_slice(), M::SURFACES, 1.0))
+    let gaps = M::of(model).clearances(&beginning(parameters), t, &beginning(state))?;
+    Ok(filled(gaps.as_slice(), M::SURFACES, 1.0))
 }
 
 /// As [`Variational::collision`].
@@ -156,8 +156,8 @@ pub fn collision_of<M: VariationalMode, L: Numbers, R: Row<L>>(
     state: &[L],
 ) -> Result<R, Fault> {
     let own = super::embed::known_surface::<M>(surface)?;
-    let own = M::of(model).collision(&beginning(parameters), own, t, &beginning(state))?;
-    Ok(beginning(own.as_slice()))
+    let collision = M::of(model).collision(&beginning(parameters), own, t, &beginning(state))?;
+    Ok(beginning(collision.as_slice()))
 }
 
 /// As [`Variational::focus`].

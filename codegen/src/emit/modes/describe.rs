@@ -15,6 +15,23 @@ pub(super) fn emit_described(whole: &Whole<'_>) -> TokenStream {
     let description = emit_description(whole);
     let first = types::first_mode(whole);
     let defaults = parameters::default_fields(whole.model());
+    let instance = emit_instance(whole);
+    quote! {
+        #attributes
+        impl ::dalembert::Described for #own {
+            const DESCRIPTION: ::dalembert::describe::Description = #description;
+
+            fn with_defaults() -> Self { Self { #defaults mode: #first } }
+        }
+
+        #instance
+    }
+}
+
+/// `impl Instance`, where the mode answers.
+fn emit_instance(whole: &Whole<'_>) -> TokenStream {
+    let own = whole.type_name();
+    let attributes = attributes();
     let places = crate::emit::names::places(whole.model(), &quote!(self));
     let access = one::emit_access(&places);
     let variants = emit_choice(whole);
@@ -35,13 +52,6 @@ pub(super) fn emit_described(whole: &Whole<'_>) -> TokenStream {
     );
     let inspect = ask(quote!(inspect), quote!(t, state, report));
     quote! {
-        #attributes
-        impl ::dalembert::Described for #own {
-            const DESCRIPTION: ::dalembert::describe::Description = #description;
-
-            fn with_defaults() -> Self { Self { #defaults mode: #first } }
-        }
-
         #attributes
         impl ::dalembert::describe::Instance for #own {
             type Global = Self;
