@@ -8,9 +8,10 @@ use dalembert::{
     Outcome, Rk4, Scene, Segment, Simulation, StateVector, System, Taylor, TaylorField, Tolerance,
 };
 use dalembert_models::{
-    AppellHamel, BouncingBall, Chain4, ChaplyginSleigh, DoublePendulum, HolonomicBeadOnEllipses,
-    MovingWallDisk, RollingBallEuler, RollingDisk, SpasmodicHamiltonian, SuperElasticStrip,
-    TwoWheelsRod,
+    AppellHamel, BallOnSwitchingTable, BouncingBall, Chain4, ChaplyginSleigh, DoublePendulum,
+    FilippovField, HolonomicBeadOnEllipses, MovingWallDisk, RefractedParticle, RimlessWheelFive,
+    RollingBallEuler, RollingDisk, SmoothAndRoughPlane, SpasmodicHamiltonian, SphereInPlane,
+    SuperElasticStrip, TwoWheelsArrested, TwoWheelsRod,
 };
 use std::ops::ControlFlow;
 
@@ -92,7 +93,7 @@ fn of_form(form: &'static Form) -> Vec<Course> {
     }
     let courses = with_room::<4>(form)
         .or_else(|| with_room::<8>(form))
-        .or_else(|| with_room::<16>(form));
+        .or_else(|| with_room::<32>(form));
     courses.expect("room")
 }
 
@@ -129,20 +130,27 @@ fn a_model_behind_pointers_runs_as_the_model_itself() {
     }
     compare!(
         AppellHamel,
+        BallOnSwitchingTable,
         BouncingBall,
         Chain4,
         ChaplyginSleigh,
         DoublePendulum,
+        FilippovField,
         HolonomicBeadOnEllipses,
         MovingWallDisk,
+        RefractedParticle,
+        RimlessWheelFive,
         RollingBallEuler,
         RollingDisk,
+        SmoothAndRoughPlane,
         SpasmodicHamiltonian,
+        SphereInPlane,
         SuperElasticStrip,
+        TwoWheelsArrested,
         TwoWheelsRod
     );
     RollingDisk::visit_scenes(&mut compared);
-    assert_eq!(compared.0, 12 + RollingDisk::DESCRIPTION.scenes.len() - 1);
+    assert_eq!(compared.0, 19 + RollingDisk::DESCRIPTION.scenes.len() - 1);
 }
 
 #[test]

@@ -48,11 +48,8 @@ impl Visitor for EmittedIsInterpreted {
         let (_, _, programs) = derive(S::DESCRIPTION.source);
         self.0 += compare_motion(&system, &programs.main);
         self.0 += compare_motion(&system.global(), programs.global());
-        let Some(form) = S::FORM else {
-            // A model with modes.
-            return;
-        };
-        let erased = Erased::<64>::of(form).expect("room");
+        let form = S::FORM.expect("a form");
+        let erased = Erased::<32>::of(form).expect("room");
         compare_motion(&erased, &programs.main);
         compare_motion(&erased.global(), programs.global());
         compare_report(&erased.global(), programs.global());

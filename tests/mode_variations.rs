@@ -3,10 +3,11 @@
 use core::ops::ControlFlow;
 
 use dalembert::contract::Variational;
+use dalembert::kernels::{Declared, Form};
 use dalembert::variations::{Orbit, Section, Undefined};
 use dalembert::{
-    Described, Event, Mode, Observer, Scene, SceneEffects, Simulation, StateVector, System,
-    Tangent, Taylor, Tolerance, Variations,
+    Described, Event, Observer, Scene, SceneEffects, Simulation, StateVector, System, Tangent,
+    Taylor, Tolerance, Variations,
 };
 use dalembert_cli::{Exit, models};
 use dalembert_models::{
@@ -283,7 +284,8 @@ fn refraction_has_its_derivative() {
     let point = SphereInPlane::default();
     check_differences(point, declared(&point), 4, 2.0, 2);
     let medium = Medium::default();
-    const { assert!(<medium::Thin as Mode>::CAN_LEAVE_CONSTRAINTS) };
+    let thin = medium.tables().modes[0].tables;
+    assert!(thin.form == Form::Global && thin.dimensions.constraints > 0);
     let start = state(&medium, &[-1.0, 0.5, 0.0], &[1.0, 0.25, 0.25]);
     check_differences(medium, start, 6, 2.0, 1);
 }

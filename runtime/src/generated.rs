@@ -3,10 +3,10 @@
 use nalgebra::SVector;
 
 use crate::assumption::Assumption;
-use crate::contract::{Constrained, System, TaylorField};
+use crate::contract::{Constrained, System};
 use crate::describe::{Instance, Report};
 use crate::error::{Fault, ParameterError, StateError};
-use crate::numbers::{Numbers, Rated, Row};
+use crate::numbers::Numbers;
 use crate::state::StateVector;
 
 /// A constraint residual up to this share of the sum of the absolute values of its terms counts as satisfied
@@ -160,24 +160,6 @@ pub fn independent_at(surface: usize, squared: f64, reference: f64) -> Result<()
     }
 }
 
-/// Every parameter against its declaration.
-///
-/// # Errors
-/// The first that contradicts it.
-pub fn check_parameters<S: Instance>(system: &S) -> Result<(), ParameterError> {
-    for (index, parameter) in system.description().parameters.iter().enumerate() {
-        let value = system.parameter(index);
-        if !parameter.assumption.holds(value) {
-            return Err(ParameterError {
-                name: parameter.name,
-                value,
-                expected: parameter.assumption,
-            });
-        }
-    }
-    Ok(())
-}
-
 /// A declared coefficient of restitution against \[0, 1\]. A caller who wants a surface that adds energy sets its
 /// law at run time.
 ///
@@ -313,34 +295,6 @@ pub mod arguments {
 pub trait OverNumbers {
     /// The gap of one surface; arguments as those of [`Impacting::gap_along`](crate::Impacting::gap_along).
     fn gap_over<L: Numbers>(&self, surface: usize, t: L, component: &dyn Fn(usize) -> L) -> L;
-}
-
-/// Rates along a stretch of motion, by what the power series of a system begin with.
-///
-/// # Errors
-/// That of the series.
-pub fn rates_along<F: TaylorField>(
-    field: &F,
-    t: Rated,
-    component: &dyn Fn(usize) -> Rated,
-    rate: &mut dyn FnMut(usize, Rated),
-) -> Result<(), Fault> {
-    let values = field.parameters();
-    let mut parameters = F::Parameters::<Rated>::zeros(values.as_slice().len());
-    for (parameter, value) in parameters.as_mut_slice().iter_mut().zip(values.as_slice()) {
-        *parameter = Rated::of(*value);
-    }
-    let mut state = F::Row::<Rated>::zeros(field.state_len());
-    for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
-        *entry = component(i);
-    }
-    let mut firsts = F::Firsts::<Rated>::zeros(field.firsts_len());
-    field.begin(&parameters, t, &state, &mut firsts)?;
-    let rates = &firsts.as_slice()[..field.state_len()];
-    for (i, own) in rates.iter().enumerate() {
-        rate(i, *own);
-    }
-    Ok(())
 }
 
 /// Conditions of surfaces over intervals: true, false, or not certain.

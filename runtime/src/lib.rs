@@ -172,7 +172,6 @@ pub use integrate::{
     Taylor, Tolerance, ToleranceError,
 };
 pub use law::{Blow, Contact, Jump, Landing, Law};
-pub use modes::Mode;
 pub use outcome::{Outcome, StartError};
 pub use policy::{Corner, Penetration, Policies, Rest};
 pub use projection::Projection;
@@ -192,7 +191,7 @@ pub mod __private {
     pub use crate::generated::*;
     pub use crate::initial::{complete_positions, complete_velocities};
     pub use crate::kernels::nearest_of_declared;
-    pub use crate::kernels::{enter, number, pair, write};
+    pub use crate::kernels::{number, write};
     pub use crate::math;
     pub use crate::modes;
     pub use crate::nearest::nearest_by_steps;

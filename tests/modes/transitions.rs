@@ -1,7 +1,9 @@
 //! Transitions one by one: what they keep, what they take, what they do not depend on, and how they end a run.
 
 use dalembert::policy::{Policies, Split};
-use dalembert::{Dop853, Impacting, Outcome, Scene, SceneEffects, Simulation, System, Tolerance};
+use dalembert::{
+    Dop853, EventLog, Impacting, Outcome, Scene, SceneEffects, Simulation, System, Tolerance,
+};
 use dalembert_models::refracted_particle::refracted_particle;
 use dalembert_models::smooth_and_rough_plane::smooth_and_rough_plane;
 use dalembert_models::{RefractedParticle, SmoothAndRoughPlane};
@@ -55,6 +57,41 @@ fn a_mode_by_itself_ends_at_a_transition() {
         .expect("a start");
     assert_eq!(run.outcome, Outcome::LeftMode { surface: 0 });
     close(run.t, 1.0, 1e-12, "time");
+}
+
+dalembert::model! {
+    /// A point that is lifted by 0.3 into the upper half, with one round wall about both.
+    Walled {
+        coordinates { x; y; }
+        modes {
+            lower {
+                lagrangian = (dot(x)^2 + dot(y)^2)/2;
+                impacts { wall: 2 - sqrt(x^2 + y^2) >= 0; }
+            }
+            upper {
+                lagrangian = (dot(x)^2 + dot(y)^2)/2;
+                impacts { wall: 2 - sqrt(x^2 + y^2) >= 0; }
+            }
+        }
+        transitions { lifted: lower -> upper when y >= 0 => reset { y = y + 0.3; }; }
+    }
+}
+
+/// A surface that several modes have is met in each of them: at y = 0.3 + (t - 1), x = t/2, the wall is reached where their squares add up
+/// to 4.
+#[test]
+fn a_surface_of_several_modes_is_met_in_each() {
+    let point = Walled::default();
+    let state = point.state(0.0, &[0.0, -1.0].into(), &[0.5, 1.0].into());
+    let stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
+    let mut impacts = EventLog::<_, 4>::new();
+    Simulation::new(&point, stepper, point.effects())
+        .run(0.0, state.expect("a state"), 4.0, &mut impacts)
+        .expect("a start");
+    let times: Vec<f64> = impacts.iter().map(|event| event.t).collect();
+    let met = (0.7 + (0.49_f64 + 1.25 * 3.51).sqrt()) / 1.25;
+    close(times[0], 1.0, 1e-12, "transition");
+    close(times[1], met, 1e-12, "wall");
 }
 
 dalembert::model! {

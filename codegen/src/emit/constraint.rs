@@ -22,7 +22,7 @@ pub(super) fn emit_levels(context: &Context<'_>) -> TokenStream {
 }
 
 /// The nearest velocities by Newton's steps.
-fn emit_nearest() -> TokenStream {
+pub(super) fn emit_nearest() -> TokenStream {
     quote! {
         fn nearest_by_steps(
             &self,
@@ -35,30 +35,23 @@ fn emit_nearest() -> TokenStream {
     }
 }
 
-/// What a form with constraints answers where others accept every state.
-pub(super) fn emit_hooks(context: &Context<'_>) -> TokenStream {
-    let Some(functions) = &context.program.constrained else {
-        return TokenStream::new();
-    };
-    let drop = functions.can_lose_rank.then(|| emit_rank_drop(context));
-    let positions = functions.level_scales.is_some().then(|| {
-        quote! {
-            fn completed_position(
-                &self,
-                t: f64,
-                q: &Self::Vector,
-                placed: &Self::Vector,
-            ) -> ::core::result::Result<Self::Vector, ::dalembert::StateError> {
-                ::dalembert::__private::complete_positions(self, t, q, placed)
-            }
-        }
-    });
-    let nearest = context.model.is_nonlinear().then(emit_nearest);
+/// The positions by the equations of positions among the constraints.
+pub(super) fn emit_positions() -> TokenStream {
     quote! {
-        #drop
-        #positions
-        #nearest
+        fn completed_position(
+            &self,
+            t: f64,
+            q: &Self::Vector,
+            placed: &Self::Vector,
+        ) -> ::core::result::Result<Self::Vector, ::dalembert::StateError> {
+            ::dalembert::__private::complete_positions(self, t, q, placed)
+        }
+    }
+}
 
+/// The velocities that constraints admit, and those that they choose.
+pub(super) fn emit_velocities() -> TokenStream {
+    quote! {
         fn admits(
             &self,
             t: f64,
@@ -78,6 +71,18 @@ pub(super) fn emit_hooks(context: &Context<'_>) -> TokenStream {
             ::dalembert::__private::complete_velocities(self, t, q, qdot, named)
         }
     }
+}
+
+/// What a form with constraints answers where others accept every state.
+pub(super) fn emit_hooks(context: &Context<'_>) -> TokenStream {
+    let Some(functions) = &context.program.constrained else {
+        return TokenStream::new();
+    };
+    let drop = functions.can_lose_rank.then(|| emit_rank_drop(context));
+    let positions = functions.level_scales.is_some().then(emit_positions);
+    let nearest = context.model.is_nonlinear().then(emit_nearest);
+    let velocities = emit_velocities();
+    quote!(#drop #positions #nearest #velocities)
 }
 
 /// `rank_drop` of a system whose forms may become dependent.

@@ -73,13 +73,14 @@ fn emit_parts(context: &Context<'_>) -> TokenStream {
     quote!(#(impl ::dalembert::kernels::#parts for #type_name {})*)
 }
 
-fn levels(context: &Context<'_>) -> usize {
+/// Levels of constraints.
+pub(super) fn levels(context: &Context<'_>) -> usize {
     let constrained = context.program.constrained.as_ref();
     constrained.map_or(0, |own| own.levels.outputs.len())
 }
 
 /// Places for the values of every kernel that gives several things at once.
-fn room(context: &Context<'_>) -> usize {
+pub(super) fn room(context: &Context<'_>) -> usize {
     let kernels = context.program.kernels().into_iter();
     let several = kernels.filter(|(kernel, _)| {
         matches!(
@@ -112,7 +113,7 @@ pub(super) fn emit_tables(context: &Context<'_>) -> TokenStream {
     };
     let (n, k) = (context.dimension(), context.motion_dimension());
     let (m, s) = (model.constraints.len(), model.surfaces.len());
-    let (count, levels) = (context.names.parameters.len(), levels(context));
+    let (count, levels, size) = (context.names.parameters.len(), levels(context), n + k);
     let charts = model.coordinates.iter().enumerate();
     let charts = charts.filter_map(|(i, coordinate)| {
         let Topology::Interval { low, high } = coordinate.topology else {
@@ -134,6 +135,7 @@ pub(super) fn emit_tables(context: &Context<'_>) -> TokenStream {
     let declared_levels = super::constraint::emit_levels(context);
     let dimensions = quote! {
         ::dalembert::kernels::Dimensions {
+            state: #size,
             coordinates: #n,
             motion: #k,
             constraints: #m,
@@ -171,6 +173,7 @@ pub(super) fn emit_tables(context: &Context<'_>) -> TokenStream {
             conserves_energy: #conserves_energy,
             is_linear: #is_linear,
             surfaces: &[#(#surfaces),*],
+            modes: &[],
         }
     }
 }

@@ -284,27 +284,8 @@ pub(super) fn emit_view_info(model: &Model, places: &[usize]) -> TokenStream {
     }
 }
 
-/// `parameter` and `set_parameter`, of parameters at these places.
-pub(super) fn emit_access(places: &[TokenStream]) -> TokenStream {
-    let get = places
-        .iter()
-        .enumerate()
-        .map(|(k, place)| quote!(#k => #place,));
-    let set = emit_set(places);
-    quote! {
-        fn parameter(&self, index: usize) -> f64 {
-            match index {
-                #(#get)*
-                _ => ::core::f64::NAN,
-            }
-        }
-
-        fn set_parameter(&mut self, index: usize, value: f64) { #set }
-    }
-}
-
 /// The statement that sets one of the parameters at these places.
-fn emit_set(places: &[TokenStream]) -> TokenStream {
+pub(super) fn emit_set(places: &[TokenStream]) -> TokenStream {
     let set = places
         .iter()
         .enumerate()

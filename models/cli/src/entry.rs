@@ -70,9 +70,7 @@ fn erased(form: &'static Form) -> Box<dyn AnyModel> {
     }
     let system = with_room::<4>(form)
         .or_else(|| with_room::<8>(form))
-        .or_else(|| with_room::<16>(form))
-        .or_else(|| with_room::<32>(form))
-        .or_else(|| with_room::<64>(form));
+        .or_else(|| with_room::<32>(form));
     system.expect("a form that there is a capacity for")
 }
 

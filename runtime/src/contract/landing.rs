@@ -7,7 +7,7 @@ use crate::outcome::Outcome;
 use crate::state::StateVector;
 
 /// The state after the reset of a surface: in its chart, and on the constraints.
-pub(super) fn after_reset<Sys: Impacting + ?Sized>(
+pub(crate) fn after_reset<Sys: Impacting + ?Sized>(
     system: &Sys,
     surface: usize,
     t: f64,

@@ -248,15 +248,7 @@ pub trait System: VectorField {
         state: &Self::State,
         keep: Keep,
     ) -> Result<Self::State, StateError> {
-        let q = from.position(state);
-        match keep {
-            Keep::Velocities => self.state(t, &q, &from.velocity(t, state)?),
-            Keep::Momenta => {
-                let carried = self.state_from_momenta(t, &q, &from.momentum(t, state)?)?;
-                self.state(t, &q, &self.velocity(t, &carried)?)?;
-                Ok(carried)
-            }
-        }
+        carried(self, from, t, state, keep)
     }
 
     /// The state after every check but that of the constraints.
@@ -279,6 +271,25 @@ pub trait System: VectorField {
             return Err(StateError::OutsideChart { coordinate });
         }
         Ok(state)
+    }
+}
+
+/// As [`System::carried`], of a system that makes states in the mode of this one.
+pub(crate) fn carried<S: System + ?Sized>(
+    system: &S,
+    from: &S,
+    t: f64,
+    state: &S::State,
+    keep: Keep,
+) -> Result<S::State, StateError> {
+    let q = from.position(state);
+    match keep {
+        Keep::Velocities => system.state(t, &q, &from.velocity(t, state)?),
+        Keep::Momenta => {
+            let carried = system.state_from_momenta(t, &q, &from.momentum(t, state)?)?;
+            system.state(t, &q, &system.velocity(t, &carried)?)?;
+            Ok(carried)
+        }
     }
 }
 

@@ -20,6 +20,24 @@ pub(super) const fn of<S: Emitted>() -> Option<&'static Form> {
     }
 }
 
+/// The form of the type of a mode, with what transitions take besides, and rates over intervals if those of some mode may be `NARROW`.
+pub const fn of_mode<S: Emitted, const NARROW: bool>() -> &'static Form {
+    &OfMode::<S, NARROW>::FORM
+}
+
+/// The form of the type of a mode.
+struct OfMode<S, const NARROW: bool>(PhantomData<S>);
+
+impl<S: Emitted, const NARROW: bool> OfMode<S, NARROW> {
+    const FORM: Form = Form {
+        kernels_over: Of::<S>::kernels_over(
+            NARROW,
+            &Of::<S>::kernels::<Dual>(KernelSet::OF_TRANSITIONS),
+        ),
+        ..Of::<S>::FORM
+    };
+}
+
 /// Functions of the form of a type, over slices.
 struct Of<S>(PhantomData<S>);
 
@@ -28,12 +46,19 @@ impl<S: Emitted> Of<S> {
         tables: S::TABLES,
         documentation: S::DOCUMENTATION,
         kernels: Self::kernels(KernelSet::ALL),
-        kernels_over: Self::KERNELS_OVER,
-        series: Self::series(),
+        kernels_over: Self::kernels_over(
+            S::TABLES.can_be_narrow,
+            &Self::kernels::<Dual>(KernelSet::OF_VARIATIONS),
+        ),
+        series: match S::HAS_MODES {
+            true => SeriesTable::NONE,
+            false => Self::series(),
+        },
         series_over: Self::SERIES_OVER,
         work: || S::declared().work(),
         defaults: Self::write_defaults,
         global: || <S::Global as Described>::FORM,
+        forms: S::FORMS,
         rank_drop: match S::TABLES.can_lose_rank {
             true => Some(Self::rank_drop),
             false => None,
@@ -44,32 +69,37 @@ impl<S: Emitted> Of<S> {
         room: <S::Room<f64> as Row<f64>>::CAPACITY,
     };
 
-    const KERNELS_OVER: Kinds = [
-        match S::TABLES.surfaces {
-            [] => None,
-            _ => Some(&Self::kernels::<TaylorModel>(KernelSet::OF_GAPS)),
-        },
-        match S::TABLES.surfaces {
-            [] => None,
-            _ => Some(&Self::kernels::<Bent>(KernelSet::OF_GAPS)),
-        },
-        match S::TABLES.can_be_narrow {
-            false => None,
-            true => Some(&Self::kernels::<Rated>(KernelSet::OF_RATES)),
-        },
-        match S::TABLES.varies {
-            false => None,
-            true => Some(&Self::kernels::<Dual>(KernelSet::OF_VARIATIONS)),
-        },
-    ];
+    const fn kernels_over(is_narrow: bool, of_variations: &'static KernelTable<Dual>) -> Kinds {
+        [
+            match S::TABLES.surfaces {
+                [] => None,
+                _ => Some(const { &Self::kernels::<TaylorModel>(KernelSet::OF_GAPS) }),
+            },
+            match S::TABLES.surfaces {
+                [] => None,
+                _ => Some(const { &Self::kernels::<Bent>(KernelSet::OF_GAPS) }),
+            },
+            match is_narrow {
+                false => None,
+                true => Some(const { &Self::kernels::<Rated>(KernelSet::OF_RATES) }),
+            },
+            match S::TABLES.varies {
+                false => None,
+                true => Some(of_variations),
+            },
+        ]
+    }
 
     const SERIES_OVER: Kinds = [
-        match S::TABLES.varies {
+        match S::TABLES.varies && !S::HAS_MODES {
             false => None,
             true => Some(&Self::series::<Dual>()),
         },
         #[cfg(feature = "lanes")]
-        Some(&Self::series::<wide::f64x8>()),
+        match S::HAS_MODES {
+            true => None,
+            false => Some(&Self::series::<wide::f64x8>()),
+        },
         #[cfg(not(feature = "lanes"))]
         None,
         None,

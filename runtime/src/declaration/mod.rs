@@ -2,6 +2,8 @@
 
 mod form;
 
+pub use form::of_mode;
+
 use crate::contract::{Lagrangian, TaylorField};
 use crate::describe::{Description, Instance};
 use crate::effects::Scene;
@@ -46,6 +48,9 @@ pub trait Emitted: Documented<Kernels: Given, Global: Described> + TaylorField {
 
     /// What it says of itself.
     const DOCUMENTATION: Documentation;
+
+    /// Of a model with modes, the forms of the modes and their global forms ([`Form::forms`]).
+    const FORMS: &'static [&'static Form] = &[];
 
     /// As [`Described::with_defaults`].
     fn declared() -> Self;

@@ -11,7 +11,7 @@ use crate::kernels::{Documentation, KernelTable, Tables};
 use crate::numbers::Numbers;
 
 /// The capacities that there are systems of.
-pub const CAPACITIES: [usize; 5] = [4, 8, 16, 32, 64];
+pub const CAPACITIES: [usize; 3] = [4, 8, 32];
 
 /// Most parameters of an erased system, inputs among them.
 pub const PARAMETERS: usize = 64;
@@ -54,6 +54,9 @@ pub struct Form {
     pub defaults: fn(&mut [f64]),
     /// The global form.
     pub global: fn() -> Option<&'static Form>,
+    /// Of a model with modes, their forms and their global forms, in the order of its kernels
+    /// ([`Mode::kernels`](crate::kernels::Mode::kernels)).
+    pub forms: &'static [&'static Form],
     /// Whether constraint forms become dependent, where they may.
     pub rank_drop: Option<RankDropOf>,
     /// The logarithm of the density of the invariant volume, where it takes an integral.
@@ -76,7 +79,7 @@ impl Form {
     pub const fn capacity(&self) -> Option<usize> {
         let dimensions = &self.tables.dimensions;
         let n = dimensions.coordinates;
-        let lengths = [n + dimensions.motion, 2 * n, dimensions.surfaces];
+        let lengths = [dimensions.state, 2 * n, dimensions.surfaces];
         let (mut longest, mut k) = (0, 0);
         while k < lengths.len() {
             if lengths[k] > longest {

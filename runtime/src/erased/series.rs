@@ -1,11 +1,14 @@
 //! Power series behind pointers.
 
 use super::bounded::{Bounded, Wide};
-use super::form::PARAMETERS;
+use super::form::{Form, PARAMETERS};
 use super::system::Erased;
 use crate::contract::{TaylorField, VectorField};
 use crate::error::Fault;
 use crate::jet::{LENGTH, Work};
+use crate::kernels::{Mode, Tables};
+use crate::modes::Lengths;
+use crate::modes::series::{self, Expansion};
 use crate::numbers::{Numbers, Row};
 
 /// Writes what a series begins with at parameters, a time and a state: the rates, then the gaps.
@@ -26,6 +29,73 @@ pub struct SeriesTable<L: Numbers> {
     pub advance: Advance<L>,
 }
 
+impl<L: Numbers> SeriesTable<L> {
+    /// No series.
+    pub const NONE: Self = Self {
+        begin: |_, _, _, _| Err(Fault::NotDerived),
+        advance: |_, _, _, _, _| {},
+    };
+}
+
+impl<const C: usize> Erased<C> {
+    /// Lengths of the rows of a model with modes.
+    fn lengths(&self) -> Lengths {
+        Lengths {
+            state: self.state_len(),
+            gaps: self.series_gap_count(),
+        }
+    }
+
+    /// The modes by number, and the form of each.
+    fn forms(&self) -> impl Iterator<Item = ((usize, &'static Mode), &'static Form)> {
+        let form = self.form();
+        let modes = form.tables.modes.iter().enumerate();
+        modes.filter_map(|(number, mode)| Some(((number, mode), *form.forms.get(mode.kernels)?)))
+    }
+}
+
+/// Rates, gaps, and the time that they are of.
+fn known_of(tables: &Tables) -> usize {
+    tables.dimensions.state + tables.dimensions.surfaces + 1
+}
+
+/// Begins the series of a form.
+fn begin<L: Numbers>(
+    form: &'static Form,
+    parameters: &[L],
+    t: L,
+    state: &[L],
+    firsts: &mut [L],
+) -> Result<(), Fault> {
+    let series = form.series::<L>().ok_or(Fault::NotDerived)?;
+    let [own @ .., time] = firsts else {
+        return Err(Fault::NotDerived);
+    };
+    *time = t;
+    (series.begin)(parameters, t, state, own)
+}
+
+/// Writes the series of a form.
+fn advance<L: Numbers, const C: usize>(
+    form: &'static Form,
+    parameters: &[L],
+    (unit, order): (L, usize),
+    firsts: &[L],
+    coefficients: &mut [Bounded<L, C>; LENGTH],
+    gaps: &mut [Bounded<L, C>; LENGTH],
+) {
+    let (Some(series), Some(&t)) = (form.series::<L>(), firsts.last()) else {
+        // Nothing begins such a series.
+        return;
+    };
+    let state = coefficients[0];
+    let mut take = |k: usize, of_state: &[L], of_gaps: &[L]| {
+        coefficients[k].as_mut_slice().copy_from_slice(of_state);
+        gaps[k].as_mut_slice().copy_from_slice(of_gaps);
+    };
+    (series.advance)(parameters, t, state.as_slice(), (unit, order), &mut take);
+}
+
 impl<const C: usize> TaylorField for Erased<C> {
     type Parameters<L: Numbers> = Bounded<L, PARAMETERS>;
     type Row<L: Numbers> = Bounded<L, C>;
@@ -43,10 +113,9 @@ impl<const C: usize> TaylorField for Erased<C> {
         self.form().tables.dimensions.surfaces
     }
 
-    /// Rates, gaps, and the time that they are of.
     #[inline(always)]
     fn firsts_len(&self) -> usize {
-        self.state_len() + self.series_gap_count() + 1
+        known_of(&self.form().tables)
     }
 
     fn parameters(&self) -> Bounded<f64, PARAMETERS> {
@@ -60,12 +129,25 @@ impl<const C: usize> TaylorField for Erased<C> {
         state: &Bounded<L, C>,
         firsts: &mut Wide<L, C, 3>,
     ) -> Result<(), Fault> {
-        let series = self.form().series::<L>().ok_or(Fault::NotDerived)?;
-        let [own @ .., time] = firsts.as_mut_slice() else {
-            return Err(Fault::NotDerived);
-        };
-        *time = t;
-        (series.begin)(parameters.as_slice(), t, state.as_slice(), own)
+        let (parameters, state) = (parameters.as_slice(), state.as_slice());
+        let firsts = firsts.as_mut_slice();
+        if self.form().tables.modes.is_empty() {
+            return begin(self.form(), parameters, t, state, firsts);
+        }
+        for (mode, form) in self.forms() {
+            let known = known_of(mode.1.tables);
+            series::begin::<L, Bounded<L, PARAMETERS>, Bounded<L, C>, Wide<L, C, 3>>(
+                (mode, known),
+                self.lengths(),
+                (parameters, t, state),
+                firsts,
+                |parameters, t, state, own| {
+                    let own = &mut own.as_mut_slice()[..known];
+                    begin(form, parameters.as_slice(), t, state.as_slice(), own)
+                },
+            )?;
+        }
+        Ok(())
     }
 
     fn advance<L: Numbers>(
@@ -78,21 +160,30 @@ impl<const C: usize> TaylorField for Erased<C> {
         gaps: &mut [Bounded<L, C>; LENGTH],
         (): &mut (),
     ) {
-        let (Some(series), Some(&t)) = (self.form().series::<L>(), firsts.as_slice().last()) else {
-            // Nothing begins such a series.
-            return;
+        let (parameters, firsts) = (parameters.as_slice(), firsts.as_slice());
+        let to = (unit, order);
+        if self.form().tables.modes.is_empty() {
+            return advance(self.form(), parameters, to, firsts, coefficients, gaps);
+        }
+        let expansion = Expansion {
+            lengths: self.lengths(),
+            parameters,
+            unit,
+            order,
+            firsts,
         };
-        let state = coefficients[0];
-        let mut take = |k: usize, of_state: &[L], of_gaps: &[L]| {
-            coefficients[k].as_mut_slice().copy_from_slice(of_state);
-            gaps[k].as_mut_slice().copy_from_slice(of_gaps);
-        };
-        (series.advance)(
-            parameters.as_slice(),
-            t,
-            state.as_slice(),
-            (unit, order),
-            &mut take,
-        );
+        for (mode, form) in self.forms() {
+            let known = known_of(mode.1.tables);
+            series::advance::<L, Bounded<L, PARAMETERS>, Wide<L, C, 3>, _, _, _, _>(
+                (mode, known),
+                expansion,
+                (coefficients, gaps),
+                |parameters, unit, firsts, own, own_gaps| {
+                    let firsts = &firsts.as_slice()[..known];
+                    let parameters = parameters.as_slice();
+                    advance::<L, C>(form, parameters, (unit, order), firsts, own, own_gaps);
+                },
+            );
+        }
     }
 }

@@ -5,13 +5,13 @@ use core::fmt;
 use super::bounded::{Bounded, Wide};
 use super::form::{ARGUMENTS, Form, GEOMETRY, PARAMETERS, ROWS};
 use crate::contract::{RankDrop, System, Tangent};
-use crate::describe::VariationalVisitor;
+use crate::describe::{Instance, Report, VariationalVisitor};
 use crate::error::{Fault, StateError};
 use crate::generated::admit;
 use crate::initial::{complete_positions, complete_velocities};
 use crate::kernels::{
     Declared, Documentation, Documented, HasConstraints, HasDivergence, HasSurfaces, HasVariations,
-    KernelTable, Pointers, Tabled, Tables, nearest_of_declared,
+    KernelTable, Part, Pointers, Tabled, Tables, nearest_of_declared,
 };
 use crate::numbers::Numbers;
 use crate::state::StateVector;
@@ -21,6 +21,8 @@ use crate::state::StateVector;
 pub struct Erased<const C: usize> {
     form: &'static Form,
     values: Bounded<f64, PARAMETERS>,
+    /// The mode that states are made in.
+    mode: usize,
 }
 
 impl<const C: usize> Erased<C> {
@@ -32,7 +34,11 @@ impl<const C: usize> Erased<C> {
         }
         let mut values = Bounded::all(form.tables.dimensions.parameters, 0.0);
         (form.defaults)(values.as_mut());
-        Some(Self { form, values })
+        Some(Self {
+            form,
+            values,
+            mode: 0,
+        })
     }
 
     /// The form.
@@ -47,14 +53,27 @@ impl<const C: usize> Erased<C> {
         &self.values
     }
 
+    /// The constraints of the form; of a model with modes, those of the mode that states are made in.
     fn constraints(&self) -> usize {
-        self.form.tables.dimensions.constraints
+        Part::start(self).tables.dimensions.constraints
+    }
+
+    /// A mode by itself.
+    fn of_mode(&self, number: usize) -> Option<Self> {
+        let mode = self.form.tables.modes.get(number)?;
+        Some(Self {
+            form: self.form.forms.get(mode.kernels)?,
+            values: self.values,
+            mode: 0,
+        })
     }
 }
 
 impl<const C: usize> PartialEq for Erased<C> {
     fn eq(&self, other: &Self) -> bool {
-        core::ptr::eq(self.form, other.form) && self.values == other.values
+        core::ptr::eq(self.form, other.form)
+            && self.values == other.values
+            && self.mode == other.mode
     }
 }
 
@@ -63,6 +82,7 @@ impl<const C: usize> fmt::Debug for Erased<C> {
         f.debug_struct("Erased")
             .field("form", self.form)
             .field("values", &self.values)
+            .field("mode", &self.mode)
             .finish()
     }
 }
@@ -90,9 +110,25 @@ impl<const C: usize> Declared for Erased<C> {
 
     const MAY_BE_NARROW: bool = true;
 
+    const HAS_MODES: bool = true;
+
     #[inline(always)]
     fn kernels(&self) -> Pointers<&'static Form> {
         Pointers(self.form)
+    }
+
+    #[inline(always)]
+    fn kernels_at(&self, place: usize) -> Pointers<&'static Form> {
+        Pointers(self.form.forms.get(place).copied().unwrap_or(self.form))
+    }
+
+    #[inline(always)]
+    fn start(&self) -> usize {
+        self.mode
+    }
+
+    fn starting_in(&self, mode: usize) -> Self {
+        Self { mode, ..*self }
     }
 
     #[inline(always)]
@@ -112,10 +148,18 @@ impl<const C: usize> Declared for Erased<C> {
     ) -> Option<RankDrop> {
         let along = |theta: f64, state: &mut [f64]| {
             let (t, own) = motion(theta);
-            state.copy_from_slice(own.as_ref());
+            state.copy_from_slice(&own.as_ref()[..state.len()]);
             t
         };
-        (self.form.rank_drop?)(self.values.as_ref(), &along, reach)
+        let values = self.values.as_ref();
+        if self.form.tables.modes.is_empty() {
+            return (self.form.rank_drop?)(values, &along, reach);
+        }
+        let (_, state) = motion(0.0);
+        let part = Part::of(self, state.as_ref());
+        let mode = self.of_mode(part.number())?;
+        let drop = (mode.form.rank_drop?)(values, &along, reach)?;
+        Some(part.rank_drop(drop))
     }
 
     fn admits(
@@ -136,7 +180,7 @@ impl<const C: usize> Declared for Erased<C> {
         q: &Bounded<f64, C>,
         placed: &Bounded<f64, C>,
     ) -> Result<Bounded<f64, C>, StateError> {
-        match self.form.tables.levels {
+        match Part::start(self).tables.levels {
             [] => Ok(*q),
             _ => complete_positions(self, t, q, placed),
         }
@@ -201,7 +245,7 @@ impl<const C: usize> Documented for Erased<C> {
     fn globally(&self) -> Self {
         Self {
             form: (self.form.global)().unwrap_or(self.form),
-            values: self.values,
+            ..*self
         }
     }
 
@@ -210,6 +254,24 @@ impl<const C: usize> Documented for Erased<C> {
         visitor: Visitor,
     ) -> Option<Visitor::Output> {
         self.form.tables.varies.then(|| visitor.visit(self))
+    }
+
+    fn set_start(&mut self, mode: usize) {
+        if mode < self.form.tables.modes.len() {
+            self.mode = mode;
+        }
+    }
+
+    fn inspect_mode(
+        &self,
+        mode: usize,
+        t: f64,
+        state: &[f64],
+        report: &mut dyn Report,
+    ) -> Result<(), Fault> {
+        let own = self.of_mode(mode).ok_or(Fault::NotDerived)?;
+        let state = Bounded::of(&state[..own.form.tables.dimensions.state]);
+        own.inspect(t, &state, report)
     }
 
     fn set_argument(&mut self, index: usize, value: f64) {

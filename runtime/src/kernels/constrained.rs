@@ -1,7 +1,6 @@
-//! `Constrained` of every declared model with constraints.
+//! `Constrained` of every declared model with constraints; of one with modes, of the mode that states are made in.
 
-use super::declared::{several, vector, write};
-use super::{Declared, Form, HasConstraints, Kernels};
+use super::{At, Declared, Form, HasConstraints, Kernels, Part};
 use crate::contract::{Constrained, Level, System};
 use crate::error::Fault;
 use crate::numbers::Row;
@@ -11,17 +10,30 @@ use crate::state::StateVector;
 fn write_forms<S: Declared>(
     system: &S,
     t: f64,
-    places: [&[f64]; 2],
+    [q, qdot]: [&S::Vector; 2],
     forms: &mut [f64],
     affine: &mut S::Multipliers,
 ) {
-    let (n, m) = (system.coordinate_count(), affine.count());
+    let part = Part::start(system);
+    let (all, [n, _]) = (system.coordinate_count(), part.lengths());
+    let m = part.tables.dimensions.constraints;
     let kernel = (S::Kernels::forms, n * m + m);
+    let [q, qdot] = [part.gathered(q), part.gathered(qdot)];
     // Forms have no guards.
-    if let Ok(both) = several(system, kernel, t, places) {
-        let (own, rest) = both.as_slice()[..n * m + m].split_at(n * m);
+    let Ok(both) = part.several(kernel, t, [q.as_slice(), qdot.as_slice()]) else {
+        return;
+    };
+    let (own, rest) = both.as_slice()[..n * m + m].split_at(n * m);
+    affine.as_mut_slice()[..m].copy_from_slice(rest);
+    if part.mode().is_none() {
         forms.copy_from_slice(own);
-        affine.as_mut_slice().copy_from_slice(rest);
+        return;
+    }
+    forms.fill(0.0);
+    for (row, own) in forms.chunks_exact_mut(all).zip(own.chunks_exact(n)) {
+        for (i, entry) in own.iter().enumerate() {
+            row[part.coordinate(i)] = *entry;
+        }
     }
 }
 
@@ -31,18 +43,20 @@ impl<S: Declared + HasConstraints> Constrained for S {
 
     #[inline(always)]
     fn constraint_count(&self) -> usize {
-        self.tables().dimensions.constraints
+        Part::start(self).tables.dimensions.constraints
     }
 
     #[inline(always)]
     fn level_count(&self) -> usize {
-        self.tables().dimensions.levels
+        Part::start(self).tables.dimensions.levels
     }
 
     #[inline]
     fn multipliers(&self, t: f64, state: &S::State) -> Result<S::Multipliers, Fault> {
-        let kernel = (S::Kernels::multipliers, self.constraint_count());
-        vector(self, kernel, t, [state.as_slice(), &[]])
+        let part = Part::of(self, state.as_slice());
+        let m = part.tables.dimensions.constraints;
+        let kernel = (S::Kernels::multipliers, [m; 2]);
+        part.vector(kernel, t, [state.as_slice(), &[]])
     }
 
     #[inline]
@@ -52,16 +66,18 @@ impl<S: Declared + HasConstraints> Constrained for S {
         q: &S::Vector,
         qdot: &S::Vector,
     ) -> (S::Multipliers, S::Multipliers) {
-        let m = self.constraint_count();
+        let part = Part::start(self);
+        let m = part.tables.dimensions.constraints;
+        let (mut residuals, mut scales) = (self.zero_multipliers(), self.zero_multipliers());
+        let [q, qdot] = [part.gathered(q), part.gathered(qdot)];
         let kernel = (S::Kernels::residuals, 2 * m);
         // Residuals have no guards.
-        match several(self, kernel, t, [q.as_slice(), qdot.as_slice()]) {
-            Ok(both) => {
-                let (values, scales) = both.as_slice()[..2 * m].split_at(m);
-                (S::Multipliers::of(values), S::Multipliers::of(scales))
-            }
-            Err(_) => (self.zero_multipliers(), self.zero_multipliers()),
+        if let Ok(both) = part.several(kernel, t, [q.as_slice(), qdot.as_slice()]) {
+            let (values, sizes) = both.as_slice()[..2 * m].split_at(m);
+            residuals.as_mut_slice()[..m].copy_from_slice(values);
+            scales.as_mut_slice()[..m].copy_from_slice(sizes);
         }
+        (residuals, scales)
     }
 
     fn constraint_forms(
@@ -71,13 +87,12 @@ impl<S: Declared + HasConstraints> Constrained for S {
         forms: &mut [f64],
         affine: &mut S::Multipliers,
     ) {
-        let rest = q.zeroed();
-        write_forms(self, t, [q.as_slice(), rest.as_slice()], forms, affine);
+        write_forms(self, t, [q, &q.zeroed()], forms, affine);
     }
 
     #[inline(always)]
     fn is_linear(&self) -> bool {
-        self.tables().is_linear
+        Part::start(self).tables.is_linear
     }
 
     fn linearised_forms(
@@ -88,28 +103,24 @@ impl<S: Declared + HasConstraints> Constrained for S {
         forms: &mut [f64],
         affine: &mut S::Multipliers,
     ) {
-        write_forms(self, t, [q.as_slice(), qdot.as_slice()], forms, affine);
+        write_forms(self, t, [q, qdot], forms, affine);
     }
 
     #[inline(always)]
     fn is_reduced(&self) -> bool {
-        self.tables().form == Form::Reduced
+        Part::start(self).tables.form == Form::Reduced
     }
 
     #[inline]
     fn restore(&self, t: f64, state: &mut S::State) -> Result<(), Fault> {
-        if self.tables().form == Form::Reduced {
+        let before = *state;
+        let part = Part::of(self, before.as_slice());
+        if part.tables.form == Form::Reduced || part.tables.dimensions.constraints == 0 {
             return Ok(());
         }
-        let before = *state;
-        let motion = &mut state.as_mut_slice()[self.coordinate_count()..];
-        let restored = write(
-            self,
-            S::Kernels::restore,
-            t,
-            [before.as_slice(), &[]],
-            motion,
-        );
+        let [n, k] = part.lengths();
+        let motion = &mut state.as_mut_slice()[n..n + k];
+        let restored = part.write(S::Kernels::restore, t, [before.as_slice(), &[]], motion);
         if restored.is_err() {
             *state = before;
         }
@@ -118,23 +129,20 @@ impl<S: Declared + HasConstraints> Constrained for S {
 
     #[inline(always)]
     fn declared_levels(&self) -> &'static [Level] {
-        self.tables().levels
+        Part::start(self).tables.levels
     }
 
     fn level_scales(&self, t: f64, q: &S::Vector) -> S::Levels {
-        if self.tables().levels.is_empty() {
+        let part = Part::start(self);
+        if part.tables.levels.is_empty() {
             return self.zero_levels();
         }
-        let kernel = (S::Kernels::level_scales, self.level_count());
-        let scales = vector(self, kernel, t, [q.as_slice(), &[]]);
-        scales.unwrap_or_else(|_| self.zero_levels())
+        levels_by(&part, S::Kernels::level_scales, t, q)
     }
 
     #[inline]
     fn levels(&self, t: f64, q: &S::Vector) -> S::Levels {
-        let kernel = (S::Kernels::levels, self.level_count());
-        let levels = vector(self, kernel, t, [q.as_slice(), &[]]);
-        levels.unwrap_or_else(|_| self.zero_levels())
+        levels_by(&Part::start(self), S::Kernels::levels, t, q)
     }
 
     fn level_correction(
@@ -143,7 +151,23 @@ impl<S: Declared + HasConstraints> Constrained for S {
         q: &S::Vector,
         excess: &S::Levels,
     ) -> Result<S::Vector, Fault> {
-        let kernel = (S::Kernels::level_correction, self.coordinate_count());
-        vector(self, kernel, t, [q.as_slice(), excess.as_slice()])
+        let part = Part::start(self);
+        let q = part.gathered(q);
+        let places = [q.as_slice(), excess.as_slice()];
+        part.coordinates(S::Kernels::level_correction, t, places)
     }
+}
+
+/// One number per level by a kernel of positions.
+#[inline(always)]
+fn levels_by<S: Declared>(
+    part: &Part<'_, S>,
+    kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
+    t: f64,
+    q: &S::Vector,
+) -> S::Levels {
+    let count = part.tables.dimensions.levels;
+    let q = part.gathered(q);
+    let levels = part.vector((kernel, [count; 2]), t, [q.as_slice(), &[]]);
+    levels.unwrap_or_else(|_| StateVector::zeros(count))
 }

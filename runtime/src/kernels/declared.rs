@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use super::{At, Kernels, Tables};
+use super::{At, Kernels, Part, Tables};
 use crate::contract::{RankDrop, System};
 use crate::error::{Fault, StateError};
 use crate::numbers::{Numbers, Row};
@@ -38,8 +38,31 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// Whether rates may have narrow features ([`Tables::can_be_narrow`]), of some system of this type.
     const MAY_BE_NARROW: bool;
 
-    /// The kernels.
+    /// Whether some system of this type has modes.
+    const HAS_MODES: bool = false;
+
+    /// The kernels. Of a model with modes, none: its modes have them.
     fn kernels(&self) -> Self::Kernels;
+
+    /// Those at a place among the kernels of the modes and of their global forms ([`Mode::kernels`](super::Mode::kernels)).
+    #[inline(always)]
+    fn kernels_at(&self, place: usize) -> Self::Kernels {
+        let _ = place;
+        self.kernels()
+    }
+
+    /// The mode that states are made in; 0 without modes.
+    #[inline(always)]
+    fn start(&self) -> usize {
+        0
+    }
+
+    /// The system with another mode that states are made in.
+    #[inline(always)]
+    fn starting_in(&self, mode: usize) -> Self {
+        let _ = mode;
+        *self
+    }
 
     /// What is known besides.
     fn tables(&self) -> &'static Tables;
@@ -106,33 +129,10 @@ pub fn write<S: Declared>(
     system: &S,
     kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
     t: f64,
-    [first, second]: [&[f64]; 2],
+    places: [&[f64]; 2],
     values: &mut [f64],
 ) -> Result<(), Fault> {
-    let arguments = system.arguments();
-    let at = At {
-        parameters: arguments.as_ref(),
-        t,
-        first,
-        second,
-    };
-    kernel(&system.kernels(), at, values)
-}
-
-/// The values of a kernel as a vector of this length.
-#[inline(always)]
-pub(super) fn vector<S: Declared, V: StateVector>(
-    system: &S,
-    (kernel, count): (
-        impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
-        usize,
-    ),
-    t: f64,
-    places: [&[f64]; 2],
-) -> Result<V, Fault> {
-    let mut values = V::zeros(count);
-    write(system, kernel, t, places, values.as_mut_slice())?;
-    Ok(values)
+    Part::start(system).write(kernel, t, places, values)
 }
 
 /// The only value of a kernel.
@@ -146,39 +146,5 @@ pub fn number<S: Declared>(
     t: f64,
     places: [&[f64]; 2],
 ) -> Result<f64, Fault> {
-    let mut value = [0.0];
-    write(system, kernel, t, places, &mut value)?;
-    Ok(value[0])
-}
-
-/// The values of a kernel that gives several things at once.
-#[inline(always)]
-pub(super) fn several<S: Declared>(
-    system: &S,
-    (kernel, count): (
-        impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
-        usize,
-    ),
-    t: f64,
-    places: [&[f64]; 2],
-) -> Result<S::Room<f64>, Fault> {
-    let mut room = S::Room::<f64>::zeros(count);
-    write(system, kernel, t, places, &mut room.as_mut_slice()[..count])?;
-    Ok(room)
-}
-
-/// Two vectors that a kernel gives: positions and velocities.
-///
-/// # Errors
-/// As [`Kernels`](super::Kernels).
-pub fn pair<S: Declared>(
-    system: &S,
-    kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
-    t: f64,
-    places: [&[f64]; 2],
-) -> Result<[S::Vector; 2], Fault> {
-    let n = system.coordinate_count();
-    let both = several(system, (kernel, 2 * n), t, places)?;
-    let (first, second) = both.as_slice()[..2 * n].split_at(n);
-    Ok([S::Vector::of(first), S::Vector::of(second)])
+    Part::start(system).number_by(kernel, t, places)
 }

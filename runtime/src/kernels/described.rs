@@ -1,7 +1,7 @@
 //! `Instance` of every declared model.
 
-use super::declared::{number, pair, write};
-use super::{Declared, Form, Kernels, Shape};
+use super::part::has_modes;
+use super::{Declared, Form, Kernels, Part, Shape};
 use crate::contract::System;
 use crate::describe::{Description, Initial, Instance, Report, VariationalVisitor};
 use crate::effects::Scene;
@@ -51,6 +51,23 @@ pub trait Documented: Declared {
     /// As [`Instance::set_parameter`].
     fn set_argument(&mut self, index: usize, value: f64);
 
+    /// As [`Instance::set_mode`].
+    fn set_start(&mut self, mode: usize) {
+        let _ = mode;
+    }
+
+    /// As [`Instance::inspect`], of a model with modes: what a mode by itself reports.
+    fn inspect_mode(
+        &self,
+        mode: usize,
+        t: f64,
+        state: &[f64],
+        report: &mut dyn Report,
+    ) -> Result<(), Fault> {
+        let _ = (mode, t, state, report);
+        Ok(())
+    }
+
     /// The logarithm of the density of the invariant volume, where it takes an integral.
     fn integrated_density(&self, t: f64, q: &Self::Vector) -> Option<Result<f64, Fault>> {
         let _ = (t, q);
@@ -99,15 +116,30 @@ impl<S: Documented> Instance for S {
         self.set_argument(index, value);
     }
 
+    fn set_mode(&mut self, mode: usize) {
+        self.set_start(mode);
+    }
+
     fn initial(&self) -> Initial<S::Vector> {
-        let declared = pair(self, S::Kernels::initial, 0.0, [&[], &[]]);
+        let part = Part::start(self);
+        let declared = part.pair(S::Kernels::initial, 0.0, [&[], &[]]);
         let [q, qdot] = declared.unwrap_or([self.zero_vector(); 2]);
+        let documentation = part
+            .mode()
+            .map_or(self.documentation(), |mode| mode.documentation);
+        let [placed, named] = [documentation.placed, documentation.named].map(|own| {
+            let mut marks = self.zero_vector();
+            for (mark, &is_declared) in marks.as_mut_slice().iter_mut().zip(own) {
+                *mark = f64::from(u8::from(is_declared));
+            }
+            part.spread(marks)
+        });
         Initial {
             q,
             qdot,
-            placed: marks(self.documentation().placed),
-            named: marks(self.documentation().named),
-            until: number(self, S::Kernels::until, 0.0, [&[], &[]]).ok(),
+            placed,
+            named,
+            until: part.number_by(S::Kernels::until, 0.0, [&[], &[]]).ok(),
         }
     }
 
@@ -115,22 +147,45 @@ impl<S: Documented> Instance for S {
         if values.is_empty() {
             return Ok(());
         }
+        let part = Part::of(self, state.as_slice());
         let places = [state.as_slice(), &[]];
-        write(self, S::Kernels::outputs, t, places, values)
+        let Some(mode) = part.mode() else {
+            return part.write(S::Kernels::outputs, t, places, values);
+        };
+        values.fill(f64::NAN);
+        let count = mode.outputs.len();
+        if count == 0 {
+            return Ok(());
+        }
+        let own = part.several((S::Kernels::outputs, count), t, places)?;
+        for (&place, own) in mode.outputs.iter().zip(own.as_slice()) {
+            if let Some(value) = values.get_mut(place) {
+                *value = *own;
+            }
+        }
+        Ok(())
     }
 
     fn view_path(&self, t: f64, state: &S::State) -> Option<[f64; 2]> {
         let mut point = [0.0; 2];
+        let part = Part::of(self, state.as_slice());
         let places = [state.as_slice(), &[]];
-        write(self, S::Kernels::view_path, t, places, &mut point).ok()?;
+        part.write(S::Kernels::view_path, t, places, &mut point)
+            .ok()?;
         Some(point)
     }
 
     fn view_region(&self, t: f64, q: &S::Vector) -> Option<f64> {
-        number(self, S::Kernels::view_region, t, [q.as_slice(), &[]]).ok()
+        let part = Part::start(self);
+        let q = part.gathered(q);
+        part.number_by(S::Kernels::view_region, t, [q.as_slice(), &[]])
+            .ok()
     }
 
     fn inspect(&self, t: f64, state: &S::State, report: &mut dyn Report) -> Result<(), Fault> {
+        if has_modes(self) {
+            return self.inspect_mode(self.mode(state), t, state.as_slice(), report);
+        }
         if self.tables().form == Form::Reduced {
             inspect_globally(self, t, state, report)?;
             return self.inspect_frame(t, state, report);
@@ -154,19 +209,10 @@ impl<S: Documented> Instance for S {
         report: &mut dyn Report,
     ) -> Result<(), Fault> {
         match self.tables().form {
-            Form::Reduced => report_geometry(self, t, state, report),
-            Form::Global | Form::FirstOrder => Ok(()),
+            Form::Reduced if !has_modes(self) => report_geometry(self, t, state, report),
+            _ => Ok(()),
         }
     }
-}
-
-/// 1 where there is a mark, 0 where there is none.
-fn marks<V: StateVector>(marks: &[bool]) -> V {
-    let mut values = V::zeros(marks.len());
-    for (value, &mark) in values.as_mut_slice().iter_mut().zip(marks) {
-        *value = f64::from(u8::from(mark));
-    }
-    values
 }
 
 /// Reports every quantity of [`Kernel::Geometry`](super::Kernel::Geometry).
@@ -180,13 +226,7 @@ fn report_geometry<S: Documented>(
     let mut values =
         S::Geometry::zeros(geometry.iter().map(|quantity| quantity.shape.count()).sum());
     let places = [state.as_slice(), &[]];
-    write(
-        system,
-        S::Kernels::geometry,
-        t,
-        places,
-        values.as_mut_slice(),
-    )?;
+    Part::start(system).write(S::Kernels::geometry, t, places, values.as_mut_slice())?;
     let mut rest = values.as_slice();
     for Quantity { name, shape } in geometry {
         let (own, others) = rest.split_at(shape.count());

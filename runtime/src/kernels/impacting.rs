@@ -1,14 +1,16 @@
 //! `Impacting` of every declared model with surfaces.
 
-use super::declared::{number, pair, several, vector, write};
-use super::system::over_numbers;
+use super::part::{has_modes, number_of};
+use super::passage::passage;
+use super::system::{coefficient, over_numbers};
 use super::tables::{Beside, Condition, Surface, Tables};
-use super::{At, Declared, Form, HasSurfaces, Kernels};
-use crate::contract::{Impacting, System};
+use super::{At, Declared, Form, HasSurfaces, Kernels, Part};
+use crate::contract::{Impacting, System, VectorField, after_reset};
 use crate::error::Fault;
 use crate::generated::{OverNumbers, certain};
-use crate::law::{Blow, Contact, Jump, Law};
+use crate::law::{Blow, Contact, Jump, Landing, Law};
 use crate::numbers::{Bent, Interval, Numbers, Row, TaylorModel};
+use crate::outcome::Outcome;
 use crate::state::StateVector;
 
 /// The bit of a coordinate; all from the last one on share it.
@@ -23,19 +25,26 @@ impl<S: Declared + HasSurfaces> OverNumbers for S {
     }
 }
 
-/// A gap over any kind of number, from those coordinates that it takes.
+/// A gap over any kind of number, from those coordinates that it takes. That of a surface which the mode does not have is never met.
 fn gap_over<S: Declared, L: Numbers>(
     system: &S,
     surface: usize,
     t: L,
     component: &dyn Fn(usize) -> L,
 ) -> L {
-    let Some(own) = system.tables().surfaces.get(surface) else {
+    let number = match has_modes(system) {
+        true => number_of(Some(&component(system.state_len() - 1))),
+        false => 0,
+    };
+    let part = Part::numbered(system, number);
+    let own = part.surface(surface);
+    let Some((own, declared)) = own.and_then(|own| Some((own, part.tables.surfaces.get(own)?)))
+    else {
         return L::of(1.0);
     };
-    let mut q = S::Positions::<L>::zeros(system.coordinate_count());
+    let mut q = S::Positions::<L>::zeros(part.lengths()[0]);
     for (i, entry) in q.as_mut_slice().iter_mut().enumerate() {
-        if own.takes & place(i) != 0 {
+        if declared.takes & place(i) != 0 {
             *entry = component(i);
         }
     }
@@ -48,7 +57,7 @@ fn gap_over<S: Declared, L: Numbers>(
     };
     let mut gap = [L::ZERO];
     // Gaps have no guards.
-    let _ = system.kernels().gap(surface, at, &mut gap);
+    let _ = part.kernels.gap(own, at, &mut gap);
     gap[0]
 }
 
@@ -63,10 +72,10 @@ fn hold<'m>(conditions: &[Condition], margins: &'m [f64]) -> (bool, &'m [f64]) {
     (all, rest)
 }
 
-/// Whether the conditions of a surface hold, and those of some other list.
+/// Whether the conditions of a surface of a part hold, and those of some other list.
 fn conditions<S: Declared>(
-    system: &S,
-    (index, surface): (usize, &Surface),
+    part: &Part<'_, S>,
+    (own, surface): (usize, &Surface),
     t: f64,
     state: &S::State,
 ) -> [bool; 2] {
@@ -77,12 +86,12 @@ fn conditions<S: Declared>(
     }
     let kernel = (
         |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-            kernels.conditions(index, at, values)
+            kernels.conditions(own, at, values)
         },
         count,
     );
     // Conditions have no guards.
-    let Ok(margins) = several(system, kernel, t, [state.as_slice(), &[]]) else {
+    let Ok(margins) = part.several(kernel, t, [state.as_slice(), &[]]) else {
         return [false; 2];
     };
     let (holds, mut rest) = hold(surface.conditions, &margins.as_slice()[..count]);
@@ -95,14 +104,18 @@ fn conditions<S: Declared>(
     [holds, other]
 }
 
-/// Whether a surface counts.
+/// Whether a surface counts; none counts that the mode does not have.
 #[inline]
 pub(super) fn counts<S: Declared>(system: &S, surface: usize, t: f64, state: &S::State) -> bool {
-    let Some(own) = system.tables().surfaces.get(surface) else {
+    let part = Part::of(system, state.as_slice());
+    let Some(own) = part.surface(surface) else {
+        return false;
+    };
+    let Some(declared) = part.tables.surfaces.get(own) else {
         return true;
     };
-    let [holds, other] = conditions(system, (surface, own), t, state);
-    match own.beside {
+    let [holds, other] = conditions(&part, (own, declared), t, state);
+    match declared.beside {
         Beside::Independent => holds,
         Beside::Otherwise => !other,
         Beside::Last => holds || !other,
@@ -117,7 +130,11 @@ pub(super) fn counts_throughout<S: Declared>(
     t: Interval,
     state: &[Interval],
 ) -> Option<bool> {
-    let Some(own) = system.tables().surfaces.get(surface) else {
+    let part = Part::of(system, state);
+    let Some(surface) = part.surface(surface) else {
+        return Some(false);
+    };
+    let Some(own) = part.tables.surfaces.get(surface) else {
         return Some(true);
     };
     let lists = || core::iter::once(own.conditions).chain(own.others.iter().copied());
@@ -133,7 +150,7 @@ pub(super) fn counts_throughout<S: Declared>(
     };
     let mut margins = S::Room::<Interval>::zeros(count);
     let margins = &mut margins.as_mut_slice()[..count];
-    system.kernels().conditions(surface, at, margins).ok()?;
+    part.kernels.conditions(surface, at, margins).ok()?;
     let mut rest = &margins[..];
     let mut holds = lists().map(|list| {
         let (own, behind) = rest.split_at(list.len());
@@ -152,6 +169,37 @@ pub(super) fn counts_throughout<S: Declared>(
     }
 }
 
+impl<S: Declared> Part<'_, S> {
+    /// The values of a kernel, one per surface of the model; 0 for those that the part does not have.
+    #[inline(always)]
+    fn per_surface(
+        &self,
+        kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
+        t: f64,
+        places: [&[f64]; 2],
+        surfaces: usize,
+    ) -> Result<S::Gaps, Fault> {
+        let count = self.tables.dimensions.surfaces;
+        if count == 0 {
+            return Ok(S::Gaps::zeros(surfaces));
+        }
+        let values = self.vector((kernel, [surfaces, count]), t, places)?;
+        Ok(self.of_surfaces(values, 0.0))
+    }
+
+    /// Values of a kernel, one per momentum or quasi-velocity of the part, as an impulse.
+    #[inline(always)]
+    fn impulse(
+        &self,
+        kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
+        t: f64,
+        places: [&[f64]; 2],
+        length: usize,
+    ) -> Result<S::Impulse, Fault> {
+        self.vector((kernel, [length, self.lengths()[1]]), t, places)
+    }
+}
+
 impl<S: Declared + HasSurfaces> Impacting for S {
     type Gaps = S::Gaps;
 
@@ -162,16 +210,12 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     #[inline]
     fn gaps(&self, t: f64, state: &S::State) -> S::Gaps {
+        let part = Part::of(self, state.as_slice());
         let mut gaps = self.zero_gaps();
+        let own = &mut gaps.as_mut_slice()[..part.tables.dimensions.surfaces];
         // Gaps have no guards.
-        let _ = write(
-            self,
-            S::Kernels::gaps,
-            t,
-            [state.as_slice(), &[]],
-            gaps.as_mut_slice(),
-        );
-        gaps
+        let _ = part.write(S::Kernels::gaps, t, [state.as_slice(), &[]], own);
+        part.of_surfaces(gaps, 1.0)
     }
 
     fn gap_along(
@@ -189,8 +233,9 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     #[inline]
     fn gap_rates(&self, t: f64, state: &S::State) -> Result<S::Gaps, Fault> {
-        let kernel = (S::Kernels::gap_rates, self.surface_count());
-        vector(self, kernel, t, [state.as_slice(), &[]])
+        let part = Part::of(self, state.as_slice());
+        let places = [state.as_slice(), &[]];
+        part.per_surface(S::Kernels::gap_rates, t, places, self.surface_count())
     }
 
     fn gap_accelerations(
@@ -199,11 +244,14 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         state: &S::State,
         motion: &S::Impulse,
     ) -> Result<Option<S::Gaps>, Fault> {
-        if self.tables().form == Form::FirstOrder {
+        let part = Part::of(self, state.as_slice());
+        if part.tables.form == Form::FirstOrder || part.tables.dimensions.surfaces == 0 {
             return Ok(None);
         }
-        let kernel = (S::Kernels::gap_accelerations, self.surface_count());
-        vector(self, kernel, t, [state.as_slice(), motion.as_slice()]).map(Some)
+        let places = [state.as_slice(), motion.as_slice()];
+        let kernel = S::Kernels::gap_accelerations;
+        let rates = part.per_surface(kernel, t, places, self.surface_count());
+        rates.map(Some)
     }
 
     fn gap_responses(
@@ -212,11 +260,14 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         state: &S::State,
         motion: &S::Impulse,
     ) -> Result<Option<S::Gaps>, Fault> {
-        if self.tables().form == Form::FirstOrder {
+        let part = Part::of(self, state.as_slice());
+        if part.tables.form == Form::FirstOrder || part.tables.dimensions.surfaces == 0 {
             return Ok(None);
         }
-        let kernel = (S::Kernels::gap_responses, self.surface_count());
-        vector(self, kernel, t, [state.as_slice(), motion.as_slice()]).map(Some)
+        let places = [state.as_slice(), motion.as_slice()];
+        let kernel = S::Kernels::gap_responses;
+        let changes = part.per_surface(kernel, t, places, self.surface_count());
+        changes.map(Some)
     }
 
     #[inline]
@@ -226,9 +277,13 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     #[inline]
     fn takes(&self, surface: usize, t: f64, state: &S::State) -> bool {
-        match self.tables().surfaces.get(surface) {
-            Some(own) if own.beside == Beside::Last => {
-                conditions(self, (surface, own), t, state)[0]
+        let part = Part::of(self, state.as_slice());
+        let Some(own) = part.surface(surface) else {
+            return true;
+        };
+        match part.tables.surfaces.get(own) {
+            Some(declared) if declared.beside == Beside::Last => {
+                conditions(&part, (own, declared), t, state)[0]
             }
             _ => true,
         }
@@ -239,17 +294,27 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         let Some(own) = self.tables().surfaces.get(surface) else {
             return Law::Elastic;
         };
-        let coefficient = || {
-            let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-                kernels.coefficient(surface, at, values)
-            };
-            number(self, kernel, 0.0, [&[], &[]]).unwrap_or(f64::NAN)
-        };
         match own.law {
-            Law::Restitution(_) => Law::Restitution(coefficient()),
-            Law::Newton(_) => Law::Newton(coefficient()),
+            Law::Restitution(_) => Law::Restitution(coefficient(self, surface)),
+            Law::Newton(_) => Law::Newton(coefficient(self, surface)),
             law => law,
         }
+    }
+
+    #[inline]
+    fn is_passable(&self, surface: usize) -> bool {
+        let is_reset =
+            || self.tables().surfaces.get(surface).map(|own| own.law) == Some(Law::Reset);
+        let has_no_side = || {
+            let (part, _) = Part::of_surface(self, surface)?;
+            part.transition(surface).map(|(_, own)| own.has_no_side)
+        };
+        is_reset() || has_modes(self) && has_no_side() == Some(true)
+    }
+
+    fn opposite(&self, surface: usize) -> Option<usize> {
+        let (part, _) = Part::of_surface(self, surface)?;
+        part.transition(surface)?.1.opposite
     }
 
     fn reset(
@@ -258,14 +323,15 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         t: f64,
         state: &S::State,
     ) -> Result<Option<Jump<S::Vector>>, Fault> {
-        if !matches!(self.tables().surfaces.get(surface), Some(own) if own.law == Law::Reset) {
+        let part = Part::of(self, state.as_slice());
+        let own = part.known(surface)?;
+        if !matches!(part.tables.surfaces.get(own), Some(own) if own.law == Law::Reset) {
             return Ok(None);
         }
         let places = [state.as_slice(), &[][..]];
-        let [position, velocity] = pair(
-            self,
+        let [position, velocity] = part.pair(
             |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-                kernels.reset(surface, at, values)
+                kernels.reset(own, at, values)
             },
             t,
             places,
@@ -274,13 +340,12 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     }
 
     fn focus(&self, surface: usize, t: f64, state: &S::State) -> Result<Option<S::Impulse>, Fault> {
-        let kernel = (
-            |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-                kernels.focus(surface, at, values)
-            },
-            self.impulse_len(),
-        );
-        known(vector(self, kernel, t, [state.as_slice(), &[]]))
+        let part = Part::of(self, state.as_slice());
+        let own = part.known(surface)?;
+        let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+            kernels.focus(own, at, values)
+        };
+        known(part.impulse(kernel, t, [state.as_slice(), &[]], self.impulse_len()))
     }
 
     fn trace(
@@ -290,39 +355,53 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         state: &S::State,
         motion: &S::Impulse,
     ) -> Result<Option<S::Impulse>, Fault> {
-        let kernel = (
-            |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-                kernels.trace(surface, at, values)
-            },
-            self.impulse_len(),
-        );
-        known(vector(
-            self,
-            kernel,
-            t,
-            [state.as_slice(), motion.as_slice()],
-        ))
+        let part = Part::of(self, state.as_slice());
+        let own = part.known(surface)?;
+        let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+            kernels.trace(own, at, values)
+        };
+        let places = [state.as_slice(), motion.as_slice()];
+        known(part.impulse(kernel, t, places, self.impulse_len()))
+    }
+
+    fn landing(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &S::State,
+    ) -> Result<Landing<S::State>, Outcome> {
+        let part = Part::of(self, state.as_slice());
+        match part.transition(surface) {
+            Some((own, transition)) => passage(self, (surface, own, transition), t, state),
+            None => {
+                let here = part.starting_here();
+                after_reset(&here, surface, t, state).map(Landing::from)
+            }
+        }
     }
 
     #[inline]
     fn blow(&self, surface: usize, t: f64, state: &S::State) -> Result<Blow<S::Impulse>, Fault> {
-        let count = 2 + self.impulse_len();
+        let part = Part::of(self, state.as_slice());
+        let own = part.known(surface)?;
+        let count = 2 + part.lengths()[1];
         let kernel = (
             |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-                kernels.blow(surface, at, values)
+                kernels.blow(own, at, values)
             },
             count,
         );
         let places = [state.as_slice(), &[][..]];
-        let all = several(self, kernel, t, places)
-            .map_err(|fault| no_impulse(self.tables(), fault, surface))?;
+        let all = part
+            .several(kernel, t, places)
+            .map_err(|fault| no_impulse(part.tables, fault, surface))?;
         let [size, share, direction @ ..] = &all.as_slice()[..count] else {
             return Err(Fault::SingularSurface { surface });
         };
         Ok(Blow {
             size: *size,
             share: *share,
-            direction: S::Impulse::of(direction),
+            direction: filled(self.zero_impulse(), direction),
         })
     }
 
@@ -333,16 +412,19 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         t: f64,
         state: &S::State,
     ) -> Result<Contact<S::Impulse>, Fault> {
-        let count = 5 + self.impulse_len();
+        let part = Part::of(self, state.as_slice());
+        let own = part.known(surface)?;
+        let count = 5 + part.lengths()[1];
         let kernel = (
             |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-                kernels.contact(surface, at, values)
+                kernels.contact(own, at, values)
             },
             count,
         );
         let places = [state.as_slice(), &[][..]];
-        let all = several(self, kernel, t, places)
-            .map_err(|fault| no_impulse(self.tables(), fault, surface))?;
+        let all = part
+            .several(kernel, t, places)
+            .map_err(|fault| no_impulse(part.tables, fault, surface))?;
         let [
             gap_rate,
             constrained_rate,
@@ -360,9 +442,16 @@ impl<S: Declared + HasSurfaces> Impacting for S {
             surface_rate: *surface_rate,
             constrained_compliance: *constrained_compliance,
             free_compliance: *free_compliance,
-            direction: S::Impulse::of(direction),
+            direction: filled(self.zero_impulse(), direction),
         })
     }
+}
+
+/// A vector with these components at its beginning.
+#[inline(always)]
+fn filled<V: StateVector>(mut vector: V, components: &[f64]) -> V {
+    vector.as_mut_slice()[..components.len()].copy_from_slice(components);
+    vector
 }
 
 /// Nothing for a kernel that a surface does not have.

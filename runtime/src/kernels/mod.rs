@@ -4,14 +4,20 @@
 //! |---|---|
 //! | `tables.rs` | what is known of a form besides its kernels: sizes, laws, conditions, charts |
 //! | `declared.rs` | a model with values for its parameters: kernels, tables and the types of its vectors |
+//! | `part.rs` | the part that answers: the model, or the mode of a state |
+//! | `passage.rs` | the state that a mode is entered with |
+//! | `choice.rs` | the kernels of several modes |
 //! | `pointers.rs` | kernels behind pointers, of a form that is known only at run time |
 //! | `system.rs`, `constrained.rs`, `impacting.rs`, .. | the traits of `contract`, of every declared model |
 //! | `described.rs` | names, declared values and inspection |
 
+mod choice;
 mod constrained;
 mod declared;
 mod described;
 mod impacting;
+mod part;
+mod passage;
 mod pointers;
 mod system;
 mod tables;
@@ -20,13 +26,14 @@ mod variational;
 use crate::contract::{Tangent, TaylorField};
 use crate::error::Fault;
 use crate::numbers::{Numbers, Row};
+pub use choice::{Choice, Chosen};
 pub use dalembert_numbers::kernel::{First, Kernel, Second, Shape};
-pub use declared::{Declared, number, pair, write};
+pub use declared::{Declared, number, write};
 pub use described::{Documentation, Documented, Quantity};
+pub use part::{Mode, Part, Passage, Transition};
 pub use pointers::{Pointers, Tabled};
 pub use system::nearest_of_declared;
 pub use tables::{Beside, Chart, Condition, Dimensions, Form, Surface, Tables};
-pub use variational::{energy_over, enter, enter_over, nearest_over};
 
 /// What a kernel reads.
 #[derive(Debug, Clone, Copy)]
@@ -235,6 +242,42 @@ macro_rules! kernels {
                     },)*
                 }
             }
+        }
+
+        impl<A: Given, B: Chosen> Kernels for Choice<A, B> {
+            type Base = NoKernels;
+
+            const BASE: NoKernels = NoKernels;
+
+            const OWN: KernelSet = KernelSet::NONE;
+
+            $(
+                #[inline]
+                fn $plain<L: Numbers>(
+                    &self,
+                    at: At<'_, L>,
+                    values: &mut [L],
+                ) -> Result<(), Fault> {
+                    match self.others() {
+                        None => A::GIVEN.$plain(at, values),
+                        Some(others) => others.$plain(at, values),
+                    }
+                }
+            )*
+            $(
+                #[inline]
+                fn $of_surface<L: Numbers>(
+                    &self,
+                    surface: usize,
+                    at: At<'_, L>,
+                    values: &mut [L],
+                ) -> Result<(), Fault> {
+                    match self.others() {
+                        None => A::GIVEN.$of_surface(surface, at, values),
+                        Some(others) => others.$of_surface(surface, at, values),
+                    }
+                }
+            )*
         }
 
         impl<T: Tabled> Kernels for Pointers<T> {

@@ -32,4 +32,7 @@ impl KernelSet {
         .focus()
         .trace()
         .reset();
+
+    /// What variations take of a mode.
+    pub const OF_TRANSITIONS: Self = Self::OF_VARIATIONS.nearest().energy().entry();
 }

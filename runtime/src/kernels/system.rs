@@ -1,8 +1,8 @@
 //! `VectorField`, `System`, `Lagrangian` and `Divergence` of every declared model.
 
-use super::declared::{number, several, vector, write};
-use super::{At, Declared, Form, HasConstraints, HasDivergence, Kernels};
-use crate::contract::{Divergence, Lagrangian, RankDrop, System, VectorField};
+use super::part::has_modes;
+use super::{At, Declared, Form, HasConstraints, HasDivergence, Kernels, Part};
+use crate::contract::{Divergence, Keep, Lagrangian, RankDrop, System, VectorField, carried};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::generated::check_coefficient;
 use crate::nearest::nearest_by_steps;
@@ -14,22 +14,31 @@ impl<S: Declared> VectorField for S {
 
     #[inline(always)]
     fn state_len(&self) -> usize {
-        let dimensions = &self.tables().dimensions;
-        dimensions.coordinates + dimensions.motion
+        self.tables().dimensions.state
     }
 
     #[inline]
     fn rate(&self, t: f64, state: &S::State, rate: &mut S::State) -> Result<(), Fault> {
         let places = [state.as_slice(), &[]];
-        write(self, S::Kernels::rate, t, places, rate.as_mut_slice())
+        let part = Part::of(self, places[0]);
+        let (own, others) = rate
+            .as_mut_slice()
+            .split_at_mut(part.tables.dimensions.state);
+        others.fill(0.0);
+        part.write(S::Kernels::rate, t, places, own)
     }
 
     #[inline]
     fn scale(&self, t: f64, state: &S::State) -> S::State {
         let mut scale = state.zeroed();
         let places = [state.as_slice(), &[]];
+        let part = Part::of(self, places[0]);
+        let (own, others) = scale
+            .as_mut_slice()
+            .split_at_mut(part.tables.dimensions.state);
+        others.fill(1.0);
         // Units have no guards.
-        let _ = write(self, S::Kernels::scale, t, places, scale.as_mut_slice());
+        let _ = part.write(S::Kernels::scale, t, places, own);
         scale
     }
 
@@ -54,13 +63,15 @@ impl<S: Declared> VectorField for S {
         }
         let mut rates = state.zeroed();
         let arguments: S::Arguments<Rated> = over_numbers(self);
+        let part = Part::of(self, state.as_slice());
         let at = At {
             parameters: arguments.as_slice(),
             t,
             first: state.as_slice(),
             second: &[],
         };
-        self.kernels().rate(at, rates.as_mut_slice())?;
+        let own = &mut rates.as_mut_slice()[..part.tables.dimensions.state];
+        part.kernels.rate(at, own)?;
         for (i, own) in rates.as_slice().iter().enumerate() {
             rate(i, *own);
         }
@@ -80,32 +91,6 @@ pub(super) fn over_numbers<S: Declared, L: Numbers>(system: &S) -> S::Arguments<
     numbers
 }
 
-/// Positions and what a state holds of the motion as one state.
-#[inline(always)]
-fn joined<S: Declared>(q: &[f64], motion: &[f64]) -> S::State {
-    let mut state = S::State::zeros(q.len() + motion.len());
-    let (positions, rest) = state.as_mut_slice().split_at_mut(q.len());
-    positions.copy_from_slice(q);
-    rest.copy_from_slice(motion);
-    state
-}
-
-/// A state whose motion is given by a kernel of positions and something else.
-#[inline(always)]
-fn state_by<S: Declared>(
-    system: &S,
-    kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
-    t: f64,
-    q: &S::Vector,
-    other: &S::Vector,
-) -> Result<S::State, Fault> {
-    let mut state = system.zero_state();
-    let (positions, motion) = state.as_mut_slice().split_at_mut(q.count());
-    positions.copy_from_slice(q.as_slice());
-    write(system, kernel, t, [q.as_slice(), other.as_slice()], motion)?;
-    Ok(state)
-}
-
 /// As [`System::state_nearest`], by Newton's steps from constraints that are not linear in the velocities.
 ///
 /// # Errors
@@ -116,8 +101,10 @@ pub fn nearest_of_declared<S: Declared + HasConstraints>(
     q: &S::Vector,
     qdot: &S::Vector,
 ) -> Result<S::State, Fault> {
+    let part = Part::start(system);
+    let own = part.gathered(q);
     nearest_by_steps(system, t, q, qdot, |qdot| {
-        state_by(system, S::Kernels::nearest, t, q, qdot)
+        part.state_by(S::Kernels::nearest, t, &own, &part.gathered(qdot))
     })
 }
 
@@ -137,59 +124,76 @@ impl<S: Declared> System for S {
 
     #[inline]
     fn position(&self, state: &S::State) -> S::Vector {
-        S::Vector::of(&state.as_slice()[..self.coordinate_count()])
+        let part = Part::of(self, state.as_slice());
+        let mut q = self.zero_vector();
+        let n = part.lengths()[0];
+        q.as_mut_slice()[..n].copy_from_slice(&state.as_slice()[..n]);
+        part.spread(q)
     }
 
     #[inline]
     fn velocity(&self, t: f64, state: &S::State) -> Result<S::Vector, Fault> {
-        let kernel = (S::Kernels::velocity, self.coordinate_count());
-        vector(self, kernel, t, [state.as_slice(), &[]])
+        let part = Part::of(self, state.as_slice());
+        part.coordinates(S::Kernels::velocity, t, [state.as_slice(), &[]])
     }
 
     #[inline]
     fn momentum(&self, t: f64, state: &S::State) -> Result<S::Vector, Fault> {
-        let n = self.coordinate_count();
-        match self.tables().form {
-            Form::Global => Ok(S::Vector::of(&state.as_slice()[n..])),
-            Form::Reduced => vector(self, (S::Kernels::momentum, n), t, [state.as_slice(), &[]]),
+        let part = Part::of(self, state.as_slice());
+        match part.tables.form {
+            Form::Global => {
+                let mut p = self.zero_vector();
+                let n = part.lengths()[0];
+                p.as_mut_slice()[..n].copy_from_slice(&state.as_slice()[n..2 * n]);
+                Ok(part.spread(p))
+            }
+            Form::Reduced => part.coordinates(S::Kernels::momentum, t, [state.as_slice(), &[]]),
             Form::FirstOrder => Err(Fault::FirstOrder),
         }
     }
 
     #[inline]
     fn state_unchecked(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> Result<S::State, Fault> {
-        match self.tables().form {
-            Form::FirstOrder => Ok(joined::<S>(q.as_slice(), &[])),
-            _ => state_by(self, S::Kernels::motion, t, q, qdot),
+        let part = Part::start(self);
+        let q = part.gathered(q);
+        match part.tables.form {
+            Form::FirstOrder => Ok(part.joined(q.as_slice(), &[])),
+            _ => part.state_by(S::Kernels::motion, t, &q, &part.gathered(qdot)),
         }
     }
 
     #[inline]
     fn state_from_momenta(&self, t: f64, q: &S::Vector, p: &S::Vector) -> Result<S::State, Fault> {
-        match self.tables().form {
-            Form::Global => Ok(joined::<S>(q.as_slice(), p.as_slice())),
-            Form::Reduced => state_by(self, S::Kernels::nearest_momenta, t, q, p),
+        let part = Part::start(self);
+        let [q, p] = [part.gathered(q), part.gathered(p)];
+        match part.tables.form {
+            Form::Global => Ok(part.joined(q.as_slice(), p.as_slice())),
+            Form::Reduced => part.state_by(S::Kernels::nearest_momenta, t, &q, &p),
             Form::FirstOrder => Err(Fault::FirstOrder),
         }
     }
 
     #[inline]
     fn state_nearest(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> Result<S::State, Fault> {
-        let tables = self.tables();
+        let part = Part::start(self);
+        let tables = part.tables;
         match tables.form {
-            Form::Reduced => state_by(self, S::Kernels::nearest, t, q, qdot),
+            Form::FirstOrder => self.state_unchecked(t, q, qdot),
             Form::Global if tables.dimensions.constraints == 0 => self.state_unchecked(t, q, qdot),
             Form::Global if !tables.is_linear => self.nearest_by_steps(t, q, qdot),
-            Form::Global => state_by(self, S::Kernels::nearest, t, q, qdot),
-            Form::FirstOrder => self.state_unchecked(t, q, qdot),
+            _ => {
+                let [q, qdot] = [part.gathered(q), part.gathered(qdot)];
+                part.state_by(S::Kernels::nearest, t, &q, &qdot)
+            }
         }
     }
 
     #[inline]
     fn energy(&self, t: f64, state: &S::State) -> Result<f64, Fault> {
-        match self.tables().form {
+        let part = Part::of(self, state.as_slice());
+        match part.tables.form {
             Form::FirstOrder => Err(Fault::FirstOrder),
-            _ => number(self, S::Kernels::energy, t, [state.as_slice(), &[]]),
+            _ => part.number_by(S::Kernels::energy, t, [state.as_slice(), &[]]),
         }
     }
 
@@ -200,7 +204,8 @@ impl<S: Declared> System for S {
 
     #[inline]
     fn kick(&self, state: &mut S::State, size: f64, direction: &S::Impulse) {
-        let motion = &mut state.as_mut_slice()[self.coordinate_count()..];
+        let [n, k] = Part::of(self, state.as_slice()).lengths();
+        let motion = &mut state.as_mut_slice()[n..n + k];
         for (entry, direction) in motion.iter_mut().zip(direction.as_slice()) {
             *entry += size * direction;
         }
@@ -219,24 +224,41 @@ impl<S: Declared> System for S {
         }
         for (index, surface) in self.tables().surfaces.iter().enumerate() {
             if let Some(name) = surface.coefficient {
-                let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-                    kernels.coefficient(index, at, values)
-                };
-                let value = number(self, kernel, 0.0, [&[], &[]]).unwrap_or(f64::NAN);
-                check_coefficient(name, value)?;
+                check_coefficient(name, coefficient(self, index))?;
             }
         }
         Ok(())
     }
 
+    fn carried(
+        &self,
+        from: &Self,
+        t: f64,
+        state: &S::State,
+        keep: Keep,
+    ) -> Result<S::State, StateError> {
+        let here = Part::of(self, state.as_slice()).starting_here();
+        carried(&here, from, t, state, keep)
+    }
+
+    fn motion_start(&self, state: &S::State) -> usize {
+        Part::of(self, state.as_slice()).lengths()[0]
+    }
+
+    #[inline(always)]
+    fn mode(&self, state: &S::State) -> usize {
+        Part::of(self, state.as_slice()).number()
+    }
+
     #[inline]
     fn outside_chart(&self, state: &S::State) -> Option<usize> {
-        let outside = self.tables().charts.iter().find(|chart| {
+        let part = Part::of(self, state.as_slice());
+        let outside = part.tables.charts.iter().find(|chart| {
             let value = state.as_slice()[chart.coordinate];
             let is_inside = chart.ends[0] < value && value < chart.ends[1];
             !is_inside
         });
-        outside.map(|chart| chart.coordinate)
+        outside.map(|chart| part.coordinate(chart.coordinate))
     }
 
     #[inline(always)]
@@ -249,7 +271,8 @@ impl<S: Declared> System for S {
     }
 
     fn admit(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> Result<(), StateError> {
-        self.admits(t, q, qdot)
+        let admitted = self.admits(t, q, qdot);
+        admitted.map_err(|error| Part::start(self).refusal(error))
     }
 
     fn complete_position(
@@ -258,7 +281,10 @@ impl<S: Declared> System for S {
         q: &S::Vector,
         placed: &S::Vector,
     ) -> Result<S::Vector, StateError> {
-        self.completed_position(t, q, placed)
+        let part = Part::start(self);
+        let (q, placed) = (part.alone(q, 0.0), part.alone(placed, 1.0));
+        let completed = self.completed_position(t, &q, &placed);
+        completed.map_err(|error| part.refusal(error))
     }
 
     fn complete_velocity(
@@ -268,11 +294,26 @@ impl<S: Declared> System for S {
         qdot: &S::Vector,
         named: &S::Vector,
     ) -> Result<S::Vector, StateError> {
-        match self.tables().form {
-            Form::FirstOrder => Ok(self.velocity(t, &joined::<S>(q.as_slice(), &[]))?),
-            _ => self.completed_velocity(t, q, qdot, named),
+        let part = Part::start(self);
+        if part.tables.form == Form::FirstOrder {
+            let state = part.joined(part.gathered(q).as_slice(), &[]);
+            return Ok(self.velocity(t, &state)?);
         }
+        let (qdot, named) = (part.alone(qdot, 0.0), part.alone(named, 1.0));
+        let completed = self.completed_velocity(t, q, &qdot, &named);
+        completed.map_err(|error| part.refusal(error))
     }
+}
+
+/// The coefficient of the law of a surface; NaN where it has none.
+pub(super) fn coefficient<S: Declared>(system: &S, surface: usize) -> f64 {
+    let Some((part, own)) = Part::of_surface(system, surface) else {
+        return f64::NAN;
+    };
+    let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+        kernels.coefficient(own, at, values)
+    };
+    part.number_by(kernel, 0.0, [&[], &[]]).unwrap_or(f64::NAN)
 }
 
 impl<S: Declared> Lagrangian for S {
@@ -285,18 +326,21 @@ impl<S: Declared> Lagrangian for S {
 
     #[inline]
     fn force(&self, t: f64, q: &S::Vector, qdot: &S::Vector) -> S::Vector {
-        let kernel = (S::Kernels::force, self.coordinate_count());
-        let force = vector(self, kernel, t, [q.as_slice(), qdot.as_slice()]);
+        let part = Part::start(self);
+        let [q, qdot] = [part.gathered(q), part.gathered(qdot)];
+        let force = part.coordinates(S::Kernels::force, t, [q.as_slice(), qdot.as_slice()]);
         force.unwrap_or_else(|_| self.zero_vector())
     }
 
     #[inline]
     fn reaction_force(&self, t: f64, q: &S::Vector, reactions: &S::Multipliers) -> S::Vector {
-        if self.tables().dimensions.constraints == 0 {
+        let part = Part::start(self);
+        if part.tables.dimensions.constraints == 0 {
             return self.zero_vector();
         }
-        let kernel = (S::Kernels::reaction_force, self.coordinate_count());
-        let force = vector(self, kernel, t, [q.as_slice(), reactions.as_slice()]);
+        let q = part.gathered(q);
+        let places = [q.as_slice(), reactions.as_slice()];
+        let force = part.coordinates(S::Kernels::reaction_force, t, places);
         force.unwrap_or_else(|_| self.zero_vector())
     }
 
@@ -307,6 +351,9 @@ impl<S: Declared> Lagrangian for S {
         q: &S::Vector,
         p: &S::Vector,
     ) -> Result<(S::Vector, S::Multipliers), Fault> {
+        if has_modes(self) {
+            return Err(Fault::SeveralModes);
+        }
         let (n, m) = (
             self.coordinate_count(),
             self.tables().dimensions.constraints,
@@ -322,7 +369,7 @@ impl<S: Declared> Lagrangian for S {
             return Ok((self.velocity(t, &state)?, self.zero_reactions()));
         }
         let kernel = (S::Kernels::constrained_velocity, n + m);
-        let both = several(self, kernel, t, [q.as_slice(), p.as_slice()])?;
+        let both = Part::start(self).several(kernel, t, [q.as_slice(), p.as_slice()])?;
         let (qdot, multipliers) = both.as_slice()[..n + m].split_at(n);
         Ok((S::Vector::of(qdot), S::Multipliers::of(multipliers)))
     }
@@ -331,12 +378,14 @@ impl<S: Declared> Lagrangian for S {
 impl<S: Declared + HasDivergence> Divergence for S {
     #[inline]
     fn divergence(&self, t: f64, state: &S::State) -> Result<f64, Fault> {
-        number(self, S::Kernels::divergence, t, [state.as_slice(), &[]])
+        let part = Part::of(self, state.as_slice());
+        part.number_by(S::Kernels::divergence, t, [state.as_slice(), &[]])
     }
 
     #[inline]
     fn density_form(&self, t: f64, q: &S::Vector) -> Result<S::Vector, Fault> {
-        let kernel = (S::Kernels::density_form, self.coordinate_count());
-        vector(self, kernel, t, [q.as_slice(), &[]])
+        let part = Part::start(self);
+        let q = part.gathered(q);
+        part.coordinates(S::Kernels::density_form, t, [q.as_slice(), &[]])
     }
 }

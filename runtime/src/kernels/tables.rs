@@ -1,5 +1,6 @@
 //! What is known of a form of a model besides its kernels.
 
+use super::Mode;
 use crate::contract::Level;
 use crate::describe::ParameterInfo;
 
@@ -17,15 +18,17 @@ pub enum Form {
 /// Numbers of things.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dimensions {
-    /// Coordinates.
+    /// Components of a state; those of a model with modes are one more than those of the longest mode.
+    pub state: usize,
+    /// Coordinates, of whatever mode.
     pub coordinates: usize,
-    /// Momenta or quasi-velocities in a state.
+    /// Momenta or quasi-velocities in a state, of the mode that has most.
     pub motion: usize,
-    /// Constraints.
+    /// Constraints, of the mode that has most.
     pub constraints: usize,
-    /// Integrable constraints whose function is known.
+    /// Integrable constraints whose function is known, of the mode that has most.
     pub levels: usize,
-    /// Surfaces.
+    /// Surfaces, of whatever mode.
     pub surfaces: usize,
     /// Parameters.
     pub parameters: usize,
@@ -102,4 +105,6 @@ pub struct Tables {
     pub levels: &'static [Level],
     /// The surfaces.
     pub surfaces: &'static [Surface],
+    /// The modes, of a model that has some.
+    pub modes: &'static [Mode],
 }

@@ -1,159 +1,253 @@
 //! `Variational` of every declared model whose runs can be varied.
 
-use super::impacting::{counts, counts_throughout};
-use super::{At, Declared, Form, HasVariations, Kernels};
+use super::impacting::{counts, counts_throughout, no_impulse};
+use super::part::{Passage, Transition, has_modes};
+use super::passage::Quadratic;
+use super::{At, Declared, Form, HasVariations, Kernels, Part};
 use crate::contract::{TaylorField, Variational};
 use crate::error::Fault;
 use crate::law::Law;
 use crate::numbers::{Interval, Numbers, Row};
-use crate::state::StateVector;
 
-/// A row whose numbers from a place on are those of a kernel, added to what is there.
-fn added<S: Declared, L: Numbers, R: Row<L>>(
-    system: &S,
-    kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
-    arguments: (&[L], L),
-    places: [&[L]; 2],
-    to: &R,
-) -> Result<Option<R>, Fault> {
-    let (n, k) = (
-        system.tables().dimensions.coordinates,
-        system.tables().dimensions.motion,
-    );
-    let found: Result<S::Room<L>, Fault> =
-        row_of::<S, L, S::Room<L>>(system, kernel, k, arguments, places);
-    let found = match found {
-        Err(Fault::NotDerived) => return Ok(None),
-        found => found?,
-    };
-    let mut sum = *to;
-    for (entry, added) in sum.as_mut_slice()[n..].iter_mut().zip(found.as_slice()) {
-        *entry = *entry + *added;
-    }
-    Ok(Some(sum))
-}
+/// Parameters and a time.
+type Arguments<'a, L> = (&'a [L], L);
 
-/// So many values of a kernel at the beginning of a row.
-fn row_of<S: Declared, L: Numbers, R: Row<L>>(
-    system: &S,
-    kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
-    count: usize,
-    (parameters, t): (&[L], L),
-    [first, second]: [&[L]; 2],
-) -> Result<R, Fault> {
-    let at = At {
-        parameters,
-        t,
-        first,
-        second,
-    };
-    let mut values = R::zeros(count);
-    kernel(&system.kernels(), at, &mut values.as_mut_slice()[..count])?;
-    Ok(values)
-}
+/// A state over numbers.
+type RowOf<S, L> = <S as TaylorField>::Row<L>;
 
-/// Positions, and motion by a kernel of positions and velocities.
-fn state_by<S: Declared, L: Numbers, R: Row<L>>(
-    system: &S,
-    kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
-    (parameters, t): (&[L], L),
-    [q, qdot]: [&[L]; 2],
-) -> Result<R, Fault> {
-    let dimensions = &system.tables().dimensions;
-    let mut state = R::zeros(dimensions.coordinates + dimensions.motion);
-    let (positions, motion) = state.as_mut_slice().split_at_mut(q.len());
-    positions.copy_from_slice(q);
-    if system.tables().form != Form::FirstOrder {
+/// The kernels of a part over numbers.
+impl<S: Declared> Part<'_, S> {
+    fn write_over<L: Numbers>(
+        &self,
+        kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
+        (parameters, t): Arguments<'_, L>,
+        [first, second]: [&[L]; 2],
+        values: &mut [L],
+    ) -> Result<(), Fault> {
         let at = At {
             parameters,
             t,
-            first: q,
-            second: qdot,
+            first,
+            second,
         };
-        kernel(&system.kernels(), at, motion)?;
+        kernel(&self.kernels, at, values).map_err(|fault| self.fault(fault))
     }
-    Ok(state)
-}
 
-/// As [`System::state_nearest`](crate::System::state_nearest), over numbers.
-///
-/// # Errors
-/// [`Fault`].
-pub fn nearest_over<S: Declared, L: Numbers, R: Row<L>>(
-    system: &S,
-    arguments: (&[L], L),
-    places: [&[L]; 2],
-) -> Result<R, Fault> {
-    let tables = system.tables();
-    let is_free = tables.form == Form::Global && tables.dimensions.constraints == 0;
-    let kernel = match is_free {
-        true => S::Kernels::motion,
-        false => S::Kernels::nearest,
-    };
-    state_by::<S, L, R>(system, kernel, arguments, places)
-}
-
-/// Writes positions and velocities in the mode that a surface leads to, where they are declared.
-///
-/// # Errors
-/// [`Fault`].
-pub fn enter_over<S: Declared, L: Numbers>(
-    system: &S,
-    surface: usize,
-    at: At<'_, L>,
-    [q, qdot]: [&mut [L]; 2],
-) -> Result<(), Fault> {
-    let count = q.len() + qdot.len();
-    let mut both = S::Room::<L>::zeros(count);
-    let both = &mut both.as_mut_slice()[..count];
-    match system.kernels().entry(surface, at, both) {
-        Err(Fault::NotDerived) => return Ok(()),
-        found => found?,
+    /// So many values of a kernel at the beginning of a row of this length.
+    fn row<L: Numbers, R: Row<L>>(
+        &self,
+        (kernel, [length, count]): (
+            impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
+            [usize; 2],
+        ),
+        arguments: Arguments<'_, L>,
+        places: [&[L]; 2],
+    ) -> Result<R, Fault> {
+        let mut values = R::zeros(length);
+        let own = &mut values.as_mut_slice()[..count];
+        self.write_over(kernel, arguments, places, own)?;
+        Ok(values)
     }
-    q.copy_from_slice(&both[..q.len()]);
-    qdot.copy_from_slice(&both[count - qdot.len()..]);
-    Ok(())
-}
 
-/// The same of a system.
-///
-/// # Errors
-/// [`Fault`].
-pub fn enter<S: Declared>(
-    system: &S,
-    surface: usize,
-    t: f64,
-    state: &<S as Declared>::State,
-    after: [&mut [f64]; 2],
-) -> Result<(), Fault> {
-    let arguments = system.arguments();
-    let at = At {
-        parameters: arguments.as_ref(),
-        t,
-        first: state.as_slice(),
-        second: &[],
-    };
-    enter_over::<S, f64>(system, surface, at, after)
-}
+    /// One value of a kernel per coordinate of the part.
+    fn row_of_coordinates<L: Numbers>(
+        &self,
+        kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
+        arguments: Arguments<'_, L>,
+        places: [&[L]; 2],
+    ) -> Result<S::Positions<L>, Fault> {
+        let counts = [self.system_dimensions().coordinates, self.lengths()[0]];
+        self.row((kernel, counts), arguments, places)
+    }
 
-/// As [`System::energy`](crate::System::energy), over numbers.
-///
-/// # Errors
-/// [`Fault`].
-pub fn energy_over<S: Declared, L: Numbers>(
-    system: &S,
-    (parameters, t): (&[L], L),
-    state: &[L],
-) -> Result<L, Fault> {
-    let at = At {
-        parameters,
-        t,
-        first: state,
-        second: &[],
-    };
-    let mut energy = [L::ZERO];
-    system.kernels().energy(at, &mut energy)?;
-    Ok(energy[0])
+    /// Positions, and motion by a kernel of positions and velocities, of the part.
+    fn row_by<L: Numbers, R: Row<L>>(
+        &self,
+        kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
+        arguments: Arguments<'_, L>,
+        [q, qdot]: [&[L]; 2],
+    ) -> Result<R, Fault> {
+        let [n, k] = self.lengths();
+        let mut state = R::zeros(self.system_dimensions().state);
+        let (positions, motion) = state.as_mut_slice().split_at_mut(n);
+        positions.copy_from_slice(&q[..n]);
+        if self.tables.form != Form::FirstOrder {
+            self.write_over(kernel, arguments, [q, qdot], &mut motion[..k])?;
+        }
+        self.sign(state.as_mut_slice());
+        Ok(state)
+    }
+
+    /// As [`System::state_nearest`](crate::System::state_nearest), over numbers.
+    fn nearest<L: Numbers, R: Row<L>>(
+        &self,
+        arguments: Arguments<'_, L>,
+        places: [&[L]; 2],
+    ) -> Result<R, Fault> {
+        let is_free = self.tables.form == Form::Global && self.tables.dimensions.constraints == 0;
+        match is_free {
+            true => self.row_by(S::Kernels::motion, arguments, places),
+            false => self.row_by(S::Kernels::nearest, arguments, places),
+        }
+    }
+
+    /// The state with the values of a kernel added to its motion; `None` where the kernel is not given.
+    fn added<L: Numbers, R: Row<L>>(
+        &self,
+        kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
+        arguments: Arguments<'_, L>,
+        places: [&[L]; 2],
+        to: &R,
+    ) -> Result<Option<R>, Fault> {
+        let [n, k] = self.lengths();
+        let found: Result<S::Room<L>, Fault> = self.row((kernel, [k; 2]), arguments, places);
+        let found = match found {
+            Err(Fault::NotDerived) => return Ok(None),
+            found => found?,
+        };
+        let mut sum = *to;
+        let motion = sum.as_mut_slice()[n..n + k].iter_mut();
+        for (entry, added) in motion.zip(found.as_slice()) {
+            *entry = *entry + *added;
+        }
+        Ok(Some(sum))
+    }
+
+    /// The numbers of a contact at a surface of the part, and the direction behind them.
+    fn collision<L: Numbers, R: Row<L>>(
+        &self,
+        own: usize,
+        arguments: Arguments<'_, L>,
+        state: &[L],
+    ) -> Result<R, Fault> {
+        let kernel = |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
+            kernels.contact(own, at, values)
+        };
+        let counts = [self.system_dimensions().motion, self.lengths()[1]];
+        let counts = counts.map(|motion| 5 + motion);
+        let found = self.row((kernel, counts), arguments, [state, &[]]);
+        found.map_err(|fault| self.fault(no_impulse(self.tables, fault, own)))
+    }
+
+    /// Positions and velocities after the reset of a surface of the part; `None` where its law is no reset.
+    fn landed<L: Numbers>(
+        &self,
+        own: usize,
+        arguments: Arguments<'_, L>,
+        state: &[L],
+    ) -> Result<Option<[S::Positions<L>; 2]>, Fault> {
+        if !matches!(self.tables.surfaces.get(own), Some(own) if own.law == Law::Reset) {
+            return Ok(None);
+        }
+        let kernel =
+            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| kernels.reset(own, at, values);
+        let n = self.lengths()[0];
+        let both: S::Room<L> = self.row((kernel, [2 * n; 2]), arguments, [state, &[]])?;
+        let (q, qdot) = both.as_slice()[..2 * n].split_at(n);
+        let length = self.system_dimensions().coordinates;
+        Ok(Some([q, qdot].map(|values| {
+            let mut row = S::Positions::<L>::zeros(length);
+            row.as_mut_slice()[..n].copy_from_slice(values);
+            row
+        })))
+    }
+
+    /// The state in the mode that a surface of this one leads to. `None` where the Lagrangian changes and the state of one of both holds no
+    /// momenta.
+    fn passed_into<L: Numbers, R: Row<L>>(
+        &self,
+        (own, transition): (usize, Transition),
+        arguments: Arguments<'_, L>,
+        state: &R,
+    ) -> Result<Option<R>, Fault> {
+        let right = self.other(transition.enters);
+        let places = [state.as_slice(), &[][..]];
+        let entered = match transition.passage {
+            Passage::Declared => {
+                let kernel = |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
+                    kernels.entry(own, at, values)
+                };
+                let n = right.lengths()[0];
+                let count = match right.tables.form {
+                    Form::FirstOrder => n,
+                    _ => 2 * n,
+                };
+                let both: S::Room<L> = self.row((kernel, [count; 2]), arguments, places)?;
+                let (q, qdot) = both.as_slice()[..count].split_at(n);
+                right.row_by(S::Kernels::motion, arguments, [q, qdot])?
+            }
+            Passage::Kept => right.row_by(S::Kernels::motion, arguments, places)?,
+            Passage::Focused => {
+                let qdot = self.row_of_coordinates(S::Kernels::velocity, arguments, places)?;
+                right.nearest(arguments, [places[0], qdot.as_slice()])?
+            }
+            Passage::Refracted => return self.refracted(&right, own, arguments, state),
+        };
+        Ok(Some(entered))
+    }
+
+    /// Refraction, or reflection where there is none, of momenta: the formulas are those of `passage.rs`. `None` where it is not certain
+    /// which, and where the state of one of both modes holds no momenta.
+    fn refracted<L: Numbers, R: Row<L>>(
+        &self,
+        right: &Part<'_, S>,
+        own: usize,
+        arguments: Arguments<'_, L>,
+        state: &R,
+    ) -> Result<Option<R>, Fault> {
+        if [self.tables.form, right.tables.form] != [Form::Global; 2] {
+            return Ok(None);
+        }
+        let n = self.lengths()[0];
+        let collision: S::Room<L> = self.collision(own, arguments, state.as_slice())?;
+        // NOTE: the third number of a contact is the rate of the surface itself, behind the fifth comes the direction.
+        let (surface_rate, direction) = (collision.as_slice()[2], &collision.as_slice()[5..5 + n]);
+        let with_momenta = |momenta: &dyn Fn(usize) -> L| {
+            let mut row = *state;
+            for (i, p) in row.as_mut_slice()[n..2 * n].iter_mut().enumerate() {
+                *p = momenta(i);
+            }
+            right.sign(row.as_mut_slice());
+            row
+        };
+        let through = |momenta: &dyn Fn(usize) -> L| -> Result<L, Fault> {
+            let row = with_momenta(momenta);
+            let places = [row.as_slice(), &[][..]];
+            let velocities = right.row_of_coordinates(S::Kernels::velocity, arguments, places)?;
+            let pairs = direction.iter().zip(velocities.as_slice());
+            Ok(pairs.fold(L::ZERO, |sum, (d, v)| d.mul_add(*v, sum)))
+        };
+        let energy = |part: &Part<'_, S>, state: &[L]| -> Result<L, Fault> {
+            let mut energy = [L::ZERO];
+            part.write_over(S::Kernels::energy, arguments, [state, &[]], &mut energy)?;
+            Ok(energy[0])
+        };
+        let p = |i: usize| state.as_slice()[n + i];
+        let kept = with_momenta(&p);
+        let quadratic = Quadratic {
+            rate: through(&p)? + surface_rate,
+            compliance: through(&|i| direction[i])? - through(&|_| L::ZERO)?,
+            excess: energy(right, kept.as_slice())? - energy(self, state.as_slice())?,
+        };
+        let size = match quadratic.root() {
+            None => return Ok(None),
+            Some(Some(size)) => size,
+            Some(None) => {
+                let mut reflected = *state;
+                let momenta = &mut reflected.as_mut_slice()[n..2 * n];
+                Law::Elastic.strike(L::ZERO, collision.as_slice(), momenta);
+                return Ok(Some(reflected));
+            }
+        };
+        let beyond = with_momenta(&|i| size.mul_add(direction[i], p(i)));
+        if right.tables.dimensions.constraints == 0 {
+            return Ok(Some(beyond));
+        }
+        let places = [beyond.as_slice(), &[][..]];
+        let qdot = right.row_of_coordinates(S::Kernels::velocity, arguments, places)?;
+        let entered = right.nearest(arguments, [places[0], qdot.as_slice()])?;
+        Ok(Some(entered))
+    }
 }
 
 impl<S: HasVariations> Variational for S {
@@ -191,16 +285,13 @@ impl<S: HasVariations> Variational for S {
         &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         t: L,
-        state: &<S as TaylorField>::Row<L>,
+        state: &RowOf<S, L>,
     ) -> Result<S::Positions<L>, Fault> {
+        let part = Part::of(self, state.as_slice());
+        let places = [state.as_slice(), &[][..]];
         let arguments = (parameters.as_slice(), t);
-        row_of::<S, L, _>(
-            self,
-            S::Kernels::velocity,
-            self.tables().dimensions.coordinates,
-            arguments,
-            [state.as_slice(), &[]],
-        )
+        let velocities = part.row_of_coordinates(S::Kernels::velocity, arguments, places)?;
+        Ok(part.spread_row(velocities))
     }
 
     fn composed<L: Numbers>(
@@ -209,48 +300,52 @@ impl<S: HasVariations> Variational for S {
         t: L,
         q: &S::Positions<L>,
         qdot: &S::Positions<L>,
-    ) -> Result<<S as TaylorField>::Row<L>, Fault> {
+    ) -> Result<RowOf<S, L>, Fault> {
+        if has_modes(self) {
+            return Err(Fault::SeveralModes);
+        }
         let arguments = (parameters.as_slice(), t);
-        state_by::<S, L, _>(
-            self,
-            S::Kernels::motion,
-            arguments,
-            [q.as_slice(), qdot.as_slice()],
-        )
+        let places = [q.as_slice(), qdot.as_slice()];
+        Part::start(self).row_by(S::Kernels::motion, arguments, places)
     }
 
     fn deviations<L: Numbers>(
         &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         t: L,
-        state: &<S as TaylorField>::Row<L>,
+        state: &RowOf<S, L>,
     ) -> Result<<S as HasVariations>::Deviations<L>, Fault> {
-        let dimensions = &self.tables().dimensions;
-        let n = dimensions.coordinates;
+        let part = Part::of(self, state.as_slice());
         let arguments = (parameters.as_slice(), t);
         let state = state.as_slice();
-        let off = match self.tables().form {
+        let dimensions = &part.tables.dimensions;
+        let off = match part.tables.form {
             Form::Global => dimensions.constraints,
             _ => 0,
         };
-        let mut values = <S as HasVariations>::Deviations::<L>::zeros(off + dimensions.levels);
+        let own = off + dimensions.levels;
+        let length = match has_modes(self) {
+            true => self.tables().dimensions.state - 1,
+            false => own,
+        };
+        let mut values = <S as HasVariations>::Deviations::<L>::zeros(length);
         if off > 0 {
-            let qdot: S::Positions<L> =
-                row_of::<S, L, _>(self, S::Kernels::velocity, n, arguments, [state, &[]])?;
-            let places = [state, qdot.as_slice()];
-            let both: S::Room<L> =
-                row_of::<S, L, _>(self, S::Kernels::residuals, 2 * off, arguments, places)?;
+            let qdot = part.row_of_coordinates(S::Kernels::velocity, arguments, [state, &[]])?;
+            let kernel = (S::Kernels::residuals, [2 * off; 2]);
+            let both: S::Room<L> = part.row(kernel, arguments, [state, qdot.as_slice()])?;
             values.as_mut_slice()[..off].copy_from_slice(&both.as_slice()[..off]);
         }
         if dimensions.levels > 0 {
-            let at = At {
-                parameters: arguments.0,
-                t,
-                first: state,
-                second: &[],
-            };
-            self.kernels()
-                .levels(at, &mut values.as_mut_slice()[off..])?;
+            let levels = &mut values.as_mut_slice()[off..own];
+            part.write_over(S::Kernels::levels, arguments, [state, &[]], levels)?;
+        }
+        if has_modes(self) {
+            // What the mode does not use, and its number.
+            let unused = &state[dimensions.state..];
+            let places = values.as_mut_slice()[own..].iter_mut();
+            places
+                .zip(unused)
+                .for_each(|(place, value)| *place = *value);
         }
         Ok(values)
     }
@@ -259,20 +354,19 @@ impl<S: HasVariations> Variational for S {
         &self,
         parameters: &<S as TaylorField>::Parameters<L>,
         t: L,
-        state: &<S as TaylorField>::Row<L>,
+        state: &RowOf<S, L>,
     ) -> Result<<S as HasVariations>::Clearances<L>, Fault> {
-        if self.tables().dimensions.surfaces == 0 {
-            return Ok(Row::zeros(0));
-        }
-        let arguments = (parameters.as_slice(), t);
-        let places = [state.as_slice(), &[][..]];
-        row_of::<S, L, _>(
-            self,
-            S::Kernels::gaps,
-            self.tables().dimensions.surfaces,
-            arguments,
-            places,
-        )
+        let part = Part::of(self, state.as_slice());
+        let counts = [self.tables(), part.tables].map(|tables| tables.dimensions.surfaces);
+        let gaps = match counts[1] {
+            0 => <S as HasVariations>::Clearances::<L>::zeros(counts[0]),
+            _ => {
+                let arguments = (parameters.as_slice(), t);
+                let places = [state.as_slice(), &[][..]];
+                part.row((S::Kernels::gaps, counts), arguments, places)?
+            }
+        };
+        Ok(part.row_of_surfaces(gaps, L::of(1.0)))
     }
 
     fn collision<L: Numbers>(
@@ -280,19 +374,11 @@ impl<S: HasVariations> Variational for S {
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
         t: L,
-        state: &<S as TaylorField>::Row<L>,
+        state: &RowOf<S, L>,
     ) -> Result<<S as HasVariations>::Collision<L>, Fault> {
-        let arguments = (parameters.as_slice(), t);
-        let found = row_of::<S, L, _>(
-            self,
-            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
-                kernels.contact(surface, at, values)
-            },
-            5 + self.tables().dimensions.motion,
-            arguments,
-            [state.as_slice(), &[]],
-        );
-        found.map_err(|fault| super::impacting::no_impulse(self.tables(), fault, surface))
+        let part = Part::of(self, state.as_slice());
+        let own = part.known(surface)?;
+        part.collision(own, (parameters.as_slice(), t), state.as_slice())
     }
 
     fn focus<L: Numbers>(
@@ -300,19 +386,14 @@ impl<S: HasVariations> Variational for S {
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
         t: L,
-        state: &<S as TaylorField>::Row<L>,
-    ) -> Result<Option<<S as TaylorField>::Row<L>>, Fault> {
-        let arguments = (parameters.as_slice(), t);
+        state: &RowOf<S, L>,
+    ) -> Result<Option<RowOf<S, L>>, Fault> {
+        let part = Part::of(self, state.as_slice());
+        let own = part.known(surface)?;
+        let kernel =
+            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| kernels.focus(own, at, values);
         let places = [state.as_slice(), &[][..]];
-        added::<S, L, _>(
-            self,
-            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
-                kernels.focus(surface, at, values)
-            },
-            arguments,
-            places,
-            state,
-        )
+        part.added(kernel, (parameters.as_slice(), t), places, state)
     }
 
     fn trace<L: Numbers>(
@@ -320,21 +401,16 @@ impl<S: HasVariations> Variational for S {
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
         t: L,
-        state: &<S as TaylorField>::Row<L>,
-        rate: &<S as TaylorField>::Row<L>,
-    ) -> Result<Option<<S as TaylorField>::Row<L>>, Fault> {
-        let arguments = (parameters.as_slice(), t);
-        let motion = &rate.as_slice()[self.tables().dimensions.coordinates..];
+        state: &RowOf<S, L>,
+        rate: &RowOf<S, L>,
+    ) -> Result<Option<RowOf<S, L>>, Fault> {
+        let part = Part::of(self, state.as_slice());
+        let own = part.known(surface)?;
+        let kernel =
+            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| kernels.trace(own, at, values);
+        let motion = &rate.as_slice()[part.lengths()[0]..];
         let places = [state.as_slice(), motion];
-        added::<S, L, _>(
-            self,
-            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
-                kernels.trace(surface, at, values)
-            },
-            arguments,
-            places,
-            rate,
-        )
+        part.added(kernel, (parameters.as_slice(), t), places, rate)
     }
 
     fn landing<L: Numbers>(
@@ -342,31 +418,33 @@ impl<S: HasVariations> Variational for S {
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
         t: L,
-        state: &<S as TaylorField>::Row<L>,
+        state: &RowOf<S, L>,
     ) -> Result<Option<[S::Positions<L>; 2]>, Fault> {
-        if !matches!(self.tables().surfaces.get(surface), Some(own) if own.law == Law::Reset) {
+        if has_modes(self) {
             return Ok(None);
         }
-        let n = self.tables().dimensions.coordinates;
         let arguments = (parameters.as_slice(), t);
-        let places = [state.as_slice(), &[][..]];
-        let both: S::Room<L> = row_of::<S, L, _>(
-            self,
-            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
-                kernels.reset(surface, at, values)
-            },
-            2 * n,
-            arguments,
-            places,
-        )?;
-        let mut landing = [S::Positions::<L>::zeros(n); 2];
-        for (own, values) in landing
-            .iter_mut()
-            .zip(both.as_slice().chunks_exact(n.max(1)))
-        {
-            own.as_mut_slice().copy_from_slice(values);
+        Part::start(self).landed(surface, arguments, state.as_slice())
+    }
+
+    fn passed<L: Numbers>(
+        &self,
+        parameters: &<S as TaylorField>::Parameters<L>,
+        surface: usize,
+        t: L,
+        state: &RowOf<S, L>,
+    ) -> Result<Option<RowOf<S, L>>, Fault> {
+        let part = Part::of(self, state.as_slice());
+        let arguments = (parameters.as_slice(), t);
+        if let Some(transition) = part.transition(surface) {
+            return part.passed_into(transition, arguments, state);
         }
-        Ok(Some(landing))
+        let own = part.known(surface)?;
+        let Some([q, qdot]) = part.landed(own, arguments, state.as_slice())? else {
+            return Ok(None);
+        };
+        let places = [q.as_slice(), qdot.as_slice()];
+        part.row_by(S::Kernels::motion, arguments, places).map(Some)
     }
 
     fn declared_law<L: Numbers>(
@@ -374,20 +452,21 @@ impl<S: HasVariations> Variational for S {
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
     ) -> (Law, L) {
-        let Some(own) = self.tables().surfaces.get(surface) else {
+        let (Some(declared), Some((part, own))) = (
+            self.tables().surfaces.get(surface),
+            Part::of_surface(self, surface),
+        ) else {
             return (Law::Elastic, L::ZERO);
         };
-        let at = At {
-            parameters: parameters.as_slice(),
-            t: L::ZERO,
-            first: &[],
-            second: &[],
+        let kernel = |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
+            kernels.coefficient(own, at, values)
         };
         let mut coefficient = [L::ZERO];
+        let arguments = (parameters.as_slice(), L::ZERO);
         // Coefficients have no guards.
-        let _ = self.kernels().coefficient(surface, at, &mut coefficient);
+        let _ = part.write_over(kernel, arguments, [&[], &[]], &mut coefficient);
         let value = coefficient[0].lane(0);
-        let law = match own.law {
+        let law = match declared.law {
             Law::Restitution(_) => Law::Restitution(value),
             Law::Newton(_) => Law::Newton(value),
             law => law,

@@ -2,22 +2,34 @@
 //!
 //! Motions that run side by side may be in different modes. Each mode that any of them is in expands the lanes that are in
 //! it; the other lanes are given the numbers of one that is, and what comes of them is dropped.
-//!
-//! NOTE: no mode's series is inlined into those of the whole: with many modes one function would hold all of them, and compilers
-//! take minutes over it.
 
-use super::Mode;
 use crate::error::Fault;
 use crate::jet::{LENGTH, Work};
+use crate::kernels::Mode;
 use crate::numbers::{Numbers, Row};
 
 /// Lengths of the rows of a model with modes.
 #[derive(Debug, Clone, Copy)]
-pub struct Shape {
+pub struct Lengths {
     /// Components of a state, the number of the mode among them.
     pub state: usize,
     /// Gaps, or 0 where they have no series.
     pub gaps: usize,
+}
+
+/// A wanted expansion of a model with modes.
+#[derive(Debug, Clone, Copy)]
+pub struct Expansion<'a, L> {
+    /// Lengths of rows.
+    pub lengths: Lengths,
+    /// The parameters.
+    pub parameters: &'a [L],
+    /// The unit of time.
+    pub unit: L,
+    /// The highest order.
+    pub order: usize,
+    /// What is known at the moment: rates, gaps, then whatever the mode takes of it.
+    pub firsts: &'a [L],
 }
 
 /// The lanes that are in a mode.
@@ -71,152 +83,142 @@ fn is_in<L: Numbers>(mode: usize, number: &L, lane: usize) -> bool {
     (number.lane(lane) + 0.5) as usize == mode
 }
 
-/// As [`TaylorField::begin`](crate::TaylorField::begin), for the lanes that are in this mode.
-///
-/// What is known comes in the order of the model: rates, then gaps, then whatever the mode takes of it.
+/// As [`TaylorField::begin`](crate::TaylorField::begin), for the lanes that are in this mode, of which `expand` begins the series of
+/// `known` numbers.
 ///
 /// # Errors
 /// That of the mode.
-#[inline(never)]
-pub fn begin<M: Mode, L: Numbers>(
-    mode: &M,
-    shape: Shape,
-    parameters: &[L],
-    t: L,
-    state: &[L],
+#[inline(always)]
+pub(crate) fn begin<L: Numbers, P: Row<L>, R: Row<L>, F: Row<L>>(
+    ((number, mode), known): ((usize, &Mode), usize),
+    lengths: Lengths,
+    (parameters, t, state): (&[L], L, &[L]),
     firsts: &mut [L],
+    expand: impl FnOnce(&P, L, &R, &mut F) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
-    let number = state[shape.state - 1];
-    let Some(lanes) = Lanes::of(M::INDEX, &number) else {
+    let modes = state[lengths.state - 1];
+    let Some(lanes) = Lanes::of(number, &modes) else {
         return Ok(());
     };
-    let parameters = row::<L, M::Parameters<L>>(parameters, &lanes, &number);
-    let own = row::<L, M::Row<L>>(state, &lanes, &number);
-    let mut known = M::Firsts::<L>::zeros(M::Firsts::<L>::CAPACITY);
-    mode.begin(&parameters, lanes.picked(t, &number), &own, &mut known)?;
-    let known = known.as_slice();
-    let (rates, rest) = known.split_at(M::Row::<L>::CAPACITY);
-    let (gaps, rest) = rest.split_at(M::Gaps::<L>::CAPACITY);
+    let own = &mode.tables.dimensions;
+    let parameters: P = row(parameters, &lanes, &modes);
+    let state: R = row(&state[..own.state], &lanes, &modes);
+    let mut own_firsts = F::zeros(known);
+    expand(
+        &parameters,
+        lanes.picked(t, &modes),
+        &state,
+        &mut own_firsts,
+    )?;
+    let (rates, rest) = own_firsts.as_slice()[..known].split_at(own.state);
+    let (gaps, rest) = rest.split_at(own_gaps(mode, lengths));
     let mut put = |place: usize, value: L| {
-        firsts[place] = lanes.merged(firsts[place], value, &number);
+        firsts[place] = lanes.merged(firsts[place], value, &modes);
     };
     for (place, rate) in rates.iter().enumerate() {
         put(place, *rate);
     }
-    for place in rates.len()..shape.state {
+    for place in rates.len()..lengths.state {
         put(place, L::ZERO);
     }
-    for gap in 0..shape.gaps {
-        put(shape.state + gap, L::of(1.0));
+    for gap in 0..lengths.gaps {
+        put(lengths.state + gap, L::of(1.0));
     }
-    if shape.gaps > 0 {
-        for (gap, &place) in gaps.iter().zip(M::SURFACES) {
-            put(shape.state + place, *gap);
-        }
+    for (gap, &place) in gaps.iter().zip(mode.surfaces) {
+        put(lengths.state + place, *gap);
     }
     for (place, value) in rest.iter().enumerate() {
-        put(shape.state + shape.gaps + place, *value);
+        put(lengths.state + lengths.gaps + place, *value);
     }
     Ok(())
 }
 
-/// As [`TaylorField::advance`](crate::TaylorField::advance), for the lanes that are in this mode.
-#[inline(never)]
-#[allow(
-    clippy::too_many_arguments,
-    reason = "those of `advance`, and the shape"
-)]
-pub fn advance<M: Mode, L: Numbers, const D: usize, const G: usize>(
-    mode: &M,
-    parameters: &[L],
-    unit: L,
-    order: usize,
-    firsts: &[L],
-    coefficients: &mut [[L; D]; LENGTH],
-    gaps: &mut [[L; G]; LENGTH],
-    jets: &mut M::Jets<L>,
-) {
-    let number = coefficients[0][D - 1];
-    let Some(lanes) = Lanes::of(M::INDEX, &number) else {
-        return;
-    };
-    let parameters = row::<L, M::Parameters<L>>(parameters, &lanes, &number);
-    let (d, g) = (M::Row::<L>::CAPACITY, M::Gaps::<L>::CAPACITY);
-    let mut known = M::Firsts::<L>::zeros(M::Firsts::<L>::CAPACITY);
-    for (place, value) in known.as_mut_slice().iter_mut().enumerate() {
-        let from = match place {
-            place if place < d => place,
-            place if place < d + g && G > 0 => D + M::SURFACES[place - d],
-            place if place < d + g => continue,
-            place => D + G + place - d - g,
-        };
-        *value = lanes.picked(firsts[from], &number);
+/// Gaps of a mode that have series.
+fn own_gaps(mode: &Mode, lengths: Lengths) -> usize {
+    match lengths.gaps {
+        0 => 0,
+        _ => mode.surfaces.len(),
     }
-    let mut own = [M::Row::<L>::zeros(M::Row::<L>::CAPACITY); LENGTH];
-    own[0] = row::<L, M::Row<L>>(&coefficients[0], &lanes, &number);
-    let mut own_gaps = [M::Gaps::<L>::zeros(M::Gaps::<L>::CAPACITY); LENGTH];
-    let unit = lanes.picked(unit, &number);
-    mode.advance(
-        &parameters,
+}
+
+/// As [`TaylorField::advance`](crate::TaylorField::advance), for the lanes that are in this mode, of which `expand` writes the series.
+#[inline(always)]
+pub(crate) fn advance<
+    L: Numbers,
+    P: Row<L>,
+    F: Row<L>,
+    R: Row<L>,
+    G: Row<L>,
+    OwnR: Row<L>,
+    OwnG: Row<L>,
+>(
+    ((number, mode), known): ((usize, &Mode), usize),
+    Expansion {
+        lengths,
+        parameters,
         unit,
         order,
-        &known,
-        &mut own,
-        &mut own_gaps,
-        jets,
-    );
-    for k in 1..=order.min(LENGTH - 1) {
-        for (place, value) in coefficients[k].iter_mut().enumerate() {
-            let new = own[k].as_slice().get(place).copied().unwrap_or(L::ZERO);
-            *value = lanes.merged(*value, new, &number);
+        firsts,
+    }: Expansion<'_, L>,
+    (coefficients, gaps): (&mut [R; LENGTH], &mut [G; LENGTH]),
+    expand: impl FnOnce(&P, L, &F, &mut [OwnR; LENGTH], &mut [OwnG; LENGTH]),
+) {
+    let modes = coefficients[0].as_slice()[lengths.state - 1];
+    let Some(lanes) = Lanes::of(number, &modes) else {
+        return;
+    };
+    let parameters: P = row(parameters, &lanes, &modes);
+    let (d, g) = (mode.tables.dimensions.state, own_gaps(mode, lengths));
+    let mut own_firsts = F::zeros(known);
+    for (place, value) in own_firsts.as_mut_slice()[..known].iter_mut().enumerate() {
+        let from = match place {
+            place if place < d => place,
+            place if place < d + g => lengths.state + mode.surfaces[place - d],
+            place => lengths.state + lengths.gaps + place - d - g,
+        };
+        *value = lanes.picked(firsts[from], &modes);
+    }
+    let mut own = [OwnR::zeros(d); LENGTH];
+    own[0] = row(&coefficients[0].as_slice()[..d], &lanes, &modes);
+    let mut of_gaps = [OwnG::zeros(g); LENGTH];
+    let unit = lanes.picked(unit, &modes);
+    expand(&parameters, unit, &own_firsts, &mut own, &mut of_gaps);
+    let last = order.min(LENGTH - 1);
+    for (all, own) in coefficients[1..=last].iter_mut().zip(&own[1..]) {
+        for (place, value) in all.as_mut_slice().iter_mut().enumerate() {
+            let new = own.as_slice().get(place).copied().unwrap_or(L::ZERO);
+            *value = lanes.merged(*value, new, &modes);
         }
     }
-    for k in 0..=order.min(LENGTH - 1) {
-        for value in &mut gaps[k] {
+    for (k, (all, own)) in gaps[..=last].iter_mut().zip(&of_gaps).enumerate() {
+        for value in all.as_mut_slice() {
             let constant = if k == 0 { L::of(1.0) } else { L::ZERO };
-            *value = lanes.merged(*value, constant, &number);
+            *value = lanes.merged(*value, constant, &modes);
         }
-        if G > 0 {
-            for (new, &place) in own_gaps[k].as_slice().iter().zip(M::SURFACES) {
-                gaps[k][place] = lanes.merged(gaps[k][place], *new, &number);
-            }
+        for (new, &place) in own.as_slice()[..g].iter().zip(mode.surfaces) {
+            let value = &mut all.as_mut_slice()[place];
+            *value = lanes.merged(*value, *new, &modes);
         }
     }
 }
 
 /// The first numbers of a row, in the lanes of a mode.
 #[inline(always)]
-fn row<L: Numbers, R: Row<L>>(values: &[L], lanes: &Lanes, number: &L) -> R {
-    let mut row = R::zeros(R::CAPACITY);
+fn row<L: Numbers, R: Row<L>>(values: &[L], lanes: &Lanes, modes: &L) -> R {
+    let mut row = R::zeros(values.len());
     for (own, value) in row.as_mut_slice().iter_mut().zip(values) {
-        *own = lanes.picked(*value, number);
+        *own = lanes.picked(*value, modes);
     }
     row
 }
 
-/// What expansions take at most, in whatever mode.
-pub const fn work(modes: &[Option<Work>]) -> Option<Work> {
-    let mut most = Work {
-        values: 0,
-        sums: 0,
-        degree: Some(0),
-    };
-    let mut k = 0;
-    while k < modes.len() {
-        let Some(own) = modes[k] else {
-            return None;
-        };
-        if own.values > most.values {
-            most.values = own.values;
-        }
-        if own.sums > most.sums {
-            most.sums = own.sums;
-        }
-        most.degree = match (most.degree, own.degree) {
-            (Some(a), Some(b)) => Some(if a > b { a } else { b }),
-            _ => None,
-        };
-        k += 1;
-    }
-    Some(most)
+/// The greater of each, of what expansions of two modes take.
+pub(crate) fn most(a: Option<Work>, b: Option<Work>) -> Option<Work> {
+    let (a, b) = (a?, b?);
+    let degrees = a.degree.zip(b.degree);
+    Some(Work {
+        values: a.values.max(b.values),
+        sums: a.sums.max(b.sums),
+        degree: degrees.map(|(a, b)| a.max(b)),
+    })
 }

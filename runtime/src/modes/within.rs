@@ -1,102 +1,91 @@
-//! An effect that belongs to one mode: it sees the states of that mode, and nothing of the others.
+//! An effect of whatever mode the motion is in.
 
-use super::{Mode, index, placed, taken};
 use crate::contract::System;
 use crate::effects::{Change, Effect, Moment, SceneEffects};
 use crate::forces::NoForces;
+use crate::kernels::{Declared, Part};
 use crate::outcome::Outcome;
 use crate::record::Observer;
 
-/// An effect of a mode, as one of the model. It begins anew each time the mode is entered.
+/// An effect that sees a model with modes as the present mode, in which it makes states. It begins anew each time a mode is entered.
 ///
 /// Only what an effect does after smooth motion is carried over ([`Effect::begin`] and [`Effect::settle`]): the search for
 /// crossings belongs to the model as a whole.
 #[derive(Debug, Clone)]
-pub struct Within<M, E> {
+pub struct InMode<E> {
     effect: E,
-    is_inside: bool,
-    mode: core::marker::PhantomData<M>,
+    /// The mode that the effect has begun in, if it has something to do there.
+    mode: Option<usize>,
 }
 
-impl<M: Mode, E: Effect<M>> Within<M, E> {
-    /// The effect in its mode.
+impl<E> InMode<E> {
+    /// The effect in each mode.
     pub fn new(effect: E) -> Self {
-        Self {
-            effect,
-            is_inside: false,
-            mode: core::marker::PhantomData,
-        }
+        Self { effect, mode: None }
     }
 
-    /// Begins the effect where the mode has been entered.
-    fn enter(&mut self, now: &mut Moment<'_, M::Model>) -> Result<(), Outcome>
+    /// Lets the effect act in a mode.
+    fn inside<S: Declared, T>(
+        &mut self,
+        now: &mut Moment<'_, S>,
+        act: impl FnOnce(&mut E, &mut Moment<'_, S>) -> Result<T, Outcome>,
+    ) -> Result<T, Outcome> {
+        let part = Part::of(now.system, crate::state::StateVector::as_slice(now.state));
+        let here = part.starting_here();
+        let mut inside = Moment {
+            system: &here,
+            t: now.t,
+            state: &mut *now.state,
+            counters: &mut *now.counters,
+        };
+        act(&mut self.effect, &mut inside).map_err(|outcome| part.outcome(outcome))
+    }
+
+    /// Begins the effect where a mode has been entered.
+    fn enter<S: Declared>(&mut self, now: &mut Moment<'_, S>) -> Result<(), Outcome>
     where
-        M::Model: System,
+        E: Effect<S>,
     {
-        let is_inside = index(now.state) == M::INDEX;
-        if is_inside && !self.is_inside {
-            let (mode, mut own) = (M::of(now.system), taken::<M>(now.state));
-            let mut inside = Moment {
-                system: &mode,
-                t: now.t,
-                state: &mut own,
-                counters: &mut *now.counters,
-            };
-            self.effect.begin(&mut inside, &mut ())?;
+        let number = now.system.mode(now.state);
+        if self.mode == Some(number) {
+            return Ok(());
         }
-        self.is_inside = is_inside;
-        Ok(())
+        let drifts = Part::numbered(now.system, number).tables.drifts;
+        self.mode = drifts.then_some(number);
+        match drifts {
+            true => self.inside(now, |effect, inside| effect.begin(inside, &mut ())),
+            false => Ok(()),
+        }
     }
 }
 
-impl<M: Mode, E: Effect<M>> Effect<M::Model> for Within<M, E>
-where
-    M::Model: System,
-{
+impl<S: Declared, E: Effect<S>> Effect<S> for InMode<E> {
     type Forces = NoForces;
 
-    fn begin<O: Observer<M::Model>>(
-        &mut self,
-        now: &mut Moment<'_, M::Model>,
-        _: &mut O,
-    ) -> Result<(), Outcome> {
-        self.is_inside = false;
+    fn begin<O: Observer<S>>(&mut self, now: &mut Moment<'_, S>, _: &mut O) -> Result<(), Outcome> {
+        self.mode = None;
         self.enter(now)
     }
 
     #[inline]
-    fn settle(&mut self, now: &mut Moment<'_, M::Model>, cut: bool) -> Result<Change, Outcome> {
-        if !self.is_inside {
-            return Ok(Change::Kept);
+    fn settle(&mut self, now: &mut Moment<'_, S>, cut: bool) -> Result<Change, Outcome> {
+        match self.mode {
+            None => Ok(Change::Kept),
+            Some(_) => self.inside(now, |effect, inside| effect.settle(inside, cut)),
         }
-        let (mode, mut own) = (M::of(now.system), taken::<M>(now.state));
-        let mut inside = Moment {
-            system: &mode,
-            t: now.t,
-            state: &mut own,
-            counters: &mut *now.counters,
-        };
-        let change = self.effect.settle(&mut inside, cut)?;
-        if change == Change::Changed {
-            *now.state = placed::<M>(&own);
-        }
-        Ok(change)
     }
 
-    fn act<O: Observer<M::Model>>(
+    fn act<O: Observer<S>>(
         &mut self,
         _: f64,
-        now: &mut Moment<'_, M::Model>,
+        now: &mut Moment<'_, S>,
         _: &mut O,
     ) -> Result<(), Outcome> {
         self.enter(now)
     }
 }
 
-impl<M: Mode, E: SceneEffects<M>> SceneEffects<M::Model> for Within<M, E>
-where
-    M::Model: System,
-{
+impl<S: Declared, E: SceneEffects<S>> SceneEffects<S> for InMode<E> {
     fn set_projection(&mut self, on: bool) {
         self.effect.set_projection(on);
     }

@@ -1,18 +1,16 @@
-//! A model with modes: a type for each mode, as for scenes, and one for the whole, which asks the present mode.
+//! A model with modes: a type for each mode, as for scenes, and one for the whole, which asks the kernels of the present mode.
 
-mod contract;
 mod describe;
-mod impacting;
 mod types;
-mod variational;
+mod whole;
 
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use super::kernels::Written;
 use super::{Context, allowances, contexts_of_scene, forms, names};
 use crate::CompiledModes;
-use crate::model::{Mode, ModeGraph, Model};
+use crate::model::{ModeGraph, Model};
 
 /// What every emitter of the whole reads.
 struct Whole<'a> {
@@ -42,15 +40,11 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
     let of_modes = of_modes.map(|contexts| forms(contexts, &[], &mut written));
     let of_modes: Vec<TokenStream> = of_modes.collect();
     let of_whole = [
-        contract::emit_sizes(&whole),
-        contract::emit_modes(&whole),
-        contract::emit_field(&whole),
-        contract::emit_taylor(&whole),
-        contract::emit_system(&whole),
-        impacting::emit_impacting(&whole),
-        variational::emit_modes(&whole),
-        variational::emit_variational(&whole),
-        describe::emit_described(&whole),
+        whole::emit_conversions(&whole),
+        whole::emit_declared(&whole),
+        whole::emit_taylor(&whole),
+        whole::emit_variations(&whole),
+        describe::emit_documented(&whole),
         describe::emit_scene(&whole),
     ];
     quote! {
@@ -83,46 +77,5 @@ impl Whole<'_> {
     /// The contexts of the modes' own forms, in order.
     fn own(&self) -> impl Iterator<Item = &Context<'_>> {
         self.contexts.iter().map(|contexts| &contexts[0])
-    }
-
-    /// What the mode of a number answers: `arm` gives it for each mode.
-    fn of_number(
-        &self,
-        number: &TokenStream,
-        arm: impl Fn(&Mode, &TokenStream) -> TokenStream,
-    ) -> TokenStream {
-        let last = self.graph.modes.len() - 1;
-        let arms = self.graph.modes.iter().zip(self.types()).enumerate();
-        let arms = arms.map(|(index, (mode, own))| {
-            let answer = arm(mode, own);
-            let number = Literal::usize_unsuffixed(index);
-            match index == last {
-                true => quote!(_ => { #answer }),
-                false => quote!(#number => { #answer }),
-            }
-        });
-        quote!(match #number { #(#arms)* })
-    }
-
-    /// What the mode of `state` answers.
-    fn of_state(&self, arm: impl Fn(&Mode, &TokenStream) -> TokenStream) -> TokenStream {
-        self.of_number(&quote!(::dalembert::__private::modes::index(state)), arm)
-    }
-
-    /// The same of what only modes with surfaces answer.
-    fn of_surfaces(
-        &self,
-        without: &TokenStream,
-        arm: impl Fn(&TokenStream) -> TokenStream,
-    ) -> TokenStream {
-        self.of_state(|mode, own| match mode.model.surfaces.is_empty() {
-            true => without.clone(),
-            false => arm(own),
-        })
-    }
-
-    /// What the mode answers in which states are made.
-    fn of_start(&self, arm: impl Fn(&Mode, &TokenStream) -> TokenStream) -> TokenStream {
-        self.of_number(&quote!(self.mode as usize), arm)
     }
 }

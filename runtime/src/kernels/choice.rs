@@ -1,0 +1,53 @@
+//! The kernels of several modes, of which a number chooses one.
+
+use core::marker::PhantomData;
+
+use super::{Given, Kernels, NoKernels};
+
+/// Kernels that are chosen by a place in a list.
+pub trait Chosen: Kernels {
+    /// Those at this place; [`NoKernels`] past the end.
+    fn at(place: usize) -> Self;
+}
+
+impl Chosen for NoKernels {
+    #[inline(always)]
+    fn at(_: usize) -> Self {
+        Self
+    }
+}
+
+/// The kernels `A` at place 0, those of `B` from place 1 on: `Choice<A, Choice<B, NoKernels>>`.
+#[derive(Debug, Clone, Copy)]
+pub struct Choice<A, B> {
+    place: usize,
+    list: PhantomData<(A, B)>,
+}
+
+impl<A, B: Chosen> Choice<A, B> {
+    /// The kernels behind the first, if one of them is chosen.
+    #[inline(always)]
+    pub(super) fn others(&self) -> Option<B> {
+        self.place.checked_sub(1).map(B::at)
+    }
+}
+
+impl<A: Given, B: Chosen> Chosen for Choice<A, B> {
+    #[inline(always)]
+    fn at(place: usize) -> Self {
+        Self {
+            place,
+            list: PhantomData,
+        }
+    }
+}
+
+// NOTE: as a form's own kernels they are none: those of its modes are asked for by place.
+impl<A: Given, B: Chosen> Given for Choice<A, B> {
+    const GIVEN: Self = Self {
+        place: usize::MAX,
+        list: PhantomData,
+    };
+
+    const IS_NONE: bool = true;
+}

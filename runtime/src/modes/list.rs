@@ -1,0 +1,256 @@
+//! The modes of a declared model, by their types.
+
+use super::series::{self, Expansion, Lengths};
+use crate::contract::{RankDrop, TaylorField};
+use crate::describe::{Instance, Report};
+use crate::error::Fault;
+use crate::jet::{Jets, LENGTH, Work};
+use crate::kernels::{Declared, Documented, Mode, Part};
+use crate::numbers::{Numbers, Row};
+use crate::state::StateVector;
+
+/// The types of the modes of a model `W`, in order: `(First, (Second, ()))`. What a mode does as a system of its own is asked here by its
+/// number.
+pub trait ModeList<W> {
+    /// Room for the coefficients of intermediate values of all modes.
+    type Jets<L: Numbers>: Jets;
+
+    /// What expansions take at most, in whatever mode.
+    fn work(whole: &W) -> Option<Work>;
+
+    /// As [`TaylorField::begin`], of every mode that some lane is in. `number` is that of the first of `modes`.
+    ///
+    /// # Errors
+    /// Those of the modes.
+    fn begin<L: Numbers>(
+        whole: &W,
+        modes: (usize, &[Mode]),
+        lengths: Lengths,
+        at: (&[L], L, &[L]),
+        firsts: &mut [L],
+    ) -> Result<(), Fault>;
+
+    /// As [`TaylorField::advance`], of every mode that some lane is in.
+    fn advance<L: Numbers, R: Row<L>, G: Row<L>>(
+        whole: &W,
+        modes: (usize, &[Mode]),
+        expansion: Expansion<'_, L>,
+        coefficients: &mut [R; LENGTH],
+        gaps: &mut [G; LENGTH],
+        jets: &mut Self::Jets<L>,
+    );
+
+    /// As [`Instance::inspect`], of a state of a mode.
+    ///
+    /// # Errors
+    /// Those of the mode.
+    fn inspect(
+        whole: &W,
+        mode: usize,
+        t: f64,
+        state: &[f64],
+        report: &mut dyn Report,
+    ) -> Result<(), Fault>;
+
+    /// As [`System::rank_drop`](crate::System::rank_drop), along motion in a mode.
+    fn rank_drop<V: StateVector>(
+        whole: &W,
+        mode: usize,
+        motion: &dyn Fn(f64) -> (f64, V),
+        reach: f64,
+    ) -> Option<RankDrop>;
+}
+
+impl<W> ModeList<W> for () {
+    type Jets<L: Numbers> = ();
+
+    fn work(_: &W) -> Option<Work> {
+        Some(Work {
+            values: 0,
+            sums: 0,
+            degree: Some(0),
+        })
+    }
+
+    fn begin<L: Numbers>(
+        _: &W,
+        _: (usize, &[Mode]),
+        _: Lengths,
+        _: (&[L], L, &[L]),
+        _: &mut [L],
+    ) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn advance<L: Numbers, R: Row<L>, G: Row<L>>(
+        _: &W,
+        _: (usize, &[Mode]),
+        _: Expansion<'_, L>,
+        _: &mut [R; LENGTH],
+        _: &mut [G; LENGTH],
+        (): &mut (),
+    ) {
+    }
+
+    fn inspect(_: &W, _: usize, _: f64, _: &[f64], _: &mut dyn Report) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn rank_drop<V: StateVector>(
+        _: &W,
+        _: usize,
+        _: &dyn Fn(f64) -> (f64, V),
+        _: f64,
+    ) -> Option<RankDrop> {
+        None
+    }
+}
+
+impl<
+    W: Copy,
+    M: Documented + TaylorField<State = <M as Declared>::State> + From<W>,
+    Rest: ModeList<W>,
+> ModeList<W> for (M, Rest)
+{
+    type Jets<L: Numbers> = (<M as TaylorField>::Jets<L>, Rest::Jets<L>);
+
+    fn work(whole: &W) -> Option<Work> {
+        series::most(M::from(*whole).work(), Rest::work(whole))
+    }
+
+    #[inline]
+    fn begin<L: Numbers>(
+        whole: &W,
+        (number, modes): (usize, &[Mode]),
+        lengths: Lengths,
+        at: (&[L], L, &[L]),
+        firsts: &mut [L],
+    ) -> Result<(), Fault> {
+        let Some((mode, others)) = modes.split_first() else {
+            return Ok(());
+        };
+        begin::<W, M, L>(whole, (number, mode), lengths, at, firsts)?;
+        Rest::begin(whole, (number + 1, others), lengths, at, firsts)
+    }
+
+    #[inline]
+    fn advance<L: Numbers, R: Row<L>, G: Row<L>>(
+        whole: &W,
+        (number, modes): (usize, &[Mode]),
+        expansion: Expansion<'_, L>,
+        coefficients: &mut [R; LENGTH],
+        gaps: &mut [G; LENGTH],
+        (jets, other_jets): &mut Self::Jets<L>,
+    ) {
+        let Some((mode, others)) = modes.split_first() else {
+            return;
+        };
+        advance::<W, M, L, R, G>(whole, (number, mode), expansion, coefficients, gaps, jets);
+        let rest = (number + 1, others);
+        Rest::advance(whole, rest, expansion, coefficients, gaps, other_jets);
+    }
+
+    fn inspect(
+        whole: &W,
+        mode: usize,
+        t: f64,
+        state: &[f64],
+        report: &mut dyn Report,
+    ) -> Result<(), Fault> {
+        match mode.checked_sub(1) {
+            Some(mode) => Rest::inspect(whole, mode, t, state, report),
+            None => {
+                let own = M::from(*whole);
+                let state = own_state(&own, state);
+                Instance::inspect(&own, t, &state, report)
+            }
+        }
+    }
+
+    fn rank_drop<V: StateVector>(
+        whole: &W,
+        mode: usize,
+        motion: &dyn Fn(f64) -> (f64, V),
+        reach: f64,
+    ) -> Option<RankDrop> {
+        if let Some(mode) = mode.checked_sub(1) {
+            return Rest::rank_drop(whole, mode, motion, reach);
+        }
+        let own = M::from(*whole);
+        let along = |theta: f64| {
+            let (t, state) = motion(theta);
+            (t, own_state(&own, state.as_slice()))
+        };
+        own.rank_drop_along(along, reach)
+    }
+}
+
+/// The state of a mode at the beginning of one of the model.
+fn own_state<M: Declared>(mode: &M, state: &[f64]) -> <M as Declared>::State {
+    <M as Declared>::State::of(&state[..mode.tables().dimensions.state])
+}
+
+// NOTE: no mode's series is inlined into those of the whole: with many modes one function would hold all of them, and compilers
+// take minutes over it.
+#[inline(never)]
+fn begin<
+    W: Copy,
+    M: Documented + TaylorField<State = <M as Declared>::State> + From<W>,
+    L: Numbers,
+>(
+    whole: &W,
+    mode: (usize, &Mode),
+    lengths: Lengths,
+    at: (&[L], L, &[L]),
+    firsts: &mut [L],
+) -> Result<(), Fault> {
+    let own = M::from(*whole);
+    let known = own.firsts_len();
+    series::begin::<L, M::Parameters<L>, M::Row<L>, M::Firsts<L>>(
+        (mode, known),
+        lengths,
+        at,
+        firsts,
+        |parameters, t, state, firsts| own.begin(parameters, t, state, firsts),
+    )
+}
+
+#[inline(never)]
+fn advance<
+    W: Copy,
+    M: Documented + TaylorField<State = <M as Declared>::State> + From<W>,
+    L: Numbers,
+    R: Row<L>,
+    G: Row<L>,
+>(
+    whole: &W,
+    mode: (usize, &Mode),
+    expansion: Expansion<'_, L>,
+    coefficients: &mut [R; LENGTH],
+    gaps: &mut [G; LENGTH],
+    jets: &mut M::Jets<L>,
+) {
+    let own = M::from(*whole);
+    let known = own.firsts_len();
+    let order = expansion.order;
+    series::advance::<L, M::Parameters<L>, M::Firsts<L>, _, _, _, _>(
+        (mode, known),
+        expansion,
+        (coefficients, gaps),
+        |parameters, unit, firsts, state, own_gaps: &mut [<M as TaylorField>::Gaps<L>; LENGTH]| {
+            own.advance(parameters, unit, order, firsts, state, own_gaps, jets);
+        },
+    );
+}
+
+/// As [`System::rank_drop`](crate::System::rank_drop), of a model with these modes.
+pub fn rank_drop<W: Declared, List: ModeList<W>>(
+    whole: &W,
+    motion: impl Fn(f64) -> (f64, W::State),
+    reach: f64,
+) -> Option<RankDrop> {
+    let (_, state) = motion(0.0);
+    let part = Part::of(whole, state.as_slice());
+    let drop = List::rank_drop(whole, part.number(), &motion, reach)?;
+    Some(part.rank_drop(drop))
+}
