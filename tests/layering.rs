@@ -107,10 +107,11 @@ fn a_stage_uses_only_those_to_its_left() {
 }
 
 /// The modules of the runtime, each after those it uses.
-const RUNTIME: [&str; 36] = [
+const RUNTIME: [&str; 37] = [
     "assumption",
     "error",
     "state",
+    "per_surface",
     "jet",
     "linalg",
     "policy",

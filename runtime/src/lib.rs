@@ -142,6 +142,7 @@ pub mod modes;
 mod narrow;
 mod nearest;
 pub mod outcome;
+mod per_surface;
 pub mod policy;
 pub mod projection;
 mod quadrature;

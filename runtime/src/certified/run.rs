@@ -10,10 +10,10 @@ use super::lost::{Lost, Reason};
 use super::series::Field;
 use crate::contract::{Impacting, Variational};
 use crate::error::Fault;
-use crate::impacts::per_surface::PerSurface;
 use crate::integrate::controller::least_step;
 use crate::law::Law;
 use crate::numbers::{Interval, Row};
+use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 use crate::variations::transition::Strike;
 

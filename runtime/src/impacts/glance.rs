@@ -10,11 +10,17 @@ use crate::state::StateVector;
 /// Times closer than this many units in the last place are the same time.
 pub(super) const SAME_TIME: f64 = 4.0 * f64::EPSILON;
 
+/// A closer look: rates at the end of the step, and the gaps as polynomials where the step is one.
+struct Close<G> {
+    rates: G,
+    series: Option<GapSeries<G>>,
+}
+
 /// Gaps at the end of the step, and what a closer look shows.
 pub(super) struct Glance<G> {
     pub(super) gaps: G,
-    /// Rates at the end, and the gaps as polynomials where the step is one; most steps need neither.
-    close: Option<(G, Option<GapSeries<G>>)>,
+    /// The closer look; most steps need none.
+    close: Option<Close<G>>,
     has_series: bool,
     /// Length of the step, and the larger of the absolute values of its times.
     pub(super) length: f64,
@@ -27,50 +33,51 @@ impl<G: StateVector> Glance<G> {
         self.length <= SAME_TIME * self.latest
     }
 
-    /// Looks closer, unless that is done.
+    /// Looks closer, unless that is done. Returns the rates at the end.
     #[inline(always)]
     pub(super) fn look_closer<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         &mut self,
         step: &StepView<'_, Sys, Step>,
-    ) -> Result<(), Outcome> {
-        if self.close.is_none() {
-            let series = match self.has_series {
-                true => GapSeries::of(step, &self.gaps),
-                false => None,
-            };
-            let rates = match &series {
-                Some(series) => series.last_rates(self.length),
-                None => step.system.gap_rates(step.t_end(), step.end())?,
-            };
-            self.close = Some((rates, series));
+    ) -> Result<G, Outcome> {
+        if let Some(rates) = self.rates() {
+            return Ok(*rates);
         }
-        Ok(())
+        let series = match self.has_series {
+            true => GapSeries::of(step, &self.gaps),
+            false => None,
+        };
+        let rates = match &series {
+            Some(series) => series.last_rates(self.length),
+            None => step.system.gap_rates(step.t_end(), step.end())?,
+        };
+        self.close = Some(Close { rates, series });
+        Ok(rates)
     }
 
     /// The rates at the end; none without a closer look.
     #[inline(always)]
     pub(super) fn rates(&self) -> Option<&G> {
-        self.close.as_ref().map(|(rates, _)| rates)
+        self.close.as_ref().map(|close| &close.rates)
     }
 
-    /// The rate of a gap at the end, after a closer look.
+    /// The rate of a gap at the end; none without a closer look.
     #[inline(always)]
-    pub(super) fn rate(&self, surface: usize) -> f64 {
-        self.rates()
-            .map_or(f64::NAN, |rates| rates.as_slice()[surface])
+    pub(super) fn rate(&self, surface: usize) -> Option<f64> {
+        self.rates().map(|rates| rates.as_slice()[surface])
     }
 
     /// The gaps as polynomials, after a closer look, where the step is one.
     #[inline(always)]
     pub(super) fn series(&self) -> Option<&GapSeries<G>> {
-        self.close.as_ref().and_then(|(_, series)| series.as_ref())
+        self.close.as_ref()?.series.as_ref()
     }
 
     /// The gap vanishes at the end of the step as far as times can tell.
     #[inline(always)]
     pub(super) fn is_due(&self, surface: usize) -> bool {
-        let (gap, rate) = (self.gaps.as_slice()[surface], self.rate(surface));
-        rate < 0.0 && gap >= 0.0 && gap <= SAME_TIME * self.latest * -rate
+        let gap = self.gaps.as_slice()[surface];
+        self.rate(surface)
+            .is_some_and(|rate| rate < 0.0 && gap >= 0.0 && gap <= SAME_TIME * self.latest * -rate)
     }
 }
 

@@ -6,6 +6,7 @@
 //! `sqrt(c f)` with `1/sqrt(c)` the mean growth of `1/sqrt(f_n)`.
 
 use crate::math;
+use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
 /// Flights shorter than this many units in the last place of the time are too short to tell the next ones: where they hardly
@@ -22,117 +23,141 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 const SHRUNK: f64 = 1.0 / 1024.0;
 
 /// Flights that must have shrunk in a row before the first is kept.
-const FIRST: f64 = 3.0;
+const FIRST: u64 = 3;
 
 /// Part of the energy that it must have grown by.
 const GROWN: f64 = 1.0 / (1 << 20) as f64;
 
-/// Per surface, flights that shrink in a row: how many, three of them, and the energy at the first.
+/// Per surface, flights that shrink in a row.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Growth<V> {
-    counts: V,
-    firsts: V,
+pub(super) struct Growth<G: StateVector>(PerSurface<Series, G>);
+
+/// Flights on one surface that shrink in a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Series {
+    /// Number of the last one.
+    count: u64,
+    /// The flight of number [`FIRST`], and the energy after it where there is one.
+    first: Option<(Flight, Option<f64>)>,
     /// The last flight whose number is a power of two, and the one before.
-    marks: [V; 2],
-    energies: V,
+    marks: [Option<Flight>; 2],
 }
 
 /// A flight of a series.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Flight {
-    number: f64,
+    number: u64,
     length: f64,
 }
 
-impl<V: StateVector> Growth<V> {
-    pub(super) fn none(like: &V) -> Self {
-        let zeros = like.zeroed();
-        Self {
-            counts: zeros,
-            firsts: zeros,
-            marks: [zeros; 2],
-            energies: zeros,
-        }
+impl<G: StateVector> Growth<G> {
+    /// No flights yet, on as many surfaces as there are components here.
+    pub(super) fn none(like: &G) -> Self {
+        Self(PerSurface::all(like, Series::ENDLESS))
     }
 
     /// No flight has ended on this surface.
     pub(super) fn forget(&mut self, surface: usize) {
-        self.counts.as_mut_slice()[surface] = 0.0;
+        self.0[surface] = Series::ENDLESS;
     }
 
-    /// Takes in a flight that ends at `t`, and the one before. Returns the time of accumulation, if flights have become
-    /// too short to be told while the energy grew. `energy` is that of the motion, or what takes its place.
+    /// Takes in a flight that ends at `t`, with the length of the one before it on this surface. Returns the time of accumulation, if
+    /// flights have become too short to be told while the energy grew. `energy` is that of the motion, or what takes its place.
     pub(super) fn add(
         &mut self,
         surface: usize,
         t: f64,
-        [before, flight]: [f64; 2],
-        energy: impl FnOnce() -> f64,
+        before: Option<f64>,
+        length: f64,
+        energy: impl FnOnce() -> Option<f64>,
     ) -> Option<f64> {
-        let count = &mut self.counts.as_mut_slice()[surface];
+        self.0[surface].add(t, before, length, energy)
+    }
+}
+
+impl Series {
+    /// No flight.
+    const NONE: Self = Self {
+        count: 0,
+        first: None,
+        marks: [None; 2],
+    };
+
+    /// The time before the first impact, which counts as a flight longer than all others.
+    const ENDLESS: Self = Self {
+        count: 1,
+        ..Self::NONE
+    };
+
+    /// As [`Growth::add`].
+    fn add(
+        &mut self,
+        t: f64,
+        before: Option<f64>,
+        length: f64,
+        energy: impl FnOnce() -> Option<f64>,
+    ) -> Option<f64> {
         // Times are rounded: flights may seem to grow by that much.
-        let shrinks = flight <= before + ROUNDED * t.abs();
+        let shrinks = before.is_none_or(|before| length <= before + ROUNDED * t.abs());
         if !shrinks {
-            *count = 0.0;
+            *self = Self::NONE;
             return None;
         }
-        *count += 1.0;
-        let count = *count;
-        if (count as u64).is_power_of_two() {
-            let last = self.marks[0].as_slice()[surface];
-            self.marks[1].as_mut_slice()[surface] = last;
-            self.marks[0].as_mut_slice()[surface] = flight;
-        }
-        if count == FIRST {
-            self.firsts.as_mut_slice()[surface] = flight;
-            self.energies.as_mut_slice()[surface] = energy();
+        let last = self.count(length);
+        if last.number == FIRST {
+            self.first = Some((last, energy()));
             return None;
         }
-        let first = self.firsts.as_slice()[surface];
-        let resolved = RESOLVED[usize::from(flight < QUICK * before)] * t.abs();
-        if count > FIRST && flight <= resolved && flight < SHRUNK * first {
-            let grown = energy();
-            let first = self.energies.as_slice()[surface];
-            let is_growth = grown - first > GROWN * grown.abs().max(first.abs());
-            return is_growth.then(|| t + self.rest(surface, before, flight));
+        let ((first, first_energy), before) = self.first.zip(before)?;
+        let resolved = RESOLVED[usize::from(length < QUICK * before)] * t.abs();
+        if length <= resolved && length < SHRUNK * first.length {
+            let has_grown = has_grown(first_energy, energy());
+            return has_grown.then(|| t + self.rest(first, before, last));
         }
         None
     }
 
-    /// The time that all further flights take.
-    fn rest(&self, surface: usize, before: f64, flight: f64) -> f64 {
-        let count = self.counts.as_slice()[surface];
-        let first = Flight {
-            number: FIRST,
-            length: self.firsts.as_slice()[surface],
-        };
+    /// Counts a flight that shrank.
+    fn count(&mut self, length: f64) -> Flight {
+        self.count += 1;
         let last = Flight {
-            number: count,
-            length: flight,
+            number: self.count,
+            length,
         };
-        // The mark that is nearer to the middle: the last power of two is within a half of the end.
-        let power = power_of_two_to(count);
-        let middle = Flight {
-            number: 0.5 * power,
-            length: self.marks[1].as_slice()[surface],
-        };
-        if middle.number > FIRST && algebraic_fits(first, middle, last) {
-            let growth = (inverse_root(last.length) - inverse_root(first.length))
-                / (last.number - first.number);
-            return math::sqrt(flight) / growth;
+        if last.number.is_power_of_two() {
+            self.marks = [Some(last), self.marks[0]];
         }
-        let ratio = flight / before;
-        flight * ratio / (1.0 - ratio)
+        last
+    }
+
+    /// The time that all further flights take.
+    fn rest(&self, first: Flight, before: f64, last: Flight) -> f64 {
+        // The mark that is nearer to the middle: the last power of two is within a half of the end.
+        if let Some(middle) = self.marks[1]
+            && middle.number > FIRST
+            && algebraic_fits(first, middle, last)
+        {
+            let growth = (inverse_root(last.length) - inverse_root(first.length))
+                / last.flights_since(first);
+            return math::sqrt(last.length) / growth;
+        }
+        let ratio = last.length / before;
+        last.length * ratio / (1.0 - ratio)
     }
 }
 
-/// The largest power of two that is not larger.
-fn power_of_two_to(count: f64) -> f64 {
-    let mut power = 1.0;
-    while 2.0 * power <= count {
-        power *= 2.0;
+impl Flight {
+    /// Number of flights from an earlier one to this.
+    fn flights_since(self, earlier: Self) -> f64 {
+        (self.number - earlier.number) as f64
     }
-    power
+}
+
+/// True if the energy has grown; false where it is not known.
+fn has_grown(first: Option<f64>, last: Option<f64>) -> bool {
+    first
+        .zip(last)
+        .is_some_and(|(first, last)| last - first > GROWN * last.abs().max(first.abs()))
 }
 
 fn inverse_root(x: f64) -> f64 {
@@ -141,7 +166,7 @@ fn inverse_root(x: f64) -> f64 {
 
 /// Whether `1/sqrt(f)` is nearer to a line than `ln f` is.
 fn algebraic_fits(first: Flight, middle: Flight, last: Flight) -> bool {
-    let share = (middle.number - first.number) / (last.number - first.number);
+    let share = middle.flights_since(first) / last.flights_since(first);
     let between = |value: fn(f64) -> f64| {
         let (low, high) = (value(first.length), value(last.length));
         ((value(middle.length) - low) / (high - low) - share).abs()
@@ -156,15 +181,15 @@ mod tests {
     /// When flights end that shrink as `length` says.
     fn end(length: impl Fn(u32) -> f64) -> Option<f64> {
         let mut growth = Growth::none(&nalgebra::SVector::<f64, 1>::zeros());
-        let (mut t, mut before) = (0.0, f64::INFINITY);
+        let (mut t, mut before) = (0.0, None);
         for n in 1..20_000_000 {
             let flight = length(n);
             t += flight;
-            let found = growth.add(0, t, [before, flight], || f64::from(n));
+            let found = growth.add(0, t, before, flight, || Some(f64::from(n)));
             if found.is_some() {
                 return found;
             }
-            before = flight;
+            before = Some(flight);
         }
         None
     }
@@ -193,8 +218,8 @@ mod tests {
         };
         let mut growth = Growth::none(&nalgebra::SVector::<f64, 1>::zeros());
         for n in 1..2000 {
-            let flights = [cusp(n - 1), cusp(n)];
-            assert_eq!(growth.add(0, 1e9, flights, || 1.0), None);
+            let before = Some(cusp(n - 1));
+            assert_eq!(growth.add(0, 1e9, before, cusp(n), || Some(1.0)), None);
         }
     }
 }

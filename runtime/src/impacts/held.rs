@@ -15,12 +15,12 @@
 //! the surfaces push within them, and one surface of those held has some at most ([`super::resting`]).
 
 use super::instantaneous::{focused, is_rough};
-use super::per_surface::PerSurface;
 use super::sliding::Slide;
 use crate::contract::Impacting;
 use crate::effects::{Change, Moment};
 use crate::error::Fault;
 use crate::forces::Forces;
+use crate::per_surface::PerSurface;
 use crate::state::{StateVector, scaled};
 
 /// Part of the right-hand side that is let be: rounding.

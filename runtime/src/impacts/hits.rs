@@ -4,7 +4,7 @@
 //! approached, and so on. So a wave of impacts passes through bodies that touch as it does through small gaps, if every
 //! gap takes equally long.
 
-use super::per_surface::PerSurface;
+use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
 /// The order in which the surfaces of one round are struck.
@@ -151,17 +151,15 @@ impl<G: StateVector> Hits<G> {
         }
     }
 
-    /// From now on, gap rates above `-rate` count as not approaching. Returns what counts as that now.
-    pub(super) fn set_still(&mut self, surface: usize, rate: f64) -> f64 {
-        let still = &mut self.still[surface];
-        match still {
-            Still::UpTo(before) => *before = before.max(rate),
-            Still::Fallen => *still = Still::UpTo(rate),
-            Still::Done => {}
-        }
-        match *still {
-            Still::UpTo(rate) => rate,
-            Still::Fallen | Still::Done => f64::INFINITY,
-        }
+    /// From now on, gap rates above `-rate` count as not approaching. Returns the largest such `rate` so far; `None` of a surface that
+    /// was dealt with.
+    pub(super) fn set_still(&mut self, surface: usize, rate: f64) -> Option<f64> {
+        let rate = match self.still[surface] {
+            Still::UpTo(before) => before.max(rate),
+            Still::Fallen => rate,
+            Still::Done => return None,
+        };
+        self.still[surface] = Still::UpTo(rate);
+        Some(rate)
     }
 }

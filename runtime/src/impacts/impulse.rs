@@ -7,7 +7,6 @@ use super::corner::Recurrence;
 use super::held::Held;
 use super::hits::Hits;
 use super::instantaneous::focused;
-use super::per_surface::PerSurface;
 use super::resting::Resting;
 use super::sliding::Slide;
 use super::watch::Watch;
@@ -18,6 +17,7 @@ use crate::error::Fault;
 use crate::integrate::Stepper;
 use crate::law::{Blow, Law};
 use crate::outcome::Outcome;
+use crate::per_surface::PerSurface;
 use crate::policy::{Penetration, Policies, Rest, Split};
 use crate::record::{Event, Observer};
 use crate::state::StateVector;
@@ -212,7 +212,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                 if self.watch.is_tangential_crossing(surface) {
                     return Err(Outcome::TangentialCrossing { surface });
                 }
-                still = hits.set_still(surface, still);
+                still = hits.set_still(surface, still).unwrap_or(still);
             }
             let strike = Strike {
                 surface,
@@ -446,9 +446,9 @@ impl<Sys: Impacting> Impacts<Sys> {
         let may_rest = self.may_rest(surface);
         // A first-order system has no energy: whether its motion becomes faster is told by the rate it leaves the surface at.
         let energy = || match system.energy(t, &struck.after) {
-            Ok(energy) => energy,
-            Err(Fault::FirstOrder) => rate_after * rate_after,
-            Err(_) => f64::NAN,
+            Ok(energy) => Some(energy),
+            Err(Fault::FirstOrder) => Some(rate_after * rate_after),
+            Err(_) => None,
         };
         let watch = &self.watch;
         let rounding = || watch.rounding(surface, now);

@@ -1,17 +1,20 @@
 //! Impacts: the effect that finds them and carries them out.
 
 mod accumulation;
+mod coincident;
 mod corner;
 mod fall;
 mod glance;
 mod growth;
 mod held;
 mod hits;
+mod hops;
 mod impulse;
 mod instantaneous;
-pub(crate) mod per_surface;
+mod passing;
 mod place;
 mod release;
+mod repeats;
 mod resting;
 mod root;
 mod search;

@@ -8,13 +8,14 @@ use core::ops::ControlFlow;
 use super::held::Held;
 use super::hits::Hits;
 use super::instantaneous::is_rough;
-use super::per_surface::PerSurface;
 use super::release::first_release;
+use super::repeats::Repeats;
 use super::sliding::Slide;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
+use crate::per_surface::PerSurface;
 use crate::record::{Hold, Observer};
 use crate::state::StateVector;
 
@@ -41,8 +42,8 @@ pub(super) struct Resting<G: StateVector> {
     turn: Turn,
     /// When impacts on a surface accumulated, until that is told.
     accumulated: PerSurface<Option<f64>, G>,
-    /// When surfaces were last changed, and how often at that time.
-    changed: (f64, u32),
+    /// Changes of surfaces at one time.
+    changes: Repeats,
 }
 
 impl<G: StateVector> Resting<G> {
@@ -52,7 +53,7 @@ impl<G: StateVector> Resting<G> {
             held: Held::none(like),
             turn: Turn::Nothing,
             accumulated: PerSurface::all(like, None),
-            changed: (f64::NEG_INFINITY, 0),
+            changes: Repeats::none(),
         }
     }
 
@@ -82,9 +83,7 @@ impl<G: StateVector> Resting<G> {
 
     /// Ends the run where surfaces are changed again and again at one time.
     fn count(&mut self, surface: usize, t: f64) -> Result<(), Outcome> {
-        let (last, times) = self.changed;
-        self.changed = (t, if t == last { times + 1 } else { 0 });
-        if self.changed.1 > CHANGES * (self.accumulated.count() as u32 + 1) {
+        if self.changes.add(t) > CHANGES * (self.accumulated.count() as u32 + 1) {
             return Err(Outcome::Contact { surface });
         }
         Ok(())

@@ -35,12 +35,13 @@ enum Found {
 }
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Looks for the earliest hit along the dense output. `first` is the first surface that is not clear, with its gap on the whole step
-    /// where that is known.
+    /// Looks for the earliest hit along the dense output. `last_rates` are the gap rates at the end of the step, `first` is the first
+    /// surface that is not clear, with its gap on the whole step where that is known.
     pub(super) fn search<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
+        last_rates: &Sys::Gaps,
         (first, mut whole): (usize, Option<TaylorModel>),
     ) -> Result<(), Outcome> {
         if self.path.refine(step)? {
@@ -55,6 +56,7 @@ impl<Sys: Impacting> Watch<Sys> {
                     Told::Unclear(model) => whole = model,
                 }
             }
+            let last_rate = last_rates.as_slice()[surface];
             let (part, rate) = match self.first_hit(surface, step, glance, whole)? {
                 Found::Hit(part, rate) => (part, Some(rate)),
                 // Gaps that cannot be told however short the step is: it would be cut again and again where it begins.
@@ -63,13 +65,13 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
                 Found::Unfinished(part) => (part, None),
                 Found::Nothing if glance.is_due(surface) && is_active(surface, step, 1.0) => {
-                    (1.0, Some(glance.rate(surface)))
+                    (1.0, Some(last_rate))
                 }
                 Found::Nothing => continue,
             };
             if let Some(rate) = rate {
                 self.parts[surface] = Some(part);
-                self.note_graze(surface, part, rate, step, glance)?;
+                self.note_graze(surface, part, [rate, last_rate], step)?;
             }
             self.proposed = Some(self.proposed.map_or(part, |earliest| earliest.min(part)));
         }
@@ -242,16 +244,16 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Marks a hit so slow that the gap's lowest value would be within its rounding, or within what the integrator may err by.
+    /// Marks a hit so slow that the gap's lowest value would be within its rounding, or within what the integrator may err by. `rate` is
+    /// the gap rate there, `last` that at the end of the step.
     fn note_graze<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
         part: f64,
-        rate: f64,
+        [rate, last]: [f64; 2],
         step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
     ) -> Result<(), Outcome> {
-        let ends = [self.rates.as_slice()[surface], glance.rate(surface)];
+        let ends = [self.rates.as_slice()[surface], last];
         // The change of the rate per part of the step, forwards.
         let (change, apart) = if part > 0.5 {
             (rate - ends[0], part)
@@ -298,7 +300,8 @@ impl<Sys: Impacting> Watch<Sys> {
         let mut evaluations = 0;
         let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
         step.counters.event_evaluations += evaluations;
-        glance.rate(surface) * glance.length < -rounding
+        let is_falling = |rate: f64| rate * glance.length < -rounding;
+        glance.rate(surface).is_some_and(is_falling)
     }
 
     /// Whether the gap is negative at the end of the step, by more than rounding: a motion along a wall falls and rises

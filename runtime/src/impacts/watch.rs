@@ -10,7 +10,6 @@
 use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::Held;
 use super::hits::Hits;
-use super::per_surface::PerSurface;
 use super::place::Place;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
@@ -24,6 +23,7 @@ use crate::integrate::Stepper;
 use crate::law::Law;
 use crate::numbers::TaylorModel;
 use crate::outcome::Outcome;
+use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
 /// Only a surface that is hit within this part of a step after another is asked for its rounding.
@@ -397,12 +397,12 @@ impl<Sys: Impacting> Watch<Sys> {
         });
         self.limits.learn(has_told);
         if let Some(first) = unclear {
-            glance.look_closer(step)?;
+            let last_rates = glance.look_closer(step)?;
             if !self.has_rates {
                 self.rates = step.system.gap_rates(step.t_start(), step.start())?;
                 self.has_rates = true;
             }
-            self.search(step, &glance, first)?;
+            self.search(step, &glance, &last_rates, first)?;
         }
         if self.proposed.is_none() {
             self.pass(step, &mut glance)?;

@@ -1,0 +1,171 @@
+//! Hops on one surface: flights that shrink from one impact to the next, and the time at which they end.
+
+use super::accumulation::Bounce;
+
+/// Flights that must have shrunk in a row before their height is asked about.
+pub(super) const SHRUNK: u32 = 3;
+
+/// One flight suffices that begins with less than this part of the rate of the one before.
+const STEEP: f64 = 0.125;
+
+/// The impacts on one surface that the motion bounced off from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Hops {
+    last: Option<Impact>,
+    end: Option<Estimate>,
+}
+
+/// An impact, and the flight that it ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Impact {
+    t: f64,
+    /// Gap rate after it.
+    rate: f64,
+    /// Length of the flight; `None` at the first impact.
+    length: Option<f64>,
+    /// Number of flights in a row, this one the last, that were shorter than the one before.
+    shrunk: u32,
+}
+
+/// A flight between two impacts on one surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Flight {
+    pub(super) length: f64,
+    /// Length of the flight before; `None` of the first.
+    pub(super) before: Option<f64>,
+    /// Gap rates that it and the next flight begin with.
+    rates: [f64; 2],
+    /// Number of flights in a row, this one the last, that were shorter than the one before.
+    shrunk: u32,
+}
+
+/// The time at which hops end, from guesses that take them for a geometric series.
+///
+/// Its sum is a bad guess as long as the factor of the gap rates still changes, and again when the flights are made of rounding errors;
+/// in between successive guesses are closest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Estimate {
+    /// The last guess.
+    last: f64,
+    best: f64,
+    /// Distance of the best guess from the guess before it; `None` of the first.
+    spread: Option<f64>,
+}
+
+/// True if a length is less than the one before, or the first.
+pub(super) fn is_shorter(length: f64, before: Option<f64>) -> bool {
+    before.is_none_or(|before| length < before)
+}
+
+impl Hops {
+    pub(super) const NONE: Self = Self {
+        last: None,
+        end: None,
+    };
+
+    /// Takes in an impact. Returns the flight that it ended; `None` if it is the first, or struck again at the same moment.
+    pub(super) fn land(&mut self, bounce: Bounce) -> Option<Flight> {
+        let Bounce {
+            t,
+            rates: [_, rate],
+            again,
+            ..
+        } = bounce;
+        if again {
+            if let Some(last) = &mut self.last {
+                last.rate = rate;
+            }
+            return None;
+        }
+        let flight = self.last.map(|last| last.flight(t, rate));
+        self.end = match flight {
+            Some(flight) if flight.shrunk > 0 => Estimate::refined(self.end, flight.end(t)),
+            _ => None,
+        };
+        self.last = Some(Impact {
+            t,
+            rate,
+            length: flight.map(|flight| flight.length),
+            shrunk: flight.map_or(0, |flight| flight.shrunk),
+        });
+        flight
+    }
+
+    /// True if the last impact was at `t`, and the motion rose from it.
+    pub(super) fn has_bounced_at(&self, t: f64) -> bool {
+        self.last.is_some_and(|last| last.t == t && last.rate > 0.0)
+    }
+
+    /// The time at which the hops end, not before the last impact at `t`.
+    pub(super) fn end(&self, t: f64) -> f64 {
+        self.end.map_or(t, |end| end.best.max(t))
+    }
+}
+
+impl Impact {
+    /// The flight from here to the next impact, at `t`, after which the gap rate is `rate`.
+    fn flight(self, t: f64, rate: f64) -> Flight {
+        let length = t - self.t;
+        let shrunk = match is_shorter(length, self.length) {
+            true if rate < STEEP * self.rate => SHRUNK + 1,
+            true => self.shrunk.saturating_add(1),
+            false => 0,
+        };
+        Flight {
+            length,
+            before: self.length,
+            rates: [self.rate, rate],
+            shrunk,
+        }
+    }
+}
+
+impl Flight {
+    /// Factor of the gap rates.
+    fn factor(&self) -> f64 {
+        self.rates[1] / self.rates[0]
+    }
+
+    /// True if flights shrink and the next rises no higher than the rounding of the gap.
+    pub(super) fn is_last(&self, rounding: impl FnOnce() -> f64) -> bool {
+        let [before, rate] = self.rates;
+        let is_shrinking = self.shrunk > SHRUNK && rate < before;
+        let next = self.length * self.factor();
+        is_shrinking && 0.25 * rate * next <= rounding()
+    }
+
+    /// The end of all flights after this one, which ends at `t`, if they shrink by the same factor.
+    fn end(&self, t: f64) -> Option<f64> {
+        let factor = self.factor();
+        let end = t + self.length * factor / (1.0 - factor);
+        (factor > 0.0 && factor < 1.0 && end.is_finite()).then_some(end)
+    }
+}
+
+impl Estimate {
+    /// The estimate after one more guess, if that is one.
+    fn refined(before: Option<Self>, guess: Option<f64>) -> Option<Self> {
+        let Some(guess) = guess else {
+            return before;
+        };
+        let Some(before) = before else {
+            return Some(Self {
+                last: guess,
+                best: guess,
+                spread: None,
+            });
+        };
+        let apart = (guess - before.last).abs();
+        Some(match is_shorter(apart, before.spread) {
+            true => Self {
+                last: guess,
+                best: guess,
+                spread: Some(apart),
+            },
+            false => Self {
+                last: guess,
+                ..before
+            },
+        })
+    }
+}

@@ -1,0 +1,60 @@
+//! Impacts after which the motion goes on through the surface: when they follow each other faster and faster.
+
+use super::hops::{SHRUNK, is_shorter};
+use crate::per_surface::PerSurface;
+use crate::state::StateVector;
+
+/// Times closer than this part of themselves cannot be told apart.
+const INSTANT: f64 = 4.0 * f64::EPSILON;
+
+/// The impacts that the motion passed through.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Passing<G: StateVector> {
+    /// Time of the last on any surface; `None` before the first.
+    last: Option<f64>,
+    /// Time between the last two.
+    stretch: Option<f64>,
+    /// Number of times in a row that this became shorter.
+    shortened: u32,
+    /// Time of the last on each surface.
+    on_each: PerSurface<Option<f64>, G>,
+}
+
+impl<G: StateVector> Passing<G> {
+    /// No impacts yet, on as many surfaces as there are components here.
+    pub(super) fn none(like: &G) -> Self {
+        Self {
+            last: None,
+            stretch: None,
+            shortened: 0,
+            on_each: PerSurface::all(like, None),
+        }
+    }
+
+    /// Takes in an impact.
+    pub(super) fn add(&mut self, surface: usize, t: f64) {
+        let stretch = self.last.replace(t).map(|last| t - last);
+        self.on_each[surface] = Some(t);
+        let is_apart = |stretch: f64| stretch > INSTANT * t.abs();
+        if stretch.is_none_or(is_apart) {
+            self.shortened = match stretch {
+                Some(stretch) if is_shorter(stretch, self.stretch) => {
+                    self.shortened.saturating_add(1)
+                }
+                _ => 0,
+            };
+        }
+        self.stretch = stretch;
+    }
+
+    /// True if impacts, one on this surface among them, followed each other faster and faster until this time, at which two of
+    /// them cannot be told apart.
+    pub(super) fn has_accumulated(&self, surface: usize, t: f64) -> bool {
+        let instant = INSTANT * t.abs();
+        let is_instant = |stretch: f64| stretch <= instant;
+        let is_recent = |last: f64| t - last <= 2.0 * instant;
+        self.shortened > SHRUNK
+            && self.stretch.is_some_and(is_instant)
+            && self.on_each[surface].is_some_and(is_recent)
+    }
+}
