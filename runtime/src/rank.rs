@@ -163,13 +163,16 @@ fn first_drop<const M: usize, const N: usize>(
     };
     let size = |theta: f64| plane(theta).size_beside(&first);
     let mut last = first;
-    // Places with the sizes there: the last three.
-    let mut sizes = [(0.0, f64::NAN), (0.0, f64::NAN), (0.0, 1.0)];
+    // Places with the sizes there: the last but one, and the last.
+    let (mut earlier, mut before) = (None, (0.0, 1.0));
     for (k, place) in PLACES.into_iter().enumerate().skip(1) {
         let next = plane(place * reach);
-        sizes = [sizes[1], sizes[2], (next.theta, next.size_beside(&first))];
+        let here = (next.theta, next.size_beside(&first));
         let turn = turned_round(&plane, last, next);
-        let touch = dip(k, &sizes).and_then(|bracket| vanishing(&size, bracket));
+        let touch = earlier
+            .and_then(|earlier| dip(k, [earlier, before, here]))
+            .and_then(|bracket| vanishing(&size, bracket));
+        (earlier, before) = (Some(before), here);
         match (turn, touch) {
             (Some(turn), Some(touch)) if touch <= turn[0].theta => {
                 return Some(named(plane(touch), touch));
@@ -212,8 +215,7 @@ fn turned_round<const M: usize, const N: usize>(
 
 /// The ends between which the last of these places shows that the size may vanish: around the one before it, or next to
 /// either end of the step.
-fn dip(k: usize, sizes: &[(f64, f64); 3]) -> Option<[f64; 2]> {
-    let [a, b, c] = *sizes;
+fn dip(k: usize, [a, b, c]: [(f64, f64); 3]) -> Option<[f64; 2]> {
     let falls = |least: f64, most: f64| least < DIP * most;
     if b.1 <= a.1 && b.1 <= c.1 && falls(b.1, a.1.max(c.1)) {
         return Some([a.0, c.0]);

@@ -43,6 +43,7 @@ use core::ops::ControlFlow;
 
 use crate::contract::{Impacting, System};
 use crate::numbers::{Bent, Interval};
+use crate::per_surface::PerSurface;
 use crate::record::{Event, Hold, Observer, Segment};
 use crate::state::StateVector;
 use motion::{Motion, ROUNDING};
@@ -92,10 +93,10 @@ pub trait Auditor<Sys: System>: Observer<Sys> {
 #[derive(Debug, Clone)]
 pub struct Audit<'a, Sys: Impacting> {
     system: &'a Sys,
-    /// 1 for surfaces that the motion may be on both sides of; only falls count there.
-    passable: Sys::Gaps,
-    /// 1 for surfaces that hold the motion.
-    held: Sys::Gaps,
+    /// Surfaces that the motion may be on both sides of; only falls count there.
+    passable: PerSurface<bool, Sys::Gaps>,
+    /// Surfaces that hold the motion.
+    held: PerSurface<bool, Sys::Gaps>,
     /// How far a gap may be negative by rounding errors of the motion up to here; 0 away from the surface.
     slack: Sys::Gaps,
     motion: Motion<Sys::State>,
@@ -110,14 +111,15 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
 
     /// The same, of surfaces that the motion may be on both sides of where `is_passable` says so.
     pub(crate) fn passing(system: &'a Sys, is_passable: impl Fn(usize) -> bool) -> Self {
-        let mut passable = system.zero_gaps();
-        for (surface, passable) in passable.as_mut_slice().iter_mut().enumerate() {
-            *passable = f64::from(u8::from(is_passable(surface)));
+        let none = PerSurface::all(&system.zero_gaps(), false);
+        let mut passable = none;
+        for (surface, passable) in passable.iter_mut().enumerate() {
+            *passable = is_passable(surface);
         }
         Self {
             system,
             passable,
-            held: system.zero_gaps(),
+            held: none,
             slack: system.zero_gaps(),
             motion: Motion::new(&system.zero_state()),
             finding: None,
@@ -130,7 +132,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
     }
 
     fn is_passable(&self, surface: usize) -> bool {
-        self.passable.as_slice()[surface] == 1.0
+        self.passable[surface]
     }
 
     /// Audits the gap of one surface along the motion that was taken in, up to `part` of the step and the state `end`.
@@ -222,7 +224,7 @@ impl<Sys: Impacting, Run: System<State = Sys::State>> Observer<Run> for Audit<'_
             return ControlFlow::Continue(());
         }
         for surface in 0..self.held.count() {
-            if self.held.as_slice()[surface] == 0.0 {
+            if !self.held[surface] {
                 self.follow(surface, segment.part(), segment.end());
             }
         }
@@ -247,7 +249,7 @@ impl<Sys: Impacting, Run: System<State = Sys::State>> Observer<Run> for Audit<'_
             self.finding = Some(Finding::Misplaced { surface, t });
         }
         for surface in [Some(surface), hold.back].into_iter().flatten() {
-            self.held.as_mut_slice()[surface] = f64::from(u8::from(hold.begins));
+            self.held[surface] = hold.begins;
             self.allow(surface, t, &hold.state, NEAR);
         }
         ControlFlow::Continue(())

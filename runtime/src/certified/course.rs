@@ -9,21 +9,13 @@ use super::lost::Reason;
 use super::series::{Arc, Field, bounds, rated_row, row};
 use crate::contract::{Impacting, Variational};
 use crate::numbers::{Interval, Rated, Row};
-use crate::state::StateVector;
+use crate::per_surface::PerSurface;
 
 /// The shortest part of a step that is looked at.
 const SHORTEST: f64 = 1.0 / (1_u64 << 44) as f64;
 
 /// Sides of the surfaces that all motions are known to be on.
-pub(super) struct Sides<Sys: Impacting>(Sys::Gaps);
-
-impl<Sys: Impacting> Clone for Sides<Sys> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<Sys: Impacting> Copy for Sides<Sys> {}
+pub(super) type Sides<Sys> = PerSurface<Side, <Sys as Impacting>::Gaps>;
 
 /// The side of one surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,28 +26,6 @@ pub(super) enum Side {
     Above,
     /// The gap is not positive.
     Below,
-}
-
-impl<Sys: Impacting> Sides<Sys> {
-    pub(super) fn unknown() -> Self {
-        Self(Sys::Gaps::zeros(Sys::Gaps::CAPACITY))
-    }
-
-    pub(super) fn of(&self, surface: usize) -> Side {
-        match self.0.as_slice()[surface] {
-            1.0 => Side::Above,
-            -1.0 => Side::Below,
-            _ => Side::Unknown,
-        }
-    }
-
-    pub(super) fn set(&mut self, surface: usize, side: Side) {
-        self.0.as_mut_slice()[surface] = match side {
-            Side::Above => 1.0,
-            Side::Below => -1.0,
-            Side::Unknown => 0.0,
-        };
-    }
 }
 
 /// What may be met, and where: all before that part of the step is certainly passed.
@@ -170,13 +140,12 @@ impl<Sys: Variational> Field<'_, Sys> {
 /// Surfaces, and which of them may be passed from above to below.
 pub(super) struct Surfaces<'f, 'a, Sys: Variational + Impacting> {
     pub(super) field: &'f Field<'a, Sys>,
-    /// 1 for passable surfaces.
-    pub(super) passable: <Sys as Impacting>::Gaps,
+    pub(super) passable: PerSurface<bool, <Sys as Impacting>::Gaps>,
 }
 
 impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
     pub(super) fn is_passable(&self, surface: usize) -> bool {
-        self.passable.as_slice()[surface] == 1.0
+        self.passable[surface]
     }
 
     /// Passes a whole step, or what may be met in it.
@@ -227,8 +196,8 @@ impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
             if except == Some(surface) {
                 continue;
             }
-            let side = self.side_after(surface, gap, sides.of(surface), &part);
-            later.set(surface, side.map_err(|reason| (surface, reason))?);
+            let side = self.side_after(surface, gap, sides[surface], &part);
+            later[surface] = side.map_err(|reason| (surface, reason))?;
         }
         Ok(later)
     }

@@ -22,6 +22,7 @@ use super::series::{Arc, Field, bounds, rated_row, row};
 use crate::contract::{Impacting, Variational};
 use crate::numbers::{Interval, Numbers, Rated, Row};
 use crate::outcome::Outcome;
+use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 use crate::variations::transition::Strike;
 
@@ -327,16 +328,17 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let time = centre.time + self.frame.along(|block, k| meeting.delays[block].at(k));
         let sides = match is_map {
             true => {
-                let mut sides = Sides::unknown();
+                let system = self.surfaces.field.system;
+                let mut sides = PerSurface::all(&system.zero_gaps(), Side::Unknown);
                 // The state stays the same, at the surface of both.
-                if let Some(back) = self.surfaces.field.system.opposite(surface) {
-                    sides.set(back, Side::Above);
+                if let Some(back) = system.opposite(surface) {
+                    sides[back] = Side::Above;
                 }
                 sides
             }
             false => {
                 let mut sides = *sides_before;
-                sides.set(surface, Side::Above);
+                sides[surface] = Side::Above;
                 sides
             }
         };

@@ -61,8 +61,8 @@ pub struct CertifiedFlow<'a, Sys: Variational> {
     pub(super) t: f64,
     pub(super) frame: Frame<Sys>,
     remainder: f64,
-    /// The length to try next.
-    next: f64,
+    /// The length to try next; `None` before the first step.
+    next: Option<f64>,
     steps: u64,
 }
 
@@ -87,7 +87,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
             t,
             frame: Frame::of(&Bounds::of(start)),
             remainder: REMAINDER,
-            next: f64::INFINITY,
+            next: None,
             steps: 0,
         }
     }
@@ -160,7 +160,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
             return Err(lost(Reason::NotFinite));
         }
         let reach = self.reach().ok_or(lost(Reason::NoTube))?;
-        let wished = self.next.min(reach);
+        let wished = self.next.map_or(reach, |next| next.min(reach));
         let mut h = wished.min(t_end - self.t);
         loop {
             let later = match self.t + h >= t_end {
@@ -202,7 +202,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
 
     /// Makes a step that was prepared here.
     pub(super) fn make(&mut self, step: &Step<Sys>) {
-        (self.frame, self.t, self.next) = (step.frame, step.later, step.next);
+        (self.frame, self.t, self.next) = (step.frame, step.later, Some(step.next));
         self.steps += 1;
     }
 

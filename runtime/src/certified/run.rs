@@ -159,7 +159,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     pub fn new(system: &'a Sys, t: f64, start: impl Fn(usize) -> Interval) -> Self {
         let progress = Progress {
             flow: CertifiedFlow::new(system, t, start),
-            sides: Sides::unknown(),
+            sides: PerSurface::all(&system.zero_gaps(), Side::Unknown),
             derivative: None,
         };
         Self {
@@ -300,9 +300,9 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         };
         for (surface, gap) in gaps.as_slice().iter().enumerate() {
             if gap.lo >= 0.0 {
-                sides.set(surface, Side::Above);
+                sides[surface] = Side::Above;
             } else if gap.hi <= 0.0 {
-                sides.set(surface, Side::Below);
+                sides[surface] = Side::Below;
             }
         }
         Ok(())
@@ -325,12 +325,11 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
 
     fn surfaces<'f>(&self, flow: &'f CertifiedFlow<'a, Sys>) -> Surfaces<'f, 'a, Sys> {
         let field = &flow.field;
-        let mut passable = field.system.zero_gaps();
-        for (surface, entry) in passable.as_mut_slice().iter_mut().enumerate() {
+        let mut passable = PerSurface::all(&field.system.zero_gaps(), false);
+        for (surface, is_passable) in passable.iter_mut().enumerate() {
             let law = self.laws.get(surface).flatten();
             let is_map = law.is_none_or(|law| law.is_map());
-            let is_passable = is_map && field.system.is_passable(surface);
-            *entry = f64::from(u8::from(is_passable));
+            *is_passable = is_map && field.system.is_passable(surface);
         }
         Surfaces { field, passable }
     }

@@ -96,6 +96,28 @@ pub struct Departure<'a, S> {
     pub(super) units: &'a S,
 }
 
+/// Times that steps of one size lead to.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Grid {
+    start: Instant,
+    /// Steps made so far.
+    steps: u64,
+}
+
+impl Grid {
+    /// The grid that starts at a time.
+    fn starting(start: Instant) -> Self {
+        Self { start, steps: 0 }
+    }
+
+    /// The end of the next step of this size.
+    ///
+    /// NOTE: the number of steps times their size does not add up rounding.
+    fn next(&self, step: f64) -> Instant {
+        self.start.after((self.steps + 1) as f64 * step)
+    }
+}
+
 /// A method at work in steps of one size.
 #[derive(Debug, Clone, Copy)]
 pub struct FixedStep<S: StateVector, M: Method> {
@@ -121,8 +143,7 @@ pub struct FixedStep<S: StateVector, M: Method> {
     pub(super) is_at_end: bool,
     /// The length of the step that it is the end of.
     pub(super) span: f64,
-    /// The grid: since this time, this many steps of the run's size.
-    grid: (Instant, f64),
+    grid: Grid,
     pub(super) units: S,
     pub(super) ends: Ends<S>,
     pub(super) rates: [S; 2],
@@ -153,7 +174,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
             is_at_end: false,
             is_crowded: false,
             span: 0.0,
-            grid: (Instant::default(), 0.0),
+            grid: Grid::default(),
             units: zeros,
             ends: Ends::new(),
             rates: [zeros; 2],
@@ -181,7 +202,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         self.ends.place(now, precise);
         self.made = 0.0;
         if !self.has_met {
-            (self.grid, self.target) = ((now, 0.0), None);
+            (self.grid, self.target) = (Grid::starting(now), None);
         }
         self.has_met = false;
         self.dense_ready = false;
@@ -248,9 +269,8 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     /// As [`Self::aim`], as if the run had no end.
     pub(super) fn aim_within_run(&self, h: f64) -> (f64, Instant) {
         let now = self.ends.t[0];
-        // NOTE: the number of steps times their size does not add up rounding, and the length of a step does not
-        // depend on the time at which it is made.
-        let next = self.grid.0.after((self.grid.1 + 1.0) * self.step);
+        let next = self.grid.next(self.step);
+        // NOTE: the length of a step does not depend on the time at which it is made.
         match self.target {
             None if h == self.step => (h, next),
             None => (h, now.after(h)),
@@ -371,19 +391,19 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         {
             self.next = self.step;
         } else if made == self.step && self.target.is_none() {
-            self.grid.1 += 1.0;
+            self.grid.steps += 1;
         } else if self.target.is_none_or(|target| arrival.since(target) > 0.0) {
-            (self.grid, self.target) = ((arrival, 0.0), None);
+            (self.grid, self.target) = (Grid::starting(arrival), None);
         }
     }
 
     /// Takes note that a step after an impact ends on the grid again, if it does: at the end of the step that was cut, or
     /// one further on.
     fn reaches_grid(&mut self, arrival: Instant, target: Instant) -> bool {
-        let next = self.grid.0.after((self.grid.1 + 1.0) * self.step);
+        let next = self.grid.next(self.step);
         let reaches = arrival == target || arrival == next;
         if arrival == next {
-            self.grid.1 += 1.0;
+            self.grid.steps += 1;
         }
         if reaches {
             self.target = None;

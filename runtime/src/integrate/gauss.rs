@@ -188,25 +188,26 @@ const THREE: Table<3> = Table::new(
     ],
 );
 
-/// The rates at the stages of the last step, and its length; 0 before the first.
+/// The last step: rates at its stages, and its length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slopes<S, const STAGES: usize> {
     stages: [S; STAGES],
-    h: f64,
+    /// Length of the step; `None` before the first.
+    h: Option<f64>,
 }
 
 impl<S: StateVector, const STAGES: usize> Slopes<S, STAGES> {
     fn none(like: &S) -> Self {
         Self {
             stages: [like.zeroed(); STAGES],
-            h: 0.0,
+            h: None,
         }
     }
 
     /// Rates to start the iteration with: those of the last step carried on, if it was as long as this one.
     fn predict(&mut self, table: &Table<STAGES>, h: f64, rate: &S) {
         let last = self.stages;
-        let known = self.h == h;
+        let known = self.h == Some(h);
         for (stage, (row, end)) in self.stages.iter_mut().zip(&table.guess) {
             *stage = *rate;
             if !known {
@@ -217,7 +218,7 @@ impl<S: StateVector, const STAGES: usize> Slopes<S, STAGES> {
                 stage.as_mut_slice()[i] = end * rate.as_slice()[i] + carried;
             }
         }
-        self.h = h;
+        self.h = Some(h);
     }
 }
 

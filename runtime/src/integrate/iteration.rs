@@ -25,7 +25,8 @@ pub(super) enum Verdict {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Iteration {
     made: u32,
-    last: f64,
+    /// The last change; `None` before the first.
+    last: Option<f64>,
     /// Changes that were no smaller than the one before.
     grown: u32,
 }
@@ -35,7 +36,7 @@ impl Iteration {
     pub(super) const fn new() -> Self {
         Self {
             made: 0,
-            last: f64::INFINITY,
+            last: None,
             grown: 0,
         }
     }
@@ -49,14 +50,14 @@ impl Iteration {
         if !(change.is_finite() && size.is_finite()) {
             return Verdict::Diverges;
         }
-        if change >= self.last {
+        if self.last.is_some_and(|last| change >= last) {
             if change <= ROUNDING * size {
                 return Verdict::Solved;
             }
             // NOTE: one growth is let pass: the first guess may be better than it looks in some direction.
             self.grown += 1;
         }
-        self.last = change;
+        self.last = Some(change);
         if self.grown > 1 || self.made >= LIMIT {
             Verdict::Diverges
         } else {
