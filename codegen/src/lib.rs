@@ -14,11 +14,13 @@
 pub mod claims;
 pub mod diagnostics;
 pub mod emit;
+pub mod file;
 pub mod mechanics;
 pub mod model;
 pub mod program;
 pub mod report;
 pub mod spec;
+pub mod tables;
 
 use proc_macro2::TokenStream;
 
@@ -35,7 +37,18 @@ pub fn expand(input: TokenStream) -> TokenStream {
 /// # Errors
 /// Every mistake of the first stage that found any.
 pub fn try_expand(input: TokenStream) -> Result<TokenStream, diagnostics::Diagnostics> {
-    match read(input)? {
+    expand_declaration(read(input)?)
+}
+
+/// The whole pipeline, for the models of a file: the input of a `model_file!`, whose path begins at this folder.
+pub fn expand_file(input: TokenStream, folder: &std::path::Path) -> TokenStream {
+    file::expand(input, folder)
+}
+
+fn expand_declaration(
+    declaration: spec::Declaration,
+) -> Result<TokenStream, diagnostics::Diagnostics> {
+    match declaration {
         spec::Declaration::Model(spec) => {
             let mut compiled = compile_spec(&spec, spec::STEPS)?;
             compiled.note_findings();
@@ -120,10 +133,11 @@ fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostic
     compile_spec(&spec::parse(input)?, steps)
 }
 
-pub(crate) fn compile_spec(
-    spec: &spec::Spec,
-    steps: u64,
-) -> Result<Compiled, diagnostics::Diagnostics> {
+/// All stages but the last, of what was written, with a budget for the algebra.
+///
+/// # Errors
+/// As [`try_expand`].
+pub fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
     let model = model::check_within(spec, steps)?;
     let scenes: Vec<model::Model> = (0..model.scenes.len())
         .map(|scene| model.in_scene(scene))

@@ -24,3 +24,13 @@ use proc_macro::TokenStream;
 pub fn model(input: TokenStream) -> TokenStream {
     dalembert_codegen::expand(input.into()).into()
 }
+
+/// Declares the models of a file, whose path begins at the folder of the crate: `dalembert::model_file!("src/disk.dal")`.
+///
+/// The file has what stands between the braces of [`model!`], for one model or for several; the command line runs it as it is. The crate is
+/// built again where the file changes.
+#[proc_macro]
+pub fn model_file(input: TokenStream) -> TokenStream {
+    let folder = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default();
+    dalembert_codegen::expand_file(input.into(), folder.as_ref()).into()
+}

@@ -4,26 +4,7 @@
 //! `g k/(k^2 + 1)`, growing while it falls; where it is at rest the constraint has no gradient, and no motion follows from
 //! it. Source: G. Hamel, *Theoretische Mechanik* (1949); W. Clark, thesis, Remark V.6 for the rule.
 
-dalembert::model! {
-    /// Point with horizontal speed `k` times the vertical one (Appell and Hamel; Chetaev's rule).
-    pub AppellHamel {
-        coordinates { x; y; z; }
-        parameters {
-            /// Mass.
-            m > 0 = 1;
-            /// Acceleration of gravity.
-            g > 0 = 1;
-            /// Horizontal speed over vertical speed.
-            k > 0 = 2;
-        }
-        lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(z)^2) - m*g*z;
-        constraints { machine: dot(x)^2 + dot(y)^2 = k^2*dot(z)^2; }
-        claims { conserved: energy; conserved: dot(x)/dot(y); not conserved: dot(z); }
-        initial { dot(y) = 1/2; dot(z) = -1/2; until = 5; }
-        view { path: (x, z); }
-        outputs { ground_speed: sqrt(dot(x)^2 + dot(y)^2); }
-    }
-}
+dalembert::model_file!("src/appell_hamel.dal");
 
 #[cfg(test)]
 mod tests {

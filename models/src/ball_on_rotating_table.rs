@@ -3,41 +3,7 @@
 //! Facts: the centre runs on circles at the rate `Om k^2/(r^2 + k^2)`, 2/7 of the table's for a solid ball; the
 //! energy is not constant. Source: J. Cortes and A. Vinogradov, section 6.3.
 
-dalembert::model! {
-    /// Homogeneous ball rolling on a table that turns at the rate `Om`.
-    pub BallOnRotatingTable {
-        coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
-        parameters {
-            /// Radius of the ball.
-            r > 0 = 1;
-            /// Radius of gyration.
-            k > 0 = 2/3;
-            /// Angular velocity of the table.
-            Om = 1/2;
-        }
-        let omega_x = cos(psi)*dot(theta) + sin(psi)*sin(theta)*dot(phi);
-        let omega_y = sin(psi)*dot(theta) - cos(psi)*sin(theta)*dot(phi);
-        let spin = dot(phi)^2 + dot(psi)^2 + 2*cos(theta)*dot(phi)*dot(psi) + dot(theta)^2;
-        lagrangian = 1/2*(dot(x)^2 + dot(y)^2) + k^2/2*spin;
-        constraints {
-            rolling_x: dot(x) - r*omega_y = -Om*y;
-            rolling_y: dot(y) + r*omega_x = Om*x;
-        }
-        frame {
-            wx: sin(psi)*sin(theta)*d(phi) + cos(psi)*d(theta);
-            wy: -cos(psi)*sin(theta)*d(phi) + sin(psi)*d(theta);
-            wz: cos(theta)*d(phi) + d(psi);
-        }
-        initial { x = 1; theta = 1.2; dot(theta) = 0.1; dot(psi) = 0.1; until = 30; }
-        view { path: (x, y); }
-        outputs { omega_z: dot(phi)*cos(theta) + dot(psi); }
-        claims {
-            density: exact;
-            conserved: dot(phi)*cos(theta) + dot(psi);
-            not conserved: energy;
-        }
-    }
-}
+dalembert::model_file!("src/ball_on_rotating_table.dal");
 
 #[cfg(test)]
 mod tests {

@@ -4,55 +4,7 @@
 //! which act on both sides of the line, so that it may be thrown back. Source: J. Cortes and A. Vinogradov, section 6.3, with the
 //! reading the section ends with.
 
-dalembert::model! {
-    /// Ball on a table that changes its speed where the ball crosses `x = y` (J. Cortes and A. Vinogradov, section 6.3).
-    pub BallOnSwitchingTable {
-        coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
-        parameters {
-            /// Radius of the ball.
-            r > 0 = 1;
-            /// Radius of gyration.
-            k > 0 = 2/3;
-            /// The lower angular velocity of the table.
-            Om_minus = 1/2;
-            /// The higher angular velocity of the table.
-            Om_plus = 2;
-        }
-        let omega_x = cos(psi)*dot(theta) + sin(psi)*sin(theta)*dot(phi);
-        let omega_y = sin(psi)*dot(theta) - cos(psi)*sin(theta)*dot(phi);
-        let omega_z = cos(theta)*dot(phi) + dot(psi);
-        lagrangian = 1/2*(dot(x)^2 + dot(y)^2) + k^2/2*(dot(phi)^2 + dot(psi)^2 + 2*cos(theta)*dot(phi)*dot(psi) + dot(theta)^2);
-        frame {
-            wx: sin(psi)*sin(theta)*d(phi) + cos(psi)*d(theta);
-            wy: -cos(psi)*sin(theta)*d(phi) + sin(psi)*d(theta);
-            wz: cos(theta)*d(phi) + d(psi);
-        }
-        modes {
-            slow {
-                constraints {
-                    rolling_x: dot(x) - r*omega_y = -Om_minus*y;
-                    rolling_y: dot(y) + r*omega_x = Om_minus*x;
-                }
-                initial { x = -1; y = 0.5; theta = 1.5; dot(psi) = 0.3; dot(phi) = 0.1; until = 12; }
-            }
-            fast {
-                constraints {
-                    rolling_x: dot(x) - r*omega_y = -Om_plus*y;
-                    rolling_y: dot(y) + r*omega_x = Om_plus*x;
-                }
-            }
-        }
-        transitions {
-            faster_from_left: slow -> fast when x >= y;
-            faster_from_right: slow -> fast when x <= y;
-            slower_from_left: fast -> slow when x >= y;
-            slower_from_right: fast -> slow when x <= y;
-        }
-        view { path: (x, y); }
-        outputs { spin_x: omega_x; spin_y: omega_y; spin_z: omega_z; }
-        claims { conserved: omega_z; not conserved: energy; }
-    }
-}
+dalembert::model_file!("src/ball_on_switching_table.dal");
 
 #[cfg(test)]
 mod tests {

@@ -4,25 +4,7 @@
 //! `sqrt(2 x0/g) (1 + 2 (e + .. + e^{n-1}))`, and the impacts accumulate where that series ends.
 //! Source: W. Clark, thesis, Example IX.9.
 
-dalembert::model! {
-    /// A ball that bounces on a floor.
-    pub BouncingBall {
-        coordinates { x; }
-        parameters {
-            /// Mass.
-            m > 0 = 1;
-            /// Acceleration of gravity.
-            g > 0 = 1;
-        }
-        lagrangian = m/2*dot(x)^2 - m*g*x;
-        impacts { floor: x >= 0; }
-        initial { x = 1; until = 10; }
-        claims {
-            conserved: energy;
-            conserved under floor: energy;
-        }
-    }
-}
+dalembert::model_file!("src/bouncing_ball.dal");
 
 #[cfg(test)]
 mod tests {

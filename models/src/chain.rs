@@ -1,43 +1,12 @@
-//! A hanging chain of N point masses on N rods, one declaration for every N.
+//! A hanging chain of N point masses on N rods, one declaration for every N that differ in that number alone.
 //!
 //! Facts: N = 2 is the double pendulum; the metric is `g_jk = (N + 1 - max(j, k)) m l^2 cos(theta_j - theta_k)`.
 
-/// Declares the chain with the given number of links.
-macro_rules! chain {
-    ($name:ident, $links:literal) => {
-        dalembert::model! {
-            /// A planar chain of point masses on rods; absolute angles from the downward vertical.
-            pub $name {
-                const N = $links;
-                coordinates { theta[N]: angle; }
-                parameters {
-                    /// Mass of each bob.
-                    m > 0 = 1;
-                    /// Length of each rod.
-                    l > 0 = 1;
-                    /// Acceleration of gravity.
-                    g = 9.81;
-                }
-                let X[0] = 0;
-                let X[i in 1..=N] = X[i-1] + l*sin(theta[i]);
-                let Y[0] = 0;
-                let Y[i in 1..=N] = Y[i-1] - l*cos(theta[i]);
-                lagrangian = sum(i in 1..=N: m/2*(dot(X[i])^2 + dot(Y[i])^2) - m*g*Y[i]);
-                initial { theta[1] = 1; until = 10; }
-                view { path: (X[N], Y[N]); }
-                claims {
-                    conserved: energy;
-                }
-            }
-        }
-    };
-}
-
-chain!(Chain2, 2);
-chain!(Chain3, 3);
-chain!(Chain4, 4);
-chain!(Chain8, 8);
-chain!(Chain16, 16);
+dalembert::model_file!("src/chain2.dal");
+dalembert::model_file!("src/chain3.dal");
+dalembert::model_file!("src/chain4.dal");
+dalembert::model_file!("src/chain8.dal");
+dalembert::model_file!("src/chain16.dal");
 
 #[cfg(test)]
 mod tests {

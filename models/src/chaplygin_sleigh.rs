@@ -4,46 +4,7 @@
 //! `V = sqrt(2E/m)`, `s = a m V/K`: it always ends with its centre of mass ahead.
 //! Source: W. Clark, thesis, section 7.5; W. Clark and A. Bloch, section 8.1.
 
-dalembert::model! {
-    /// Chaplygin sleigh: a knife edge at (x, y), the centre of mass a distance `a` ahead of it.
-    pub ChaplyginSleigh {
-        coordinates { x; y; theta: angle; }
-        parameters {
-            /// Mass.
-            m > 0 = 1;
-            /// Moment of inertia about the centre of mass.
-            I > 0 = 1;
-            /// Signed distance from the knife edge to the centre of mass.
-            a = 0.2;
-            /// Distance from the knife edge to either tip.
-            len > 0 = 0.25;
-            /// Half axis of the table along x.
-            ta > 0 = 2;
-            /// Half axis of the table along y.
-            tb > 0 = 1;
-        }
-        let table(u, v) = 1 - u^2/ta^2 - v^2/tb^2;
-        let slip = -dot(x)*sin(theta) + dot(y)*cos(theta);
-        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (I + m*a^2)/2*dot(theta)^2 + a*m*dot(theta)*slip;
-        constraints { blade: -sin(theta)*d(x) + cos(theta)*d(y) = 0; }
-        frame { v: cos(theta)*d(x) + sin(theta)*d(y); omega: d(theta); }
-        impacts {
-            front_tip: table(x + len*cos(theta), y + len*sin(theta)) >= 0;
-            back_tip: table(x - len*cos(theta), y - len*sin(theta)) >= 0;
-        }
-        initial { theta = 0.5; dot(x) = 0.8775825618903728; dot(y) = 0.479425538604203; dot(theta) = 0.5; until = 40; }
-        view { path: (x, y); region: table(x, y) >= 0; }
-        outputs { forward_speed: dot(x)*cos(theta) + dot(y)*sin(theta); side_force: multiplier(blade); }
-        claims {
-            density: none;
-            density = 1/abs(dot(theta));
-            conserved: energy;
-            conserved under front_tip: energy;
-            not conserved under front_tip: dot(theta);
-            symmetry: partial(theta) - y*partial(x) + x*partial(y);
-        }
-    }
-}
+dalembert::model_file!("src/chaplygin_sleigh.dal");
 
 #[cfg(test)]
 mod tests {

@@ -4,25 +4,7 @@
 //! falling straight down. The constraint is not linear in the velocities; its force is a multiple of the velocity itself (Chetaev's
 //! rule). Source: W. Clark, thesis, Remark V.6.
 
-dalembert::model! {
-    /// Particle under gravity whose speed is kept (Chetaev's rule; thesis, Remark V.6).
-    pub ConstantSpeed {
-        coordinates { x; y; }
-        parameters {
-            /// Mass.
-            m > 0 = 1;
-            /// Acceleration of gravity.
-            g > 0 = 1;
-            /// The speed.
-            v > 0 = 2;
-        }
-        lagrangian = m/2*(dot(x)^2 + dot(y)^2) - m*g*y;
-        constraints { speed: dot(x)^2 + dot(y)^2 = v^2; }
-        initial { dot(x) = 3*v/5; until = 8; }
-        view { path: (x, y); }
-        outputs { power: 2*multiplier(speed)*v^2; }
-    }
-}
+dalembert::model_file!("src/constant_speed.dal");
 
 #[cfg(test)]
 mod tests {

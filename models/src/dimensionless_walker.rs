@@ -7,46 +7,7 @@
 //! `(xi, eta) = (-0.902057449429909745, 0.991308369223558489)` after a step.
 //! Source: W. Clark, thesis, section 4.2, equations (4.8) to (4.11); in (4.11) `eps xi^2 cos(theta)` is subtracted.
 
-dalembert::model! {
-    /// A walker on a slope whose foot slips, in dimensionless form.
-    pub DimensionlessWalker {
-        coordinates {
-            /// Angle of the stance leg.
-            theta;
-            /// Its rate, scaled.
-            xi;
-            /// Velocity along the slope, scaled.
-            eta;
-        }
-        parameters {
-            /// Mass against moment of inertia.
-            mu > 0 = 5/2;
-            /// Rate of falling against rate of friction.
-            eps > 0 = 1/2;
-            /// Slope.
-            alpha = 0.4;
-            /// Half the angle between the legs.
-            delta > 0 = 0.4;
-        }
-        let foot = eta + xi*cos(theta);
-        let weight = mu/(1 + mu*sin(theta)^2);
-        field {
-            dot(theta) = eps*xi;
-            dot(xi) = weight*(sin(theta)*(cos(alpha) - eps*xi^2*cos(theta)) - cos(theta)*foot);
-            dot(eta) = sin(alpha) - foot;
-        }
-        impacts {
-            step: theta >= -delta => reset {
-                theta = theta + 2*delta;
-                xi = cos(2*delta)*xi;
-                eta = eta + cos(delta)*(1 - cos(2*delta))*xi;
-            };
-        }
-        initial { theta = delta; xi = -1; eta = 1; until = 20; }
-        view { path: (theta, xi); }
-        claims { conserved under step: eta + cos(delta)*xi; }
-    }
-}
+dalembert::model_file!("src/dimensionless_walker.dal");
 
 #[cfg(test)]
 mod tests {

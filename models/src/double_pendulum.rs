@@ -3,34 +3,7 @@
 //! Facts: the energy is constant; small oscillations of equal masses on equal rods have the frequencies
 //! `sqrt((2 -+ sqrt 2) g/l)`.
 
-dalembert::model! {
-    /// A planar double pendulum; absolute angles from the downward vertical.
-    pub DoublePendulum {
-        coordinates { theta1: angle; theta2: angle; }
-        parameters {
-            /// Mass of the upper bob.
-            m1 > 0 = 1;
-            /// Mass of the lower bob.
-            m2 > 0 = 1;
-            /// Length of the upper rod.
-            l1 > 0 = 1;
-            /// Length of the lower rod.
-            l2 > 0 = 1;
-            /// Acceleration of gravity.
-            g = 9.81;
-        }
-        let x1 = l1*sin(theta1);
-        let y1 = -l1*cos(theta1);
-        let x2 = x1 + l2*sin(theta2);
-        let y2 = y1 - l2*cos(theta2);
-        lagrangian = m1/2*(dot(x1)^2 + dot(y1)^2) + m2/2*(dot(x2)^2 + dot(y2)^2) - m1*g*y1 - m2*g*y2;
-        initial { theta1 = 2; theta2 = 5/2; until = 20; }
-        view { path: (x2, y2); }
-        claims {
-            conserved: energy;
-        }
-    }
-}
+dalembert::model_file!("src/double_pendulum.dal");
 
 #[cfg(test)]
 mod tests {

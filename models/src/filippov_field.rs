@@ -3,34 +3,7 @@
 //! Fact: where both sides lead to the line the motion slides along it, with the combination of both fields that is tangent to
 //! it; else it crosses. Source: W. Clark and A. Bloch, section 7 (discontinuous fields), with the sliding motion of Filippov.
 
-dalembert::model! {
-    /// Piecewise constant field that is discontinuous at x = 0 (W. Clark and A. Bloch, section 7).
-    pub FilippovField {
-        coordinates { x; y; }
-        parameters {
-            /// Field to the right, along x.
-            fx = -2;
-            /// Field to the right, along y.
-            fy = 1;
-            /// Field to the left, along x.
-            gx = 1;
-            /// Field to the left, along y.
-            gy = -1;
-        }
-        modes {
-            right {
-                field { dot(x) = fx; dot(y) = fy; }
-                initial { x = 1; until = 3; }
-            }
-            left { field { dot(x) = gx; dot(y) = gy; } }
-        }
-        transitions {
-            leftward: right -> left when x <= 0;
-            rightward: left -> right when x >= 0;
-        }
-        view { path: (x, y); }
-    }
-}
+dalembert::model_file!("src/filippov_field.dal");
 
 #[cfg(test)]
 mod tests {

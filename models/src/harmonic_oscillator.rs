@@ -2,24 +2,7 @@
 //!
 //! Facts: `x = x0 cos(w t) + (v0/w) sin(w t)` with `w = sqrt(k/m)`; the energy is constant.
 
-dalembert::model! {
-    /// A mass on a spring.
-    pub HarmonicOscillator {
-        coordinates { x; }
-        parameters {
-            /// Mass.
-            m > 0 = 1;
-            /// Stiffness of the spring.
-            k > 0 = 1;
-        }
-        lagrangian = m/2*dot(x)^2 - k/2*x^2;
-        initial { x = 1; until = 20; }
-        outputs { spring_force: -k*x; }
-        claims {
-            conserved: energy;
-        }
-    }
-}
+dalembert::model_file!("src/harmonic_oscillator.dal");
 
 #[cfg(test)]
 mod tests {

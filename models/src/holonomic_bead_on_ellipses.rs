@@ -3,31 +3,7 @@
 //! Facts: the speed is constant, and so is `x^2/A^2 + y^2/B^2`; the invariant density is `m^{11}`.
 //! Source: W. Clark, thesis, section 5.3.
 
-dalembert::model! {
-    /// A bead that stays on its ellipse.
-    pub HolonomicBeadOnEllipses {
-        coordinates { x; y; }
-        parameters {
-            /// Mass.
-            m > 0 = 1;
-            /// Half axis along x of the ellipse of level 1.
-            A > 0 = 2;
-            /// Half axis along y of the ellipse of level 1.
-            B > 0 = 1;
-        }
-        lagrangian = m/2*(dot(x)^2 + dot(y)^2);
-        constraints { ellipse: d(x^2/A^2 + y^2/B^2) = 0; }
-        impacts { line: y >= 0; }
-        initial { y = 1; dot(x) = 1; until = 20; }
-        view { path: (x, y); region: y >= 0; }
-        claims {
-            density: exact;
-            conserved: energy;
-            conserved: x^2/A^2 + y^2/B^2;
-            conserved under line: energy;
-        }
-    }
-}
+dalembert::model_file!("src/holonomic_bead_on_ellipses.dal");
 
 #[cfg(test)]
 mod tests {

@@ -4,62 +4,7 @@
 //! it gains `-d_t h` times the impulse. Against an edge that comes the disk becomes faster.
 //! Source: W. Clark and A. Bloch, Remark 5, on the disk of W. Clark, thesis, section 6.4.
 
-dalembert::model! {
-    /// Vertical rolling disk on an elliptical table that moves with constant velocity (W. Clark and A. Bloch, Remark 5).
-    pub MovingWallDisk {
-        coordinates {
-            /// Point of contact.
-            x;
-            /// Point of contact.
-            y;
-            /// Angle of rolling.
-            theta: angle;
-            /// Direction of rolling.
-            phi: angle;
-        }
-        parameters {
-            /// Mass.
-            m > 0 = 3/2;
-            /// Radius.
-            R > 0 = 1/4;
-            /// Moment of inertia about the axis.
-            I > 0 = 1/5;
-            /// Moment of inertia about a diameter.
-            J > 0 = 1/8;
-            /// Half axis of the table along x.
-            ta > 0 = 2;
-            /// Half axis of the table along y.
-            tb > 0 = 3/2;
-            /// Velocity of the table along x.
-            wx = 1/2;
-            /// Velocity of the table along y.
-            wy = -1/4;
-        }
-        let table(u, v) = 1 - (u - wx*t)^2/ta^2 - (v - wy*t)^2/tb^2;
-        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + J/2*dot(phi)^2;
-        constraints {
-            /// The point of contact does not slip along x.
-            rolling_x: d(x) - R*cos(phi)*d(theta) = 0;
-            /// The point of contact does not slip along y.
-            rolling_y: d(y) - R*sin(phi)*d(theta) = 0;
-        }
-        impacts {
-            /// The end of the disk towards `(cos phi, sin phi)` stays above the table.
-            leading_edge: table(x + R*cos(phi), y + R*sin(phi)) >= 0;
-            /// The opposite end stays above the table.
-            trailing_edge: table(x - R*cos(phi), y - R*sin(phi)) >= 0;
-        }
-        initial {
-            x = -3/8;
-            y = -3/16;
-            phi = -9/8;
-            dot(theta) = 2;
-            dot(phi) = 1;
-            until = 8;
-        }
-        view { path: (x - wx*t, y - wy*t); }
-    }
-}
+dalembert::model_file!("src/moving_wall_disk.dal");
 
 #[cfg(test)]
 mod tests {

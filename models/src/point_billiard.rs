@@ -3,31 +3,7 @@
 //! Facts: the product of the angular momenta about the two foci is constant; in a circle the angular momentum
 //! is, and the bounces turn by a constant angle.
 
-dalembert::model! {
-    /// A point that moves freely in an elliptical table.
-    pub PointBilliard {
-        coordinates { x; y; }
-        parameters {
-            /// Mass.
-            m > 0 = 1;
-            /// Half axis of the table along x.
-            ta > 0 = 1.5;
-            /// Half axis of the table along y.
-            tb > 0 = 1;
-        }
-        lagrangian = m/2*(dot(x)^2 + dot(y)^2);
-        impacts { wall: 1 - x^2/ta^2 - y^2/tb^2 >= 0; }
-        initial { x = 0.25; y = 0.1; dot(x) = 0.8; dot(y) = 0.6; until = 50; }
-        view { path: (x, y); region: 1 - x^2/ta^2 - y^2/tb^2 >= 0; }
-        outputs { angular_momentum: m*(x*dot(y) - y*dot(x)); }
-        claims {
-            conserved: energy;
-            conserved: dot(x);
-            conserved under wall: energy;
-            not conserved under wall: dot(x);
-        }
-    }
-}
+dalembert::model_file!("src/point_billiard.dal");
 
 #[cfg(test)]
 mod tests {

@@ -3,35 +3,7 @@
 //! Facts: the momentum along the line stays, the energy stays; where there is not enough of it the particle is reflected.
 //! Sources: J. Cortes and A. Vinogradov, section 4.5.2; W. Clark and A. Bloch, section 3.5.
 
-dalembert::model! {
-    /// Particle in two media with a straight interface (J. Cortes and A. Vinogradov, section 4.5.2).
-    pub RefractedParticle {
-        coordinates { x; y; }
-        parameters {
-            /// Mass to the left.
-            m1 > 0 = 1;
-            /// Mass to the right.
-            m2 > 0 = 2;
-            /// Potential to the left.
-            V1 = 0;
-            /// Potential to the right.
-            V2 = 0;
-        }
-        modes {
-            left {
-                lagrangian = m1/2*(dot(x)^2 + dot(y)^2) - V1;
-                initial { x = -1; y = -0.5; dot(x) = 1; dot(y) = 0.5; until = 3; }
-            }
-            right { lagrangian = m2/2*(dot(x)^2 + dot(y)^2) - V2; }
-        }
-        transitions {
-            rightward: left -> right when x >= 0;
-            leftward: right -> left when x <= 0;
-        }
-        view { path: (x, y); }
-        claims { conserved: energy; conserved: momentum(y); }
-    }
-}
+dalembert::model_file!("src/refracted_particle.dal");
 
 #[cfg(test)]
 mod tests {

@@ -5,37 +5,4 @@
 //! Source: W. Clark, thesis, section 4.3 and Table 4.1, with the angles of the triangles between feet and hub by the law of
 //! cosines.
 
-dalembert::model! {
-    /// Rimless wheel with five spokes (W. Clark, thesis, Table 4.1).
-    pub RimlessWheelFive {
-        const N = 5;
-        /// Angle of the spoke that stands, from the vertical.
-        coordinates { x; }
-        parameters {
-            /// Slope.
-            alpha = 0.5062;
-            /// Half the angle between a spoke and the next.
-            delta[N] > 0 = [0.6516, 0.7124, 0.6410, 0.5639, 0.5728];
-            /// Lengths of the spokes.
-            l[N] > 0 = [1.7184, 1.8985, 1.6416, 1.5872, 1.6217];
-            /// Acceleration of gravity.
-            g > 0 = 1;
-        }
-        // Distance of the feet of two spokes, and the angle at the second of them.
-        let s[i in 1..=N] = sqrt(l[i]^2 + l[i%N + 1]^2 - 2*l[i]*l[i%N + 1]*cos(2*delta[i]));
-        let xi[i in 1..=N] = acos((l[i%N + 1]^2 + s[i]^2 - l[i]^2)/(2*l[i%N + 1]*s[i]));
-        let landing(angle, half) = pi/2 - angle - 2*half - alpha;
-        let pendulum(r) = r^2*dot(x)^2/2 - g*r*cos(x);
-        modes {
-            spoke[i in 1..=N] { lagrangian = pendulum(l[i]); }
-            spoke[1] { initial { x = 0.1; dot(x) = -0.4; until = 40; } }
-        }
-        transitions {
-            step[i in 1..=N]: spoke[i] -> spoke[i%N + 1] when x <= landing(xi[i], delta[i]) => reset {
-                x = x + 2*delta[i];
-                dot(x) = l[i]/l[i%N + 1]*cos(2*delta[i])*dot(x);
-            };
-        }
-        claims { conserved: energy; }
-    }
-}
+dalembert::model_file!("src/rimless_wheel_five.dal");

@@ -5,48 +5,7 @@
 //! round, at a plastic one the ball goes on along the wall. Source: J. Cortes and A. Vinogradov, section 6.2. The point
 //! that touches the wall is `r` ahead of the centre, so that it rests where `ydot + r omega_z = 0`; the source has a minus.
 
-dalembert::model! {
-    /// Homogeneous ball that rolls on a table and hits a wall without slip (J. Cortes and A. Vinogradov, section 6.2).
-    pub RollingBallWall {
-        coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
-        parameters {
-            /// Radius of the ball.
-            r > 0 = 1;
-            /// Radius of gyration.
-            k > 0 = 2/3;
-            /// Distance of the wall.
-            distance > 0 = 3;
-        }
-        let omega_x = cos(psi)*dot(theta) + sin(psi)*sin(theta)*dot(phi);
-        let omega_y = sin(psi)*dot(theta) - cos(psi)*sin(theta)*dot(phi);
-        let omega_z = cos(theta)*dot(phi) + dot(psi);
-        let spin = dot(phi)^2 + dot(psi)^2 + 2*cos(theta)*dot(phi)*dot(psi) + dot(theta)^2;
-        lagrangian = 1/2*(dot(x)^2 + dot(y)^2) + k^2/2*spin;
-        constraints {
-            rolling_x: dot(x) - r*omega_y = 0;
-            rolling_y: dot(y) + r*omega_x = 0;
-        }
-        frame {
-            wx: sin(psi)*sin(theta)*d(phi) + cos(psi)*d(theta);
-            wy: -cos(psi)*sin(theta)*d(phi) + sin(psi)*d(theta);
-            wz: cos(theta)*d(phi) + d(psi);
-        }
-        impacts {
-            wall: x + r <= distance => elastic, instantaneous {
-                /// The point that touches the wall is at rest along the table.
-                no_slip: dot(y) + r*omega_z = 0;
-            };
-        }
-        initial { theta = 1; dot(x) = 1; dot(y) = 0.5; until = 4; }
-        view { path: (x, y); region: x + r <= distance; }
-        outputs { omega_z: omega_z; slip: dot(y) + r*omega_z; }
-        claims {
-            density: exact;
-            conserved: energy;
-            conserved: omega_z;
-        }
-    }
-}
+dalembert::model_file!("src/rolling_ball_wall.dal");
 
 #[cfg(test)]
 mod tests {

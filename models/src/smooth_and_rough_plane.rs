@@ -4,47 +4,7 @@
 //! constraint, and loses energy; where that turns it back it goes on on the smooth side. Source: J. Cortes and A. Vinogradov,
 //! section 6.1.
 
-dalembert::model! {
-    /// Ball on a smooth and a rough half-plane (J. Cortes and A. Vinogradov, section 6.1).
-    pub SmoothAndRoughPlane {
-        coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
-        parameters {
-            /// Radius of the ball.
-            r > 0 = 1;
-            /// Radius of gyration.
-            k > 0 = 2/3;
-        }
-        let omega_x = cos(psi)*dot(theta) + sin(psi)*sin(theta)*dot(phi);
-        let omega_y = sin(psi)*dot(theta) - cos(psi)*sin(theta)*dot(phi);
-        let omega_z = cos(theta)*dot(phi) + dot(psi);
-        lagrangian = 1/2*(dot(x)^2 + dot(y)^2) + k^2/2*(dot(phi)^2 + dot(psi)^2 + 2*cos(theta)*dot(phi)*dot(psi) + dot(theta)^2);
-        modes {
-            /// x < 0: the ball slides.
-            smooth {
-                initial { x = -1; theta = 1.2; dot(x) = 1; dot(y) = 0.5; dot(theta) = 0.4; dot(phi) = 0.3; until = 4; }
-            }
-            /// x > 0: it rolls.
-            rough {
-                constraints {
-                    rolling_x: dot(x) - r*omega_y = 0;
-                    rolling_y: dot(y) + r*omega_x = 0;
-                }
-                frame {
-                    wx: sin(psi)*sin(theta)*d(phi) + cos(psi)*d(theta);
-                    wy: -cos(psi)*sin(theta)*d(phi) + sin(psi)*d(theta);
-                    wz: cos(theta)*d(phi) + d(psi);
-                }
-            }
-        }
-        transitions {
-            enter: smooth -> rough when x >= 0;
-            leave: rough -> smooth when x <= 0;
-        }
-        view { path: (x, y); }
-        outputs { spin_x: omega_x; spin_y: omega_y; spin_z: omega_z; }
-        claims { conserved: energy; conserved: omega_z; }
-    }
-}
+dalembert::model_file!("src/smooth_and_rough_plane.dal");
 
 #[cfg(test)]
 mod tests {

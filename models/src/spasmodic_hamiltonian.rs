@@ -6,26 +6,7 @@
 //! Facts: from `x = 0`, `x = tan(t)`; the n-th impact comes at `acos(exp(-(n - y0)/p_y))`, and they accumulate at `pi/2`.
 //! Source: W. Clark and A. Bloch, Example 6; its walls are `y = 0` and `y = 1`, where `S = {0, 1} x R` is printed.
 
-dalembert::model! {
-    /// Hamiltonian that keeps energy and volume while impacts accumulate (W. Clark and A. Bloch, Example 6).
-    pub SpasmodicHamiltonian {
-        coordinates { x; y; px; py; }
-        let H = px*(1 + x^2) + py^2*x/2;
-        field {
-            dot(x) = 1 + x^2;
-            dot(y) = py*x;
-            dot(px) = -2*x*px - py^2/2;
-            dot(py) = 0;
-        }
-        impacts {
-            low: y >= 0 => reset { py = -py; };
-            high: y <= 1 => reset { py = -py; };
-        }
-        initial { y = 1/2; px = 1; py = 1; until = 1.5; }
-        view { path: (t, y); }
-        claims { conserved: H; conserved under low: H; conserved under high: H; }
-    }
-}
+dalembert::model_file!("src/spasmodic_hamiltonian.dal");
 
 #[cfg(test)]
 mod tests {

@@ -4,30 +4,7 @@
 //! Facts: outside motions are straight lines, inside great circles; at the circle the momentum along it stays, and the energy.
 //! Source: W. Clark and A. Bloch, Example 3, with the metric `1 + x^2/(1 - x^2 - y^2)` that the sphere has.
 
-dalembert::model! {
-    /// Point on a plane with a part of a sphere in it (W. Clark and A. Bloch, Example 3).
-    pub SphereInPlane {
-        coordinates { x; y; }
-        parameters {
-            /// Radius of the disk that is replaced; that of the sphere is 1.
-            rho > 0 = 1/2;
-        }
-        let height = 1 - x^2 - y^2;
-        modes {
-            outside {
-                lagrangian = 1/2*(dot(x)^2 + dot(y)^2);
-                initial { x = -1; y = -0.375; dot(x) = 1; until = 2; }
-            }
-            inside { lagrangian = 1/2*(dot(x)^2 + dot(y)^2 + (x*dot(x) + y*dot(y))^2/height); }
-        }
-        transitions {
-            enter: outside -> inside when x^2 + y^2 <= rho^2;
-            leave: inside -> outside when x^2 + y^2 >= rho^2;
-        }
-        view { path: (x, y); region: x^2 + y^2 - rho^2 >= 0; }
-        claims { conserved: energy; conserved: x*momentum(y) - y*momentum(x); }
-    }
-}
+dalembert::model_file!("src/sphere_in_plane.dal");
 
 #[cfg(test)]
 mod tests {

@@ -4,46 +4,7 @@
 //! double support two springs push. Source: H. Geyer, A. Seyfarth and R. Blickhan, *Compliant leg behaviour explains basic dynamics of
 //! walking and running* (2006); W. Clark, thesis, section 2.3, for systems of this kind.
 
-dalembert::model! {
-    /// Point mass that walks on spring legs (Geyer, Seyfarth and Blickhan 2006), in units of mass, leg length and gravity.
-    pub SpringMassWalker {
-        parameters {
-            /// Stiffness of a leg.
-            k > 0 = 17.84;
-            /// Angle at which a leg lands.
-            alpha in [0, 1.5] = 1.2043;
-        }
-        /// The mass.
-        coordinates { x; y; }
-        let spring(foot) = k/2*(sqrt((x - foot)^2 + y^2) - 1)^2;
-        modes {
-            /// On one leg.
-            single {
-                coordinates { foot; }
-                lagrangian = (dot(x)^2 + dot(y)^2 + dot(foot)^2)/2 - y - spring(foot);
-                constraints { stands: d(foot) = 0; }
-                initial { y = 0.97; dot(x) = 0.351; until = 8; }
-            }
-            /// On two: one in front, one behind.
-            double {
-                coordinates { front; back; }
-                lagrangian = (dot(x)^2 + dot(y)^2 + dot(front)^2 + dot(back)^2)/2 - y - spring(front) - spring(back);
-                constraints { stands_in_front: d(front) = 0; stands_behind: d(back) = 0; }
-            }
-        }
-        transitions {
-            touch_down: single -> double when y <= sin(alpha) when x > foot => reset {
-                front = x + cos(alpha);
-                back = foot;
-                dot(front) = 0;
-                dot(back) = 0;
-            };
-            lift_off: double -> single when (x - back)^2 + y^2 >= 1 => reset { foot = front; dot(foot) = 0; };
-        }
-        view { path: (x, y); }
-        claims { conserved: energy; }
-    }
-}
+dalembert::model_file!("src/spring_mass_walker.dal");
 
 #[cfg(test)]
 mod tests {

@@ -4,25 +4,7 @@
 //! comes at `(1/v0) (1 + 1/al + .. + 1/al^(n-1))`; they accumulate at `al/(v0 (al - 1))`, where the speed is infinite.
 //! Source: W. Clark and A. Bloch, Examples 4 and 5; `al > 1`, where Example 4 prints `al > 0`.
 
-dalembert::model! {
-    /// Point between walls that multiply its normal speed (W. Clark and A. Bloch, Example 5).
-    pub SuperElasticStrip {
-        coordinates { x; y; }
-        parameters {
-            /// Factor of the normal speed.
-            al > 0 = 5/4;
-            /// Factor of the tangential speed.
-            be > 0 = 16/25;
-        }
-        lagrangian = (dot(x)^2 + dot(y)^2)/2;
-        impacts {
-            left: x >= 0 => reset { dot(x) = -al*dot(x); dot(y) = be*dot(y); };
-            right: x <= 1 => reset { dot(x) = -al*dot(x); dot(y) = be*dot(y); };
-        }
-        initial { dot(x) = 1; dot(y) = 1; until = 4.9; }
-        view { path: (x, y); }
-    }
-}
+dalembert::model_file!("src/super_elastic_strip.dal");
 
 #[cfg(test)]
 mod tests {

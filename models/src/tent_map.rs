@@ -3,27 +3,7 @@
 //!
 //! Fact: the square `first` is entered at heights `y, T(y), T(T(y)), ..`, `T` the tent map. Source: W. Clark, thesis, Example IV.28.
 
-dalembert::model! {
-    /// Three squares with the tent map for a return map (W. Clark, thesis, Example IV.28).
-    pub TentMap {
-        coordinates { x; y; }
-        field { dot(x) = 1; dot(y) = 0; }
-        modes {
-            first { initial { y = 2/7; until = 12; } }
-            /// Where heights up to 1/2 lead.
-            lower { }
-            /// Where heights above 1/2 lead.
-            upper { }
-        }
-        transitions {
-            down: first -> lower when x >= 1 when y <= 1/2 => reset { x = 0; y = 2*y; };
-            up: first -> upper when x >= 1 when y > 1/2 => reset { x = 0; y = 2*(1 - y); };
-            from_lower: lower -> first when x >= 1 => reset { x = 0; };
-            from_upper: upper -> first when x >= 1 => reset { x = 0; };
-        }
-        view { path: (x, y); }
-    }
-}
+dalembert::model_file!("src/tent_map.dal");
 
 #[cfg(test)]
 mod tests {

@@ -7,48 +7,7 @@
 //! Facts: [`DimensionlessWalker`](crate::DimensionlessWalker) is this system in other units.
 //! Source: W. Clark, thesis, section 4.2 (4.5 to 4.7); in (4.7) the centripetal term is subtracted and times `lf`.
 
-dalembert::model! {
-    /// A walker on a slope whose foot slips.
-    pub WalkerFootSlip {
-        coordinates {
-            /// Place along the slope.
-            x_c;
-            /// Angle of the stance leg from the normal of the slope.
-            theta;
-        }
-        parameters {
-            /// Mass.
-            m > 0 = 1;
-            /// Moment of inertia.
-            I > 0 = 1/4;
-            /// Length of a leg.
-            lf > 0 = 1/2;
-            /// Friction of the foot per velocity.
-            b >= 0 = 1;
-            /// Acceleration of gravity.
-            g = 1;
-            /// Slope.
-            alpha = 1/10;
-            /// Half the angle between the legs.
-            delta > 0 = 3/10;
-        }
-        let slip = dot(x_c) + lf*dot(theta)*cos(theta);
-        lagrangian = m/2*(lf^2*dot(theta)^2*sin(theta)^2 + dot(x_c)^2) + I/2*dot(theta)^2
-            - g*m*(lf*cos(alpha)*cos(theta) - x_c*sin(alpha));
-        forces { friction: -b*slip*d(x_c) - b*lf*cos(theta)*slip*d(theta); }
-        impacts {
-            step: theta >= -delta => reset {
-                theta = theta + 2*delta;
-                dot(theta) = cos(2*delta)*dot(theta);
-                dot(x_c) = dot(x_c) + lf*cos(delta)*(1 - cos(2*delta))*dot(theta);
-            };
-        }
-        initial { theta = delta; dot(theta) = -2; dot(x_c) = 1; until = 5; }
-        outputs { foot: slip; }
-        view { path: (theta, x_c); }
-        claims { not conserved: energy; }
-    }
-}
+dalembert::model_file!("src/walker_foot_slip.dal");
 
 #[cfg(test)]
 mod tests {

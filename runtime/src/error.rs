@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::assumption::Assumption;
+use dalembert_numbers::description::Assumption;
 
 /// A quantity that the equations of motion need does not exist at this state.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,12 +2,12 @@
 
 use nalgebra::SVector;
 
-use crate::assumption::Assumption;
 use crate::contract::{Constrained, System};
 use crate::describe::{Instance, Report};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::numbers::Numbers;
 use crate::state::StateVector;
+use dalembert_numbers::description::Assumption;
 
 /// A constraint residual up to this share of the sum of the absolute values of its terms counts as satisfied
 /// when a state is made by hand: rounded decimal input passes, a wrong velocity does not.

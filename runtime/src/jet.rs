@@ -2,17 +2,7 @@
 
 use crate::numbers::Numbers;
 pub use crate::numbers::{INVERSES, LENGTH};
-
-/// What the expansions of a system take, in multiplications.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Work {
-    /// Values at one moment: of a rate, and of gaps where there are surfaces.
-    pub values: u32,
-    /// Sums over products of coefficients: each takes a multiplication for every pair of coefficients.
-    pub sums: u32,
-    /// The order after which the series of motion and gaps end, if they do whatever the numbers are.
-    pub degree: Option<u32>,
-}
+pub use dalembert_numbers::tables::Work;
 
 /// Room for the coefficients of several series.
 pub trait Jets: Copy {

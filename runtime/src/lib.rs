@@ -114,7 +114,6 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
-mod assumption;
 pub mod audit;
 pub mod certified;
 pub mod contract;
@@ -184,19 +183,18 @@ pub use variations::{Orbit, OrbitError, Section, SectionError, Undefined, Variat
 pub use work::Work;
 
 #[cfg(feature = "macros")]
-pub use dalembert_macros::model;
+pub use dalembert_macros::{model, model_file};
 
 /// What generated code names besides the public items. Not part of the interface.
 #[doc(hidden)]
 pub mod __private {
     pub use crate::generated::*;
     pub use crate::initial::{complete_positions, complete_velocities};
-    pub use crate::kernels::nearest_of_declared;
+    pub use crate::kernels::{log_density, nearest_of_declared};
     pub use crate::kernels::{number, write};
     pub use crate::math;
     pub use crate::modes;
     pub use crate::nearest::nearest_by_steps;
-    pub use crate::quadrature::line_integral;
     pub use crate::rank::rank_drop;
     pub use nalgebra::SVector;
 }

@@ -1,8 +1,7 @@
 //! Line integrals of a gradient: the logarithm of a density that has no closed form.
 
-use nalgebra::SVector;
-
 use crate::error::Fault;
+use crate::state::StateVector;
 
 /// Nodes in `(0, 1)` and weights of Gauss and Legendre's rule of 16 points, the nodes below the midpoint; the others
 /// mirror them.
@@ -28,14 +27,22 @@ const GROWTH: f64 = 1e-6;
 ///
 /// # Errors
 /// Whatever the gradient says; [`Fault::SingularConstraint`] if the integral does not converge, as across a pole.
-pub fn line_integral<const N: usize>(
-    from: [f64; N],
-    to: &SVector<f64, N>,
-    gradient: impl Fn(&SVector<f64, N>) -> Result<SVector<f64, N>, Fault>,
+pub fn line_integral<V: StateVector>(
+    from: &[f64],
+    to: &V,
+    gradient: impl Fn(&V) -> Result<V, Fault>,
 ) -> Result<f64, Fault> {
-    let from = SVector::from(from);
-    let way = to - from;
-    let slope = |s: f64| -> Result<f64, Fault> { Ok(gradient(&(from + way * s))?.dot(&way)) };
+    let slope = |s: f64| -> Result<f64, Fault> {
+        let mut place = to.zeroed();
+        let ends = from.iter().zip(to.as_slice());
+        for (own, (from, to)) in place.as_mut_slice().iter_mut().zip(ends) {
+            *own = from + (to - from) * s;
+        }
+        let gradient = gradient(&place)?;
+        let ends = from.iter().zip(to.as_slice());
+        let products = gradient.as_slice().iter().zip(ends);
+        Ok(products.map(|(own, (from, to))| own * (to - from)).sum())
+    };
     let mut panels = 1;
     let mut coarse = composite(&slope, panels)?;
     while panels < PANELS {
@@ -78,9 +85,11 @@ fn composite(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::SVector;
 
     fn integral(to: [f64; 2], gradient: impl Fn(f64, f64) -> [f64; 2]) -> Result<f64, Fault> {
-        line_integral([0.0, 1.0], &to.into(), |q| Ok(gradient(q[0], q[1]).into()))
+        let to = SVector::<f64, 2>::from(to);
+        line_integral(&[0.0, 1.0], &to, |q| Ok(gradient(q[0], q[1]).into()))
     }
 
     #[test]

@@ -46,6 +46,8 @@ struct Plane<const M: usize, const N: usize> {
     theta: f64,
     /// The time there.
     t: f64,
+    /// How many forms there are.
+    count: usize,
     /// Its orthonormal basis; a row that depends on the earlier ones is 0.
     basis: [[f64; N]; M],
     /// How long each form is without its components along the earlier ones.
@@ -54,9 +56,9 @@ struct Plane<const M: usize, const N: usize> {
 
 impl<const M: usize, const N: usize> Plane<M, N> {
     /// By the modified Gram-Schmidt method.
-    fn of(theta: f64, t: f64, mut forms: [[f64; N]; M]) -> Self {
+    fn of(theta: f64, t: f64, (mut forms, count): ([[f64; N]; M], usize)) -> Self {
         let mut lengths = [0.0; M];
-        for a in 0..M {
+        for a in 0..count {
             let (earlier, rest) = forms.split_at_mut(a);
             let own = &mut rest[0];
             for other in earlier.iter() {
@@ -73,6 +75,7 @@ impl<const M: usize, const N: usize> Plane<M, N> {
         Self {
             theta,
             t,
+            count,
             basis: forms,
             lengths,
         }
@@ -81,12 +84,12 @@ impl<const M: usize, const N: usize> Plane<M, N> {
     /// The cosine of the angle between the oriented planes: `det (Q_a Q_b^T)`.
     fn cosine(&self, other: &Self) -> f64 {
         let mut products = [[0.0; M]; M];
-        for (row, own) in products.iter_mut().zip(&self.basis) {
-            for (entry, other) in row.iter_mut().zip(&other.basis) {
+        for (row, own) in products.iter_mut().zip(&self.basis[..self.count]) {
+            for (entry, other) in row.iter_mut().zip(&other.basis[..self.count]) {
                 *entry = inner(own, other);
             }
         }
-        determinant(products)
+        determinant(products, self.count)
     }
 
     /// How large the multivector is, and each of its factors, beside those at another place.
@@ -95,7 +98,7 @@ impl<const M: usize, const N: usize> Plane<M, N> {
     }
 
     fn lengths_beside(&self, other: &Self) -> impl Iterator<Item = f64> {
-        let pairs = self.lengths.iter().zip(other.lengths);
+        let pairs = self.lengths[..self.count].iter().zip(other.lengths);
         pairs.map(|(own, other)| own / other)
     }
 }
@@ -104,12 +107,12 @@ fn inner<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// By elimination with the largest pivots.
-fn determinant<const M: usize>(mut rows: [[f64; M]; M]) -> f64 {
+/// That of the first rows and columns, by elimination with the largest pivots.
+fn determinant<const M: usize>(mut rows: [[f64; M]; M], count: usize) -> f64 {
     let mut product = 1.0;
-    for k in 0..M {
+    for k in 0..count {
         let size = |row: usize| abs(rows[row][k]);
-        let largest = (k..M).max_by(|&a, &b| size(a).total_cmp(&size(b)));
+        let largest = (k..count).max_by(|&a, &b| size(a).total_cmp(&size(b)));
         let pivot = largest.unwrap_or(k);
         if pivot != k {
             rows.swap(pivot, k);
@@ -120,7 +123,7 @@ fn determinant<const M: usize>(mut rows: [[f64; M]; M]) -> f64 {
         if own[k] == 0.0 {
             return 0.0;
         }
-        for row in &mut rows[k + 1..] {
+        for row in &mut rows[k + 1..count] {
             let factor = row[k] / own[k];
             for (entry, own) in row.iter_mut().zip(&own) {
                 *entry -= factor * own;
@@ -130,7 +133,7 @@ fn determinant<const M: usize>(mut rows: [[f64; M]; M]) -> f64 {
     product
 }
 
-/// As [`System::rank_drop`](crate::System::rank_drop), of a system with M constraints on N coordinates.
+/// As [`System::rank_drop`](crate::System::rank_drop), of a system with up to M constraints on up to N coordinates.
 pub fn rank_drop<S: Constrained, const M: usize, const N: usize>(
     system: &S,
     motion: impl Fn(f64) -> (f64, S::State),
@@ -138,13 +141,27 @@ pub fn rank_drop<S: Constrained, const M: usize, const N: usize>(
 ) -> Option<RankDrop> {
     let plane = |theta: f64| {
         let (t, state) = motion(theta);
+        let (count, columns) = (system.constraint_count(), system.coordinate_count());
         let mut forms = [[0.0; N]; M];
         let mut affine = system.zero_multipliers();
         let q = system.position(&state);
-        system.constraint_forms(t, &q, forms.as_flattened_mut(), &mut affine);
-        Plane::of(theta, t, forms)
+        let written = &mut forms.as_flattened_mut()[..count * columns];
+        system.constraint_forms(t, &q, written, &mut affine);
+        Plane::of(theta, t, (apart(forms, columns), count))
     };
     first_drop::<M, N>(plane, reach)
+}
+
+/// Rows of `columns` numbers, one behind the other, each in a row of its own.
+fn apart<const M: usize, const N: usize>(forms: [[f64; N]; M], columns: usize) -> [[f64; N]; M] {
+    let mut rows = [[0.0; N]; M];
+    for (row, written) in rows
+        .iter_mut()
+        .zip(forms.as_flattened().chunks_exact(columns))
+    {
+        row[..columns].copy_from_slice(written);
+    }
+    rows
 }
 
 /// The first drop among places up to `reach`.

@@ -5,16 +5,10 @@ use quote::quote;
 
 use super::Context;
 
-/// The names of the inputs.
-pub(super) fn names<'a>(context: &'a Context<'_>) -> impl Iterator<Item = &'a str> {
-    let inputs = context.model.inputs();
-    inputs.map(|(_, own)| own.name.display.as_str())
-}
-
 /// `impl Actuated`, if there are inputs.
 pub(super) fn emit_actuated(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
-    let inputs: Vec<usize> = context.model.inputs().map(|(k, _)| k).collect();
+    let inputs: Vec<usize> = context.form.model.inputs().map(|(k, _)| k).collect();
     if inputs.is_empty() {
         return TokenStream::new();
     }
@@ -39,7 +33,7 @@ pub(super) fn emit_actuated(context: &Context<'_>) -> TokenStream {
 
 /// `impl Powered`, if forces are declared.
 pub(super) fn emit_powered(context: &Context<'_>) -> TokenStream {
-    let Some(powers) = &context.program.powers else {
+    let Some(powers) = &context.form.program.powers else {
         return TokenStream::new();
     };
     let (type_name, names) = (&context.names.type_name, &powers.names);

@@ -5,22 +5,6 @@ use quote::quote;
 
 use super::Context;
 
-/// Which constraint each level belongs to, where some are declared to be 0.
-pub(super) fn emit_levels(context: &Context<'_>) -> TokenStream {
-    let functions = context.program.constrained.as_ref();
-    if functions.is_none_or(|own| own.level_scales.is_none()) {
-        return TokenStream::new();
-    }
-    let constraints = context.model.constraints.iter().enumerate();
-    let levels = constraints
-        .filter(|(_, own)| own.level.is_some())
-        .map(|(constraint, own)| {
-            let is_zero = own.is_of_positions;
-            quote!(::dalembert::Level { constraint: #constraint, is_zero: #is_zero })
-        });
-    quote!(#(#levels),*)
-}
-
 /// The nearest velocities by Newton's steps.
 pub(super) fn emit_nearest() -> TokenStream {
     quote! {
@@ -75,19 +59,22 @@ pub(super) fn emit_velocities() -> TokenStream {
 
 /// What a form with constraints answers where others accept every state.
 pub(super) fn emit_hooks(context: &Context<'_>) -> TokenStream {
-    let Some(functions) = &context.program.constrained else {
+    let Some(functions) = &context.form.program.constrained else {
         return TokenStream::new();
     };
     let drop = functions.can_lose_rank.then(|| emit_rank_drop(context));
     let positions = functions.level_scales.is_some().then(emit_positions);
-    let nearest = context.model.is_nonlinear().then(emit_nearest);
+    let nearest = context.form.model.is_nonlinear().then(emit_nearest);
     let velocities = emit_velocities();
     quote!(#drop #positions #nearest #velocities)
 }
 
 /// `rank_drop` of a system whose forms may become dependent.
 fn emit_rank_drop(context: &Context<'_>) -> TokenStream {
-    let (m, n) = (context.model.constraints.len(), context.dimension());
+    let (m, n) = (
+        context.form.model.constraints.len(),
+        context.form.dimension(),
+    );
     quote! {
         fn rank_drop_along(
             &self,

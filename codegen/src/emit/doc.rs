@@ -20,12 +20,6 @@ pub(super) fn lines<S: AsRef<str>>(lines: &[S]) -> TokenStream {
     quote!(#(#lines)*)
 }
 
-/// The lines of a doc comment as a text.
-pub fn text(lines: &[String]) -> String {
-    let lines: Vec<&str> = lines.iter().map(|line| line.trim()).collect();
-    lines.join("\n")
-}
-
 /// A doc comment that says formula and cost.
 pub(super) fn formula(text: &str, cost: &Cost) -> TokenStream {
     lines(&[format!("`{text}`"), String::new(), format!("{cost}.")])
@@ -34,14 +28,14 @@ pub(super) fn formula(text: &str, cost: &Cost) -> TokenStream {
 /// The order of the components of the state: `x, y, p_x, p_y`, or `x, y, theta, v, omega`.
 pub(super) fn state_order(context: &Context<'_>) -> String {
     let names = |prefix: &str| -> Vec<String> {
-        let coordinates = context.model.coordinates.iter();
+        let coordinates = context.form.model.coordinates.iter();
         coordinates
             .map(|coordinate| format!("{prefix}{}", coordinate.name.display))
             .collect()
     };
-    let motion = match context.program.form {
+    let motion = match context.form.program.form {
         Form::Global => names("p_"),
-        Form::Reduced => context.quasi_names(),
+        Form::Reduced => context.form.quasi_names(),
         Form::FirstOrder => Vec::new(),
     };
     [names(""), motion].concat().join(", ")

@@ -17,7 +17,7 @@ const LONGEST_EXPRESSION: usize = 8;
 
 /// How tightly an expression binds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Binding {
+pub(super) enum Binding {
     Sum,
     Product,
     Unary,

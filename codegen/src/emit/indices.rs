@@ -11,7 +11,7 @@ pub(super) type Entry<'a> = (&'a Name, &'a [String]);
 
 /// The module, with a module inside for each kind of names that there are, and the types of the scenes.
 pub(super) fn emit_indices(context: &Context<'_>, scenes: &[Vec<Context<'_>>]) -> TokenStream {
-    let model = context.model;
+    let model = context.form.model;
     let lists = emit_lists(model);
     let visibility: TokenStream = match model.visibility.as_str() {
         "" => quote!(pub(crate)),

@@ -71,7 +71,7 @@ pub(super) fn emit_kernels(
     let kernels = kernels(context);
     let inherited = base.as_ref().and_then(|base| written.methods.get(base));
     let mut methods = inherited.cloned().unwrap_or_default();
-    let count = context.model.surfaces.len();
+    let count = context.form.model.surfaces.len();
     let mut new_methods = differing(&kernels, &methods, count);
     let velocity = kernels.first().map(|velocity| &velocity.key);
     for kernel in &kernels {
@@ -249,10 +249,7 @@ struct Own<'a> {
 /// Every function of a form that is emitted, that of velocities first.
 fn kernels<'a>(context: &'a Context<'_>) -> Vec<Own<'a>> {
     let mut kernels: Vec<Own<'a>> = Vec::new();
-    for (kernel, function) in context.program.kernels() {
-        if context.model.is_nonlinear() && is_of_impulses(kernel) {
-            continue;
-        }
+    for (kernel, function) in context.form.kernels() {
         let (method, surface) = name(kernel);
         let velocity = kernels.first().map(|own| own.key.clone());
         kernels.push(Own {
@@ -276,21 +273,13 @@ pub(super) fn type_name(context: &Context<'_>) -> Ident {
     Ident::new(&format!("{name}Kernels"), Span::call_site())
 }
 
-/// Whether a kernel belongs to impulses and discrete principles, which constraints that are not linear define none of.
-fn is_of_impulses(kernel: Kernel) -> bool {
-    matches!(
-        kernel,
-        Kernel::Blow(_) | Kernel::Contact(_) | Kernel::ReactionForce | Kernel::ConstrainedVelocity
-    )
-}
-
 fn key(
     context: &Context<'_>,
     (kernel, function): (Kernel, &Function),
     velocity: Option<Rc<Key>>,
 ) -> Key {
     let motion = match kernel.first() {
-        First::State => context.motion_dimension(),
+        First::State => context.form.motion_dimension(),
         _ => 0,
     };
     Key {
@@ -354,7 +343,7 @@ fn bind_first(
     velocity: Option<&Place>,
 ) -> TokenStream {
     let coordinates = locals(&context.names.coordinates, function, Input::Coordinate);
-    let motion = match (kernel.first(), context.program.form) {
+    let motion = match (kernel.first(), context.form.program.form) {
         (First::State, Form::Global) => locals(&context.names.momenta, function, Input::Momentum),
         (First::State, Form::Reduced) => locals(&context.names.quasi, function, Input::Quasi),
         _ => Vec::new(),
@@ -363,7 +352,7 @@ fn bind_first(
     if !takes_velocities(kernel, function) {
         return bound;
     }
-    let n = context.dimension();
+    let n = context.form.dimension();
     let velocities = locals(&context.names.velocities, function, Input::Velocity);
     let velocities = bind(&velocities, &quote!(&qdot));
     let velocity = velocity.map(|place| place.call(&type_name(context), &quote!(&mut qdot)));
@@ -440,9 +429,9 @@ fn documentation(context: &Context<'_>, kernel: Kernel, function: &Function) -> 
 }
 
 fn formula(context: &Context<'_>, kernel: Kernel) -> Option<&'static str> {
-    let form = context.program.form;
+    let form = context.form.program.form;
     Some(match kernel {
-        Kernel::Rate => match (form, &context.program.constrained) {
+        Kernel::Rate => match (form, &context.form.program.constrained) {
             (Form::Reduced, _) => {
                 "qdot = X_0 + X u, G_D udot = X^T (f - gdot qdot - Adot - g (Xdot u + Xdot_0))"
             }
@@ -459,7 +448,7 @@ fn formula(context: &Context<'_>, kernel: Kernel) -> Option<&'static str> {
         Kernel::Motion if form == Form::Reduced => "u = alpha(qdot)",
         Kernel::Motion => "p = g qdot + A",
         Kernel::Nearest if form == Form::Reduced => "G_D u = X^T g (qdot - X_0)",
-        Kernel::Nearest if context.model.is_nonlinear() => {
+        Kernel::Nearest if context.form.model.is_nonlinear() => {
             "Newton's step p + mu_a eta^a, m mu = -phi, eta = dphi/dqdot"
         }
         Kernel::Nearest => "p + mu_a eta^a, m mu = -(eta(qdot) + eta_0)",

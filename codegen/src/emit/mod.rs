@@ -3,6 +3,7 @@
 //! Generated code names only public items of `::dalembert`, `::dalembert::__private` and `::core`.
 
 mod actuation;
+mod constants;
 mod constraint;
 mod declared;
 mod describe;
@@ -23,28 +24,14 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use crate::Compiled;
-use crate::mechanics::Frame;
 use crate::model::{Model, Scene};
-use crate::program::{Form, Program};
-pub use doc::text;
+use crate::tables::FormOf;
 use names::Names;
 
 /// What every emitter reads.
 struct Context<'a> {
-    /// What is used: the whole model, or what a scene leaves of it.
-    model: &'a Model,
-    /// The scenes of the whole model.
-    scenes: &'a [Scene],
-    frame: Option<&'a Frame>,
-    program: &'a Program,
+    form: FormOf<'a>,
     names: Names,
-}
-
-impl Context<'_> {
-    /// Whether the type is that of the global form of a model or a scene whose own is reduced.
-    fn is_wrapped(&self) -> bool {
-        self.frame.is_some() && self.program.form == Form::Global
-    }
 }
 
 /// The generated items of a model: those of its type and of the types of its scenes, and where one of them is reduced
@@ -100,29 +87,17 @@ fn contexts<'a>(
     scenes: &'a [Scene],
     own_names: impl FnOnce(Names) -> Names,
 ) -> Vec<Context<'a>> {
-    let Compiled {
-        model,
-        derivation,
-        programs,
-        ..
-    } = compiled;
-    let frame = derivation.frame.as_ref().ok();
-    let names = own_names(Names::of(model, frame));
-    let global = programs.global.as_ref().map(|program| Context {
-        model,
-        scenes,
-        frame,
-        program,
-        names: names.of_global(model),
-    });
-    let own = Context {
-        model,
-        scenes,
-        frame,
-        program: &programs.main,
-        names,
+    let model = &compiled.model;
+    let names = own_names(Names::of(model, compiled.derivation.frame.as_ref().ok()));
+    let forms = FormOf::all(compiled, scenes).into_iter().enumerate();
+    let context = |(index, form)| Context {
+        form,
+        names: match index {
+            0 => names.clone(),
+            _ => names.of_global(model),
+        },
     };
-    [Some(own), global].into_iter().flatten().collect()
+    forms.map(context).collect()
 }
 
 /// As [`contexts`], of a scene.
@@ -150,7 +125,7 @@ fn implementations(
         actuation::emit_powered(context),
         volume::emit_invariant_volume(context),
         variational::emit_variations(context),
-        describe::emit_documented(context),
+        describe::emit_documented(context, base),
         describe::emit_scene(context),
     ]
 }

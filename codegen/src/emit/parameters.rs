@@ -6,10 +6,11 @@ use quote::quote;
 use super::{Context, doc, function::number, names};
 use crate::model::{Assumption, Model, Parameter};
 use crate::program::Form;
+use crate::tables::default_value;
 
 /// The struct, and `Default` when every parameter has one.
 pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
-    let model = context.model;
+    let model = context.form.model;
     let type_name = &context.names.own;
     let visibility: TokenStream = model.visibility.parse().unwrap_or_default();
     let documentation = doc::lines(&documentation(context));
@@ -41,7 +42,7 @@ pub(super) fn emit_global(
     noun: &str,
     visibility: &TokenStream,
 ) -> TokenStream {
-    if context.program.form != Form::Reduced {
+    if context.form.program.form != Form::Reduced {
         return TokenStream::new();
     }
     let own = Ident::new(type_name, Span::call_site());
@@ -61,7 +62,7 @@ pub(super) fn emit_global(
 
 /// What the documentation of the type of a model or a scene says.
 pub(super) fn documentation(context: &Context<'_>) -> Vec<String> {
-    let model = context.model;
+    let model = context.form.model;
     let mut lines = model.documentation.clone();
     lines.push(String::new());
     lines.push(format!(" State: `{}`.", doc::state_order(context)));
@@ -109,13 +110,6 @@ pub(super) fn families(parameters: &[Parameter]) -> Vec<&[Parameter]> {
         .collect()
 }
 
-/// The declared default as a number.
-pub(super) fn default_value(model: &Model, parameter: &Parameter) -> Option<f64> {
-    parameter
-        .default
-        .map(|default| model.pool.eval(&[default], &|_| f64::NAN)[0])
-}
-
 /// The struct with declared defaults, NaN where there is none.
 pub(super) fn with_defaults(model: &Model) -> TokenStream {
     let fields = default_fields(model);
@@ -144,7 +138,7 @@ pub(super) fn have_defaults(model: &Model) -> bool {
 }
 
 fn emit_default(context: &Context<'_>) -> TokenStream {
-    let model = context.model;
+    let model = context.form.model;
     if !have_defaults(model) {
         return TokenStream::new();
     }

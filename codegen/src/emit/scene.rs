@@ -5,7 +5,6 @@ use quote::quote;
 
 use super::{Context, doc, indices, parameters};
 use crate::model::{Model, Scene};
-use crate::spec::WHOLE;
 
 /// The types of all scenes with what stands beside each of them; `contexts` are those of the scenes, in order.
 pub(super) fn emit_types(model: &Model, contexts: &[Vec<Context<'_>>]) -> Vec<TokenStream> {
@@ -32,8 +31,8 @@ fn emit_type(model: &Model, scene: &Scene, context: &Context<'_>) -> TokenStream
     lines.insert(scene.documentation.len(), String::new());
     let documentation = doc::lines(&lines);
     let global = parameters::emit_global(context, &scene.type_name, "scene", &quote!(pub));
-    let indices = (!context.model.surfaces.is_empty()).then(|| {
-        let surfaces = indices::emit_surfaces(&context.model.surfaces);
+    let indices = (!context.form.model.surfaces.is_empty()).then(|| {
+        let surfaces = indices::emit_surfaces(&context.form.model.surfaces);
         let title = format!(" Indices of what the scene `{}` uses.", scene.name);
         quote! {
             #[doc = #title]
@@ -74,20 +73,13 @@ pub(super) fn emit_default(
     }
 }
 
-/// The names of all scenes as `DESCRIPTION` has them, the model itself first.
-pub(super) fn emit_infos(context: &Context<'_>) -> TokenStream {
-    let names = context.scenes.iter().map(|scene| scene.name.as_str());
-    let names = [WHOLE].into_iter().chain(names);
-    quote!(#(#names),*)
-}
-
 /// `show_scenes`, of the model's own type.
 pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
-    if context.scenes.is_empty() || context.names.held.is_some() {
+    if context.form.scenes.is_empty() || context.names.held.is_some() {
         return TokenStream::new();
     }
-    let module = Ident::new(&context.model.snake_name, Span::call_site());
-    let visits = context.scenes.iter().map(|scene| {
+    let module = Ident::new(&context.form.model.snake_name, Span::call_site());
+    let visits = context.form.scenes.iter().map(|scene| {
         let type_name = Ident::new(&scene.type_name, Span::call_site());
         let name = &scene.name;
         quote!(visitor.visit::<#module::#type_name>(#name);)

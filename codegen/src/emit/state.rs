@@ -8,26 +8,6 @@ use super::function::uses;
 use crate::program::{Form, Function, Input};
 
 impl Context<'_> {
-    /// Number of coordinates.
-    pub(super) fn dimension(&self) -> usize {
-        self.model.coordinates.len()
-    }
-
-    /// Number of components of the state beside the positions.
-    pub(super) fn motion_dimension(&self) -> usize {
-        match self.program.form {
-            Form::Global => self.dimension(),
-            Form::Reduced => self.names.quasi.len(),
-            Form::FirstOrder => 0,
-        }
-    }
-
-    /// The names of the quasi-velocities.
-    pub(super) fn quasi_names(&self) -> Vec<String> {
-        let quasi = self.frame.iter().flat_map(|frame| &frame.quasi);
-        quasi.map(|own| own.name.clone()).collect()
-    }
-
     /// `let [x, _, p_x, p_y] = *state;` with what the function uses.
     pub(super) fn bind_row(&self, function: &Function) -> TokenStream {
         let patterns = self.state_patterns(function);
@@ -42,7 +22,7 @@ impl Context<'_> {
         let coordinates = pattern(&self.names.coordinates, |i| {
             uses(function, |input| input == Input::Coordinate(i))
         });
-        let motion = match self.program.form {
+        let motion = match self.form.program.form {
             Form::Global => pattern(&self.names.momenta, |i| {
                 uses(function, |input| input == Input::Momentum(i))
             }),

@@ -8,13 +8,13 @@ use crate::program::Form;
 
 /// What variations take of a form, where they are asked for. A type that holds a reduced model in its global form has none.
 pub(super) fn emit_variations(context: &Context<'_>) -> TokenStream {
-    if !is_variational(context) {
+    if !context.form.varies() {
         return TokenStream::new();
     }
     let type_name = &context.names.type_name;
-    let (n, k) = (context.dimension(), context.motion_dimension());
-    let (surfaces, collision) = (context.model.surfaces.len(), 5 + k);
-    let off = off_constraints(context) + levels(context);
+    let (n, k) = (context.form.dimension(), context.form.motion_dimension());
+    let (surfaces, collision) = (context.form.model.surfaces.len(), 5 + k);
+    let off = off_constraints(context) + context.form.levels();
     let state = n + k;
     let attributes = super::attributes();
     let numbers = quote!(L: ::dalembert::numbers::Numbers);
@@ -38,7 +38,7 @@ pub(super) fn emit_variations(context: &Context<'_>) -> TokenStream {
 
 /// `show_variational`, of what is.
 pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
-    if !is_variational(context) {
+    if !context.form.varies() {
         return TokenStream::new();
     }
     quote! {
@@ -51,21 +51,10 @@ pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// True if runs of the form can be varied.
-pub(super) fn is_variational(context: &Context<'_>) -> bool {
-    context.model.extras.variations && !context.is_wrapped()
-}
-
 /// Constraints that a state may be off.
 fn off_constraints(context: &Context<'_>) -> usize {
-    match (context.program.form, &context.program.constrained) {
-        (Form::Global, Some(_)) => context.model.constraints.len(),
+    match (context.form.program.form, &context.form.program.constrained) {
+        (Form::Global, Some(_)) => context.form.model.constraints.len(),
         _ => 0,
     }
-}
-
-/// Constraints with a position level.
-fn levels(context: &Context<'_>) -> usize {
-    let functions = context.program.constrained.as_ref();
-    functions.map_or(0, |functions| functions.levels.outputs.len())
 }

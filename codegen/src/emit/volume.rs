@@ -4,27 +4,20 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Context;
-use super::function::number;
 
 /// `impl InvariantVolume`, if a volume was found.
 pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
-    let Some(volume) = &context.program.volume else {
+    let Some(volume) = &context.form.program.volume else {
         return TokenStream::new();
     };
     let type_name = &context.names.type_name;
-    if context.is_wrapped() {
+    if context.form.is_wrapped() {
         return emit_delegated_volume(context);
     }
     let (independent, is_single_valued) = (&volume.independent, volume.is_single_valued);
     let is_integral = volume.gradient.is_some();
-    let (integral, added) = match &volume.gradient {
-        Some((reference, _)) => {
-            let integral = emit_integral(reference);
-            let density = quote!(::dalembert::InvariantVolume::log_density(self, t, q)?);
-            (quote!(+ #integral), quote!(+ #density))
-        }
-        None => (TokenStream::new(), TokenStream::new()),
-    };
+    let added =
+        is_integral.then(|| quote!(+ ::dalembert::InvariantVolume::log_density(self, t, q)?));
     let attributes = super::attributes();
     quote! {
         #attributes
@@ -35,9 +28,7 @@ pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
 
             #[inline]
             fn log_density(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
-                let place = [::dalembert::StateVector::as_slice(q), &[]];
-                let density = ::dalembert::__private::number(self, ::dalembert::kernels::Kernels::log_density, t, place)?;
-                ::core::result::Result::Ok(density #integral)
+                ::dalembert::__private::log_density(self, t, q)
             }
 
             #[inline]
@@ -72,19 +63,5 @@ fn emit_delegated_volume(context: &Context<'_>) -> TokenStream {
                 #own::log_volume(&self.0, t, q)
             }
         }
-    }
-}
-
-/// `line_integral(..)?`, the part of `G` that has no closed form; `reference` is the configuration that it begins at.
-fn emit_integral(reference: &[f64]) -> TokenStream {
-    let reference = reference.iter().map(|own| number(*own));
-    quote! {
-        ::dalembert::__private::line_integral([#(#reference),*], q, |q| {
-            let mut gradient = ::dalembert::System::zero_vector(self);
-            let place = [::dalembert::StateVector::as_slice(q), &[]];
-            let values = ::dalembert::StateVector::as_mut_slice(&mut gradient);
-            ::dalembert::__private::write(self, ::dalembert::kernels::Kernels::density_gradient, t, place, values)?;
-            ::core::result::Result::Ok(gradient)
-        })?
     }
 }

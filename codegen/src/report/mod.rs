@@ -29,10 +29,10 @@ use equations::Writer;
 
 use crate::claims::Finding;
 use crate::diagnostics::Diagnostics;
-use crate::emit::text;
 use crate::model::{Beside, Mode, ModeGraph, Model};
 use crate::program::{Cost, Program};
 use crate::spec::{self, Declaration, Modes};
+use crate::tables::text_of;
 use crate::{Compiled, CompiledModes, compile_modes, compile_spec, read};
 
 /// A derivation in words and formulas.
@@ -163,7 +163,7 @@ fn report_of_modes(declared: &Modes) -> Result<Report, ReportError> {
         names.join(", ")
     };
     let lines = graph.modes.iter().map(|mode| {
-        let documentation = text(&mode.scene.documentation).replace('\n', " ");
+        let documentation = text_of(&mode.scene.documentation).replace('\n', " ");
         let line = format!(
             "{}: {}. {documentation}",
             mode.scene.name,
@@ -175,7 +175,7 @@ fn report_of_modes(declared: &Modes) -> Result<Report, ReportError> {
         Section::plain("Modes", lines.collect()),
         Section::plain("Transitions", transitions(&graph)),
     ];
-    let (name, documentation) = (model.snake_name.clone(), text(&model.documentation));
+    let (name, documentation) = (model.snake_name.clone(), text_of(&model.documentation));
     let scenes = graph.modes.iter().zip(modes);
     let scenes = scenes.map(|(mode, own)| report_of(own, mode.scene.name.clone()));
     Ok(Report {
@@ -260,7 +260,7 @@ fn report_of(compiled: Compiled, name: String) -> Report {
     let certificate = certificate::certificate(&model, &model.own_claims(), &findings);
     Report {
         name,
-        documentation: text(&model.documentation),
+        documentation: text_of(&model.documentation),
         sections,
         findings,
         certificate,

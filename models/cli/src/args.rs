@@ -72,6 +72,23 @@ pub enum Command {
     Stability(StabilityArgs),
 }
 
+impl Command {
+    /// The model that it names, if it names one.
+    #[cfg(feature = "files")]
+    pub fn model(&mut self) -> Option<&mut String> {
+        match self {
+            Self::Derive(args) => Some(&mut args.model),
+            Self::Check(args) => Some(&mut args.model),
+            Self::Simulate(args) => Some(&mut args.run.model.model),
+            Self::Ensemble(args) => Some(&mut args.run.model.model),
+            Self::Accuracy(args) => Some(&mut args.run.model.model),
+            Self::Orbit(args) => Some(&mut args.model.model),
+            Self::Eval(args) => Some(&mut args.model.model),
+            Self::List(_) | Self::Gallery(_) | Self::Stability(_) => None,
+        }
+    }
+}
+
 const LIST_EXAMPLES: &str = "Examples:
   dalembert list
   dalembert list --format json";
@@ -156,7 +173,7 @@ pub struct ListArgs {
 /// `derive`
 #[derive(Debug, Args)]
 pub struct DeriveArgs {
-    /// Name of the model, as `list` prints it.
+    /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
     /// The scene.
     #[arg(long, value_name = "SCENE", default_value = "all")]
@@ -169,7 +186,7 @@ pub struct DeriveArgs {
 /// `check`
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Name of the model, as `list` prints it.
+    /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
     /// How to print.
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -182,7 +199,7 @@ pub struct CheckArgs {
 /// The model, its scene and its parameters.
 #[derive(Debug, Args)]
 pub struct ModelArgs {
-    /// Name of the model, as `list` prints it.
+    /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
     /// The scene.
     #[arg(long, value_name = "SCENE", default_value = "all")]

@@ -36,6 +36,16 @@ impl Catalogue {
         self
     }
 
+    /// With these models before the others, which may have the same names.
+    #[cfg(feature = "files")]
+    pub(crate) fn with_models(&self, mut models: Vec<Entry>) -> Self {
+        models.extend(self.models.iter().cloned());
+        Self {
+            models,
+            ..self.clone()
+        }
+    }
+
     /// The models.
     pub fn models(&self) -> &[Entry] {
         &self.models

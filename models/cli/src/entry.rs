@@ -15,7 +15,11 @@ use dalembert::declaration::{Described, SceneVisitor};
 use dalembert::describe::Description;
 use dalembert::erased::{Erased, Form};
 use dalembert::{Lagrangian, Scene, TaylorField};
+#[cfg(feature = "files")]
+use dalembert_jit::Loaded;
 
+#[cfg(feature = "files")]
+use crate::error::CliError;
 pub(crate) use model::{AnyModel, Code, Contacted, Origin, Point, Rates, Start, Together};
 pub use typed::Model;
 use typed::Typed;
@@ -83,6 +87,36 @@ impl Entry {
         };
         M::visit_scenes(&mut entry);
         entry
+    }
+
+    /// The entry of a model that was loaded from its text.
+    #[cfg(feature = "files")]
+    pub(crate) fn loaded(model: &Loaded) -> Self {
+        let scenes = model.scenes.iter();
+        let scenes = scenes.map(|(name, form)| (*name, Build::Erased(form)));
+        let own = ("all", Build::Erased(model.form));
+        Self {
+            description: model.form.documentation.description,
+            scenes: [own].into_iter().chain(scenes).collect(),
+        }
+    }
+
+    /// Refuses a model that there is no system for.
+    ///
+    /// # Errors
+    /// [`CliError::Large`].
+    #[cfg(feature = "files")]
+    pub(crate) fn check_size(&self) -> Result<(), CliError> {
+        let has_room = |(_, build): &(_, Build)| match build {
+            Build::Erased(form) => form.capacity().is_some(),
+            Build::Typed(_) => true,
+        };
+        match self.scenes.iter().all(has_room) {
+            true => Ok(()),
+            false => Err(CliError::Large {
+                model: self.description.name,
+            }),
+        }
     }
 
     /// What the model says of itself.

@@ -43,6 +43,19 @@ pub enum CliError {
         /// How many were given.
         got: usize,
     },
+    /// Mistakes in the text of a model.
+    #[cfg(feature = "files")]
+    #[error("{0}")]
+    Declaration(dalembert_jit::Refused),
+    /// A model that is too large to be run without a compiler.
+    #[cfg(feature = "files")]
+    #[error(
+        "MODEL: `{model}` has vectors of more than 32 components, or more than 64 parameters; compile it in a crate with `dalembert::model!`"
+    )]
+    Large {
+        /// The model.
+        model: &'static str,
+    },
     /// The reduced form of a model that has none.
     #[error("--form reduced: `{model}` has no form reduced to D; `derive {model}` says why")]
     Unreduced {

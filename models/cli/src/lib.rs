@@ -36,6 +36,8 @@ mod error;
 mod exit;
 pub mod gallery;
 mod json;
+#[cfg(feature = "files")]
+mod model_file;
 mod names;
 mod orbit;
 mod plot;
@@ -110,11 +112,11 @@ impl Catalogue {
     where
         A: Into<OsString> + Clone,
     {
-        let line = match CommandLine::try_parse_from(args) {
+        let mut line = match CommandLine::try_parse_from(args) {
             Ok(line) => line,
             Err(error) => return explain(&error, streams),
         };
-        let done = dispatch(&line, self, streams)
+        let done = with_files(&mut line, self, streams)
             .and_then(|exit| Ok(streams.output.flush().map(|()| exit)?));
         done.unwrap_or_else(|error| match error {
             // A reader that has seen enough, such as `head`, needs no message.
@@ -126,6 +128,22 @@ impl Catalogue {
             }
         })
     }
+}
+
+/// Carries out a command; a model that it names by a file is read first.
+fn with_files(
+    line: &mut CommandLine,
+    catalogue: &Catalogue,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    #[cfg(feature = "files")]
+    if let Some(given) = line.command.model()
+        && let Some((models, name)) = model_file::read(given, streams.input)?
+    {
+        *given = name;
+        return dispatch(line, &catalogue.with_models(models), streams);
+    }
+    dispatch(line, catalogue, streams)
 }
 
 fn dispatch(

@@ -1,4 +1,4 @@
-//! Numbers that generated kernels compute in, below both the generator and the runtime.
+//! Generator and runtime meet here: numbers that generated kernels compute in, names of kernels, and tables of what is known of a model.
 //!
 //! | file | job |
 //! |---|---|
@@ -9,21 +9,28 @@
 //! | `rated.rs` | intervals of values and of rates along a stretch of motion |
 //! | `bent.rs` | intervals of values, rates and bends along lines through a box |
 //! | `taylor_model.rs` | cubics along a stretch of motion, and how far from them values and rates may be |
+//! | `tables.rs` | what is known of a form of a model besides its functions |
+//! | `description.rs` | what a model says of itself |
+//! | `law.rs`, `assumption.rs` | laws of impacts, demands on parameters |
 //! | `kernel.rs` | the functions of a model by name, on which generator and runtime agree |
 //! | `extended/` | sums of a few doubles: arithmetic, elementary functions, decimal text |
 
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
+mod assumption;
 pub mod bent;
+pub mod description;
 pub mod extended;
 pub mod interval;
 pub mod kernel;
 #[cfg(feature = "lanes")]
 mod lanes;
+pub mod law;
 pub mod math;
 pub mod numbers;
 pub mod rated;
+pub mod tables;
 pub mod taylor_model;
 
 pub use bent::Bent;

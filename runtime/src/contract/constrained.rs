@@ -1,17 +1,8 @@
 //! Systems with constraints.
 
-use super::System;
+use super::{Level, System};
 use crate::error::Fault;
 use crate::state::StateVector;
-
-/// What a level belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Level {
-    /// Index of the constraint.
-    pub constraint: usize,
-    /// Whether the constraint is an equation of positions, so that the level of every state is 0.
-    pub is_zero: bool,
-}
 
 /// A system with constraints `eta^a(qdot) + eta^a_0 = 0`, or `phi^a(t, q, qdot) = 0` that are not linear in the velocities:
 /// then `eta^a = dphi^a/dqdot`, and `phi^a` stands for `eta^a(qdot) + eta^a_0`.

@@ -12,7 +12,8 @@ mod tangent;
 mod variational;
 mod volume;
 
-pub use constrained::{Constrained, Level};
+pub use constrained::Constrained;
+pub use dalembert_numbers::tables::Level;
 pub use field::{TaylorField, VectorField};
 pub use impacting::Impacting;
 pub(crate) use landing::after_reset;

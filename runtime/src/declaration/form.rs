@@ -3,13 +3,12 @@
 use core::marker::PhantomData;
 
 use super::{Described, Emitted};
-use crate::contract::{RankDrop, TaylorField};
+use crate::contract::TaylorField;
 use crate::erased::{Expanded, Form, Kinds, SeriesTable};
 use crate::error::Fault;
 use crate::jet::{Jets, LENGTH};
-use crate::kernels::{Declared, KernelSet, KernelTable};
+use crate::kernels::{KernelSet, KernelTable};
 use crate::numbers::{Bent, Numbers, Rated, Row, TaylorModel};
-use crate::state::StateVector;
 use crate::variations::Dual;
 
 /// The form of a type, where an erased system has room for it.
@@ -55,17 +54,12 @@ impl<S: Emitted> Of<S> {
             false => Self::series(),
         },
         series_over: Self::SERIES_OVER,
-        work: || S::declared().work(),
-        defaults: Self::write_defaults,
-        global: || <S::Global as Described>::FORM,
+        work: &|| S::declared().work(),
+        series_gaps: <<S as TaylorField>::Gaps<f64> as Row<f64>>::CAPACITY,
+        firsts: <S::Firsts<f64> as Row<f64>>::CAPACITY,
+        defaults: &Self::write_defaults,
+        global: &|| <S::Global as Described>::FORM,
         forms: S::FORMS,
-        rank_drop: match S::TABLES.can_lose_rank {
-            true => Some(Self::rank_drop),
-            false => None,
-        },
-        integrated_density: |values, t, q| {
-            Self::with(values).integrated_density(t, &S::Vector::of(q))
-        },
         room: <S::Room<f64> as Row<f64>>::CAPACITY,
     };
 
@@ -112,18 +106,9 @@ impl<S: Emitted> Of<S> {
 
     const fn series<L: Numbers>() -> SeriesTable<L> {
         SeriesTable {
-            begin: Self::begin,
-            advance: Self::advance,
+            begin: &Self::begin,
+            advance: &Self::advance,
         }
-    }
-
-    /// The system with these values of its parameters.
-    fn with(values: &[f64]) -> S {
-        let mut system = S::declared();
-        for (index, value) in values.iter().enumerate() {
-            system.set_argument(index, *value);
-        }
-        system
     }
 
     fn write_defaults(values: &mut [f64]) {
@@ -137,32 +122,26 @@ impl<S: Emitted> Of<S> {
         firsts: &mut [L],
     ) -> Result<(), Fault> {
         let system = S::declared();
-        let mut own = S::Firsts::<L>::zeros(system.firsts_len());
-        system.begin(&row(parameters), t, &row(state), &mut own)?;
-        firsts.copy_from_slice(&own.as_slice()[..firsts.len()]);
+        let mut known = S::Firsts::<L>::zeros(system.firsts_len());
+        system.begin(&row(parameters), t, &row(state), &mut known)?;
+        firsts.copy_from_slice(known.as_slice());
         Ok(())
     }
 
     fn advance<L: Numbers>(
-        parameters: &[L],
-        t: L,
-        state: &[L],
+        [parameters, state, firsts]: [&[L]; 3],
         (unit, order): (L, usize),
         take: Expanded<'_, L>,
     ) {
         let system = S::declared();
-        let (parameters, state) = (row(parameters), row(state));
-        let mut firsts = S::Firsts::<L>::zeros(system.firsts_len());
-        // It began there before.
-        let _ = system.begin(&parameters, t, &state, &mut firsts);
-        let mut coefficients = [state; LENGTH];
+        let mut coefficients = [row(state); LENGTH];
         let mut gaps = [<S as TaylorField>::Gaps::<L>::zeros(system.series_gap_count()); LENGTH];
         let mut jets = S::Jets::<L>::ZERO;
         system.advance(
-            &parameters,
+            &row(parameters),
             unit,
             order,
-            &firsts,
+            &row(firsts),
             &mut coefficients,
             &mut gaps,
             &mut jets,
@@ -170,20 +149,6 @@ impl<S: Emitted> Of<S> {
         for (k, (state, gaps)) in coefficients.iter().zip(&gaps).enumerate().take(order + 1) {
             take(k, state.as_slice(), gaps.as_slice());
         }
-    }
-
-    fn rank_drop(
-        values: &[f64],
-        motion: &dyn Fn(f64, &mut [f64]) -> f64,
-        reach: f64,
-    ) -> Option<RankDrop> {
-        let system = Self::with(values);
-        let along = |theta: f64| {
-            let mut state = <S as Declared>::State::zeros(system.state_len());
-            let t = motion(theta, state.as_mut_slice());
-            (t, state)
-        };
-        system.rank_drop_along(along, reach)
     }
 }
 

@@ -4,8 +4,6 @@ use core::any::Any;
 use core::fmt;
 
 use super::series::SeriesTable;
-use crate::contract::RankDrop;
-use crate::error::Fault;
 use crate::jet::Work;
 use crate::kernels::{Documentation, KernelTable, Tables};
 use crate::numbers::Numbers;
@@ -22,17 +20,14 @@ pub(super) const ARGUMENTS: usize = 2;
 /// Rows of the capacity in the room for kernels that give several things at once.
 pub(super) const ROWS: usize = 8;
 
+/// Rows of the capacity in the room for what a series begins with.
+pub(super) const FIRSTS: usize = 18;
+
 /// Room for the quantities of the geometry at a state.
 pub(super) const GEOMETRY: usize = 64;
 
 /// Tables over other numbers than `f64`, each of a type of its own.
 pub type Kinds = [Option<&'static (dyn Any + Send + Sync)>; 4];
-
-/// [`System::rank_drop`](crate::System::rank_drop) with these parameters: the motion writes a state, and gives its time.
-pub type RankDropOf = fn(&[f64], &dyn Fn(f64, &mut [f64]) -> f64, f64) -> Option<RankDrop>;
-
-/// The logarithm of a density at parameters, a time and positions.
-pub type DensityOf = fn(&[f64], f64, &[f64]) -> Option<Result<f64, Fault>>;
 
 /// A form of a model, or of a scene: tables, and pointers to its functions.
 pub struct Form {
@@ -49,18 +44,18 @@ pub struct Form {
     /// Those over other numbers ([`SeriesTable`]).
     pub series_over: Kinds,
     /// What an order of the series costs.
-    pub work: fn() -> Option<Work>,
+    pub work: &'static (dyn Fn() -> Option<Work> + Send + Sync),
+    /// Gaps that have a series: all of them, or none.
+    pub series_gaps: usize,
+    /// Numbers that a series begins with.
+    pub firsts: usize,
     /// Writes the declared values of the parameters; NaN for one without.
-    pub defaults: fn(&mut [f64]),
+    pub defaults: &'static (dyn Fn(&mut [f64]) + Send + Sync),
     /// The global form.
-    pub global: fn() -> Option<&'static Form>,
+    pub global: &'static (dyn Fn() -> Option<&'static Form> + Send + Sync),
     /// Of a model with modes, their forms and their global forms, in the order of its kernels
     /// ([`Mode::kernels`](crate::kernels::Mode::kernels)).
     pub forms: &'static [&'static Form],
-    /// Whether constraint forms become dependent, where they may.
-    pub rank_drop: Option<RankDropOf>,
-    /// The logarithm of the density of the invariant volume, where it takes an integral.
-    pub integrated_density: DensityOf,
     /// Numbers of the largest kernel that gives several things at once.
     pub room: usize,
 }
@@ -90,7 +85,9 @@ impl Form {
         let mut k = 0;
         while k < CAPACITIES.len() {
             let capacity = CAPACITIES[k];
-            let has_room = longest <= capacity && self.room <= ROWS * capacity;
+            let has_room = longest <= capacity
+                && self.room <= ROWS * capacity
+                && self.firsts <= FIRSTS * capacity;
             if has_room && dimensions.parameters <= ARGUMENTS * capacity {
                 return match dimensions.parameters <= PARAMETERS {
                     true => Some(capacity),

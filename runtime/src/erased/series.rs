@@ -1,39 +1,39 @@
 //! Power series behind pointers.
 
 use super::bounded::{Bounded, Wide};
-use super::form::{Form, PARAMETERS};
+use super::form::{FIRSTS, Form, PARAMETERS};
 use super::system::Erased;
 use crate::contract::{TaylorField, VectorField};
 use crate::error::Fault;
 use crate::jet::{LENGTH, Work};
-use crate::kernels::{Mode, Tables};
+use crate::kernels::Mode;
 use crate::modes::Lengths;
 use crate::modes::series::{self, Expansion};
 use crate::numbers::{Numbers, Row};
 
-/// Writes what a series begins with at parameters, a time and a state: the rates, then the gaps.
-pub type Begin<L> = fn(&[L], L, &[L], &mut [L]) -> Result<(), Fault>;
+/// Writes what a series begins with at parameters, a time and a state: the rates, then the gaps, then what else is known.
+pub type Begin<L> = dyn Fn(&[L], L, &[L], &mut [L]) -> Result<(), Fault> + Send + Sync;
 
 /// Takes the coefficients of an order: those of the state, those of the gaps.
 pub type Expanded<'a, L> = &'a mut dyn FnMut(usize, &[L], &[L]);
 
-/// A series from parameters, a time and a state, in a unit of time, up to an order.
-pub type Advance<L> = fn(&[L], L, &[L], (L, usize), Expanded<'_, L>);
+/// A series from parameters, a state and what is known there, in a unit of time, up to an order.
+pub type Advance<L> = dyn Fn([&[L]; 3], (L, usize), Expanded<'_, L>) + Send + Sync;
 
 /// Power series over one kind of number.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct SeriesTable<L: Numbers> {
     /// See [`TaylorField::begin`].
-    pub begin: Begin<L>,
-    /// See [`TaylorField::advance`]; it begins by itself.
-    pub advance: Advance<L>,
+    pub begin: &'static Begin<L>,
+    /// See [`TaylorField::advance`].
+    pub advance: &'static Advance<L>,
 }
 
 impl<L: Numbers> SeriesTable<L> {
     /// No series.
     pub const NONE: Self = Self {
-        begin: |_, _, _, _| Err(Fault::NotDerived),
-        advance: |_, _, _, _, _| {},
+        begin: &|_, _, _, _| Err(Fault::NotDerived),
+        advance: &|_, _, _| {},
     };
 }
 
@@ -54,11 +54,6 @@ impl<const C: usize> Erased<C> {
     }
 }
 
-/// Rates, gaps, and the time that they are of.
-fn known_of(tables: &Tables) -> usize {
-    tables.dimensions.state + tables.dimensions.surfaces + 1
-}
-
 /// Begins the series of a form.
 fn begin<L: Numbers>(
     form: &'static Form,
@@ -68,23 +63,19 @@ fn begin<L: Numbers>(
     firsts: &mut [L],
 ) -> Result<(), Fault> {
     let series = form.series::<L>().ok_or(Fault::NotDerived)?;
-    let [own @ .., time] = firsts else {
-        return Err(Fault::NotDerived);
-    };
-    *time = t;
-    (series.begin)(parameters, t, state, own)
+    (series.begin)(parameters, t, state, firsts)
 }
 
 /// Writes the series of a form.
 fn advance<L: Numbers, const C: usize>(
     form: &'static Form,
     parameters: &[L],
-    (unit, order): (L, usize),
+    to: (L, usize),
     firsts: &[L],
     coefficients: &mut [Bounded<L, C>; LENGTH],
     gaps: &mut [Bounded<L, C>; LENGTH],
 ) {
-    let (Some(series), Some(&t)) = (form.series::<L>(), firsts.last()) else {
+    let Some(series) = form.series::<L>() else {
         // Nothing begins such a series.
         return;
     };
@@ -93,14 +84,14 @@ fn advance<L: Numbers, const C: usize>(
         coefficients[k].as_mut_slice().copy_from_slice(of_state);
         gaps[k].as_mut_slice().copy_from_slice(of_gaps);
     };
-    (series.advance)(parameters, t, state.as_slice(), (unit, order), &mut take);
+    (series.advance)([parameters, state.as_slice(), firsts], to, &mut take);
 }
 
 impl<const C: usize> TaylorField for Erased<C> {
     type Parameters<L: Numbers> = Bounded<L, PARAMETERS>;
     type Row<L: Numbers> = Bounded<L, C>;
     type Gaps<L: Numbers> = Bounded<L, C>;
-    type Firsts<L: Numbers> = Wide<L, C, 3>;
+    type Firsts<L: Numbers> = Wide<L, C, FIRSTS>;
     // NOTE: what a series computes on its way differs from model to model: it lies on the stack of the function that does.
     type Jets<L: Numbers> = ();
 
@@ -110,12 +101,12 @@ impl<const C: usize> TaylorField for Erased<C> {
 
     #[inline(always)]
     fn series_gap_count(&self) -> usize {
-        self.form().tables.dimensions.surfaces
+        self.form().series_gaps
     }
 
     #[inline(always)]
     fn firsts_len(&self) -> usize {
-        known_of(&self.form().tables)
+        self.form().firsts
     }
 
     fn parameters(&self) -> Bounded<f64, PARAMETERS> {
@@ -127,7 +118,7 @@ impl<const C: usize> TaylorField for Erased<C> {
         parameters: &Bounded<L, PARAMETERS>,
         t: L,
         state: &Bounded<L, C>,
-        firsts: &mut Wide<L, C, 3>,
+        firsts: &mut Wide<L, C, FIRSTS>,
     ) -> Result<(), Fault> {
         let (parameters, state) = (parameters.as_slice(), state.as_slice());
         let firsts = firsts.as_mut_slice();
@@ -135,8 +126,8 @@ impl<const C: usize> TaylorField for Erased<C> {
             return begin(self.form(), parameters, t, state, firsts);
         }
         for (mode, form) in self.forms() {
-            let known = known_of(mode.1.tables);
-            series::begin::<L, Bounded<L, PARAMETERS>, Bounded<L, C>, Wide<L, C, 3>>(
+            let known = form.firsts;
+            series::begin::<L, Bounded<L, PARAMETERS>, Bounded<L, C>, Wide<L, C, FIRSTS>>(
                 (mode, known),
                 self.lengths(),
                 (parameters, t, state),
@@ -155,7 +146,7 @@ impl<const C: usize> TaylorField for Erased<C> {
         parameters: &Bounded<L, PARAMETERS>,
         unit: L,
         order: usize,
-        firsts: &Wide<L, C, 3>,
+        firsts: &Wide<L, C, FIRSTS>,
         coefficients: &mut [Bounded<L, C>; LENGTH],
         gaps: &mut [Bounded<L, C>; LENGTH],
         (): &mut (),
@@ -173,8 +164,8 @@ impl<const C: usize> TaylorField for Erased<C> {
             firsts,
         };
         for (mode, form) in self.forms() {
-            let known = known_of(mode.1.tables);
-            series::advance::<L, Bounded<L, PARAMETERS>, Wide<L, C, 3>, _, _, _, _>(
+            let known = form.firsts;
+            series::advance::<L, Bounded<L, PARAMETERS>, Wide<L, C, FIRSTS>, _, _, _, _>(
                 (mode, known),
                 expansion,
                 (coefficients, gaps),

@@ -14,6 +14,7 @@ use crate::kernels::{
     KernelTable, Part, Pointers, Tabled, Tables, nearest_of_declared,
 };
 use crate::numbers::Numbers;
+use crate::rank::rank_drop;
 use crate::state::StateVector;
 
 /// A model that is known only at run time, with values for its parameters; its vectors have at most `C` components.
@@ -146,19 +147,21 @@ impl<const C: usize> Declared for Erased<C> {
         motion: impl Fn(f64) -> (f64, Bounded<f64, C>),
         reach: f64,
     ) -> Option<RankDrop> {
-        let along = |theta: f64, state: &mut [f64]| {
-            let (t, own) = motion(theta);
-            state.copy_from_slice(&own.as_ref()[..state.len()]);
-            t
-        };
-        let values = self.values.as_ref();
         if self.form.tables.modes.is_empty() {
-            return (self.form.rank_drop?)(values, &along, reach);
+            let can_lose_rank = self.form.tables.can_lose_rank;
+            return can_lose_rank
+                .then(|| rank_drop::<Self, C, C>(self, motion, reach))
+                .flatten();
         }
         let (_, state) = motion(0.0);
         let part = Part::of(self, state.as_ref());
         let mode = self.of_mode(part.number())?;
-        let drop = (mode.form.rank_drop?)(values, &along, reach)?;
+        let length = mode.form.tables.dimensions.state;
+        let along = |theta: f64| {
+            let (t, state) = motion(theta);
+            (t, Bounded::of(&state.as_ref()[..length]))
+        };
+        let drop = mode.rank_drop_along(&along as &dyn Fn(f64) -> (f64, Bounded<f64, C>), reach)?;
         Some(part.rank_drop(drop))
     }
 
@@ -278,9 +281,5 @@ impl<const C: usize> Documented for Erased<C> {
         if let Some(own) = self.values.as_mut().get_mut(index) {
             *own = value;
         }
-    }
-
-    fn integrated_density(&self, t: f64, q: &Bounded<f64, C>) -> Option<Result<f64, Fault>> {
-        (self.form.integrated_density)(self.values.as_ref(), t, q.as_ref())
     }
 }

@@ -1,7 +1,8 @@
 //! `Instance` of every declared model.
 
 use super::part::has_modes;
-use super::{Declared, Form, Kernels, Part, Shape};
+use super::system::log_density;
+use super::{Declared, Documentation, Form, Kernels, Part, Quantity, Shape};
 use crate::contract::System;
 use crate::describe::{Description, Initial, Instance, Report, VariationalVisitor};
 use crate::effects::Scene;
@@ -9,30 +10,6 @@ use crate::error::Fault;
 use crate::generated::inspect_globally;
 use crate::numbers::Row;
 use crate::state::StateVector;
-
-/// A quantity that [`Kernel::Geometry`](super::Kernel::Geometry) gives: its name, and how its numbers are arranged.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Quantity {
-    /// The name, as `eval` prints it.
-    pub name: &'static str,
-    /// The shape.
-    pub shape: Shape,
-}
-
-/// The self-description of a form.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Documentation {
-    /// Names, docs, topology and the like.
-    pub description: Description,
-    /// The inputs; their values are the parameters after those of the description.
-    pub inputs: &'static [&'static str],
-    /// Of each coordinate, whether its position was declared.
-    pub placed: &'static [bool],
-    /// Of each coordinate, whether its velocity was declared.
-    pub named: &'static [bool],
-    /// The quantities of [`Kernel::Geometry`](super::Kernel::Geometry), in order.
-    pub geometry: &'static [Quantity],
-}
 
 /// A declared form that tells of itself: [`Instance`] is made of it.
 pub trait Documented: Declared {
@@ -66,12 +43,6 @@ pub trait Documented: Declared {
     ) -> Result<(), Fault> {
         let _ = (mode, t, state, report);
         Ok(())
-    }
-
-    /// The logarithm of the density of the invariant volume, where it takes an integral.
-    fn integrated_density(&self, t: f64, q: &Self::Vector) -> Option<Result<f64, Fault>> {
-        let _ = (t, q);
-        None
     }
 
     /// As [`Instance::visit_variational`].
@@ -196,8 +167,9 @@ impl<S: Documented> Instance for S {
             report.vector("p", p);
         }
         report_geometry(self, t, state, report)?;
-        if let Some(density) = self.integrated_density(t, &self.position(state)) {
-            report.scalar("log_density", density?);
+        if self.tables().density_reference.is_some() {
+            let density = log_density(self, t, &self.position(state))?;
+            report.scalar("log_density", density);
         }
         Ok(())
     }

@@ -3,8 +3,8 @@
 use super::part::{has_modes, number_of};
 use super::passage::passage;
 use super::system::{coefficient, over_numbers};
-use super::tables::{Beside, Condition, Surface, Tables};
 use super::{At, Declared, Form, HasSurfaces, Kernels, Part};
+use super::{Beside, Condition, Surface, Tables};
 use crate::contract::{Impacting, System, VectorField, after_reset};
 use crate::error::Fault;
 use crate::generated::{OverNumbers, certain};

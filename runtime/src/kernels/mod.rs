@@ -2,7 +2,6 @@
 //!
 //! | file | job |
 //! |---|---|
-//! | `tables.rs` | what is known of a form besides its kernels: sizes, laws, conditions, charts |
 //! | `declared.rs` | a model with values for its parameters: kernels, tables and the types of its vectors |
 //! | `part.rs` | the part that answers: the model, or the mode of a state |
 //! | `passage.rs` | the state that a mode is entered with |
@@ -20,20 +19,22 @@ mod part;
 mod passage;
 mod pointers;
 mod system;
-mod tables;
 mod variational;
 
 use crate::contract::{Tangent, TaylorField};
 use crate::error::Fault;
 use crate::numbers::{Numbers, Row};
 pub use choice::{Choice, Chosen};
+pub use dalembert_numbers::description::{Documentation, Quantity};
 pub use dalembert_numbers::kernel::{First, Kernel, Second, Shape};
+pub use dalembert_numbers::tables::{
+    Beside, Chart, Condition, Dimensions, Form, Level, Mode, Passage, Surface, Tables, Transition,
+};
 pub use declared::{Declared, number, write};
-pub use described::{Documentation, Documented, Quantity};
-pub use part::{Mode, Part, Passage, Transition};
+pub use described::Documented;
+pub use part::Part;
 pub use pointers::{Pointers, Tabled};
-pub use system::nearest_of_declared;
-pub use tables::{Beside, Chart, Condition, Dimensions, Form, Surface, Tables};
+pub use system::{log_density, nearest_of_declared};
 
 /// What a kernel reads.
 #[derive(Debug, Clone, Copy)]
@@ -202,15 +203,15 @@ macro_rules! kernels {
         }
 
         /// Kernels over one kind of number behind pointers; `None` for those that are not given.
-        #[derive(Debug, Clone, Copy)]
+        #[derive(Clone, Copy)]
         pub struct KernelTable<L: Numbers> {
             $(
                 #[doc = concat!("[`Kernel::", stringify!($name), "`].")]
-                pub $plain: Option<Plain<L>>,
+                pub $plain: Option<&'static Plain<L>>,
             )*
             $(
                 #[doc = concat!("[`Kernel::", stringify!($surface_name), "`] of a surface.")]
-                pub $of_surface: Option<OfSurface<L>>,
+                pub $of_surface: Option<&'static OfSurface<L>>,
             )*
         }
 
@@ -228,18 +229,33 @@ macro_rules! kernels {
                 let base = Self::of::<K::Base>(which);
                 Self {
                     $($plain: match (which.has(Place::$name), K::OWN.has(Place::$name)) {
-                        (true, true) => Some(|at, values| K::GIVEN.$plain(at, values)),
+                        (true, true) => Some(const {
+                            &|at: At<'_, L>, values: &mut [L]| K::GIVEN.$plain(at, values)
+                        }),
                         _ => base.$plain,
                     },)*
                     $($of_surface: match (
                         which.has(Place::$surface_name),
                         K::OWN.has(Place::$surface_name),
                     ) {
-                        (true, true) => Some(|surface, at, values| {
-                            K::GIVEN.$of_surface(surface, at, values)
+                        (true, true) => Some(const {
+                            &|surface: usize, at: At<'_, L>, values: &mut [L]| {
+                                K::GIVEN.$of_surface(surface, at, values)
+                            }
                         }),
                         _ => base.$of_surface,
                     },)*
+                }
+            }
+
+            /// The kernels that are found by name; those of a surface by the name of their kind.
+            pub fn found(
+                plain: impl Fn(Kernel) -> Option<&'static Plain<L>>,
+                of_surface: impl Fn(fn(usize) -> Kernel) -> Option<&'static OfSurface<L>>,
+            ) -> Self {
+                Self {
+                    $($plain: plain(Kernel::$name),)*
+                    $($of_surface: of_surface(Kernel::$surface_name),)*
                 }
             }
         }
@@ -336,10 +352,10 @@ impl Given for NoKernels {
 }
 
 /// A kernel behind a pointer.
-pub type Plain<L> = fn(At<'_, L>, &mut [L]) -> Result<(), Fault>;
+pub type Plain<L> = dyn Fn(At<'_, L>, &mut [L]) -> Result<(), Fault> + Send + Sync;
 
 /// A kernel of surfaces behind a pointer.
-pub type OfSurface<L> = fn(usize, At<'_, L>, &mut [L]) -> Result<(), Fault>;
+pub type OfSurface<L> = dyn Fn(usize, At<'_, L>, &mut [L]) -> Result<(), Fault> + Send + Sync;
 
 /// What a form that shares nothing with another begins with: every kernel is [`Fault::NotDerived`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

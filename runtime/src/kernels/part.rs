@@ -3,61 +3,12 @@
 //! The state of a model with modes is that of the present mode, zeros up to the length of the longest, and the number of the mode. So a
 //! kernel of the mode reads the state as it is; what it gives of coordinates and surfaces is put to their places among those of the model.
 
-use super::{At, Declared, Dimensions, Documentation, Tables};
+use super::{At, Declared, Dimensions, Mode, Tables, Transition};
 use crate::contract::{RankDrop, System, VectorField};
 use crate::error::{Fault, StateError};
 use crate::numbers::{Numbers, Row};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
-
-/// The rule by which a transition makes the state of the mode that it leads to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Passage {
-    /// The state is declared.
-    Declared,
-    /// First-order systems: the position stays.
-    Kept,
-    /// Both modes have the same Lagrangian: the focusing point.
-    Focused,
-    /// The Lagrangian changes: refraction or reflection.
-    Refracted,
-}
-
-/// A surface that leads to another mode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Transition {
-    /// The mode that is entered.
-    pub enters: usize,
-    /// How it is entered.
-    pub passage: Passage,
-    /// Whether the surface counts from both sides: the opposite of its gap belongs to another transition of the same mode.
-    pub has_no_side: bool,
-    /// The surface of the model that leads back at once, between first-order modes.
-    pub opposite: Option<usize>,
-}
-
-/// A mode of a model: its own tables, and the places of what it has among what the model has.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mode {
-    /// What is known of the mode by itself.
-    pub tables: &'static Tables,
-    /// What it says of itself.
-    pub documentation: &'static Documentation,
-    /// The place of its kernels among those of the model ([`Declared::kernels_at`]).
-    pub kernels: usize,
-    /// That of the kernels of its global form, which may be the same.
-    pub global: usize,
-    /// Coordinates.
-    pub coordinates: &'static [usize],
-    /// Constraints.
-    pub constraints: &'static [usize],
-    /// Surfaces.
-    pub surfaces: &'static [usize],
-    /// Outputs.
-    pub outputs: &'static [usize],
-    /// Of each of its surfaces, where it leads.
-    pub transitions: &'static [Option<Transition>],
-}
 
 /// A part of a declared model. Kernels are asked through it.
 #[derive(Debug)]

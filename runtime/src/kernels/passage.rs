@@ -20,8 +20,8 @@
 //!
 //! Reference: J. Cortes and A. M. Vinogradov, *Hamiltonian theory of constrained impulsive motion* (2006).
 
-use super::part::{Passage, Transition};
 use super::{At, Declared, Form, HasSurfaces, Kernels, Part};
+use super::{Passage, Transition};
 use crate::contract::{Impacting, System};
 use crate::error::{Fault, StateError};
 use crate::law::{Landing, Law};

@@ -1,12 +1,13 @@
 //! `VectorField`, `System`, `Lagrangian` and `Divergence` of every declared model.
 
 use super::part::has_modes;
-use super::{At, Declared, Form, HasConstraints, HasDivergence, Kernels, Part};
+use super::{At, Declared, Form, HasConstraints, HasDivergence, Kernels, Part, number, write};
 use crate::contract::{Divergence, Keep, Lagrangian, RankDrop, System, VectorField, carried};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::generated::check_coefficient;
 use crate::nearest::nearest_by_steps;
 use crate::numbers::{Numbers, Rated, Row};
+use crate::quadrature::line_integral;
 use crate::state::StateVector;
 
 impl<S: Declared> VectorField for S {
@@ -388,4 +389,23 @@ impl<S: Declared + HasDivergence> Divergence for S {
         let q = part.gathered(q);
         part.coordinates(S::Kernels::density_form, t, [q.as_slice(), &[]])
     }
+}
+
+/// As [`InvariantVolume::log_density`](crate::InvariantVolume::log_density).
+///
+/// # Errors
+/// Those of the kernels; [`Fault::SingularConstraint`] where an integral does not converge.
+pub fn log_density<S: Declared>(system: &S, t: f64, q: &S::Vector) -> Result<f64, Fault> {
+    let density = number(system, S::Kernels::log_density, t, [q.as_slice(), &[]])?;
+    let Some(reference) = system.tables().density_reference else {
+        return Ok(density);
+    };
+    let gradient = |q: &S::Vector| {
+        let mut gradient = q.zeroed();
+        let places = [q.as_slice(), &[][..]];
+        let values = gradient.as_mut_slice();
+        write(system, S::Kernels::density_gradient, t, places, values)?;
+        Ok(gradient)
+    };
+    Ok(density + line_integral(reference, q, gradient)?)
 }

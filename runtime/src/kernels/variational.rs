@@ -1,9 +1,10 @@
 //! `Variational` of every declared model whose runs can be varied.
 
 use super::impacting::{counts, counts_throughout, no_impulse};
-use super::part::{Passage, Transition, has_modes};
+use super::part::has_modes;
 use super::passage::Quadratic;
 use super::{At, Declared, Form, HasVariations, Kernels, Part};
+use super::{Passage, Transition};
 use crate::contract::{TaylorField, Variational};
 use crate::error::Fault;
 use crate::law::Law;

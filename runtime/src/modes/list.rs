@@ -4,7 +4,7 @@ use super::series::{self, Expansion, Lengths};
 use crate::contract::{RankDrop, TaylorField};
 use crate::describe::{Instance, Report};
 use crate::error::Fault;
-use crate::jet::{Jets, LENGTH, Work};
+use crate::jet::{Jets, LENGTH};
 use crate::kernels::{Declared, Documented, Mode, Part};
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
@@ -14,9 +14,6 @@ use crate::state::StateVector;
 pub trait ModeList<W> {
     /// Room for the coefficients of intermediate values of all modes.
     type Jets<L: Numbers>: Jets;
-
-    /// What expansions take at most, in whatever mode.
-    fn work(whole: &W) -> Option<Work>;
 
     /// As [`TaylorField::begin`], of every mode that some lane is in. `number` is that of the first of `modes`.
     ///
@@ -64,14 +61,6 @@ pub trait ModeList<W> {
 impl<W> ModeList<W> for () {
     type Jets<L: Numbers> = ();
 
-    fn work(_: &W) -> Option<Work> {
-        Some(Work {
-            values: 0,
-            sums: 0,
-            degree: Some(0),
-        })
-    }
-
     fn begin<L: Numbers>(
         _: &W,
         _: (usize, &[Mode]),
@@ -113,10 +102,6 @@ impl<
 > ModeList<W> for (M, Rest)
 {
     type Jets<L: Numbers> = (<M as TaylorField>::Jets<L>, Rest::Jets<L>);
-
-    fn work(whole: &W) -> Option<Work> {
-        series::most(M::from(*whole).work(), Rest::work(whole))
-    }
 
     #[inline]
     fn begin<L: Numbers>(

@@ -4,7 +4,7 @@
 //! it; the other lanes are given the numbers of one that is, and what comes of them is dropped.
 
 use crate::error::Fault;
-use crate::jet::{LENGTH, Work};
+use crate::jet::LENGTH;
 use crate::kernels::Mode;
 use crate::numbers::{Numbers, Row};
 
@@ -210,15 +210,4 @@ fn row<L: Numbers, R: Row<L>>(values: &[L], lanes: &Lanes, modes: &L) -> R {
         *own = lanes.picked(*value, modes);
     }
     row
-}
-
-/// The greater of each, of what expansions of two modes take.
-pub(crate) fn most(a: Option<Work>, b: Option<Work>) -> Option<Work> {
-    let (a, b) = (a?, b?);
-    let degrees = a.degree.zip(b.degree);
-    Some(Work {
-        values: a.values.max(b.values),
-        sums: a.sums.max(b.sums),
-        degree: degrees.map(|(a, b)| a.max(b)),
-    })
 }

@@ -11,18 +11,18 @@ mod writer;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
+use super::constants::Constant;
 use super::function::{Body, emit_body, joined};
 use super::{Context, doc};
 use crate::program::jet::Jet;
-use crate::program::jet::degree::Degree;
 use crate::program::{Function, Value};
 use writer::Writer;
 
 /// `impl TaylorField`
 pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
-    let jet = &context.program.jet;
-    let components = context.dimension() + context.motion_dimension();
+    let jet = &context.form.program.jet;
+    let components = context.form.dimension() + context.form.motion_dimension();
     let gaps = jet.function.outputs.len() - components;
     let places = &context.names.parameters;
     let parameters = places.len();
@@ -38,7 +38,7 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
             .to_string(),
     ]);
     let attributes = super::attributes();
-    let work = work(jet, components);
+    let work = Some(context.form.work()).tokens();
     quote! {
         #attributes
         impl ::dalembert::TaylorField for #type_name {
@@ -83,28 +83,6 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
                 #advance
             }
         }
-    }
-}
-
-/// The work of expansions of a motion with so many components.
-fn work(jet: &Jet, components: usize) -> TokenStream {
-    let values = jet.function.cost.multiplications_alike();
-    let values = Literal::u32_unsuffixed(u32::try_from(values).unwrap_or(u32::MAX));
-    // NOTE: the conversion saturates.
-    let sums = Literal::u32_unsuffixed(jet.sums().ceil() as u32);
-    let degree = match jet.degree(components) {
-        Degree::AtMost(degree) => {
-            let degree = Literal::u32_unsuffixed(degree);
-            quote!(::core::option::Option::Some(#degree))
-        }
-        Degree::Endless => quote!(::core::option::Option::None),
-    };
-    quote! {
-        ::core::option::Option::Some(::dalembert::jet::Work {
-            values: #values,
-            sums: #sums,
-            degree: #degree,
-        })
     }
 }
 
@@ -172,7 +150,7 @@ fn advance(
     keep: &TokenStream,
     context: &Context<'_>,
 ) -> TokenStream {
-    let components = context.dimension() + context.motion_dimension();
+    let components = context.form.dimension() + context.form.motion_dimension();
     let (rates, gaps) = next.split_at(components);
     let places = |from: usize, to: usize| (from..to).map(Literal::usize_unsuffixed);
     let first_rates = places(0, components);

@@ -1,184 +1,82 @@
-//! Coefficient `k` of one value from those it follows from.
+//! Coefficient `k` of one value from those it follows from, written down.
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::super::function::joined;
+use super::super::function::{Binding, joined};
 use super::super::names::rational;
 use super::layout::Sum;
 use super::writer::{Room, Writer, parenthesised};
 use crate::program::Value;
-use crate::program::jet::degree::Degree;
-use crate::program::jet::{History, Recurrence};
+use crate::program::jet::History;
+use crate::program::jet::terms::Term;
 
 impl Writer<'_> {
-    pub(super) fn expression(&mut self, value: Value, recurrence: &Recurrence) -> TokenStream {
-        match recurrence {
-            Recurrence::Constant | Recurrence::Component(_) => quote!(L::ZERO),
-            Recurrence::Time => quote!(if k == 1 { unit } else { L::ZERO }),
-            Recurrence::Same(a) => {
-                let a = self.next(*a);
-                quote!(#a)
-            }
-            Recurrence::Neg(a) => {
-                let a = self.next(*a);
-                quote!(-#a)
-            }
-            Recurrence::Add(a, b) => {
-                let (a, b) = (self.next(*a), self.next(*b));
-                joined([a, quote!(+), b])
-            }
-            Recurrence::Sub(a, b) => {
-                let (a, b) = (self.next(*a), self.next(*b));
-                joined([a, quote!(-), b])
-            }
-            Recurrence::Scaled(a, b) => {
-                let (a, b) = (self.first(*a), self.next(*b));
-                joined([a, quote!(*), b])
-            }
-            Recurrence::Divided(a, b) => {
-                let (a, b) = (self.next(*a), self.inverse(*b));
-                quote!(#a * #b)
-            }
-            Recurrence::Product(a, b) => self.product(*a, *b),
-            Recurrence::Square(a) => {
-                let (half, first, next) = (self.half(*a), self.first(*a), self.next(*a));
-                quote!(L::of(2.0) * L::mul_add(#first, #next, #half))
-            }
-            Recurrence::Quotient(a, b) => self.quotient(value, *a, *b),
-            Recurrence::Root(a) => {
-                let (half, a, inverse) = (self.half(value), self.next(*a), self.inverse(value));
-                quote!((L::of(0.5) * #a - #half) * #inverse)
-            }
-            Recurrence::Power(a, exponent) => {
-                let exponent = rational(exponent);
-                let rising = self.weighted_sum(*a, value);
-                let known = self.middle(History::weighted(value), History::plain(*a));
-                let inverse = self.inverse(*a);
-                quote!((#exponent * #rising - #known) * inverse * #inverse)
-            }
-            Recurrence::Integral { of, by, negative } => {
-                let sign = negative.then(|| quote!(-));
-                let integral = self.integral(*of, *by);
-                quote!(#sign #integral)
-            }
-            Recurrence::IntegralQuotient { of, by, negative } => {
-                let known = self.middle(History::weighted(value), History::plain(*by));
-                let (of, inverse) = (self.next(*of), self.inverse(*by));
-                let sign = negative.then(|| quote!(-));
-                quote!((#sign #of - inverse * #known) * #inverse)
-            }
-            Recurrence::Angle { y, x, squared } => self.angle(value, [*y, *x, *squared]),
-            Recurrence::Absolute(a) => {
-                let (first, next) = (self.first(*a), self.next(*a));
-                quote!(L::turned(#next, #first))
-            }
-        }
+    pub(super) fn expression(&mut self, value: Value) -> TokenStream {
+        let term = self.jet.term(value);
+        self.written(&term).0
     }
 
-    /// `sum a_j b_(k-j)` for `j` in `0..=k`.
-    fn product(&mut self, a: Value, b: Value) -> TokenStream {
-        let degree = |value: Value| self.jet.degrees[value.index()];
-        // The value that is known last comes into the sum last.
-        let (a, b) = match (degree(a), a.index()) > (degree(b), b.index()) {
-            true => (b, a),
-            false => (a, b),
+    /// A term, and how tightly it binds.
+    fn written(&mut self, term: &Term) -> (TokenStream, Binding) {
+        let tokens = match term {
+            Term::Zero => quote!(L::ZERO),
+            Term::Time => quote!(if k == 1 { unit } else { L::ZERO }),
+            Term::Number(number) => rational(number),
+            Term::Order => quote!(weight),
+            Term::InverseOrder => quote!(inverse),
+            Term::Next(value) => self.next(*value),
+            Term::First(value) => self.first(*value),
+            Term::Inverse(value) => {
+                let inverse = self.inverse(*value);
+                quote!(#inverse)
+            }
+            Term::Neg(a) => {
+                let a = self.operand(a, Binding::Product);
+                return (joined([quote!(-), a]), Binding::Unary);
+            }
+            Term::Add(operands) => return self.binary(operands, &quote!(+), Binding::Sum),
+            Term::Sub(operands) => return self.binary(operands, &quote!(-), Binding::Sum),
+            Term::Mul(operands) => return self.binary(operands, &quote!(*), Binding::Product),
+            Term::MulAdd(operands) => {
+                let [a, b, c] = operands.each_ref().map(|own| self.written(own).0);
+                quote!(L::mul_add(#a, #b, #c))
+            }
+            Term::Turned(operands) => {
+                let [a, b] = operands.each_ref().map(|own| self.written(own).0);
+                quote!(L::turned(#a, #b))
+            }
+            Term::Middle(a, b) => self.middle(*a, *b),
+            Term::Half(a) => self.half(*a),
+            Term::Short(a, b, degree) => self.short(*a, *b, *degree),
+            Term::Steady(a, b) => return (self.steady(*a, *b), Binding::Product),
         };
-        let (first, next) = (self.first(a), self.next(b));
-        if degree(a) == Degree::Endless && self.is_early(a) && self.is_early(b) {
-            let middle = self.middle(History::plain(a), History::plain(b));
-            let (other_next, other_first) = (self.next(a), self.first(b));
-            return parenthesised(quote! {
-                L::mul_add(#first, #next, #other_next * #other_first) + #middle
-            });
-        }
-        let rest = self.upper_sum(a, b);
-        quote!(L::mul_add(#first, #next, #rest))
+        (tokens, Binding::Atom)
     }
 
-    /// Whether coefficient `k` of a value is known when order `k` begins, before the sums over lower orders are.
-    fn is_early(&self, value: Value) -> bool {
-        matches!(
-            self.jet.recurrences[value.index()],
-            Recurrence::Component(_) | Recurrence::Time
-        )
+    fn binary(
+        &mut self,
+        operands: &[Term; 2],
+        operator: &TokenStream,
+        binding: Binding,
+    ) -> (TokenStream, Binding) {
+        let tighter = match binding {
+            Binding::Sum => Binding::Product,
+            _ => Binding::Unary,
+        };
+        let [a, b] = operands;
+        let (a, b) = (self.operand(a, binding), self.operand(b, tighter));
+        (joined([a, operator.clone(), b]), binding)
     }
 
-    fn quotient(&mut self, value: Value, a: Option<Value>, b: Value) -> TokenStream {
-        let (known, inverse) = (self.upper_sum(b, value), self.inverse(b));
-        match a {
-            Some(a) => {
-                let a = self.next(a);
-                quote!((#a - #known) * #inverse)
-            }
-            None => quote!(-#known * #inverse),
+    fn operand(&mut self, term: &Term, least: Binding) -> TokenStream {
+        let (tokens, binding) = self.written(term);
+        match binding < least {
+            true => parenthesised(tokens),
+            false => tokens,
         }
     }
 
-    fn angle(&mut self, value: Value, [y, x, squared]: [Value; 3]) -> TokenStream {
-        let (rise, fall) = (self.weighted_sum(y, x), self.weighted_sum(x, y));
-        let known = self.middle(History::weighted(value), History::plain(squared));
-        let inverse = self.inverse(squared);
-        quote!((#rise - #fall - #known) * inverse * #inverse)
-    }
-
-    /// `sum a_j b_(k-j)` for `j` in `1..=k`.
-    fn upper_sum(&mut self, a: Value, b: Value) -> TokenStream {
-        if let Some(product) = self.product_with_constant(a, b) {
-            return product;
-        }
-        let (rising, other) = (History::plain(a), History::plain(b));
-        if let Some(short) = self.short(rising, other) {
-            return short;
-        }
-        let middle = self.middle(rising, other);
-        let (next, first) = (self.next(a), self.first(b));
-        quote!(L::mul_add(#next, #first, #middle))
-    }
-
-    /// `a_k b_0`, all that is left of a sum where one of the two is constant.
-    fn product_with_constant(&mut self, a: Value, b: Value) -> Option<TokenStream> {
-        let is_constant =
-            |value: Value| self.jet.recurrences[value.index()] == Recurrence::Constant;
-        match (is_constant(a), is_constant(b)) {
-            (true, _) => Some(quote!(L::ZERO)),
-            (false, true) => {
-                let (next, first) = (self.next(a), self.first(b));
-                Some(parenthesised(quote!(#next * #first)))
-            }
-            (false, false) => None,
-        }
-    }
-
-    /// `sum j a_j b_(k-j)` for `j` in `1..=k`.
-    fn weighted_sum(&mut self, a: Value, b: Value) -> TokenStream {
-        if let Some(product) = self.product_with_constant(a, b) {
-            return quote!(weight * #product);
-        }
-        let (rising, other) = (History::weighted(a), History::plain(b));
-        if let Some(short) = self.short(rising, other) {
-            return short;
-        }
-        let middle = self.middle(rising, other);
-        let (next, first) = (self.next(a), self.first(b));
-        quote!(L::mul_add(weight * #next, #first, #middle))
-    }
-
-    /// `sum j/k a_j b_(k-j)` for `j` in `1..=k`.
-    fn integral(&mut self, a: Value, b: Value) -> TokenStream {
-        if let Some(product) = self.product_with_constant(a, b) {
-            return product;
-        }
-        let (rising, other) = (History::weighted(a), History::plain(b));
-        if let Some(short) = self.short(rising, other) {
-            return quote!(inverse * #short);
-        }
-        let middle = self.middle(rising, other);
-        let (next, first) = (self.next(a), self.first(b));
-        quote!(L::mul_add(inverse, #middle, #next * #first))
-    }
-
-    /// `sum a_j b_(k-j)` for `j` in `1..k`.
     fn middle(&mut self, a: History, b: History) -> TokenStream {
         match &mut self.room {
             Room::Rows(layout) => named(layout.sum(Sum::Middle(a, b))),
@@ -189,7 +87,6 @@ impl Writer<'_> {
         }
     }
 
-    /// Half of `sum a_j a_(k-j)` for `j` in `1..k`.
     fn half(&mut self, a: Value) -> TokenStream {
         match &mut self.room {
             Room::Rows(layout) => named(layout.sum(Sum::Half(a))),
@@ -200,17 +97,9 @@ impl Writer<'_> {
         }
     }
 
-    /// `sum a_j b_(k-j)` for `j` in `1..=k`, if the series of `a` ends.
-    fn short(&mut self, a: History, b: History) -> Option<TokenStream> {
-        let Degree::AtMost(degree) = self.jet.degrees[a.value.index()] else {
-            return None;
-        };
-        let length = Literal::usize_unsuffixed(degree as usize);
-        Some(match &mut self.room {
-            Room::Rows(layout) if degree == 1 => {
-                let [slope, last] = layout.product_with_steady(a.value, b.value);
-                quote!(#slope * #last)
-            }
+    fn short(&mut self, a: History, b: History, degree: usize) -> TokenStream {
+        let length = Literal::usize_unsuffixed(degree);
+        match &mut self.room {
             Room::Rows(layout) => {
                 let [a, b] = [a, b].map(|history| layout.keep(history));
                 quote!(::dalembert::jet::short(jets, #a, #b, k, #length))
@@ -219,7 +108,18 @@ impl Writer<'_> {
                 let [a, b] = [a, b].map(|history| place(places.get(&history)));
                 quote!(::dalembert::jet::shared_short(&jets[#a], &jets[#b], k, #length))
             }
-        })
+        }
+    }
+
+    fn steady(&mut self, a: Value, b: Value) -> TokenStream {
+        match &mut self.room {
+            Room::Rows(layout) => {
+                let [slope, last] = layout.product_with_steady(a, b);
+                quote!(#slope * #last)
+            }
+            // NOTE: no term of a large expansion is one.
+            Room::Histories(_) => TokenStream::new(),
+        }
     }
 }
 

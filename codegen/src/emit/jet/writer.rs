@@ -12,10 +12,6 @@ use super::layout::{Layout, local};
 use crate::program::jet::{History, Jet, Recurrence};
 use crate::program::{Input, Op, Value};
 
-/// Series kept up to which values of order `k` are locals and sums are taken side by side. What is larger calls one
-/// shared sum and goes through memory: a compiler spends stack on every local of a function that is as long.
-const LARGE: usize = 128;
-
 pub(super) struct Writer<'a> {
     pub(super) jet: &'a Jet,
     /// Number of components of the state.
@@ -39,7 +35,7 @@ pub(super) enum Room {
 
 impl Room {
     fn of(jet: &Jet, uses: &[usize]) -> Self {
-        if jet.histories.len() <= LARGE {
+        if !jet.is_large() {
             return Self::Rows(Layout::default());
         }
         let mut histories: BTreeSet<History> = jet.histories.iter().copied().collect();
@@ -69,7 +65,7 @@ impl<'a> Writer<'a> {
         let uses = jet.uses();
         Self {
             jet,
-            components: context.dimension() + context.motion_dimension(),
+            components: context.form.dimension() + context.form.motion_dimension(),
             room: Room::of(jet, &uses),
             uses,
             read: BTreeSet::new(),
@@ -217,7 +213,7 @@ impl<'a> Writer<'a> {
             let memory = self.memory(value, &quote!(k));
             return memory.unwrap_or_else(|| local("next", value).into_token_stream());
         }
-        parenthesised(self.expression(value, &recurrence.clone()))
+        parenthesised(self.expression(value))
     }
 
     /// Whether coefficient `k` of a value is a statement of its own.
@@ -236,7 +232,7 @@ impl<'a> Writer<'a> {
 
     /// Order `k` of a value, and where it is kept.
     fn advance(&mut self, value: Value) -> TokenStream {
-        let recurrence = self.jet.recurrences[value.index()].clone();
+        let recurrence = &self.jet.recurrences[value.index()];
         let is_component = matches!(recurrence, Recurrence::Component(_));
         if !self.is_bound(value) {
             return TokenStream::new();
@@ -247,7 +243,7 @@ impl<'a> Writer<'a> {
         let name = local("next", value);
         let expression = match is_component {
             true => quote!(#name),
-            false => self.expression(value, &recurrence),
+            false => self.expression(value),
         };
         let binding = match self.memory(value, &quote!(k)) {
             Some(place) => quote!(#place = #expression;),

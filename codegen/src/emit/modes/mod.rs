@@ -11,10 +11,13 @@ use super::kernels::Written;
 use super::{Context, allowances, contexts_of_scene, forms, names};
 use crate::CompiledModes;
 use crate::model::{ModeGraph, Model};
+use crate::tables;
 
 /// What every emitter of the whole reads.
 struct Whole<'a> {
     graph: &'a ModeGraph,
+    /// What is known of it.
+    known: tables::Whole<'a>,
     /// Of each mode what is emitted: its own form, then the global one if that is another.
     contexts: Vec<Vec<Context<'a>>>,
 }
@@ -28,9 +31,14 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
         .iter()
         .zip(modes)
         .map(|(mode, own)| contexts_of_scene(model, &mode.scene, own));
+    let contexts: Vec<Vec<Context<'_>>> = contexts.collect();
     let whole = Whole {
         graph,
-        contexts: contexts.collect(),
+        known: tables::Whole {
+            graph,
+            forms: contexts.iter().map(|own| forms_of(own)).collect(),
+        },
+        contexts,
     };
     let own = [types::emit_struct(&whole), types::emit_module(&whole)];
     let shadows = names::emit_shadows(graph.modes.iter().map(|mode| &mode.model));
@@ -56,6 +64,10 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
             #(#of_whole)*
         };
     }
+}
+
+fn forms_of<'a>(contexts: &[Context<'a>]) -> Vec<tables::FormOf<'a>> {
+    contexts.iter().map(|context| context.form).collect()
 }
 
 impl Whole<'_> {

@@ -140,7 +140,7 @@ fn emit_mode(
     let mut lines = mode.scene.documentation.clone();
     lines.extend([String::new(), title, String::new()]);
     lines.push(format!(" State: `{}`.", doc::state_order(context)));
-    for note in &context.model.notes {
+    for note in &context.form.model.notes {
         lines.extend([String::new(), format!(" Note: {note}")]);
     }
     let documentation = doc::lines(&lines);

@@ -16,6 +16,7 @@
 pub mod degree;
 mod factors;
 pub mod interpret;
+pub mod terms;
 
 use dalembert_expr::{Function as Elementary, Rational};
 

@@ -8,6 +8,8 @@ mod check;
 mod derive;
 mod ensemble;
 mod eval;
+#[cfg(feature = "files")]
+mod files;
 mod gallery;
 mod hostile;
 mod list;

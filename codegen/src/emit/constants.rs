@@ -1,0 +1,239 @@
+//! Tables as constant expressions. One that differs little from another is written as what differs from that.
+
+use dalembert_numbers::description::{
+    Assumption, ConstraintInfo, CoordinateInfo, Description, Documentation, ModeInfo,
+    ParameterInfo, Quantity, SurfaceInfo, Topology, ViewInfo,
+};
+use dalembert_numbers::kernel::Shape;
+use dalembert_numbers::law::Law;
+use dalembert_numbers::tables::{
+    Beside, Chart, Condition, Dimensions, Form, Level, Mode, Passage, Surface, Tables, Transition,
+    Work,
+};
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{ToTokens, quote};
+
+use super::function::number;
+
+/// Something that can be written as a constant expression.
+pub(super) trait Constant {
+    fn tokens(&self) -> TokenStream;
+}
+
+/// A struct of the runtime.
+pub(super) trait Record: Constant {
+    /// The path of the type.
+    fn path() -> TokenStream;
+
+    /// The fields, and whether each has the same value in another.
+    fn fields(&self, other: Option<&Self>) -> Vec<(&'static str, TokenStream, bool)>;
+
+    /// What differs from another, which stands in the constant `base`.
+    fn tokens_beside(&self, other: &Self, base: &TokenStream) -> TokenStream {
+        let fields = self.fields(Some(other)).into_iter();
+        let differing = fields.filter(|(_, _, is_same)| !is_same);
+        let differing: Vec<TokenStream> = differing
+            .map(|(name, value, _)| field(name, &value))
+            .collect();
+        let path = Self::path();
+        match differing.is_empty() {
+            true => base.clone(),
+            false => quote!(#path { #(#differing,)* ..#base }),
+        }
+    }
+
+    /// All of it, some fields with other tokens.
+    fn tokens_with(&self, others: &[(&str, TokenStream)]) -> TokenStream {
+        let path = Self::path();
+        let fields = self.fields(None).into_iter().map(|(name, value, _)| {
+            let other = others.iter().find(|(other, _)| *other == name);
+            field(name, other.map_or(&value, |(_, tokens)| tokens))
+        });
+        quote!(#path { #(#fields),* })
+    }
+}
+
+fn field(name: &str, value: &TokenStream) -> TokenStream {
+    let name = Ident::new(name, Span::call_site());
+    quote!(#name: #value)
+}
+
+macro_rules! plain {
+    ($($type:ty),*) => {$(
+        impl Constant for $type {
+            fn tokens(&self) -> TokenStream {
+                self.to_token_stream()
+            }
+        }
+    )*};
+}
+plain!(bool, usize, u32, u64, &'static str);
+
+impl Constant for f64 {
+    fn tokens(&self) -> TokenStream {
+        number(*self)
+    }
+}
+
+impl<T: Constant> Constant for Option<T> {
+    fn tokens(&self) -> TokenStream {
+        match self {
+            Some(value) => {
+                let value = value.tokens();
+                quote!(::core::option::Option::Some(#value))
+            }
+            None => quote!(::core::option::Option::None),
+        }
+    }
+}
+
+impl<T: Constant> Constant for &'static [T] {
+    fn tokens(&self) -> TokenStream {
+        let values = self.iter().map(Constant::tokens);
+        quote!(&[#(#values),*])
+    }
+}
+
+impl<T: Constant, const N: usize> Constant for [T; N] {
+    fn tokens(&self) -> TokenStream {
+        let values = self.iter().map(Constant::tokens);
+        quote!([#(#values),*])
+    }
+}
+
+impl<T: Constant> Constant for &'static T {
+    fn tokens(&self) -> TokenStream {
+        let value = (*self).tokens();
+        quote!(&#value)
+    }
+}
+
+macro_rules! records {
+    ($($module:ident::$name:ident { $($field:ident),* $(,)? })*) => {$(
+        impl Record for $name {
+            fn path() -> TokenStream {
+                quote!(::dalembert::$module::$name)
+            }
+
+            fn fields(&self, other: Option<&Self>) -> Vec<(&'static str, TokenStream, bool)> {
+                // NOTE: a field that is added is asked for here.
+                let Self { $($field),* } = self;
+                vec![$((
+                    stringify!($field),
+                    $field.tokens(),
+                    other.is_some_and(|other| other.$field == *$field),
+                )),*]
+            }
+        }
+
+        impl Constant for $name {
+            fn tokens(&self) -> TokenStream {
+                self.tokens_with(&[])
+            }
+        }
+    )*};
+}
+records! {
+    describe::CoordinateInfo { name, topology }
+    describe::ParameterInfo { name, assumption, default }
+    describe::ConstraintInfo { name, affine, level }
+    describe::ModeInfo { name, coordinates }
+    describe::SurfaceInfo { name, law }
+    describe::ViewInfo { labels, plane, region }
+    describe::Description {
+        type_name, name, documentation, source, is_first_order, coordinates, parameters, constraints, forces,
+        quasi_velocities, surfaces, outputs, scenes, modes, view,
+    }
+    kernels::Quantity { name, shape }
+    kernels::Documentation { description, inputs, placed, named, geometry }
+    kernels::Dimensions { state, coordinates, motion, constraints, levels, surfaces, parameters }
+    kernels::Chart { coordinate, ends }
+    kernels::Condition { is_closed }
+    kernels::Surface { law, coefficient, conditions, others, beside, takes }
+    kernels::Level { constraint, is_zero }
+    kernels::Transition { enters, passage, has_no_side, opposite }
+    kernels::Mode {
+        tables, documentation, kernels, global, coordinates, constraints, surfaces, outputs, transitions,
+    }
+    jet::Work { values, sums, degree }
+    kernels::Tables {
+        form, dimensions, parameters, charts, conserves_energy, can_be_narrow, can_lose_rank, drifts, is_linear, varies,
+        levels, surfaces, density_reference, modes,
+    }
+}
+
+/// Choices between names alone.
+macro_rules! choices {
+    ($($module:ident::$name:ident)*) => {$(
+        impl Constant for $name {
+            fn tokens(&self) -> TokenStream {
+                let choice = Ident::new(&format!("{self:?}"), Span::call_site());
+                quote!(::dalembert::$module::$name::#choice)
+            }
+        }
+    )*};
+}
+choices! { kernels::Form kernels::Beside kernels::Passage }
+
+impl Constant for Topology {
+    fn tokens(&self) -> TokenStream {
+        let choice = match self {
+            Self::Line => quote!(Line),
+            Self::Circle => quote!(Circle),
+            Self::Interval { low, high } => {
+                let (low, high) = (low.tokens(), high.tokens());
+                quote!(Interval { low: #low, high: #high })
+            }
+        };
+        quote!(::dalembert::describe::Topology::#choice)
+    }
+}
+
+impl Constant for Assumption {
+    fn tokens(&self) -> TokenStream {
+        let choice = match self {
+            Self::Finite => quote!(Finite),
+            Self::Positive => quote!(Positive),
+            Self::NonNegative => quote!(NonNegative),
+            Self::NonZero => quote!(NonZero),
+            Self::Within { low, high } => {
+                let (low, high) = (low.tokens(), high.tokens());
+                quote!(Within { low: #low, high: #high })
+            }
+        };
+        quote!(::dalembert::describe::Assumption::#choice)
+    }
+}
+
+impl Constant for Law {
+    fn tokens(&self) -> TokenStream {
+        let choice = match self {
+            Self::Elastic => quote!(Elastic),
+            Self::Restitution(e) => {
+                let e = e.tokens();
+                quote!(Restitution(#e))
+            }
+            Self::Newton(e) => {
+                let e = e.tokens();
+                quote!(Newton(#e))
+            }
+            Self::NonholonomicPlastic => quote!(NonholonomicPlastic),
+            Self::ImpactPlastic => quote!(ImpactPlastic),
+            Self::TotallyPlastic => quote!(TotallyPlastic),
+            Self::Reset => quote!(Reset),
+            Self::Transition => quote!(Transition),
+        };
+        quote!(::dalembert::law::Law::#choice)
+    }
+}
+
+impl Constant for Shape {
+    fn tokens(&self) -> TokenStream {
+        let choice = match self {
+            Self::Scalar => quote!(Scalar),
+            Self::Vector(count) => quote!(Vector(#count)),
+            Self::Matrix(rows, columns) => quote!(Matrix(#rows, #columns)),
+        };
+        quote!(::dalembert::kernels::Shape::#choice)
+    }
+}

@@ -1,0 +1,170 @@
+//! Models of a file: `model_file!("src/disk.dal")`.
+
+use std::path::{Path, PathBuf};
+
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use quote::quote;
+
+use crate::diagnostics::{Diagnostics, Location};
+use crate::spec::Declaration;
+
+/// The tokens of each model of a text: what stands up to a block in braces, and the block. What is left behind the last one is one more.
+pub fn models(tokens: TokenStream) -> Vec<TokenStream> {
+    let mut models: Vec<Vec<TokenTree>> = Vec::new();
+    let mut open = Vec::new();
+    for token in tokens {
+        let ends = matches!(&token, TokenTree::Group(own) if own.delimiter() == Delimiter::Brace);
+        open.push(token);
+        if ends {
+            models.push(core::mem::take(&mut open));
+        }
+    }
+    if !open.is_empty() {
+        models.push(open);
+    }
+    models.into_iter().map(TokenStream::from_iter).collect()
+}
+
+/// The whole pipeline, for the models of a file below a folder.
+pub(crate) fn expand(input: TokenStream, folder: &Path) -> TokenStream {
+    match read(input, folder).and_then(|file| file.expand()) {
+        Ok(items) => items,
+        Err(diagnostics) => diagnostics.into_compile_error(),
+    }
+}
+
+/// A file that the macro was given.
+struct File {
+    /// What the macro was given, for messages.
+    at: Location,
+    path: PathBuf,
+    text: String,
+}
+
+fn read(input: TokenStream, folder: &Path) -> Result<File, Diagnostics> {
+    let mut diagnostics = Diagnostics::new();
+    let mut tokens = input.clone().into_iter();
+    let at = tokens.next().map_or_else(
+        || proc_macro2::Span::call_site().into(),
+        |own| Location::of(&own),
+    );
+    let Ok(name) = syn::parse2::<syn::LitStr>(input) else {
+        diagnostics
+            .error(at, "expected the path of a file, as a text in quotes")
+            .help(
+                "write `model_file!(\"src/disk.dal\")`; the path begins at the folder of the crate",
+            );
+        return Err(diagnostics);
+    };
+    let path = folder.join(name.value());
+    match std::fs::read_to_string(&path) {
+        Ok(text) => Ok(File { at, path, text }),
+        Err(error) => {
+            let text = format!("`{}` cannot be read: {error}", path.display());
+            diagnostics
+                .error(at, text)
+                .help("the path begins at the folder of the crate");
+            Err(diagnostics)
+        }
+    }
+}
+
+impl File {
+    fn expand(&self) -> Result<TokenStream, Diagnostics> {
+        let tokens: TokenStream = self.text.parse().map_err(|_| {
+            let mut diagnostics = Diagnostics::new();
+            let text =
+                "not a text of the language: a bracket, a quote or a character is wrong there";
+            self.refuse(&mut diagnostics, text);
+            diagnostics
+        })?;
+        let models = models(tokens);
+        let is_one = models.len() == 1;
+        let mut diagnostics = Diagnostics::new();
+        if models.is_empty() {
+            self.refuse(&mut diagnostics, "no model here");
+        }
+        let mut items = TokenStream::new();
+        for model in models {
+            match self.expand_one(model, is_one) {
+                Ok(own) => items.extend(own),
+                Err(others) => others
+                    .iter()
+                    .for_each(|error| self.refuse(&mut diagnostics, error.message())),
+            }
+        }
+        // The crate is built again where the file changes.
+        let path = self.path.to_string_lossy();
+        items.extend(quote!(
+            const _: &[u8] = ::core::include_bytes!(#path);
+        ));
+        diagnostics.finish(items)
+    }
+
+    fn expand_one(&self, model: TokenStream, is_one: bool) -> Result<TokenStream, Diagnostics> {
+        let mut declaration = crate::read(model)?;
+        if is_one {
+            // NOTE: tokens of a text have no places of their own inside of a macro, where a declaration is read back from.
+            let source = self.text.trim().to_owned();
+            match &mut declaration {
+                Declaration::Model(spec) => spec.source = source,
+                Declaration::Modes(modes) => modes
+                    .modes
+                    .iter_mut()
+                    .for_each(|own| own.spec.source.clone_from(&source)),
+            }
+        }
+        crate::expand_declaration(declaration)
+    }
+
+    /// A mistake in the file. Its place is not known inside of a macro; the command line shows it.
+    fn refuse(&self, diagnostics: &mut Diagnostics, message: &str) {
+        let file = self.path.display();
+        let text = format!("{message}\nnote: in {file}; `dalembert check {file}` shows the place");
+        diagnostics.error(self.at, text);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ONE: &str = "/// A ball.\nBall { coordinates { x; } lagrangian = dot(x)^2; }\n";
+    const OTHER: &str = "pub Disk { coordinates { y; } lagrangian = dot(y)^2; }";
+
+    /// What comes of a file with this text.
+    fn expanded(name: &str, text: &str) -> String {
+        let folder = std::env::temp_dir().join(format!("dalembert-file-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        std::fs::write(folder.join(name), text).expect("a file");
+        let literal = format!("{name:?}").parse().expect("a literal");
+        expand(literal, &folder).to_string()
+    }
+
+    #[test]
+    fn the_models_of_a_file_are_expanded() {
+        let both = expanded("both.dal", &format!("{ONE}{OTHER}"));
+        assert!(both.contains("struct Ball") && both.contains("struct Disk"));
+        assert!(both.contains("include_bytes"));
+        let one = expanded("one.dal", ONE);
+        assert!(one.contains(&format!("source : {:?}", ONE.trim())), "{one}");
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_file_is_said() {
+        let unknown = expanded(
+            "unknown.dal",
+            "Ball { coordinates { x; } lagrangian = dot(x)^2 - k*x; }",
+        );
+        assert!(
+            unknown.contains("unknown name `k`")
+                && unknown.contains("unknown.dal` shows the place")
+        );
+        assert!(expanded("empty.dal", "// nothing").contains("no model here"));
+        assert!(expanded("open.dal", "Ball { coordinates").contains("not a text of the language"));
+        let folder = std::env::temp_dir();
+        let expand = |text: &str| expand(text.parse().expect("tokens"), &folder).to_string();
+        assert!(expand("\"no/such.dal\"").contains("cannot be read"));
+        assert!(expand("no").contains("expected the path of a file"));
+    }
+}

@@ -1,0 +1,161 @@
+//! What a model says of itself.
+
+use dalembert_expr::ExprId;
+use dalembert_numbers::description::{
+    self, ConstraintInfo, CoordinateInfo, Description, Documentation, ParameterInfo, Quantity,
+    SurfaceInfo, ViewInfo,
+};
+use dalembert_numbers::kernel::Shape;
+
+use super::{FormOf, constant, default_value, names, table, text};
+use crate::model::{Assumption, Constraint, Coordinate, Model, Topology};
+use crate::program::recipes::geometry;
+use crate::spec::WHOLE;
+
+impl FormOf<'_> {
+    /// What it says of itself.
+    pub fn documentation(&self) -> Documentation {
+        let model = self.model;
+        let quantities = self.program.geometry.groups.iter();
+        let [placed, named] = [&model.initial.q, &model.initial.qdot].map(|own| marks(own));
+        Documentation {
+            description: self.description(),
+            inputs: names(model.inputs().map(|(_, own)| own.name.display.as_str())),
+            placed,
+            named,
+            geometry: table(quantities.map(|own| Quantity {
+                name: text(&own.name),
+                shape: match own.shape {
+                    geometry::Shape::Scalar => Shape::Scalar,
+                    geometry::Shape::Vector(count) => Shape::Vector(count),
+                    geometry::Shape::Matrix(rows, columns) => Shape::Matrix(rows, columns),
+                },
+            })),
+        }
+    }
+
+    fn description(&self) -> Description {
+        let model = self.model;
+        let coordinates = model.coordinates.iter();
+        let quasi = match self.frame {
+            Some(_) => self.quasi_names(),
+            None => Vec::new(),
+        };
+        let scenes = self.scenes.iter().map(|scene| scene.name.as_str());
+        let places: Vec<usize> = (0..model.coordinates.len()).collect();
+        Description {
+            coordinates: table(coordinates.map(|own| coordinate(model, own))),
+            constraints: table(constraints(model)),
+            forces: names(model.forces.iter().map(|own| own.name.display.as_str())),
+            quasi_velocities: names(quasi.iter().map(String::as_str)),
+            surfaces: table((0..model.surfaces.len()).map(|index| surface(model, index))),
+            outputs: names(model.outputs.iter().map(|own| own.name.display.as_str())),
+            scenes: names(core::iter::once(WHOLE).chain(scenes)),
+            view: view(model, &places),
+            ..of_model(model)
+        }
+    }
+}
+
+/// The description of a model that has nothing but its name, its text and its parameters.
+pub(super) fn of_model(model: &Model) -> Description {
+    Description {
+        type_name: text(&model.name),
+        name: text(&model.snake_name),
+        documentation: text(text_of(&model.documentation)),
+        source: text(&model.source),
+        is_first_order: model.is_first_order(),
+        coordinates: &[],
+        parameters: parameters(model),
+        constraints: &[],
+        forces: &[],
+        quasi_velocities: &[],
+        surfaces: &[],
+        outputs: &[],
+        scenes: &[],
+        modes: &[],
+        view: None,
+    }
+}
+
+/// The lines of a doc comment as a text.
+pub fn text_of(documentation: &[String]) -> String {
+    let lines: Vec<&str> = documentation.iter().map(|line| line.trim()).collect();
+    lines.join("\n")
+}
+
+/// Which values were declared.
+fn marks(values: &[Option<ExprId>]) -> &'static [bool] {
+    table(values.iter().map(Option::is_some))
+}
+
+pub(super) fn parameters(model: &Model) -> &'static [ParameterInfo] {
+    let declared = model.parameters.iter().filter(|own| !own.is_input);
+    table(declared.map(|own| ParameterInfo {
+        name: text(&own.name.display),
+        assumption: match &own.assumption {
+            Assumption::Finite => description::Assumption::Finite,
+            Assumption::Positive => description::Assumption::Positive,
+            Assumption::NonNegative => description::Assumption::NonNegative,
+            Assumption::NonZero => description::Assumption::NonZero,
+            Assumption::Within { low, high } => description::Assumption::Within {
+                low: low.to_f64(),
+                high: high.to_f64(),
+            },
+        },
+        default: default_value(model, own),
+    }))
+}
+
+pub(super) fn coordinate(model: &Model, declared: &Coordinate) -> CoordinateInfo {
+    CoordinateInfo {
+        name: text(&declared.name.display),
+        topology: match declared.topology {
+            Topology::Line => description::Topology::Line,
+            Topology::Angle => description::Topology::Circle,
+            Topology::Interval { low, high } => description::Topology::Interval {
+                low: constant(model, low),
+                high: constant(model, high),
+            },
+        },
+    }
+}
+
+fn constraints(model: &Model) -> impl Iterator<Item = ConstraintInfo> {
+    let mut levels = 0;
+    model.constraints.iter().map(move |declared| {
+        let level = declared.level.map(|_| levels);
+        levels += usize::from(level.is_some());
+        constraint(model, declared, level)
+    })
+}
+
+/// What is said of a constraint, with the index of its level.
+pub(super) fn constraint(
+    model: &Model,
+    declared: &Constraint,
+    level: Option<usize>,
+) -> ConstraintInfo {
+    ConstraintInfo {
+        name: text(&declared.name.display),
+        affine: !model.pool.is_syntactic_zero(declared.affine),
+        level,
+    }
+}
+
+pub(super) fn surface(model: &Model, index: usize) -> SurfaceInfo {
+    SurfaceInfo {
+        name: text(&model.surfaces[index].name.display),
+        law: text(model.law_text(index)),
+    }
+}
+
+/// What is said of the view; `places` are those of the coordinates.
+pub(super) fn view(model: &Model, places: &[usize]) -> Option<ViewInfo> {
+    let view = model.view.as_ref()?;
+    Some(ViewInfo {
+        labels: view.labels.each_ref().map(text),
+        plane: view.plane.map(|plane| plane.map(|own| places[own])),
+        region: view.region.is_some(),
+    })
+}

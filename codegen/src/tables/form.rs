@@ -1,0 +1,213 @@
+//! Sizes, conditions and laws of a form.
+
+use dalembert_numbers::Kernel;
+use dalembert_numbers::law::Law;
+use dalembert_numbers::tables::{self, Chart, Condition, Dimensions, Level, Surface, Tables, Work};
+
+use super::{FormOf, constant, description, table, text};
+use crate::model::{self, Topology};
+use crate::program::jet::degree::Degree;
+use crate::program::{Form, Function, Input, Op};
+
+impl FormOf<'_> {
+    /// What is known of it.
+    pub fn tables(&self) -> Tables {
+        let Self { model, program, .. } = *self;
+        let constrained = program.constrained.as_ref();
+        Tables {
+            form: match program.form {
+                Form::Global => tables::Form::Global,
+                Form::Reduced => tables::Form::Reduced,
+                Form::FirstOrder => tables::Form::FirstOrder,
+            },
+            dimensions: self.dimensions(),
+            parameters: description::parameters(model),
+            charts: table(self.charts()),
+            conserves_energy: self.conserves_energy(),
+            can_be_narrow: program.can_be_narrow,
+            can_lose_rank: constrained.is_some_and(|own| own.can_lose_rank),
+            drifts: self.drifts(),
+            is_linear: !model.is_nonlinear(),
+            varies: self.varies(),
+            levels: table(self.declared_levels()),
+            surfaces: table((0..model.surfaces.len()).map(|index| self.surface(index))),
+            density_reference: self.density_reference(),
+            modes: &[],
+        }
+    }
+
+    fn density_reference(&self) -> Option<&'static [f64]> {
+        let (reference, _) = self.program.volume.as_ref()?.gradient.as_ref()?;
+        Some(table(reference.iter().copied()))
+    }
+
+    fn dimensions(&self) -> Dimensions {
+        Dimensions {
+            state: self.state_dimension(),
+            coordinates: self.dimension(),
+            motion: self.motion_dimension(),
+            constraints: self.model.constraints.len(),
+            levels: self.levels(),
+            surfaces: self.model.surfaces.len(),
+            parameters: self.model.parameters.len(),
+        }
+    }
+
+    /// Its functions by name, that of velocities first.
+    pub fn kernels(&self) -> Vec<(Kernel, &Function)> {
+        let mut kernels = self.program.kernels();
+        let has_impulses = !self.model.is_nonlinear();
+        kernels.retain(|(kernel, _)| has_impulses || !is_of_impulses(*kernel));
+        kernels
+    }
+
+    /// Levels of constraints.
+    pub fn levels(&self) -> usize {
+        let constrained = self.program.constrained.as_ref();
+        constrained.map_or(0, |own| own.levels.outputs.len())
+    }
+
+    /// Numbers of the largest kernel that gives several things at once.
+    pub fn room(&self) -> usize {
+        let kernels = self.program.kernels().into_iter();
+        let several = kernels.filter(|(kernel, _)| {
+            matches!(
+                kernel,
+                Kernel::Residuals
+                    | Kernel::Forms
+                    | Kernel::ConstrainedVelocity
+                    | Kernel::Conditions(_)
+                    | Kernel::Blow(_)
+                    | Kernel::Contact(_)
+                    | Kernel::Reset(_)
+                    | Kernel::Initial
+                    | Kernel::Entry(_)
+            )
+        });
+        let counts = several.map(|(_, function)| function.outputs.len());
+        // NOTE: blows and contacts are asked for where there are none too.
+        let least = 5 + self.motion_dimension();
+        counts.max().unwrap_or(0).max(least)
+    }
+
+    /// Whether states drift off constraints that they are to be brought back to. A state reduced to D has nothing to be
+    /// brought back to but the positions of integrable constraints.
+    pub fn drifts(&self) -> bool {
+        let is_constrained = self.program.constrained.is_some();
+        let drifts = is_constrained && (self.program.form == Form::Global || self.levels() > 0);
+        drifts && self.model.extras.projection
+    }
+
+    /// Whether its runs can be varied.
+    pub fn varies(&self) -> bool {
+        self.model.extras.variations && !self.is_wrapped()
+    }
+
+    /// What expansions of the motion take.
+    pub fn work(&self) -> Work {
+        let jet = &self.program.jet;
+        let values = jet.function.cost.multiplications_alike();
+        Work {
+            values: u32::try_from(values).unwrap_or(u32::MAX),
+            // NOTE: the conversion saturates.
+            sums: jet.sums().ceil() as u32,
+            degree: match jet.degree(self.state_dimension()) {
+                Degree::AtMost(degree) => Some(degree),
+                Degree::Endless => None,
+            },
+        }
+    }
+
+    fn charts(&self) -> impl Iterator<Item = Chart> {
+        let coordinates = self.model.coordinates.iter().enumerate();
+        coordinates.filter_map(|(coordinate, own)| {
+            let Topology::Interval { low, high } = own.topology else {
+                return None;
+            };
+            let ends = [low, high].map(|end| constant(self.model, end));
+            Some(Chart { coordinate, ends })
+        })
+    }
+
+    /// Whether nothing but a Lagrangian without time moves a system with surfaces: its energy is kept between impacts.
+    fn conserves_energy(&self) -> bool {
+        let model = self.model;
+        let lagrangian = model.lagrangian.whole;
+        let is_free =
+            model.forces.is_empty() && model.constraints.is_empty() && !model.is_first_order();
+        let is_steady = !model.pool.depends_on(lagrangian, model.time)
+            && model
+                .inputs()
+                .all(|(_, input)| !model.pool.depends_on(lagrangian, input.symbol));
+        self.program.impacting.is_some() && is_free && is_steady
+    }
+
+    /// Which constraint each level belongs to, where some are declared to be 0.
+    fn declared_levels(&self) -> impl Iterator<Item = Level> {
+        let functions = self.program.constrained.as_ref();
+        let are_declared = functions.is_some_and(|own| own.level_scales.is_some());
+        let constraints = self.model.constraints.iter().enumerate();
+        let levels = constraints.filter(move |(_, own)| are_declared && own.level.is_some());
+        levels.map(|(constraint, own)| Level {
+            constraint,
+            is_zero: own.is_of_positions,
+        })
+    }
+
+    fn surface(&self, index: usize) -> Surface {
+        let surface = &self.model.surfaces[index];
+        let law = law(surface.law);
+        let name = || text(format!("restitution at {}", surface.name.display));
+        let others = surface.beside.others();
+        let gaps = self.program.impacting.as_ref();
+        Surface {
+            law,
+            coefficient: law.coefficient().map(|_| name()),
+            conditions: conditions(&surface.conditions),
+            others: table(others.iter().map(|own| conditions(own))),
+            beside: match &surface.beside {
+                model::Beside::Independent => tables::Beside::Independent,
+                model::Beside::Otherwise(_) => tables::Beside::Otherwise,
+                model::Beside::Last(_) => tables::Beside::Last,
+            },
+            takes: gaps.map_or(0, |own| coordinates_of(&own.gap_alone[index])),
+        }
+    }
+}
+
+/// Whether a kernel belongs to impulses and discrete principles, which constraints that are not linear define none of.
+fn is_of_impulses(kernel: Kernel) -> bool {
+    matches!(
+        kernel,
+        Kernel::Blow(_) | Kernel::Contact(_) | Kernel::ReactionForce | Kernel::ConstrainedVelocity
+    )
+}
+
+/// The law, with a coefficient of 0 where it has one.
+fn law(declared: model::Law) -> Law {
+    match declared {
+        model::Law::Elastic => Law::Elastic,
+        model::Law::Restitution(_) => Law::Restitution(0.0),
+        model::Law::Newton(_) => Law::Newton(0.0),
+        model::Law::NonholonomicPlastic => Law::NonholonomicPlastic,
+        model::Law::ImpactPlastic => Law::ImpactPlastic,
+        model::Law::TotallyPlastic => Law::TotallyPlastic,
+        model::Law::Reset => Law::Reset,
+        model::Law::Transition => Law::Transition,
+    }
+}
+
+fn conditions(declared: &[model::Condition]) -> &'static [Condition] {
+    table(declared.iter().map(|own| Condition {
+        is_closed: own.is_closed,
+    }))
+}
+
+/// The coordinates that a function takes, by bits; all from the last bit on share it.
+fn coordinates_of(function: &Function) -> u64 {
+    let taken = function.ops.iter().filter_map(|op| match op {
+        Op::Input(Input::Coordinate(i)) => Some(1_u64 << i.min(&63)),
+        _ => None,
+    });
+    taken.fold(0, |all, bit| all | bit)
+}

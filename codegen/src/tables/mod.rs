@@ -1,0 +1,118 @@
+//! What is known of a form besides its functions, as data of the types that the runtime reads.
+//!
+//! | file | job |
+//! |---|---|
+//! | `form.rs` | sizes, conditions and laws of a form |
+//! | `description.rs` | what a model says of itself |
+//! | `modes.rs` | both of a model with modes, and where each mode finds its own |
+//!
+//! `emit` writes it down as constants; what runs a declaration without a compiler takes it as it is.
+// NOTE: the runtime's tables borrow for ever, as constants do. What is made here lives as long as the program that made it.
+
+mod description;
+mod form;
+mod modes;
+
+use dalembert_expr::ExprId;
+
+use crate::Compiled;
+use crate::mechanics::Frame;
+use crate::model::{Model, Parameter, Scene};
+use crate::program::{Form, Program};
+pub use description::text_of;
+pub use modes::Whole;
+
+/// One form of a model, of a scene or of a mode.
+#[derive(Debug, Clone, Copy)]
+pub struct FormOf<'a> {
+    /// What is used: the whole model, or what a scene leaves of it.
+    pub model: &'a Model,
+    /// The scenes of the whole model.
+    pub scenes: &'a [Scene],
+    /// The frame, of a model that has one.
+    pub frame: Option<&'a Frame>,
+    /// The functions.
+    pub program: &'a Program,
+}
+
+impl<'a> FormOf<'a> {
+    /// The forms of a model, of a scene or of a mode: its own, then the global one if that is another.
+    pub fn all(compiled: &'a Compiled, scenes: &'a [Scene]) -> Vec<Self> {
+        let Compiled {
+            model,
+            derivation,
+            programs,
+            ..
+        } = compiled;
+        let form = |program| Self {
+            model,
+            scenes,
+            frame: derivation.frame.as_ref().ok(),
+            program,
+        };
+        core::iter::once(&programs.main)
+            .chain(&programs.global)
+            .map(form)
+            .collect()
+    }
+
+    /// Whether it is the global form of a model or a scene whose own is reduced.
+    pub fn is_wrapped(&self) -> bool {
+        self.frame.is_some() && self.program.form == Form::Global
+    }
+
+    /// Number of coordinates.
+    pub fn dimension(&self) -> usize {
+        self.model.coordinates.len()
+    }
+
+    /// Number of components of the state beside the positions.
+    pub fn motion_dimension(&self) -> usize {
+        match self.program.form {
+            Form::Global => self.dimension(),
+            Form::Reduced => self.frame.map_or(0, |frame| frame.quasi.len()),
+            Form::FirstOrder => 0,
+        }
+    }
+
+    /// Number of components of the state.
+    pub fn state_dimension(&self) -> usize {
+        self.dimension() + self.motion_dimension()
+    }
+
+    /// The names of the quasi-velocities.
+    pub fn quasi_names(&self) -> Vec<String> {
+        let quasi = self.frame.iter().flat_map(|frame| &frame.quasi);
+        quasi.map(|own| own.name.clone()).collect()
+    }
+
+    /// Gaps that have a series: all of them, or none.
+    pub fn series_gaps(&self) -> usize {
+        self.program.jet.function.outputs.len() - self.state_dimension()
+    }
+}
+
+/// The declared default of a parameter.
+pub fn default_value(model: &Model, parameter: &Parameter) -> Option<f64> {
+    parameter.default.map(|default| constant(model, default))
+}
+
+/// The value of an expression without symbols.
+fn constant(model: &Model, expression: ExprId) -> f64 {
+    model.pool.eval(&[expression], &|_| f64::NAN)[0]
+}
+
+/// Values as a table has them.
+fn table<T>(values: impl IntoIterator<Item = T>) -> &'static [T] {
+    Vec::leak(values.into_iter().collect())
+}
+
+/// A text as a table has it.
+fn text(text: impl Into<String>) -> &'static str {
+    String::leak(text.into())
+}
+
+/// Names as a table has them.
+fn names<'n>(names: impl IntoIterator<Item = &'n str>) -> &'static [&'static str] {
+    table(names.into_iter().map(text))
+}

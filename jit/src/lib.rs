@@ -1,0 +1,102 @@
+//! Declarations that run without a compiler.
+//!
+//! ```text
+//! text --source--> tokens --codegen--> Program, tables --form--> Form --dalembert::erased--> a system
+//! ```
+//!
+//! | file | job |
+//! |---|---|
+//! | `source.rs` | models of a text, and mistakes in it with their lines |
+//! | `form.rs` | forms, of tables and of what executes programs |
+//! | `machine.rs` | a function over any kind of number, by a machine with registers |
+//! | `native.rs` | the same over doubles, as machine code |
+//! | `series.rs` | power series over any kind of number |
+//!
+//! What a declaration is refused for, and what is proved of its claims, is what `model!` says of it. The numbers that come out are those of
+//! the code that `model!` writes, to the bit.
+//!
+//! ```
+//! use dalembert::erased::Erased;
+//! use dalembert::{System, Instance};
+//!
+//! let models = dalembert_jit::load("pendulum.dal", "
+//!     Pendulum {
+//!         coordinates { theta: angle; }
+//!         parameters { g > 0 = 9.81; }
+//!         lagrangian = dot(theta)^2/2 + g*cos(theta);
+//!         initial { theta = 1/2; }
+//!     }
+//! ")?;
+//! let pendulum = Erased::<4>::of(models[0].form).expect("room for two numbers");
+//! let start = pendulum.initial();
+//! let state = pendulum.state(0.0, &start.q, &start.qdot).expect("a state");
+//! assert_eq!(pendulum.energy(0.0, &state), Ok(-9.81 * 0.5_f64.cos()));
+//! # Ok::<(), dalembert_jit::Refused>(())
+//! ```
+
+mod form;
+mod machine;
+mod native;
+mod series;
+mod source;
+
+use dalembert::erased::Form;
+use dalembert_codegen::spec::Declaration;
+use dalembert_codegen::{self as codegen, Compiled};
+
+pub use source::{Mistake, Refused};
+
+/// A model of a text.
+#[derive(Debug, Clone)]
+pub struct Loaded {
+    /// The model itself.
+    pub form: &'static Form,
+    /// Its scenes, without `all`, which is the model itself.
+    pub scenes: Vec<(&'static str, &'static Form)>,
+}
+
+/// The models of a text, in its order. `name` is that of the file, for messages.
+///
+/// # Errors
+/// Every mistake of the first stage that found any, in whatever model.
+pub fn load(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
+    let mut refused = Refused::new(name, text);
+    let mut loaded = Vec::new();
+    for tokens in source::models(&mut refused)? {
+        match codegen::read(tokens).and_then(build) {
+            Ok(model) => loaded.push(model),
+            Err(diagnostics) => refused.add(&diagnostics),
+        }
+    }
+    refused.or(loaded)
+}
+
+fn build(declaration: Declaration) -> Result<Loaded, codegen::diagnostics::Diagnostics> {
+    match declaration {
+        Declaration::Model(spec) => {
+            let compiled = codegen::compile_spec(&spec, codegen::spec::STEPS)?;
+            Ok(loaded(&compiled))
+        }
+        Declaration::Modes(modes) => {
+            let compiled = codegen::compile_modes(&modes)?;
+            Ok(Loaded {
+                form: form::of_modes(&compiled),
+                scenes: Vec::new(),
+            })
+        }
+    }
+}
+
+fn loaded(compiled: &Compiled) -> Loaded {
+    let scenes = &compiled.model.scenes;
+    let of_scenes = scenes.iter().zip(&compiled.scenes);
+    Loaded {
+        form: form::of_model(compiled, scenes),
+        scenes: of_scenes
+            .map(|(scene, own)| {
+                let name: &'static str = String::leak(scene.name.clone());
+                (name, form::of_model(own, scenes))
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,248 @@
+//! Machine code of functions over doubles.
+//!
+//! This is the only file that is not checked by the compiler: it makes pointers to functions of what Cranelift wrote, and calls them with
+//! pointers to slices whose lengths were compared with what the code reads and writes. The code has no branches but those to its end,
+//! reads and writes only at constant distances from those pointers, and calls nothing but the elementary functions of this file.
+//!
+//! Operations are those of the machine of `machine.rs`, in the same order, and nothing is contracted: the bits are the same. Where a guard
+//! does not hold, that machine is asked which.
+#![allow(unsafe_code)]
+
+mod compiler;
+mod function;
+mod helpers;
+mod series;
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use dalembert::Fault;
+use dalembert::erased::Expanded;
+use dalembert::kernels::At;
+use dalembert::numbers::LENGTH;
+
+use crate::machine::{Code, Instruction, Place};
+use crate::series::Series;
+use compiler::Compiler;
+use series::Layout;
+
+/// Parameters, time, first and second place, values; 0 if every guard holds.
+type Entry = unsafe extern "C" fn(*const f64, f64, *const f64, *const f64, *mut f64) -> i32;
+
+/// A function as machine code.
+#[derive(Debug)]
+pub(crate) struct Native {
+    entry: Entry,
+    code: &'static Code,
+    extent: Extent,
+}
+
+/// How many numbers a function reads of each place.
+#[derive(Debug, Clone, Copy, Default)]
+struct Extent {
+    parameters: usize,
+    first: usize,
+    second: usize,
+}
+
+impl Native {
+    /// Writes the values.
+    ///
+    /// # Errors
+    /// The guard that does not hold.
+    ///
+    /// # Panics
+    /// If a slice is shorter than what is read or written.
+    pub(crate) fn run(&self, at: At<'_, f64>, values: &mut [f64]) -> Result<(), Fault> {
+        let has_room = at.parameters.len() >= self.extent.parameters
+            && at.first.len() >= self.extent.first
+            && at.second.len() >= self.extent.second
+            && values.len() >= self.code.outputs.len();
+        assert!(has_room, "a kernel was given too few numbers");
+        // SAFETY: the code reads the first `extent` numbers of each place and writes as many values as there are outputs; all of them
+        // exist. It is never freed.
+        let status = unsafe {
+            (self.entry)(
+                at.parameters.as_ptr(),
+                at.t,
+                at.first.as_ptr(),
+                at.second.as_ptr(),
+                values.as_mut_ptr(),
+            )
+        };
+        match status {
+            0 => Ok(()),
+            _ => self.code.run(at, values),
+        }
+    }
+}
+
+impl Extent {
+    fn of(code: &Code) -> Self {
+        let mut extent = Self::default();
+        for (instruction, _) in &code.instructions {
+            if let Instruction::Input(place) = instruction {
+                let (own, index) = match *place {
+                    Place::Time | Place::Velocity(_) => continue,
+                    Place::Parameter(k) => (&mut extent.parameters, k),
+                    Place::First(i) => (&mut extent.first, i),
+                    Place::Second(i) => (&mut extent.second, i),
+                };
+                *own = (*own).max(index + 1);
+            }
+        }
+        match code.velocity {
+            Some((velocity, _)) => extent.most(Self::of(velocity)),
+            None => extent,
+        }
+    }
+
+    fn most(self, other: Self) -> Self {
+        Self {
+            parameters: self.parameters.max(other.parameters),
+            first: self.first.max(other.first),
+            second: self.second.max(other.second),
+        }
+    }
+}
+
+/// Parameters, what is known at first, unit of time, order; coefficients, gaps, room for what is kept.
+type Advance = unsafe extern "C" fn(*const f64, *const f64, f64, i64, *mut f64, *mut f64, *mut f64);
+
+/// A power series as machine code.
+#[derive(Debug)]
+pub(crate) struct NativeSeries {
+    begin: Native,
+    advance: Advance,
+    parameters: usize,
+    known: usize,
+    components: usize,
+    gaps: usize,
+    room: usize,
+}
+
+thread_local! {
+    /// Room for the coefficients of an expansion.
+    static ROOM: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+}
+
+impl NativeSeries {
+    /// As [`Series::begin`].
+    ///
+    /// # Errors
+    /// The guard that does not hold.
+    pub(crate) fn begin(
+        &self,
+        parameters: &[f64],
+        t: f64,
+        state: &[f64],
+        firsts: &mut [f64],
+    ) -> Result<(), Fault> {
+        let at = At {
+            parameters,
+            t,
+            first: state,
+            second: &[],
+        };
+        self.begin.run(at, firsts)
+    }
+
+    /// As [`Series::advance`].
+    ///
+    /// # Panics
+    /// If a slice is shorter than what is read.
+    pub(crate) fn advance(
+        &self,
+        [parameters, state, firsts]: [&[f64]; 3],
+        (unit, order): (f64, usize),
+        take: Expanded<'_, f64>,
+    ) {
+        let order = order.min(LENGTH - 1);
+        let has_all = parameters.len() >= self.parameters && firsts.len() >= self.known;
+        assert!(has_all, "a series was given too few numbers");
+        take(
+            0,
+            state,
+            &firsts[self.components..self.components + self.gaps],
+        );
+        if order == 0 {
+            return;
+        }
+        ROOM.with_borrow_mut(|room| {
+            let lengths = [self.components, self.gaps].map(|width| LENGTH * width);
+            room.resize(lengths[0] + lengths[1] + self.room, 0.0);
+            let (coefficients, rest) = room.split_at_mut(lengths[0]);
+            let (gaps, rows) = rest.split_at_mut(lengths[1]);
+            // SAFETY: the code reads the first `parameters` and `known` numbers, and reads and writes rows up to `order` of
+            // coefficients, gaps and of the room, which have `LENGTH` rows. It is never freed.
+            unsafe {
+                (self.advance)(
+                    parameters.as_ptr(),
+                    firsts.as_ptr(),
+                    unit,
+                    order as i64,
+                    coefficients.as_mut_ptr(),
+                    gaps.as_mut_ptr(),
+                    rows.as_mut_ptr(),
+                );
+            }
+            for k in 1..=order {
+                let coefficients = &coefficients[k * self.components..][..self.components];
+                take(k, coefficients, &gaps[k * self.gaps..][..self.gaps]);
+            }
+        });
+    }
+}
+
+/// Machine code of a form.
+pub(crate) struct Compiled {
+    /// Of its functions, in their order.
+    pub functions: Vec<Native>,
+    /// Of its series.
+    pub series: NativeSeries,
+}
+
+/// Machine code of functions and of a series; `None` on a machine that there is no code for.
+pub(crate) fn compile(codes: &[&'static Code], series: &'static Series) -> Option<Compiled> {
+    let mut compiler = Compiler::new()?;
+    let mut compiled = BTreeMap::new();
+    let mut ids = Vec::new();
+    let begin: &'static Code = series.begin;
+    for code in codes.iter().copied().chain([begin]) {
+        // NOTE: what gives the velocities is compiled before what takes them.
+        let velocity = match code.velocity {
+            Some((velocity, _)) => Some(compiler.once(velocity, None, &mut compiled)?),
+            None => None,
+        };
+        ids.push(compiler.once(code, velocity, &mut compiled)?);
+    }
+    let layout = Layout::of(series);
+    let advance = series::define(&mut compiler, series, &layout)?;
+    compiler.module.finalize_definitions().ok()?;
+    let native = |code: &'static Code, id| {
+        let entry = compiler.module.get_finalized_function(id);
+        Native {
+            // SAFETY: the function was defined with this signature.
+            entry: unsafe { core::mem::transmute::<*const u8, Entry>(entry) },
+            code,
+            extent: Extent::of(code),
+        }
+    };
+    let functions = codes.iter().zip(&ids).map(|(code, id)| native(code, *id));
+    let functions = functions.collect();
+    let advance = compiler.module.get_finalized_function(advance);
+    // NOTE: the module frees no memory where it is dropped, and forms are used for ever.
+    Some(Compiled {
+        functions,
+        series: NativeSeries {
+            begin: native(begin, *ids.last()?),
+            // SAFETY: the function was defined with this signature.
+            advance: unsafe { core::mem::transmute::<*const u8, Advance>(advance) },
+            parameters: series.parameters(),
+            known: series.known(),
+            components: series.components,
+            gaps: series.outputs.len() - series.components,
+            room: layout.room(),
+        },
+    })
+}

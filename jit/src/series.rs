@@ -1,0 +1,363 @@
+//! Power series over any kind of number, by the terms of their coefficients.
+
+use std::collections::BTreeMap;
+
+use dalembert::Fault;
+use dalembert::erased::Expanded;
+use dalembert::jet::{self, LENGTH};
+use dalembert::kernels::At;
+use dalembert::numbers::{Numbers, PI};
+use dalembert_codegen::program::jet::terms::Term;
+use dalembert_codegen::program::jet::{History, Jet, Recurrence};
+use dalembert_codegen::program::{Input, Op, Value};
+use dalembert_numbers::numbers::INVERSES;
+
+use crate::machine::{Code, Constant};
+
+/// The series of a motion and of gaps along it.
+#[derive(Debug)]
+pub(crate) struct Series {
+    /// Order 0.
+    pub(crate) begin: &'static Code,
+    /// Where order 0 of each value comes from.
+    pub(crate) firsts: Vec<First>,
+    /// What varies, in an order in which it can be computed.
+    pub(crate) steps: Vec<(Value, Step)>,
+    /// The values of the results.
+    pub(crate) outputs: Vec<Value>,
+    pub(crate) components: usize,
+    /// The kept coefficients.
+    pub(crate) histories: BTreeMap<History, usize>,
+    pub(crate) is_large: bool,
+    /// How many numbers are known at the beginning.
+    known: usize,
+}
+
+/// Where order 0 of a value comes from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum First {
+    /// Nothing reads it.
+    Unknown,
+    Known(usize),
+    Number(Constant),
+    Parameter(usize),
+}
+
+/// What gives coefficient `k` of a value.
+#[derive(Debug)]
+pub(crate) enum Step {
+    Component(usize),
+    Term(Term),
+}
+
+/// Coefficients on their way.
+struct Course<'a, L> {
+    series: &'a Series,
+    unit: L,
+    k: usize,
+    first: Vec<L>,
+    inverse: Vec<L>,
+    next: Vec<L>,
+    kept: Vec<[L; LENGTH]>,
+}
+
+impl Series {
+    pub(crate) fn of(jet: &Jet, (n, components): (usize, usize)) -> Self {
+        let steps = jet.varying().map(|value| {
+            let step = match jet.recurrences[value.index()] {
+                Recurrence::Component(i) => Step::Component(i),
+                _ => Step::Term(jet.term(value)),
+            };
+            (value, step)
+        });
+        let steps: Vec<(Value, Step)> = steps.collect();
+        let mut histories = Vec::new();
+        let mut read = Vec::new();
+        for (_, step) in &steps {
+            if let Step::Term(term) = step {
+                visit(term, &mut read, &mut histories);
+            }
+        }
+        let mut known: Vec<Value> = jet.function.outputs.clone();
+        let mut firsts = vec![First::Unknown; jet.recurrences.len()];
+        for (place, output) in known.iter().enumerate() {
+            firsts[output.index()] = First::Known(place);
+        }
+        for value in read {
+            let first = match &jet.function.ops[value.index()] {
+                Op::Number(number) => First::Number(Constant::of(number)),
+                Op::Pi => First::Number(Constant::Parts(PI)),
+                Op::Input(Input::Parameter(k)) => First::Parameter(*k),
+                _ => match firsts[value.index()] {
+                    First::Unknown => {
+                        known.push(value);
+                        First::Known(known.len() - 1)
+                    }
+                    known => known,
+                },
+            };
+            firsts[value.index()] = first;
+        }
+        histories.sort_unstable();
+        histories.dedup();
+        Self {
+            begin: Box::leak(Box::new(Code::of_state(&jet.function, &known, n))),
+            firsts,
+            steps,
+            outputs: jet.function.outputs.clone(),
+            components,
+            histories: histories
+                .into_iter()
+                .enumerate()
+                .map(|(i, own)| (own, i))
+                .collect(),
+            is_large: jet.is_large(),
+            known: known.len(),
+        }
+    }
+
+    /// How many numbers are known at the beginning.
+    pub(crate) fn known(&self) -> usize {
+        self.known
+    }
+
+    /// How many parameters are read.
+    pub(crate) fn parameters(&self) -> usize {
+        let read = self.firsts.iter().map(|own| match own {
+            First::Parameter(k) => k + 1,
+            _ => 0,
+        });
+        read.max().unwrap_or(0)
+    }
+
+    /// Writes what the series begins with.
+    pub(crate) fn begin<L: Numbers>(
+        &self,
+        parameters: &[L],
+        t: L,
+        state: &[L],
+        firsts: &mut [L],
+    ) -> Result<(), Fault> {
+        let at = At {
+            parameters,
+            t,
+            first: state,
+            second: &[],
+        };
+        self.begin.run(at, firsts)
+    }
+
+    /// Hands on the coefficients, order after order.
+    pub(crate) fn advance<L: Numbers>(
+        &self,
+        [parameters, state, firsts]: [&[L]; 3],
+        (unit, order): (L, usize),
+        take: Expanded<'_, L>,
+    ) {
+        let order = order.min(LENGTH - 1);
+        let (rates, gaps) = firsts[..self.outputs.len()].split_at(self.components);
+        take(0, state, gaps);
+        if order == 0 {
+            return;
+        }
+        let mut course = Course::begin(self, parameters, firsts, unit);
+        let mut coefficients: Vec<L> = rates.iter().map(|rate| unit * *rate).collect();
+        let has_gaps = !gaps.is_empty();
+        let mut of_gaps = gaps.to_vec();
+        for k in 1..=order {
+            if k < order || has_gaps {
+                course.advance(k, &coefficients);
+                for (gap, output) in of_gaps.iter_mut().zip(&self.outputs[self.components..]) {
+                    *gap = course.next[output.index()];
+                }
+            }
+            take(k, &coefficients, &of_gaps);
+            if k < order {
+                let step = unit * L::inverse(k + 1);
+                for (own, output) in coefficients.iter_mut().zip(&self.outputs) {
+                    *own = step * course.next[output.index()];
+                }
+            }
+        }
+    }
+}
+
+/// What a term reads: values at order 0, and coefficients that are kept.
+fn visit(term: &Term, read: &mut Vec<Value>, histories: &mut Vec<History>) {
+    match term {
+        Term::First(value) | Term::Inverse(value) => read.push(*value),
+        Term::Neg(a) => visit(a, read, histories),
+        Term::Add(own) | Term::Sub(own) | Term::Mul(own) | Term::Turned(own) => {
+            own.iter().for_each(|own| visit(own, read, histories));
+        }
+        Term::MulAdd(own) => own.iter().for_each(|own| visit(own, read, histories)),
+        Term::Middle(a, b) => histories.extend([*a, *b]),
+        Term::Half(a) => histories.push(History::plain(*a)),
+        Term::Short(a, b, _) => {
+            histories.extend([*a, *b]);
+            read.extend([a.value, b.value]);
+        }
+        Term::Steady(a, b) => {
+            histories.extend([a, b].map(|own| History::plain(*own)));
+            read.push(*b);
+        }
+        Term::Zero
+        | Term::Time
+        | Term::Number(_)
+        | Term::Order
+        | Term::InverseOrder
+        | Term::Next(_) => {}
+    }
+}
+
+impl<'a, L: Numbers> Course<'a, L> {
+    fn begin(series: &'a Series, parameters: &[L], firsts: &[L], unit: L) -> Self {
+        let first: Vec<L> = series
+            .firsts
+            .iter()
+            .map(|first| match *first {
+                First::Unknown => L::ZERO,
+                First::Known(place) => firsts[place],
+                First::Number(constant) => constant.value(),
+                First::Parameter(k) => parameters[k],
+            })
+            .collect();
+        let kept = series.histories.keys().map(|history| {
+            let mut coefficients = [L::ZERO; LENGTH];
+            if !history.weighted {
+                coefficients[0] = first[history.value.index()];
+            }
+            coefficients
+        });
+        Self {
+            series,
+            unit,
+            k: 0,
+            kept: kept.collect(),
+            inverse: first.iter().map(|first| L::of(1.0) / *first).collect(),
+            next: vec![L::ZERO; first.len()],
+            first,
+        }
+    }
+
+    /// Computes order `k` of everything; that of the components is known.
+    fn advance(&mut self, k: usize, components: &[L]) {
+        self.k = k;
+        for (value, step) in &self.series.steps {
+            self.next[value.index()] = match step {
+                Step::Component(i) => components[*i],
+                Step::Term(term) => self.value(term),
+            };
+            for weighted in [false, true] {
+                let history = History {
+                    value: *value,
+                    weighted,
+                };
+                if let Some(place) = self.series.histories.get(&history) {
+                    self.kept[*place][k] = match weighted {
+                        true => L::of(k as f64) * self.next[value.index()],
+                        false => self.next[value.index()],
+                    };
+                }
+            }
+        }
+    }
+
+    fn value(&self, term: &Term) -> L {
+        let k = self.k;
+        let pair = |own: &[Term; 2]| [self.value(&own[0]), self.value(&own[1])];
+        match term {
+            Term::Zero => L::ZERO,
+            Term::Time if k == 1 => self.unit,
+            Term::Time => L::ZERO,
+            Term::Number(number) => Constant::of(number).value(),
+            Term::Order => L::of(k as f64),
+            Term::InverseOrder => L::inverse(k.min(INVERSES.len() - 1)),
+            Term::Next(value) => self.next[value.index()],
+            Term::First(value) => self.first[value.index()],
+            Term::Inverse(value) => self.inverse[value.index()],
+            Term::Neg(a) => -self.value(a),
+            Term::Add(own) => {
+                let [a, b] = pair(own);
+                a + b
+            }
+            Term::Sub(own) => {
+                let [a, b] = pair(own);
+                a - b
+            }
+            Term::Mul(own) => {
+                let [a, b] = pair(own);
+                a * b
+            }
+            Term::MulAdd(own) => {
+                let [a, b, c] = own.each_ref().map(|own| self.value(own));
+                a.mul_add(b, c)
+            }
+            Term::Turned(own) => {
+                let [a, b] = pair(own);
+                a.turned(b)
+            }
+            Term::Middle(a, b) => self.middle(self.kept(*a), self.kept(*b)),
+            Term::Half(a) => self.half(self.kept(History::plain(*a))),
+            Term::Short(a, b, degree) => self.short(self.kept(*a), self.kept(*b), *degree),
+            Term::Steady(a, b) => {
+                let [a, b] = [a, b].map(|own| self.kept(History::plain(*own)));
+                a[1] * b[k - 1]
+            }
+        }
+    }
+
+    fn kept(&self, history: History) -> &[L; LENGTH] {
+        &self.kept[self.series.histories[&history]]
+    }
+
+    // NOTE: the order of additions is that of `jet::middles`, `jet::halves` and `jet::short`, which take many sums side by side.
+    fn middle(&self, a: &[L; LENGTH], b: &[L; LENGTH]) -> L {
+        let k = self.k;
+        if self.series.is_large {
+            return jet::shared_middle(a, b, k);
+        }
+        if k < 2 {
+            return L::ZERO;
+        }
+        let mut sum = L::ZERO;
+        for j in 2..k.max(3) - 1 {
+            sum = a[j].mul_add(b[k - j], sum);
+        }
+        sum = a[1].mul_add(b[k - 1], sum);
+        match k > 2 {
+            true => a[k - 1].mul_add(b[1], sum),
+            false => sum,
+        }
+    }
+
+    fn half(&self, a: &[L; LENGTH]) -> L {
+        let k = self.k;
+        if self.series.is_large {
+            return jet::half(a, k);
+        }
+        let mut sum = match k >= 2 && k.is_multiple_of(2) {
+            true => L::of(0.5) * a[k / 2] * a[k / 2],
+            false => L::ZERO,
+        };
+        if k > 2 {
+            for j in (2..=(k - 1) / 2).rev() {
+                sum = a[j].mul_add(a[k - j], sum);
+            }
+            sum = a[1].mul_add(a[k - 1], sum);
+        }
+        sum
+    }
+
+    fn short(&self, a: &[L; LENGTH], b: &[L; LENGTH], degree: usize) -> L {
+        let k = self.k;
+        if self.series.is_large {
+            return jet::shared_short(a, b, k, degree);
+        }
+        let mut sum = a[1] * b[k - 1];
+        for j in 2..=degree.min(k) {
+            sum = sum + a[j] * b[k - j];
+        }
+        sum
+    }
+}

@@ -1,0 +1,144 @@
+//! The models of a text, and what is wrong with it, by line and column.
+
+use std::fmt;
+
+use dalembert_codegen::diagnostics::{Diagnostics, Location};
+use dalembert_codegen::{self as codegen};
+use proc_macro2::{LexError, Span, TokenStream};
+
+/// Mistakes in a text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refused {
+    name: String,
+    text: String,
+    mistakes: Vec<Mistake>,
+}
+
+/// A mistake.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Mistake {
+    /// What is wrong, and what to write instead.
+    pub message: String,
+    /// The line, from 1 on.
+    pub line: usize,
+    /// The first column, from 1 on, in characters.
+    pub column: usize,
+    /// Columns that are wrong in this line.
+    pub width: usize,
+}
+
+impl Refused {
+    /// No mistakes yet.
+    pub(crate) fn new(name: &str, text: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            mistakes: Vec::new(),
+        }
+    }
+
+    /// The mistakes, in the order in which they were found.
+    pub fn mistakes(&self) -> &[Mistake] {
+        &self.mistakes
+    }
+
+    pub(crate) fn add(&mut self, diagnostics: &Diagnostics) {
+        for error in diagnostics.iter() {
+            for (location, message) in error.places() {
+                let mistake = self.at(location, message);
+                self.mistakes.push(mistake);
+            }
+        }
+    }
+
+    /// The value if there are no mistakes.
+    pub(crate) fn or<T>(self, value: T) -> Result<T, Self> {
+        match self.mistakes.is_empty() {
+            true => Ok(value),
+            false => Err(self),
+        }
+    }
+
+    fn at(&self, location: &Location, message: &str) -> Mistake {
+        let (start, end) = (location.first.start(), location.last.end());
+        let line = self.text.lines().nth(start.line.saturating_sub(1));
+        let length = line.map_or(0, |line| line.chars().count());
+        let last = match end.line == start.line {
+            true => end.column,
+            false => length,
+        };
+        Mistake {
+            message: message.to_owned(),
+            line: start.line,
+            column: start.column + 1,
+            width: last.saturating_sub(start.column).max(1),
+        }
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, mistake) in self.mistakes.iter().enumerate() {
+            if index > 0 {
+                write!(f, "\n\n")?;
+            }
+            let Mistake {
+                message,
+                line,
+                column,
+                width,
+            } = mistake;
+            let number = line.to_string();
+            let margin = " ".repeat(number.len());
+            let text = self.text.lines().nth(line - 1).unwrap_or_default();
+            let before: String = text
+                .chars()
+                .take(column - 1)
+                .map(|c| if c == '\t' { '\t' } else { ' ' })
+                .collect();
+            let mut lines = message.lines();
+            let head = if index > 0 { "error: " } else { "" };
+            writeln!(f, "{head}{}", lines.next().unwrap_or_default())?;
+            for line in lines {
+                writeln!(f, "       {line}")?;
+            }
+            writeln!(f, "{margin}--> {}:{line}:{column}", self.name)?;
+            writeln!(f, "{margin} |")?;
+            writeln!(f, "{number} | {text}")?;
+            write!(f, "{margin} | {before}{}", "^".repeat(*width))?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Refused {}
+
+/// The tokens of each model: what stands up to a block in braces, and the block.
+pub(crate) fn models(refused: &mut Refused) -> Result<Vec<TokenStream>, Refused> {
+    let tokens: TokenStream = match refused.text.parse() {
+        Ok(tokens) => tokens,
+        Err(error) => {
+            let error: LexError = error;
+            let mistake = refused.at(
+                &Location::from(error.span()),
+                "not a text of the language: a bracket, a quote or a character is wrong here",
+            );
+            refused.mistakes.push(mistake);
+            return Err(refused.clone());
+        }
+    };
+    let models = codegen::file::models(tokens);
+    if models.is_empty() {
+        let mistake = refused.at(
+            &Location::from(Span::call_site()),
+            "no model here\nwrite one, such as `Pendulum { coordinates { theta: angle; } lagrangian = dot(theta)^2/2 + cos(theta); }`",
+        );
+        refused.mistakes.push(Mistake {
+            line: 1,
+            column: 1,
+            ..mistake
+        });
+        return Err(refused.clone());
+    }
+    Ok(models)
+}

@@ -1,0 +1,92 @@
+//! Models of files: a model argument that names a file stands for the model in it.
+
+use std::fs::File;
+use std::io::{Read, Take};
+use std::path::{Path, PathBuf};
+
+use crate::entry::Entry;
+use crate::error::CliError;
+use crate::names;
+
+/// The ending of the names of files with models.
+const EXTENSION: &str = "dal";
+
+/// The name of the standard input.
+const INPUT: &str = "-";
+
+/// The longest text that is read, in bytes.
+const LONGEST: u64 = 1 << 20;
+
+/// The models of the file that an argument names, and the name of the one that is meant: `disk.dal`, or `systems.dal:disk` where there are
+/// several. `None` if it names no file.
+///
+/// # Errors
+/// A file that cannot be read, every mistake in it, an unknown or missing name.
+pub(crate) fn read(
+    given: &str,
+    input: &mut dyn Read,
+) -> Result<Option<(Vec<Entry>, String)>, CliError> {
+    let Some((file, name)) = split(given) else {
+        return Ok(None);
+    };
+    let text = text(file, input)?;
+    let shown = if file == INPUT {
+        "standard input"
+    } else {
+        file
+    };
+    let models = dalembert_jit::load(shown, &text).map_err(CliError::Declaration)?;
+    let entries: Vec<Entry> = models.iter().map(Entry::loaded).collect();
+    let all = entries.iter().map(|entry| entry.description().name);
+    let chosen = match (name, entries.as_slice()) {
+        (Some(name), _) => names::find(file, "model", name, all)?,
+        (None, [_]) => 0,
+        (None, _) => {
+            let several: Vec<String> = all.map(|name| format!("{file}:{name}")).collect();
+            let expected = format!("one of its models: {}", several.join(", "));
+            return Err(CliError::value("MODEL", file, expected));
+        }
+    };
+    let entry = &entries[chosen];
+    entry.check_size()?;
+    let name = entry.description().name.to_owned();
+    Ok(Some((entries, name)))
+}
+
+/// The file that an argument names, and the model in it.
+fn split(given: &str) -> Option<(&str, Option<&str>)> {
+    let is_file = |name: &str| {
+        let path = Path::new(name);
+        name == INPUT || path.is_file() || path.extension().is_some_and(|own| own == EXTENSION)
+    };
+    if is_file(given) {
+        return Some((given, None));
+    }
+    let (file, name) = given.rsplit_once(':')?;
+    is_file(file).then_some((file, Some(name)))
+}
+
+fn text(file: &str, input: &mut dyn Read) -> Result<String, CliError> {
+    let failed = |source| CliError::File {
+        flag: "MODEL",
+        path: PathBuf::from(file),
+        source,
+    };
+    let mut text = String::new();
+    let read = match file {
+        INPUT => input.take(LONGEST + 1).read_to_string(&mut text),
+        _ => File::open(file).and_then(|opened| {
+            let mut opened: Take<File> = opened.take(LONGEST + 1);
+            opened.read_to_string(&mut text)
+        }),
+    };
+    read.map_err(failed)?;
+    match text.len() as u64 > LONGEST {
+        true => Err(CliError::value(
+            "MODEL",
+            file,
+            format!("a text of at most {LONGEST} bytes"),
+        )),
+        false => Ok(text),
+    }
+}

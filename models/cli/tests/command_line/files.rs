@@ -1,0 +1,192 @@
+//! Models of files.
+
+use std::path::PathBuf;
+
+use super::*;
+
+/// A folder of this test that is removed with it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("dalembert-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    /// The path of a file with this text.
+    fn file(&self, name: &str, text: &str) -> String {
+        let path = self.0.join(name);
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // Nothing is lost where it stays.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+const BALL: &str = "
+    /// A ball that bounces.
+    Ball {
+        coordinates { x; }
+        parameters { g > 0 = 9.81; e in [0, 1] = 0.5; }
+        lagrangian = dot(x)^2/2 - g*x;
+        impacts { floor: x >= 0 => newton(e); }
+        initial { x = 1; until = 1; }
+        claims { conserved: energy; }
+    }";
+
+/// The text block of a page that begins with these words.
+fn block<'p>(page: &'p str, first: &str) -> &'p str {
+    let blocks = page.split("```text\n").skip(1);
+    let mut blocks = blocks.filter_map(|rest| rest.split("```").next());
+    blocks.find(|block| block.starts_with(first)).unwrap()
+}
+
+#[test]
+fn every_command_takes_a_file() {
+    let folder = Folder::new("commands");
+    let ball = folder.file("ball.dal", BALL);
+    let simulated = run(&format!("simulate {ball} --json -")).json();
+    assert_eq!(simulated["model"], "ball");
+    assert_eq!(simulated["outcome"]["kind"], "done");
+    // It falls for sqrt(2/g), comes back after the same time, as 2 e = 1, and then after half of it.
+    assert_eq!(simulated["counters"]["impacts"], 2);
+    let time = simulated["impacts"][0]["t"].as_f64().unwrap();
+    assert!((time - (2.0_f64 / 9.81).sqrt()).abs() < 1e-14, "{time}");
+    let derived = run(&format!("derive {ball}"));
+    assert!(derived.output.starts_with("ball\nA ball that bounces."));
+    let checked = run(&format!("check {ball}"));
+    assert_eq!(checked.exit, Exit::Reached, "{}", checked.output);
+    let evaluated = run_on(r#"[{"q": [2], "qdot": [1]}]"#, &["eval", &ball]).json();
+    assert_eq!(evaluated[0]["energy"].as_f64(), Some(0.5 + 2.0 * 9.81));
+    let measured = run(&format!("accuracy {ball} --until 0.2 --wanted 1e-6"));
+    assert_eq!(measured.exit, Exit::Reached, "{}", measured.errors);
+    let ensemble = run(&format!("ensemble {ball} --vary x=0.5:2:grid:4 --until 1"));
+    assert_eq!(ensemble.exit, Exit::Reached, "{}", ensemble.errors);
+}
+
+#[test]
+fn a_model_comes_from_the_standard_input() {
+    let done = run_on(BALL, &["simulate", "-", "--until", "0.2", "--json", "-"]);
+    assert_eq!(done.json()["outcome"]["kind"], "done");
+}
+
+#[test]
+fn the_pages_show_models_that_run() {
+    let folder = Folder::new("pages");
+    let page = include_str!("../../../../docs/language.md");
+    let two = folder.file("two.dal", block(page, "// Two pendulums."));
+    for name in ["rod", "moving"] {
+        let done = run(&format!(
+            "simulate {two}:{name} --integrator taylor --json -"
+        ));
+        assert_eq!(done.json()["outcome"]["kind"], "done", "{}", done.errors);
+    }
+    let readme = include_str!("../../../../README.md");
+    let skate = folder.file("skate.dal", block(readme, "/// Skate on an incline"));
+    let done = run(&format!("simulate {skate} --json -"));
+    assert_eq!(done.json()["outcome"]["kind"], "done", "{}", done.errors);
+}
+
+#[test]
+fn a_file_with_several_models_needs_a_name() {
+    let folder = Folder::new("several");
+    let both = folder.file(
+        "both.dal",
+        &format!("{BALL} Other {{ coordinates {{ y; }} lagrangian = dot(y)^2; }}"),
+    );
+    let refused = run(&format!("simulate {both}"));
+    assert_eq!(refused.exit, Exit::Refused);
+    assert!(
+        refused.errors.ends_with(&format!(
+            "expected one of its models: {both}:ball, {both}:other\n"
+        )),
+        "{}",
+        refused.errors
+    );
+    let unknown = run(&format!("simulate {both}:bell"));
+    assert!(
+        unknown
+            .errors
+            .contains("unknown model `bell`; did you mean `ball`?"),
+        "{}",
+        unknown.errors
+    );
+    let found = run(&format!("derive {both}:other"));
+    assert_eq!(found.exit, Exit::Reached, "{}", found.errors);
+}
+
+#[test]
+fn mistakes_are_shown_where_they_are() {
+    let folder = Folder::new("mistakes");
+    let wrong = folder.file(
+        "wrong.dal",
+        "P {\n    coordinates { x; }\n    lagrangian = dot(x)^2/2 - k*x;\n}\n",
+    );
+    let refused = run(&format!("simulate {wrong}"));
+    assert_eq!(refused.exit, Exit::Refused);
+    let expected = format!(
+        " --> {wrong}:3:31\n  |\n3 |     lagrangian = dot(x)^2/2 - k*x;\n  |                               ^\n"
+    );
+    assert!(
+        refused.errors.starts_with("error: unknown name `k`"),
+        "{}",
+        refused.errors
+    );
+    assert!(refused.errors.ends_with(&expected), "{}", refused.errors);
+    let open = folder.file("open.dal", "P { coordinates { x;");
+    assert!(run(&format!("check {open}")).errors.contains(":1:"));
+    let empty = folder.file("empty.dal", "// nothing\n");
+    assert!(
+        run(&format!("check {empty}"))
+            .errors
+            .contains("no model here")
+    );
+}
+
+#[test]
+fn a_false_claim_refuses_the_model() {
+    let text = BALL.replace("conserved: energy", "conserved: dot(x)");
+    let refused = run_on(&text, &["simulate", "-"]);
+    assert_eq!(refused.exit, Exit::Refused);
+    assert!(
+        refused.errors.contains("conserved: dot(x)"),
+        "{}",
+        refused.errors
+    );
+}
+
+#[test]
+fn files_that_cannot_be_read_are_named() {
+    let missing = run("simulate nowhere.dal");
+    assert_eq!(missing.exit, Exit::Refused);
+    assert!(
+        missing.errors.starts_with("error: MODEL nowhere.dal: "),
+        "{}",
+        missing.errors
+    );
+    let folder = Folder::new("large");
+    let large = folder.file("large.dal", &"// a long comment\n".repeat(1 << 17));
+    assert!(
+        run(&format!("simulate {large}"))
+            .errors
+            .contains("at most 1048576 bytes")
+    );
+}
+
+#[test]
+fn what_is_too_large_is_said() {
+    let text = "Chain { coordinates { x[40]; } lagrangian = sum(i in 1..=40: dot(x[i])^2/2); initial { until = 1; } }";
+    let refused = run_on(text, &["simulate", "-"]);
+    assert_eq!(refused.exit, Exit::Refused);
+    assert!(
+        refused.errors.contains("more than 32 components"),
+        "{}",
+        refused.errors
+    );
+}
