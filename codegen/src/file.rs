@@ -13,7 +13,8 @@ pub fn models(tokens: TokenStream) -> Vec<TokenStream> {
     let mut models: Vec<Vec<TokenTree>> = Vec::new();
     let mut open = Vec::new();
     for token in tokens {
-        let ends = matches!(&token, TokenTree::Group(own) if own.delimiter() == Delimiter::Brace);
+        let ends =
+            matches!(&token, TokenTree::Group(group) if group.delimiter() == Delimiter::Brace);
         open.push(token);
         if ends {
             models.push(core::mem::take(&mut open));
@@ -46,7 +47,7 @@ fn read(input: TokenStream, folder: &Path) -> Result<File, Diagnostics> {
     let mut tokens = input.clone().into_iter();
     let at = tokens.next().map_or_else(
         || proc_macro2::Span::call_site().into(),
-        |own| Location::of(&own),
+        |token| Location::of(&token),
     );
     let Ok(name) = syn::parse2::<syn::LitStr>(input) else {
         diagnostics
@@ -87,7 +88,7 @@ impl File {
         let mut items = TokenStream::new();
         for model in models {
             match self.expand_one(model, is_one) {
-                Ok(own) => items.extend(own),
+                Ok(written) => items.extend(written),
                 Err(others) => others
                     .iter()
                     .for_each(|error| self.refuse(&mut diagnostics, error.message())),
@@ -111,7 +112,7 @@ impl File {
                 Declaration::Modes(modes) => modes
                     .modes
                     .iter_mut()
-                    .for_each(|own| own.spec.source.clone_from(&source)),
+                    .for_each(|mode| mode.spec.source.clone_from(&source)),
             }
         }
         crate::expand_declaration(declaration)

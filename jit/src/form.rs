@@ -31,7 +31,7 @@ fn forms(known: &[FormOf<'_>], may_be_narrow: bool) -> Vec<&'static Form> {
     let (first, others) = known.split_first().expect("a model has a form");
     let others: Vec<&'static Form> = others
         .iter()
-        .map(|own| form(own, may_be_narrow, None))
+        .map(|known| form(known, may_be_narrow, None))
         .collect();
     let first = form(first, may_be_narrow, others.first().copied());
     core::iter::once(first).chain(others).collect()
@@ -45,19 +45,19 @@ pub(crate) fn of_modes(compiled: &CompiledModes) -> &'static Form {
         forms: compiled
             .modes
             .iter()
-            .map(|own| FormOf::all(own, scenes))
+            .map(|mode| FormOf::all(mode, scenes))
             .collect(),
     };
     let tables = whole.tables();
     let of_modes: Vec<Vec<&'static Form>> = whole
         .forms
         .iter()
-        .map(|own| forms(own, tables.can_be_narrow))
+        .map(|known| forms(known, tables.can_be_narrow))
         .collect();
     let gaps = whole.series_gaps();
-    let rests = of_modes.iter().map(|own| {
-        let own = own[0];
-        own.firsts - own.tables.dimensions.state - own.series_gaps
+    let rests = of_modes.iter().map(|forms| {
+        let form = forms[0];
+        form.firsts - form.tables.dimensions.state - form.series_gaps
     });
     let work = whole.work();
     let defaults = defaults(whole.model());
@@ -135,7 +135,7 @@ fn any<T: Any + Send + Sync>(table: T) -> &'static (dyn Any + Send + Sync) {
 fn defaults(model: &Model) -> Vec<f64> {
     let parameters = model.parameters.iter();
     parameters
-        .map(|own| default_value(model, own).unwrap_or(f64::NAN))
+        .map(|parameter| default_value(model, parameter).unwrap_or(f64::NAN))
         .collect()
 }
 

@@ -93,9 +93,9 @@ fn loaded(compiled: &Compiled) -> Loaded {
     Loaded {
         form: form::of_model(compiled, scenes),
         scenes: of_scenes
-            .map(|(scene, own)| {
+            .map(|(scene, compiled)| {
                 let name: &'static str = String::leak(scene.name.clone());
-                (name, form::of_model(own, scenes))
+                (name, form::of_model(compiled, scenes))
             })
             .collect(),
     }

@@ -93,7 +93,7 @@ impl Condition {
             | Self::Frame(_, squared, reference)
             | Self::Surface(_, squared, reference) => (
                 squared,
-                reference.map(|own| (Guard::LEAST_SQUARED_RATIO, own)),
+                reference.map(|register| (Guard::LEAST_SQUARED_RATIO, register)),
             ),
         }
     }
@@ -121,9 +121,9 @@ impl Code {
         let takes_velocities = code
             .instructions
             .iter()
-            .any(|(own, _)| matches!(own, Instruction::Input(Place::Velocity(_))));
+            .any(|(instruction, _)| matches!(instruction, Instruction::Input(Place::Velocity(_))));
         if takes_velocities {
-            code.velocity = velocity.map(|own| (own, n));
+            code.velocity = velocity.map(|code| (code, n));
         }
         code
     }
@@ -168,7 +168,10 @@ impl Code {
         }
         Self {
             instructions,
-            outputs: outputs.iter().map(|own| of_value[own.index()]).collect(),
+            outputs: outputs
+                .iter()
+                .map(|output| of_value[output.index()])
+                .collect(),
             registers: registers.count,
             velocity: None,
         }
@@ -344,7 +347,7 @@ fn check<L: Numbers>(condition: &Condition, registers: &[L]) -> Result<(), Fault
     let value = |register: usize| registers[register];
     let or_zero = |register: Option<usize>| register.map_or(L::ZERO, value);
     match *condition {
-        Condition::Pivot(pivot, own) => guards::positive_pivot(pivot, value(own)),
+        Condition::Pivot(pivot, register) => guards::positive_pivot(pivot, value(register)),
         Condition::Constraint(constraint, squared, reference) => {
             guards::independent_constraint(constraint, value(squared), or_zero(reference))
         }

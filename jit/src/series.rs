@@ -109,7 +109,7 @@ impl Series {
             histories: histories
                 .into_iter()
                 .enumerate()
-                .map(|(i, own)| (own, i))
+                .map(|(place, history)| (history, place))
                 .collect(),
             is_large: jet.is_large(),
             known: known.len(),
@@ -123,7 +123,7 @@ impl Series {
 
     /// How many parameters are read.
     pub(crate) fn parameters(&self) -> usize {
-        let read = self.firsts.iter().map(|own| match own {
+        let read = self.firsts.iter().map(|first| match first {
             First::Parameter(k) => k + 1,
             _ => 0,
         });
@@ -174,8 +174,8 @@ impl Series {
             take(k, &coefficients, &of_gaps);
             if k < order {
                 let step = unit * L::inverse(k + 1);
-                for (own, output) in coefficients.iter_mut().zip(&self.outputs) {
-                    *own = step * course.next[output.index()];
+                for (coefficient, output) in coefficients.iter_mut().zip(&self.outputs) {
+                    *coefficient = step * course.next[output.index()];
                 }
             }
         }
@@ -187,10 +187,17 @@ fn visit(term: &Term, read: &mut Vec<Value>, histories: &mut Vec<History>) {
     match term {
         Term::First(value) | Term::Inverse(value) => read.push(*value),
         Term::Neg(a) => visit(a, read, histories),
-        Term::Add(own) | Term::Sub(own) | Term::Mul(own) | Term::Turned(own) => {
-            own.iter().for_each(|own| visit(own, read, histories));
+        Term::Add(operands)
+        | Term::Sub(operands)
+        | Term::Mul(operands)
+        | Term::Turned(operands) => {
+            operands
+                .iter()
+                .for_each(|operand| visit(operand, read, histories));
         }
-        Term::MulAdd(own) => own.iter().for_each(|own| visit(own, read, histories)),
+        Term::MulAdd(operands) => operands
+            .iter()
+            .for_each(|operand| visit(operand, read, histories)),
         Term::Middle(a, b) => histories.extend([*a, *b]),
         Term::Half(a) => histories.push(History::plain(*a)),
         Term::Short(a, b, _) => {
@@ -198,7 +205,7 @@ fn visit(term: &Term, read: &mut Vec<Value>, histories: &mut Vec<History>) {
             read.extend([a.value, b.value]);
         }
         Term::Steady(a, b) => {
-            histories.extend([a, b].map(|own| History::plain(*own)));
+            histories.extend([a, b].map(|value| History::plain(*value)));
             read.push(*b);
         }
         Term::Zero
@@ -265,7 +272,7 @@ impl<'a, L: Numbers> Course<'a, L> {
 
     fn value(&self, term: &Term) -> L {
         let k = self.k;
-        let pair = |own: &[Term; 2]| [self.value(&own[0]), self.value(&own[1])];
+        let pair = |operands: &[Term; 2]| operands.each_ref().map(|operand| self.value(operand));
         match term {
             Term::Zero => L::ZERO,
             Term::Time if k == 1 => self.unit,
@@ -277,31 +284,31 @@ impl<'a, L: Numbers> Course<'a, L> {
             Term::First(value) => self.first[value.index()],
             Term::Inverse(value) => self.inverse[value.index()],
             Term::Neg(a) => -self.value(a),
-            Term::Add(own) => {
-                let [a, b] = pair(own);
+            Term::Add(operands) => {
+                let [a, b] = pair(operands);
                 a + b
             }
-            Term::Sub(own) => {
-                let [a, b] = pair(own);
+            Term::Sub(operands) => {
+                let [a, b] = pair(operands);
                 a - b
             }
-            Term::Mul(own) => {
-                let [a, b] = pair(own);
+            Term::Mul(operands) => {
+                let [a, b] = pair(operands);
                 a * b
             }
-            Term::MulAdd(own) => {
-                let [a, b, c] = own.each_ref().map(|own| self.value(own));
+            Term::MulAdd(operands) => {
+                let [a, b, c] = operands.each_ref().map(|operand| self.value(operand));
                 a.mul_add(b, c)
             }
-            Term::Turned(own) => {
-                let [a, b] = pair(own);
+            Term::Turned(operands) => {
+                let [a, b] = pair(operands);
                 a.turned(b)
             }
             Term::Middle(a, b) => self.middle(self.kept(*a), self.kept(*b)),
             Term::Half(a) => self.half(self.kept(History::plain(*a))),
             Term::Short(a, b, degree) => self.short(self.kept(*a), self.kept(*b), *degree),
             Term::Steady(a, b) => {
-                let [a, b] = [a, b].map(|own| self.kept(History::plain(*own)));
+                let [a, b] = [a, b].map(|value| self.kept(History::plain(*value)));
                 a[1] * b[k - 1]
             }
         }

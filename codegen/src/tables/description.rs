@@ -17,15 +17,15 @@ impl FormOf<'_> {
     pub fn documentation(&self) -> Documentation {
         let model = self.model;
         let quantities = self.program.geometry.groups.iter();
-        let [placed, named] = [&model.initial.q, &model.initial.qdot].map(|own| marks(own));
+        let [placed, named] = [&model.initial.q, &model.initial.qdot].map(|values| marks(values));
         Documentation {
             description: self.description(),
-            inputs: names(model.inputs().map(|(_, own)| own.name.display.as_str())),
+            inputs: names(model.inputs().map(|(_, input)| input.name.display.as_str())),
             placed,
             named,
-            geometry: table(quantities.map(|own| Quantity {
-                name: text(&own.name),
-                shape: match own.shape {
+            geometry: table(quantities.map(|group| Quantity {
+                name: text(&group.name),
+                shape: match group.shape {
                     geometry::Shape::Scalar => Shape::Scalar,
                     geometry::Shape::Vector(count) => Shape::Vector(count),
                     geometry::Shape::Matrix(rows, columns) => Shape::Matrix(rows, columns),
@@ -44,12 +44,17 @@ impl FormOf<'_> {
         let scenes = self.scenes.iter().map(|scene| scene.name.as_str());
         let places: Vec<usize> = (0..model.coordinates.len()).collect();
         Description {
-            coordinates: table(coordinates.map(|own| coordinate(model, own))),
+            coordinates: table(coordinates.map(|declared| coordinate(model, declared))),
             constraints: table(constraints(model)),
-            forces: names(model.forces.iter().map(|own| own.name.display.as_str())),
+            forces: names(model.forces.iter().map(|force| force.name.display.as_str())),
             quasi_velocities: names(quasi.iter().map(String::as_str)),
             surfaces: table((0..model.surfaces.len()).map(|index| surface(model, index))),
-            outputs: names(model.outputs.iter().map(|own| own.name.display.as_str())),
+            outputs: names(
+                model
+                    .outputs
+                    .iter()
+                    .map(|output| output.name.display.as_str()),
+            ),
             scenes: names(core::iter::once(WHOLE).chain(scenes)),
             view: view(model, &places),
             ..of_model(model)
@@ -90,10 +95,13 @@ fn marks(values: &[Option<ExprId>]) -> &'static [bool] {
 }
 
 pub(super) fn parameters(model: &Model) -> &'static [ParameterInfo] {
-    let declared = model.parameters.iter().filter(|own| !own.is_input);
-    table(declared.map(|own| ParameterInfo {
-        name: text(&own.name.display),
-        assumption: match &own.assumption {
+    let declared = model
+        .parameters
+        .iter()
+        .filter(|parameter| !parameter.is_input);
+    table(declared.map(|parameter| ParameterInfo {
+        name: text(&parameter.name.display),
+        assumption: match &parameter.assumption {
             Assumption::Finite => description::Assumption::Finite,
             Assumption::Positive => description::Assumption::Positive,
             Assumption::NonNegative => description::Assumption::NonNegative,
@@ -103,7 +111,7 @@ pub(super) fn parameters(model: &Model) -> &'static [ParameterInfo] {
                 high: high.to_f64(),
             },
         },
-        default: default_value(model, own),
+        default: default_value(model, parameter),
     }))
 }
 
@@ -155,7 +163,9 @@ pub(super) fn view(model: &Model, places: &[usize]) -> Option<ViewInfo> {
     let view = model.view.as_ref()?;
     Some(ViewInfo {
         labels: view.labels.each_ref().map(text),
-        plane: view.plane.map(|plane| plane.map(|own| places[own])),
+        plane: view
+            .plane
+            .map(|plane| plane.map(|coordinate| places[coordinate])),
         region: view.region.is_some(),
     })
 }

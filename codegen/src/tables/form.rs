@@ -25,7 +25,7 @@ impl FormOf<'_> {
             charts: table(self.charts()),
             conserves_energy: self.conserves_energy(),
             can_be_narrow: program.can_be_narrow,
-            can_lose_rank: constrained.is_some_and(|own| own.can_lose_rank),
+            can_lose_rank: constrained.is_some_and(|constraints| constraints.can_lose_rank),
             drifts: self.drifts(),
             is_linear: !model.is_nonlinear(),
             varies: self.varies(),
@@ -64,7 +64,7 @@ impl FormOf<'_> {
     /// Levels of constraints.
     pub fn levels(&self) -> usize {
         let constrained = self.program.constrained.as_ref();
-        constrained.map_or(0, |own| own.levels.outputs.len())
+        constrained.map_or(0, |constraints| constraints.levels.outputs.len())
     }
 
     /// Numbers of the largest kernel that gives several things at once.
@@ -120,8 +120,8 @@ impl FormOf<'_> {
 
     fn charts(&self) -> impl Iterator<Item = Chart> {
         let coordinates = self.model.coordinates.iter().enumerate();
-        coordinates.filter_map(|(coordinate, own)| {
-            let Topology::Interval { low, high } = own.topology else {
+        coordinates.filter_map(|(coordinate, declared)| {
+            let Topology::Interval { low, high } = declared.topology else {
                 return None;
             };
             let ends = [low, high].map(|end| constant(self.model, end));
@@ -145,12 +145,13 @@ impl FormOf<'_> {
     /// Which constraint each level belongs to, where some are declared to be 0.
     fn declared_levels(&self) -> impl Iterator<Item = Level> {
         let functions = self.program.constrained.as_ref();
-        let are_declared = functions.is_some_and(|own| own.level_scales.is_some());
+        let are_declared = functions.is_some_and(|constraints| constraints.level_scales.is_some());
         let constraints = self.model.constraints.iter().enumerate();
-        let levels = constraints.filter(move |(_, own)| are_declared && own.level.is_some());
-        levels.map(|(constraint, own)| Level {
+        let levels =
+            constraints.filter(move |(_, declared)| are_declared && declared.level.is_some());
+        levels.map(|(constraint, declared)| Level {
             constraint,
-            is_zero: own.is_of_positions,
+            is_zero: declared.is_of_positions,
         })
     }
 
@@ -159,18 +160,18 @@ impl FormOf<'_> {
         let law = law(surface.law);
         let name = || text(format!("restitution at {}", surface.name.display));
         let others = surface.beside.others();
-        let gaps = self.program.impacting.as_ref();
+        let impacting = self.program.impacting.as_ref();
         Surface {
             law,
             coefficient: law.coefficient().map(|_| name()),
             conditions: conditions(&surface.conditions),
-            others: table(others.iter().map(|own| conditions(own))),
+            others: table(others.iter().map(|list| conditions(list))),
             beside: match &surface.beside {
                 model::Beside::Independent => tables::Beside::Independent,
                 model::Beside::Otherwise(_) => tables::Beside::Otherwise,
                 model::Beside::Last(_) => tables::Beside::Last,
             },
-            takes: gaps.map_or(0, |own| coordinates_of(&own.gap_alone[index])),
+            takes: impacting.map_or(0, |impacting| coordinates_of(&impacting.gap_alone[index])),
         }
     }
 }
@@ -198,8 +199,8 @@ fn law(declared: model::Law) -> Law {
 }
 
 fn conditions(declared: &[model::Condition]) -> &'static [Condition] {
-    table(declared.iter().map(|own| Condition {
-        is_closed: own.is_closed,
+    table(declared.iter().map(|condition| Condition {
+        is_closed: condition.is_closed,
     }))
 }
 

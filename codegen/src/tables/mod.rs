@@ -83,7 +83,7 @@ impl<'a> FormOf<'a> {
     /// The names of the quasi-velocities.
     pub fn quasi_names(&self) -> Vec<String> {
         let quasi = self.frame.iter().flat_map(|frame| &frame.quasi);
-        quasi.map(|own| own.name.clone()).collect()
+        quasi.map(|velocity| velocity.name.clone()).collect()
     }
 
     /// Gaps that have a series: all of them, or none.

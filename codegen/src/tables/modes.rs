@@ -38,7 +38,7 @@ impl<'a> Whole<'a> {
             state: self.longest(FormOf::state_dimension) + 1,
             coordinates: self.graph.coordinates.len(),
             motion: self.longest(FormOf::motion_dimension),
-            constraints: self.longest(|own| own.model.constraints.len()),
+            constraints: self.longest(|mode| mode.model.constraints.len()),
             levels: self.longest(FormOf::levels),
             surfaces: self.graph.surfaces.len(),
             parameters: self.model().parameters.len(),
@@ -55,7 +55,7 @@ impl<'a> Whole<'a> {
     /// Gaps that have a series: all of them, or none if one of a mode has none.
     pub fn series_gaps(&self) -> usize {
         let mut modes = self.modes();
-        let have_series = modes.all(|own| own.series_gaps() == own.model.surfaces.len());
+        let have_series = modes.all(|mode| mode.series_gaps() == mode.model.surfaces.len());
         match have_series {
             true => self.graph.surfaces.len(),
             false => 0,
@@ -80,10 +80,10 @@ impl<'a> Whole<'a> {
             parameters: description::parameters(self.model()),
             charts: &[],
             conserves_energy: false,
-            can_be_narrow: of_modes.iter().any(|own| own.can_be_narrow),
-            can_lose_rank: of_modes.iter().any(|own| own.can_lose_rank),
-            drifts: of_modes.iter().any(|own| own.drifts),
-            is_linear: of_modes.iter().all(|own| own.is_linear),
+            can_be_narrow: of_modes.iter().any(|mode| mode.can_be_narrow),
+            can_lose_rank: of_modes.iter().any(|mode| mode.can_lose_rank),
+            drifts: of_modes.iter().any(|mode| mode.drifts),
+            is_linear: of_modes.iter().all(|mode| mode.is_linear),
             varies: true,
             levels: &[],
             surfaces: table(surfaces.map(|entry| of_modes[entry.mode].surfaces[entry.place])),
@@ -147,9 +147,14 @@ impl<'a> Whole<'a> {
             is_first_order: graph.is_first_order(),
             coordinates: table(coordinates),
             constraints: table(constraints),
-            forces: names(graph.forces.iter().map(|own| own.name.display.as_str())),
+            forces: names(graph.forces.iter().map(|entry| entry.name.display.as_str())),
             surfaces: table(surfaces),
-            outputs: names(graph.outputs.iter().map(|own| own.name.display.as_str())),
+            outputs: names(
+                graph
+                    .outputs
+                    .iter()
+                    .map(|entry| entry.name.display.as_str()),
+            ),
             scenes: names(core::iter::once(WHOLE).chain(scenes)),
             modes: table(modes),
             view: description::view(self.model(), &graph.modes[0].places.coordinates),
@@ -164,7 +169,7 @@ fn transitions(graph: &ModeGraph, mode: &model::Mode) -> Vec<Option<Transition>>
     let surfaces = mode.model.surfaces.iter().zip(&mode.places.surfaces);
     let leads_to = |(surface, place): (&model::Surface, &usize)| {
         let transition = surface.transition.as_ref()?;
-        let opposite = opposites.iter().find(|[own, _]| own == place);
+        let opposite = opposites.iter().find(|[surface, _]| surface == place);
         Some(Transition {
             enters: transition.enters,
             passage: passage(transition, mode.model.is_first_order()),

@@ -80,7 +80,7 @@ impl Compiler {
         let (parameters, results) = signature(self);
         let mut context = self.module.make_context();
         let [parameters, results] =
-            [parameters, results].map(|own| own.into_iter().map(AbiParam::new).collect());
+            [parameters, results].map(|types| types.into_iter().map(AbiParam::new).collect());
         context.func.signature.params = parameters;
         context.func.signature.returns = results;
         let mut frontend = core::mem::take(&mut self.context);

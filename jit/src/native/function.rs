@@ -154,15 +154,15 @@ impl<'a> Body<'a> {
                 self.builder.ins().fneg(a)
             }
             Instruction::Add(a, b) => {
-                let [a, b] = [*a, *b].map(|own| self.register(own));
+                let [a, b] = [*a, *b].map(|register| self.register(register));
                 self.builder.ins().fadd(a, b)
             }
             Instruction::Sub(a, b) => {
-                let [a, b] = [*a, *b].map(|own| self.register(own));
+                let [a, b] = [*a, *b].map(|register| self.register(register));
                 self.builder.ins().fsub(a, b)
             }
             Instruction::Mul(a, b) => {
-                let [a, b] = [*a, *b].map(|own| self.register(own));
+                let [a, b] = [*a, *b].map(|register| self.register(register));
                 self.builder.ins().fmul(a, b)
             }
             Instruction::Square(a) => {
@@ -170,7 +170,7 @@ impl<'a> Body<'a> {
                 self.builder.ins().fmul(a, a)
             }
             Instruction::Div(a, b) => {
-                let [a, b] = [*a, *b].map(|own| self.register(own));
+                let [a, b] = [*a, *b].map(|register| self.register(register));
                 self.builder.ins().fdiv(a, b)
             }
             Instruction::Sqrt(a) => {
@@ -200,7 +200,7 @@ impl<'a> Body<'a> {
                 self.call(function.name(), &[a])
             }
             Instruction::Atan2(y, x) => {
-                let [y, x] = [*y, *x].map(|own| self.register(own));
+                let [y, x] = [*y, *x].map(|register| self.register(register));
                 self.call("atan2", &[y, x])
             }
             Instruction::Guard(condition) => {

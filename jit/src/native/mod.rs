@@ -82,13 +82,13 @@ impl Extent {
         let mut extent = Self::default();
         for (instruction, _) in &code.instructions {
             if let Instruction::Input(place) = instruction {
-                let (own, index) = match *place {
+                let (most, index) = match *place {
                     Place::Time | Place::Velocity(_) => continue,
                     Place::Parameter(k) => (&mut extent.parameters, k),
                     Place::First(i) => (&mut extent.first, i),
                     Place::Second(i) => (&mut extent.second, i),
                 };
-                *own = (*own).max(index + 1);
+                *most = (*most).max(index + 1);
             }
         }
         match code.velocity {

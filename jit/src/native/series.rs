@@ -81,16 +81,16 @@ impl Layout {
             let kind: Vec<Sum> = sums
                 .iter()
                 .copied()
-                .filter(|own| own.is_half() == is_half)
+                .filter(|sum| sum.is_half() == is_half)
                 .collect();
             for sums in kind.chunks(2 * SIDE_BY_SIDE) {
-                let own = sums.len().next_multiple_of(2);
-                let second = if is_half { width } else { width + own };
+                let count = sums.len().next_multiple_of(2);
+                let second = if is_half { width } else { width + count };
                 groups.push(Group {
                     sums: sums.to_vec(),
                     places: [width, second],
                 });
-                width = second + own;
+                width = second + count;
             }
         }
         Self {
@@ -116,10 +116,17 @@ fn visit(term: &Term, sums: &mut Vec<Sum>, alone: &mut BTreeMap<History, usize>)
     };
     match term {
         Term::Neg(a) => visit(a, sums, alone),
-        Term::Add(own) | Term::Sub(own) | Term::Mul(own) | Term::Turned(own) => {
-            own.iter().for_each(|own| visit(own, sums, alone));
+        Term::Add(operands)
+        | Term::Sub(operands)
+        | Term::Mul(operands)
+        | Term::Turned(operands) => {
+            operands
+                .iter()
+                .for_each(|operand| visit(operand, sums, alone));
         }
-        Term::MulAdd(own) => own.iter().for_each(|own| visit(own, sums, alone)),
+        Term::MulAdd(operands) => operands
+            .iter()
+            .for_each(|operand| visit(operand, sums, alone)),
         Term::Middle(a, b) if !sums.contains(&Sum::Middle(*a, *b)) => {
             sums.push(Sum::Middle(*a, *b));
         }
@@ -276,7 +283,7 @@ impl<'a> Body<'a> {
             self.keep_alone(*value, next);
         }
         let outputs = self.series.outputs.iter();
-        let next: Vec<Value> = outputs.map(|own| self.next_of(*own)).collect();
+        let next: Vec<Value> = outputs.map(|output| self.next_of(*output)).collect();
         let of_gaps = self.row(self.gaps, self.k, gaps);
         for (i, gap) in next[components..].iter().enumerate() {
             self.store(*gap, of_gaps, i);
@@ -359,10 +366,13 @@ impl<'a> Body<'a> {
                 }
             }
             Term::Neg(a) => self.read(a),
-            Term::Add(own) | Term::Sub(own) | Term::Mul(own) | Term::Turned(own) => {
-                own.iter().for_each(|own| self.read(own));
+            Term::Add(operands)
+            | Term::Sub(operands)
+            | Term::Mul(operands)
+            | Term::Turned(operands) => {
+                operands.iter().for_each(|operand| self.read(operand));
             }
-            Term::MulAdd(own) => own.iter().for_each(|own| self.read(own)),
+            Term::MulAdd(operands) => operands.iter().for_each(|operand| self.read(operand)),
             _ => {}
         }
     }
@@ -466,24 +476,24 @@ impl<'a> Body<'a> {
                 let a = self.value(a);
                 self.builder.ins().fneg(a)
             }
-            Term::Add(own) => {
-                let [a, b] = own.each_ref().map(|own| self.value(own));
+            Term::Add(operands) => {
+                let [a, b] = operands.each_ref().map(|operand| self.value(operand));
                 self.builder.ins().fadd(a, b)
             }
-            Term::Sub(own) => {
-                let [a, b] = own.each_ref().map(|own| self.value(own));
+            Term::Sub(operands) => {
+                let [a, b] = operands.each_ref().map(|operand| self.value(operand));
                 self.builder.ins().fsub(a, b)
             }
-            Term::Mul(own) => {
-                let [a, b] = own.each_ref().map(|own| self.value(own));
+            Term::Mul(operands) => {
+                let [a, b] = operands.each_ref().map(|operand| self.value(operand));
                 self.builder.ins().fmul(a, b)
             }
-            Term::MulAdd(own) => {
-                let [a, b, c] = own.each_ref().map(|own| self.value(own));
+            Term::MulAdd(operands) => {
+                let [a, b, c] = operands.each_ref().map(|operand| self.value(operand));
                 self.mul_add(a, b, c)
             }
-            Term::Turned(own) => {
-                let [a, b] = own.each_ref().map(|own| self.value(own));
+            Term::Turned(operands) => {
+                let [a, b] = operands.each_ref().map(|operand| self.value(operand));
                 let zero = self.builder.ins().f64const(0.0);
                 let is_negative = self.builder.ins().fcmp(FloatCC::LessThan, b, zero);
                 let turned = self.builder.ins().fneg(a);
@@ -493,7 +503,7 @@ impl<'a> Body<'a> {
             Term::Half(a) => self.sum(Sum::Half(*a)),
             Term::Short(a, b, degree) => self.short([*a, *b], *degree),
             Term::Steady(a, b) => {
-                let [a, b] = [a, b].map(|own| self.layout.alone[&History::plain(*own)]);
+                let [a, b] = [a, b].map(|value| self.layout.alone[&History::plain(*value)]);
                 let one = self.builder.ins().iconst(types::I64, 1);
                 self.product_of_alone([a, b], one)
             }
@@ -502,7 +512,9 @@ impl<'a> Body<'a> {
 
     fn sum(&mut self, sum: Sum) -> Value {
         if self.series.is_large {
-            let [a, b] = sum.factors().map(|own| self.place(self.layout.alone[&own]));
+            let [a, b] = sum
+                .factors()
+                .map(|history| self.place(self.layout.alone[&history]));
             let [a, b] = [a, b].map(|place| {
                 self.builder
                     .ins()
@@ -513,7 +525,7 @@ impl<'a> Body<'a> {
                 false => self.call("jet_middle", &[a, b, self.k]),
             };
         }
-        let found = self.sums.iter().find(|(own, _)| *own == sum);
+        let found = self.sums.iter().find(|(known, _)| *known == sum);
         match found {
             Some((_, value)) => *value,
             None => self.builder.ins().f64const(f64::NAN),
@@ -537,13 +549,13 @@ impl<'a> Body<'a> {
     fn product_of_alone(&mut self, places: [usize; 2], j: Value) -> Value {
         let other = self.builder.ins().isub(self.k, j);
         let rows = [j, other].map(|order| self.order_of_alone(order));
-        let places = places.map(|own| self.place(own));
+        let places = places.map(|place| self.place(place));
         let [a, b] = core::array::from_fn(|i| self.load(rows[i], places[i]));
         self.builder.ins().fmul(a, b)
     }
 
     fn short(&mut self, factors: [History; 2], degree: usize) -> Value {
-        let places = factors.map(|own| self.layout.alone[&own]);
+        let places = factors.map(|history| self.layout.alone[&history]);
         let one = self.builder.ins().iconst(types::I64, 1);
         let first = self.product_of_alone(places, one);
         let sum = self.builder.declare_var(types::F64);
@@ -629,8 +641,8 @@ impl Body<'_> {
     }
 
     fn set_sum(&mut self, sum: Sum, value: Value) {
-        match self.sums.iter_mut().find(|(own, _)| *own == sum) {
-            Some((_, own)) => *own = value,
+        match self.sums.iter_mut().find(|(known, _)| *known == sum) {
+            Some((_, known)) => *known = value,
             None => self.sums.push((sum, value)),
         }
     }
@@ -702,9 +714,9 @@ impl Body<'_> {
         let half = self.builder.ins().f64const(0.5);
         let half = self.builder.ins().splat(types::F64X2, half);
         for (i, &sum) in sums.iter().enumerate() {
-            let own = self.factors(centre, group.places[0], i);
-            let halved = self.builder.ins().fmul(half, own);
-            let square = self.builder.ins().fmul(halved, own);
+            let factors = self.factors(centre, group.places[0], i);
+            let halved = self.builder.ins().fmul(half, factors);
+            let square = self.builder.ins().fmul(halved, factors);
             self.builder.def_var(sum, square);
         }
         self.builder.ins().jump(otherwise, &[]);
@@ -741,9 +753,9 @@ impl Body<'_> {
                     };
                     vector = Some(match vector {
                         None => self.builder.ins().splat(types::F64X2, coefficient),
-                        Some(own) => {
+                        Some(first) => {
                             let lane = u8::from(lane == 1);
-                            self.builder.ins().insertlane(own, coefficient, lane)
+                            self.builder.ins().insertlane(first, coefficient, lane)
                         }
                     });
                 }

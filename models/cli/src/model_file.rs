@@ -57,7 +57,9 @@ pub(crate) fn read(
 fn split(given: &str) -> Option<(&str, Option<&str>)> {
     let is_file = |name: &str| {
         let path = Path::new(name);
-        name == INPUT || path.is_file() || path.extension().is_some_and(|own| own == EXTENSION)
+        name == INPUT
+            || path.is_file()
+            || path.extension().is_some_and(|ending| ending == EXTENSION)
     };
     if is_file(given) {
         return Some((given, None));

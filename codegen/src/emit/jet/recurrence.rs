@@ -39,11 +39,11 @@ impl Writer<'_> {
             Term::Sub(operands) => return self.binary(operands, &quote!(-), Binding::Sum),
             Term::Mul(operands) => return self.binary(operands, &quote!(*), Binding::Product),
             Term::MulAdd(operands) => {
-                let [a, b, c] = operands.each_ref().map(|own| self.written(own).0);
+                let [a, b, c] = operands.each_ref().map(|operand| self.written(operand).0);
                 quote!(L::mul_add(#a, #b, #c))
             }
             Term::Turned(operands) => {
-                let [a, b] = operands.each_ref().map(|own| self.written(own).0);
+                let [a, b] = operands.each_ref().map(|operand| self.written(operand).0);
                 quote!(L::turned(#a, #b))
             }
             Term::Middle(a, b) => self.middle(*a, *b),
