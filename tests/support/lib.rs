@@ -20,7 +20,6 @@ pub mod interpreted;
 pub mod numeric;
 pub mod obstruction;
 pub mod reference;
-pub mod refusal;
 pub mod sampling;
 pub mod symbolic;
 pub mod systems;

@@ -4,7 +4,7 @@ use core::marker::PhantomData;
 
 use super::{Described, Emitted};
 use crate::contract::TaylorField;
-use crate::erased::{Expanded, Form, Kinds, SeriesTable};
+use crate::erased::{Expanded, Form, Kinds, MOST_FIRSTS, SeriesTable};
 use crate::error::Fault;
 use crate::jet::{Jets, LENGTH};
 use crate::kernels::{KernelSet, KernelTable};
@@ -56,7 +56,10 @@ impl<S: Emitted> Of<S> {
         series_over: Self::SERIES_OVER,
         work: &|| S::declared().work(),
         series_gaps: <<S as TaylorField>::Gaps<f64> as Row<f64>>::CAPACITY,
-        firsts: <S::Firsts<f64> as Row<f64>>::CAPACITY,
+        firsts: match Self::BEGINS_AGAIN {
+            true => Self::results() + 1,
+            false => <S::Firsts<f64> as Row<f64>>::CAPACITY,
+        },
         defaults: &Self::write_defaults,
         global: &|| <S::Global as Described>::FORM,
         forms: S::FORMS,
@@ -82,6 +85,15 @@ impl<S: Emitted> Of<S> {
                 true => Some(of_variations),
             },
         ]
+    }
+
+    /// Whether a series begins with more than an erased system has room for: it keeps the results and the time, and begins again
+    /// where it goes on.
+    const BEGINS_AGAIN: bool = <S::Firsts<f64> as Row<f64>>::CAPACITY > MOST_FIRSTS;
+
+    /// Rates and gaps.
+    const fn results() -> usize {
+        S::TABLES.dimensions.state + <<S as TaylorField>::Gaps<f64> as Row<f64>>::CAPACITY
     }
 
     const SERIES_OVER: Kinds = [
@@ -124,6 +136,13 @@ impl<S: Emitted> Of<S> {
         let system = S::declared();
         let mut known = S::Firsts::<L>::zeros(system.firsts_len());
         system.begin(&row(parameters), t, &row(state), &mut known)?;
+        if Self::BEGINS_AGAIN
+            && let [results @ .., time] = firsts
+        {
+            results.copy_from_slice(&known.as_slice()[..Self::results()]);
+            *time = t;
+            return Ok(());
+        }
         firsts.copy_from_slice(known.as_slice());
         Ok(())
     }
@@ -137,11 +156,20 @@ impl<S: Emitted> Of<S> {
         let mut coefficients = [row(state); LENGTH];
         let mut gaps = [<S as TaylorField>::Gaps::<L>::zeros(system.series_gap_count()); LENGTH];
         let mut jets = S::Jets::<L>::ZERO;
+        let known = match firsts.last() {
+            Some(&t) if Self::BEGINS_AGAIN => {
+                let mut known = S::Firsts::<L>::zeros(system.firsts_len());
+                // NOTE: it began there before.
+                let _ = system.begin(&row(parameters), t, &row(state), &mut known);
+                known
+            }
+            _ => row(firsts),
+        };
         system.advance(
             &row(parameters),
             unit,
             order,
-            &row(firsts),
+            &known,
             &mut coefficients,
             &mut gaps,
             &mut jets,

@@ -23,6 +23,9 @@ pub(super) const ROWS: usize = 8;
 /// Rows of the capacity in the room for what a series begins with.
 pub(super) const FIRSTS: usize = 18;
 
+/// Most numbers that a series of an erased system begins with.
+pub const MOST_FIRSTS: usize = FIRSTS * CAPACITIES[CAPACITIES.len() - 1];
+
 /// Room for the quantities of the geometry at a state.
 pub(super) const GEOMETRY: usize = 64;
 

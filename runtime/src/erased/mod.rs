@@ -22,6 +22,6 @@ mod series;
 mod system;
 
 pub use bounded::{Bounded, Wide};
-pub use form::{CAPACITIES, Form, Kinds, PARAMETERS};
+pub use form::{CAPACITIES, Form, Kinds, MOST_FIRSTS, PARAMETERS};
 pub use series::{Advance, Begin, Expanded, SeriesTable};
 pub use system::Erased;

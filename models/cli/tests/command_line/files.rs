@@ -56,7 +56,7 @@ fn every_command_takes_a_file() {
     assert_eq!(simulated["outcome"]["kind"], "done");
     // It falls for sqrt(2/g), comes back after the same time, as 2 e = 1, and then after half of it.
     assert_eq!(simulated["counters"]["impacts"], 2);
-    let time = simulated["impacts"][0]["t"].as_f64().unwrap();
+    let time = simulated["events"][0]["t"].as_f64().unwrap();
     assert!((time - (2.0_f64 / 9.81).sqrt()).abs() < 1e-14, "{time}");
     let derived = run(&format!("derive {ball}"));
     assert!(derived.output.starts_with("ball\nA ball that bounces."));
@@ -66,7 +66,7 @@ fn every_command_takes_a_file() {
     assert_eq!(evaluated[0]["energy"].as_f64(), Some(0.5 + 2.0 * 9.81));
     let measured = run(&format!("accuracy {ball} --until 0.2 --wanted 1e-6"));
     assert_eq!(measured.exit, Exit::Reached, "{}", measured.errors);
-    let ensemble = run(&format!("ensemble {ball} --vary x=0.5:2:grid:4 --until 1"));
+    let ensemble = run(&format!("ensemble {ball} --vary x=0.5..2:4 --until 1"));
     assert_eq!(ensemble.exit, Exit::Reached, "{}", ensemble.errors);
 }
 

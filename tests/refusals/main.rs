@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use dalembert_tests::refusal;
+use dalembert_refusals as refusal;
 
 /// Cases that need a compiler, and the reason. Where it adds errors or warnings, those of the generator come first.
 const COMPILED: [(&str, &str); 1] = [(
