@@ -66,7 +66,7 @@ fn every_command_takes_a_file() {
     assert_eq!(evaluated[0]["energy"].as_f64(), Some(0.5 + 2.0 * 9.81));
     let measured = run(&format!("accuracy {ball} --until 0.2 --wanted 1e-6"));
     assert_eq!(measured.exit, Exit::Reached, "{}", measured.errors);
-    let ensemble = run(&format!("ensemble {ball} --vary x=0.5..2:4 --until 1"));
+    let ensemble = run(&format!("ensemble {ball} --vary x=1..2:4 --until 1"));
     assert_eq!(ensemble.exit, Exit::Reached, "{}", ensemble.errors);
 }
 
