@@ -36,7 +36,7 @@ pub(crate) fn expand(input: TokenStream, folder: &Path) -> TokenStream {
 
 /// A file that the macro was given.
 struct File {
-    /// What the macro was given, for messages.
+    /// The argument of the macro, for messages.
     at: Location,
     path: PathBuf,
     text: String,
@@ -133,7 +133,7 @@ mod tests {
     const ONE: &str = "/// A ball.\nBall { coordinates { x; } lagrangian = dot(x)^2; }\n";
     const OTHER: &str = "pub Disk { coordinates { y; } lagrangian = dot(y)^2; }";
 
-    /// What comes of a file with this text.
+    /// Items or errors of a file with this text.
     fn expanded(name: &str, text: &str) -> String {
         let folder = std::env::temp_dir().join(format!("dalembert-file-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");

@@ -4,6 +4,7 @@ use dalembert::__private::lanes as guards;
 use dalembert::Fault;
 use dalembert::kernels::At;
 use dalembert::numbers::{Numbers, PI};
+use dalembert_codegen::program::interpret::elementary;
 use dalembert_codegen::program::{Function, Guard, Input, Op, Value};
 use dalembert_expr::{Function as Elementary, Rational};
 use dalembert_numbers::Kernel;
@@ -324,23 +325,6 @@ fn execute<L: Numbers>(
             L::ZERO
         }
     })
-}
-
-fn elementary<L: Numbers>(function: Elementary, x: L) -> L {
-    match function {
-        Elementary::Sin => x.sin(),
-        Elementary::Cos => x.cos(),
-        Elementary::Tan => x.tan(),
-        Elementary::Asin => x.asin(),
-        Elementary::Acos => x.acos(),
-        Elementary::Atan => x.atan(),
-        Elementary::Exp => x.exp(),
-        Elementary::Ln => x.ln(),
-        Elementary::Sinh => x.sinh(),
-        Elementary::Cosh => x.cosh(),
-        Elementary::Tanh => x.tanh(),
-        Elementary::Abs => x.abs(),
-    }
 }
 
 fn check<L: Numbers>(condition: &Condition, registers: &[L]) -> Result<(), Fault> {

@@ -75,7 +75,7 @@ impl Series {
         let mut read = Vec::new();
         for (_, step) in &steps {
             if let Step::Term(term) = step {
-                visit(term, &mut read, &mut histories);
+                collect(term, &mut read, &mut histories);
             }
         }
         let mut known: Vec<Value> = jet.function.outputs.clone();
@@ -182,22 +182,10 @@ impl Series {
     }
 }
 
-/// What a term reads: values at order 0, and coefficients that are kept.
-fn visit(term: &Term, read: &mut Vec<Value>, histories: &mut Vec<History>) {
-    match term {
+/// Adds the values at order 0 that a term reads, and the coefficients that are kept for it.
+fn collect(term: &Term, read: &mut Vec<Value>, histories: &mut Vec<History>) {
+    term.walk(&mut |term| match term {
         Term::First(value) | Term::Inverse(value) => read.push(*value),
-        Term::Neg(a) => visit(a, read, histories),
-        Term::Add(operands)
-        | Term::Sub(operands)
-        | Term::Mul(operands)
-        | Term::Turned(operands) => {
-            operands
-                .iter()
-                .for_each(|operand| visit(operand, read, histories));
-        }
-        Term::MulAdd(operands) => operands
-            .iter()
-            .for_each(|operand| visit(operand, read, histories)),
         Term::Middle(a, b) => histories.extend([*a, *b]),
         Term::Half(a) => histories.push(History::plain(*a)),
         Term::Short(a, b, _) => {
@@ -208,13 +196,8 @@ fn visit(term: &Term, read: &mut Vec<Value>, histories: &mut Vec<History>) {
             histories.extend([a, b].map(|value| History::plain(*value)));
             read.push(*b);
         }
-        Term::Zero
-        | Term::Time
-        | Term::Number(_)
-        | Term::Order
-        | Term::InverseOrder
-        | Term::Next(_) => {}
-    }
+        _ => {}
+    });
 }
 
 impl<'a, L: Numbers> Course<'a, L> {

@@ -28,7 +28,7 @@ pub(super) trait Record: Constant {
     /// The fields, and whether each has the same value in another.
     fn fields(&self, other: Option<&Self>) -> Vec<(&'static str, TokenStream, bool)>;
 
-    /// What differs from another, which stands in the constant `base`.
+    /// Fields that differ from those of another, which stands in the constant `base`.
     fn tokens_beside(&self, other: &Self, base: &TokenStream) -> TokenStream {
         let fields = self.fields(Some(other)).into_iter();
         let differing = fields.filter(|(_, _, is_same)| !is_same);

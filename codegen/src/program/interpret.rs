@@ -1,6 +1,7 @@
 //! Executes a function without a compiler: the reference that emitted code is compared with.
 
 use dalembert_expr::Function as Elementary;
+use dalembert_numbers::Numbers;
 
 use super::{Function, Guard, Input, Op, Value};
 
@@ -86,7 +87,8 @@ fn holds(guard: &Guard, values: &[f64]) -> bool {
     }
 }
 
-fn elementary(function: Elementary, x: f64) -> f64 {
+/// The value of a function of the language, over any kind of number.
+pub fn elementary<L: Numbers>(function: Elementary, x: L) -> L {
     match function {
         Elementary::Sin => x.sin(),
         Elementary::Cos => x.cos(),

@@ -10,7 +10,7 @@ use crate::program::jet::degree::Degree;
 use crate::program::{Form, Function, Input, Op};
 
 impl FormOf<'_> {
-    /// What is known of it.
+    /// Its tables.
     pub fn tables(&self) -> Tables {
         let Self { model, program, .. } = *self;
         let constrained = program.constrained.as_ref();

@@ -67,7 +67,7 @@ impl<'a> Whole<'a> {
         self.modes().map(FormOf::work).reduce(Work::most)
     }
 
-    /// What is known of the whole.
+    /// Tables of the whole.
     pub fn tables(&self) -> Tables {
         let of_modes: Vec<Tables> = self.modes().map(FormOf::tables).collect();
         let surfaces = self.graph.surfaces.iter();

@@ -1,4 +1,5 @@
-//! Machine code of functions over doubles.
+//! Machine code of functions and of power series over doubles: `function.rs` and `series.rs` write it, with the room of `layout.rs` and the sums of
+//! `sums.rs`; `compiler.rs` compiles it, `helpers.rs` is what it calls.
 //!
 //! This is the only file that is not checked by the compiler: it makes pointers to functions of what Cranelift wrote, and calls them with
 //! pointers to slices whose lengths were compared with what the code reads and writes. The code has no branches but those to its end,
@@ -11,7 +12,9 @@
 mod compiler;
 mod function;
 mod helpers;
+mod layout;
 mod series;
+mod sums;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -24,7 +27,7 @@ use dalembert::numbers::LENGTH;
 use crate::machine::{Code, Instruction, Place};
 use crate::series::Series;
 use compiler::Compiler;
-use series::Layout;
+use layout::Layout;
 
 /// Parameters, time, first and second place, values; 0 if every guard holds.
 type Entry = unsafe extern "C" fn(*const f64, f64, *const f64, *const f64, *mut f64) -> i32;

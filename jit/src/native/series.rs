@@ -6,8 +6,8 @@
 use std::collections::BTreeMap;
 
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
-use cranelift_codegen::ir::{Block, InstBuilder, MemFlagsData, Type, Value, types};
-use cranelift_frontend::{FunctionBuilder, Variable};
+use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value, types};
+use cranelift_frontend::FunctionBuilder;
 use cranelift_module::{FuncId, Module};
 use dalembert::numbers::{INVERSES, LENGTH};
 use dalembert_codegen::program::Value as Place;
@@ -16,132 +16,9 @@ use dalembert_codegen::program::jet::terms::Term;
 
 use super::compiler::Compiler;
 use super::function::offset;
+use super::layout::{Layout, Sum};
 use crate::machine::Constant;
 use crate::series::{First, Series, Step};
-
-/// Vectors of sums that one loop takes.
-const SIDE_BY_SIDE: usize = 8;
-
-/// Where coefficients are kept.
-#[derive(Debug)]
-pub(super) struct Layout {
-    /// Histories that are read one coefficient at a time, and their places in a row; of a large expansion all of them.
-    alone: BTreeMap<History, usize>,
-    groups: Vec<Group>,
-    /// Places of a row.
-    width: usize,
-}
-
-/// Sums that are taken together.
-#[derive(Debug)]
-struct Group {
-    sums: Vec<Sum>,
-    /// Where the first factors lie in a row, and the second ones; of halves both are the same.
-    places: [usize; 2],
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Sum {
-    Half(Place),
-    Middle(History, History),
-}
-
-impl Sum {
-    fn factors(self) -> [History; 2] {
-        match self {
-            Self::Half(a) => [History::plain(a); 2],
-            Self::Middle(a, b) => [a, b],
-        }
-    }
-
-    fn is_half(self) -> bool {
-        matches!(self, Self::Half(_))
-    }
-}
-
-impl Layout {
-    pub(super) fn of(series: &Series) -> Self {
-        if series.is_large {
-            return Self {
-                alone: series.histories.clone(),
-                groups: Vec::new(),
-                width: 0,
-            };
-        }
-        let mut alone = BTreeMap::new();
-        let mut sums: Vec<Sum> = Vec::new();
-        for (_, step) in &series.steps {
-            if let Step::Term(term) = step {
-                visit(term, &mut sums, &mut alone);
-            }
-        }
-        let mut width = alone.len().next_multiple_of(2);
-        let mut groups = Vec::new();
-        for is_half in [true, false] {
-            let kind: Vec<Sum> = sums
-                .iter()
-                .copied()
-                .filter(|sum| sum.is_half() == is_half)
-                .collect();
-            for sums in kind.chunks(2 * SIDE_BY_SIDE) {
-                let count = sums.len().next_multiple_of(2);
-                let second = if is_half { width } else { width + count };
-                groups.push(Group {
-                    sums: sums.to_vec(),
-                    places: [width, second],
-                });
-                width = second + count;
-            }
-        }
-        Self {
-            alone,
-            groups,
-            width,
-        }
-    }
-
-    /// Numbers of the room.
-    pub(super) fn room(&self) -> usize {
-        match self.width {
-            0 => self.alone.len() * LENGTH,
-            width => width * LENGTH,
-        }
-    }
-}
-
-fn visit(term: &Term, sums: &mut Vec<Sum>, alone: &mut BTreeMap<History, usize>) {
-    let mut keep = |history: History| {
-        let place = alone.len();
-        alone.entry(history).or_insert(place);
-    };
-    match term {
-        Term::Neg(a) => visit(a, sums, alone),
-        Term::Add(operands)
-        | Term::Sub(operands)
-        | Term::Mul(operands)
-        | Term::Turned(operands) => {
-            operands
-                .iter()
-                .for_each(|operand| visit(operand, sums, alone));
-        }
-        Term::MulAdd(operands) => operands
-            .iter()
-            .for_each(|operand| visit(operand, sums, alone)),
-        Term::Middle(a, b) if !sums.contains(&Sum::Middle(*a, *b)) => {
-            sums.push(Sum::Middle(*a, *b));
-        }
-        Term::Half(a) if !sums.contains(&Sum::Half(*a)) => sums.push(Sum::Half(*a)),
-        Term::Short(a, b, _) => {
-            keep(*a);
-            keep(*b);
-        }
-        Term::Steady(a, b) => {
-            keep(History::plain(*a));
-            keep(History::plain(*b));
-        }
-        _ => {}
-    }
-}
 
 /// Defines the code of a series: parameters, what is known at first, unit of time, order, coefficients, gaps, room.
 pub(super) fn define(compiler: &mut Compiler, series: &Series, layout: &Layout) -> Option<FuncId> {
@@ -163,28 +40,28 @@ pub(super) fn define(compiler: &mut Compiler, series: &Series, layout: &Layout) 
     )
 }
 
-struct Body<'a> {
-    compiler: &'a mut Compiler,
-    builder: FunctionBuilder<'a>,
+pub(super) struct Body<'a> {
+    pub(super) compiler: &'a mut Compiler,
+    pub(super) builder: FunctionBuilder<'a>,
     series: &'a Series,
-    layout: &'a Layout,
+    pub(super) layout: &'a Layout,
     pointer: Type,
-    flags: MemFlagsData,
+    pub(super) flags: MemFlagsData,
     parameters: Value,
     firsts: Value,
     unit: Value,
     order: Value,
     coefficients: Value,
     gaps: Value,
-    rows: Value,
+    pub(super) rows: Value,
     /// The order, in the loop.
-    k: Value,
-    weight: Value,
+    pub(super) k: Value,
+    pub(super) weight: Value,
     inverse_order: Value,
     first: BTreeMap<Place, Value>,
     inverse: BTreeMap<Place, Value>,
     next: BTreeMap<Place, Value>,
-    sums: Vec<(Sum, Value)>,
+    pub(super) sums: Vec<(Sum, Value)>,
 }
 
 impl<'a> Body<'a> {
@@ -321,7 +198,7 @@ impl<'a> Body<'a> {
             .load(types::F64, self.flags, base, offset(index))
     }
 
-    fn store(&mut self, value: Value, base: Value, index: usize) {
+    pub(super) fn store(&mut self, value: Value, base: Value, index: usize) {
         self.builder
             .ins()
             .store(self.flags, value, base, offset(index));
@@ -335,7 +212,7 @@ impl<'a> Body<'a> {
     }
 
     /// Where a row of so many numbers begins.
-    fn row(&mut self, base: Value, index: Value, width: usize) -> Value {
+    pub(super) fn row(&mut self, base: Value, index: Value, width: usize) -> Value {
         let bytes = self
             .builder
             .ins()
@@ -353,7 +230,7 @@ impl<'a> Body<'a> {
     }
 
     fn read(&mut self, term: &Term) {
-        match term {
+        term.walk(&mut |term| match term {
             Term::First(value) => {
                 self.first_of(*value);
             }
@@ -365,16 +242,8 @@ impl<'a> Body<'a> {
                     self.inverse.insert(*value, inverse);
                 }
             }
-            Term::Neg(a) => self.read(a),
-            Term::Add(operands)
-            | Term::Sub(operands)
-            | Term::Mul(operands)
-            | Term::Turned(operands) => {
-                operands.iter().for_each(|operand| self.read(operand));
-            }
-            Term::MulAdd(operands) => operands.iter().for_each(|operand| self.read(operand)),
             _ => {}
-        }
+        });
     }
 
     fn first_of(&mut self, value: Place) -> Value {
@@ -440,7 +309,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    fn next_of(&mut self, value: Place) -> Value {
+    pub(super) fn next_of(&mut self, value: Place) -> Value {
         match self.next.get(&value) {
             Some(next) => *next,
             // What does not vary.
@@ -449,7 +318,7 @@ impl<'a> Body<'a> {
     }
 
     /// `a b + c`
-    fn mul_add(&mut self, a: Value, b: Value, c: Value) -> Value {
+    pub(super) fn mul_add(&mut self, a: Value, b: Value, c: Value) -> Value {
         // NOTE: as `math::mul_add` does, which is compiled with the same features.
         if cfg!(all(target_feature = "fma", not(feature = "strict"))) {
             return self.builder.ins().fma(a, b, c);
@@ -590,179 +459,3 @@ impl<'a> Body<'a> {
 
 /// Reciprocals where code finds them.
 static INVERSES_OF_ORDERS: [f64; LENGTH] = INVERSES;
-
-/// Sums that are taken side by side.
-impl Body<'_> {
-    /// Vector `i` of factors in a row.
-    fn factors(&mut self, row: Value, place: usize, i: usize) -> Value {
-        self.builder
-            .ins()
-            .load(types::F64X2, self.flags, row, offset(place + 2 * i))
-    }
-
-    fn branch(&mut self, condition: Value) -> [Block; 2] {
-        let [then, otherwise] = core::array::from_fn(|_| self.builder.create_block());
-        self.builder
-            .ins()
-            .brif(condition, then, &[], otherwise, &[]);
-        self.builder.switch_to_block(then);
-        [then, otherwise]
-    }
-
-    /// Takes the sums of a group at order `k`, in the order of additions of `jet::middles` and `jet::halves`.
-    fn take_sums(&mut self, group: &Group) {
-        let vectors = group.sums.len().div_ceil(2);
-        let zero = self.builder.ins().f64const(0.0);
-        let zeros = self.builder.ins().splat(types::F64X2, zero);
-        let sums: Vec<Variable> = (0..vectors)
-            .map(|_| {
-                let sum = self.builder.declare_var(types::F64X2);
-                self.builder.def_var(sum, zeros);
-                sum
-            })
-            .collect();
-        let has_terms = self
-            .builder
-            .ins()
-            .icmp_imm_s(IntCC::SignedGreaterThanOrEqual, self.k, 2);
-        let [_, behind] = self.branch(has_terms);
-        if group.sums[0].is_half() {
-            self.take_halves(group, &sums, behind);
-        } else {
-            self.take_middles(group, &sums, behind);
-        }
-        self.builder.switch_to_block(behind);
-        for (i, sum) in group.sums.iter().enumerate() {
-            let vector = self.builder.use_var(sums[i / 2]);
-            let lane = u8::from(i % 2 == 1);
-            let value = self.builder.ins().extractlane(vector, lane);
-            self.set_sum(*sum, value);
-        }
-    }
-
-    fn set_sum(&mut self, sum: Sum, value: Value) {
-        match self.sums.iter_mut().find(|(known, _)| *known == sum) {
-            Some((_, known)) => *known = value,
-            None => self.sums.push((sum, value)),
-        }
-    }
-
-    /// Adds the products of row `a` and row `b`.
-    fn add_products(&mut self, group: &Group, sums: &[Variable], [a, b]: [Value; 2]) {
-        for (i, &sum) in sums.iter().enumerate() {
-            let x = self.factors(a, group.places[0], i);
-            let y = self.factors(b, group.places[1], i);
-            let before = self.builder.use_var(sum);
-            let after = self.mul_add(x, y, before);
-            self.builder.def_var(sum, after);
-        }
-    }
-
-    /// A loop over `j` from a number on, up or down, while it is not past another.
-    fn add_range(&mut self, group: &Group, sums: &[Variable], (from, to, by): (Value, Value, i64)) {
-        let width = self.layout.width;
-        let [head, body, end] = core::array::from_fn(|_| self.builder.create_block());
-        let j = self.builder.append_block_param(head, types::I64);
-        self.builder.ins().jump(head, &[from.into()]);
-        self.builder.switch_to_block(head);
-        let within = match by > 0 {
-            true => IntCC::SignedLessThanOrEqual,
-            false => IntCC::SignedGreaterThanOrEqual,
-        };
-        let goes_on = self.builder.ins().icmp(within, j, to);
-        self.builder.ins().brif(goes_on, body, &[], end, &[]);
-        self.builder.switch_to_block(body);
-        let other = self.builder.ins().isub(self.k, j);
-        let rows = [j, other].map(|order| self.row(self.rows, order, width));
-        self.add_products(group, sums, rows);
-        let next = self.builder.ins().iadd_imm_s(j, by);
-        self.builder.ins().jump(head, &[next.into()]);
-        self.builder.switch_to_block(end);
-    }
-
-    /// The first row and the newest.
-    fn ends(&mut self) -> [Value; 2] {
-        let width = self.layout.width;
-        let one = self.builder.ins().iconst(types::I64, 1);
-        let newest = self.builder.ins().iadd_imm_s(self.k, -1);
-        [one, newest].map(|order| self.row(self.rows, order, width))
-    }
-
-    fn take_middles(&mut self, group: &Group, sums: &[Variable], behind: Block) {
-        let two = self.builder.ins().iconst(types::I64, 2);
-        let to = self.builder.ins().iadd_imm_s(self.k, -2);
-        self.add_range(group, sums, (two, to, 1));
-        let [first, newest] = self.ends();
-        self.add_products(group, sums, [first, newest]);
-        let are_two = self
-            .builder
-            .ins()
-            .icmp_imm_s(IntCC::SignedGreaterThan, self.k, 2);
-        let [_, otherwise] = self.branch(are_two);
-        self.add_products(group, sums, [newest, first]);
-        self.builder.ins().jump(otherwise, &[]);
-        self.builder.switch_to_block(otherwise);
-        self.builder.ins().jump(behind, &[]);
-    }
-
-    fn take_halves(&mut self, group: &Group, sums: &[Variable], behind: Block) {
-        let odd = self.builder.ins().band_imm_s(self.k, 1);
-        let is_even = self.builder.ins().icmp_imm_s(IntCC::Equal, odd, 0);
-        let [_, otherwise] = self.branch(is_even);
-        let middle = self.builder.ins().sshr_imm_s(self.k, 1);
-        let centre = self.row(self.rows, middle, self.layout.width);
-        let half = self.builder.ins().f64const(0.5);
-        let half = self.builder.ins().splat(types::F64X2, half);
-        for (i, &sum) in sums.iter().enumerate() {
-            let factors = self.factors(centre, group.places[0], i);
-            let halved = self.builder.ins().fmul(half, factors);
-            let square = self.builder.ins().fmul(halved, factors);
-            self.builder.def_var(sum, square);
-        }
-        self.builder.ins().jump(otherwise, &[]);
-        self.builder.switch_to_block(otherwise);
-        let are_pairs = self
-            .builder
-            .ins()
-            .icmp_imm_s(IntCC::SignedGreaterThan, self.k, 2);
-        let [_, none] = self.branch(are_pairs);
-        let below = self.builder.ins().iadd_imm_s(self.k, -1);
-        let pairs = self.builder.ins().sshr_imm_s(below, 1);
-        let two = self.builder.ins().iconst(types::I64, 2);
-        self.add_range(group, sums, (pairs, two, -1));
-        let ends = self.ends();
-        self.add_products(group, sums, ends);
-        self.builder.ins().jump(none, &[]);
-        self.builder.switch_to_block(none);
-        self.builder.ins().jump(behind, &[]);
-    }
-
-    /// Keeps coefficient `k` of the factors of a group.
-    fn keep_factors(&mut self, group: &Group) {
-        let row = self.row(self.rows, self.k, self.layout.width);
-        let count = if group.sums[0].is_half() { 1 } else { 2 };
-        for factor in 0..count {
-            for (i, pair) in group.sums.chunks(2).enumerate() {
-                let mut vector = None;
-                for (lane, sum) in pair.iter().enumerate() {
-                    let history = sum.factors()[factor];
-                    let next = self.next_of(history.value);
-                    let coefficient = match history.weighted {
-                        true => self.builder.ins().fmul(self.weight, next),
-                        false => next,
-                    };
-                    vector = Some(match vector {
-                        None => self.builder.ins().splat(types::F64X2, coefficient),
-                        Some(first) => {
-                            let lane = u8::from(lane == 1);
-                            self.builder.ins().insertlane(first, coefficient, lane)
-                        }
-                    });
-                }
-                if let Some(vector) = vector {
-                    self.store(vector, row, group.places[factor] + 2 * i);
-                }
-            }
-        }
-    }
-}

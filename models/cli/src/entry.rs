@@ -94,10 +94,10 @@ impl Entry {
     pub(crate) fn loaded(model: &Loaded) -> Self {
         let scenes = model.scenes.iter();
         let scenes = scenes.map(|(name, form)| (*name, Build::Erased(form)));
-        let own = ("all", Build::Erased(model.form));
+        let whole = ("all", Build::Erased(model.form));
         Self {
             description: model.form.documentation.description,
-            scenes: [own].into_iter().chain(scenes).collect(),
+            scenes: [whole].into_iter().chain(scenes).collect(),
         }
     }
 

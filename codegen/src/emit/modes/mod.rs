@@ -16,7 +16,7 @@ use crate::tables;
 /// What every emitter of the whole reads.
 struct Whole<'a> {
     graph: &'a ModeGraph,
-    /// What is known of it.
+    /// Its tables.
     known: tables::Whole<'a>,
     /// Of each mode what is emitted: its own form, then the global one if that is another.
     contexts: Vec<Vec<Context<'a>>>,

@@ -105,11 +105,11 @@ fn emit_hooks(whole: &Whole<'_>) -> TokenStream {
         }
     });
     let constrained: Vec<_> = (whole.own())
-        .filter_map(|own| own.form.program.constrained.as_ref())
+        .filter_map(|mode| mode.form.program.constrained.as_ref())
         .collect();
     let positions = constrained.iter().any(|own| own.level_scales.is_some());
     let positions = positions.then(constraint::emit_positions);
-    let nearest = whole.own().any(|own| own.form.model.is_nonlinear());
+    let nearest = whole.own().any(|mode| mode.form.model.is_nonlinear());
     let nearest = nearest.then(constraint::emit_nearest);
     let velocities = (!constrained.is_empty()).then(constraint::emit_velocities);
     quote!(#drop #positions #nearest #velocities)
@@ -122,7 +122,7 @@ fn emit_list(whole: &Whole<'_>) -> TokenStream {
     types.fold(quote!(()), |others, mode| quote!((#mode, #others)))
 }
 
-/// What is known of the whole. What its modes are known by stands with their types.
+/// Tables of the whole. Those of its modes stand with their types.
 pub(super) fn emit_tables(whole: &Whole<'_>) -> TokenStream {
     let tables = whole.known.tables();
     let types = whole.types();

@@ -1,6 +1,6 @@
 //! Coefficient `k` of one value from those it follows from, as an expression.
 //!
-//! What a sum runs over, and which factor of a product comes into it last, is decided here, once for everything that computes series.
+//! The range of a sum, and the factor of a product that comes into it last, are decided here, once for everything that computes series.
 
 use dalembert_expr::Rational;
 
@@ -53,6 +53,22 @@ pub enum Term {
     Steady(Value, Value),
 }
 
+impl Term {
+    /// Shows the term, and every term that it consists of.
+    pub fn walk(&self, see: &mut impl FnMut(&Self)) {
+        see(self);
+        match self {
+            Self::Neg(a) => a.walk(see),
+            Self::Add(operands)
+            | Self::Sub(operands)
+            | Self::Mul(operands)
+            | Self::Turned(operands) => operands.iter().for_each(|operand| operand.walk(see)),
+            Self::MulAdd(operands) => operands.iter().for_each(|operand| operand.walk(see)),
+            _ => {}
+        }
+    }
+}
+
 fn neg(a: Term) -> Term {
     Term::Neg(Box::new(a))
 }
@@ -81,7 +97,7 @@ fn signed(negative: bool, a: Term) -> Term {
 }
 
 impl Jet {
-    /// Whether so many coefficients are kept that they go through memory.
+    /// True where so many coefficients are kept that they go through memory.
     pub fn is_large(&self) -> bool {
         self.histories.len() > LARGE
     }
@@ -152,7 +168,7 @@ impl Jet {
         mul_add(first, next, self.upper_sum(a, b))
     }
 
-    /// Whether coefficient `k` of a value is known when order `k` begins, before the sums over lower orders are.
+    /// True if coefficient `k` of a value is known when order `k` begins, before the sums over lower orders are.
     fn is_early(&self, value: Value) -> bool {
         matches!(
             self.recurrences[value.index()],
