@@ -1,9 +1,10 @@
 //! Machine code of functions and of power series over doubles: `function.rs` and `series.rs` write it, with the room of `layout.rs` and the sums of
 //! `sums.rs`; `compiler.rs` compiles it, `helpers.rs` is what it calls.
 //!
-//! This is the only file that is not checked by the compiler: it makes pointers to functions of what Cranelift wrote, and calls them with
-//! pointers to slices whose lengths were compared with what the code reads and writes. The code has no branches but those to its end,
-//! reads and writes only at constant distances from those pointers, and calls nothing but the elementary functions of this file.
+//! Unchecked by the compiler are this file and `helpers.rs`: pointers to functions of what Cranelift wrote, and their calls with pointers to
+//! slices whose lengths were compared with what the code reads and writes. The code of a function reads and writes at constant distances
+//! from those pointers; that of a series goes over rows up to the order that it is given, of which there is room for all. Both call
+//! nothing but `helpers.rs`.
 //!
 //! Operations are those of the machine of `machine.rs`, in the same order, and nothing is contracted: the bits are the same. Where a guard
 //! does not hold, that machine is asked which.
