@@ -86,6 +86,7 @@ pub(crate) enum Condition {
 
 impl Condition {
     /// The register whose value must be larger than this part of that of another, or than 0.
+    #[cfg(target_arch = "x86_64")]
     pub(crate) fn bound(&self) -> (usize, Option<(f64, usize)>) {
         match *self {
             Self::Pivot(_, value) => (value, None),

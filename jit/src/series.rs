@@ -122,6 +122,7 @@ impl Series {
     }
 
     /// How many parameters are read.
+    #[cfg(target_arch = "x86_64")]
     pub(crate) fn parameters(&self) -> usize {
         let read = self.firsts.iter().map(|first| match first {
             First::Parameter(k) => k + 1,

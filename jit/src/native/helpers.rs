@@ -1,46 +1,97 @@
 //! Functions that machine code calls.
 
-use cranelift_jit::JITBuilder;
 use dalembert::jet;
 use dalembert::numbers::LENGTH;
+use dalembert_expr::Function as Elementary;
 use dalembert_numbers::math;
 
-macro_rules! helpers {
+/// A function of one or two numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OfNumbers {
+    Elementary(Elementary),
+    Atan2,
+    Power,
+}
+
+/// A sum over series of a large expansion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OfSeries {
+    Half,
+    Middle,
+}
+
+macro_rules! functions {
     ($($name:ident($($argument:ident),+);)*) => {
         $(
-            extern "C" fn $name($($argument: f64),+) -> f64 {
+            extern "sysv64" fn $name($($argument: f64),+) -> f64 {
                 math::$name($($argument),+)
             }
         )*
-
-        /// The elementary functions by name.
-        pub(super) fn register(builder: &mut JITBuilder) {
-            $(builder.symbol(stringify!($name), $name as *const u8);)*
-            builder.symbol("sin_cos", sin_cos as *const u8);
-            builder.symbol("jet_half", jet_half as *const u8);
-            builder.symbol("jet_middle", jet_middle as *const u8);
-        }
     };
 }
-helpers! {
-    sin(x); cos(x); tan(x); asin(x); acos(x); atan(x); atan2(y, x); exp(x); ln(x); sinh(x); cosh(x); tanh(x);
-    powf(x, e);
+functions! {
+    sin(x); cos(x); tan(x); asin(x); acos(x); atan(x); exp(x); ln(x); sinh(x); cosh(x); tanh(x);
+    atan2(y, x); powf(x, e);
+}
+
+impl OfNumbers {
+    /// Where the function lies.
+    pub(super) fn address(self) -> usize {
+        let of_one: extern "sysv64" fn(f64) -> f64 = match self {
+            Self::Atan2 => return (atan2 as extern "sysv64" fn(f64, f64) -> f64) as usize,
+            Self::Power => return (powf as extern "sysv64" fn(f64, f64) -> f64) as usize,
+            Self::Elementary(function) => match function {
+                Elementary::Sin => sin,
+                Elementary::Cos => cos,
+                Elementary::Tan => tan,
+                Elementary::Asin => asin,
+                Elementary::Acos => acos,
+                Elementary::Atan => atan,
+                Elementary::Exp => exp,
+                Elementary::Ln => ln,
+                Elementary::Sinh => sinh,
+                Elementary::Cosh => cosh,
+                Elementary::Tanh => tanh,
+                Elementary::Abs => abs,
+            },
+        };
+        of_one as usize
+    }
+}
+
+impl OfSeries {
+    /// Where the function lies.
+    pub(super) fn address(self) -> usize {
+        match self {
+            Self::Half => half as *const () as usize,
+            Self::Middle => middle as *const () as usize,
+        }
+    }
+}
+
+/// Where [`sine_and_cosine`] lies.
+pub(super) fn address_of_sine_and_cosine() -> usize {
+    sine_and_cosine as *const () as usize
+}
+
+extern "sysv64" fn abs(x: f64) -> f64 {
+    x.abs()
 }
 
 /// Writes sine and cosine.
-extern "C" fn sin_cos(x: f64, both: *mut [f64; 2]) {
-    // SAFETY: the compiler below hands over a slot for two numbers on the stack of the caller.
+extern "sysv64" fn sine_and_cosine(x: f64, both: *mut [f64; 2]) {
+    // SAFETY: the code hands over room for two numbers in its own frame.
     unsafe { *both = [math::sin(x), math::cos(x)] }
 }
 
-/// Half of a sum over one series.
-extern "C" fn jet_half(a: *const [f64; LENGTH], k: i64) -> f64 {
+/// Half of a sum over one series, which is given twice.
+extern "sysv64" fn half(a: *const [f64; LENGTH], _: *const [f64; LENGTH], k: i64) -> f64 {
     // SAFETY: series of a large expansion lie in one piece, each as long.
     jet::half(unsafe { &*a }, usize::try_from(k).unwrap_or(0))
 }
 
 /// A sum over two series.
-extern "C" fn jet_middle(a: *const [f64; LENGTH], b: *const [f64; LENGTH], k: i64) -> f64 {
+extern "sysv64" fn middle(a: *const [f64; LENGTH], b: *const [f64; LENGTH], k: i64) -> f64 {
     let k = usize::try_from(k).unwrap_or(0);
     // SAFETY: series of a large expansion lie in one piece, each as long.
     let (a, b) = unsafe { (&*a, &*b) };

@@ -7,27 +7,39 @@ use dalembert_codegen::program::Value as Place;
 use dalembert_codegen::program::jet::History;
 use dalembert_codegen::program::jet::terms::Term;
 
+use super::x64::{LANES, SIDE_BY_SIDE};
 use crate::series::{Series, Step};
 
-/// Vectors of sums that one loop takes.
-const SIDE_BY_SIDE: usize = 8;
+/// The number of the frame that is the last order of the loop, as an integer.
+pub(super) const LAST: usize = 0;
+/// That which is the order at hand, as a double.
+pub(super) const WEIGHT: usize = 1;
+/// That which is the unit of time.
+pub(super) const UNIT: usize = 2;
+const FIXED: usize = 3;
 
 /// Where coefficients are kept.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// Histories that are read one coefficient at a time, and their places in a row; of a large expansion all of them.
+    /// Where order 0 of what is read one coefficient at a time lies; of a large expansion that is everything.
     pub(super) alone: BTreeMap<History, usize>,
     pub(super) groups: Vec<Group>,
-    /// Places of a row.
-    pub(super) width: usize,
+    /// The distance of two orders.
+    pub(super) stride: usize,
+    /// Numbers of the frame.
+    pub(super) frame: usize,
+    /// Numbers of the room.
+    pub(super) room: usize,
 }
 
 /// Sums that are taken together.
 #[derive(Debug)]
 pub(super) struct Group {
     pub(super) sums: Vec<Sum>,
-    /// Where the first factors lie in a row, and the second ones; of halves both are the same.
+    /// Where order 0 of the first factors lies, and of the second ones; of halves both are the same.
     pub(super) places: [usize; 2],
+    /// Where the sums lie in the frame.
+    pub(super) results: usize,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,9 +65,15 @@ impl Layout {
     pub(super) fn of(series: &Series) -> Self {
         if series.is_large {
             return Self {
-                alone: series.histories.clone(),
+                alone: series
+                    .histories
+                    .iter()
+                    .map(|(history, place)| (*history, place * LENGTH))
+                    .collect(),
                 groups: Vec::new(),
-                width: 0,
+                stride: 1,
+                frame: FIXED,
+                room: series.histories.len() * LENGTH,
             };
         }
         let mut alone = BTreeMap::new();
@@ -65,7 +83,8 @@ impl Layout {
                 collect(term, &mut sums, &mut alone);
             }
         }
-        let mut width = alone.len().next_multiple_of(2);
+        let mut width = alone.len().next_multiple_of(LANES);
+        let mut frame = FIXED;
         let mut groups = Vec::new();
         for is_half in [true, false] {
             let kind: Vec<Sum> = sums
@@ -73,29 +92,33 @@ impl Layout {
                 .copied()
                 .filter(|sum| sum.is_half() == is_half)
                 .collect();
-            for sums in kind.chunks(2 * SIDE_BY_SIDE) {
-                let count = sums.len().next_multiple_of(2);
+            for sums in kind.chunks(LANES * SIDE_BY_SIDE) {
+                let count = sums.len().next_multiple_of(LANES);
                 let second = if is_half { width } else { width + count };
                 groups.push(Group {
                     sums: sums.to_vec(),
                     places: [width, second],
+                    results: frame,
                 });
                 width = second + count;
+                frame += count;
             }
         }
         Self {
             alone,
             groups,
-            width,
+            stride: width,
+            frame,
+            room: width * LENGTH,
         }
     }
 
-    /// Numbers of the room.
-    pub(super) fn room(&self) -> usize {
-        match self.width {
-            0 => self.alone.len() * LENGTH,
-            width => width * LENGTH,
-        }
+    /// Where a sum lies in the frame.
+    pub(super) fn result(&self, sum: Sum) -> Option<usize> {
+        self.groups.iter().find_map(|group| {
+            let place = group.sums.iter().position(|known| *known == sum)?;
+            Some(group.results + place)
+        })
     }
 }
 

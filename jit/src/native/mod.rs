@@ -1,7 +1,13 @@
-//! Machine code of functions and of power series over doubles: `function.rs` and `series.rs` write it, with the room of `layout.rs` and the sums of
-//! `sums.rs`; `compiler.rs` compiles it, `helpers.rs` is what it calls.
+//! Machine code of functions and of power series over doubles.
 //!
-//! Unchecked by the compiler are this file and `helpers.rs`: pointers to functions of what Cranelift wrote, and their calls with pointers to
+//! ```text
+//! Code   --function--> Straight --registers--> Allocated --x64--> executable memory
+//! Series --series----> (the same, twice, and the sums of layout)
+//! ```
+//!
+//! `helpers.rs` is what machine code calls. Memory is written first and then made executable, never both; it is freed with the last function.
+//!
+//! Unchecked by the compiler are this file and `helpers.rs`: pointers to functions of what `x64.rs` wrote, and their calls with pointers to
 //! slices whose lengths were compared with what the code reads and writes. The code of a function reads and writes at constant distances
 //! from those pointers; that of a series goes over rows up to the order that it is given, of which there is room for all. Both call
 //! nothing but `helpers.rs`.
@@ -10,28 +16,35 @@
 //! does not hold, that machine is asked which.
 #![allow(unsafe_code)]
 
-mod compiler;
 mod function;
 mod helpers;
 mod layout;
+mod registers;
 mod series;
-mod sums;
+mod straight;
+mod x64;
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use dalembert::Fault;
 use dalembert::erased::Expanded;
 use dalembert::kernels::At;
 use dalembert::numbers::LENGTH;
 
+use dynasmrt::ExecutableBuffer;
+
 use crate::machine::{Code, Instruction, Place};
 use crate::series::Series;
-use compiler::Compiler;
 use layout::Layout;
+use series::Expansion;
+use x64::Assembly;
+
+/// Are products and sums rounded once, as `math::mul_add` does, which is compiled with the same features?
+const IS_FUSED: bool = cfg!(all(target_feature = "fma", not(feature = "strict")));
 
 /// Parameters, time, first and second place, values; 0 if every guard holds.
-type Entry = unsafe extern "C" fn(*const f64, f64, *const f64, *const f64, *mut f64) -> i32;
+type Entry = unsafe extern "sysv64" fn(*const f64, f64, *const f64, *const f64, *mut f64) -> i32;
 
 /// A function as machine code.
 #[derive(Debug)]
@@ -39,6 +52,8 @@ pub(crate) struct Native {
     entry: Entry,
     code: &'static Code,
     extent: Extent,
+    /// Where the code lies.
+    _memory: Arc<ExecutableBuffer>,
 }
 
 /// How many numbers a function reads of each place.
@@ -64,7 +79,7 @@ impl Native {
             && values.len() >= self.code.outputs.len();
         assert!(has_room, "a kernel was given too few numbers");
         // SAFETY: the code reads the first `extent` numbers of each place and writes as many values as there are outputs; all of them
-        // exist. It is never freed.
+        // exist. It lives as long as this.
         let status = unsafe {
             (self.entry)(
                 at.parameters.as_ptr(),
@@ -110,8 +125,8 @@ impl Extent {
     }
 }
 
-/// Parameters, what is known at first, unit of time, order; coefficients, gaps, room for what is kept.
-type Advance = unsafe extern "C" fn(*const f64, *const f64, f64, i64, *mut f64, *mut f64, *mut f64);
+/// Parameters, what is known at first, unit of time, order; coefficients from order 1 on, room for what is kept.
+type Advance = unsafe extern "sysv64" fn(*const f64, *const f64, f64, i64, *mut f64, *mut f64);
 
 /// A power series as machine code.
 #[derive(Debug)]
@@ -173,26 +188,31 @@ impl NativeSeries {
             return;
         }
         ROOM.with_borrow_mut(|room| {
-            let lengths = [self.components, self.gaps].map(|width| LENGTH * width);
-            room.resize(lengths[0] + lengths[1] + self.room, 0.0);
-            let (coefficients, rest) = room.split_at_mut(lengths[0]);
-            let (gaps, rows) = rest.split_at_mut(lengths[1]);
-            // SAFETY: the code reads the first `parameters` and `known` numbers, and reads and writes rows up to `order` of
-            // coefficients, gaps and of the room, which have `LENGTH` rows. It is never freed.
+            let width = self.components + self.gaps;
+            // NOTE: the order after the last is written too.
+            let length = (LENGTH + 1) * width;
+            room.resize(length + self.room, 0.0);
+            let (coefficients, kept) = room.split_at_mut(length);
+            // SAFETY: the code reads the first `parameters` and `known` numbers, writes rows from order 1 to `order + 1` of coefficients,
+            // and reads and writes rows up to `order` of the room, which has `LENGTH` of them. It lives as long as `begin`.
             unsafe {
                 (self.advance)(
                     parameters.as_ptr(),
                     firsts.as_ptr(),
                     unit,
                     order as i64,
-                    coefficients.as_mut_ptr(),
-                    gaps.as_mut_ptr(),
-                    rows.as_mut_ptr(),
+                    coefficients[width..].as_mut_ptr(),
+                    kept.as_mut_ptr(),
                 );
             }
-            for k in 1..=order {
-                let coefficients = &coefficients[k * self.components..][..self.components];
-                take(k, coefficients, &gaps[k * self.gaps..][..self.gaps]);
+            for (k, row) in coefficients
+                .chunks(width)
+                .enumerate()
+                .take(order + 1)
+                .skip(1)
+            {
+                let (coefficients, gaps) = row.split_at(self.components);
+                take(k, coefficients, gaps);
             }
         });
     }
@@ -208,45 +228,36 @@ pub(crate) struct Compiled {
 
 /// Machine code of functions and of a series; `None` on a machine that there is no code for.
 pub(crate) fn compile(codes: &[&'static Code], series: &'static Series) -> Option<Compiled> {
-    let mut compiler = Compiler::new()?;
-    let mut compiled = BTreeMap::new();
-    let mut ids = Vec::new();
+    let mut assembly = Assembly::new()?;
     let begin: &'static Code = series.begin;
+    let mut functions = Vec::new();
     for code in codes.iter().copied().chain([begin]) {
-        // NOTE: what gives the velocities is compiled before what takes them.
-        let velocity = match code.velocity {
-            Some((velocity, _)) => Some(compiler.once(velocity, None, &mut compiled)?),
-            None => None,
-        };
-        ids.push(compiler.once(code, velocity, &mut compiled)?);
+        let allocated = registers::allocate(&function::straight(code));
+        functions.push((code, assembly.function(&allocated)));
     }
     let layout = Layout::of(series);
-    let advance = series::define(&mut compiler, series, &layout)?;
-    compiler.module.finalize_definitions().ok()?;
-    let native = |code: &'static Code, id| {
-        let entry = compiler.module.get_finalized_function(id);
-        Native {
-            // SAFETY: the function was defined with this signature.
-            entry: unsafe { core::mem::transmute::<*const u8, Entry>(entry) },
-            code,
-            extent: Extent::of(code),
-        }
-    };
-    let functions = codes.iter().zip(&ids).map(|(code, id)| native(code, *id));
-    let functions = functions.collect();
-    let advance = compiler.module.get_finalized_function(advance);
-    // NOTE: the module frees no memory where it is dropped, and forms are used for ever.
+    let advance = assembly.series(&Expansion::of(series, &layout));
+    let memory = Arc::new(assembly.finish()?);
+    let functions = functions.into_iter().map(|(code, entry)| Native {
+        // SAFETY: a function with this signature was written there.
+        entry: unsafe { core::mem::transmute::<*const u8, Entry>(memory.ptr(entry)) },
+        code,
+        extent: Extent::of(code),
+        _memory: Arc::clone(&memory),
+    });
+    let mut functions: Vec<Native> = functions.collect();
+    let begin = functions.pop()?;
     Some(Compiled {
         functions,
         series: NativeSeries {
-            begin: native(begin, *ids.last()?),
-            // SAFETY: the function was defined with this signature.
-            advance: unsafe { core::mem::transmute::<*const u8, Advance>(advance) },
+            begin,
+            // SAFETY: a function with this signature was written there.
+            advance: unsafe { core::mem::transmute::<*const u8, Advance>(memory.ptr(advance)) },
             parameters: series.parameters(),
             known: series.known(),
             components: series.components,
             gaps: series.outputs.len() - series.components,
-            room: layout.room(),
+            room: layout.room,
         },
     })
 }

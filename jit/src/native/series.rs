@@ -1,461 +1,343 @@
-//! The code of a series: one loop over the orders, as `model!` writes it.
+//! Series as two pieces of straight-line code: what comes before the loop over the orders, and what the loop does.
 //!
-//! Row `k` of the room holds coefficient `k` of what is kept: first what is read one coefficient at a time, then the factors of sums that
-//! are taken side by side, two in a vector. Of an expansion that is large each series lies in one piece, and sums are calls.
+//! Orders of what is kept lie at equal distances in the room. Of an expansion that is not large, a row is an order of everything: first what is
+//! read one coefficient at a time, then the factors of sums, which a vector takes side by side before the rest of an order. Of an expansion
+//! that is large each series lies in one piece, and sums are calls.
 
 use std::collections::BTreeMap;
 
-use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
-use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value, types};
-use cranelift_frontend::FunctionBuilder;
-use cranelift_module::{FuncId, Module};
-use dalembert::numbers::{INVERSES, LENGTH};
 use dalembert_codegen::program::Value as Place;
 use dalembert_codegen::program::jet::History;
 use dalembert_codegen::program::jet::terms::Term;
 
-use super::compiler::Compiler;
-use super::function::offset;
-use super::layout::{Layout, Sum};
+use super::helpers::OfSeries;
+use super::layout::{Group, Layout, Sum, UNIT, WEIGHT};
+use super::registers::{self, Allocated};
+use super::straight::{self, Base, Binary, Operation, Straight, Unary, Value, bytes};
+use super::x64::LANES;
 use crate::machine::Constant;
 use crate::series::{First, Series, Step};
 
-/// Defines the code of a series: parameters, what is known at first, unit of time, order, coefficients, gaps, room.
-pub(super) fn define(compiler: &mut Compiler, series: &Series, layout: &Layout) -> Option<FuncId> {
-    compiler.define_with(
-        |compiler| {
-            let pointer = compiler.pointer();
-            let parameters = [
-                pointer,
-                pointer,
-                types::F64,
-                types::I64,
-                pointer,
-                pointer,
-                pointer,
-            ];
-            (parameters.to_vec(), Vec::new())
-        },
-        |compiler, builder| Body::begin(compiler, builder, series, layout).write(),
-    )
+/// Pointers of an expansion.
+const PARAMETERS: Base = Base::Argument(0);
+const FIRSTS: Base = Base::Argument(1);
+/// The coefficients of results at the order at hand; those of order 1 before the loop.
+const ROW: Base = Base::Argument(2);
+/// Order 0 of what is kept.
+const KEPT: Base = Base::Argument(3);
+/// The order at hand of what is kept.
+const NEWEST: Base = Base::Argument(4);
+
+/// An expansion with registers.
+pub(super) struct Expansion<'a> {
+    pub(super) before: Allocated,
+    pub(super) order: Allocated,
+    pub(super) groups: &'a [Group],
+    /// Bytes from one order of results to the next.
+    pub(super) row: i32,
+    /// Bytes from one order of what is kept to the next.
+    pub(super) kept: i32,
+    /// Is the last order computed too, of which no rate is needed?
+    pub(super) takes_last: bool,
 }
 
-pub(super) struct Body<'a> {
-    pub(super) compiler: &'a mut Compiler,
-    pub(super) builder: FunctionBuilder<'a>,
+impl<'a> Expansion<'a> {
+    pub(super) fn of(series: &'a Series, layout: &'a Layout) -> Self {
+        let mut before = Body::of(series, layout, layout.frame);
+        before.begin();
+        let mut order = Body::of(series, layout, before.frame);
+        order.inverses = before.inverses;
+        order.advance();
+        Self {
+            before: registers::allocate(&before.straight),
+            order: registers::allocate(&order.straight),
+            groups: &layout.groups,
+            row: bytes(series.outputs.len()),
+            kept: bytes(layout.stride),
+            takes_last: series.outputs.len() > series.components,
+        }
+    }
+
+    /// Numbers of the frame.
+    pub(super) fn frame(&self) -> usize {
+        self.before.frame.max(self.order.frame)
+    }
+}
+
+struct Body<'a> {
     series: &'a Series,
-    pub(super) layout: &'a Layout,
-    pointer: Type,
-    pub(super) flags: MemFlagsData,
-    parameters: Value,
-    firsts: Value,
-    unit: Value,
-    order: Value,
-    coefficients: Value,
-    gaps: Value,
-    pub(super) rows: Value,
-    /// The order, in the loop.
-    pub(super) k: Value,
-    pub(super) weight: Value,
-    inverse_order: Value,
-    first: BTreeMap<Place, Value>,
-    inverse: BTreeMap<Place, Value>,
+    layout: &'a Layout,
+    straight: Straight,
+    /// Numbers of the frame that both pieces know.
+    frame: usize,
+    /// Where reciprocals lie.
+    inverses: BTreeMap<Place, straight::Place>,
     next: BTreeMap<Place, Value>,
-    pub(super) sums: Vec<(Sum, Value)>,
+    inverse_order: Option<Value>,
 }
 
 impl<'a> Body<'a> {
-    fn begin(
-        compiler: &'a mut Compiler,
-        mut builder: FunctionBuilder<'a>,
-        series: &'a Series,
-        layout: &'a Layout,
-    ) -> Self {
-        let entry = builder.create_block();
-        builder.append_block_params_for_function_params(entry);
-        builder.switch_to_block(entry);
-        let arguments: [Value; 7] = core::array::from_fn(|i| builder.block_params(entry)[i]);
-        let [parameters, firsts, unit, order, coefficients, gaps, rows] = arguments;
+    fn of(series: &'a Series, layout: &'a Layout, frame: usize) -> Self {
         Self {
-            pointer: compiler.pointer(),
-            compiler,
-            builder,
             series,
             layout,
-            // NOTE: vectors may lie at any multiple of eight bytes.
-            flags: MemFlagsData::new().with_notrap(),
-            parameters,
-            firsts,
-            unit,
-            order,
-            coefficients,
-            gaps,
-            rows,
-            k: order,
-            weight: unit,
-            inverse_order: unit,
-            first: BTreeMap::new(),
-            inverse: BTreeMap::new(),
+            straight: Straight::with_frame(frame),
+            frame,
+            inverses: BTreeMap::new(),
             next: BTreeMap::new(),
-            sums: Vec::new(),
+            inverse_order: None,
         }
     }
 
-    fn write(mut self) {
+    /// Keeps the unit, reciprocals and order 0, and writes order 1 of the components.
+    fn begin(&mut self) {
+        let unit = self.straight.push(Operation::Argument);
+        self.straight.store(unit, frame(UNIT));
         let series = self.series;
-        self.read_firsts();
-        self.keep_firsts();
-        let (components, gaps) = (series.components, series.outputs.len() - series.components);
-        for i in 0..components {
-            let rate = self.load(self.firsts, i);
-            let coefficient = self.builder.ins().fmul(self.unit, rate);
-            self.store(coefficient, self.coefficients, components + i);
+        for (_, step) in &series.steps {
+            if let Step::Term(term) = step {
+                term.walk(&mut |term| {
+                    if let Term::Inverse(value) = term {
+                        self.keep_inverse(*value);
+                    }
+                });
+            }
         }
-        for i in 0..gaps {
-            let gap = self.load(self.firsts, components + i);
-            self.store(gap, self.gaps, i);
+        for (history, place) in &self.layout.alone {
+            let first = match history.weighted {
+                true => self.straight.number(0.0),
+                false => self.first(history.value),
+            };
+            self.straight
+                .store(first, straight::Place::of(KEPT, *place));
         }
-        // Gaps are taken at the last order too.
-        let last = match gaps {
-            0 => self.builder.ins().iadd_imm_s(self.order, -1),
-            _ => self.order,
-        };
-        let one = self.builder.ins().iconst(types::I64, 1);
-        let [head, body, end] = core::array::from_fn(|_| self.builder.create_block());
-        self.k = self.builder.append_block_param(head, types::I64);
-        self.builder.ins().jump(head, &[one.into()]);
-        self.builder.switch_to_block(head);
-        let goes_on = self
-            .builder
-            .ins()
-            .icmp(IntCC::SignedLessThanOrEqual, self.k, last);
-        self.builder.ins().brif(goes_on, body, &[], end, &[]);
-        self.builder.switch_to_block(body);
-        self.write_order(components, gaps);
-        let next = self.builder.ins().iadd_imm_s(self.k, 1);
-        self.builder.ins().jump(head, &[next.into()]);
-        self.builder.switch_to_block(end);
-        self.builder.ins().return_(&[]);
-        self.builder.seal_all_blocks();
-        let target = self.compiler.module.target_config();
-        self.builder.finalize(target);
+        for i in 0..series.components {
+            let rate = self.straight.load(straight::Place::of(FIRSTS, i));
+            let coefficient = self.straight.mul(unit, rate);
+            self.straight
+                .store(coefficient, straight::Place::of(ROW, i));
+        }
+        // NOTE: what is needed between the pieces lies in front of what each of them uses alone.
+        self.straight.frame = self.frame;
     }
 
-    /// Order `k` of everything.
-    fn write_order(&mut self, components: usize, gaps: usize) {
-        self.weight = self.builder.ins().fcvt_from_sint(types::F64, self.k);
-        let inverses = self.address(INVERSES_OF_ORDERS.as_ptr().addr());
-        self.inverse_order = self.load_at(inverses, self.k);
-        self.next.clear();
-        for group in &self.layout.groups {
-            self.take_sums(group);
+    fn keep_inverse(&mut self, value: Place) {
+        if self.inverses.contains_key(&value) {
+            return;
         }
-        let row = self.row(self.coefficients, self.k, components);
-        for (value, step) in &self.series.steps {
+        let place = frame(self.frame);
+        self.frame += 1;
+        let one = self.straight.number(1.0);
+        let first = self.first(value);
+        let inverse = self.straight.binary(Binary::Div, [one, first]);
+        self.straight.store(inverse, place);
+        self.inverses.insert(value, place);
+    }
+
+    /// The order at hand of everything, and the next one of the components.
+    fn advance(&mut self) {
+        let (series, layout) = (self.series, self.layout);
+        let weight = self.weight();
+        for (value, step) in &series.steps {
             let next = match step {
-                Step::Component(i) => self.load(row, *i),
+                Step::Component(i) => self.straight.load(straight::Place::of(ROW, *i)),
                 Step::Term(term) => self.value(term),
             };
             self.next.insert(*value, next);
-            self.keep_alone(*value, next);
+            for weighted in [false, true] {
+                let history = History {
+                    value: *value,
+                    weighted,
+                };
+                if let Some(place) = layout.alone.get(&history) {
+                    let coefficient = self.coefficient(history);
+                    let place = straight::Place::of(NEWEST, *place);
+                    self.straight.store(coefficient, place);
+                }
+            }
         }
-        let outputs = self.series.outputs.iter();
+        let outputs = series.outputs.iter();
         let next: Vec<Value> = outputs.map(|output| self.next_of(*output)).collect();
-        let of_gaps = self.row(self.gaps, self.k, gaps);
-        for (i, gap) in next[components..].iter().enumerate() {
-            self.store(*gap, of_gaps, i);
+        let (rates, gaps) = next.split_at(series.components);
+        for (i, gap) in gaps.iter().enumerate() {
+            let place = straight::Place::of(ROW, series.components + i);
+            self.straight.store(*gap, place);
         }
-        let [further, behind] = core::array::from_fn(|_| self.builder.create_block());
-        let is_below = self
-            .builder
-            .ins()
-            .icmp(IntCC::SignedLessThan, self.k, self.order);
-        self.builder.ins().brif(is_below, further, &[], behind, &[]);
-        self.builder.switch_to_block(further);
-        let following = self.builder.ins().iadd_imm_s(self.k, 1);
-        let inverse = self.load_at(inverses, following);
-        let step = self.builder.ins().fmul(self.unit, inverse);
-        for (i, rate) in next[..components].iter().enumerate() {
-            let coefficient = self.builder.ins().fmul(step, *rate);
-            self.store(coefficient, row, components + i);
+        let one = self.straight.number(1.0);
+        let following = self.straight.add(weight, one);
+        let inverse = self.straight.binary(Binary::Div, [one, following]);
+        let unit = self.straight.load(frame(UNIT));
+        let step = self.straight.mul(unit, inverse);
+        for (i, rate) in rates.iter().enumerate() {
+            let coefficient = self.straight.mul(step, *rate);
+            let place = straight::Place::of(ROW, next.len() + i);
+            self.straight.store(coefficient, place);
         }
-        self.builder.ins().jump(behind, &[]);
-        self.builder.switch_to_block(behind);
-        for group in &self.layout.groups {
+        for group in &layout.groups {
             self.keep_factors(group);
         }
     }
 
-    fn address(&mut self, address: usize) -> Value {
-        // NOTE: addresses are at most as wide as numbers of this kind.
-        let address = i64::from_ne_bytes((address as u64).to_ne_bytes());
-        self.builder.ins().iconst(self.pointer, address)
-    }
-
-    fn load(&mut self, base: Value, index: usize) -> Value {
-        self.builder
-            .ins()
-            .load(types::F64, self.flags, base, offset(index))
-    }
-
-    pub(super) fn store(&mut self, value: Value, base: Value, index: usize) {
-        self.builder
-            .ins()
-            .store(self.flags, value, base, offset(index));
-    }
-
-    /// The number of this index behind a pointer.
-    fn load_at(&mut self, base: Value, index: Value) -> Value {
-        let bytes = self.builder.ins().ishl_imm_s(index, 3);
-        let place = self.builder.ins().iadd(base, bytes);
-        self.load(place, 0)
-    }
-
-    /// Where a row of so many numbers begins.
-    pub(super) fn row(&mut self, base: Value, index: Value, width: usize) -> Value {
-        let bytes = self
-            .builder
-            .ins()
-            .imul_imm_s(index, i64::from(offset(width)));
-        self.builder.ins().iadd(base, bytes)
-    }
-
-    /// Order 0 of what is read, and reciprocals.
-    fn read_firsts(&mut self) {
-        for (_, step) in &self.series.steps {
-            if let Step::Term(term) = step {
-                self.read(term);
+    /// Keeps the factors of a group at the order at hand.
+    fn keep_factors(&mut self, group: &Group) {
+        let count = if group.sums[0].is_half() { 1 } else { 2 };
+        for factor in 0..count {
+            for (i, sums) in group.sums.chunks(LANES).enumerate() {
+                let sums = sums.iter();
+                let values = sums.map(|sum| self.coefficient(sum.factors()[factor]));
+                let values = values.collect();
+                let place = straight::Place::of(NEWEST, group.places[factor] + LANES * i);
+                self.straight.push(Operation::StoreVector(values, place));
             }
         }
     }
 
-    fn read(&mut self, term: &Term) {
-        term.walk(&mut |term| match term {
-            Term::First(value) => {
-                self.first_of(*value);
+    fn coefficient(&mut self, history: History) -> Value {
+        let next = self.next_of(history.value);
+        match history.weighted {
+            true => {
+                let weight = self.weight();
+                self.straight.mul(weight, next)
             }
-            Term::Inverse(value) => {
-                let first = self.first_of(*value);
-                if !self.inverse.contains_key(value) {
-                    let one = self.builder.ins().f64const(1.0);
-                    let inverse = self.builder.ins().fdiv(one, first);
-                    self.inverse.insert(*value, inverse);
-                }
-            }
-            _ => {}
-        });
-    }
-
-    fn first_of(&mut self, value: Place) -> Value {
-        if let Some(first) = self.first.get(&value) {
-            return *first;
-        }
-        let first = match self.series.firsts[value.index()] {
-            First::Unknown => self.builder.ins().f64const(0.0),
-            First::Known(place) => self.load(self.firsts, place),
-            First::Number(constant) => self.number(constant),
-            First::Parameter(k) => self.load(self.parameters, k),
-        };
-        self.first.insert(value, first);
-        first
-    }
-
-    fn number(&mut self, constant: Constant) -> Value {
-        self.builder.ins().f64const(constant.value::<f64>())
-    }
-
-    /// Keeps order 0 of what is read one coefficient at a time.
-    fn keep_firsts(&mut self) {
-        for (history, place) in &self.layout.alone {
-            let first = match history.weighted {
-                true => self.builder.ins().f64const(0.0),
-                false => self.first_of(history.value),
-            };
-            let place = self.place(*place);
-            self.store(first, self.rows, place);
+            false => next,
         }
     }
 
-    /// The index of order 0 of a history that is kept alone.
-    fn place(&self, place: usize) -> usize {
-        match self.series.is_large {
-            true => place * LENGTH,
-            false => place,
+    fn weight(&mut self) -> Value {
+        self.straight.load(frame(WEIGHT))
+    }
+
+    fn inverse_order(&mut self) -> Value {
+        if let Some(value) = self.inverse_order {
+            return value;
+        }
+        let operands = [self.straight.number(1.0), self.weight()];
+        let value = self.straight.binary(Binary::Div, operands);
+        self.inverse_order = Some(value);
+        value
+    }
+
+    /// Order 0 of a value.
+    fn first(&mut self, value: Place) -> Value {
+        match self.series.firsts[value.index()] {
+            First::Unknown => self.straight.number(0.0),
+            First::Known(place) => self.straight.load(straight::Place::of(FIRSTS, place)),
+            First::Number(constant) => self.straight.number(constant.value::<f64>()),
+            First::Parameter(k) => self.straight.load(straight::Place::of(PARAMETERS, k)),
         }
     }
 
-    /// Where coefficient `order` of what is kept alone lies, but for its place.
-    fn order_of_alone(&mut self, order: Value) -> Value {
-        let width = match self.series.is_large {
-            true => 1,
-            false => self.layout.width,
-        };
-        self.row(self.rows, order, width)
-    }
-
-    fn keep_alone(&mut self, value: Place, next: Value) {
-        for weighted in [false, true] {
-            let history = History { value, weighted };
-            let Some(&place) = self.layout.alone.get(&history) else {
-                continue;
-            };
-            let coefficient = match weighted {
-                true => self.builder.ins().fmul(self.weight, next),
-                false => next,
-            };
-            let row = self.order_of_alone(self.k);
-            let place = self.place(place);
-            self.store(coefficient, row, place);
-        }
-    }
-
-    pub(super) fn next_of(&mut self, value: Place) -> Value {
+    fn next_of(&mut self, value: Place) -> Value {
         match self.next.get(&value) {
             Some(next) => *next,
             // What does not vary.
-            None => self.builder.ins().f64const(0.0),
+            None => self.straight.number(0.0),
         }
     }
 
-    /// `a b + c`
-    pub(super) fn mul_add(&mut self, a: Value, b: Value, c: Value) -> Value {
-        // NOTE: as `math::mul_add` does, which is compiled with the same features.
-        if cfg!(all(target_feature = "fma", not(feature = "strict"))) {
-            return self.builder.ins().fma(a, b, c);
-        }
-        let product = self.builder.ins().fmul(a, b);
-        self.builder.ins().fadd(product, c)
+    fn binary(&mut self, binary: Binary, operands: &[Term; 2]) -> Value {
+        let operands = operands.each_ref().map(|operand| self.value(operand));
+        self.straight.binary(binary, operands)
     }
 
     fn value(&mut self, term: &Term) -> Value {
         match term {
-            Term::Zero => self.builder.ins().f64const(0.0),
+            Term::Zero => self.straight.number(0.0),
             Term::Time => {
-                let is_first = self.builder.ins().icmp_imm_s(IntCC::Equal, self.k, 1);
-                let zero = self.builder.ins().f64const(0.0);
-                self.builder.ins().select(is_first, self.unit, zero)
+                let unit = self.straight.load(frame(UNIT));
+                self.straight.push(Operation::AtFirst(unit))
             }
-            Term::Number(number) => self.number(Constant::of(number)),
-            Term::Order => self.weight,
-            Term::InverseOrder => self.inverse_order,
+            Term::Number(number) => {
+                let number = Constant::of(number).value::<f64>();
+                self.straight.number(number)
+            }
+            Term::Order => self.weight(),
+            Term::InverseOrder => self.inverse_order(),
             Term::Next(value) => self.next_of(*value),
-            Term::First(value) => self.first_of(*value),
-            Term::Inverse(value) => self.inverse[value],
+            Term::First(value) => self.first(*value),
+            Term::Inverse(value) => self.straight.load(self.inverses[value]),
             Term::Neg(a) => {
                 let a = self.value(a);
-                self.builder.ins().fneg(a)
+                self.straight.unary(Unary::Neg, a)
             }
-            Term::Add(operands) => {
-                let [a, b] = operands.each_ref().map(|operand| self.value(operand));
-                self.builder.ins().fadd(a, b)
-            }
-            Term::Sub(operands) => {
-                let [a, b] = operands.each_ref().map(|operand| self.value(operand));
-                self.builder.ins().fsub(a, b)
-            }
-            Term::Mul(operands) => {
-                let [a, b] = operands.each_ref().map(|operand| self.value(operand));
-                self.builder.ins().fmul(a, b)
-            }
+            Term::Add(operands) => self.binary(Binary::Add, operands),
+            Term::Sub(operands) => self.binary(Binary::Sub, operands),
+            Term::Mul(operands) => self.binary(Binary::Mul, operands),
             Term::MulAdd(operands) => {
-                let [a, b, c] = operands.each_ref().map(|operand| self.value(operand));
-                self.mul_add(a, b, c)
+                let operands = operands.each_ref().map(|operand| self.value(operand));
+                self.mul_add(operands)
             }
             Term::Turned(operands) => {
-                let [a, b] = operands.each_ref().map(|operand| self.value(operand));
-                let zero = self.builder.ins().f64const(0.0);
-                let is_negative = self.builder.ins().fcmp(FloatCC::LessThan, b, zero);
-                let turned = self.builder.ins().fneg(a);
-                self.builder.ins().select(is_negative, turned, a)
+                let operands = operands.each_ref().map(|operand| self.value(operand));
+                self.straight.push(Operation::Turned(operands))
             }
             Term::Middle(a, b) => self.sum(Sum::Middle(*a, *b)),
             Term::Half(a) => self.sum(Sum::Half(*a)),
             Term::Short(a, b, degree) => self.short([*a, *b], *degree),
             Term::Steady(a, b) => {
-                let [a, b] = [a, b].map(|value| self.layout.alone[&History::plain(*value)]);
-                let one = self.builder.ins().iconst(types::I64, 1);
-                self.product_of_alone([a, b], one)
+                let factors = [a, b].map(|value| History::plain(*value));
+                let [a, b] = self.factors(factors, 1);
+                let [a, b] = [a, b].map(|place| self.straight.load(place));
+                self.straight.mul(a, b)
             }
         }
+    }
+
+    /// `a b + c`, rounded as the runtime rounds it.
+    fn mul_add(&mut self, [a, b, c]: [Value; 3]) -> Value {
+        if super::IS_FUSED {
+            return self.straight.push(Operation::MulAdd([a, b, c]));
+        }
+        let product = self.straight.mul(a, b);
+        self.straight.add(product, c)
     }
 
     fn sum(&mut self, sum: Sum) -> Value {
+        if let Some(place) = self.layout.result(sum) {
+            return self.straight.load(frame(place));
+        }
+        let factors = sum.factors().map(|history| self.layout.alone[&history]);
+        let places = factors.map(|place| straight::Place::of(KEPT, place));
+        let function = match sum.is_half() {
+            true => OfSeries::Half,
+            false => OfSeries::Middle,
+        };
+        self.straight.push(Operation::CallSeries(function, places))
+    }
+
+    /// The places of `a_j` and `b_(k-j)`.
+    fn factors(&self, factors: [History; 2], j: usize) -> [straight::Place; 2] {
+        let [a, b] = factors.map(|history| self.layout.alone[&history]);
+        let distance = self.layout.stride * j;
+        [
+            straight::Place::of(KEPT, a + distance),
+            straight::Place::of(NEWEST, b).shifted(-bytes(distance)),
+        ]
+    }
+
+    fn short(&mut self, histories: [History; 2], degree: usize) -> Value {
+        let [a, b] = self.factors(histories, 1);
+        let [a, b] = [a, b].map(|place| self.straight.load(place));
+        let mut sum = self.straight.mul(a, b);
         if self.series.is_large {
-            let [a, b] = sum
-                .factors()
-                .map(|history| self.place(self.layout.alone[&history]));
-            let [a, b] = [a, b].map(|place| {
-                self.builder
-                    .ins()
-                    .iadd_imm_s(self.rows, i64::from(offset(place)))
-            });
-            return match sum.is_half() {
-                true => self.call("jet_half", &[a, self.k]),
-                false => self.call("jet_middle", &[a, b, self.k]),
-            };
-        }
-        let found = self.sums.iter().find(|(known, _)| *known == sum);
-        match found {
-            Some((_, value)) => *value,
-            None => self.builder.ins().f64const(f64::NAN),
-        }
-    }
-
-    fn call(&mut self, name: &'static str, arguments: &[Value]) -> Value {
-        let id = self.compiler.helper(name, arguments.len());
-        let Some(id) = id else {
-            return self.builder.ins().f64const(f64::NAN);
-        };
-        let function = self
-            .compiler
-            .module
-            .declare_func_in_func(id, self.builder.func);
-        let call = self.builder.ins().call(function, arguments);
-        self.builder.inst_results(call)[0]
-    }
-
-    /// `a_j b_(k-j)` of what is kept alone.
-    fn product_of_alone(&mut self, places: [usize; 2], j: Value) -> Value {
-        let other = self.builder.ins().isub(self.k, j);
-        let rows = [j, other].map(|order| self.order_of_alone(order));
-        let places = places.map(|place| self.place(place));
-        let [a, b] = core::array::from_fn(|i| self.load(rows[i], places[i]));
-        self.builder.ins().fmul(a, b)
-    }
-
-    fn short(&mut self, factors: [History; 2], degree: usize) -> Value {
-        let places = factors.map(|history| self.layout.alone[&history]);
-        let one = self.builder.ins().iconst(types::I64, 1);
-        let first = self.product_of_alone(places, one);
-        let sum = self.builder.declare_var(types::F64);
-        let start = match self.series.is_large {
             // As `jet::shared_short` begins.
-            true => {
-                let zero = self.builder.ins().f64const(0.0);
-                self.builder.ins().fadd(zero, first)
-            }
-            false => first,
-        };
-        self.builder.def_var(sum, start);
-        for j in 2..=degree {
-            let j = self.builder.ins().iconst(types::I64, j as i64);
-            let is_within = self
-                .builder
-                .ins()
-                .icmp(IntCC::SignedLessThanOrEqual, j, self.k);
-            let [within, behind] = core::array::from_fn(|_| self.builder.create_block());
-            self.builder.ins().brif(is_within, within, &[], behind, &[]);
-            self.builder.switch_to_block(within);
-            let product = self.product_of_alone(places, j);
-            let before = self.builder.use_var(sum);
-            let added = self.builder.ins().fadd(before, product);
-            self.builder.def_var(sum, added);
-            self.builder.ins().jump(behind, &[]);
-            self.builder.switch_to_block(behind);
+            let zero = self.straight.number(0.0);
+            sum = self.straight.add(zero, sum);
         }
-        self.builder.use_var(sum)
+        for j in 2..=degree {
+            let factors = self.factors(histories, j);
+            let order = i32::try_from(j).unwrap_or(i32::MAX);
+            sum = self.straight.push(Operation::AddFrom {
+                order,
+                sum,
+                factors,
+            });
+        }
+        sum
     }
 }
 
-/// Reciprocals where code finds them.
-static INVERSES_OF_ORDERS: [f64; LENGTH] = INVERSES;
+/// A number of the frame.
+fn frame(index: usize) -> straight::Place {
+    straight::Place::of(Base::Frame, index)
+}

@@ -1,0 +1,45 @@
+//! What stands for `native` on a processor that there is no machine code for: nothing is compiled, and the machines of `machine.rs` and
+//! `series.rs` run everything.
+
+use core::convert::Infallible;
+
+use dalembert::Fault;
+use dalembert::erased::Expanded;
+use dalembert::kernels::At;
+
+use crate::machine::Code;
+use crate::series::Series;
+
+/// A function as machine code, of which there is none.
+#[derive(Debug)]
+pub(crate) struct Native(Infallible);
+
+impl Native {
+    pub(crate) fn run(&self, _: At<'_, f64>, _: &mut [f64]) -> Result<(), Fault> {
+        match self.0 {}
+    }
+}
+
+/// A power series as machine code, of which there is none.
+#[derive(Debug)]
+pub(crate) struct NativeSeries(Infallible);
+
+impl NativeSeries {
+    pub(crate) fn begin(&self, _: &[f64], _: f64, _: &[f64], _: &mut [f64]) -> Result<(), Fault> {
+        match self.0 {}
+    }
+
+    pub(crate) fn advance(&self, _: [&[f64]; 3], _: (f64, usize), _: Expanded<'_, f64>) {
+        match self.0 {}
+    }
+}
+
+/// Machine code of a form.
+pub(crate) struct Compiled {
+    pub functions: Vec<Native>,
+    pub series: NativeSeries,
+}
+
+pub(crate) fn compile(_: &[&'static Code], _: &'static Series) -> Option<Compiled> {
+    None
+}

@@ -1,0 +1,482 @@
+//! Instructions of x86-64 with AVX, of functions that are called as on Unix.
+
+// NOTE: the macro of the assembler converts the numbers of registers.
+#![allow(clippy::useless_conversion)]
+
+use std::collections::BTreeMap;
+
+use dynasmrt::x64::Assembler;
+use dynasmrt::{AssemblyOffset, DynamicLabel, DynasmApi, DynasmLabelApi, ExecutableBuffer, dynasm};
+
+use super::layout::{Group, LAST, WEIGHT};
+use super::registers::{Allocated, Instruction, Operand, Register, SCRATCH};
+use super::series::Expansion;
+use super::straight::{Base, Binary, Place, Unary, bytes};
+
+/// Numbers of a vector.
+pub(super) const LANES: usize = 4;
+
+/// Vectors of sums that one loop takes.
+pub(super) const SIDE_BY_SIDE: usize = 8;
+
+/// Registers of a loop over sums: vectors of sums come first, then factors, then halves.
+const FACTORS: Register = SIDE_BY_SIDE as Register;
+const HALVES: Register = 15;
+
+/// General registers by their numbers.
+const RAX: u8 = 0;
+const RCX: u8 = 1;
+const RDX: u8 = 2;
+const RBX: u8 = 3;
+const RSP: u8 = 4;
+const RBP: u8 = 5;
+const RSI: u8 = 6;
+const RDI: u8 = 7;
+const R12: u8 = 12;
+const R13: u8 = 13;
+const R14: u8 = 14;
+const R15: u8 = 15;
+
+/// The order at hand of a series.
+const ORDER: u8 = R14;
+
+/// Machine code on its way.
+pub(super) struct Assembly {
+    ops: Assembler,
+    /// The registers of the pointers that places are counted from.
+    bases: &'static [u8],
+    numbers: BTreeMap<u64, DynamicLabel>,
+    sign: DynamicLabel,
+    magnitude: DynamicLabel,
+    /// Where the function on its way ends that a guard stops.
+    stopped: DynamicLabel,
+}
+
+/// Vectors of sums, and where their factors lie.
+struct Products {
+    vectors: Register,
+    /// Of first and second factors, in a row.
+    places: [i32; 2],
+    /// Bytes from one row to the next.
+    kept: i32,
+}
+
+impl Products {
+    fn place(&self, which: usize, sum: Register) -> i32 {
+        self.places[which] + bytes(LANES * usize::from(sum))
+    }
+}
+
+/// The bases of a function that calls nothing, and of one that does.
+const OF_LEAF: [u8; 4] = [RDI, RSI, RDX, RCX];
+const OF_CALLER: [u8; 4] = [RBX, R12, R13, R14];
+
+/// The bases of a series: parameters, what is known at first, the row of coefficients, kept rows, the newest of them.
+const OF_SERIES: [u8; 5] = [RBX, RBP, R15, R12, R13];
+
+/// An instruction with a target, a register and an operand.
+macro_rules! with_operand {
+    ($self:ident, $name:ident $to:ident $from:ident $operand:expr) => {
+        match $operand {
+            Operand::Register(other) => {
+                dynasm!($self.ops ; .arch x64 ; $name Rx($to), Rx($from), Rx(other));
+            }
+            Operand::Memory(place) => {
+                let (base, offset) = $self.address(place);
+                dynasm!($self.ops ; .arch x64 ; $name Rx($to), Rx($from), QWORD [Rq(base) + offset]);
+            }
+            Operand::Number(bits) => {
+                let label = $self.number(bits);
+                dynasm!($self.ops ; .arch x64 ; $name Rx($to), Rx($from), QWORD [=>label]);
+            }
+        }
+    };
+}
+
+impl Assembly {
+    /// `None` on a processor that there is no code for.
+    pub(super) fn new() -> Option<Self> {
+        if !std::arch::is_x86_feature_detected!("avx") {
+            return None;
+        }
+        let mut ops = Assembler::new().ok()?;
+        let [sign, magnitude, stopped] = core::array::from_fn(|_| ops.new_dynamic_label());
+        Some(Self {
+            ops,
+            bases: &OF_LEAF,
+            numbers: BTreeMap::new(),
+            sign,
+            magnitude,
+            stopped,
+        })
+    }
+
+    /// A function of four pointers and, between the first two, a number: 0 in the end, or 1 where a guard stops it.
+    pub(super) fn function(&mut self, code: &Allocated) -> AssemblyOffset {
+        let entry = self.ops.offset();
+        self.stopped = self.ops.new_dynamic_label();
+        let has_calls = code.has_calls();
+        self.bases = if has_calls { &OF_CALLER } else { &OF_LEAF };
+        let frame = bytes(code.frame.next_multiple_of(2)) + if has_calls { 8 } else { 0 };
+        if has_calls {
+            dynasm!(self.ops ; .arch x64
+                ; push rbx ; push r12 ; push r13 ; push r14
+                ; mov rbx, rdi ; mov r12, rsi ; mov r13, rdx ; mov r14, rcx);
+        }
+        if frame > 0 {
+            dynasm!(self.ops ; .arch x64 ; sub rsp, frame);
+        }
+        self.instructions(&code.instructions);
+        for status in [0, 1] {
+            if status == 1 {
+                dynasm!(self.ops ; .arch x64 ; =>self.stopped);
+            }
+            dynasm!(self.ops ; .arch x64 ; mov eax, status);
+            if frame > 0 {
+                dynasm!(self.ops ; .arch x64 ; add rsp, frame);
+            }
+            if has_calls {
+                dynasm!(self.ops ; .arch x64 ; pop r14 ; pop r13 ; pop r12 ; pop rbx);
+            }
+            dynasm!(self.ops ; .arch x64 ; ret);
+        }
+        entry
+    }
+
+    /// A function of parameters, what is known at first, unit, last order, coefficients from order 1 on, and room.
+    pub(super) fn series(&mut self, expansion: &Expansion<'_>) -> AssemblyOffset {
+        let entry = self.ops.offset();
+        self.bases = &OF_SERIES;
+        let frame = bytes(expansion.frame().next_multiple_of(2) + 1);
+        let [last, weight] = [LAST, WEIGHT].map(bytes);
+        let [head, end] = core::array::from_fn(|_| self.ops.new_dynamic_label());
+        let (row, kept) = (expansion.row, expansion.kept);
+        let less = i32::from(!expansion.takes_last);
+        dynasm!(self.ops ; .arch x64
+            ; push rbx ; push rbp ; push r12 ; push r13 ; push r14 ; push r15
+            ; sub rsp, frame
+            ; mov rbx, rdi ; mov rbp, rsi ; mov r15, rcx ; mov r12, r8
+            ; sub rdx, less
+            ; mov [rsp + last], rdx);
+        self.instructions(&expansion.before.instructions);
+        dynasm!(self.ops ; .arch x64
+            ; lea r13, [r12 + kept]
+            ; mov r14, 1
+            ; =>head
+            ; cmp r14, [rsp + last]
+            ; jg =>end
+            ; vxorpd xmm0, xmm0, xmm0
+            ; vcvtsi2sd xmm0, xmm0, r14
+            ; vmovsd QWORD [rsp + weight], xmm0);
+        for group in expansion.groups {
+            self.sums(group, kept);
+        }
+        self.instructions(&expansion.order.instructions);
+        dynasm!(self.ops ; .arch x64
+            ; inc r14
+            ; add r13, kept
+            ; add r15, row
+            ; jmp =>head
+            ; =>end
+            ; vzeroupper
+            ; add rsp, frame
+            ; pop r15 ; pop r14 ; pop r13 ; pop r12 ; pop rbp ; pop rbx
+            ; ret);
+        entry
+    }
+
+    /// Takes the sums of a group, in the order of additions of `jet::middles` and `jet::halves`.
+    fn sums(&mut self, group: &Group, kept: i32) {
+        let done = self.ops.new_dynamic_label();
+        let vectors = group.sums.len().div_ceil(LANES) as Register;
+        for sum in 0..vectors {
+            dynasm!(self.ops ; .arch x64 ; vxorpd Ry(sum), Ry(sum), Ry(sum));
+        }
+        let products = Products {
+            vectors,
+            places: group.places.map(bytes),
+            kept,
+        };
+        dynasm!(self.ops ; .arch x64 ; cmp Rq(ORDER), 2 ; jl =>done);
+        if group.sums[0].is_half() {
+            self.halves(&products, done);
+        } else {
+            self.middles(&products, done);
+        }
+        dynasm!(self.ops ; .arch x64 ; =>done);
+        for sum in 0..vectors {
+            let place = bytes(group.results + LANES * usize::from(sum));
+            dynasm!(self.ops ; .arch x64 ; vmovupd YWORD [rsp + place], Ry(sum));
+        }
+    }
+
+    fn middles(&mut self, products: &Products, done: DynamicLabel) {
+        let kept = products.kept;
+        dynasm!(self.ops ; .arch x64
+            ; lea rax, [r12 + 2 * kept]
+            ; lea rcx, [r13 - 2 * kept]
+            ; lea rdx, [Rq(ORDER) - 3]);
+        self.add_range(products, kept);
+        self.add_ends(products);
+        dynasm!(self.ops ; .arch x64 ; cmp Rq(ORDER), 2 ; jle =>done);
+        self.add_products(products, [RCX, RAX]);
+    }
+
+    fn halves(&mut self, products: &Products, done: DynamicLabel) {
+        let kept = products.kept;
+        let odd = self.ops.new_dynamic_label();
+        let half = self.number(0.5_f64.to_bits());
+        dynasm!(self.ops ; .arch x64
+            ; test Rq(ORDER), 1
+            ; jnz =>odd
+            ; mov rax, Rq(ORDER)
+            ; shr rax, 1
+            ; imul rax, rax, kept
+            ; add rax, r12
+            ; vbroadcastsd Ry(HALVES), QWORD [=>half]);
+        for sum in 0..products.vectors {
+            let place = products.place(0, sum);
+            dynasm!(self.ops ; .arch x64
+                ; vmovupd Ry(FACTORS), YWORD [rax + place]
+                ; vmulpd Ry(sum), Ry(HALVES), Ry(FACTORS)
+                ; vmulpd Ry(sum), Ry(sum), Ry(FACTORS));
+        }
+        dynasm!(self.ops ; .arch x64
+            ; =>odd
+            ; cmp Rq(ORDER), 2
+            ; jle =>done
+            ; lea rdx, [Rq(ORDER) - 1]
+            ; shr rdx, 1
+            ; imul rax, rdx, kept
+            ; mov rcx, r13
+            ; sub rcx, rax
+            ; add rax, r12
+            ; dec rdx);
+        self.add_range(products, -kept);
+        self.add_ends(products);
+    }
+
+    /// Adds as many products as `rdx` says, from the rows at `rax` and `rcx` on, which move apart or towards each other.
+    fn add_range(&mut self, products: &Products, step: i32) {
+        let [head, end] = core::array::from_fn(|_| self.ops.new_dynamic_label());
+        dynasm!(self.ops ; .arch x64 ; test rdx, rdx ; jle =>end ; =>head);
+        self.add_products(products, [RAX, RCX]);
+        dynasm!(self.ops ; .arch x64
+            ; add rax, step
+            ; sub rcx, step
+            ; dec rdx
+            ; jnz =>head
+            ; =>end);
+    }
+
+    /// Adds the products of order 1 and the newest, whose rows `rax` and `rcx` are then.
+    fn add_ends(&mut self, products: &Products) {
+        let kept = products.kept;
+        dynasm!(self.ops ; .arch x64 ; lea rax, [r12 + kept] ; lea rcx, [r13 - kept]);
+        self.add_products(products, [RAX, RCX]);
+    }
+
+    /// Adds the products of the first factors of one row and the second factors of another.
+    fn add_products(&mut self, products: &Products, [a, b]: [u8; 2]) {
+        for sum in 0..products.vectors {
+            // NOTE: few registers in turn, so that products of one pass do not wait for each other.
+            let factor = FACTORS + sum % (HALVES - FACTORS);
+            let [x, y] = [0, 1].map(|which| products.place(which, sum));
+            dynasm!(self.ops ; .arch x64 ; vmovupd Ry(factor), YWORD [Rq(a) + x]);
+            if super::IS_FUSED {
+                dynasm!(self.ops ; .arch x64 ; vfmadd231pd Ry(sum), Ry(factor), YWORD [Rq(b) + y]);
+            } else {
+                dynasm!(self.ops ; .arch x64
+                    ; vmulpd Ry(factor), Ry(factor), YWORD [Rq(b) + y]
+                    ; vaddpd Ry(sum), Ry(sum), Ry(factor));
+            }
+        }
+    }
+
+    /// The executable code of everything.
+    pub(super) fn finish(mut self) -> Option<ExecutableBuffer> {
+        for (bits, label) in core::mem::take(&mut self.numbers) {
+            let bits = i64::from_ne_bytes(bits.to_ne_bytes());
+            dynasm!(self.ops ; .arch x64 ; .align 8 ; =>label ; .i64 bits);
+        }
+        dynasm!(self.ops ; .arch x64
+            ; .align 16 ; =>self.sign ; .i64 i64::MIN ; .i64 i64::MIN
+            ; =>self.magnitude ; .i64 i64::MAX ; .i64 i64::MAX);
+        self.ops.finalize().ok()
+    }
+
+    /// The register and the distance of a place.
+    fn address(&self, place: Place) -> (u8, i32) {
+        match place.base {
+            Base::Frame => (RSP, place.offset),
+            Base::Argument(index) => (self.bases[usize::from(index)], place.offset),
+        }
+    }
+
+    fn number(&mut self, bits: u64) -> DynamicLabel {
+        let ops = &mut self.ops;
+        *self
+            .numbers
+            .entry(bits)
+            .or_insert_with(|| ops.new_dynamic_label())
+    }
+
+    fn instructions(&mut self, instructions: &[Instruction]) {
+        for instruction in instructions {
+            self.instruction(instruction);
+        }
+    }
+
+    fn instruction(&mut self, instruction: &Instruction) {
+        match *instruction {
+            Instruction::Move(to, from) => self.load(to, from),
+            Instruction::Store(from, place) => {
+                let (base, offset) = self.address(place);
+                dynasm!(self.ops ; .arch x64 ; vmovsd QWORD [Rq(base) + offset], Rx(from));
+            }
+            Instruction::StoreVector(ref values, place) => self.store_vector(values, place),
+            Instruction::Unary(unary, to, from) => self.unary(unary, to, from),
+            Instruction::Binary(binary, to, from, operand) => match binary {
+                Binary::Add => with_operand!(self, vaddsd to from operand),
+                Binary::Sub => with_operand!(self, vsubsd to from operand),
+                Binary::Mul => with_operand!(self, vmulsd to from operand),
+                Binary::Div => with_operand!(self, vdivsd to from operand),
+            },
+            Instruction::MulAdd(sum, from, operand) => {
+                with_operand!(self, vfmadd231sd sum from operand);
+            }
+            Instruction::Turned(to, [from, by]) => {
+                dynasm!(self.ops ; .arch x64
+                    ; vxorpd Rx(SCRATCH), Rx(SCRATCH), Rx(SCRATCH)
+                    ; vcmpltsd Rx(SCRATCH), Rx(by), Rx(SCRATCH)
+                    ; vandpd Rx(SCRATCH), Rx(SCRATCH), OWORD [=>self.sign]
+                    ; vxorpd Rx(to), Rx(from), Rx(SCRATCH));
+            }
+            Instruction::AtFirst(to, from) => {
+                let behind = self.ops.new_dynamic_label();
+                dynasm!(self.ops ; .arch x64
+                    ; vxorpd Rx(to), Rx(to), Rx(to)
+                    ; cmp Rq(ORDER), 1
+                    ; jne =>behind);
+                self.load(to, from);
+                dynasm!(self.ops ; .arch x64 ; =>behind);
+            }
+            Instruction::AddFrom(sum, order, factors) => self.add_from(sum, order, factors),
+            Instruction::Call(address, place) => {
+                if let Some(place) = place {
+                    let (base, offset) = self.address(place);
+                    dynasm!(self.ops ; .arch x64 ; lea Rq(RDI), [Rq(base) + offset]);
+                }
+                self.call(address);
+            }
+            Instruction::CallSeries(address, places) => {
+                for (register, place) in [RDI, RSI].into_iter().zip(places) {
+                    let (base, offset) = self.address(place);
+                    dynasm!(self.ops ; .arch x64 ; lea Rq(register), [Rq(base) + offset]);
+                }
+                dynasm!(self.ops ; .arch x64 ; mov Rq(RDX), Rq(ORDER));
+                self.call(address);
+            }
+            Instruction::Guard(from, bound) => self.guard(from, bound),
+        }
+    }
+
+    fn load(&mut self, to: Register, from: Operand) {
+        match from {
+            Operand::Register(from) if from == to => {}
+            Operand::Register(from) => {
+                dynasm!(self.ops ; .arch x64 ; vmovapd Rx(to), Rx(from));
+            }
+            Operand::Memory(place) => {
+                let (base, offset) = self.address(place);
+                dynasm!(self.ops ; .arch x64 ; vmovsd Rx(to), QWORD [Rq(base) + offset]);
+            }
+            Operand::Number(bits) => {
+                let label = self.number(bits);
+                dynasm!(self.ops ; .arch x64 ; vmovsd Rx(to), QWORD [=>label]);
+            }
+        }
+    }
+
+    fn unary(&mut self, unary: Unary, to: Register, from: Register) {
+        match unary {
+            Unary::Neg => {
+                dynasm!(self.ops ; .arch x64 ; vxorpd Rx(to), Rx(from), OWORD [=>self.sign]);
+            }
+            Unary::Abs => {
+                dynasm!(self.ops ; .arch x64 ; vandpd Rx(to), Rx(from), OWORD [=>self.magnitude]);
+            }
+            Unary::Sqrt => dynasm!(self.ops ; .arch x64 ; vsqrtsd Rx(to), Rx(from), Rx(from)),
+        }
+    }
+
+    fn store_vector(&mut self, values: &[Operand], place: Place) {
+        let (low, high) = (SCRATCH, SCRATCH + 1);
+        let (base, offset) = self.address(place);
+        for (half, values) in [low, high].into_iter().zip(values.chunks(2)) {
+            self.pair(half, values);
+        }
+        if values.len() > 2 {
+            dynasm!(self.ops ; .arch x64 ; vinsertf128 Ry(low), Ry(low), Rx(high), 1);
+        }
+        dynasm!(self.ops ; .arch x64 ; vmovupd YWORD [Rq(base) + offset], Ry(low));
+    }
+
+    /// One or two numbers as the lower half of a vector, with zeros behind.
+    fn pair(&mut self, to: Register, values: &[Operand]) {
+        match values[0] {
+            Operand::Register(from) => {
+                dynasm!(self.ops ; .arch x64 ; vmovq Rx(to), Rx(from));
+            }
+            memory => self.load(to, memory),
+        }
+        let Some(second) = values.get(1) else { return };
+        match *second {
+            Operand::Register(from) => {
+                dynasm!(self.ops ; .arch x64 ; vunpcklpd Rx(to), Rx(to), Rx(from));
+            }
+            Operand::Memory(place) => {
+                let (base, offset) = self.address(place);
+                dynasm!(self.ops ; .arch x64 ; vmovhpd Rx(to), Rx(to), QWORD [Rq(base) + offset]);
+            }
+            Operand::Number(bits) => {
+                let label = self.number(bits);
+                dynasm!(self.ops ; .arch x64 ; vmovhpd Rx(to), Rx(to), QWORD [=>label]);
+            }
+        }
+    }
+
+    fn add_from(&mut self, sum: Register, order: i32, [a, b]: [Place; 2]) {
+        let behind = self.ops.new_dynamic_label();
+        let (base, offset) = self.address(b);
+        dynasm!(self.ops ; .arch x64 ; cmp Rq(ORDER), order ; jl =>behind);
+        self.load(SCRATCH, Operand::Memory(a));
+        dynasm!(self.ops ; .arch x64
+            ; vmulsd Rx(SCRATCH), Rx(SCRATCH), QWORD [Rq(base) + offset]
+            ; vaddsd Rx(sum), Rx(sum), Rx(SCRATCH)
+            ; =>behind);
+    }
+
+    fn guard(&mut self, from: Register, bound: Operand) {
+        match bound {
+            Operand::Register(bound) => {
+                dynasm!(self.ops ; .arch x64 ; vucomisd Rx(from), Rx(bound));
+            }
+            Operand::Memory(place) => {
+                let (base, offset) = self.address(place);
+                dynasm!(self.ops ; .arch x64 ; vucomisd Rx(from), QWORD [Rq(base) + offset]);
+            }
+            Operand::Number(bits) => {
+                let label = self.number(bits);
+                dynasm!(self.ops ; .arch x64 ; vucomisd Rx(from), QWORD [=>label]);
+            }
+        }
+        // NOTE: what cannot be compared is not larger.
+        dynasm!(self.ops ; .arch x64 ; jbe =>self.stopped);
+    }
+
+    fn call(&mut self, address: usize) {
+        let address = i64::from_ne_bytes((address as u64).to_ne_bytes());
+        dynasm!(self.ops ; .arch x64 ; mov rax, QWORD address ; call rax);
+    }
+}
