@@ -19,6 +19,8 @@
 mod function;
 mod helpers;
 mod layout;
+#[cfg(test)]
+mod random;
 mod registers;
 mod series;
 mod straight;
