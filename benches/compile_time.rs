@@ -62,7 +62,7 @@ fn operations(source: &str) -> usize {
 /// Every shipped model.
 fn expansions(rounds: usize) -> Table {
     let mut table = Table::new(["model", "coordinates", "operations", "characters", "ms"]);
-    for entry in dalembert_models::all() {
+    for entry in dalembert_command::all() {
         let description = entry.description();
         let expansion = expand(description.source, rounds);
         table.push([

@@ -108,7 +108,7 @@ fn folder(name: &str) -> PathBuf {
 fn certificate(model: &str, folder: &Path) -> PathBuf {
     let path = folder.join(format!("{model}.json"));
     let place = path.to_str().expect("a path");
-    let mut models = dalembert_models::all();
+    let mut models = dalembert_command::all();
     models.extend(models![Spiral, Belt, Winding, Charge, Cubic, Slowed, Bent]);
     let finished = command::run(models, &["check", model, "--certificate", place], "");
     assert_eq!(finished.exit, Exit::Reached, "{}", finished.output);
@@ -124,7 +124,7 @@ fn checked(files: &[PathBuf]) -> Output {
 #[test]
 fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
     let folder = folder("certificates");
-    let models = dalembert_models::all();
+    let models = dalembert_command::all();
     let names: Vec<&str> = models.iter().map(|own| own.description().name).collect();
     let others = [
         "spiral", "belt", "winding", "charge", "cubic", "slowed", "bent",

@@ -16,7 +16,7 @@ fn gallery(words: &[&str]) -> (Exit, String) {
         terminal: false,
     };
     let line = ["dalembert", "gallery"].iter().chain(words);
-    let exit = dalembert_models::catalogue().run_with(line, &mut streams);
+    let exit = dalembert_command::catalogue().run_with(line, &mut streams);
     (exit, String::from_utf8(errors).expect("text"))
 }
 

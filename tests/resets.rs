@@ -353,7 +353,7 @@ fn simulate_refuses_reset_where_it_is_not_declared() {
     let walls = "simulate bouncing_ball --until 1 --law floor=reset";
     let Finished {
         exit, errors: text, ..
-    } = command::line(dalembert_models::all(), walls, "");
+    } = command::line(dalembert_command::all(), walls, "");
     assert_eq!(exit, Exit::Refused, "{text}");
     assert!(
         text.contains("--law: surface `floor` declares no reset"),

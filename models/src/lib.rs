@@ -1,7 +1,7 @@
-//! The systems of the source papers as dalembert models: one file each, with its source, what is known of it in
+//! The systems of the source papers as dalembert models. Each has a text, `rolling_disk.dal`, and a module with its source, the facts known in
 //! closed form, and a test of such a fact.
 //!
-//! The binary of this package is the `dalembert` command over all of them, with the [`figures`] of the papers.
+//! The `dalembert` command runs the same texts without compiling them.
 
 pub mod appell_hamel;
 pub mod ball_on_rotating_table;
@@ -12,7 +12,6 @@ pub mod chaplygin_sleigh;
 pub mod constant_speed;
 pub mod dimensionless_walker;
 pub mod double_pendulum;
-pub mod figures;
 pub mod filippov_field;
 pub mod harmonic_oscillator;
 pub mod holonomic_bead_on_ellipses;
@@ -63,50 +62,3 @@ pub use tent_map::TentMap;
 pub use two_wheels_arrested::TwoWheelsArrested;
 pub use two_wheels_rod::TwoWheelsRod;
 pub use walker_foot_slip::WalkerFootSlip;
-
-/// Every shipped model, for the command line.
-// NOTE: the tests of the models need none of it, and would compile all of it once more.
-#[cfg(not(test))]
-pub fn all() -> Vec<dalembert_cli::Entry> {
-    dalembert_cli::models![
-        AppellHamel,
-        BallOnRotatingTable,
-        BallOnSwitchingTable,
-        BouncingBall,
-        Chain2,
-        Chain3,
-        Chain4,
-        Chain8,
-        Chain16,
-        ChaplyginSleigh,
-        ConstantSpeed,
-        DimensionlessWalker,
-        DoublePendulum,
-        FilippovField,
-        HarmonicOscillator,
-        HolonomicBeadOnEllipses,
-        MovingWallDisk,
-        PointBilliard,
-        RefractedParticle,
-        RimlessWheelFive,
-        RimlessWheelTen,
-        RollingBallEuler,
-        RollingBallWall,
-        RollingDisk,
-        SmoothAndRoughPlane,
-        SpasmodicHamiltonian,
-        SphereInPlane,
-        SpringMassWalker,
-        SuperElasticStrip,
-        TentMap,
-        TwoWheelsArrested,
-        TwoWheelsRod,
-        WalkerFootSlip,
-    ]
-}
-
-/// The catalogue of the `dalembert` command: every shipped model, and the figures of the papers.
-#[cfg(not(test))]
-pub fn catalogue() -> dalembert_cli::Catalogue {
-    dalembert_cli::Catalogue::of(all()).with_figures(figures::all())
-}

@@ -39,7 +39,7 @@ fn a_motion_that_splits_ends_where_that_is_asked_for() {
     };
     assert_eq!(ends(reflected).outcome, Outcome::Done);
     let line = "simulate refracted_particle --split stop --json -";
-    let finished = command::line(dalembert_models::all(), line, "");
+    let finished = command::line(dalembert_command::all(), line, "");
     let document: Value = serde_json::from_str(&finished.output).expect("JSON");
     assert_eq!(document["outcome"]["kind"], "ambiguous");
 }

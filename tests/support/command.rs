@@ -17,7 +17,7 @@ pub struct Finished {
 
 /// Every model that tests know: the shipped ones and those of [`crate::systems`].
 pub fn models() -> Vec<Entry> {
-    let mut models = dalembert_models::all();
+    let mut models = dalembert_command::all();
     models.extend(crate::systems::all());
     models
 }

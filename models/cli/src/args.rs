@@ -74,7 +74,6 @@ pub enum Command {
 
 impl Command {
     /// The model that it names, if it names one.
-    #[cfg(feature = "files")]
     pub fn model(&mut self) -> Option<&mut String> {
         match self {
             Self::Derive(args) => Some(&mut args.model),

@@ -37,7 +37,6 @@ impl Catalogue {
     }
 
     /// With these models before the others, which may have the same names.
-    #[cfg(feature = "files")]
     pub(crate) fn with_models(&self, mut models: Vec<Entry>) -> Self {
         models.extend(self.models.iter().cloned());
         Self {

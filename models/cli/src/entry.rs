@@ -6,19 +6,19 @@
 //! | `typed.rs` | the trait for the type of a system |
 //!
 //! A model that has a form is run by the system of all forms, which is compiled here; any other is compiled with all that runs it where
-//! [`Entry::of`] names its type. Everything else in this crate works on slices of numbers through [`AnyModel`], and is compiled once.
+//! [`Entry::of`] names its type. A model of a text has a form once the text is loaded, where something besides its name is asked for. Everything else in this crate works on slices of numbers through [`AnyModel`], and is compiled once.
 
 mod model;
 mod typed;
+
+use std::sync::{Arc, OnceLock};
 
 use dalembert::declaration::{Described, SceneVisitor};
 use dalembert::describe::Description;
 use dalembert::erased::{Erased, Form};
 use dalembert::{Lagrangian, Scene, TaylorField};
-#[cfg(feature = "files")]
 use dalembert_jit::Loaded;
 
-#[cfg(feature = "files")]
 use crate::error::CliError;
 pub(crate) use model::{AnyModel, Code, Contacted, Origin, Point, Rates, Start, Together};
 pub use typed::Model;
@@ -28,6 +28,25 @@ pub(crate) use typed::point;
 /// One model of the list handed to [`run`](crate::run), with its scenes.
 #[derive(Clone)]
 pub struct Entry {
+    name: &'static str,
+    source: Source,
+}
+
+/// Where a model comes from.
+#[derive(Clone)]
+enum Source {
+    /// A type, or a text that was loaded.
+    Known(Box<Known>),
+    /// A text that is loaded where the model is first asked for. Clones of the entry share it.
+    Text {
+        text: &'static str,
+        known: Arc<OnceLock<Known>>,
+    },
+}
+
+/// A model with its scenes, `all` first.
+#[derive(Clone)]
+struct Known {
     description: Description,
     scenes: Vec<(&'static str, Build)>,
 }
@@ -35,8 +54,10 @@ pub struct Entry {
 /// A maker of a model with declared defaults.
 #[derive(Debug, Clone, Copy)]
 enum Build {
-    /// A form, that the systems of all forms run.
+    /// A form that was compiled, which the systems of all forms run.
     Erased(&'static Form),
+    /// A form that was loaded from a text.
+    Loaded(&'static Form),
     /// A type, which everything that runs a model is compiled for.
     Typed(fn() -> Box<dyn AnyModel>),
 }
@@ -52,7 +73,8 @@ impl Build {
 
     fn build(self) -> Box<dyn AnyModel> {
         match self {
-            Self::Erased(form) => erased(form),
+            Self::Erased(form) => erased(form, Code::Pointers),
+            Self::Loaded(form) => erased(form, Code::Loaded),
             Self::Typed(build) => build(),
         }
     }
@@ -66,38 +88,57 @@ fn typed<M: Model + Described>() -> Box<dyn AnyModel> {
 }
 
 /// The system of a form, of the least capacity that it fits into.
-fn erased(form: &'static Form) -> Box<dyn AnyModel> {
-    fn with_room<const C: usize>(form: &'static Form) -> Option<Box<dyn AnyModel>> {
+fn erased(form: &'static Form, code: Code) -> Box<dyn AnyModel> {
+    fn with_room<const C: usize>(form: &'static Form, code: Code) -> Option<Box<dyn AnyModel>> {
         let model = Erased::<C>::of(form)?;
-        let code = Code::Pointers;
         Some(Box::new(Typed { model, code }))
     }
-    let system = with_room::<4>(form)
-        .or_else(|| with_room::<8>(form))
-        .or_else(|| with_room::<32>(form));
+    let system = with_room::<4>(form, code)
+        .or_else(|| with_room::<8>(form, code))
+        .or_else(|| with_room::<32>(form, code));
     system.expect("a form that there is a capacity for")
 }
 
 impl Entry {
     /// The entry of a model type with its scenes; the model itself is the scene `all`.
     pub fn of<M: Model + Described>() -> Self {
-        let mut entry = Self {
+        let mut known = Known {
             description: M::DESCRIPTION,
             scenes: vec![("all", const { Build::of::<M>() })],
         };
-        M::visit_scenes(&mut entry);
-        entry
+        M::visit_scenes(&mut known);
+        Self::known_by(known)
+    }
+
+    /// The entry of the model of this name that a text declares, such as `rolling_disk` of `RollingDisk { .. }`. The text is loaded once, where
+    /// something besides the name is first asked for.
+    ///
+    /// # Panics
+    /// Loading panics if the text does not declare exactly one model, of this name, that can be run without being compiled.
+    pub fn of_text(name: &'static str, text: &'static str) -> Self {
+        let known = Arc::default();
+        Self {
+            name,
+            source: Source::Text { text, known },
+        }
     }
 
     /// The entry of a model that was loaded from its text.
-    #[cfg(feature = "files")]
     pub(crate) fn loaded(model: &Loaded) -> Self {
-        let scenes = model.scenes.iter();
-        let scenes = scenes.map(|(name, form)| (*name, Build::Erased(form)));
-        let whole = ("all", Build::Erased(model.form));
+        Self::known_by(Known::of(model))
+    }
+
+    fn known_by(known: Known) -> Self {
         Self {
-            description: model.form.documentation.description,
-            scenes: [whole].into_iter().chain(scenes).collect(),
+            name: known.description.name,
+            source: Source::Known(Box::new(known)),
+        }
+    }
+
+    fn known(&self) -> &Known {
+        match &self.source {
+            Source::Known(known) => known,
+            Source::Text { text, known } => known.get_or_init(|| load(self.name, text)),
         }
     }
 
@@ -105,10 +146,60 @@ impl Entry {
     ///
     /// # Errors
     /// [`CliError::Large`].
-    #[cfg(feature = "files")]
     pub(crate) fn check_size(&self) -> Result<(), CliError> {
+        self.known().check_size()
+    }
+
+    /// The name of the model, that of its description.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// What the model says of itself.
+    pub fn description(&self) -> &Description {
+        &self.known().description
+    }
+
+    /// The names of the scenes, `all` first.
+    pub fn scenes(&self) -> impl Iterator<Item = &'static str> + Clone {
+        self.known().scenes.iter().map(|(name, _)| *name)
+    }
+
+    /// The model in the scene of this index, with declared defaults.
+    pub(crate) fn with_defaults(&self, scene: usize) -> Box<dyn AnyModel> {
+        self.known().scenes[scene].1.build()
+    }
+}
+
+/// Loads the one model of a text.
+fn load(name: &str, text: &str) -> Known {
+    let loaded = dalembert_jit::load(name, text);
+    let models = loaded.unwrap_or_else(|refused| panic!("{refused}"));
+    let [model] = models.as_slice() else {
+        panic!("the text of `{name}` declares {} models", models.len());
+    };
+    let known = Known::of(model);
+    assert_eq!(known.description.name, name, "the name of a text");
+    if let Err(error) = known.check_size() {
+        panic!("{error}");
+    }
+    known
+}
+
+impl Known {
+    fn of(model: &Loaded) -> Self {
+        let scenes = model.scenes.iter();
+        let scenes = scenes.map(|(name, form)| (*name, Build::Loaded(form)));
+        let whole = ("all", Build::Loaded(model.form));
+        Self {
+            description: model.form.documentation.description,
+            scenes: [whole].into_iter().chain(scenes).collect(),
+        }
+    }
+
+    fn check_size(&self) -> Result<(), CliError> {
         let has_room = |(_, build): &(_, Build)| match build {
-            Build::Erased(form) => form.capacity().is_some(),
+            Build::Erased(form) | Build::Loaded(form) => form.capacity().is_some(),
             Build::Typed(_) => true,
         };
         match self.scenes.iter().all(has_room) {
@@ -118,24 +209,9 @@ impl Entry {
             }),
         }
     }
-
-    /// What the model says of itself.
-    pub fn description(&self) -> &Description {
-        &self.description
-    }
-
-    /// The names of the scenes, `all` first.
-    pub fn scenes(&self) -> impl Iterator<Item = &'static str> + Clone {
-        self.scenes.iter().map(|(name, _)| *name)
-    }
-
-    /// The model in the scene of this index, with declared defaults.
-    pub(crate) fn with_defaults(&self, scene: usize) -> Box<dyn AnyModel> {
-        self.scenes[scene].1.build()
-    }
 }
 
-impl SceneVisitor for Entry {
+impl SceneVisitor for Known {
     fn visit<S>(&mut self, name: &'static str)
     where
         S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static,

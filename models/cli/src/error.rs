@@ -44,11 +44,9 @@ pub enum CliError {
         got: usize,
     },
     /// Mistakes in the text of a model.
-    #[cfg(feature = "files")]
     #[error("{0}")]
     Declaration(dalembert_jit::Refused),
     /// A model that is too large to be run without a compiler.
-    #[cfg(feature = "files")]
     #[error(
         "MODEL: `{model}` has vectors of more than 32 components, or more than 64 parameters; compile it in a crate with `dalembert::model!`"
     )]

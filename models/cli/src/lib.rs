@@ -1,6 +1,6 @@
 //! The dalembert command line over any list of models.
 //!
-//! The shipped `dalembert` binary is this crate over the shipped models; a crate of one's own gets the same
+//! The shipped `dalembert` binary is this crate over the texts of the shipped models; a crate of one's own gets the same
 //! commands for its own models:
 //!
 //! ```no_run
@@ -36,7 +36,6 @@ mod error;
 mod exit;
 pub mod gallery;
 mod json;
-#[cfg(feature = "files")]
 mod model_file;
 mod names;
 mod orbit;
@@ -136,7 +135,6 @@ fn with_files(
     catalogue: &Catalogue,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
-    #[cfg(feature = "files")]
     if let Some(given) = line.command.model()
         && let Some((models, name)) = model_file::read(given, streams.input)?
     {

@@ -37,7 +37,7 @@ pub(crate) fn read(
     };
     let models = dalembert_jit::load(shown, &text).map_err(CliError::Declaration)?;
     let entries: Vec<Entry> = models.iter().map(Entry::loaded).collect();
-    let all = entries.iter().map(|entry| entry.description().name);
+    let all = entries.iter().map(Entry::name);
     let chosen = match (name, entries.as_slice()) {
         (Some(name), _) => names::find(file, "model", name, all)?,
         (None, [_]) => 0,
@@ -49,7 +49,7 @@ pub(crate) fn read(
     };
     let entry = &entries[chosen];
     entry.check_size()?;
-    let name = entry.description().name.to_owned();
+    let name = entry.name().to_owned();
     Ok(Some((entries, name)))
 }
 

@@ -13,7 +13,7 @@ use crate::scalar;
 /// # Errors
 /// [`CliError::Unknown`].
 pub fn find_model<'a>(models: &'a [Entry], name: &str) -> Result<&'a Entry, CliError> {
-    let names = models.iter().map(|entry| entry.description().name);
+    let names = models.iter().map(Entry::name);
     Ok(&models[names::find("MODEL", "model", name, names)?])
 }
 

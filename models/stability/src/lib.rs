@@ -66,5 +66,5 @@ pub fn all() -> Vec<Case> {
 
 /// The catalogue of the command: every shipped model, the figures of the papers, and the cases.
 pub fn catalogue() -> dalembert_cli::Catalogue {
-    dalembert_models::catalogue().with_suite(all())
+    dalembert_command::catalogue().with_suite(all())
 }

@@ -68,17 +68,16 @@ pub fn run(
 
 /// The figures of the models of these names, or of all: model by model, first those that every model has.
 fn figures(catalogue: &Catalogue, wanted: &[String]) -> Result<Vec<Figure>, CliError> {
-    let descriptions = catalogue.models().iter().map(Entry::description);
+    let models = catalogue.models().iter();
     for name in wanted {
-        let known = descriptions.clone().map(|description| description.name);
-        names::find("MODEL", "model", name, known)?;
+        names::find("MODEL", "model", name, models.clone().map(Entry::name))?;
     }
     let asked_for = |name: &str| wanted.is_empty() || wanted.iter().any(|it| it == name);
     let mut figures = Vec::new();
-    for description in descriptions.filter(|description| asked_for(description.name)) {
-        figures.push(gallery::standard_figure(description));
+    for entry in models.filter(|entry| asked_for(entry.name())) {
+        figures.push(gallery::standard_figure(entry.description()));
         let added = catalogue.figures().iter();
-        figures.extend(added.filter(|it| it.model == description.name).cloned());
+        figures.extend(added.filter(|it| it.model == entry.name()).cloned());
     }
     Ok(figures)
 }

@@ -26,7 +26,7 @@ pub fn run(models: &[Entry], args: &ListArgs, output: &mut dyn Write) -> Result<
 fn write_text(models: &[Entry], output: &mut dyn Write) -> Result<(), CliError> {
     let width = models
         .iter()
-        .map(|entry| entry.description().name.chars().count())
+        .map(|entry| entry.name().chars().count())
         .max()
         .unwrap_or(0)
         .max(5);

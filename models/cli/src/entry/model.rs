@@ -162,8 +162,10 @@ pub(crate) struct Contacted {
 pub(crate) enum Code {
     /// They are inlined into what runs the model.
     Inlined,
-    /// They are behind pointers.
+    /// They are compiled, and behind pointers.
     Pointers,
+    /// They were made from the text of the model when it was loaded, and are behind pointers.
+    Loaded,
 }
 
 impl Code {
@@ -172,6 +174,7 @@ impl Code {
         match self {
             Self::Inlined => "inlined",
             Self::Pointers => "behind pointers",
+            Self::Loaded => "loaded from its text",
         }
     }
 }

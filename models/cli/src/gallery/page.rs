@@ -42,11 +42,8 @@ pub fn page(models: &[Entry], plates: &[Plate<'_>], prints: &[Result<Print, CliE
     page += "</p>\n";
     page += &contents(&sections);
     for (model, figures) in &sections {
-        let description = models
-            .iter()
-            .map(Entry::description)
-            .find(|description| description.name == *model);
-        let summary = description.map_or("", names::summary);
+        let entry = models.iter().find(|entry| entry.name() == *model);
+        let summary = entry.map_or("", |entry| names::summary(entry.description()));
         let _ = write!(
             page,
             "<section id=\"{model}\">\n<h2>{model}</h2>\n<p>{}</p>\n",

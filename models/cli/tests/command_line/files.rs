@@ -190,3 +190,26 @@ fn what_is_too_large_is_said() {
         refused.errors
     );
 }
+
+#[test]
+fn a_text_is_loaded_only_where_its_model_is_asked_for() {
+    // Loading the second text would panic.
+    let models = [
+        Entry::of_text("ball", BALL),
+        Entry::of_text("broken", "Broken {"),
+    ];
+    let simulated = run_over(&models, "", &["simulate", "ball", "--json", "-"]);
+    assert_eq!(simulated.exit, Exit::Reached, "{}", simulated.errors);
+    assert_eq!(simulated.json()["model"], "ball");
+    let misspelt = run_over(&models, "", &["simulate", "brokn"]);
+    assert_eq!(misspelt.exit, Exit::Refused);
+    assert!(misspelt.errors.contains("`broken`"), "{}", misspelt.errors);
+}
+
+#[test]
+fn times_name_the_code_that_was_loaded() {
+    let models = [Entry::of_text("ball", BALL)];
+    let measured = run_over(&models, "", &["accuracy", "ball", "--until", "0.2"]);
+    let expected = "times with the model's functions loaded from its text";
+    assert!(measured.output.contains(expected), "{}", measured.output);
+}

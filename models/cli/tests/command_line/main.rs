@@ -8,7 +8,6 @@ mod check;
 mod derive;
 mod ensemble;
 mod eval;
-#[cfg(feature = "files")]
 mod files;
 mod gallery;
 mod hostile;

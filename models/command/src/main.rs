@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    dalembert_models::catalogue().run()
+    dalembert_command::catalogue().run()
 }
