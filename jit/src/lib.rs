@@ -45,7 +45,7 @@ mod series;
 mod source;
 
 use dalembert::erased::Form;
-use dalembert_codegen::spec::Declaration;
+use dalembert_codegen::spec::{Declaration, Spec};
 use dalembert_codegen::{self as codegen, Compiled};
 
 pub use source::{Mistake, Refused};
@@ -53,6 +53,8 @@ pub use source::{Mistake, Refused};
 /// A model of a text.
 #[derive(Debug, Clone)]
 pub struct Loaded {
+    /// The name as it is declared: `RollingDisk`.
+    pub name: String,
     /// The model itself.
     pub form: &'static Form,
     /// Its scenes, without `all`, which is the model itself.
@@ -64,10 +66,35 @@ pub struct Loaded {
 /// # Errors
 /// Every mistake of the first stage that found any, in whatever model.
 pub fn load(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
+    load_from(name, text, |declaration| declaration)
+}
+
+/// As [`load`], without looking at the claims of the models. Nothing is known then that follows from a claim, such as an invariant volume.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_without_claims(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
+    load_from(name, text, |mut declaration| {
+        let specs: Vec<&mut Spec> = match &mut declaration {
+            Declaration::Model(spec) => vec![spec],
+            Declaration::Modes(modes) => {
+                modes.modes.iter_mut().map(|mode| &mut mode.spec).collect()
+            }
+        };
+        specs.into_iter().for_each(|spec| spec.claims.clear());
+        declaration
+    })
+}
+
+fn load_from(
+    name: &str,
+    text: &str,
+    prepare: fn(Declaration) -> Declaration,
+) -> Result<Vec<Loaded>, Refused> {
     let mut refused = Refused::new(name, text);
     let mut loaded = Vec::new();
     for tokens in source::models(&mut refused)? {
-        match codegen::read(tokens).and_then(build) {
+        match codegen::read(tokens).map(prepare).and_then(build) {
             Ok(model) => loaded.push(model),
             Err(diagnostics) => refused.add(&diagnostics),
         }
@@ -79,11 +106,12 @@ fn build(declaration: Declaration) -> Result<Loaded, codegen::diagnostics::Diagn
     match declaration {
         Declaration::Model(spec) => {
             let compiled = codegen::compile_spec(&spec, codegen::spec::STEPS)?;
-            Ok(loaded(&compiled))
+            Ok(loaded(spec.name.text.clone(), &compiled))
         }
         Declaration::Modes(modes) => {
             let compiled = codegen::compile_modes(&modes)?;
             Ok(Loaded {
+                name: modes.modes[0].spec.name.text.clone(),
                 form: form::of_modes(&compiled),
                 scenes: Vec::new(),
             })
@@ -91,10 +119,11 @@ fn build(declaration: Declaration) -> Result<Loaded, codegen::diagnostics::Diagn
     }
 }
 
-fn loaded(compiled: &Compiled) -> Loaded {
+fn loaded(name: String, compiled: &Compiled) -> Loaded {
     let scenes = &compiled.model.scenes;
     let of_scenes = scenes.iter().zip(&compiled.scenes);
     Loaded {
+        name,
         form: form::of_model(compiled, scenes),
         scenes: of_scenes
             .map(|(scene, compiled)| {

@@ -2,6 +2,7 @@
 //! because only there is it known which names the model has.
 
 mod ensemble;
+mod file;
 mod gallery;
 mod orbit;
 
@@ -18,6 +19,7 @@ use dalembert::policy::{Corner, Penetration, Policies, Rest, Split};
 
 use crate::scalar;
 pub use ensemble::EnsembleArgs;
+pub use file::{BuildArgs, NewArgs, WatchArgs};
 pub use gallery::GalleryArgs;
 pub use orbit::OrbitArgs;
 
@@ -64,6 +66,15 @@ pub enum Command {
     /// Evaluate everything that is derived at given states.
     #[command(after_help = EVAL_EXAMPLES)]
     Eval(EvalArgs),
+    /// Write a file with a commented declaration to begin with.
+    #[command(after_help = file::NEW_EXAMPLES)]
+    New(NewArgs),
+    /// Run a model of a file again whenever the file is saved.
+    #[command(after_help = file::WATCH_EXAMPLES)]
+    Watch(Box<WatchArgs>),
+    /// Write a crate that compiles the models of a file.
+    #[command(after_help = file::BUILD_EXAMPLES)]
+    Build(BuildArgs),
     /// Draw figures of the models, on one page.
     #[command(after_help = gallery::EXAMPLES)]
     Gallery(GalleryArgs),
@@ -73,18 +84,30 @@ pub enum Command {
 }
 
 impl Command {
-    /// The model that it names, if it names one.
+    /// The model that it names, if it names one that is read once.
     pub fn model(&mut self) -> Option<&mut String> {
         match self {
             Self::Derive(args) => Some(&mut args.model),
             Self::Check(args) => Some(&mut args.model),
-            Self::Simulate(args) => Some(&mut args.run.model.model),
-            Self::Ensemble(args) => Some(&mut args.run.model.model),
-            Self::Accuracy(args) => Some(&mut args.run.model.model),
-            Self::Orbit(args) => Some(&mut args.model.model),
-            Self::Eval(args) => Some(&mut args.model.model),
-            Self::List(_) | Self::Gallery(_) | Self::Stability(_) => None,
+            _ => self.model_to_run().map(|args| &mut args.model),
         }
+    }
+
+    /// The model that it runs, if it runs one.
+    fn model_to_run(&mut self) -> Option<&mut ModelArgs> {
+        match self {
+            Self::Simulate(args) => Some(&mut args.run.model),
+            Self::Ensemble(args) => Some(&mut args.run.model),
+            Self::Accuracy(args) => Some(&mut args.run.model),
+            Self::Orbit(args) => Some(&mut args.model),
+            Self::Eval(args) => Some(&mut args.model),
+            _ => None,
+        }
+    }
+
+    /// Are the claims of a model of a file left alone?
+    pub fn skips_claims(&mut self) -> bool {
+        self.model_to_run().is_some_and(|args| args.no_claims)
     }
 }
 
@@ -206,6 +229,9 @@ pub struct ModelArgs {
     /// Set a parameter; may be repeated.
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<String>,
+    /// Run a model of a file without looking at its claims.
+    #[arg(long)]
+    pub no_claims: bool,
     /// The mode to begin in, of a model with modes; without it the first.
     #[arg(long, value_name = "MODE")]
     pub mode: Option<String>,

@@ -135,22 +135,23 @@ fn with_files(
     catalogue: &Catalogue,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
+    let skips_claims = line.command.skips_claims();
     if let Some(given) = line.command.model()
-        && let Some((models, name)) = model_file::read(given, streams.input)?
+        && let Some((models, name)) = model_file::read(given, skips_claims, streams.input)?
     {
         *given = name;
-        return dispatch(line, &catalogue.with_models(models), streams);
+        return dispatch(&mut line.command, &catalogue.with_models(models), streams);
     }
-    dispatch(line, catalogue, streams)
+    dispatch(&mut line.command, catalogue, streams)
 }
 
 fn dispatch(
-    line: &CommandLine,
+    command: &mut Command,
     catalogue: &Catalogue,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
     let models = catalogue.models();
-    match &line.command {
+    match command {
         Command::List(args) => command::list::run(models, args, streams.output),
         Command::Derive(args) => command::derive::run(models, args, streams.output),
         Command::Check(args) => command::check::run(models, args, streams),
@@ -159,6 +160,9 @@ fn dispatch(
         Command::Accuracy(args) => command::accuracy::run(models, args, streams),
         Command::Orbit(args) => command::orbit::run(models, args, streams),
         Command::Eval(args) => command::eval::run(models, args, streams),
+        Command::Watch(args) => command::watch::run(catalogue, args, streams),
+        Command::New(args) => command::new::run(args, streams),
+        Command::Build(args) => command::build::run(args, streams),
         Command::Gallery(args) => command::gallery::run(catalogue, args, streams),
         Command::Stability(args) => command::stability::run(catalogue.suite(), args, streams),
     }

@@ -9,13 +9,19 @@ use crate::error::CliError;
 use crate::names;
 
 /// The ending of the names of files with models.
-const EXTENSION: &str = "dal";
+pub(crate) const EXTENSION: &str = "dal";
 
 /// The name of the standard input.
 const INPUT: &str = "-";
 
 /// The longest text that is read, in bytes.
 const LONGEST: u64 = 1 << 20;
+
+/// The file that an argument names, unless that is the standard input.
+pub(crate) fn path(given: &str) -> Option<&Path> {
+    let (file, _) = split(given)?;
+    (file != INPUT).then_some(Path::new(file))
+}
 
 /// The models of the file that an argument names, and the name of the one that is meant: `disk.dal`, or `systems.dal:disk` where there are
 /// several. `None` if it names no file.
@@ -24,6 +30,7 @@ const LONGEST: u64 = 1 << 20;
 /// A file that cannot be read, every mistake in it, an unknown or missing name.
 pub(crate) fn read(
     given: &str,
+    skips_claims: bool,
     input: &mut dyn Read,
 ) -> Result<Option<(Vec<Entry>, String)>, CliError> {
     let Some((file, name)) = split(given) else {
@@ -35,7 +42,11 @@ pub(crate) fn read(
     } else {
         file
     };
-    let models = dalembert_jit::load(shown, &text).map_err(CliError::Declaration)?;
+    let load = match skips_claims {
+        true => dalembert_jit::load_without_claims,
+        false => dalembert_jit::load,
+    };
+    let models = load(shown, &text).map_err(CliError::Declaration)?;
     let entries: Vec<Entry> = models.iter().map(Entry::loaded).collect();
     let all = entries.iter().map(Entry::name);
     let chosen = match (name, entries.as_slice()) {
@@ -68,7 +79,11 @@ fn split(given: &str) -> Option<(&str, Option<&str>)> {
     is_file(file).then_some((file, Some(name)))
 }
 
-fn text(file: &str, input: &mut dyn Read) -> Result<String, CliError> {
+/// The text of a file, or of the standard input.
+///
+/// # Errors
+/// A file that cannot be read, or is too long.
+pub(crate) fn text(file: &str, input: &mut dyn Read) -> Result<String, CliError> {
     let failed = |source| CliError::File {
         flag: "MODEL",
         path: PathBuf::from(file),

@@ -1,12 +1,15 @@
 //! The commands, one file each.
 
 pub mod accuracy;
+pub mod build;
 pub mod check;
 pub mod derive;
 pub mod ensemble;
 pub mod eval;
 pub mod gallery;
 pub mod list;
+pub mod new;
 pub mod orbit;
 pub mod simulate;
 pub mod stability;
+pub mod watch;

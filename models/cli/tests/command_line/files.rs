@@ -213,3 +213,108 @@ fn times_name_the_code_that_was_loaded() {
     let expected = "times with the model's functions loaded from its text";
     assert!(measured.output.contains(expected), "{}", measured.output);
 }
+
+#[test]
+fn new_writes_a_model_that_runs() {
+    let folder = Folder::new("new");
+    let file = folder.0.join("wall_clock.dal");
+    let name = folder.0.join("wall_clock").display().to_string();
+    let written = run(&format!("new {name}"));
+    assert_eq!(written.exit, Exit::Reached, "{}", written.errors);
+    let shown = format!("wrote {}; `dalembert watch", file.display());
+    assert!(written.output.starts_with(&shown), "{}", written.output);
+    let document = run(&format!("simulate {} --json -", file.display())).json();
+    assert_eq!(document["model"], "wall_clock");
+    assert_eq!(document["outcome"]["kind"], "done");
+    assert!(document["counters"]["impacts"].as_u64() > Some(2));
+    let again = run(&format!("new {name}.dal"));
+    assert_eq!(again.exit, Exit::Refused);
+    assert!(
+        again.errors.contains("wall_clock.dal: File exists"),
+        "{}",
+        again.errors
+    );
+    for wrong in ["Clock", "2", "wall-clock", "clock.txt", ""] {
+        let refused = run_on("", &["new", wrong]);
+        assert_eq!(refused.exit, Exit::Refused, "{wrong}");
+        assert!(
+            refused.errors.contains("small letters"),
+            "{}",
+            refused.errors
+        );
+    }
+}
+
+#[test]
+fn build_writes_a_crate_once() {
+    let folder = Folder::new("build");
+    let both = format!("{BALL} pub BallOnTop {{ coordinates {{ y; }} lagrangian = dot(y)^2; }}");
+    let file = folder.file("balls.dal", &both);
+    let written = run(&format!("build {file}"));
+    assert_eq!(written.exit, Exit::Reached, "{}", written.errors);
+    let read = |name: &str| std::fs::read_to_string(folder.0.join("balls").join(name)).unwrap();
+    assert_eq!(read("src/balls.dal"), both);
+    let main = read("src/main.rs");
+    assert!(
+        main.contains("dalembert::model_file!(\"src/balls.dal\");"),
+        "{main}"
+    );
+    assert!(main.contains("models![Ball, BallOnTop]"), "{main}");
+    let manifest = read("Cargo.toml");
+    assert!(manifest.contains("name = \"balls\""), "{manifest}");
+    let again = run(&format!("build {file}"));
+    assert_eq!(again.exit, Exit::Refused);
+    assert!(again.errors.starts_with("error: --to "), "{}", again.errors);
+    let elsewhere = folder.0.join("other").display().to_string();
+    let nowhere = run(&format!(
+        "build {file} --to {elsewhere} --library {elsewhere}"
+    ));
+    assert!(nowhere.errors.contains("--library"), "{}", nowhere.errors);
+    let wrong = folder.file("wrong.dal", "Ball { coordinates { x } }");
+    let refused = run(&format!("build {wrong}"));
+    assert!(
+        refused.errors.contains("wrong.dal:1:"),
+        "{}",
+        refused.errors
+    );
+    assert!(!folder.0.join("wrong").exists());
+}
+
+#[test]
+fn watch_runs_a_file_again_when_it_is_saved() {
+    let folder = Folder::new("watch");
+    let file = folder.file("ball.dal", "Ball { coordinates { x } }");
+    let path = PathBuf::from(&file);
+    let saving = std::thread::spawn(move || {
+        std::thread::sleep(std::time::Duration::from_millis(500));
+        std::fs::write(path, BALL).unwrap();
+    });
+    let done = run(&format!("watch {file} --until 0.5 --runs 2"));
+    saving.join().unwrap();
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    assert!(done.errors.contains("ball.dal:1:"), "{}", done.errors);
+    assert!(
+        done.errors.contains("waiting for a change of"),
+        "{}",
+        done.errors
+    );
+    assert!(done.output.contains("ball"), "{}", done.output);
+    let shipped = run("watch bouncing_ball --runs 1");
+    assert_eq!(shipped.exit, Exit::Refused);
+    assert!(
+        shipped.errors.contains("dalembert new"),
+        "{}",
+        shipped.errors
+    );
+}
+
+#[test]
+fn claims_are_left_alone_where_that_is_asked_for() {
+    let folder = Folder::new("claims");
+    let claims = BALL.replace("conserved: energy;", "conserved: x;");
+    let file = folder.file("ball.dal", &claims);
+    let refused = run(&format!("simulate {file}"));
+    assert_eq!(refused.exit, Exit::Refused, "{}", refused.output);
+    let done = run(&format!("simulate {file} --no-claims --json -"));
+    assert_eq!(done.json()["outcome"]["kind"], "done", "{}", done.errors);
+}

@@ -1,0 +1,141 @@
+//! `build`: a crate that compiles the models of a file.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use crate::args::BuildArgs;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::{Streams, model_file};
+
+/// The ending of the names of files with models.
+pub(crate) const ENDING: &str = model_file::EXTENSION;
+
+/// Carries out `build`.
+///
+/// # Errors
+/// A file that cannot be read, mistakes in it, a folder that is not empty or cannot be written.
+pub fn run(args: &BuildArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
+    let given = args.file.display().to_string();
+    let text = model_file::text(&given, streams.input)?;
+    let models = dalembert_jit::load(&given, &text).map_err(CliError::Declaration)?;
+    let models: Vec<String> = models.into_iter().map(|model| model.name).collect();
+    let folder = match &args.to {
+        Some(folder) => folder.clone(),
+        None => args.file.with_extension(""),
+    };
+    let name = folder.file_name().and_then(|name| name.to_str());
+    let Some(name) = name.filter(|name| is_package_name(name)) else {
+        let expected = "a folder named with letters, digits, `_` and `-`, a letter first; give one with --to FOLDER";
+        return Err(CliError::value(
+            "--to",
+            folder.display().to_string(),
+            expected,
+        ));
+    };
+    let package = Package {
+        name,
+        models: &models,
+        text: &text,
+        library: library(args.library.as_deref())?,
+    };
+    package.write("--to", &folder, streams.output)?;
+    Ok(Exit::Reached)
+}
+
+fn is_package_name(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+}
+
+/// The folder of the library.
+///
+/// # Errors
+/// There is no library there.
+pub(crate) fn library(given: Option<&Path>) -> Result<PathBuf, CliError> {
+    let built_from = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let folder = given.unwrap_or(Path::new(built_from));
+    let found = folder.canonicalize().ok();
+    let is_library = |folder: &PathBuf| folder.join("runtime/Cargo.toml").is_file();
+    found.filter(is_library).ok_or_else(|| {
+        let expected = "the folder of dalembert, with `runtime` and `models` in it; give it with --library FOLDER";
+        CliError::value("--library", folder.display().to_string(), expected)
+    })
+}
+
+/// A crate with the command line over the models of one file.
+pub(crate) struct Package<'a> {
+    pub name: &'a str,
+    /// The names of the types.
+    pub models: &'a [String],
+    pub text: &'a str,
+    pub library: PathBuf,
+}
+
+impl Package<'_> {
+    /// Writes the crate into a folder that does not exist yet or is empty.
+    pub(crate) fn write(
+        &self,
+        flag: &'static str,
+        folder: &Path,
+        output: &mut dyn Write,
+    ) -> Result<(), CliError> {
+        let failed = |path: &Path, source| CliError::File {
+            flag,
+            path: path.to_owned(),
+            source,
+        };
+        let source = folder.join("src");
+        let is_empty =
+            |folder: &Path| fs::read_dir(folder).map(|mut entries| entries.next().is_none());
+        fs::create_dir_all(folder)
+            .and_then(|()| match is_empty(folder)? {
+                true => fs::create_dir(&source),
+                false => Err(io::Error::from(io::ErrorKind::DirectoryNotEmpty)),
+            })
+            .map_err(|error| failed(folder, error))?;
+        for (path, text) in [
+            (folder.join("Cargo.toml"), self.manifest()),
+            (source.join("main.rs"), self.main()),
+            (source.join(self.file()), self.text.to_owned()),
+        ] {
+            fs::write(&path, text).map_err(|error| failed(&path, error))?;
+        }
+        let manifest = folder.join("Cargo.toml");
+        writeln!(
+            output,
+            "wrote {}; `cargo run --release --manifest-path {} -- list` builds it",
+            folder.display(),
+            manifest.display()
+        )?;
+        Ok(())
+    }
+
+    fn file(&self) -> String {
+        format!("{}.{ENDING}", self.name.replace('-', "_"))
+    }
+
+    fn manifest(&self) -> String {
+        let name = self.name;
+        let [runtime, cli] = ["runtime", "models/cli"]
+            .map(|part| format!("{:?}", self.library.join(part).display().to_string()));
+        format!(
+            "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
+             [features]\n# The functions of the models are inlined into the code that runs them: minutes to build.\n\
+             inlined = [\"dalembert-cli/inlined\"]\n\n\
+             [dependencies]\ndalembert = {{ path = {runtime} }}\ndalembert-cli = {{ path = {cli} }}\n\n\
+             [workspace]\n"
+        )
+    }
+
+    fn main(&self) -> String {
+        let (file, models) = (self.file(), self.models.join(", "));
+        format!(
+            "use std::process::ExitCode;\n\ndalembert::model_file!(\"src/{file}\");\n\n\
+             fn main() -> ExitCode {{\n    dalembert_cli::run(dalembert_cli::models![{models}])\n}}\n"
+        )
+    }
+}

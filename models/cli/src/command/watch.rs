@@ -1,0 +1,89 @@
+//! `watch`: a model of a file runs again whenever the file is saved.
+
+use std::path::Path;
+use std::thread;
+use std::time::{Duration, SystemTime};
+
+use crate::args::WatchArgs;
+use crate::catalogue::Catalogue;
+use crate::command::simulate;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::{Streams, model_file};
+
+/// The time between two looks at the file.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// Carries out `watch`.
+///
+/// # Errors
+/// A model that is in no file, streams that fail. Everything else is shown, and the file is watched on.
+pub fn run(
+    catalogue: &Catalogue,
+    args: &mut WatchArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    let given = args.simulate.run.model.model.clone();
+    let Some(file) = model_file::path(&given) else {
+        let expected =
+            "a file with a declaration, such as `disk.dal`; `dalembert new disk` writes one";
+        return Err(CliError::value("MODEL", given, expected));
+    };
+    for run in 1.. {
+        let seen = Stamp::of(file);
+        args.simulate.run.model.model.clone_from(&given);
+        let exit = match simulate_once(catalogue, args, streams) {
+            Err(CliError::Stream(error)) => return Err(CliError::Stream(error)),
+            Err(error) => {
+                writeln!(streams.errors, "error: {error}")?;
+                Exit::Refused
+            }
+            Ok(exit) => exit,
+        };
+        streams.output.flush()?;
+        if args.runs.is_some_and(|runs| run >= runs) {
+            return Ok(exit);
+        }
+        writeln!(streams.errors, "waiting for a change of {}", file.display())?;
+        seen.wait_for_another(file);
+    }
+    Ok(Exit::Reached)
+}
+
+fn simulate_once(
+    catalogue: &Catalogue,
+    args: &mut WatchArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    let model = &mut args.simulate.run.model;
+    let read = model_file::read(&model.model, model.no_claims, streams.input)?;
+    let Some((models, name)) = read else {
+        return simulate::run(catalogue.models(), &args.simulate, streams);
+    };
+    model.model = name;
+    simulate::run(&models, &args.simulate, streams)
+}
+
+/// What is seen of a file without reading it; nothing of one that does not exist.
+#[derive(Debug, PartialEq, Eq)]
+struct Stamp(Option<(SystemTime, u64)>);
+
+impl Stamp {
+    fn of(file: &Path) -> Self {
+        let seen = file
+            .metadata()
+            .and_then(|data| Ok((data.modified()?, data.len())));
+        Self(seen.ok())
+    }
+
+    /// Waits until the file is there and looks otherwise.
+    fn wait_for_another(&self, file: &Path) {
+        loop {
+            thread::sleep(PAUSE);
+            let seen = Self::of(file);
+            if seen.0.is_some() && seen != *self {
+                return;
+            }
+        }
+    }
+}
