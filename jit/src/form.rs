@@ -171,10 +171,10 @@ fn native_series(series: &'static NativeSeries) -> SeriesTable<f64> {
 
 /// The functions of a form by name.
 #[derive(Debug)]
-struct Functions(BTreeMap<Kernel, &'static Code>);
+pub(crate) struct Functions(pub(crate) BTreeMap<Kernel, &'static Code>);
 
 impl Functions {
-    fn of(known: &FormOf<'_>) -> Self {
+    pub(crate) fn of(known: &FormOf<'_>) -> Self {
         let mut functions = BTreeMap::new();
         let mut velocity = None;
         for (kernel, function) in known.kernels() {
@@ -191,7 +191,7 @@ impl Functions {
         Self(functions)
     }
 
-    fn compiled(&self, series: &'static Series) -> Option<Compiled> {
+    pub(crate) fn compiled(&self, series: &'static Series) -> Option<Compiled> {
         let codes: Vec<&'static Code> = self.0.values().copied().collect();
         native::compile(&codes, series)
     }

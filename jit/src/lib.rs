@@ -10,7 +10,7 @@
 //! | `form.rs` | forms, of tables and of what executes programs |
 //! | `machine.rs` | a function over any kind of number, by a machine with registers |
 //! | `series.rs` | power series over any kind of number |
-//! | `native/` | both over doubles, as machine code of x86-64 with AVX; elsewhere the two above do it, 2 to 10 times slower |
+//! | `native/` | both over doubles, as machine code of x86-64 with AVX and of aarch64; elsewhere the two above do it, 2 to 10 times slower |
 //!
 //! What a declaration is refused for, and what is proved of its claims, is what `model!` says of it. The numbers that come out are those of
 //! the code that `model!` writes, to the bit.
@@ -36,10 +36,10 @@
 
 mod form;
 mod machine;
-#[cfg(target_arch = "x86_64")]
-mod native;
-#[cfg(not(target_arch = "x86_64"))]
-#[path = "elsewhere.rs"]
+#[cfg_attr(
+    not(any(target_arch = "x86_64", target_arch = "aarch64")),
+    path = "elsewhere.rs"
+)]
 mod native;
 mod series;
 mod source;

@@ -84,23 +84,6 @@ pub(crate) enum Condition {
     Surface(usize, usize, Option<usize>),
 }
 
-impl Condition {
-    /// The register whose value must be larger than this part of that of another, or than 0.
-    #[cfg(target_arch = "x86_64")]
-    pub(crate) fn bound(&self) -> (usize, Option<(f64, usize)>) {
-        match *self {
-            Self::Pivot(_, value) => (value, None),
-            Self::Mass(_, pivot, diagonal) => (pivot, Some((Guard::LEAST_PIVOT_RATIO, diagonal))),
-            Self::Constraint(_, squared, reference)
-            | Self::Frame(_, squared, reference)
-            | Self::Surface(_, squared, reference) => (
-                squared,
-                reference.map(|register| (Guard::LEAST_SQUARED_RATIO, register)),
-            ),
-        }
-    }
-}
-
 impl Code {
     /// A kernel of `n` coordinates; `velocity` gives the velocities of a state.
     pub(crate) fn of_kernel(

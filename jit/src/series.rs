@@ -121,16 +121,6 @@ impl Series {
         self.known
     }
 
-    /// How many parameters are read.
-    #[cfg(target_arch = "x86_64")]
-    pub(crate) fn parameters(&self) -> usize {
-        let read = self.firsts.iter().map(|first| match first {
-            First::Parameter(k) => k + 1,
-            _ => 0,
-        });
-        read.max().unwrap_or(0)
-    }
-
     /// Writes what the series begins with.
     pub(crate) fn begin<L: Numbers>(
         &self,

@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use dalembert_codegen::program::Guard;
 use dalembert_expr::Function as Elementary;
 
 use super::helpers::OfNumbers;
 use super::straight::{Base, Binary, Operation, Place, Straight, Unary, Value};
-use crate::machine::{self, Code, Constant, Instruction};
+use crate::machine::{self, Code, Condition, Constant, Instruction};
 
 /// Pointers of a function, in the order of its arguments.
 const PARAMETERS: Base = Base::Argument(0);
@@ -136,7 +137,7 @@ impl<'a> Body<'a> {
                 self.straight.push(call)
             }
             Instruction::Guard(ref condition) => {
-                let (value, reference) = condition.bound();
+                let (value, reference) = bound(condition);
                 self.guard(value, reference);
                 return None;
             }
@@ -165,6 +166,20 @@ impl<'a> Body<'a> {
         self.straight.push(Operation::SineAndCosine(a, place));
         self.taken.insert(a, place);
         place
+    }
+}
+
+/// The register whose value must be larger than this part of that of another, or than 0.
+fn bound(condition: &Condition) -> (usize, Option<(f64, usize)>) {
+    match *condition {
+        Condition::Pivot(_, value) => (value, None),
+        Condition::Mass(_, pivot, diagonal) => (pivot, Some((Guard::LEAST_PIVOT_RATIO, diagonal))),
+        Condition::Constraint(_, squared, reference)
+        | Condition::Frame(_, squared, reference)
+        | Condition::Surface(_, squared, reference) => (
+            squared,
+            reference.map(|register| (Guard::LEAST_SQUARED_RATIO, register)),
+        ),
     }
 }
 

@@ -5,6 +5,8 @@ use dalembert::numbers::LENGTH;
 use dalembert_expr::Function as Elementary;
 use dalembert_numbers::math;
 
+use super::assembly::convention;
+
 /// A function of one or two numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum OfNumbers {
@@ -23,8 +25,10 @@ pub(super) enum OfSeries {
 macro_rules! functions {
     ($($name:ident($($argument:ident),+);)*) => {
         $(
-            extern "sysv64" fn $name($($argument: f64),+) -> f64 {
-                math::$name($($argument),+)
+            convention! {
+                fn $name($($argument: f64),+) -> f64 {
+                    math::$name($($argument),+)
+                }
             }
         )*
     };
@@ -37,9 +41,9 @@ functions! {
 impl OfNumbers {
     /// Where the function lies.
     pub(super) fn address(self) -> usize {
-        let of_one: extern "sysv64" fn(f64) -> f64 = match self {
-            Self::Atan2 => return (atan2 as extern "sysv64" fn(f64, f64) -> f64) as usize,
-            Self::Power => return (powf as extern "sysv64" fn(f64, f64) -> f64) as usize,
+        let of_one: convention!(fn(f64) -> f64) = match self {
+            Self::Atan2 => return atan2 as *const () as usize,
+            Self::Power => return powf as *const () as usize,
             Self::Elementary(function) => match function {
                 Elementary::Sin => sin,
                 Elementary::Cos => cos,
@@ -74,26 +78,34 @@ pub(super) fn address_of_sine_and_cosine() -> usize {
     sine_and_cosine as *const () as usize
 }
 
-extern "sysv64" fn abs(x: f64) -> f64 {
-    x.abs()
+convention! {
+    fn abs(x: f64) -> f64 {
+        x.abs()
+    }
 }
 
-/// Writes sine and cosine.
-extern "sysv64" fn sine_and_cosine(x: f64, both: *mut [f64; 2]) {
-    // SAFETY: the code hands over room for two numbers in its own frame.
-    unsafe { *both = [math::sin(x), math::cos(x)] }
+convention! {
+    /// Writes sine and cosine.
+    fn sine_and_cosine(x: f64, both: *mut [f64; 2]) {
+        // SAFETY: the code hands over room for two numbers in its own frame.
+        unsafe { *both = [math::sin(x), math::cos(x)] }
+    }
 }
 
-/// Half of a sum over one series, which is given twice.
-extern "sysv64" fn half(a: *const [f64; LENGTH], _: *const [f64; LENGTH], k: i64) -> f64 {
-    // SAFETY: series of a large expansion lie in one piece, each as long.
-    jet::half(unsafe { &*a }, usize::try_from(k).unwrap_or(0))
+convention! {
+    /// Half of a sum over one series, which is given twice.
+    fn half(a: *const [f64; LENGTH], _: *const [f64; LENGTH], k: i64) -> f64 {
+        // SAFETY: series of a large expansion lie in one piece, each as long.
+        jet::half(unsafe { &*a }, usize::try_from(k).unwrap_or(0))
+    }
 }
 
-/// A sum over two series.
-extern "sysv64" fn middle(a: *const [f64; LENGTH], b: *const [f64; LENGTH], k: i64) -> f64 {
-    let k = usize::try_from(k).unwrap_or(0);
-    // SAFETY: series of a large expansion lie in one piece, each as long.
-    let (a, b) = unsafe { (&*a, &*b) };
-    jet::shared_middle(a, b, k)
+convention! {
+    /// A sum over two series.
+    fn middle(a: *const [f64; LENGTH], b: *const [f64; LENGTH], k: i64) -> f64 {
+        let k = usize::try_from(k).unwrap_or(0);
+        // SAFETY: series of a large expansion lie in one piece, each as long.
+        let (a, b) = unsafe { (&*a, &*b) };
+        jet::shared_middle(a, b, k)
+    }
 }

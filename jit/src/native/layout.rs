@@ -7,7 +7,7 @@ use dalembert_codegen::program::Value as Place;
 use dalembert_codegen::program::jet::History;
 use dalembert_codegen::program::jet::terms::Term;
 
-use super::x64::{LANES, SIDE_BY_SIDE};
+use super::assembly::{LANES, SIDE_BY_SIDE};
 use crate::series::{Series, Step};
 
 /// The number of the frame that is the last order of the loop, as an integer.

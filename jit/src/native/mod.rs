@@ -1,13 +1,15 @@
 //! Machine code of functions and of power series over doubles.
 //!
 //! ```text
-//! Code   --function--> Straight --registers--> Allocated --x64--> executable memory
+//! Code   --function--> Straight --registers--> Allocated --assembly--> executable memory
 //! Series --series----> (the same, twice, and the sums of layout)
 //! ```
 //!
-//! `helpers.rs` is what machine code calls. Memory is written first and then made executable, never both; it is freed with the last function.
+//! The assembly is that of the processor: `x64.rs` of x86-64 with AVX, or `aarch64.rs`. It says how many numbers a vector has, and how
+//! functions are called. `helpers.rs` is what machine code calls. Memory is written first and then made executable, never both; it is freed
+//! with the last function.
 //!
-//! Unchecked by the compiler are this file and `helpers.rs`: pointers to functions of what `x64.rs` wrote, and their calls with pointers to
+//! Unchecked by the compiler are this file and `helpers.rs`: pointers to functions of what the assembly wrote, and their calls with pointers to
 //! slices whose lengths were compared with what the code reads and writes. The code of a function reads and writes at constant distances
 //! from those pointers; that of a series goes over rows up to the order that it is given, of which there is room for all. Both call
 //! nothing but `helpers.rs`.
@@ -16,6 +18,11 @@
 //! does not hold, that machine is asked which.
 #![allow(unsafe_code)]
 
+#[cfg(test)]
+mod agreement;
+#[cfg_attr(target_arch = "x86_64", path = "x64.rs")]
+#[cfg_attr(target_arch = "aarch64", path = "aarch64.rs")]
+mod assembly;
 mod function;
 mod helpers;
 mod layout;
@@ -24,7 +31,6 @@ mod random;
 mod registers;
 mod series;
 mod straight;
-mod x64;
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -37,16 +43,16 @@ use dalembert::numbers::LENGTH;
 use dynasmrt::ExecutableBuffer;
 
 use crate::machine::{Code, Instruction, Place};
-use crate::series::Series;
+use crate::series::{First, Series};
+use assembly::{Assembly, convention};
 use layout::Layout;
 use series::Expansion;
-use x64::Assembly;
 
-/// Are products and sums rounded once, as `math::mul_add` does, which is compiled with the same features?
+/// Are products and sums rounded once, as `math::mul_add` does, which is compiled with the same features? On aarch64 that rounds twice.
 const IS_FUSED: bool = cfg!(all(target_feature = "fma", not(feature = "strict")));
 
 /// Parameters, time, first and second place, values; 0 if every guard holds.
-type Entry = unsafe extern "sysv64" fn(*const f64, f64, *const f64, *const f64, *mut f64) -> i32;
+type Entry = convention!(unsafe fn(*const f64, f64, *const f64, *const f64, *mut f64) -> i32);
 
 /// A function as machine code.
 #[derive(Debug)]
@@ -75,6 +81,14 @@ impl Native {
     /// # Panics
     /// If a slice is shorter than what is read or written.
     pub(crate) fn run(&self, at: At<'_, f64>, values: &mut [f64]) -> Result<(), Fault> {
+        match self.holds(at, values) {
+            true => Ok(()),
+            false => self.code.run(at, values),
+        }
+    }
+
+    /// Writes the values if every guard holds.
+    fn holds(&self, at: At<'_, f64>, values: &mut [f64]) -> bool {
         let has_room = at.parameters.len() >= self.extent.parameters
             && at.first.len() >= self.extent.first
             && at.second.len() >= self.extent.second
@@ -91,10 +105,7 @@ impl Native {
                 values.as_mut_ptr(),
             )
         };
-        match status {
-            0 => Ok(()),
-            _ => self.code.run(at, values),
-        }
+        status == 0
     }
 }
 
@@ -128,7 +139,7 @@ impl Extent {
 }
 
 /// Parameters, what is known at first, unit of time, order; coefficients from order 1 on, room for what is kept.
-type Advance = unsafe extern "sysv64" fn(*const f64, *const f64, f64, i64, *mut f64, *mut f64);
+type Advance = convention!(unsafe fn(*const f64, *const f64, f64, i64, *mut f64, *mut f64));
 
 /// A power series as machine code.
 #[derive(Debug)]
@@ -255,11 +266,20 @@ pub(crate) fn compile(codes: &[&'static Code], series: &'static Series) -> Optio
             begin,
             // SAFETY: a function with this signature was written there.
             advance: unsafe { core::mem::transmute::<*const u8, Advance>(memory.ptr(advance)) },
-            parameters: series.parameters(),
+            parameters: parameters(series),
             known: series.known(),
             components: series.components,
             gaps: series.outputs.len() - series.components,
             room: layout.room,
         },
     })
+}
+
+/// How many parameters a series reads.
+fn parameters(series: &Series) -> usize {
+    let read = series.firsts.iter().map(|first| match first {
+        First::Parameter(k) => k + 1,
+        _ => 0,
+    });
+    read.max().unwrap_or(0)
 }

@@ -1,15 +1,20 @@
 //! Random straight-line code gives what it says, to the bit, however many registers it asks for.
 
 use super::helpers::OfNumbers;
-use super::straight::{Base, Binary, Operation, Place, Straight, Unary, Value};
-use super::{Entry, registers, x64::Assembly};
+use super::straight::{Base, Binary, Operation, Place, Straight, Unary, Value, bytes};
+use super::{Entry, assembly::Assembly, registers};
 use dalembert_expr::Function as Elementary;
 use dalembert_numbers::math;
 
 /// Numbers that follow from a seed.
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
+    /// A number between two others.
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.below(1 << 20) as f64 / f64::from(1 << 20)
+    }
+
     fn below(&mut self, bound: usize) -> usize {
         self.0 = self
             .0
@@ -17,6 +22,14 @@ impl Random {
             .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as usize % bound
     }
+}
+
+/// The bits of numbers; `None` of one that is none.
+pub(super) fn bits(numbers: &[f64]) -> Vec<Option<u64>> {
+    let numbers = numbers.iter();
+    numbers
+        .map(|number| (!number.is_nan()).then(|| number.to_bits()))
+        .collect()
 }
 
 const INPUTS: usize = 12;
@@ -113,7 +126,7 @@ fn random_code_gives_what_it_says() {
         let (count, reach) = (1 + random.below(120), 2 + random.below(40));
         let code = write(&mut random, (count, reach), &inputs);
         let allocated = registers::allocate(&code.straight);
-        let mut assembly = Assembly::new().expect("a processor with AVX");
+        let mut assembly = Assembly::new().expect("a processor that there is code for");
         let entry = assembly.function(&allocated);
         let memory = assembly.finish().expect("memory");
         // SAFETY: a function with this signature was written there.
@@ -123,12 +136,6 @@ fn random_code_gives_what_it_says() {
         // SAFETY: the code reads the inputs and writes as many numbers as it reaches back.
         let status = unsafe { entry(none, 0.75, first, none, stored.as_mut_ptr()) };
         assert_eq!(status, 0);
-        let bits = |numbers: &[f64]| -> Vec<Option<u64>> {
-            let numbers = numbers.iter();
-            numbers
-                .map(|number| (!number.is_nan()).then(|| number.to_bits()))
-                .collect()
-        };
         let [expected, found] = [&code.stored, &stored].map(|numbers| bits(numbers));
         assert_eq!(expected, found, "round {round}: {allocated:?}");
     }
@@ -142,7 +149,7 @@ fn a_guard_that_does_not_hold_stops_a_function() {
         let bound = straight.number(0.5);
         straight.push(Operation::Guard([t, bound]));
         straight.store(t, Place::of(Base::Argument(3), 0));
-        let mut assembly = Assembly::new().expect("a processor with AVX");
+        let mut assembly = Assembly::new().expect("a processor that there is code for");
         let entry = assembly.function(&registers::allocate(&straight));
         let memory = assembly.finish().expect("memory");
         // SAFETY: a function with this signature was written there.
@@ -151,5 +158,39 @@ fn a_guard_that_does_not_hold_stops_a_function() {
         // SAFETY: the code writes one number.
         let found = unsafe { entry(none, value, none, none, &raw mut stored) };
         assert_eq!(found, status, "{value}");
+    }
+}
+
+#[test]
+fn places_are_reached_however_far_they_lie() {
+    const FAR: usize = (1 << 21) + 9;
+    let mut inputs = vec![0.0; 2 * FAR];
+    let mut stored = vec![0.0; 2 * FAR];
+    for distance in [8, 63, 64, 65, 513, 4095, 4096, 8191, 1 << 17, FAR - 4] {
+        let [before, after] = [FAR - distance, FAR + distance];
+        (inputs[before], inputs[after]) = (1.25, distance as f64);
+        let [read, written] = [1, 3].map(|pointer| {
+            let place = Place::of(Base::Argument(pointer), 0);
+            [-1, 1].map(|sign| place.shifted(sign * bytes(distance)))
+        });
+        let mut straight = Straight::with_frame(distance.min(5000));
+        let [a, b] = read.map(|place| straight.load(place));
+        let room = straight.room(1);
+        straight.store(b, room);
+        let b = straight.load(room);
+        let difference = straight.binary(Binary::Sub, [b, a]);
+        straight.push(Operation::StoreVector(vec![a, difference], written[0]));
+        straight.store(b, written[1]);
+        let mut assembly = Assembly::new().expect("a processor that there is code for");
+        let entry = assembly.function(&registers::allocate(&straight));
+        let memory = assembly.finish().expect("memory");
+        // SAFETY: a function with this signature was written there.
+        let entry = unsafe { core::mem::transmute::<*const u8, Entry>(memory.ptr(entry)) };
+        let (none, first) = (core::ptr::null(), inputs[FAR..].as_ptr());
+        // SAFETY: all the places lie in the vectors.
+        let status = unsafe { entry(none, 0.0, first, none, stored[FAR..].as_mut_ptr()) };
+        let found = [stored[before], stored[before + 1], stored[after]];
+        let distance = distance as f64;
+        assert_eq!((status, found), (0, [1.25, distance - 1.25, distance]));
     }
 }

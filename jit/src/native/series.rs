@@ -10,11 +10,11 @@ use dalembert_codegen::program::Value as Place;
 use dalembert_codegen::program::jet::History;
 use dalembert_codegen::program::jet::terms::Term;
 
+use super::assembly::LANES;
 use super::helpers::OfSeries;
 use super::layout::{Group, Layout, Sum, UNIT, WEIGHT};
 use super::registers::{self, Allocated};
 use super::straight::{self, Base, Binary, Operation, Straight, Unary, Value, bytes};
-use super::x64::LANES;
 use crate::machine::Constant;
 use crate::series::{First, Series, Step};
 

@@ -13,6 +13,13 @@ use super::registers::{Allocated, Instruction, Operand, Register, SCRATCH};
 use super::series::Expansion;
 use super::straight::{Base, Binary, Place, Unary, bytes};
 
+/// A function, or a type of functions, with the calling convention of machine code.
+macro_rules! convention {
+    (unsafe fn $($function:tt)+) => { unsafe extern "sysv64" fn $($function)+ };
+    ($(#[$meta:meta])* fn $($function:tt)+) => { $(#[$meta])* extern "sysv64" fn $($function)+ };
+}
+pub(super) use convention;
+
 /// Numbers of a vector.
 pub(super) const LANES: usize = 4;
 
