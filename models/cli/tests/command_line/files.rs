@@ -234,7 +234,7 @@ fn new_writes_a_model_that_runs() {
         "{}",
         again.errors
     );
-    for wrong in ["Clock", "2", "wall-clock", "clock.txt", ""] {
+    for wrong in ["Clock", "2", "wall-clock", "clock.txt"] {
         let refused = run_on("", &["new", wrong]);
         assert_eq!(refused.exit, Exit::Refused, "{wrong}");
         assert!(
