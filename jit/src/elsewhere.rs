@@ -1,5 +1,5 @@
-//! What stands for `native` on a processor that there is no machine code for: nothing is compiled, and the machines of `machine.rs` and
-//! `series.rs` run everything.
+//! Substitute for `native` on processors without machine code: nothing is compiled, and the machines of `machine.rs` and `series.rs` run
+//! everything.
 
 use core::convert::Infallible;
 

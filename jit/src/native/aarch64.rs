@@ -93,7 +93,7 @@ impl Frame {
 /// Vectors of sums, and where their factors lie.
 struct Products {
     vectors: Register,
-    /// Of first and second factors, in a row.
+    /// Places of the first and the second factors, in a row.
     places: [i32; 2],
     /// Bytes from one row to the next.
     kept: i32,

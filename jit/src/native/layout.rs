@@ -10,11 +10,11 @@ use dalembert_codegen::program::jet::terms::Term;
 use super::assembly::{LANES, SIDE_BY_SIDE};
 use crate::series::{Series, Step};
 
-/// The number of the frame that is the last order of the loop, as an integer.
+/// Number of the frame: the last order of the loop, as an integer.
 pub(super) const LAST: usize = 0;
-/// That which is the order at hand, as a double.
+/// Number of the frame: the order at hand, as a double.
 pub(super) const WEIGHT: usize = 1;
-/// That which is the unit of time.
+/// Number of the frame: the unit of time.
 pub(super) const UNIT: usize = 2;
 const FIXED: usize = 3;
 

@@ -275,7 +275,7 @@ pub(crate) fn compile(codes: &[&'static Code], series: &'static Series) -> Optio
     })
 }
 
-/// How many parameters a series reads.
+/// Number of parameters that a series reads.
 fn parameters(series: &Series) -> usize {
     let read = series.firsts.iter().map(|first| match first {
         First::Parameter(k) => k + 1,

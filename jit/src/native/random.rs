@@ -38,7 +38,7 @@ const INPUTS: usize = 12;
 struct Written {
     straight: Straight,
     values: Vec<f64>,
-    /// What was stored.
+    /// Numbers that the code stores.
     stored: Vec<f64>,
 }
 

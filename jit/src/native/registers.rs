@@ -16,7 +16,7 @@ const COUNT: usize = 14;
 /// The first register that no value is given.
 pub(super) const SCRATCH: Register = COUNT as Register;
 
-/// What an instruction reads.
+/// Operand of an instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Operand {
     Register(Register),
@@ -86,7 +86,7 @@ struct Allocation {
     locked: u16,
     frame: usize,
     free: Vec<Place>,
-    /// What is free once the instruction on its way has read it.
+    /// Places that become free once the instruction on its way has read them.
     released: Vec<Place>,
 }
 
@@ -286,14 +286,13 @@ impl Allocation {
         }
     }
 
-    /// A register for a result: it may be one that the instruction reads.
+    /// A register for a result: it may be one that the instruction reads, unless its value is needed later.
     fn take_for(&mut self, value: Value) -> Register {
-        let is_read = self.locked;
-        // NOTE: a value that is needed later keeps its register.
-        self.locked = (0..COUNT)
-            .filter(|register| self.held[*register].is_some())
-            .fold(0, |bits, register| bits | 1 << register)
-            & is_read;
+        for register in 0..COUNT {
+            if self.held[register].is_none() {
+                self.locked &= !(1 << register);
+            }
+        }
         let register = self.take();
         self.hold(value, register);
         register

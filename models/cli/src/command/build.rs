@@ -7,10 +7,8 @@ use std::path::{Path, PathBuf};
 use crate::args::BuildArgs;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::model_file::EXTENSION;
 use crate::{Streams, model_file};
-
-/// The ending of the names of files with models.
-pub(crate) const ENDING: &str = model_file::EXTENSION;
 
 /// Carries out `build`.
 ///
@@ -115,7 +113,7 @@ impl Package<'_> {
     }
 
     fn file(&self) -> String {
-        format!("{}.{ENDING}", self.name.replace('-', "_"))
+        format!("{}.{EXTENSION}", self.name.replace('-', "_"))
     }
 
     fn manifest(&self) -> String {

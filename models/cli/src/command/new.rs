@@ -5,11 +5,12 @@ use std::io::Write;
 
 use crate::Streams;
 use crate::args::NewArgs;
-use crate::command::build::{ENDING, Package, library};
+use crate::command::build::{Package, library};
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::model_file::EXTENSION;
 
-/// The declaration, with `NAME` and `file` for the name of the model and of the file.
+/// The declaration, with `NAME` and `FILE` for the name of the model and of the file.
 const TEMPLATE: &str = include_str!("new.dal");
 
 /// Carries out `new`.
@@ -35,7 +36,7 @@ pub fn run(args: &NewArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> 
         package.write("NAME", &args.name.with_extension(""), streams.output)?;
         return Ok(Exit::Reached);
     }
-    let path = args.name.with_extension(ENDING);
+    let path = args.name.with_extension(EXTENSION);
     let failed = |source| CliError::File {
         flag: "NAME",
         path: path.clone(),
@@ -54,7 +55,9 @@ pub fn run(args: &NewArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> 
 }
 
 fn is_ending_right(args: &NewArgs) -> bool {
-    args.name.extension().is_none_or(|ending| ending == ENDING)
+    args.name
+        .extension()
+        .is_none_or(|ending| ending == EXTENSION)
 }
 
 fn refused(args: &NewArgs) -> CliError {
