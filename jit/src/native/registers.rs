@@ -174,23 +174,8 @@ impl Allocation {
                 self.instructions
                     .push(Instruction::AddFrom(to, *order, *factors));
             }
-            Operation::Call(function, a, b) => {
-                self.give_arguments(*a, *b);
-                self.instructions
-                    .push(Instruction::Call(function.address(), None));
-                self.hold(value, 0);
-            }
-            Operation::SineAndCosine(a, place) => {
-                self.give_arguments(*a, None);
-                let address = helpers::address_of_sine_and_cosine();
-                self.instructions
-                    .push(Instruction::Call(address, Some(*place)));
-            }
-            Operation::CallSeries(function, places) => {
-                self.keep_no_register();
-                self.instructions
-                    .push(Instruction::CallSeries(function.address(), *places));
-                self.hold(value, 0);
+            Operation::Call(..) | Operation::SineAndCosine(..) | Operation::CallSeries(..) => {
+                self.call(value, operation);
             }
             Operation::Store(a, place) => {
                 let from = self.register(*a);
@@ -210,6 +195,30 @@ impl Allocation {
                 self.done(*bound);
                 self.instructions.push(Instruction::Guard(from, bound_from));
             }
+        }
+    }
+
+    fn call(&mut self, value: Value, operation: &Operation) {
+        match operation {
+            Operation::Call(function, a, b) => {
+                self.give_arguments(*a, *b);
+                self.instructions
+                    .push(Instruction::Call(function.address(), None));
+                self.hold(value, 0);
+            }
+            Operation::SineAndCosine(a, place) => {
+                self.give_arguments(*a, None);
+                let address = helpers::address_of_sine_and_cosine();
+                self.instructions
+                    .push(Instruction::Call(address, Some(*place)));
+            }
+            Operation::CallSeries(function, places) => {
+                self.keep_no_register();
+                self.instructions
+                    .push(Instruction::CallSeries(function.address(), *places));
+                self.hold(value, 0);
+            }
+            _ => unreachable!("only calls come here"),
         }
     }
 
