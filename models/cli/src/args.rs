@@ -1,6 +1,7 @@
 //! The command line's grammar. What it accepts is an interface; values are checked where they are used,
 //! because only there is it known which names the model has.
 
+mod choice;
 mod ensemble;
 mod file;
 mod gallery;
@@ -10,12 +11,9 @@ use std::path::PathBuf;
 
 use clap::builder::ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use dalembert::integrate::{
-    ClassicalRungeKutta, ComposedPrinciple, Dop853Scheme, DormandPrince5Scheme, Gauss, Method,
-    MidpointPrinciple, Scheme, TAYLOR,
-};
 use dalembert::law::Law;
 use dalembert::policy::{Corner, Penetration, Policies, Rest, Split};
+use dalembert_driver::{Form, Integrator, OffConstraint};
 
 use crate::scalar;
 pub use ensemble::EnsembleArgs;
@@ -237,17 +235,6 @@ pub struct ModelArgs {
     pub mode: Option<String>,
 }
 
-/// What to do with positions or a velocity that violate the constraints.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum OffConstraint {
-    /// Refuse them, beyond 1e-9 of the sum of the absolute values of the constraint's terms.
-    Error,
-    /// Replace them by allowed positions near by and the nearest allowed velocity in the metric.
-    Project,
-    /// Start there; the motion keeps the residual.
-    Keep,
-}
-
 /// The state to start from.
 #[derive(Debug, Args)]
 pub struct StateArgs {
@@ -270,88 +257,8 @@ pub struct StateArgs {
     #[arg(long, value_name = "V,..", allow_hyphen_values = true)]
     pub p: Option<String>,
     /// What to do with positions or a velocity that violate the constraints.
-    #[arg(long, value_enum, default_value_t = OffConstraint::Error)]
+    #[arg(long, value_parser = choice::off_constraint(), default_value = "error")]
     pub off_constraint: OffConstraint,
-}
-
-/// The integrators.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Integrator {
-    /// Dormand and Prince of order 8(5,3), dense output of order 7.
-    Dop853,
-    /// Dormand and Prince of order 5(4), dense output of order 4.
-    Dopri5,
-    /// Taylor series, of the order that belongs to the tolerance (12 at 1e-9, 19 at 1e-15).
-    Taylor,
-    /// Fixed step: the classical Runge-Kutta method of order 4.
-    Rk4,
-    /// Fixed step: Gauss collocation of order 4, symplectic without constraints.
-    Gauss4,
-    /// Fixed step: Gauss collocation of order 6, symplectic without constraints.
-    Gauss6,
-    /// Fixed step: discrete Lagrange-d'Alembert principle of order 2, constraints hold to rounding.
-    Dla2,
-    /// Fixed step: the same composed to order 4.
-    Dla4,
-}
-
-impl Integrator {
-    /// All of them.
-    pub fn every() -> &'static [Self] {
-        Self::value_variants()
-    }
-
-    /// The name on the command line and in files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Dop853 => Dop853Scheme::NAME,
-            Self::Dopri5 => DormandPrince5Scheme::NAME,
-            Self::Rk4 => ClassicalRungeKutta::NAME,
-            Self::Gauss4 => Gauss::<2>::NAME,
-            Self::Gauss6 => Gauss::<3>::NAME,
-            Self::Dla2 => MidpointPrinciple::NAME,
-            Self::Dla4 => ComposedPrinciple::NAME,
-            Self::Taylor => TAYLOR,
-        }
-    }
-
-    /// The order of the solution at the ends of steps; `None` where it follows the tolerance.
-    pub const fn order(self) -> Option<usize> {
-        match self {
-            Self::Dop853 => Some(Dop853Scheme::ORDER),
-            Self::Dopri5 => Some(DormandPrince5Scheme::ORDER),
-            Self::Rk4 => Some(ClassicalRungeKutta::ORDER),
-            Self::Gauss4 => Some(Gauss::<2>::ORDER),
-            Self::Gauss6 => Some(Gauss::<3>::ORDER),
-            Self::Dla2 => Some(MidpointPrinciple::ORDER),
-            Self::Dla4 => Some(ComposedPrinciple::ORDER),
-            Self::Taylor => None,
-        }
-    }
-
-    /// Whether it chooses its steps by an error estimate.
-    pub const fn is_adaptive(self) -> bool {
-        matches!(self, Self::Dop853 | Self::Dopri5 | Self::Taylor)
-    }
-}
-
-/// What the state of a run consists of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Form {
-    /// Positions and the quasi-velocities that the constraints leave: (q, u) on D.
-    Reduced,
-    /// Positions and momenta, off the constraints too: (q, p) on T*Q.
-    Global,
-}
-
-impl Form {
-    /// The name on the command line and in files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Reduced => "reduced",
-            Self::Global => "global",
-        }
-    }
 }
 
 /// `on` or `off`.
@@ -484,7 +391,7 @@ pub struct RunArgs {
     pub policies: PolicyArgs,
     /// The form of the equations. Without it reduced where the model has such a form; global for states that are kept
     /// off the constraints and with --projection.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::form())]
     pub form: Option<Form>,
     /// Whether to project on the constraints after each step, in global form; without it as the scene declares.
     #[arg(long, value_enum)]
@@ -499,7 +406,7 @@ pub struct CourseArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
     pub impacts: Option<u64>,
     /// The integrator.
-    #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
+    #[arg(long, value_parser = choice::integrator(), default_value = Integrator::Dop853.name())]
     pub integrator: Integrator,
     /// The step of an integrator of fixed step. Without it, one that suits --tol where the run starts, of which about
     /// four million make the run at most; the summary says which.
@@ -562,7 +469,7 @@ pub struct AccuracyArgs {
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub wanted: Option<f64>,
     /// Only this integrator; may be repeated.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::integrator())]
     pub integrator: Vec<Integrator>,
     /// How often each case is timed; the median counts.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 5)]
@@ -611,7 +518,7 @@ pub struct StabilityArgs {
     #[arg(long)]
     pub nightly: bool,
     /// Only by this integrator; otherwise each case is run by all.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::integrator())]
     pub integrator: Option<Integrator>,
     /// Write the findings as one JSON document; `-` is the standard output.
     #[arg(long, value_name = "FILE")]
@@ -630,13 +537,5 @@ mod tests {
     #[test]
     fn the_grammar_is_consistent() {
         CommandLine::command().debug_assert();
-    }
-
-    #[test]
-    fn integrators_are_chosen_by_the_names_they_have() {
-        for integrator in Integrator::value_variants() {
-            let value = integrator.to_possible_value().unwrap();
-            assert_eq!(value.get_name(), integrator.name());
-        }
     }
 }

@@ -1,29 +1,17 @@
-//! A list of models of any types: each model behind one object-safe trait.
+//! The models of the command line: types, and texts that are loaded where they are asked for.
 //!
-//! | file | job |
-//! |---|---|
-//! | `model.rs` | the trait, and what its functions take and give |
-//! | `typed.rs` | the trait for the type of a system |
-//!
-//! A model that has a form is run by the system of all forms, which is compiled here; any other is compiled with all that runs it where
-//! [`Entry::of`] names its type. A model of a text has a form once the text is loaded, where something besides its name is asked for. Everything else in this crate works on slices of numbers through [`AnyModel`], and is compiled once.
-
-mod model;
-mod typed;
+//! A model is run behind [`AnyModel`], whatever it comes from.
 
 use std::sync::{Arc, OnceLock};
 
 use dalembert::declaration::{Described, SceneVisitor};
 use dalembert::describe::Description;
-use dalembert::erased::{Erased, Form};
+use dalembert::erased::Form;
 use dalembert::{Lagrangian, Scene, TaylorField};
+use dalembert_driver::{AnyModel, Code, Model, of_form, of_type};
 use dalembert_jit::Loaded;
 
 use crate::error::CliError;
-pub(crate) use model::{AnyModel, Code, Contacted, Origin, Point, Rates, Start, Together};
-pub use typed::Model;
-use typed::Typed;
-pub(crate) use typed::point;
 
 /// One model of the list handed to [`run`](crate::run), with its scenes.
 #[derive(Clone)]
@@ -67,7 +55,7 @@ impl Build {
     const fn of<M: Model + Described>() -> Self {
         match M::FORM {
             Some(form) if !cfg!(feature = "inlined") => Self::Erased(form),
-            _ => Self::Typed(typed::<M>),
+            _ => Self::Typed(of_type::<M>),
         }
     }
 
@@ -80,23 +68,9 @@ impl Build {
     }
 }
 
-fn typed<M: Model + Described>() -> Box<dyn AnyModel> {
-    Box::new(Typed {
-        model: M::with_defaults(),
-        code: Code::Inlined,
-    })
-}
-
-/// The system of a form, of the least capacity that it fits into.
+/// The model of a form that there is room for.
 fn erased(form: &'static Form, code: Code) -> Box<dyn AnyModel> {
-    fn with_room<const C: usize>(form: &'static Form, code: Code) -> Option<Box<dyn AnyModel>> {
-        let model = Erased::<C>::of(form)?;
-        Some(Box::new(Typed { model, code }))
-    }
-    let system = with_room::<4>(form, code)
-        .or_else(|| with_room::<8>(form, code))
-        .or_else(|| with_room::<32>(form, code));
-    system.expect("a form that there is a capacity for")
+    of_form(form, code).expect("a form that there is a capacity for")
 }
 
 impl Entry {

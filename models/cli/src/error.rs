@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use dalembert::describe::{Assumption, Description};
 use dalembert::{Fault, StateError};
+use dalembert_driver::{AnyModel, Refusal};
 use thiserror::Error;
 
 /// A request that cannot be carried out.
@@ -195,6 +196,19 @@ impl CliError {
             place: place.to_owned(),
             reason: state_text(description, &error),
         }
+    }
+
+    /// A run that does not begin.
+    pub fn refused(model: &dyn AnyModel, refusal: &Refusal) -> Self {
+        Self::Start(refusal_text(&model.description(), refusal))
+    }
+}
+
+/// Says in the model's names why a run does not begin.
+pub fn refusal_text(description: &Description, refusal: &Refusal) -> String {
+    match refusal {
+        Refusal::State(error) => state_text(description, error),
+        other => other.to_string(),
     }
 }
 

@@ -24,12 +24,9 @@
 
 #![forbid(unsafe_code)]
 
-pub mod accuracy;
 mod args;
 mod catalogue;
 mod command;
-pub mod drift;
-mod driver;
 mod ensemble;
 mod entry;
 mod error;
@@ -38,7 +35,7 @@ pub mod gallery;
 mod json;
 mod model_file;
 mod names;
-mod orbit;
+mod outcome;
 mod plot;
 mod progress;
 mod record;
@@ -56,10 +53,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-pub use args::Integrator;
 use args::{Command, CommandLine};
 pub use catalogue::Catalogue;
-pub use entry::{Entry, Model};
+pub use dalembert_driver::Integrator;
+pub use entry::Entry;
 use error::CliError;
 pub use exit::Exit;
 

@@ -2,12 +2,11 @@
 
 use dalembert::describe::Description;
 use dalembert::law::Law;
+use dalembert_driver::{AnyModel, Form, Integrator, OffConstraint, Settings};
 
 use std::path::{Path, PathBuf};
 
-use crate::args::{CourseArgs, Form, Integrator, OffConstraint, RunArgs, Switch};
-use crate::driver::Settings;
-use crate::entry::AnyModel;
+use crate::args::{CourseArgs, RunArgs, Switch};
 use crate::error::CliError;
 use crate::sink::is_stdout;
 use crate::{names, scalar};

@@ -1,9 +1,10 @@
 //! From flags to a model with its parameters, and to the state a run starts from.
 
 use dalembert::StateError;
+use dalembert_driver::{AnyModel, OffConstraint, Origin, Rates, Start};
 
-use crate::args::{ModelArgs, OffConstraint, RunArgs, StateArgs};
-use crate::entry::{AnyModel, Entry, Origin, Rates, Start};
+use crate::args::{ModelArgs, RunArgs, StateArgs};
+use crate::entry::Entry;
 use crate::error::CliError;
 use crate::names;
 use crate::scalar;

@@ -4,9 +4,8 @@
 use std::io::{self, Write};
 
 use dalembert::describe::Description;
+use dalembert_driver::{Contact, Impact, Point};
 
-use crate::driver::{Contact, Impact};
-use crate::entry::Point;
 use crate::error::CliError;
 use crate::names;
 use crate::record::Keep;

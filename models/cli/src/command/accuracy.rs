@@ -6,10 +6,11 @@ mod spreadsheet;
 use std::io::{self, Write};
 use std::time::Duration;
 
-use crate::accuracy::{FINEST, NoChoice, Plan, Sample, Study};
-use crate::args::{AccuracyArgs, Integrator};
-use crate::driver::Settings;
-use crate::entry::{AnyModel, Entry, Origin};
+use dalembert_driver::accuracy::{FINEST, NoChoice, Plan, Sample, Study};
+use dalembert_driver::{AnyModel, Integrator, Origin, Settings};
+
+use crate::args::AccuracyArgs;
+use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::plot::{Drawn, work};
@@ -102,7 +103,7 @@ fn measure<'a>(
             progress.begin(what);
             progress.aside(|| {});
         })
-        .map_err(CliError::Start)?;
+        .map_err(|refusal| CliError::refused(model, &refusal))?;
     progress.finish();
     Ok(Finished {
         model,

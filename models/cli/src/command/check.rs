@@ -4,16 +4,18 @@ mod certificate;
 
 use std::io::Write;
 
-use dalembert::Policies;
 use dalembert::describe::{Description, Report, Topology};
+use dalembert::{Outcome, Policies};
 use dalembert_codegen::claims::{Finding, Verdict};
 use dalembert_codegen::report::{self, Item, Section};
+use dalembert_driver::{
+    AnyModel, Contact, Form, Impact, Integrator, Origin, Piece, Settings, Watch,
+};
 use serde_json::{Value, json};
 
 use crate::Streams;
-use crate::args::{CheckArgs, Form, Format, Integrator};
-use crate::driver::{Contact, Impact, Piece, Settings, Watch};
-use crate::entry::{AnyModel, Entry, Origin};
+use crate::args::{CheckArgs, Format};
+use crate::entry::Entry;
 use crate::error::{CliError, fault_text};
 use crate::exit::Exit;
 use crate::json::{Document, number};
@@ -140,18 +142,14 @@ fn behind_wall(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
         projection: None,
     };
     let ending = model.simulate(origin, &settings, &mut Silent).ok()?;
-    let detail = |name: &str| {
-        let mut details = ending.details.iter();
-        details
-            .find(|(key, _)| *key == name)
-            .map(|(_, value)| value)
+    let Outcome::StartsInside { surface, gap } = ending.outcome else {
+        return None;
     };
-    (ending.kind == "starts_inside").then(|| match (detail("surface"), detail("gap")) {
-        (Some(Value::String(surface)), Some(gap)) => {
-            format!("it lies behind the surface `{surface}`: its gap is {gap}")
-        }
-        _ => "it lies behind a surface".to_owned(),
-    })
+    let name = names::surfaces(&model.description()).nth(surface);
+    let name = name.unwrap_or_default();
+    Some(format!(
+        "it lies behind the surface `{name}`: its gap is {gap}"
+    ))
 }
 
 fn defaults_against_assumptions(model: &dyn AnyModel) -> Option<String> {

@@ -8,16 +8,16 @@ use std::path::{Path, PathBuf};
 use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
+use dalembert_driver::{AnyModel, Rates, Settings};
 use serde_json::{Map, Value};
 
 use crate::args::EnsembleArgs;
-use crate::driver::Settings;
 use crate::ensemble::Quantity;
 use crate::ensemble::density::{Checkpoint, Counts, Density, Wish, convergence};
 use crate::ensemble::members::{Members, Shard};
 use crate::ensemble::metadata::metadata;
 use crate::ensemble::{self, Columns, Plan, Rows, Shared, Summary, Tally, journal, listed, pilot};
-use crate::entry::{AnyModel, Entry, Rates};
+use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::sink::{Sink, is_stdout};

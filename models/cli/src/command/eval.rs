@@ -9,11 +9,12 @@ use std::io::{BufWriter, Write};
 use dalembert::StateError;
 use dalembert::describe::Description;
 use dalembert::law::Law;
+use dalembert_driver::{AnyModel, OffConstraint, Origin};
 use serde_json::{Map, Value, json};
 
 use crate::Streams;
-use crate::args::{EvalArgs, OffConstraint};
-use crate::entry::{AnyModel, Entry, Origin};
+use crate::args::EvalArgs;
+use crate::entry::Entry;
 use crate::error::{self, CliError};
 use crate::exit::Exit;
 use crate::json;

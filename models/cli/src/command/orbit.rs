@@ -3,13 +3,13 @@
 mod document;
 mod summary;
 
-use dalembert::Tolerance;
+use dalembert::{OrbitError, Tolerance};
+use dalembert_driver::{AnyModel, Found, OffConstraint, Search};
 
-use crate::args::{OffConstraint, OrbitArgs};
-use crate::entry::{AnyModel, Entry};
+use crate::args::OrbitArgs;
+use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::orbit::{Found, Missed, Search};
 use crate::sink::{Sink, is_stdout};
 use crate::state_input::{build_model, initial_state};
 use crate::{Streams, names, run_request};
@@ -22,7 +22,7 @@ struct Finished<'a> {
     model: &'a dyn AnyModel,
     scene: &'a str,
     search: Search,
-    result: Result<Found, Missed>,
+    result: Result<Found, OrbitError>,
 }
 
 /// Carries out `orbit`.
@@ -41,7 +41,7 @@ pub fn run(
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let result = model
         .orbit(&origin, &search)
-        .map_err(CliError::Start)?
+        .map_err(|refusal| CliError::refused(model.as_ref(), &refusal))?
         .ok_or_else(|| invariable(model.as_ref(), args))?;
     let finished = Finished {
         model: model.as_ref(),

@@ -3,16 +3,17 @@
 mod document;
 pub mod summary;
 
-use crate::accuracy::Verified;
+use dalembert_driver::accuracy::Verified;
+use dalembert_driver::{AnyModel, Ending, Grid, Origin, Settings};
+
 use crate::args::SimulateArgs;
-use crate::driver::{Ending, Settings};
-use crate::entry::{AnyModel, Entry, Origin};
+use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::plot::trace::{Source, Trace};
 use crate::plot::{self, Drawn, Picture, quantity};
 use crate::progress::Progress;
-use crate::record::{Grid, Keep, Record, Recorder, Wanted};
+use crate::record::{Keep, Record, Recorder, Wanted};
 use crate::sink::Sink;
 use crate::state_input::{build_run, initial_state};
 use crate::table::RunTable;
@@ -111,7 +112,7 @@ pub fn draw(models: &[Entry], args: &SimulateArgs) -> Result<Drawn, CliError> {
     let finished = finish(model.as_ref(), prepared, args, Vec::new(), false)?;
     Ok(Drawn {
         svg: picture(&finished, args)?,
-        outcome: summary::outcome(&finished.ending),
+        outcome: summary::ended(&model.description(), &finished.ending),
     })
 }
 
@@ -154,7 +155,7 @@ fn finish<'a>(
         true => Some(
             model
                 .verify(&origin, &settings, &ending)
-                .map_err(CliError::Start)?,
+                .map_err(|refusal| CliError::refused(model, &refusal))?,
         ),
         false => None,
     };
@@ -196,7 +197,7 @@ fn carry_out(
         let mut recorder = Recorder::new(nothing, progress());
         grid.end = model
             .simulate(origin, settings, &mut recorder)
-            .map_err(CliError::Start)?
+            .map_err(|refusal| CliError::refused(model, &refusal))?
             .t;
     }
     if grid.end == 0.0 {
@@ -210,7 +211,7 @@ fn carry_out(
     let mut recorder = Recorder::new(wanted, progress());
     let ending = model
         .simulate(origin, settings, &mut recorder)
-        .map_err(CliError::Start)?;
+        .map_err(|refusal| CliError::refused(model, &refusal))?;
     let record = recorder.finish(ending.t, &ending.last)?;
     Ok((record, ending))
 }

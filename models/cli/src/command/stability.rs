@@ -6,8 +6,10 @@ mod page;
 use std::io::Write;
 use std::path::Path;
 
+use dalembert_driver::Integrator;
+
 use crate::Streams;
-use crate::args::{Integrator, StabilityArgs};
+use crate::args::StabilityArgs;
 use crate::error::{CliError, counted};
 use crate::exit::Exit;
 use crate::names;

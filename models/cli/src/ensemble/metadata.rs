@@ -2,13 +2,13 @@
 
 use clap::ValueEnum;
 use dalembert::describe::Description;
+use dalembert_driver::{AnyModel, Rates};
 use serde_json::{Map, Value, json};
 
 use super::fingerprint::fingerprint;
 use super::members::Shard;
 use super::runner::Shared;
 use crate::args::StateArgs;
-use crate::entry::{AnyModel, Rates};
 use crate::error::CliError;
 use crate::json::{named, number};
 use crate::names;
@@ -109,7 +109,7 @@ fn start(
     Ok(json!({
         "q": named(coordinates(), &q),
         kind: known.collect::<Map<_, _>>(),
-        "off_constraint": word(args.off_constraint),
+        "off_constraint": args.off_constraint.name(),
     }))
 }
 

@@ -32,6 +32,7 @@ use std::io::Write;
 use std::ops::Range;
 use std::path::Path;
 
+use dalembert_driver::Settings;
 use serde_json::{Map, Value};
 
 pub use row::Columns;
@@ -39,7 +40,6 @@ pub use runner::Shared;
 pub use tally::Tally;
 pub use vary::Quantity;
 
-use crate::driver::Settings;
 use crate::error::CliError;
 use crate::progress::Count;
 use density::{Counts, Density};

@@ -1,9 +1,10 @@
 //! Ranges for a density that does not give them: those of a few members, run for a while. They depend on the whole
 //! ensemble, not on the shard.
 
+use dalembert_driver::{Contact, Impact, Piece, Settings, Watch};
+
 use super::density::{Axis, Density, Wish, count_samples};
 use super::runner::{Runner, Shared};
-use crate::driver::{Contact, Impact, Piece, Settings, Watch};
 use crate::error::CliError;
 use crate::plot::style;
 

@@ -7,7 +7,7 @@ use dalembert::integrate::Counters;
 
 use super::listed::INPUT;
 use super::members::Members;
-use crate::{driver, names};
+use crate::{names, outcome};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,7 +70,7 @@ impl Columns {
             Kind::Integer,
             &mut surfaces.map(|name| format!("impacts.{name}")),
         );
-        let counters = driver::counters(&Counters::default()).into_iter();
+        let counters = outcome::counters(&Counters::default()).into_iter();
         let counters = counters.map(|(name, _)| name.to_owned());
         add(
             Kind::Integer,

@@ -5,16 +5,21 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use dalembert::integrate::Counters;
+use dalembert::Outcome;
+use dalembert::describe::Description;
+use dalembert_driver::{
+    AnyModel, Contact, Ending, Impact, Integrator, Origin, Piece, Point, Refusal, Settings,
+    Together, Watch,
+};
 
 use super::density::{Density, Sampler, Visits};
 use super::members::Members;
 use super::row::{Field, Row};
 use super::vary::Quantity;
-use crate::args::{Integrator, RunArgs};
-use crate::driver::{self, Contact, Ending, Impact, Piece, Settings, Watch};
-use crate::entry::{AnyModel, Entry, Origin, Point, Together};
-use crate::error::{CliError, state_text};
+use crate::args::RunArgs;
+use crate::entry::Entry;
+use crate::error::{CliError, refusal_text, state_text};
+use crate::outcome;
 use crate::record::Tally;
 use crate::state_input::{Beginning, build_model};
 
@@ -86,9 +91,13 @@ impl<'a> Runner<'a> {
             }
         }
         let looks_inside = self.shared.density.is_some();
-        let mut endings = self
+        let endings = self
             .model
             .simulate_abreast(runs, self.shared.settings, looks_inside);
+        let endings = endings.into_iter();
+        let mut endings: Vec<Result<Ending, String>> = endings
+            .map(|ending| ending.map_err(|refusal| self.told(&refusal)))
+            .collect();
         for (member, reason) in refused {
             endings.insert((member - members.start) as usize, Err(reason));
         }
@@ -168,7 +177,13 @@ impl<'a> Runner<'a> {
     /// Why a member cannot begin, as text.
     fn attempt(&mut self, member: u64, watch: &mut dyn Watch) -> Result<Ending, String> {
         let origin = self.origin(member)?;
-        self.model.simulate(&origin, self.shared.settings, watch)
+        let ended = self.model.simulate(&origin, self.shared.settings, watch);
+        ended.map_err(|refusal| self.told(&refusal))
+    }
+
+    /// Why a member cannot begin, in the model's names.
+    fn told(&self, refusal: &Refusal) -> String {
+        refusal_text(&self.model.description(), refusal)
     }
 
     /// Gives the model a member's parameters; its state, or why there is none.
@@ -204,11 +219,14 @@ impl<'a> Runner<'a> {
         let number = |value: f64| Field::Number(value);
         let mut row = vec![Field::Integer(member)];
         row.extend(self.shared.members.values(member).into_iter().map(number));
-        let (outcome, reason) = match ended {
-            Ok(ending) => (ending.kind, details(ending)),
-            Err((outcome, reason)) => (*outcome, reason.replace(['\n', '\r'], " ")),
+        let (kind, reason) = match ended {
+            Ok(ending) => (
+                ending.outcome.kind(),
+                details(&description, &ending.outcome),
+            ),
+            Err((kind, reason)) => (*kind, reason.replace(['\n', '\r'], " ")),
         };
-        row.push(Field::Text(Cow::Borrowed(outcome)));
+        row.push(Field::Text(Cow::Borrowed(kind)));
         let nothing = Point::undefined(&description);
         let (t, last, change) = match ended {
             Ok(ending) => {
@@ -223,18 +241,19 @@ impl<'a> Runner<'a> {
         let surfaces = 0..description.surfaces.len();
         row.extend(surfaces.map(|surface| Field::Integer(tally.on(surface))));
         row.push(Field::Integer(tally.contacts));
-        let none = driver::counters(&Counters::default());
-        let counters = ended.as_ref().map_or(&none, |ending| &ending.counters);
-        row.extend(counters.iter().map(|&(_, count)| Field::Integer(count)));
+        let counters = ended.as_ref().map(|ending| ending.counters);
+        let counters = outcome::counters(&counters.unwrap_or_default()).into_iter();
+        row.extend(counters.map(|(_, count)| Field::Integer(count)));
         row.push(Field::Text(Cow::Owned(reason)));
         row
     }
 }
 
 /// What an outcome says besides its kind.
-fn details(ending: &Ending) -> String {
-    let details = ending.details.iter();
+fn details(description: &Description, outcome: &Outcome) -> String {
+    let details = outcome::details(description, outcome);
     let details: Vec<String> = details
+        .iter()
         .map(|(name, value)| match value.as_str() {
             Some(text) => format!("{name} {text}"),
             None => format!("{name} {value}"),

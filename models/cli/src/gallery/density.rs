@@ -3,10 +3,11 @@
 //! For a set A of the plane of the declared view, `rho(A)` is the share of the times `k T` at which the position lies in A
 //! (W. Clark and A. Bloch, equation (27)).
 
+use dalembert_driver::{Contact, Impact, Piece, Watch};
+
 use super::Density;
 use crate::args::SimulateArgs;
 use crate::command::simulate::{prepare, summary};
-use crate::driver::{Contact, Impact, Piece, Watch};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::plot::contour::Window;
@@ -33,7 +34,7 @@ pub fn draw(
     let mut census = Census::new(density, table.extent().map_err(refuse)?);
     let ending = model
         .simulate(&prepared.origin, &prepared.settings, &mut census)
-        .map_err(CliError::Start)?;
+        .map_err(|refusal| CliError::refused(model.as_ref(), &refusal))?;
     let subtitle = format!(
         "{} positions; total variation of the halves {:.3}",
         census.counted(),
@@ -49,7 +50,7 @@ pub fn draw(
     });
     Ok(Drawn {
         svg: svg.map_err(refuse)?,
-        outcome: summary::outcome(&ending),
+        outcome: summary::ended(&model.description(), &ending),
     })
 }
 
@@ -160,8 +161,9 @@ impl Watch for Census {
 
 #[cfg(test)]
 mod tests {
+    use dalembert_driver::Point;
+
     use super::*;
-    use crate::entry::Point;
 
     const UNIT: Window = Window {
         x: [0.0, 1.0],

@@ -1,10 +1,11 @@
 //! Where runs that start near each other are at one time, in the plane of the declared view.
 
+use dalembert_driver::{AnyModel, Contact, Impact, OffConstraint, Piece, Watch};
+
 use super::Starts;
-use crate::args::{OffConstraint, SimulateArgs, StateArgs};
+use crate::args::{SimulateArgs, StateArgs};
 use crate::command::simulate::{Prepared, prepare};
-use crate::driver::{Contact, Impact, Piece, Watch};
-use crate::entry::{AnyModel, Entry};
+use crate::entry::Entry;
 use crate::error::CliError;
 use crate::plot::{self, Drawn, cloud};
 use crate::state_input::{build_run, initial_state};
@@ -63,7 +64,7 @@ pub fn draw(
 fn final_position(model: &dyn AnyModel, prepared: &Prepared) -> Result<Option<[f64; 2]>, CliError> {
     let ending = model
         .simulate(&prepared.origin, &prepared.settings, &mut Unwatched)
-        .map_err(CliError::Start)?;
+        .map_err(|refusal| CliError::refused(model, &refusal))?;
     Ok(ending.last.view.filter(|_| ending.reached))
 }
 

@@ -22,10 +22,9 @@ mod thin;
 pub mod trace;
 pub mod work;
 
+use dalembert_driver::{AnyModel, Impact, Point};
 use plotters::style::RGBColor;
 
-use crate::driver::Impact;
-use crate::entry::{AnyModel, Point};
 use legend::{Item, Symbol};
 use quantity::Quantity;
 pub use table::Table;

@@ -1,8 +1,8 @@
 //! What an axis can show: time, what a state consists of, energies and outputs, by the names that tables use.
 
 use dalembert::describe::Description;
+use dalembert_driver::Point;
 
-use crate::entry::Point;
 use crate::error::CliError;
 use crate::names;
 

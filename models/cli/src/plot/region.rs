@@ -1,7 +1,8 @@
 //! The declared region behind a path: which part of the plane to show, and the region's boundary in it.
 
+use dalembert_driver::{AnyModel, Point};
+
 use super::contour::{Contour, Window, contours};
-use crate::entry::{AnyModel, Point};
 
 /// Grid squares per side for the picture.
 pub const FINE: usize = 240;

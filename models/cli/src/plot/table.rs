@@ -1,9 +1,10 @@
 //! The region of a model's view as a table that something lies on, without a run.
 
+use dalembert_driver::AnyModel;
+
 use super::contour::{Contour, Window};
 use super::plane::Plane;
 use super::region::{COARSE, FINE, Region};
-use crate::entry::AnyModel;
 
 /// Half the side of the square that the search for the rim begins with, and how often it may double.
 const LEAST: f64 = 1e-6;

@@ -1,8 +1,8 @@
 //! The curve of a picture: points along a run, dense where it bends, with both sides of every impact.
 
+use dalembert_driver::{Piece, Point};
+
 use super::quantity::Quantity;
-use crate::driver::Piece;
-use crate::entry::Point;
 
 /// Intervals that every step is divided into first.
 const INTERVALS: usize = 12;

@@ -1,7 +1,8 @@
 //! The work-precision diagram: time against error, a curve for each integrator.
 
+use dalembert_driver::accuracy::Study;
+
 use super::logarithmic::draw_labelled;
-use crate::accuracy::Study;
 use crate::suite::Curve;
 
 /// Draws a study. Runs that end otherwise than the reference are left out; errors below what the reference is known to

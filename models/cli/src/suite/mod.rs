@@ -8,8 +8,8 @@ mod report;
 
 use std::time::{Duration, Instant};
 
-use crate::args::Integrator;
 pub use crate::plot::logarithmic::exponent;
+use dalembert_driver::Integrator;
 pub use report::{Check, Curve, Report};
 
 /// A hard case.

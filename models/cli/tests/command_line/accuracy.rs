@@ -1,6 +1,6 @@
 use dalembert::{Described, Dop853, Simulation, System, Tolerance};
 use dalembert_cli::Integrator;
-use dalembert_cli::accuracy::{NoChoice, Plan, TIMES, choose, measure};
+use dalembert_driver::accuracy::{NoChoice, Plan, TIMES, choose, measure};
 
 use super::systems::{BouncingBall, Oscillator};
 use super::*;

@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
+use dalembert_driver::accuracy::Sample;
 use serde_json::{Value, json};
 
 use super::Finished;
-use crate::accuracy::Sample;
 use crate::json::{Document, named, number};
 
 /// Writes the document.

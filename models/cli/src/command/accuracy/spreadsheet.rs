@@ -2,7 +2,8 @@
 
 use std::io::{self, Write};
 
-use crate::accuracy::{Sample, Study};
+use dalembert_driver::accuracy::{Sample, Study};
+
 use crate::table::write_rows;
 
 const HEAD: [&str; 13] = [

@@ -2,11 +2,11 @@
 
 use dalembert::law::Law;
 use dalembert::{Fault, StateError};
+use dalembert_driver::AnyModel;
 use serde_json::{Map, Value};
 
 use super::refusal;
 use super::report::Collected;
-use crate::entry::AnyModel;
 use crate::json;
 
 /// A state, and what the model reports of it.

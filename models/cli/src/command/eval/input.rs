@@ -6,9 +6,9 @@ use std::io::Read;
 use std::path::Path;
 
 use dalembert::describe::Description;
+use dalembert_driver::Rates;
 use serde_json::{Map, Value};
 
-use crate::entry::Rates;
 use crate::error::CliError;
 use crate::{json, names, scalar};
 

@@ -4,10 +4,9 @@ use std::collections::BTreeMap;
 
 use dalembert::Fault;
 use dalembert::describe::Report;
+use dalembert_driver::{AnyModel, Contacted, OffConstraint, Origin, Rates};
 use serde_json::{Map, Value};
 
-use crate::args::OffConstraint;
-use crate::entry::{AnyModel, Contacted, Origin, Rates};
 use crate::json;
 
 /// Everything reported at one state. Names that begin with `impacts.` are data of a surface's contact.

@@ -2,12 +2,13 @@
 
 use std::io::{self, Write};
 
+use dalembert_driver::Point;
 use serde_json::{Map, Value, json};
 
 use super::Finished;
 use super::summary::components;
-use crate::entry::Point;
 use crate::json::{Document, matrix, named, number, vector};
+use crate::outcome;
 
 /// Writes the document.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
@@ -30,9 +31,13 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     let found = match &finished.result {
         Err(missed) => {
             let mut outcome = Map::new();
-            outcome.insert("kind".to_owned(), missed.kind.into());
-            let details = missed.details.iter();
-            outcome.extend(details.map(|(name, value)| ((*name).to_owned(), value.clone())));
+            let (kind, details) = outcome::missed(&description, missed);
+            outcome.insert("kind".to_owned(), kind.into());
+            outcome.extend(
+                details
+                    .into_iter()
+                    .map(|(name, value)| (name.to_owned(), value)),
+            );
             document.field("outcome", outcome)?;
             return document.end();
         }

@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 
 use dalembert::describe::Description;
+use dalembert_driver::Point;
 
 use super::Finished;
-use crate::entry::Point;
-use crate::names;
+use crate::{names, outcome};
 
 /// Writes the summary.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
@@ -23,11 +23,12 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     writeln!(output, "  section      {surface}, {returns}")?;
     let found = match &finished.result {
         Err(missed) => {
-            let details = missed.details.iter();
+            let (kind, details) = outcome::missed(&description, missed);
             let details: String = details
+                .iter()
                 .map(|(name, own)| format!(", {name} {own}"))
                 .collect();
-            return writeln!(output, "  outcome      {}{details}", missed.kind);
+            return writeln!(output, "  outcome      {}{details}", kind);
         }
         Ok(found) => found,
     };

@@ -4,14 +4,14 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use dalembert::describe::Description;
+use dalembert_driver::accuracy::Verified;
+use dalembert_driver::{Contact, Impact, Point};
 use serde_json::{Map, Value, json};
 
 use super::Finished;
-use crate::accuracy::Verified;
-use crate::driver::{Contact, Impact};
-use crate::entry::Point;
 use crate::error::CliError;
 use crate::json::{Document, named, number, vector};
+use crate::outcome;
 use crate::record::Keep;
 use crate::spool::Spool;
 
@@ -98,17 +98,15 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>, rows: &Rows) -> io
     if let Some(max_step) = settings.max_step {
         document.field("max_step", number(max_step))?;
     }
-    document.field("outcome", outcome(finished))?;
+    document.field("outcome", ended(finished))?;
     if let Some(verified) = verified {
         document.field("error", error(verified))?;
     }
     document.spooled("events", &rows.events)?;
     document.spooled("contacts", &rows.contacts)?;
     document.spooled("samples", &rows.samples)?;
-    let counters = ending
-        .counters
-        .iter()
-        .map(|&(name, count)| (name.to_owned(), Value::from(count)));
+    let counters = outcome::counters(&ending.counters).into_iter();
+    let counters = counters.map(|(name, count)| (name.to_owned(), Value::from(count)));
     document.field("counters", counters.collect::<Map<_, _>>())?;
     document.field("warnings", ending.warnings.clone())?;
     document.end()
@@ -134,23 +132,23 @@ fn error(verified: &Verified) -> Value {
 }
 
 /// `kind` and `t`, the details of the kind, and the last state.
-fn outcome(finished: &Finished<'_>) -> Value {
+fn ended(finished: &Finished<'_>) -> Value {
     let ending = &finished.ending;
-    let mut outcome = Map::new();
-    outcome.insert("kind".to_owned(), ending.kind.into());
-    outcome.insert("t".to_owned(), number(ending.t));
-    outcome.extend(
-        ending
-            .details
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), value.clone())),
+    let mut ended = Map::new();
+    ended.insert("kind".to_owned(), ending.outcome.kind().into());
+    ended.insert("t".to_owned(), number(ending.t));
+    let details = outcome::details(&finished.model.description(), &ending.outcome);
+    ended.extend(
+        details
+            .into_iter()
+            .map(|(name, value)| (name.to_owned(), value)),
     );
     if let Some(mode) = ending.last.mode {
-        outcome.insert("mode".to_owned(), mode.into());
+        ended.insert("mode".to_owned(), mode.into());
     }
-    outcome.insert("q".to_owned(), vector(&ending.last.q));
-    outcome.insert("qdot".to_owned(), vector(&ending.last.qdot));
-    Value::Object(outcome)
+    ended.insert("q".to_owned(), vector(&ending.last.q));
+    ended.insert("qdot".to_owned(), vector(&ending.last.qdot));
+    Value::Object(ended)
 }
 
 fn event(description: &Description, impact: &Impact) -> Value {

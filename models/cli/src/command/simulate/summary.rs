@@ -2,11 +2,14 @@
 
 use std::io::{self, Write};
 
+use dalembert::Outcome;
+use dalembert::describe::Description;
 use dalembert::law::Law;
+use dalembert_driver::accuracy::Verified;
+use dalembert_driver::{Ending, Settings};
 
 use super::Finished;
-use crate::accuracy::Verified;
-use crate::driver::{Ending, Settings};
+use crate::outcome;
 
 /// Writes the summary.
 pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
@@ -14,7 +17,8 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         ending, settings, ..
     } = finished;
     writeln!(output, "{}", title(finished))?;
-    writeln!(output, "  outcome     {}", outcome(ending))?;
+    let description = finished.model.description();
+    writeln!(output, "  outcome     {}", ended(&description, ending))?;
     writeln!(output, "  impacts     {}", impacts(finished))?;
     if let (Some(first), Some(last)) = (ending.first.mode, ending.last.mode) {
         writeln!(
@@ -29,8 +33,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     if let Some(verified) = &finished.verified {
         writeln!(output, "  error       {}", error(verified))?;
     }
-    let counters: Vec<String> = ending
-        .counters
+    let counters: Vec<String> = outcome::counters(&ending.counters)
         .iter()
         .map(|(name, count)| format!("{name} {count}"))
         .collect();
@@ -38,8 +41,13 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
 }
 
 /// The outcome, when, and what it says besides.
-pub fn outcome(ending: &Ending) -> String {
-    format!("{} at t = {}{}", ending.kind, ending.t, details(ending))
+pub fn ended(description: &Description, ending: &Ending) -> String {
+    let Ending { outcome, t, .. } = ending;
+    format!(
+        "{} at t = {t}{}",
+        outcome.kind(),
+        details(description, outcome)
+    )
 }
 
 /// The measured error and what it was measured by, or why there is none.
@@ -75,10 +83,10 @@ pub fn subtitle(finished: &Finished<'_>) -> String {
         }
     }
     let ending = &finished.ending;
-    let end = if ending.kind == "done" {
+    let end = if ending.outcome.is_done() {
         String::new()
     } else {
-        format!("{} at ", ending.kind)
+        format!("{} at ", ending.outcome.kind())
     };
     parts.push(format!("{end}t = {}", rounded(ending.t)));
     parts.join(", ")
@@ -162,9 +170,8 @@ fn energy(ending: &Ending) -> String {
     format!("{first:?} at the start, {last:?} at the end (change {change:.1e}{relative})")
 }
 
-fn details(ending: &Ending) -> String {
-    let parts: Vec<String> = ending
-        .details
+fn details(description: &Description, outcome: &Outcome) -> String {
+    let parts: Vec<String> = outcome::details(description, outcome)
         .iter()
         .map(|(name, value)| format!("{name} {value}"))
         .collect();

@@ -9,14 +9,13 @@ mod wish;
 
 pub use convergence::{Checkpoint, convergence};
 pub use counts::{Counts, Visits};
+use dalembert_driver::Point;
 pub use sampler::Sampler;
 pub use wish::Wish;
 
 use std::f64::consts::TAU;
 
 use serde_json::{Value, json};
-
-use crate::entry::Point;
 
 /// What an axis shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

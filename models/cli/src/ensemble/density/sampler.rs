@@ -1,8 +1,8 @@
 //! Takes the states of a run that a density counts.
 
+use dalembert_driver::{Piece, Point};
+
 use super::{Density, Visits};
-use crate::driver::Piece;
-use crate::entry::Point;
 
 /// Follows one run.
 pub struct Sampler<'a> {

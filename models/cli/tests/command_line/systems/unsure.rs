@@ -13,7 +13,7 @@ use dalembert::{
     Effect, Event, Fault, Impacting, Lagrangian, NoForces, Observer, Outcome, RankDrop, Scene,
     SceneEffects, StateError, StateVector, System, TaylorField, VectorField,
 };
-use dalembert_cli::Model;
+use dalembert_driver::Model;
 
 /// A model with impacts that are looked for at samples.
 #[derive(Debug, Clone)]

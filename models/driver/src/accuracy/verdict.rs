@@ -4,13 +4,19 @@
 //! surfaces in the same order: no error is given where an impact may have been missed, be it by all of them.
 
 use super::{Model, Settings, audited, reference};
-use crate::driver::Ending;
+use crate::refusal::Refusal;
+use crate::run::Ending;
 
 /// The verdict on a run.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Verified {
-    /// The measured error, and how far the reference is known.
-    Measured { error: f64, floor: f64 },
+pub enum Verified {
+    /// The error was measured.
+    Measured {
+        /// The largest error of a position, as a share.
+        error: f64,
+        /// How far the reference is known.
+        floor: f64,
+    },
     /// Nothing.
     Doubted {
         /// Why, in words.
@@ -23,13 +29,13 @@ pub(crate) enum Verified {
 /// Makes a run again that ended so, and measures its error.
 ///
 /// # Errors
-/// Why the run does not begin, as text.
+/// Why the run does not begin.
 pub(crate) fn verify<M: Model>(
     model: &M,
     state: &M::State,
     settings: &Settings,
     ending: &Ending,
-) -> Result<Verified, String> {
+) -> Result<Verified, Refusal> {
     let until = match settings.impacts {
         // The horizon is far beyond the last impact that was asked for; positions are compared on the way to it, and
         // a little later, where other runs may have it.

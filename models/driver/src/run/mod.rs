@@ -1,11 +1,9 @@
 //! Drives one model through one run, and shows the run to a [`Watch`] that knows nothing of the model's type.
 
-/// An integrator that chooses its steps, with the largest one of the settings; a refusal leaves the function as text.
+/// An integrator that chooses its steps, with the largest one of the settings; a refusal leaves the function.
 macro_rules! limited {
     ($stepper:expr, $settings:expr) => {
-        $stepper
-            .with_max_step($settings.max_step.unwrap_or(f64::INFINITY))
-            .map_err(|error| error.to_string())?
+        $stepper.with_max_step($settings.max_step.unwrap_or(f64::INFINITY))?
     };
 }
 
@@ -15,7 +13,6 @@ mod energy;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
-use dalembert::describe::Description;
 use dalembert::integrate::{
     AUTOMATIC_STEPS, Chosen, Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4,
     Gauss6, Method, Rk4, Taylor, Tolerance,
@@ -25,19 +22,22 @@ use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
     Event, Hold, Observer, Outcome, Policies, Run, SceneEffects, Segment, Simulation, StateVector,
 };
-use serde_json::Value;
 
-use crate::args::{Form, Integrator};
-use crate::entry::{Model, Point, point};
-use crate::{json, names};
+use crate::integrator::{Form, Integrator};
+use crate::model::Point;
+use crate::refusal::Refusal;
+use crate::typed::{Model, point};
 pub(crate) use abreast::{Abreast, simulate_abreast};
 use energy::Balance;
 
 /// How a run is to be made.
 #[derive(Debug, Clone)]
-pub(crate) struct Settings {
+pub struct Settings {
+    /// The form of the equations.
     pub form: Form,
+    /// The integrator.
     pub integrator: Integrator,
+    /// The tolerance, relative and absolute.
     pub tol: f64,
     /// The step of an integrator of fixed step, where the flags say.
     pub step: Option<f64>,
@@ -45,6 +45,7 @@ pub(crate) struct Settings {
     pub max_step: Option<f64>,
     /// Stop after this many steps.
     pub steps: Option<u64>,
+    /// The last time.
     pub until: f64,
     /// Stop after this many impacts.
     pub impacts: Option<u64>,
@@ -58,14 +59,17 @@ pub(crate) struct Settings {
 
 /// How a run ended.
 #[derive(Debug, Clone)]
-pub(crate) struct Ending {
-    pub kind: &'static str,
-    /// What the kind says besides, by name.
-    pub details: Vec<(&'static str, Value)>,
+pub struct Ending {
+    /// Why.
+    pub outcome: Outcome,
+    /// When.
     pub t: f64,
+    /// The state it began with.
     pub first: Point,
+    /// The state it ended in.
     pub last: Point,
-    pub counters: Vec<(&'static str, u64)>,
+    /// The work.
+    pub counters: Counters,
     /// The step that the integrator kept, if it keeps one.
     pub step: Option<f64>,
     /// The law in force on each surface.
@@ -78,10 +82,14 @@ pub(crate) struct Ending {
 
 /// An impact.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Impact {
+pub struct Impact {
+    /// When.
     pub t: f64,
+    /// The index of the surface.
     pub surface: usize,
+    /// The state before.
     pub before: Point,
+    /// The state after.
     pub after: Point,
     /// Whether another surface was hit at the same time.
     pub simultaneous: bool,
@@ -91,17 +99,21 @@ pub(crate) struct Impact {
 
 /// A surface begins or ceases to hold the motion.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Contact {
+pub struct Contact {
+    /// When.
     pub t: f64,
+    /// The index of the surface.
     pub surface: usize,
+    /// The state.
     pub at: Point,
+    /// True where it begins.
     pub begins: bool,
     /// Where impacts accumulate, if that is how it begins.
     pub accumulation: Option<f64>,
 }
 
 /// A stretch of smooth motion.
-pub(crate) trait Piece {
+pub trait Piece {
     /// Its first and its last time.
     fn span(&self) -> (f64, f64);
 
@@ -110,7 +122,7 @@ pub(crate) trait Piece {
 }
 
 /// Watches a run.
-pub(crate) trait Watch {
+pub trait Watch {
     /// A stretch of smooth motion was made.
     fn step(&mut self, piece: &dyn Piece);
 
@@ -143,13 +155,13 @@ pub(crate) struct Solved<S> {
 /// Runs a model from `t = 0`, and shows the run to a watch.
 ///
 /// # Errors
-/// Why the runtime refuses to start, as text.
+/// Why the runtime refuses to start.
 pub(crate) fn simulate<M: Model>(
     model: &M,
     state: M::State,
     settings: &Settings,
     watch: &mut dyn Watch,
-) -> Result<Ending, String> {
+) -> Result<Ending, Refusal> {
     let first = point(model, 0.0, &state);
     let is_doubtful = !settings.integrator.is_adaptive() && watch.wants_warnings();
     let balance = is_doubtful.then(|| Balance::of(model, 0.0, &state));
@@ -198,12 +210,11 @@ fn ending<M: Model>(
 ) -> Ending {
     let Solved { run, step, laws } = solved;
     Ending {
-        kind: run.outcome.kind(),
-        details: details(model.description(), &run.outcome),
+        outcome: run.outcome,
         t: run.t,
         first,
         last: point(model, run.t, &run.state),
-        counters: counters(&run.counters),
+        counters: run.counters,
         step,
         laws,
         reached: run.outcome.is_done()
@@ -221,8 +232,8 @@ pub(crate) fn solve<M: Model>(
     state: &M::State,
     settings: &Settings,
     observer: &mut dyn Observer<M>,
-) -> Result<Solved<M::State>, String> {
-    let tolerance = Tolerance::new(settings.tol).map_err(|error| error.to_string())?;
+) -> Result<Solved<M::State>, Refusal> {
+    let tolerance = Tolerance::new(settings.tol)?;
     macro_rules! run {
         ($stepper:expr) => {{
             let mut stepper = $stepper;
@@ -260,13 +271,11 @@ fn run<M: Model>(
     state: &M::State,
     settings: &Settings,
     mut observer: &mut dyn Observer<M>,
-) -> Result<Solved<M::State>, String> {
+) -> Result<Solved<M::State>, Refusal> {
     let (effects, laws) = effects(model, settings);
     let budget = settings.steps.unwrap_or(STEP_BUDGET);
     let mut simulation = Simulation::new(model, stepper, effects).with_step_budget(budget);
-    let run = simulation
-        .run(0.0, *state, settings.until, &mut observer)
-        .map_err(|error| error.to_string())?;
+    let run = simulation.run(0.0, *state, settings.until, &mut observer)?;
     Ok(Solved {
         run,
         step: simulation.fixed_step(),
@@ -371,88 +380,4 @@ impl<M: Model> Piece for SegmentPiece<'_, '_, M> {
             Err(_) => Point::undefined(self.model.description()),
         }
     }
-}
-
-/// What an outcome says besides its kind and its time, in the model's names.
-pub(crate) fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, Value)> {
-    let surface = |index: usize| ("surface", name(names::surfaces(description), index));
-    let constraint = |index: usize| {
-        (
-            "constraint",
-            name(description.constraints.iter().map(|it| it.name), index),
-        )
-    };
-    let quasi_velocity = |index: usize| name(description.quasi_velocities.iter().copied(), index);
-    let coordinate = |index: usize| name(names::coordinates(description), index);
-    match *outcome {
-        Outcome::Zeno { t, surface: index } | Outcome::Spasmodic { t, surface: index } => {
-            vec![("accumulates_at", json::number(t)), surface(index)]
-        }
-        Outcome::Ambiguous { surfaces } => {
-            let [first, last] = surfaces.map(|index| surface(index).1);
-            vec![("surfaces", Value::from(vec![first, last]))]
-        }
-        Outcome::StillPenetrating {
-            surface: index,
-            rho,
-        } => vec![surface(index), ("rho", json::number(rho))],
-        Outcome::ResetOffConstraint {
-            surface: index,
-            constraint: broken,
-        } => vec![surface(index), constraint(broken)],
-        Outcome::Contact { surface: index }
-        | Outcome::LeftMode { surface: index }
-        | Outcome::Trapped { surface: index }
-        | Outcome::Untaken { surface: index }
-        | Outcome::NoReset { surface: index }
-        | Outcome::TangentialCrossing { surface: index }
-        | Outcome::SingularSurface { surface: index } => vec![surface(index)],
-        Outcome::StartsInside {
-            surface: index,
-            gap,
-        }
-        | Outcome::BeginsBehind {
-            surface: index,
-            gap,
-        } => vec![surface(index), ("gap", json::number(gap))],
-        Outcome::LeftChart { coordinate: index } => vec![("coordinate", coordinate(index))],
-        Outcome::MetricNotPositive { pivot, value } => {
-            vec![
-                ("coordinate", coordinate(pivot)),
-                ("value", json::number(value)),
-            ]
-        }
-        Outcome::SingularConstraint {
-            constraint: index,
-            condition,
-        } => {
-            vec![constraint(index), ("condition", json::number(condition))]
-        }
-        Outcome::SingularFrame { quasi } => vec![("quasi_velocity", quasi_velocity(quasi))],
-        Outcome::ProjectionFailed { constraint: index } => vec![constraint(index)],
-        Outcome::NonFinite { component } => vec![("component", component.into())],
-        _ => Vec::new(),
-    }
-}
-
-/// A declared name; the index itself past the last.
-fn name(mut names: impl Iterator<Item = &'static str>, index: usize) -> Value {
-    names
-        .nth(index)
-        .map_or_else(|| Value::from(index), Value::from)
-}
-
-pub(crate) fn counters(counters: &Counters) -> Vec<(&'static str, u64)> {
-    vec![
-        ("rate_evaluations", counters.rate_evaluations),
-        ("expansions", counters.expansions),
-        ("coefficients", counters.coefficients),
-        ("accepted", counters.accepted),
-        ("rejected", counters.rejected),
-        ("dense_constructions", counters.dense_constructions),
-        ("event_evaluations", counters.event_evaluations),
-        ("crossings", counters.crossings),
-        ("impacts", counters.impacts),
-        ("projections", counters.projections),
-    ]
 }

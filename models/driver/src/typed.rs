@@ -1,21 +1,25 @@
 //! The model of a system's type.
 
+use dalembert::declaration::Described;
 use dalembert::describe::{Description, Instance, Report};
+use dalembert::erased::{self, Erased};
 use dalembert::law::{Contact, Law};
 use dalembert::state::StateVector;
 use dalembert::{
-    Fault, Lagrangian, ParameterError, Scene, SceneEffects, StateError, System, TaylorField,
-    VectorField,
+    Fault, Lagrangian, OrbitError, ParameterError, Scene, SceneEffects, StateError, System,
+    TaylorField, VectorField,
 };
 
-use super::model::{AnyModel, Code, Contacted, Origin, Point, Rates, Runs, Start, Together};
 use crate::accuracy::{self, Plan, Study, Verified};
-use crate::args::{Form, OffConstraint};
-use crate::driver::{self, Abreast, Ending, Settings, Watch};
-use crate::error::state_text;
-use crate::orbit::{Finder, Found, Missed, Search};
+use crate::integrator::Form;
+use crate::model::{
+    AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
+};
+use crate::orbit::{Finder, Found, Search};
+use crate::refusal::Refusal;
+use crate::run::{self, Abreast, Ending, Settings, Watch};
 
-/// A model that the command line can run: everything that `model!` implements of one with values for its parameters.
+/// A model that can be run without its type: everything that `model!` implements of one with values for its parameters.
 pub trait Model:
     Instance<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static
 {
@@ -27,9 +31,32 @@ impl<M> Model for M where
 }
 
 /// A model type behind [`AnyModel`].
-pub(super) struct Typed<M> {
-    pub(super) model: M,
-    pub(super) code: Code,
+struct Typed<M> {
+    model: M,
+    code: Code,
+}
+
+/// The model of a type with its declared values.
+pub fn of_type<M: Model + Described>() -> Box<dyn AnyModel> {
+    Box::new(Typed {
+        model: M::with_defaults(),
+        code: Code::Inlined,
+    })
+}
+
+/// The model of a form with its declared values, run by the system of the least capacity that holds it; `None` where none does
+/// ([`erased::Form::capacity`]).
+pub fn of_form(form: &'static erased::Form, code: Code) -> Option<Box<dyn AnyModel>> {
+    fn with_room<const C: usize>(
+        form: &'static erased::Form,
+        code: Code,
+    ) -> Option<Box<dyn AnyModel>> {
+        let model = Erased::<C>::of(form)?;
+        Some(Box::new(Typed { model, code }))
+    }
+    with_room::<4>(form, code)
+        .or_else(|| with_room::<8>(form, code))
+        .or_else(|| with_room::<32>(form, code))
 }
 
 impl<M: Model> Typed<M> {
@@ -99,16 +126,15 @@ fn marks(marked: &[bool]) -> Vec<f64> {
 /// What is to be done with the model in the form that the settings ask for, and the state in it.
 macro_rules! in_form {
     ($typed:ident, $origin:ident, $settings:ident, |$model:ident, $state:ident| $work:expr) => {{
-        let text = |error| state_text($typed.model.description(), &error);
         match $settings.form {
             Form::Reduced => {
                 let $model = &$typed.model;
-                let $state = $typed.prepare($model, 0.0, $origin).map_err(text)?;
+                let $state = $typed.prepare($model, 0.0, $origin)?;
                 $work
             }
             Form::Global => {
                 let $model = &$typed.model.global();
-                let $state = $typed.prepare($model, 0.0, $origin).map_err(text)?;
+                let $state = $typed.prepare($model, 0.0, $origin)?;
                 $work
             }
         }
@@ -229,8 +255,8 @@ impl<M: Model> Runs for Typed<M> {
         origin: &Origin,
         settings: &Settings,
         watch: &mut dyn Watch,
-    ) -> Result<Ending, String> {
-        in_form!(self, origin, settings, |model, state| driver::simulate(
+    ) -> Result<Ending, Refusal> {
+        in_form!(self, origin, settings, |model, state| run::simulate(
             model, state, settings, watch
         ))
     }
@@ -240,7 +266,7 @@ impl<M: Model> Runs for Typed<M> {
         runs: Vec<Together<'_>>,
         settings: &Settings,
         looks_inside: bool,
-    ) -> Vec<Result<Ending, String>> {
+    ) -> Vec<Result<Ending, Refusal>> {
         match settings.form {
             Form::Reduced => abreast(self, runs, settings, looks_inside, M::clone),
             Form::Global => abreast(self, runs, settings, looks_inside, M::global),
@@ -253,7 +279,7 @@ impl<M: Model> Runs for Typed<M> {
         base: &Settings,
         plan: &Plan,
         tell: &mut dyn FnMut(&str),
-    ) -> Result<Study, String> {
+    ) -> Result<Study, Refusal> {
         in_form!(self, origin, base, |model, state| accuracy::study(
             model, &state, base, plan, tell
         ))
@@ -264,7 +290,7 @@ impl<M: Model> Runs for Typed<M> {
         origin: &Origin,
         settings: &Settings,
         ending: &Ending,
-    ) -> Result<Verified, String> {
+    ) -> Result<Verified, Refusal> {
         in_form!(self, origin, settings, |model, state| accuracy::verify(
             model, &state, settings, ending
         ))
@@ -274,11 +300,9 @@ impl<M: Model> Runs for Typed<M> {
         &self,
         origin: &Origin,
         search: &Search,
-    ) -> Result<Option<Result<Found, Missed>>, String> {
-        let text = |error| state_text(self.model.description(), &error);
-        let state = self.prepare(&self.model, 0.0, origin).map_err(text)?;
-        let velocity = self.model.velocity(0.0, &state);
-        let qdot = velocity.map_err(|fault| text(fault.into()))?;
+    ) -> Result<Option<Result<Found, OrbitError>>, Refusal> {
+        let state = self.prepare(&self.model, 0.0, origin)?;
+        let qdot = self.model.velocity(0.0, &state).map_err(StateError::from)?;
         let q = self.model.position(&state);
         let finder = Finder {
             search,
@@ -296,7 +320,7 @@ fn abreast<M: Model, S: Model<Vector = M::Vector>>(
     settings: &Settings,
     looks_inside: bool,
     form: impl Fn(&M) -> S,
-) -> Vec<Result<Ending, String>> {
+) -> Vec<Result<Ending, Refusal>> {
     let mut refused = Vec::new();
     let mut begun = Vec::new();
     for (index, run) in runs.into_iter().enumerate() {
@@ -314,12 +338,12 @@ fn abreast<M: Model, S: Model<Vector = M::Vector>>(
                 state,
                 watch: run.watch,
             }),
-            Err(error) => refused.push((index, state_text(member.model.description(), &error))),
+            Err(error) => refused.push((index, error)),
         }
     }
-    let mut endings = driver::simulate_abreast(begun, settings, looks_inside);
-    for (index, reason) in refused {
-        endings.insert(index, Err(reason));
+    let mut endings = run::simulate_abreast(begun, settings, looks_inside);
+    for (index, error) in refused {
+        endings.insert(index, Err(error.into()));
     }
     endings
 }

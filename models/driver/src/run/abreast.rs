@@ -5,7 +5,8 @@ use dalembert::simulation::STEP_BUDGET;
 use dalembert::{Observer, Taylor, Tolerance};
 
 use super::{Bridge, Ending, Settings, Solved, Watch, effects, ending};
-use crate::entry::{Model, point};
+use crate::refusal::Refusal;
+use crate::typed::{Model, point};
 
 /// One of many runs: the model with its parameters, the state it begins with, and who watches it.
 pub(crate) struct Abreast<'w, M: Model> {
@@ -15,8 +16,8 @@ pub(crate) struct Abreast<'w, M: Model> {
 }
 
 /// The integrator of all runs.
-fn stepper<M: Model>(settings: &Settings) -> Result<Taylor<M>, String> {
-    let tolerance = Tolerance::new(settings.tol).map_err(|error| error.to_string())?;
+fn stepper<M: Model>(settings: &Settings) -> Result<Taylor<M>, Refusal> {
+    let tolerance = Tolerance::new(settings.tol)?;
     Ok(limited!(Taylor::new(tolerance), settings))
 }
 
@@ -25,10 +26,10 @@ pub(crate) fn simulate_abreast<M: Model>(
     runs: Vec<Abreast<'_, M>>,
     settings: &Settings,
     looks_inside: bool,
-) -> Vec<Result<Ending, String>> {
+) -> Vec<Result<Ending, Refusal>> {
     let stepper = match stepper(settings) {
         Ok(stepper) => stepper,
-        Err(error) => return runs.iter().map(|_| Err(error.clone())).collect(),
+        Err(refusal) => return runs.iter().map(|_| Err(refusal)).collect(),
     };
     let (models, watched): (Vec<M>, Vec<_>) = runs
         .into_iter()
@@ -50,8 +51,8 @@ pub(crate) fn simulate_abreast<M: Model>(
             balance: None,
         });
     }
-    let mut endings: Vec<Result<Ending, String>> = Vec::new();
-    endings.resize_with(models.len(), || Err(String::new()));
+    let mut endings: Vec<Option<Result<Ending, Refusal>>> = Vec::new();
+    endings.resize_with(models.len(), || None);
     let members = bridges.iter_mut().enumerate().map(|(index, bridge)| {
         let model = bridge.model;
         let (effects, _) = effects(model, settings);
@@ -71,7 +72,7 @@ pub(crate) fn simulate_abreast<M: Model>(
     });
     run_abreast(members, |index, run| {
         let model = &models[index];
-        endings[index] = run.map_err(|error| error.to_string()).map(|run| {
+        let ended = run.map_err(Refusal::from).map(|run| {
             let (_, laws) = effects(model, settings);
             let first = point(model, 0.0, &states[index]);
             let solved = Solved {
@@ -81,6 +82,10 @@ pub(crate) fn simulate_abreast<M: Model>(
             };
             ending(model, first, solved, settings)
         });
+        endings[index] = Some(ended);
     });
     endings
+        .into_iter()
+        .map(|ended| ended.expect("every member ends"))
+        .collect()
 }

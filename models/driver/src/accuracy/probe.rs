@@ -8,10 +8,14 @@ use dalembert::integrate::Counters;
 use dalembert::{Event, Observer, Outcome, Segment, StateVector};
 
 use super::TIMES;
-use crate::driver::{Ending, Solved};
-use crate::entry::Model;
-use crate::names;
-use crate::record::Grid;
+use crate::grid::Grid;
+use crate::run::{Ending, Solved};
+use crate::typed::Model;
+
+/// The surfaces' names in order.
+fn surfaces(description: &Description) -> impl Iterator<Item = &'static str> + use<> {
+    description.surfaces.iter().map(|surface| surface.name)
+}
 
 /// Impacts of a run that are kept to be compared; of later ones only the number is.
 const KEPT: usize = 1 << 20;
@@ -106,7 +110,7 @@ pub enum Audited {
 impl Audited {
     /// Why the events of a run are not confirmed.
     fn doubt(self, description: &Description) -> Option<String> {
-        let surface = |index| names::surfaces(description).nth(index).unwrap_or_default();
+        let surface = |index| surfaces(description).nth(index).unwrap_or_default();
         match self {
             Self::Confirmed => None,
             Self::Not => Some("its impacts were not audited".to_owned()),
@@ -199,7 +203,7 @@ impl Track {
         match met {
             None => "meets nothing more".to_owned(),
             Some(Met { t, surface }) => {
-                let name = names::surfaces(&self.description).nth(surface);
+                let name = surfaces(&self.description).nth(surface);
                 format!("meets `{}` at t = {t}", name.unwrap_or_default())
             }
         }
@@ -214,7 +218,7 @@ impl Track {
     pub fn is_run_of(&self, ending: &Ending) -> bool {
         let mut pairs = self.last.iter().zip(&ending.last.q);
         self.t == ending.t
-            && self.outcome.kind() == ending.kind
+            && self.outcome.kind() == ending.outcome.kind()
             && pairs.all(|(own, right)| own == right || right.is_nan())
     }
 

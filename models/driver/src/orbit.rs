@@ -1,38 +1,48 @@
 //! Periodic orbits of a model, behind a trait that knows nothing of its type.
 
 use dalembert::contract::Variational;
-use dalembert::describe::{Description, VariationalVisitor};
+use dalembert::describe::VariationalVisitor;
 use dalembert::integrate::Chosen;
 use dalembert::law::Law;
 use dalembert::variations::orbit::ITERATIONS;
-use dalembert::variations::{Orbit, OrbitError, Section, SectionError, Undefined};
-use dalembert::{Instance, Outcome, Policies, Scene, SceneEffects, StateVector, Taylor, Tolerance};
-use serde_json::Value;
+use dalembert::variations::{Orbit, OrbitError, Section, SectionError};
+use dalembert::{
+    Instance, Policies, Scene, SceneEffects, StateError, StateVector, Taylor, Tolerance,
+};
 
-use crate::driver::details;
-use crate::entry::{Point, point};
-use crate::{json, names};
+use crate::model::Point;
+use crate::refusal::Refusal;
+use crate::typed::point;
 
 /// What is looked for.
 #[derive(Debug, Clone)]
-pub(crate) struct Search {
+pub struct Search {
+    /// The index of the surface whose returns are looked at.
     pub surface: usize,
+    /// Returns that make a period.
     pub returns: u32,
+    /// How long one return may take.
     pub horizon: f64,
+    /// The tolerance of the integrator.
     pub tolerance: Tolerance,
     /// Laws by index of the surface, instead of the declared ones; a later one counts.
     pub laws: Vec<(usize, Law)>,
+    /// What impacts do where a law alone does not tell how to go on.
     pub policies: Policies,
 }
 
 /// An orbit, in numbers.
 #[derive(Debug, Clone)]
-pub(crate) struct Found {
+pub struct Found {
+    /// The period.
     pub period: f64,
-    /// The point of the section, and the state after what happens there.
+    /// The point of the section.
     pub before: Point,
+    /// The state after what happens at the section.
     pub after: Point,
+    /// The distance by which it misses itself.
     pub residual: f64,
+    /// Steps of the iteration.
     pub iterations: u32,
     /// Directions of the section, each in components of the state.
     pub directions: Vec<Vec<f64>>,
@@ -40,13 +50,6 @@ pub(crate) struct Found {
     pub derivative: Vec<f64>,
     /// Real and imaginary parts.
     pub multipliers: Vec<[f64; 2]>,
-}
-
-/// Why there is none: a kind, and what it says besides, by name.
-#[derive(Debug, Clone)]
-pub(crate) struct Missed {
-    pub kind: &'static str,
-    pub details: Vec<(&'static str, Value)>,
 }
 
 /// Looks for an orbit of whatever model it is shown, from the first arrival from this state on.
@@ -58,7 +61,7 @@ pub(crate) struct Finder<'a> {
 
 impl VariationalVisitor for Finder<'_> {
     /// `Err` of the inner result where there is no orbit, of the outer where no run begins.
-    type Output = Result<Result<Found, Missed>, String>;
+    type Output = Result<Result<Found, OrbitError>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
         let search = self.search;
@@ -71,7 +74,7 @@ impl VariationalVisitor for Finder<'_> {
         q.as_mut_slice().copy_from_slice(self.q);
         qdot.as_mut_slice().copy_from_slice(self.qdot);
         let start = system.state_unchecked(0.0, &q, &qdot);
-        let start = start.map_err(|fault| fault.to_string())?;
+        let start = start.map_err(StateError::from)?;
         let mut stepper = Taylor::new(search.tolerance);
         let mut section = Section::new(
             system,
@@ -87,8 +90,8 @@ impl VariationalVisitor for Finder<'_> {
             .and_then(|first| section.periodic(&first.before, ITERATIONS));
         match orbit {
             Ok(orbit) => Ok(Ok(found(system, &orbit))),
-            Err(OrbitError::Section(SectionError::Start(error))) => Err(error.to_string()),
-            Err(error) => Ok(Err(missed(system.description(), &error))),
+            Err(OrbitError::Section(SectionError::Start(error))) => Err(error.into()),
+            Err(error) => Ok(Err(error)),
         }
     }
 }
@@ -109,46 +112,5 @@ fn found<S: Instance + Variational>(system: &S, orbit: &Orbit<S>) -> Found {
             .collect(),
         derivative: rows.collect(),
         multipliers: orbit.multipliers.iter().collect(),
-    }
-}
-
-fn missed(description: &Description, error: &OrbitError) -> Missed {
-    let (kind, details) = match error {
-        OrbitError::Section(SectionError::Ended(Outcome::Done)) => ("no_return", Vec::new()),
-        OrbitError::Section(SectionError::Ended(outcome)) => {
-            (outcome.kind(), details(description, outcome))
-        }
-        OrbitError::Section(SectionError::Undefined(undefined)) => {
-            (undefined.kind(), place(description, undefined))
-        }
-        OrbitError::DependsOnTime => ("depends_on_time", Vec::new()),
-        OrbitError::NotConverged {
-            residual,
-            iterations,
-        } => {
-            let details = vec![
-                ("residual", json::number(*residual)),
-                ("iterations", Value::from(*iterations)),
-            ];
-            ("not_converged", details)
-        }
-        _ => ("no_multipliers", Vec::new()),
-    };
-    Missed { kind, details }
-}
-
-/// Where a run has no derivative.
-fn place(description: &Description, undefined: &Undefined) -> Vec<(&'static str, Value)> {
-    match *undefined {
-        Undefined::Graze { t, surface }
-        | Undefined::Corner { t, surface }
-        | Undefined::Held { t, surface }
-        | Undefined::Unlawful { t, surface }
-        | Undefined::Refracted { t, surface } => {
-            let name = names::surfaces(description).nth(surface);
-            vec![("surface", name.into()), ("after", json::number(t))]
-        }
-        Undefined::NotFinite { t } => vec![("after", json::number(t))],
-        _ => Vec::new(),
     }
 }

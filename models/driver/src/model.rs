@@ -2,24 +2,55 @@
 
 use dalembert::describe::{Description, Report};
 use dalembert::law::Law;
-use dalembert::{Fault, ParameterError, StateError};
+use dalembert::{Fault, OrbitError, ParameterError, StateError};
 
 use crate::accuracy::{Plan, Study, Verified};
-use crate::args::OffConstraint;
-use crate::driver::{Ending, Settings, Watch};
-use crate::orbit::{Found, Missed, Search};
+use crate::orbit::{Found, Search};
+use crate::refusal::Refusal;
+use crate::run::{Ending, Settings, Watch};
 
 /// Velocities or momenta, one per coordinate.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Rates {
+pub enum Rates {
+    /// qdot.
     Velocities(Vec<f64>),
+    /// p.
     Momenta(Vec<f64>),
+}
+
+/// What to do with positions or a velocity that violate the constraints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OffConstraint {
+    /// Refuse them, beyond 1e-9 of the sum of the absolute values of the constraint's terms.
+    Error,
+    /// Replace them by allowed positions near by and the nearest allowed velocity in the metric.
+    Project,
+    /// Start there; the motion keeps the residual.
+    Keep,
+}
+
+impl OffConstraint {
+    /// All of them.
+    pub const fn every() -> &'static [Self] {
+        &[Self::Error, Self::Project, Self::Keep]
+    }
+
+    /// The name on the command line and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Project => "project",
+            Self::Keep => "keep",
+        }
+    }
 }
 
 /// A state as it is given.
 #[derive(Debug, Clone)]
-pub(crate) struct Origin {
+pub struct Origin {
+    /// Positions, one per coordinate.
     pub q: Vec<f64>,
+    /// Velocities or momenta.
     pub rates: Rates,
     /// What to do where it is off the constraints.
     pub policy: OffConstraint,
@@ -27,26 +58,35 @@ pub(crate) struct Origin {
 
 /// The declared initial condition.
 #[derive(Debug, Clone)]
-pub(crate) struct Start {
+pub struct Start {
+    /// Positions, one per coordinate.
     pub q: Vec<f64>,
+    /// Velocities, one per coordinate.
     pub qdot: Vec<f64>,
     /// Whether the position is given; equations of positions among the constraints may choose the others.
     pub placed: Vec<bool>,
     /// Whether the velocity is given; the constraints may choose the others.
     pub named: Vec<bool>,
+    /// The declared end of a run.
     pub until: Option<f64>,
 }
 
 /// What tables and pictures show of a state; NaN where a quantity does not exist.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Point {
+pub struct Point {
     /// The name of the mode, of a model with modes.
     pub mode: Option<&'static str>,
+    /// Positions, one per coordinate.
     pub q: Vec<f64>,
+    /// Velocities, one per coordinate.
     pub qdot: Vec<f64>,
+    /// Momenta, one per coordinate.
     pub p: Vec<f64>,
+    /// Kinetic plus potential energy.
     pub energy: f64,
+    /// The declared outputs, in their order.
     pub outputs: Vec<f64>,
+    /// The point that the declared view shows.
     pub view: Option<[f64; 2]>,
 }
 
@@ -67,17 +107,25 @@ impl Point {
 }
 
 /// A model with values for its parameters. States are those of its global form, positions and momenta.
-pub(crate) trait AnyModel: Runs {
+pub trait AnyModel: Runs {
     /// The way in which its functions are called.
     fn code(&self) -> Code;
+    /// Names, shapes and documentation of what is declared.
     fn description(&self) -> Description;
     /// The names of the inputs, whose values are the parameters after those of the description.
     fn inputs(&self) -> &'static [&'static str];
+    /// The value of a parameter; inputs come after those of the description.
     fn parameter(&self, index: usize) -> f64;
+    /// Sets a parameter. The value is checked where a state is made.
     fn set_parameter(&mut self, index: usize, value: f64);
     /// The mode, by number, that states are made in.
     fn set_mode(&mut self, mode: usize);
+    /// Refuses values that the declaration rules out.
+    ///
+    /// # Errors
+    /// The first of them.
     fn check_parameters(&self) -> Result<(), ParameterError>;
+    /// The declared initial condition.
     fn initial(&self) -> Start;
     /// The positions with those that are not `placed` chosen by equations of positions among the constraints.
     fn complete_position(&self, q: &[f64], placed: &[bool]) -> Result<Vec<f64>, StateError>;
@@ -88,8 +136,17 @@ pub(crate) trait AnyModel: Runs {
         qdot: &[f64],
         named: &[bool],
     ) -> Result<Vec<f64>, StateError>;
+    /// The state `(q, p)` of the global form.
+    ///
+    /// # Errors
+    /// As the states of a run are refused.
     fn state(&self, t: f64, origin: &Origin) -> Result<Vec<f64>, StateError>;
+    /// The declared region's function, positive where motion is allowed; `None` without a region.
     fn region(&self, t: f64, q: &[f64]) -> Option<f64>;
+    /// Shows everything that is derived at a state of the global form.
+    ///
+    /// # Errors
+    /// Where something does not exist there.
     fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault>;
     /// The law that a surface declares.
     fn law(&self, surface: usize) -> Option<Law>;
@@ -100,13 +157,17 @@ pub(crate) trait AnyModel: Runs {
 }
 
 /// The runs of a model with values for its parameters.
-pub(crate) trait Runs {
+pub trait Runs {
+    /// Makes a run from `t = 0`, and shows it to a watch.
+    ///
+    /// # Errors
+    /// Why it does not begin.
     fn simulate(
         &self,
         origin: &Origin,
         settings: &Settings,
         watch: &mut dyn Watch,
-    ) -> Result<Ending, String>;
+    ) -> Result<Ending, Refusal>;
     /// As [`Runs::simulate`], with Taylor series, of several runs at once; `looks_inside` where watches look at
     /// states inside steps.
     fn simulate_abreast(
@@ -114,7 +175,7 @@ pub(crate) trait Runs {
         runs: Vec<Together<'_>>,
         settings: &Settings,
         looks_inside: bool,
-    ) -> Vec<Result<Ending, String>>;
+    ) -> Vec<Result<Ending, Refusal>>;
     /// What accuracy costs from this state on; `tell` hears what is about to be measured.
     fn study(
         &self,
@@ -122,44 +183,52 @@ pub(crate) trait Runs {
         base: &Settings,
         plan: &Plan,
         tell: &mut dyn FnMut(&str),
-    ) -> Result<Study, String>;
+    ) -> Result<Study, Refusal>;
     /// The measured error of a run that ended so.
     fn verify(
         &self,
         origin: &Origin,
         settings: &Settings,
         ending: &Ending,
-    ) -> Result<Verified, String>;
+    ) -> Result<Verified, Refusal>;
     /// A periodic orbit near the first arrival from this state; `None` for a scene without variations.
     fn orbit(
         &self,
         origin: &Origin,
         search: &Search,
-    ) -> Result<Option<Result<Found, Missed>>, String>;
+    ) -> Result<Option<Result<Found, OrbitError>>, Refusal>;
 }
 
 /// One of several runs that are made at once.
-pub(crate) struct Together<'w> {
+pub struct Together<'w> {
     /// The values of all parameters.
     pub parameters: Vec<f64>,
+    /// The state that it begins with.
     pub origin: Origin,
+    /// What is shown the run.
     pub watch: &'w mut dyn Watch,
 }
 
 /// The data of a contact as `inspect` reports them.
 #[derive(Debug, Clone)]
-pub(crate) struct Contacted {
+pub struct Contacted {
+    /// `dh(qdot) + d_t h` before the impact.
     pub gap_rate: f64,
+    /// `P(pi_D grad h)`: the momentum along the projected gradient.
     pub constrained_rate: f64,
+    /// `d_t h`, the speed of a moving surface.
     pub surface_rate: f64,
+    /// `dh(pi_D grad h)`.
     pub constrained_compliance: f64,
+    /// `dh(grad h)`.
     pub free_compliance: f64,
+    /// The direction of the impulse, in momenta.
     pub direction: Vec<f64>,
 }
 
 /// The way in which the functions of a model are called. Speed depends on it, results do not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Code {
+pub enum Code {
     /// They are inlined into what runs the model.
     Inlined,
     /// They are compiled, and behind pointers.

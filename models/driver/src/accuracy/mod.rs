@@ -9,7 +9,7 @@
 //!
 //! ```
 //! use dalembert::{System};
-//! use dalembert_cli::accuracy::choose;
+//! use dalembert_driver::accuracy::choose;
 //!
 //! dalembert::model! {
 //!     /// A pendulum.
@@ -38,11 +38,13 @@ use dalembert::integrate::Counters;
 use dalembert::{Outcome, Policies, SceneEffects};
 use thiserror::Error;
 
-use crate::args::{Form, Integrator};
-use crate::driver::{self, Settings};
-use crate::entry::Model;
+use crate::integrator::{Form, Integrator};
+use crate::refusal::Refusal;
+use crate::run::{self, Settings};
+use crate::typed::Model;
 use probe::{Audited, Probe, Track};
-pub(crate) use verdict::{Verified, verify};
+pub use verdict::Verified;
+pub(crate) use verdict::verify;
 
 /// Equally spaced times at which positions are compared.
 pub const TIMES: u64 = 64;
@@ -137,8 +139,8 @@ pub struct Study {
 #[non_exhaustive]
 pub enum NoChoice {
     /// The runs did not begin.
-    #[error("{0}")]
-    Start(String),
+    #[error(transparent)]
+    Start(#[from] Refusal),
     /// There is no reference to measure errors by.
     #[error("the reference is not confirmed: {0}")]
     Unconfirmed(String),
@@ -207,15 +209,15 @@ pub fn choose<M: Model>(
         enough: Some(wanted),
         ..Plan::new(horizon)
     };
-    let study = measure(scene, state, &plan).map_err(NoChoice::Start)?;
+    let study = measure(scene, state, &plan)?;
     study.choose(wanted).copied()
 }
 
 /// Measures what a plan asks for.
 ///
 /// # Errors
-/// Why the reference does not begin, as text.
-pub fn measure<M: Model>(scene: &M, state: &M::State, plan: &Plan) -> Result<Study, String> {
+/// Why the reference does not begin.
+pub fn measure<M: Model>(scene: &M, state: &M::State, plan: &Plan) -> Result<Study, Refusal> {
     let base = Settings {
         form: Form::Reduced,
         integrator: Integrator::Taylor,
@@ -247,7 +249,7 @@ pub(crate) fn study<M: Model>(
     base: &Settings,
     plan: &Plan,
     tell: &mut dyn FnMut(&str),
-) -> Result<Study, String> {
+) -> Result<Study, Refusal> {
     tell("reference");
     let reference = reference(model, state, base)?;
     let mut cases: Vec<Case> = Vec::new();
@@ -296,7 +298,7 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    /// Makes them, up to the first that is accurate enough or takes too long; why there are no more, as text.
+    /// Makes them, up to the first that is accurate enough or takes too long; why there are no more.
     fn climb<M: Model>(
         &mut self,
         model: &M,
@@ -313,7 +315,7 @@ impl<'a> Ladder<'a> {
                 ..base.clone()
             };
             let begun = Instant::now();
-            let track = track(model, state, &settings)?;
+            let track = track(model, state, &settings).map_err(|refusal| refusal.to_string())?;
             let once = begun.elapsed();
             // Steps are halved or doubled to suit a tolerance: two of them may suit the same.
             let last = self.cases.last().and_then(|case| case.sample.step);
@@ -367,10 +369,10 @@ fn case(
 }
 
 impl Case {
-    fn time<M: Model>(&mut self, model: &M, state: &M::State) -> Result<(), String> {
+    fn time<M: Model>(&mut self, model: &M, state: &M::State) -> Result<(), Refusal> {
         let begun = Instant::now();
         for _ in 0..self.repeats {
-            let solved = driver::solve(model, state, &self.settings, &mut ())?;
+            let solved = run::solve(model, state, &self.settings, &mut ())?;
             std::hint::black_box(solved.run.state);
         }
         let seconds = begun.elapsed().as_secs_f64() / f64::from(self.repeats);
@@ -402,7 +404,7 @@ struct Reference {
     doubt: Option<String>,
 }
 
-fn reference<M: Model>(model: &M, state: &M::State, base: &Settings) -> Result<Reference, String> {
+fn reference<M: Model>(model: &M, state: &M::State, base: &Settings) -> Result<Reference, Refusal> {
     let [first, second] = FINEST.map(|tol| {
         let settings = Settings {
             integrator: Integrator::Taylor,
@@ -430,9 +432,9 @@ fn reference<M: Model>(model: &M, state: &M::State, base: &Settings) -> Result<R
     })
 }
 
-fn track<M: Model>(model: &M, state: &M::State, settings: &Settings) -> Result<Track, String> {
+fn track<M: Model>(model: &M, state: &M::State, settings: &Settings) -> Result<Track, Refusal> {
     let mut probe = Probe::new(model, settings.until);
-    let solved = driver::solve(model, state, settings, &mut probe)?;
+    let solved = run::solve(model, state, settings, &mut probe)?;
     Ok(probe.track(&solved, Audited::Not))
 }
 
@@ -442,12 +444,12 @@ fn audited<M: Model>(
     state: &M::State,
     settings: &Settings,
     until: f64,
-) -> Result<Track, String> {
-    let (effects, laws) = driver::effects(model, settings);
+) -> Result<Track, Refusal> {
+    let (effects, laws) = run::effects(model, settings);
     let mut audited = None;
     let has_audit = effects.audit(model, &mut |audit| {
         let mut probe = Probe::new(model, until);
-        let solved = driver::solve(model, state, settings, &mut (&mut probe, &mut *audit));
+        let solved = run::solve(model, state, settings, &mut (&mut probe, &mut *audit));
         let result = match audit.finding() {
             None => Audited::Confirmed,
             Some(finding) => Audited::Doubted(finding),
@@ -458,7 +460,7 @@ fn audited<M: Model>(
         return track;
     }
     let mut probe = Probe::new(model, until);
-    let solved = driver::solve(model, state, settings, &mut probe)?;
+    let solved = run::solve(model, state, settings, &mut probe)?;
     Ok(probe.track(
         &solved,
         match laws.iter().all(Option::is_none) {

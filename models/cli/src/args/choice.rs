@@ -1,0 +1,75 @@
+//! Flags whose values are those of an enumeration of the driver, by name.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
+use dalembert_driver::{Form, Integrator, OffConstraint};
+
+/// The integrators.
+pub fn integrator() -> ValueParser {
+    one_of(Integrator::every().iter().map(|&integrator| {
+        let help = match integrator {
+            Integrator::Dop853 => {
+                "Dormand and Prince of order 8(5,3), dense output of order 7"
+            }
+            Integrator::Dopri5 => "Dormand and Prince of order 5(4), dense output of order 4",
+            Integrator::Taylor => {
+                "Taylor series, of the order that belongs to the tolerance (12 at 1e-9, 19 at 1e-15)"
+            }
+            Integrator::Rk4 => "Fixed step: the classical Runge-Kutta method of order 4",
+            Integrator::Gauss4 => {
+                "Fixed step: Gauss collocation of order 4, symplectic without constraints"
+            }
+            Integrator::Gauss6 => {
+                "Fixed step: Gauss collocation of order 6, symplectic without constraints"
+            }
+            Integrator::Dla2 => {
+                "Fixed step: discrete Lagrange-d'Alembert principle of order 2, constraints hold to rounding"
+            }
+            Integrator::Dla4 => "Fixed step: the same composed to order 4",
+        };
+        (integrator, integrator.name(), help)
+    }))
+}
+
+/// The forms of the equations.
+pub fn form() -> ValueParser {
+    one_of(Form::every().iter().map(|&form| {
+        let help = match form {
+            Form::Reduced => {
+                "Positions and the quasi-velocities that the constraints leave: (q, u) on D"
+            }
+            Form::Global => "Positions and momenta, off the constraints too: (q, p) on T*Q",
+        };
+        (form, form.name(), help)
+    }))
+}
+
+/// What to do off the constraints.
+pub fn off_constraint() -> ValueParser {
+    one_of(OffConstraint::every().iter().map(|&policy| {
+        let help = match policy {
+            OffConstraint::Error => {
+                "Refuse them, beyond 1e-9 of the sum of the absolute values of the constraint's terms"
+            }
+            OffConstraint::Project => {
+                "Replace them by allowed positions near by and the nearest allowed velocity in the metric"
+            }
+            OffConstraint::Keep => "Start there; the motion keeps the residual",
+        };
+        (policy, policy.name(), help)
+    }))
+}
+
+/// A parser of values that have a name and a help each.
+fn one_of<T: Copy + Send + Sync + 'static>(
+    choices: impl IntoIterator<Item = (T, &'static str, &'static str)>,
+) -> ValueParser {
+    let choices: Vec<_> = choices.into_iter().collect();
+    let named = choices
+        .iter()
+        .map(|&(_, name, help)| PossibleValue::new(name).help(help));
+    let parser = PossibleValuesParser::new(named);
+    ValueParser::new(parser.map(move |given| {
+        let chosen = choices.iter().find(|(_, name, _)| *name == given);
+        chosen.expect("a name that was accepted").0
+    }))
+}

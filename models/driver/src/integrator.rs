@@ -1,0 +1,100 @@
+//! The integrators by name, and the form of the equations that they integrate.
+
+use dalembert::integrate::{
+    ClassicalRungeKutta, ComposedPrinciple, Dop853Scheme, DormandPrince5Scheme, Gauss, Method,
+    MidpointPrinciple, Scheme, TAYLOR,
+};
+
+/// The integrators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Integrator {
+    /// Dormand and Prince of order 8(5,3), dense output of order 7.
+    Dop853,
+    /// Dormand and Prince of order 5(4), dense output of order 4.
+    Dopri5,
+    /// Taylor series, of the order that belongs to the tolerance (12 at 1e-9, 19 at 1e-15).
+    Taylor,
+    /// Fixed step: the classical Runge-Kutta method of order 4.
+    Rk4,
+    /// Fixed step: Gauss collocation of order 4, symplectic without constraints.
+    Gauss4,
+    /// Fixed step: Gauss collocation of order 6, symplectic without constraints.
+    Gauss6,
+    /// Fixed step: discrete Lagrange-d'Alembert principle of order 2, constraints hold to rounding.
+    Dla2,
+    /// Fixed step: the same composed to order 4.
+    Dla4,
+}
+
+impl Integrator {
+    /// All of them.
+    pub const fn every() -> &'static [Self] {
+        &[
+            Self::Dop853,
+            Self::Dopri5,
+            Self::Taylor,
+            Self::Rk4,
+            Self::Gauss4,
+            Self::Gauss6,
+            Self::Dla2,
+            Self::Dla4,
+        ]
+    }
+
+    /// The name on the command line and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Dop853 => Dop853Scheme::NAME,
+            Self::Dopri5 => DormandPrince5Scheme::NAME,
+            Self::Rk4 => ClassicalRungeKutta::NAME,
+            Self::Gauss4 => Gauss::<2>::NAME,
+            Self::Gauss6 => Gauss::<3>::NAME,
+            Self::Dla2 => MidpointPrinciple::NAME,
+            Self::Dla4 => ComposedPrinciple::NAME,
+            Self::Taylor => TAYLOR,
+        }
+    }
+
+    /// The order of the solution at the ends of steps; `None` where it follows the tolerance.
+    pub const fn order(self) -> Option<usize> {
+        match self {
+            Self::Dop853 => Some(Dop853Scheme::ORDER),
+            Self::Dopri5 => Some(DormandPrince5Scheme::ORDER),
+            Self::Rk4 => Some(ClassicalRungeKutta::ORDER),
+            Self::Gauss4 => Some(Gauss::<2>::ORDER),
+            Self::Gauss6 => Some(Gauss::<3>::ORDER),
+            Self::Dla2 => Some(MidpointPrinciple::ORDER),
+            Self::Dla4 => Some(ComposedPrinciple::ORDER),
+            Self::Taylor => None,
+        }
+    }
+
+    /// Whether it chooses its steps by an error estimate.
+    pub const fn is_adaptive(self) -> bool {
+        matches!(self, Self::Dop853 | Self::Dopri5 | Self::Taylor)
+    }
+}
+
+/// What the state of a run consists of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// Positions and the quasi-velocities that the constraints leave: (q, u) on D.
+    Reduced,
+    /// Positions and momenta, off the constraints too: (q, p) on T*Q.
+    Global,
+}
+
+impl Form {
+    /// Both of them.
+    pub const fn every() -> &'static [Self] {
+        &[Self::Reduced, Self::Global]
+    }
+
+    /// The name on the command line and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Reduced => "reduced",
+            Self::Global => "global",
+        }
+    }
+}

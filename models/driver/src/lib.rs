@@ -1,0 +1,35 @@
+//! Runs of models that are known only at run time, periodic orbits, and what accuracy costs.
+//!
+//! | file | job |
+//! |---|---|
+//! | `model.rs` | the trait of a model whose type is forgotten, and what its functions take and give |
+//! | `typed.rs` | the trait for the type of a system |
+//! | `run/` | one run: how it is made, what watches it, how it ended |
+//! | `accuracy/` | measured errors of integrators, with work and time |
+//! | `orbit.rs` | periodic orbits |
+//! | `drift.rs` | what a long run keeps of a quantity |
+//!
+//! A model that has a form is run by the system of all forms ([`of_form`]), which is compiled here, once; any other is compiled with all
+//! that runs it where its type is named ([`of_type`]).
+
+#![forbid(unsafe_code)]
+
+pub mod accuracy;
+pub mod drift;
+mod grid;
+mod integrator;
+mod model;
+mod orbit;
+mod refusal;
+mod run;
+mod typed;
+
+pub use grid::Grid;
+pub use integrator::{Form, Integrator};
+pub use model::{
+    AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
+};
+pub use orbit::{Found, Search};
+pub use refusal::Refusal;
+pub use run::{Contact, Ending, Impact, Piece, Settings, Watch};
+pub use typed::{Model, of_form, of_type};
