@@ -9,7 +9,8 @@ use std::process::Command;
 use dalembert::Described;
 use dalembert_benches::table::{Layout, Table};
 use dalembert_benches::timing::{is_benchmark, median, timed};
-use dalembert_codegen::{compile_modes, mechanics, model, program, read, spec, try_expand};
+use dalembert_codegen::{compile_modes, mechanics, model, program, read, spec};
+use dalembert_emit::try_expand;
 use dalembert_models::{Chain16, DoublePendulum, RollingDisk};
 
 /// What is measured of one expansion.

@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use dalembert::{Described, Scene};
 use dalembert_codegen::claims::{Exactness, Problem, Undecided, decide};
-use dalembert_codegen::{mechanics, model, program, spec, try_expand};
+use dalembert_codegen::{mechanics, model, program, spec};
+use dalembert_emit::try_expand;
 use dalembert_models::{Chain2, Chain4, Chain8, Chain16};
 use dalembert_tests::bodies::{ball, train};
 use dalembert_tests::sampling::{Visitor, visit_all};

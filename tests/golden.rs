@@ -8,7 +8,7 @@ use dalembert_models::{
 use dalembert_tests::golden;
 
 fn expansion(source: &str) -> String {
-    let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens")).expect("a model");
+    let tokens = dalembert_emit::try_expand(source.parse().expect("tokens")).expect("a model");
     let text = prettyplease::unparse(&syn::parse2(tokens).expect("items"));
     // How the declaration itself is spelled depends on who turned it into tokens.
     let is_source = |line: &&str| line.trim_start().starts_with("source: ");

@@ -88,7 +88,7 @@ fn lagrangian(declarations: &str) -> String {
 fn difference(row: &Row) -> Option<String> {
     let source = model(&row.declarations);
     let tokens: TokenStream = source.parse().expect("tokens");
-    let actual = match dalembert_codegen::try_expand(tokens) {
+    let actual = match dalembert_emit::try_expand(tokens) {
         Ok(_) => "nothing".to_owned(),
         Err(diagnostics) => {
             let messages: Vec<&str> = diagnostics.iter().map(|error| error.message()).collect();
@@ -123,7 +123,7 @@ fn the_refusal_in_the_readme_is_the_one_that_is_made() {
     let (_, declaration) = code.split_once("model! {").expect("a model");
     let (declaration, _) = declaration.rsplit_once('}').expect("its end");
     let tokens: TokenStream = declaration.parse().expect("tokens");
-    let refused = dalembert_codegen::try_expand(tokens).expect_err("a false claim");
+    let refused = dalembert_emit::try_expand(tokens).expect_err("a false claim");
     let messages: Vec<&str> = refused.iter().map(|error| error.message()).collect();
     assert_eq!(messages.join("\n"), message.replace("\n       ", "\n"));
 }

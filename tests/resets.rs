@@ -8,8 +8,9 @@ use dalembert::{
 };
 use dalembert_cli::{Exit, models};
 use dalembert_codegen::claims::Verdict;
+use dalembert_codegen::compile;
 use dalembert_codegen::program::{Program, interpret::interpret};
-use dalembert_codegen::{compile, try_expand};
+use dalembert_emit::try_expand;
 use dalembert_models::WalkerFootSlip;
 use dalembert_tests::claim::Declaration;
 use dalembert_tests::command::{self, Finished};

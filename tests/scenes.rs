@@ -43,7 +43,7 @@ type Implemented = BTreeMap<(String, String), String>;
 
 /// What is implemented for a type, but for its kernels and the trait by which it describes itself.
 fn implemented(source: &str, type_name: &str) -> Implemented {
-    let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens")).expect(source);
+    let tokens = dalembert_emit::try_expand(source.parse().expect("tokens")).expect(source);
     let file: syn::File = syn::parse2(tokens).expect("items");
     let blocks = file.items.iter().filter_map(|item| match item {
         syn::Item::Const(own) => Some(&*own.expr),
@@ -355,7 +355,7 @@ fn a_claim_about_a_scene_is_examined_there() {
                 forces {{ drag: -c*dot(x)*d(x); }} impacts {{ floor: x >= 0; }}
                 scenes {{ free; slowed: drag; floored: floor; }} {claims} }}"
         );
-        let refused = dalembert_codegen::try_expand(source.parse().expect("tokens"));
+        let refused = dalembert_emit::try_expand(source.parse().expect("tokens"));
         refused.err().map(|errors| {
             let messages = errors.iter().map(|own| own.message().to_owned());
             messages.collect::<Vec<_>>().join("\n")

@@ -1,9 +1,9 @@
-//! Code generator of dalembert: a declared model in, specialised Rust out.
+//! Generator of dalembert: a declared model in, straight-line programs out. `dalembert-emit` writes them as Rust, `dalembert-jit` runs them.
 //!
 //! ```text
 //! TokenStream --spec::parse--> Spec --model::check--> Model --mechanics::derive--> Derivation
 //!     --claims::examine--> Examined
-//!     --program::lower--> Program --emit::tokens--> TokenStream
+//!     --program::lower--> Program
 //! ```
 //!
 //! Each stage takes the previous type and returns a new one. The first two can fail, with every mistake of the
@@ -13,8 +13,6 @@
 
 pub mod claims;
 pub mod diagnostics;
-pub mod emit;
-pub mod file;
 pub mod mechanics;
 pub mod model;
 pub mod program;
@@ -22,45 +20,24 @@ pub mod report;
 pub mod spec;
 pub mod tables;
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// The whole pipeline: the body of a `model!` in, Rust items out; on mistakes, compile errors and nothing else.
-pub fn expand(input: TokenStream) -> TokenStream {
-    match try_expand(input) {
-        Ok(items) => items,
-        Err(diagnostics) => diagnostics.into_compile_error(),
-    }
-}
-
-/// The pipeline, with its diagnostics.
-///
-/// # Errors
-/// Every mistake of the first stage that found any.
-pub fn try_expand(input: TokenStream) -> Result<TokenStream, diagnostics::Diagnostics> {
-    expand_declaration(read(input)?)
-}
-
-/// The whole pipeline, for the models of a file: the input of a `model_file!`, whose path begins at this folder.
-pub fn expand_file(input: TokenStream, folder: &std::path::Path) -> TokenStream {
-    file::expand(input, folder)
-}
-
-fn expand_declaration(
-    declaration: spec::Declaration,
-) -> Result<TokenStream, diagnostics::Diagnostics> {
-    match declaration {
-        spec::Declaration::Model(spec) => {
-            let mut compiled = compile_spec(&spec, spec::STEPS)?;
-            compiled.note_findings();
-            compiled.scenes.iter_mut().for_each(Compiled::note_findings);
-            Ok(emit::tokens(&compiled))
-        }
-        spec::Declaration::Modes(declared) => {
-            let mut compiled = compile_modes(&declared)?;
-            compiled.modes.iter_mut().for_each(Compiled::note_findings);
-            Ok(emit::modes::tokens(&compiled))
+/// The tokens of each model of a text: what stands up to a block in braces, and the block. What is left behind the last one is one more.
+pub fn models_of(tokens: TokenStream) -> Vec<TokenStream> {
+    let mut models: Vec<Vec<TokenTree>> = Vec::new();
+    let mut open = Vec::new();
+    for token in tokens {
+        let ends =
+            matches!(&token, TokenTree::Group(group) if group.delimiter() == Delimiter::Brace);
+        open.push(token);
+        if ends {
+            models.push(core::mem::take(&mut open));
         }
     }
+    if !open.is_empty() {
+        models.push(open);
+    }
+    models.into_iter().map(TokenStream::from_iter).collect()
 }
 
 /// The first stage: a declaration as it was written, with its families of modes written out.
@@ -71,7 +48,7 @@ pub fn read(input: TokenStream) -> Result<spec::Declaration, diagnostics::Diagno
     spec::read(input, model::INDICES)
 }
 
-/// A model with modes after all stages but the last.
+/// A model with modes after all stages.
 #[derive(Debug)]
 pub struct CompiledModes {
     /// What was declared.
@@ -80,10 +57,10 @@ pub struct CompiledModes {
     pub modes: Vec<Compiled>,
 }
 
-/// All stages but the last, of a model with modes.
+/// All stages of a model with modes.
 ///
 /// # Errors
-/// As [`try_expand`].
+/// As [`compile`].
 pub fn compile_modes(declared: &spec::Modes) -> Result<CompiledModes, diagnostics::Diagnostics> {
     let graph = model::check_modes(declared)?;
     let mut mistakes = diagnostics::Diagnostics::new();
@@ -97,7 +74,7 @@ pub fn compile_modes(declared: &spec::Modes) -> Result<CompiledModes, diagnostic
     mistakes.finish(CompiledModes { graph, modes })
 }
 
-/// A model after all stages but the last.
+/// A model after all stages.
 #[derive(Debug)]
 pub struct Compiled {
     /// What was declared.
@@ -114,16 +91,16 @@ pub struct Compiled {
 
 impl Compiled {
     /// Says what became of the claims where a person reads of the model.
-    fn note_findings(&mut self) {
+    pub fn note_findings(&mut self) {
         let findings = self.findings.iter().map(claims::Finding::note);
         self.model.notes.extend(findings);
     }
 }
 
-/// All stages but the last, of a model in one piece.
+/// All stages of a model in one piece.
 ///
 /// # Errors
-/// As [`try_expand`].
+/// Every mistake of the first stage that found any.
 pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics> {
     compile_within(input, spec::STEPS)
 }
@@ -133,10 +110,10 @@ fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostic
     compile_spec(&spec::parse(input)?, steps)
 }
 
-/// All stages but the last, of what was written, with a budget for the algebra.
+/// All stages of what was written, with a budget for the algebra.
 ///
 /// # Errors
-/// As [`try_expand`].
+/// As [`compile`].
 pub fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
     let model = model::check_within(spec, steps)?;
     let scenes: Vec<model::Model> = (0..model.scenes.len())

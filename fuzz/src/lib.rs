@@ -52,7 +52,7 @@ pub fn arguments(bytes: &[u8]) {
 }
 
 fn expand(tokens: TokenStream) {
-    let expanded = dalembert_codegen::expand(tokens);
+    let expanded = dalembert_emit::expand(tokens);
     assert!(!expanded.is_empty(), "neither code nor an error");
 }
 

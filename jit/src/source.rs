@@ -127,7 +127,7 @@ pub(crate) fn models(refused: &mut Refused) -> Result<Vec<TokenStream>, Refused>
             return Err(refused.clone());
         }
     };
-    let models = codegen::file::models(tokens);
+    let models = codegen::models_of(tokens);
     if models.is_empty() {
         let mistake = refused.at(
             &Location::from(Span::call_site()),

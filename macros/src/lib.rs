@@ -22,7 +22,7 @@ use proc_macro::TokenStream;
 /// ```
 #[proc_macro]
 pub fn model(input: TokenStream) -> TokenStream {
-    dalembert_codegen::expand(input.into()).into()
+    dalembert_emit::expand(input.into()).into()
 }
 
 /// Declares the models of a file, whose path begins at the folder of the crate: `dalembert::model_file!("src/disk.dal")`.
@@ -32,5 +32,5 @@ pub fn model(input: TokenStream) -> TokenStream {
 #[proc_macro]
 pub fn model_file(input: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default();
-    dalembert_codegen::expand_file(input.into(), folder.as_ref()).into()
+    dalembert_emit::expand_file(input.into(), folder.as_ref()).into()
 }

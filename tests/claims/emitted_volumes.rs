@@ -39,7 +39,7 @@ macro_rules! of_each_claimed {
 
 /// The implementation of `InvariantVolume` that a declaration gets, formatted; empty if there is none.
 fn emitted(source: &str) -> String {
-    let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens")).expect(source);
+    let tokens = dalembert_emit::try_expand(source.parse().expect("tokens")).expect(source);
     let mut file: syn::File = syn::parse2(tokens).expect("items");
     let items = std::mem::take(&mut file.items)
         .into_iter()
@@ -329,7 +329,7 @@ fn a_density_that_is_no_integral_either_is_said_to_emit_nothing() {
     let source = "Damped { coordinates { x; } lagrangian = dot(x)^2/2;
         forces { drag: -dot(x)/(1 + t^4)*d(x); } claims { density: exact; } }";
     assert_eq!(emitted(source), "");
-    let tokens = dalembert_codegen::try_expand(source.parse().expect("tokens"));
+    let tokens = dalembert_emit::try_expand(source.parse().expect("tokens"));
     let text = tokens.expect("a model").to_string();
     assert!(
         text.contains("`InvariantVolume` is not implemented: G depends on time"),

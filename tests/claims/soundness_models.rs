@@ -247,7 +247,7 @@ fn the_rounding_of_a_position_on_a_surface_is_no_witness() {
     ] {
         let message = |claim: String| {
             let tokens = declaration(&claim).parse().expect("tokens");
-            let refused = dalembert_codegen::try_expand(tokens).err();
+            let refused = dalembert_emit::try_expand(tokens).err();
             refused.map(|own| {
                 own.iter()
                     .map(|own| own.message().to_owned())

@@ -5,7 +5,7 @@ use std::fmt;
 
 use dalembert::{Described, Scene};
 use dalembert_codegen::diagnostics::{Diagnostic, Location};
-use dalembert_codegen::try_expand;
+use dalembert_emit::try_expand;
 use dalembert_tests::sampling::{Visitor, visit_all};
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 use proptest::prelude::*;

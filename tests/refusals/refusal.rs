@@ -16,7 +16,7 @@ pub fn rendered(path: &str, text: &str) -> Result<String, String> {
         .map_err(|error| format!("{path} does not consist of tokens: {error}"))?;
     let mut errors = Vec::new();
     for declaration in declarations(tokens) {
-        let Err(refused) = dalembert_codegen::try_expand(declaration) else {
+        let Err(refused) = dalembert_emit::try_expand(declaration) else {
             continue;
         };
         for (at, message) in refused.iter().flat_map(Diagnostic::places) {

@@ -1,7 +1,8 @@
 //! Declarations with other claims, and what becomes of them: verdicts, and the numbers of a message.
 
 use dalembert_codegen::claims::{Finding, Verdict, examine};
-use dalembert_codegen::{mechanics, model, spec, try_expand};
+use dalembert_codegen::{mechanics, model, spec};
+use dalembert_emit::try_expand;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 use crate::numeric::Numeric;

@@ -6,7 +6,8 @@ use dalembert_codegen::claims::{
 };
 use dalembert_codegen::mechanics::{self, Derivation};
 use dalembert_codegen::model::{self, Model};
-use dalembert_codegen::{spec, try_expand};
+use dalembert_codegen::spec;
+use dalembert_emit::try_expand;
 use dalembert_expr::SymbolId;
 use serde_json::Value;
 

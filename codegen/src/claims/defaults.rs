@@ -189,7 +189,7 @@ fn at(pool: &mut Pool, potential: &Potential, defaults: &Defaults) -> Potential 
 
 #[cfg(test)]
 mod tests {
-    use crate::try_expand;
+    use crate::compile;
 
     const PARTICLE: &str = "pub Particle {
         coordinates { x; y; }
@@ -202,7 +202,7 @@ mod tests {
 
     /// The messages of a declaration that is refused; empty if it is accepted.
     fn messages(declaration: &str) -> String {
-        let Err(refused) = try_expand(declaration.parse().expect("tokens")) else {
+        let Err(refused) = compile(declaration.parse().expect("tokens")) else {
             return String::new();
         };
         refused

@@ -5,8 +5,8 @@ use dalembert::{
     Constrained, Described, Dla2, Dla4, Effect, Gauss4, Gauss6, Instance, Projection, Rk4,
     StateVector, Stepper, Tolerance,
 };
-use dalembert_driver::drift::{Request, Series, follow};
 use dalembert_cli::suite::{Case, Report, Run};
+use dalembert_driver::drift::{Request, Series, follow};
 
 use dalembert_models::{DoublePendulum, HarmonicOscillator, RollingDisk};
 

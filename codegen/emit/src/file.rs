@@ -2,29 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use dalembert_codegen::models_of;
+use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::diagnostics::{Diagnostics, Location};
-use crate::spec::Declaration;
-
-/// The tokens of each model of a text: what stands up to a block in braces, and the block. What is left behind the last one is one more.
-pub fn models(tokens: TokenStream) -> Vec<TokenStream> {
-    let mut models: Vec<Vec<TokenTree>> = Vec::new();
-    let mut open = Vec::new();
-    for token in tokens {
-        let ends =
-            matches!(&token, TokenTree::Group(group) if group.delimiter() == Delimiter::Brace);
-        open.push(token);
-        if ends {
-            models.push(core::mem::take(&mut open));
-        }
-    }
-    if !open.is_empty() {
-        models.push(open);
-    }
-    models.into_iter().map(TokenStream::from_iter).collect()
-}
+use dalembert_codegen::diagnostics::{Diagnostics, Location};
+use dalembert_codegen::spec::Declaration;
 
 /// The whole pipeline, for the models of a file below a folder.
 pub(crate) fn expand(input: TokenStream, folder: &Path) -> TokenStream {
@@ -79,7 +62,7 @@ impl File {
             self.refuse(&mut diagnostics, text);
             diagnostics
         })?;
-        let models = models(tokens);
+        let models = models_of(tokens);
         let is_one = models.len() == 1;
         let mut diagnostics = Diagnostics::new();
         if models.is_empty() {
@@ -103,7 +86,7 @@ impl File {
     }
 
     fn expand_one(&self, model: TokenStream, is_one: bool) -> Result<TokenStream, Diagnostics> {
-        let mut declaration = crate::read(model)?;
+        let mut declaration = dalembert_codegen::read(model)?;
         if is_one {
             // NOTE: tokens of a text have no places of their own inside of a macro, where a declaration is read back from.
             let source = self.text.trim().to_owned();

@@ -6,7 +6,7 @@ use quote::quote;
 
 use super::constants::{Constant, Record};
 use super::{Context, parameters, scene};
-use crate::program::Form;
+use dalembert_codegen::program::Form;
 
 /// `impl Documented`, and `impl Emitted` with all that is constant of the form.
 pub(super) fn emit_documented(context: &Context<'_>, base: Option<&Context<'_>>) -> TokenStream {

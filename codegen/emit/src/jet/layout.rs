@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
-use crate::program::Value;
-use crate::program::jet::History;
+use dalembert_codegen::program::Value;
+use dalembert_codegen::program::jet::History;
 
 /// Sums taken side by side: what one vector register holds, or two, or four.
 const SIDE_BY_SIDE: usize = 8;

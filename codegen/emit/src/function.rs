@@ -9,7 +9,7 @@ use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream, TokenTree
 use quote::quote;
 
 use super::names::{Names, claim, pi, rational};
-use crate::program::{Function, Guard, Input, Op, Value};
+use dalembert_codegen::program::{Function, Guard, Input, Op, Value};
 use dalembert_expr::{Function as Elementary, Rational};
 
 /// Operations that one statement may hold.

@@ -4,14 +4,17 @@ mod describe;
 mod types;
 mod whole;
 
+#[cfg(test)]
+mod tests;
+
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use super::kernels::Written;
 use super::{Context, allowances, contexts_of_scene, forms, names};
-use crate::CompiledModes;
-use crate::model::{ModeGraph, Model};
-use crate::tables;
+use dalembert_codegen::CompiledModes;
+use dalembert_codegen::model::{ModeGraph, Model};
+use dalembert_codegen::tables;
 
 /// What every emitter of the whole reads.
 struct Whole<'a> {

@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Context;
-use crate::program::{Cost, Form};
+use dalembert_codegen::program::{Cost, Form};
 
 /// A doc comment from lines.
 pub(super) fn lines<S: AsRef<str>>(lines: &[S]) -> TokenStream {

@@ -1,6 +1,8 @@
-//! Stage 5, emit: the program as Rust. One file per emitted item; no decision of mathematics is taken here.
+//! The last stage, emit: the programs of a model as Rust. One file per emitted item; no decision of mathematics is taken here.
 //!
 //! Generated code names only public items of `::dalembert`, `::dalembert::__private` and `::core`.
+
+#![forbid(unsafe_code)]
 
 mod actuation;
 mod constants;
@@ -8,6 +10,7 @@ mod constraint;
 mod declared;
 mod describe;
 mod doc;
+mod file;
 mod function;
 mod indices;
 mod jet;
@@ -23,10 +26,49 @@ mod volume;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::Compiled;
-use crate::model::{Model, Scene};
-use crate::tables::FormOf;
+use dalembert_codegen::diagnostics::Diagnostics;
+use dalembert_codegen::model::{Model, Scene};
+use dalembert_codegen::spec::{self, Declaration};
+use dalembert_codegen::tables::FormOf;
+use dalembert_codegen::{Compiled, compile_modes, compile_spec, read};
 use names::Names;
+
+/// The whole pipeline: the body of a `model!` in, Rust items out; on mistakes, compile errors and nothing else.
+pub fn expand(input: TokenStream) -> TokenStream {
+    match try_expand(input) {
+        Ok(items) => items,
+        Err(diagnostics) => diagnostics.into_compile_error(),
+    }
+}
+
+/// The pipeline, with its diagnostics.
+///
+/// # Errors
+/// Every mistake of the first stage that found any.
+pub fn try_expand(input: TokenStream) -> Result<TokenStream, Diagnostics> {
+    expand_declaration(read(input)?)
+}
+
+/// The whole pipeline, for the models of a file: the input of a `model_file!`, whose path begins at this folder.
+pub fn expand_file(input: TokenStream, folder: &std::path::Path) -> TokenStream {
+    file::expand(input, folder)
+}
+
+fn expand_declaration(declaration: Declaration) -> Result<TokenStream, Diagnostics> {
+    match declaration {
+        Declaration::Model(spec) => {
+            let mut compiled = compile_spec(&spec, spec::STEPS)?;
+            compiled.note_findings();
+            compiled.scenes.iter_mut().for_each(Compiled::note_findings);
+            Ok(tokens(&compiled))
+        }
+        Declaration::Modes(declared) => {
+            let mut compiled = compile_modes(&declared)?;
+            compiled.modes.iter_mut().for_each(Compiled::note_findings);
+            Ok(modes::tokens(&compiled))
+        }
+    }
+}
 
 /// What every emitter reads.
 struct Context<'a> {

@@ -14,7 +14,7 @@ use quote::quote;
 
 use super::function::{Body, emit_body, joined, uses};
 use super::{Context, doc};
-use crate::program::{Form, Function, Input, Op, Value};
+use dalembert_codegen::program::{Form, Function, Input, Op, Value};
 
 /// Operations of a method that is inlined wherever it is called.
 const MOST_INLINED: usize = 1000;

@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Context;
-use crate::program::Form;
+use dalembert_codegen::program::Form;
 
 /// What variations take of a form, where they are asked for. A type that holds a reduced model in its global form has none.
 pub(super) fn emit_variations(context: &Context<'_>) -> TokenStream {

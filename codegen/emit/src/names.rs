@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
-use crate::mechanics::Frame;
-use crate::model::{Model, Name, Scene};
-use crate::program::{Function, Input, Op};
+use dalembert_codegen::mechanics::Frame;
+use dalembert_codegen::model::{Model, Name, Scene};
+use dalembert_codegen::program::{Function, Input, Op};
 use dalembert_expr::Rational;
 
 use super::function::number;
@@ -246,5 +246,5 @@ pub(super) fn claim(taken: &mut BTreeSet<String>, wished: &str) -> String {
 
 /// Whether Rust would not take the name as a local.
 fn is_keyword(name: &str) -> bool {
-    name == "_" || crate::spec::is_rust_keyword(name)
+    name == "_" || dalembert_codegen::spec::is_rust_keyword(name)
 }

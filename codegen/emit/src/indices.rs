@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use super::{Context, doc, scene};
-use crate::model::{Model, Name, Surface};
+use dalembert_codegen::model::{Model, Name, Surface};
 
 /// A declared name with its doc comment.
 pub(super) type Entry<'a> = (&'a Name, &'a [String]);

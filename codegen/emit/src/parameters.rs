@@ -4,9 +4,9 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use super::{Context, doc, function::number, names};
-use crate::model::{Assumption, Model, Parameter};
-use crate::program::Form;
-use crate::tables::default_value;
+use dalembert_codegen::model::{Assumption, Model, Parameter};
+use dalembert_codegen::program::Form;
+use dalembert_codegen::tables::default_value;
 
 /// The struct, and `Default` when every parameter has one.
 pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {

@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use super::{Context, doc, indices, parameters};
-use crate::model::{Model, Scene};
+use dalembert_codegen::model::{Model, Scene};
 
 /// The types of all scenes with what stands beside each of them; `contexts` are those of the scenes, in order.
 pub(super) fn emit_types(model: &Model, contexts: &[Vec<Context<'_>>]) -> Vec<TokenStream> {

@@ -9,8 +9,8 @@ use super::super::Context;
 use super::super::function::joined;
 use super::super::names::{pi, rational};
 use super::layout::{Layout, local};
-use crate::program::jet::{History, Jet, Recurrence};
-use crate::program::{Input, Op, Value};
+use dalembert_codegen::program::jet::{History, Jet, Recurrence};
+use dalembert_codegen::program::{Input, Op, Value};
 
 pub(super) struct Writer<'a> {
     pub(super) jet: &'a Jet,

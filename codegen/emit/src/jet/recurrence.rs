@@ -7,9 +7,9 @@ use super::super::function::{Binding, joined};
 use super::super::names::rational;
 use super::layout::Sum;
 use super::writer::{Room, Writer, parenthesised};
-use crate::program::Value;
-use crate::program::jet::History;
-use crate::program::jet::terms::Term;
+use dalembert_codegen::program::Value;
+use dalembert_codegen::program::jet::History;
+use dalembert_codegen::program::jet::terms::Term;
 
 impl Writer<'_> {
     pub(super) fn expression(&mut self, value: Value) -> TokenStream {

@@ -4,8 +4,8 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::{Whole, types, whole};
-use crate::emit::describe as one;
-use crate::emit::{attributes, parameters};
+use crate::describe as one;
+use crate::{attributes, parameters};
 
 /// `impl Documented`, and `impl Emitted` with all that is constant of the whole.
 pub(super) fn emit_documented(whole: &Whole<'_>) -> TokenStream {
@@ -14,7 +14,7 @@ pub(super) fn emit_documented(whole: &Whole<'_>) -> TokenStream {
     let documentation = one::with_shared_parameters(&whole.known.documentation());
     let first = types::first_mode(whole);
     let defaults = parameters::default_fields(whole.model());
-    let places = crate::emit::names::places(whole.model(), &quote!(self));
+    let places = crate::names::places(whole.model(), &quote!(self));
     let set = one::emit_set(&places);
     let (choice, inspection) = (whole::emit_choice(whole), whole::emit_inspection(whole));
     let (tables, forms) = (whole::emit_tables(whole), whole::emit_forms(whole));

@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::Context;
 use super::function::uses;
-use crate::program::{Form, Function, Input};
+use dalembert_codegen::program::{Form, Function, Input};
 
 impl Context<'_> {
     /// `let [x, _, p_x, p_y] = *state;` with what the function uses.

@@ -14,8 +14,8 @@ use quote::quote;
 use super::constants::Constant;
 use super::function::{Body, emit_body, joined};
 use super::{Context, doc};
-use crate::program::jet::Jet;
-use crate::program::{Function, Value};
+use dalembert_codegen::program::jet::Jet;
+use dalembert_codegen::program::{Function, Value};
 use writer::Writer;
 
 /// `impl TaylorField`

@@ -4,9 +4,9 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use super::Whole;
-use crate::emit::indices::emit_entries;
-use crate::emit::{doc, parameters, scene};
-use crate::model;
+use crate::indices::emit_entries;
+use crate::{doc, parameters, scene};
+use dalembert_codegen::model;
 
 /// The struct, and `Default` when every parameter has one.
 pub(super) fn emit_struct(whole: &Whole<'_>) -> TokenStream {
@@ -19,7 +19,7 @@ pub(super) fn emit_struct(whole: &Whole<'_>) -> TokenStream {
     let first = first_mode(whole);
     let default = parameters::have_defaults(model).then(|| {
         let values = parameters::default_fields(model);
-        let (attributes, allowances) = (crate::emit::attributes(), crate::emit::allowances());
+        let (attributes, allowances) = (crate::attributes(), crate::allowances());
         quote! {
             #attributes
         #allowances
@@ -124,11 +124,7 @@ fn emit_variants(whole: &Whole<'_>) -> TokenStream {
 }
 
 /// `pub struct Rough(pub super::Ball);` and the module of its indices.
-fn emit_mode(
-    whole: &Whole<'_>,
-    mode: &model::Mode,
-    context: &crate::emit::Context<'_>,
-) -> TokenStream {
+fn emit_mode(whole: &Whole<'_>, mode: &model::Mode, context: &crate::Context<'_>) -> TokenStream {
     let holder = whole.type_name();
     let own = &mode.model;
     let type_name = Ident::new(&mode.scene.type_name, Span::call_site());
@@ -146,7 +142,7 @@ fn emit_mode(
     let documentation = doc::lines(&lines);
     let visibility = inner_visibility(&whole.model().visibility);
     let global = parameters::emit_global(context, &mode.scene.type_name, "mode", &visibility);
-    let lists = crate::emit::indices::emit_lists(own);
+    let lists = crate::indices::emit_lists(own);
     let title = format!(
         " Indices of the names of the mode `{}`, in its own order.",
         mode.scene.name

@@ -5,9 +5,9 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
 use super::Whole;
-use crate::emit::constants::{Constant, Record};
-use crate::emit::describe::emitted;
-use crate::emit::{attributes, constraint, kernels};
+use crate::constants::{Constant, Record};
+use crate::describe::emitted;
+use crate::{attributes, constraint, kernels};
 
 /// `impl Declared`, and what the model has.
 pub(super) fn emit_declared(whole: &Whole<'_>) -> TokenStream {
@@ -31,7 +31,7 @@ pub(super) fn emit_declared(whole: &Whole<'_>) -> TokenStream {
             quote!(::dalembert::kernels::Choice<#first, #others>)
         },
     );
-    let places = crate::emit::names::places(whole.model(), &quote!(self));
+    let places = crate::names::places(whole.model(), &quote!(self));
     let may_be_narrow = whole.known.tables().can_be_narrow;
     let hooks = emit_hooks(whole);
     let numbers = quote!(L: ::dalembert::numbers::Numbers);
