@@ -3,33 +3,34 @@
 
 use dalembert::law::Law;
 use dalembert::numbers::{Numbers, TaylorModel};
-use dalembert::{Constrained, Described, Impacting, Instance, System};
+use dalembert::{Constrained, Impacting, Instance, StateVector, System};
 use dalembert_cli::suite::{Setting, every_integrator};
-use dalembert_models::{BouncingBall, ChaplyginSleigh, PointBilliard, RollingDisk};
 use dalembert_stability::by_hand::{Gap, Point, Reset};
-use dalembert_stability::course::{Course, End};
+use dalembert_stability::course::{Course, End, vector};
+use dalembert_stability::tables::elliptic_table;
+use dalembert_stability::text::{Text, shipped, value};
 use dalembert_tests::numeric::assert_near;
 use dalembert_tests::reference::{number, numbers, read};
 use serde_json::Value;
 
-dalembert::model! {
-    /// A free point outside the unit disk.
-    pub DiskObstacle {
+/// A free point outside the unit disk.
+static DISK_OBSTACLE: Text = Text::new(
+    "DiskObstacle {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { disk: x^2 + y^2 - 1 >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A knife edge before a wall at y = 0.
-    pub KnifeEdge {
+/// A knife edge before a wall at y = 0.
+static KNIFE_EDGE: Text = Text::new(
+    "KnifeEdge {
         coordinates { x; y; theta; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 + dot(theta)^2/6;
         constraints { edge: sin(theta)*d(x) - cos(theta)*d(y) = 0; }
         impacts { wall: -y >= 0; }
-    }
-}
+    }",
+);
 
 fn settings() -> impl Iterator<Item = Setting> {
     every_integrator().iter().copied().map(Setting::free)
@@ -45,11 +46,7 @@ fn cases(document: &Value, name: &str) -> Vec<Value> {
 #[track_caller]
 #[test]
 fn whispering_galleries_keep_their_angle() {
-    let table = PointBilliard {
-        m: 1.0,
-        ta: 1.0,
-        tb: 1.0,
-    };
+    let table = elliptic_table(1.0, 1.0);
     for case in cases(&read("hard_cases"), "circle_whispering_gallery_R=1") {
         let count = case["impact_n"].as_u64().expect("a count");
         let angle = number(&case["angle_with_tangent"]);
@@ -70,11 +67,12 @@ fn whispering_galleries_keep_their_angle() {
 
 #[test]
 fn grazes_of_a_disk_are_impacts_or_not_as_their_offset_says() {
+    let obstacle = DISK_OBSTACLE.model();
     for case in cases(&read("hard_cases"), "grazing_disk_obstacle") {
         let offset = number(&case["offset"]);
         for setting in settings() {
             let end = Course::new(
-                &DiskObstacle {},
+                &obstacle,
                 &numbers(&case["q0"]),
                 &numbers(&case["qdot0"]),
                 4.0,
@@ -102,10 +100,7 @@ fn grazes_of_a_disk_are_impacts_or_not_as_their_offset_says() {
 #[test]
 fn an_inelastic_ball_accumulates_where_and_after_how_many_impacts_it_must() {
     for case in cases(&read("hard_cases"), "inelastic_ball_zeno") {
-        let ball = BouncingBall {
-            m: 1.0,
-            g: number(&case["g"]),
-        };
+        let ball = shipped("bouncing_ball").with([("m", 1.0), ("g", number(&case["g"]))]);
         let (e, limit) = (number(&case["e"]), number(&case["zeno_time"]));
         for setting in settings() {
             let end = Course::new(&ball, &[0.0], &[1.0], 2.0 * limit)
@@ -138,35 +133,29 @@ fn an_inelastic_ball_accumulates_where_and_after_how_many_impacts_it_must() {
 #[test]
 fn the_sleigh_keeps_its_digits_for_small_inertia() {
     for case in cases(&read("hard_cases"), "sleigh_small_I") {
-        let sleigh = ChaplyginSleigh {
-            m: 1.0,
-            I: number(&case["I"]),
-            a: 0.2,
-            ..ChaplyginSleigh::default()
-        };
-        let vector =
-            |name: &str| -> [f64; 3] { numbers(&case[name]).try_into().expect("three numbers") };
-        let state = sleigh
-            .state(0.0, &vector("q").into(), &vector("qdot").into())
-            .expect("a state");
+        let inertia = number(&case["I"]);
+        let values = [("m", 1.0), ("I", inertia), ("a", 0.2)];
+        let sleigh = shipped("chaplygin_sleigh").with(values);
+        let [q, qdot] = ["q", "qdot"].map(|name| vector(&numbers(&case[name])));
+        let state = sleigh.state(0.0, &q, &qdot).expect("a state");
         // Reduced to D, the multiplier is a difference of forces of size 1: it has their rounding.
-        let reduced = sleigh.multipliers(0.0, &state).expect("multipliers")[0];
-        let (sleigh, q, qdot) = (sleigh.global(), vector("q"), vector("qdot"));
-        let state = sleigh.state(0.0, &q.into(), &qdot.into()).expect("a state");
-        let multiplier = sleigh.multipliers(0.0, &state).expect("multipliers")[0];
+        let reduced = sleigh.multipliers(0.0, &state).expect("multipliers");
+        let reduced = reduced.as_slice()[0];
+        let sleigh = sleigh.global();
+        let state = sleigh.state(0.0, &q, &qdot).expect("a state");
+        let multiplier = sleigh.multipliers(0.0, &state).expect("multipliers");
+        let multiplier = multiplier.as_slice()[0];
         assert!(
             (reduced - multiplier).abs() < 1e-15,
-            "I = {}: {reduced}",
-            case["I"]
+            "I = {inertia}: {reduced}"
         );
         let right = numbers(&case["multipliers"])[0];
         let share = multiplier / right - 1.0;
         // The turn rate is the rest of momenta of size 1, divided by the inertia.
-        let bound = 1e-12 + 1e-16 / sleigh.0.I;
+        let bound = 1e-12 + 1e-16 / inertia;
         assert!(
             share.abs() < bound,
-            "I = {}: {multiplier} for {right}",
-            sleigh.0.I
+            "I = {inertia}: {multiplier} for {right}"
         );
         assert_near(
             "energy",
@@ -179,13 +168,11 @@ fn the_sleigh_keeps_its_digits_for_small_inertia() {
 
 #[test]
 fn a_knife_edge_hits_a_glancing_wall_by_every_law() {
+    let edge = KNIFE_EDGE.model();
     for case in cases(&read("hard_cases"), "knife_edge_glancing_wall") {
-        let vector =
-            |name: &str| -> [f64; 3] { numbers(&case[name]).try_into().expect("three numbers") };
-        let state = KnifeEdge {}
-            .state(0.0, &vector("q").into(), &vector("qdot_minus").into())
-            .expect("a state");
-        let contact = KnifeEdge {}.contact(0, 0.0, &state).expect("a contact");
+        let [q, qdot] = ["q", "qdot_minus"].map(|name| vector(&numbers(&case[name])));
+        let state = edge.state(0.0, &q, &qdot).expect("a state");
+        let contact = edge.contact(0, 0.0, &state).expect("a contact");
         // Momenta of size 1 hold a normal part of size theta: an impulse of 2/theta carries their rounding errors.
         let bound =
             1e-14 * (1.0 + 100.0 * f64::EPSILON.sqrt() / number(&case["theta"]).powi(2).max(1e-16));
@@ -204,8 +191,8 @@ fn a_knife_edge_hits_a_glancing_wall_by_every_law() {
         ] {
             let law = Law::from_name(name, coefficient).unwrap_or(Law::Restitution(coefficient));
             let mut after = state;
-            KnifeEdge {}.kick(&mut after, contact.impulse(law), &contact.direction);
-            let found = KnifeEdge {}.velocity(0.0, &after).expect("a velocity");
+            edge.kick(&mut after, contact.impulse(law), &contact.direction);
+            let found = edge.velocity(0.0, &after).expect("a velocity");
             assert_near(
                 name,
                 found.as_slice(),
@@ -219,19 +206,20 @@ fn a_knife_edge_hits_a_glancing_wall_by_every_law() {
 #[test]
 fn the_disk_follows_its_reference_for_hundreds_of_impacts() {
     for case in cases(&read("hard_cases"), "long_horizon_disk") {
-        let mut disk = RollingDisk::default();
-        for (index, parameter) in RollingDisk::DESCRIPTION.parameters.iter().enumerate() {
+        let mut disk = shipped("rolling_disk").model();
+        for (index, parameter) in disk.description().parameters.iter().enumerate() {
             disk.set_parameter(index, number(&case["parameters"][parameter.name]));
         }
         let start = numbers(&case["initial(x,y,theta,phi,thetadot,phidot)"]);
         let (phi, roll) = (start[3], start[4]);
+        let [radius, ta, tb] = ["R", "ta", "tb"].map(|name| value(&disk, name));
         let velocity = [
-            disk.R * phi.cos() * roll,
-            disk.R * phi.sin() * roll,
+            radius * phi.cos() * roll,
+            radius * phi.sin() * roll,
             roll,
             start[5],
         ];
-        let is_regular = disk.ta == disk.tb;
+        let is_regular = ta == tb;
         for mark in cases(&case, "marks") {
             let count = mark["n"].as_u64().expect("a count");
             for setting in settings() {

@@ -3,11 +3,11 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{Event, Observer, Scene, StateVector, TaylorField};
+use dalembert::{Event, Observer, StateVector, System, VectorField};
 use dalembert_cli::suite::{Setting, every_integrator};
-use dalembert_models::PointBilliard;
 use dalembert_stability::course::{Course, Random};
-use dalembert_stability::tables::{Rectangle, Stadium};
+use dalembert_stability::tables::{RECTANGLE, STADIUM, elliptic_table};
+use dalembert_stability::text::{Model, value};
 
 /// Rounding errors allowed in a time, in units of `2^-52` of the table's terms over the gap rate.
 const UNITS: f64 = 256.0;
@@ -20,11 +20,8 @@ struct Next {
     rate: f64,
 }
 
-/// A table, as a closed form.
-trait Table: Scene + TaylorField {
-    /// The next impact from a point on the wall or inside, moving inwards.
-    fn next(&self, q: [f64; 2], v: [f64; 2]) -> Next;
-}
+/// The next impact in a table from a point on the wall or inside, moving inwards, as a closed form.
+type Ahead = fn(&Model, [f64; 2], [f64; 2]) -> Next;
 
 /// When a line that begins in or on the conic `c + 2 b s + a s^2 >= 0`, `a < 0`, leaves it: the root farther ahead, in the
 /// form without cancellation.
@@ -37,85 +34,81 @@ fn leaves(a: f64, b: f64, c: f64) -> f64 {
     }
 }
 
-impl Table for PointBilliard {
-    fn next(&self, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Next {
-        let (p, q) = (self.ta * self.ta, self.tb * self.tb);
-        let (a, b) = (-(u * u / p + v * v / q), -(x * u / p + y * v / q));
-        let c = 1.0 - x * x / p - y * y / q;
-        let after = leaves(a, b, c);
-        Next {
-            after,
-            surface: 0,
-            rate: 2.0 * (b + a * after),
-        }
+fn in_ellipse(table: &Model, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Next {
+    let [p, q] = ["ta", "tb"].map(|name| value(table, name).powi(2));
+    let (a, b) = (-(u * u / p + v * v / q), -(x * u / p + y * v / q));
+    let c = 1.0 - x * x / p - y * y / q;
+    let after = leaves(a, b, c);
+    Next {
+        after,
+        surface: 0,
+        rate: 2.0 * (b + a * after),
     }
 }
 
-impl Table for Rectangle {
-    fn next(&self, q: [f64; 2], v: [f64; 2]) -> Next {
-        let mut first = Next {
-            after: f64::INFINITY,
-            surface: 0,
-            rate: 0.0,
+fn in_rectangle(table: &Model, q: [f64; 2], v: [f64; 2]) -> Next {
+    let mut first = Next {
+        after: f64::INFINITY,
+        surface: 0,
+        rate: 0.0,
+    };
+    let lengths = ["a", "b"].map(|name| value(table, name));
+    for (i, length) in lengths.into_iter().enumerate() {
+        let (surface, way) = if v[i] > 0.0 {
+            (2 * i + 1, length - q[i])
+        } else {
+            (2 * i, q[i])
         };
-        for (i, length) in [self.a, self.b].into_iter().enumerate() {
-            let (surface, way) = if v[i] > 0.0 {
-                (2 * i + 1, length - q[i])
-            } else {
-                (2 * i, q[i])
+        let after = way / v[i].abs();
+        if after < first.after {
+            first = Next {
+                after,
+                surface,
+                rate: -v[i].abs(),
             };
-            let after = way / v[i].abs();
-            if after < first.after {
-                first = Next {
-                    after,
-                    surface,
-                    rate: -v[i].abs(),
-                };
-            }
         }
-        first
     }
+    first
 }
 
-impl Table for Stadium {
-    fn next(&self, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Next {
-        // The straight walls, where they are met between the half disks.
-        if v != 0.0 {
-            let after = (if v > 0.0 { 1.0 - y } else { 1.0 + y }) / v.abs();
-            if (x + u * after).abs() < 1.0 && after > 0.0 {
-                return Next {
-                    after,
-                    surface: usize::from(v > 0.0),
-                    rate: -v.abs(),
-                };
-            }
-        }
-        // The half disks, where their circles are left beyond the straight walls.
-        for (surface, side) in [(2, -1.0), (3, 1.0)] {
-            let from = x - side;
-            let (a, b) = (-(u * u + v * v), -(from * u + y * v));
-            let c = 1.0 - from * from - y * y;
-            let root = (b * b - a * c).sqrt();
-            let after = if b >= 0.0 {
-                -(b + root) / a
-            } else {
-                c / (root - b)
+fn in_stadium(_: &Model, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Next {
+    // The straight walls, where they are met between the half disks.
+    if v != 0.0 {
+        let after = (if v > 0.0 { 1.0 - y } else { 1.0 + y }) / v.abs();
+        if (x + u * after).abs() < 1.0 && after > 0.0 {
+            return Next {
+                after,
+                surface: usize::from(v > 0.0),
+                rate: -v.abs(),
             };
-            if after > 0.0 && side * (x + u * after) > 1.0 {
-                return Next {
-                    after,
-                    surface,
-                    rate: 2.0 * (b + a * after),
-                };
-            }
         }
-        panic!("no wall is ahead of {x}, {y} at {u}, {v}");
     }
+    // The half disks, where their circles are left beyond the straight walls.
+    for (surface, side) in [(2, -1.0), (3, 1.0)] {
+        let from = x - side;
+        let (a, b) = (-(u * u + v * v), -(from * u + y * v));
+        let c = 1.0 - from * from - y * y;
+        let root = (b * b - a * c).sqrt();
+        let after = if b >= 0.0 {
+            -(b + root) / a
+        } else {
+            c / (root - b)
+        };
+        if after > 0.0 && side * (x + u * after) > 1.0 {
+            return Next {
+                after,
+                surface,
+                rate: 2.0 * (b + a * after),
+            };
+        }
+    }
+    panic!("no wall is ahead of {x}, {y} at {u}, {v}");
 }
 
 /// Compares impact after impact.
-struct Watch<'a, T: Table> {
-    table: &'a T,
+struct Watch<'a> {
+    table: &'a Model,
+    ahead: Ahead,
     label: String,
     expected: Next,
     last: f64,
@@ -127,8 +120,8 @@ fn pair(values: &[f64]) -> [f64; 2] {
     [values[0], values[1]]
 }
 
-impl<T: Table> Observer<T> for Watch<'_, T> {
-    fn event(&mut self, event: &Event<T::State>) -> ControlFlow<()> {
+impl Observer<Model> for Watch<'_> {
+    fn event(&mut self, event: &Event<<Model as VectorField>::State>) -> ControlFlow<()> {
         self.seen += 1;
         let q = pair(self.table.position(&event.after).as_slice());
         let v = pair(
@@ -154,15 +147,15 @@ impl<T: Table> Observer<T> for Watch<'_, T> {
             event.t - self.last,
             format_args!("{q:?}"),
         );
-        self.expected = self.table.next(q, v);
+        self.expected = (self.ahead)(self.table, q, v);
         self.last = event.t;
         ControlFlow::Continue(())
     }
 }
 
-fn follow<T: Table>(
+fn follow(
     label: &str,
-    table: &T,
+    (table, ahead): (&Model, Ahead),
     q: [f64; 2],
     v: [f64; 2],
     impacts: u64,
@@ -170,8 +163,9 @@ fn follow<T: Table>(
 ) {
     let mut watch = Watch {
         table,
+        ahead,
         label: format!("{label}, {}", setting.words()),
-        expected: table.next(q, v),
+        expected: ahead(table, q, v),
         last: 0.0,
         seen: 0,
         worst: 0.0,
@@ -194,20 +188,16 @@ fn follow<T: Table>(
 /// Every table and kind of start, a share of the impacts each.
 fn follow_all(impacts: u64) {
     let mut random = Random::new(2026);
-    let circle = PointBilliard {
-        m: 1.0,
-        ta: 1.0,
-        tb: 1.0,
-    };
-    let ellipse = PointBilliard { ta: 2.0, ..circle };
-    let channel = Rectangle { a: 1.0, b: 1e-9 };
+    let [circle, ellipse] = [1.0, 2.0].map(|ta| elliptic_table(ta, 1.0));
+    let channel = RECTANGLE.with([("a", 1.0), ("b", 1e-9)]);
+    let stadium = STADIUM.model();
     let share = impacts / (12 * every_integrator().len() as u64);
     for setting in every_integrator().iter().copied().map(Setting::free) {
         for angle in [0.3, 1e-2, 1e-4] {
             let v = [-f64::sin(angle), f64::cos(angle)];
             follow(
                 &format!("circle at {angle}"),
-                &circle,
+                (&circle, in_ellipse),
                 [1.0, 0.0],
                 v,
                 share,
@@ -215,7 +205,7 @@ fn follow_all(impacts: u64) {
             );
             follow(
                 &format!("ellipse at {angle}"),
-                &ellipse,
+                (&ellipse, in_ellipse),
                 [2.0, 0.0],
                 v,
                 share,
@@ -229,7 +219,7 @@ fn follow_all(impacts: u64) {
             );
             follow(
                 "stadium",
-                &Stadium {},
+                (&stadium, in_stadium),
                 q,
                 [angle.cos(), angle.sin()],
                 share,
@@ -238,7 +228,7 @@ fn follow_all(impacts: u64) {
             let q = [0.5 * q[0], 0.5 * q[1]];
             follow(
                 "ellipse",
-                &ellipse,
+                (&ellipse, in_ellipse),
                 q,
                 [angle.cos(), angle.sin()],
                 share,
@@ -247,7 +237,7 @@ fn follow_all(impacts: u64) {
             let q = [0.5 + 0.5 * q[0], 0.5e-9];
             follow(
                 "thin channel, fast",
-                &channel,
+                (&channel, in_rectangle),
                 q,
                 [1e6 * angle.cos(), 1e6 * angle.sin()],
                 share,

@@ -3,35 +3,38 @@
 use core::ops::ControlFlow;
 
 use dalembert::numbers::Numbers;
-use dalembert::{Event, Observer, Outcome, System, VectorField};
+use dalembert::{Event, Observer, Outcome, StateVector, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::by_hand::{Gap, Point};
 use super::course::{Course, U, location};
+use super::text::{Model, Text, shipped};
 use super::zeno::accumulates;
-use dalembert_models::{SpasmodicHamiltonian, SuperElasticStrip};
 
-dalembert::model! {
-    /// A point between a wall at rest and a piston that closes in.
-    pub Piston {
+/// A point between a wall at rest and a piston that closes in.
+pub static PISTON: Text = Text::new(
+    "Piston {
         coordinates { x; }
         parameters { L > 0 = 1; u > 0 = 1/2; }
         lagrangian = dot(x)^2/2;
         impacts { end: x >= 0; piston: x <= L - u*t; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point thrown over treads along the curve `y = a^2 x (sqrt(2) v0 - a^2 x)`, horizontal where it meets them.
-    pub Treads {
+/// The surface of its piston.
+const STROKE: usize = 1;
+
+/// A point thrown over treads along the curve `y = a^2 x (sqrt(2) v0 - a^2 x)`, horizontal where it meets them.
+static TREADS: Text = Text::new(
+    "Treads {
         coordinates { x; y; }
         parameters { a > 0 = 1/2; v0 > 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
         impacts { tread: y >= a^2*x*(sqrt(2)*v0 - a^2*x) => reset { dot(y) = -dot(y); }; }
         claims { conserved under tread: energy; }
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -106,10 +109,7 @@ fn treads(setting: Setting, report: &mut Report) {
     for a in [0.5, 0.7, 0.8, 0.84] {
         let k = 2.0_f64.sqrt() * a * a;
         let r = (1.0 - k) / (1.0 + k);
-        let system = Treads {
-            a,
-            ..Treads::default()
-        };
+        let system = TREADS.with([("a", a)]);
         let end = Course::new(&system, &[0.0, 0.0], &[1.0, 1.0], 5.0 / k).run(setting);
         let bound = if a > 0.8 { 1e-6 } else { 1e-10 };
         accumulates(report, &format!("a = {a}"), &end, 1.0 / k, bound);
@@ -170,8 +170,8 @@ fn rising<L: Numbers>(a: f64, [x, y]: [L; 2]) -> L {
 const AL: f64 = 1.25;
 
 /// The strip with this tangential factor.
-fn strip(be: f64) -> SuperElasticStrip {
-    SuperElasticStrip { al: AL, be }
+fn strip(be: f64) -> Model {
+    shipped("super_elastic_strip").with([("al", AL), ("be", be)])
 }
 
 fn super_elastic(setting: Setting, report: &mut Report, be: f64) {
@@ -206,7 +206,7 @@ fn super_elastic_impacts(setting: Setting, report: &mut Report) {
 
 /// `x = tan t` between walls at 0 and 1.
 fn escape(setting: Setting, report: &mut Report) {
-    let system = SpasmodicHamiltonian::default();
+    let system = shipped("spasmodic_hamiltonian").model();
     let end = Course::new(&system, &[0.0, 0.5, 1.0, 1.0], &[0.0; 4], 2.0).run(setting);
     report.class(&end.outcome, "spasmodic");
     report.equal("impacts", end.hits.len() >= 36, true);
@@ -217,16 +217,17 @@ fn escape(setting: Setting, report: &mut Report) {
 }
 
 /// Counts impacts on the piston up to a number, and keeps where the last was.
-struct Strokes {
+struct Strokes<'a> {
+    system: &'a Model,
     left: u64,
     x: f64,
 }
 
-impl Observer<Piston> for Strokes {
-    fn event(&mut self, event: &Event<<Piston as VectorField>::State>) -> ControlFlow<()> {
-        if event.surface == piston::surface::piston {
+impl Observer<Model> for Strokes<'_> {
+    fn event(&mut self, event: &Event<<Model as VectorField>::State>) -> ControlFlow<()> {
+        if event.surface == STROKE {
             self.left -= 1;
-            self.x = Piston::default().position(&event.after)[piston::coordinate::x];
+            self.x = self.system.position(&event.after).as_slice()[0];
         }
         if self.left == 0 {
             ControlFlow::Break(())
@@ -237,8 +238,9 @@ impl Observer<Piston> for Strokes {
 }
 
 fn piston(setting: Setting, report: &mut Report) {
-    let system = Piston::default();
+    let system = PISTON.model();
     let mut strokes = Strokes {
+        system: &system,
         left: 100_000,
         x: f64::NAN,
     };
@@ -249,7 +251,7 @@ fn piston(setting: Setting, report: &mut Report) {
 }
 
 fn piston_to_the_end(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Piston::default(), &[1.0], &[-1.0], 3.0).follow(setting, &mut ());
+    let end = Course::new(&PISTON.model(), &[1.0], &[-1.0], 3.0).follow(setting, &mut ());
     report.class(&end.outcome, "spasmodic");
     report.near("time", limit(&end.outcome), 2.0, 1e-8);
 }

@@ -1,14 +1,15 @@
 //! Section E, second part: the arithmetic of what is generated.
 
-use dalembert::{Described, Impacting, Instance, System};
+use dalembert::{Impacting, Instance, StateVector, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting, notes, refusal};
 
-use super::course::{Course, Random, U};
-use dalembert_models::PointBilliard;
+use super::course::{Course, Random, U, vector};
+use super::tables::elliptic_table;
+use super::text::{Text, shipped, value};
 
-dalembert::model! {
-    /// A rotor, and functions of its angle that lose digits.
-    pub Rotor {
+/// A rotor, and functions of its angle that lose digits.
+static ROTOR: Text = Text::new(
+    "Rotor {
         coordinates { theta; }
         lagrangian = dot(theta)^2/2;
         outputs {
@@ -18,16 +19,22 @@ dalembert::model! {
             kept: 2*sin(theta/2)^2;
             root_kept: theta/(sqrt(1 + theta) + 1);
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A potential that has a value at 0 only as a limit.
-    pub Removable {
+/// Places of its outputs.
+const COSINE: usize = 0;
+const CANCELS: usize = 1;
+const KEPT: usize = 3;
+const ROOT_KEPT: usize = 4;
+
+/// A potential that has a value at 0 only as a limit.
+static REMOVABLE: Text = Text::new(
+    "Removable {
         coordinates { x; }
         lagrangian = dot(x)^2/2 + sin(x)/x;
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -82,13 +89,13 @@ pub const CASES: &[Case] = &[
 ];
 
 fn large_angle(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Rotor {}, &[0.0], &[1.0], 1e8).run(setting);
+    let end = Course::new(&ROTOR.model(), &[0.0], &[1.0], 1e8).run(setting);
     report.class(&end.outcome, "done");
     let bound = (4.0 + end.counters.accepted as f64) * U * 1e8;
     report.near("theta", end.q[0], 1e8, bound);
     report.near(
         "cosine",
-        output(end.q[0], rotor::output::cosine),
+        output(end.q[0], COSINE),
         -0.363_385_089_355_690_6,
         bound,
     );
@@ -96,18 +103,17 @@ fn large_angle(setting: Setting, report: &mut Report) {
 
 /// An output of the rotor at an angle.
 fn output(theta: f64, index: usize) -> f64 {
-    let state = Rotor {}
-        .state_unchecked(0.0, &[theta].into(), &[0.0].into())
+    let rotor = ROTOR.model();
+    let state = rotor
+        .state_unchecked(0.0, &vector(&[theta]), &vector(&[0.0]))
         .expect("a state");
     let mut outputs = [0.0; 5];
-    Rotor {}
-        .outputs(0.0, &state, &mut outputs)
-        .expect("outputs");
+    rotor.outputs(0.0, &state, &mut outputs).expect("outputs");
     outputs[index]
 }
 
 fn removable(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Removable {}, &[0.0], &[0.0], 1.0).run(setting);
+    let end = Course::new(&REMOVABLE.model(), &[0.0], &[0.0], 1.0).run(setting);
     report.class(&end.outcome, "non_finite");
 }
 
@@ -130,7 +136,7 @@ fn constants(report: &mut Report) {
     }
     report.near(
         "1/2",
-        dalembert_models::DoublePendulum::default().m1 / 2.0,
+        value(&shipped("double_pendulum").model(), "m1") / 2.0,
         0.5,
         0.0,
     );
@@ -138,18 +144,18 @@ fn constants(report: &mut Report) {
 
 fn cancellation(report: &mut Report) {
     let x = 1e-8_f64;
-    let notes = notes(Rotor::DESCRIPTION.source);
+    let notes = notes(ROTOR.model().description().source);
     let marked = [
         (
             "`1 - cos(theta)`",
             "write `2*sin(theta/2)^2`",
-            output(x, rotor::output::kept),
+            output(x, KEPT),
             0.5 * x * x,
         ),
         (
             "`sqrt(theta + 1) - 1`",
             "write `theta/(sqrt(theta + 1) + 1)`",
-            output(x, rotor::output::root_kept),
+            output(x, ROOT_KEPT),
             0.5 * x - 0.125 * x * x,
         ),
     ];
@@ -158,46 +164,42 @@ fn cancellation(report: &mut Report) {
         report.equal(format!("{difference} is marked"), found, true);
         report.near(form, kept, right, 1e-12 * right);
     }
-    let lost = output(x, rotor::output::cancels) - 0.5 * x * x;
+    let lost = output(x, CANCELS) - 0.5 * x * x;
     report.equal("loses its digits as written", lost.abs() > 1e-17, true);
 }
 
 fn against_integers(report: &mut Report) {
-    let table = PointBilliard {
-        m: 1.0,
-        ta: 1.5,
-        tb: 1.0,
-    };
+    let table = elliptic_table(1.5, 1.0);
     let mut random = Random::new(14);
     let mut worst = 0.0_f64;
     for _ in 0..1000 {
         let [a, b] = [0, 1].map(|_| random.between(-2000.0, 2000.0).round());
         let q = [a / 1024.0, b / 1024.0];
         let state = table
-            .state_unchecked(0.0, &q.into(), &[0.0, 0.0].into())
+            .state_unchecked(0.0, &vector(&q), &vector(&[0.0, 0.0]))
             .expect("a state");
         let unit = 9.0 * 1_048_576.0;
         let exact = (unit - 4.0 * a * a - 9.0 * b * b) / unit;
         let terms = 1.0 + (4.0 * a * a + 9.0 * b * b) / unit;
-        worst = worst.max((table.gaps(0.0, &state)[0] - exact).abs() / terms);
+        worst = worst.max((table.gaps(0.0, &state).as_slice()[0] - exact).abs() / terms);
     }
     report.error("gap over its terms", worst, 1024.0 * U);
 }
 
 fn fused(report: &mut Report) {
     let (ta, tb) = (1.3_f64, 0.7_f64);
-    let table = PointBilliard { m: 1.0, ta, tb };
+    let table = elliptic_table(ta, tb);
     let mut random = Random::new(15);
     let mut worst = 0.0_f64;
     for _ in 0..1000 {
         let [x, y] = [0, 1].map(|_| random.between(-2.0, 2.0));
         let state = table
-            .state_unchecked(0.0, &[x, y].into(), &[0.0, 0.0].into())
+            .state_unchecked(0.0, &vector(&[x, y]), &vector(&[0.0, 0.0]))
             .expect("a state");
         let (x, y) = (x / ta, y / tb);
         let gap = (-y).mul_add(y, (-x).mul_add(x, 1.0));
         let terms = 1.0 + x * x + y * y;
-        worst = worst.max((table.gaps(0.0, &state)[0] - gap).abs() / terms);
+        worst = worst.max((table.gaps(0.0, &state).as_slice()[0] - gap).abs() / terms);
     }
     report.error("gap over its terms", worst, 16.0 * U);
 }

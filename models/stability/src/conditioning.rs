@@ -3,13 +3,13 @@
 use dalembert::{StateError, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
-use super::constrained::Skate;
-use super::course::{Course, U};
-use dalembert_models::{DoublePendulum, RollingDisk};
+use super::constrained::SKATE;
+use super::course::{Course, U, vector};
+use super::text::{Text, shipped, value};
 
-dalembert::model! {
-    /// Two forms that span the same plane for every `delta`, and nearly coincide when it is small.
-    pub NearlyDependent {
+/// Two forms that span the same plane for every `delta`, and nearly coincide when it is small.
+static NEARLY_DEPENDENT: Text = Text::new(
+    "NearlyDependent {
         coordinates { x; y; z; w; }
         parameters { delta != 0 = 1; }
         lagrangian = 1/2*(dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2) - x*z;
@@ -17,44 +17,44 @@ dalembert::model! {
             first: dot(z) - y*dot(x) = 0;
             second: dot(z) - y*dot(x) + delta*(dot(w) - x*dot(y)) = 0;
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// The rank drops where y = 0.
-    pub RankDrops {
+/// The rank drops where y = 0.
+static RANK_DROPS: Text = Text::new(
+    "RankDrops {
         coordinates { x; y; z; }
         lagrangian = 1/2*(dot(x)^2 + dot(y)^2 + dot(z)^2);
         constraints { first: d(x) = 0; second: d(x) + y*d(z) = 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A metric that is singular at x = 1.
-    pub FadingMass {
+/// A metric that is singular at x = 1.
+static FADING_MASS: Text = Text::new(
+    "FadingMass {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + (1 - x)*dot(y)^2)/2;
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A metric that is indefinite for |c| > 1.
-    pub Coupled {
+/// A metric that is indefinite for |c| > 1.
+static COUPLED: Text = Text::new(
+    "Coupled {
         coordinates { x; y; }
         parameters { c = 0; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 + c*dot(x)*dot(y);
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A stiff spring with a wall, and a soft one next to it.
-    pub StiffAndSoft {
+/// A stiff spring with a wall, and a soft one next to it.
+static STIFF_AND_SOFT: Text = Text::new(
+    "StiffAndSoft {
         coordinates { x; y; }
         parameters { k > 0 = 1e12; depth = 1/2; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - k*x^2/2 - y^2/2;
         impacts { wall: x + 1 - depth >= 0; }
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -147,7 +147,7 @@ pub const CASES: &[Case] = &[
 fn nearly_dependent(setting: Setting, report: &mut Report) {
     let (x, y) = (0.7, -0.4);
     let end = |delta: f64| {
-        let system = NearlyDependent { delta };
+        let system = NEARLY_DEPENDENT.with([("delta", delta)]);
         Course::new(
             &system,
             &[x, y, 0.2, 0.1],
@@ -170,24 +170,27 @@ fn nearly_dependent(setting: Setting, report: &mut Report) {
 }
 
 fn rank_drops(setting: Setting, report: &mut Report) {
-    let end = Course::new(&RankDrops {}, &[0.0, -1.0, 0.0], &[0.0, 1.0, 0.0], 2.0).run(setting);
+    let end = Course::new(
+        &RANK_DROPS.model(),
+        &[0.0, -1.0, 0.0],
+        &[0.0, 1.0, 0.0],
+        2.0,
+    )
+    .run(setting);
     report.class(&end.outcome, "singular_constraint");
     report.near("y", end.q[1], 0.0, 1e-9);
 }
 
 fn glancing_skate(setting: Setting, report: &mut Report) {
     for e in [1e-2, 1e-6, 1e-8] {
-        let system = Skate {
-            far: 0.0,
-            ..Skate::default()
-        };
+        let system = SKATE.with([("far", 0.0)]);
         let theta = core::f64::consts::FRAC_PI_2 - e;
         let (sin, cos) = theta.sin_cos();
         let state = system
             .state(
                 0.0,
-                &[0.5 * cos, 0.0, theta].into(),
-                &[-cos, -sin, 0.0].into(),
+                &vector(&[0.5 * cos, 0.0, theta]),
+                &vector(&[-cos, -sin, 0.0]),
             )
             .expect("a state");
         let end = Course::from_state(&system, state, 1.0).run(setting);
@@ -201,10 +204,7 @@ fn glancing_skate(setting: Setting, report: &mut Report) {
 }
 
 fn skate_along(setting: Setting, report: &mut Report) {
-    let system = Skate {
-        low: 0.0,
-        ..Skate::default()
-    };
+    let system = SKATE.with([("low", 0.0)]);
     let end = Course::new(&system, &[0.0; 3], &[1.0, 0.0, 0.0], 10.0).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 0);
@@ -213,14 +213,14 @@ fn skate_along(setting: Setting, report: &mut Report) {
 
 fn ratios_of_inertias(setting: Setting, report: &mut Report, ratios: [f64; 3]) {
     for kappa in ratios {
-        let disk = RollingDisk {
-            m: 1.0,
-            R: 1.0,
-            I: 1.0 / kappa,
-            J: 1.0,
-            ta: 1e9,
-            tb: 1e9,
-        };
+        let disk = shipped("rolling_disk").with([
+            ("m", 1.0),
+            ("R", 1.0),
+            ("I", 1.0 / kappa),
+            ("J", 1.0),
+            ("ta", 1e9),
+            ("tb", 1e9),
+        ]);
         let (roll, turn, phi, t) = (1.5, 0.75, 0.6_f64, 20.0);
         let end = Course::new(
             &disk,
@@ -239,14 +239,14 @@ fn ratios_of_inertias(setting: Setting, report: &mut Report, ratios: [f64; 3]) {
 }
 
 fn fading_mass(setting: Setting, report: &mut Report) {
-    let end = Course::new(&FadingMass {}, &[0.0, 0.0], &[1.0, 0.0], 2.0).run(setting);
+    let end = Course::new(&FADING_MASS.model(), &[0.0, 0.0], &[1.0, 0.0], 2.0).run(setting);
     report.class(&end.outcome, "metric_not_positive");
     report.near("time", end.t, 1.0, 1e-6);
 }
 
 fn indefinite(setting: Setting, report: &mut Report) {
-    let system = Coupled { c: 1.5 };
-    match system.state(0.0, &[0.0, 0.0].into(), &[1.0, 0.0].into()) {
+    let system = COUPLED.with([("c", 1.5)]);
+    match system.state(0.0, &vector(&[0.0, 0.0]), &vector(&[1.0, 0.0])) {
         Err(StateError::Fault(dalembert::Fault::MetricNotPositive { .. })) => {
             report.equal("state", "refused", "refused");
         }
@@ -268,19 +268,16 @@ fn agm(mut a: f64, mut b: f64) -> f64 {
 }
 
 fn light_bob(setting: Setting, report: &mut Report) {
-    let pendulum = DoublePendulum {
-        m2: 1e-12,
-        ..DoublePendulum::default()
-    };
+    let pendulum = shipped("double_pendulum").with([("m2", 1e-12)]);
+    let [length, g] = ["l1", "g"].map(|name| value(&pendulum, name));
     let start = 1.0_f64;
-    let period = 2.0 * core::f64::consts::PI * (pendulum.l1 / pendulum.g).sqrt()
-        / agm(1.0, (0.5 * start).cos());
+    let period = 2.0 * core::f64::consts::PI * (length / g).sqrt() / agm(1.0, (0.5 * start).cos());
     let end = Course::new(&pendulum, &[start, start], &[0.0, 0.0], 5.25 * period)
         .tol(1e-13)
         .run(setting);
     report.class(&end.outcome, "done");
     // Upright after five and a quarter periods, at the rate of the lowest point.
-    let rate = 2.0 * (pendulum.g / pendulum.l1).sqrt() * (0.5 * start).sin();
+    let rate = 2.0 * (g / length).sqrt() * (0.5 * start).sin();
     report.error(
         "time of the passage over the period",
         (end.q[0] / rate / period).abs(),
@@ -289,8 +286,9 @@ fn light_bob(setting: Setting, report: &mut Report) {
 }
 
 fn stiff_and_soft(setting: Setting, report: &mut Report) {
-    let system = StiffAndSoft::default();
-    let t1 = (core::f64::consts::PI - (1.0 - system.depth).acos()) / system.k.sqrt();
+    let system = STIFF_AND_SOFT.model();
+    let [k, depth] = ["k", "depth"].map(|name| value(&system, name));
+    let t1 = (core::f64::consts::PI - (1.0 - depth).acos()) / k.sqrt();
     let end = Course::new(&system, &[1.0, 1.0], &[0.0, 0.0], 2000.0 * t1).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 1000);

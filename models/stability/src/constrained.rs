@@ -3,27 +3,27 @@
 use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 
 use super::course::Course;
-use dalembert_models::{BallOnRotatingTable, ChaplyginSleigh, RollingBallEuler, RollingDisk};
+use super::text::{Large, Model, Text, shipped, value};
 
-dalembert::model! {
-    /// A skate on an incline that falls along x, and a wall at x = 0 or y = 0 for those who ask.
-    pub Skate {
+/// A skate on an incline that falls along x, and a wall at x = 0 or y = 0 for those who ask.
+pub static SKATE: Text = Text::new(
+    "Skate {
         coordinates { x; y; theta: angle; }
         parameters { pull = 0; far = 1e9; low = 1e9; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(theta)^2)/2 + pull*x;
         constraints { edge: sin(theta)*d(x) - cos(theta)*d(y) = 0; }
         impacts { wall: x + far >= 0; floor: y + low >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A bead on a circle about the origin.
-    pub BeadOnCircle {
+/// A bead on a circle about the origin.
+static BEAD_ON_CIRCLE: Text = Text::new(
+    "BeadOnCircle {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         constraints { circle: d(x^2 + y^2) = 0; }
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -106,10 +106,7 @@ pub const CASES: &[Case] = &[
 
 fn skate_on_incline(setting: Setting, report: &mut Report) {
     let (pull, w) = (9.81 * 0.1_f64.sin(), 2.0);
-    let system = Skate {
-        pull,
-        ..Skate::default()
-    };
+    let system = SKATE.with([("pull", pull)]);
     let t = 200.0 * core::f64::consts::PI / w;
     let end = Course::new(&system, &[0.0; 3], &[0.0, 0.0, w], t)
         .tol(1e-13)
@@ -121,26 +118,29 @@ fn skate_on_incline(setting: Setting, report: &mut Report) {
     report.near("y", end.q[1], y, 1e-11 * y);
 }
 
+/// The radius of [`wide_disk`].
+pub const RADIUS: f64 = 0.5;
+
 /// A vertical disk on a table that never ends.
-pub fn wide_disk() -> RollingDisk {
-    RollingDisk {
-        m: 1.0,
-        R: 0.5,
-        I: 0.125,
-        J: 0.0625,
-        ta: 1e9,
-        tb: 1e9,
-    }
+pub fn wide_disk() -> Model {
+    shipped("rolling_disk").with([
+        ("m", 1.0),
+        ("R", RADIUS),
+        ("I", 0.125),
+        ("J", 0.0625),
+        ("ta", 1e9),
+        ("tb", 1e9),
+    ])
 }
 
-/// Where the disk is that starts at the origin, and what way it has made.
-pub fn disk_at(disk: &RollingDisk, [roll, turn, phi]: [f64; 3], t: f64) -> [f64; 3] {
-    let radius = disk.R * roll / turn;
+/// Where [`wide_disk`] is that starts at the origin, and what way it has made.
+pub fn disk_at([roll, turn, phi]: [f64; 3], t: f64) -> [f64; 3] {
+    let radius = RADIUS * roll / turn;
     let after = phi + turn * t;
     [
         radius * (after.sin() - phi.sin()),
         radius * (phi.cos() - after.cos()),
-        (disk.R * roll * t).abs(),
+        (RADIUS * roll * t).abs(),
     ]
 }
 
@@ -152,8 +152,8 @@ fn free_disk(setting: Setting, report: &mut Report) {
         &disk,
         &[0.0, 0.0, 0.0, phi],
         &[
-            disk.R * phi.cos() * roll,
-            disk.R * phi.sin() * roll,
+            RADIUS * phi.cos() * roll,
+            RADIUS * phi.sin() * roll,
             roll,
             turn,
         ],
@@ -162,7 +162,7 @@ fn free_disk(setting: Setting, report: &mut Report) {
     .tol(1e-13)
     .run(setting);
     report.class(&end.outcome, "done");
-    let [x, y, path] = disk_at(&disk, start, t);
+    let [x, y, path] = disk_at(start, t);
     report.near("x", end.q[0], x, 1e-12 * path);
     report.near("y", end.q[1], y, 1e-12 * path);
     report.near("roll rate", end.qdot[2], roll, 1e-12);
@@ -170,22 +170,14 @@ fn free_disk(setting: Setting, report: &mut Report) {
 }
 
 fn free_sleigh(setting: Setting, report: &mut Report) {
-    let sleigh = ChaplyginSleigh {
-        m: 1.3,
-        I: 0.7,
-        a: 0.4,
-        ta: 1e6,
-        tb: 1e6,
-        ..ChaplyginSleigh::default()
-    };
+    let [m, central, a] = [1.3, 0.7, 0.4];
+    let values = [("m", m), ("I", central), ("a", a), ("ta", 1e6), ("tb", 1e6)];
+    let sleigh = shipped("chaplygin_sleigh").with(values);
     let (v0, w0, t) = (-1.0, 0.5, 20.0);
-    let inertia = sleigh.I + sleigh.m * sleigh.a * sleigh.a;
-    let energy = 0.5 * (sleigh.m * v0 * v0 + inertia * w0 * w0);
-    let (speed, spin) = (
-        (2.0 * energy / sleigh.m).sqrt(),
-        (2.0 * energy / inertia).sqrt(),
-    );
-    let s = sleigh.a * sleigh.m * speed / inertia;
+    let inertia = central + m * a * a;
+    let energy = 0.5 * (m * v0 * v0 + inertia * w0 * w0);
+    let (speed, spin) = ((2.0 * energy / m).sqrt(), (2.0 * energy / inertia).sqrt());
+    let s = a * m * speed / inertia;
     let c = (v0 / speed).atanh();
     let angle = |x: f64| 2.0 * (0.5 * x).tanh().atan();
     let turned = spin / s * (angle(s * t + c) - angle(c));
@@ -219,21 +211,18 @@ fn towards_the_pole(theta: f64, least: f64) -> [f64; 3] {
 }
 
 /// Velocities of the ball with these rates at `psi`, rolling.
-fn rolling(ball: &RollingBallEuler, [phi, theta, psi]: [f64; 3], at: [f64; 2]) -> [f64; 5] {
+fn rolling(ball: &Large, [phi, theta, psi]: [f64; 3], at: [f64; 2]) -> [f64; 5] {
     let (sin, cos) = at[1].sin_cos();
     let omega = [
         cos * theta + sin * at[0].sin() * phi,
         sin * theta - cos * at[0].sin() * phi,
     ];
-    [ball.r * omega[1], -ball.r * omega[0], phi, theta, psi]
+    let r = value(ball, "r");
+    [r * omega[1], -r * omega[0], phi, theta, psi]
 }
 
 fn past_the_pole(setting: Setting, report: &mut Report, least: f64) {
-    let ball = RollingBallEuler {
-        ta: 1e6,
-        tb: 1e6,
-        ..RollingBallEuler::default()
-    };
+    let ball = shipped("rolling_ball_euler").large([("ta", 1e6), ("tb", 1e6)]);
     let (theta, psi) = (1.0, 0.3);
     let velocity = rolling(&ball, towards_the_pole(theta, least), [theta, psi]);
     let end = Course::new(&ball, &[0.0, 0.0, 0.2, theta, psi], &velocity, 2.0)
@@ -256,11 +245,7 @@ fn past_the_pole(setting: Setting, report: &mut Report, least: f64) {
 }
 
 fn through_the_pole(setting: Setting, report: &mut Report) {
-    let ball = RollingBallEuler {
-        ta: 1e6,
-        tb: 1e6,
-        ..RollingBallEuler::default()
-    };
+    let ball = shipped("rolling_ball_euler").large([("ta", 1e6), ("tb", 1e6)]);
     let velocity = rolling(&ball, [0.0, -1.0, 0.0], [1.0, 0.0]);
     let end = Course::new(&ball, &[0.0, 0.0, 0.2, 1.0, 0.0], &velocity, 2.0).run(setting);
     report.one_of(
@@ -276,12 +261,10 @@ fn through_the_pole(setting: Setting, report: &mut Report) {
 }
 
 fn turntable(setting: Setting, report: &mut Report) {
-    let ball = BallOnRotatingTable {
-        r: 1.0,
-        k: 0.4_f64.sqrt(),
-        Om: 2.0,
-    };
-    let t = 7.0 * core::f64::consts::PI / ball.Om;
+    let rate = 2.0;
+    let ball =
+        shipped("ball_on_rotating_table").large([("r", 1.0), ("k", 0.4_f64.sqrt()), ("Om", rate)]);
+    let t = 7.0 * core::f64::consts::PI / rate;
     let q = [0.05, 0.02, 0.2, 1.2, 0.4];
     let end = Course::new(&ball, &q, &[0.0, 0.0, 0.02, 0.01, -0.02], t)
         .tol(1e-13)
@@ -294,7 +277,7 @@ fn turntable(setting: Setting, report: &mut Report) {
 fn bead(setting: Setting, report: &mut Report) {
     let t = 2000.0 * core::f64::consts::PI;
     for (projection, bound) in [(true, 1e-12), (false, 1e-8)] {
-        let end = Course::new(&BeadOnCircle {}, &[1.0, 0.0], &[0.0, 1.0], t)
+        let end = Course::new(&BEAD_ON_CIRCLE.model(), &[1.0, 0.0], &[0.0, 1.0], t)
             .projection(projection)
             .run(setting);
         report.class(&end.outcome, "done");

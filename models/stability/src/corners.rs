@@ -1,58 +1,58 @@
 //! Section C, second part: corners, chains of impacts and cusps.
 
-use dalembert::Scene;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, End, U};
+use super::text::{Model, Text};
 
-dalembert::model! {
-    /// A free point in a corner of this angle at the origin.
-    pub Corner {
+/// A free point in a corner of this angle at the origin.
+static CORNER: Text = Text::new(
+    "Corner {
         coordinates { x; y; }
         parameters { angle > 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { first: y >= 0; second: sin(angle)*x - cos(angle)*y >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// The same corner, declared in the other order.
-    pub CornerAgain {
+/// The same corner, declared in the other order.
+static CORNER_AGAIN: Text = Text::new(
+    "CornerAgain {
         coordinates { x; y; }
         parameters { angle > 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { second: sin(angle)*x - cos(angle)*y >= 0; first: y >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Three masses on a line.
-    pub ThreeMasses {
+/// Three masses on a line.
+static THREE_MASSES: Text = Text::new(
+    "ThreeMasses {
         coordinates { x1; x2; x3; }
         parameters { middle > 0 = 1; }
         lagrangian = (dot(x1)^2 + middle*dot(x2)^2 + dot(x3)^2)/2;
         impacts { left: x2 >= x1; right: x3 >= x2; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A small mass between a wall and a heavy block.
-    pub BlockAndWall {
+/// A small mass between a wall and a heavy block.
+static BLOCK_AND_WALL: Text = Text::new(
+    "BlockAndWall {
         coordinates { u; v; }
         parameters { M > 0 = 1; }
         lagrangian = (dot(u)^2 + M*dot(v)^2)/2;
         impacts { wall: u >= 0; block: v >= u; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A free point between two parabolas that touch.
-    pub Cusp {
+/// A free point between two parabolas that touch.
+static CUSP: Text = Text::new(
+    "Cusp {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { upper: y <= x^2; lower: y >= -x^2; }
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -132,9 +132,7 @@ pub const CASES: &[Case] = &[
 
 fn right_angle(setting: Setting, report: &mut Report) {
     // The corner at the origin of `x >= 0`, `y >= 0`: its second surface is `x - cos(pi/2) y`.
-    let system = Corner {
-        angle: core::f64::consts::FRAC_PI_2,
-    };
+    let system = CORNER.with([("angle", core::f64::consts::FRAC_PI_2)]);
     let end = Course::new(&system, &[1.0, 1.0], &[-1.0, -1.0], 2.0).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 2);
@@ -148,9 +146,7 @@ fn right_angle(setting: Setting, report: &mut Report) {
 }
 
 fn right_angle_missed(setting: Setting, report: &mut Report) {
-    let system = Corner {
-        angle: core::f64::consts::FRAC_PI_2,
-    };
+    let system = CORNER.with([("angle", core::f64::consts::FRAC_PI_2)]);
     for miss in [1e-13, -1e-13, 1e-16, -1e-16] {
         let end = Course::new(&system, &[1.0, 1.0 + miss], &[-1.0, -1.0], 2.0).run(setting);
         report.class(&end.outcome, "done");
@@ -162,12 +158,7 @@ fn right_angle_missed(setting: Setting, report: &mut Report) {
 }
 
 /// A point sent to the vertex of a corner from distance 1 at part `at` of its angle; 2 units of time.
-fn sent<M: Scene + dalembert::TaylorField>(
-    system: &M,
-    angle: f64,
-    at: f64,
-    setting: Setting,
-) -> End {
+fn sent(system: &Model, angle: f64, at: f64, setting: Setting) -> End {
     let (sin, cos) = (at * angle).sin_cos();
     Course::new(system, &[cos, sin], &[-cos, -sin], 2.0).run(setting)
 }
@@ -177,8 +168,8 @@ fn dihedral(setting: Setting, report: &mut Report) {
         let angle = core::f64::consts::PI / f64::from(n);
         for at in [0.3, 0.8] {
             let ends = [
-                sent(&Corner { angle }, angle, at, setting),
-                sent(&CornerAgain { angle }, angle, at, setting),
+                sent(&CORNER.with([("angle", angle)]), angle, at, setting),
+                sent(&CORNER_AGAIN.with([("angle", angle)]), angle, at, setting),
             ];
             let out = if n % 2 == 0 {
                 at * angle
@@ -198,19 +189,19 @@ fn dihedral(setting: Setting, report: &mut Report) {
 
 fn other_angles(setting: Setting, report: &mut Report) {
     for angle in [0.4 * core::f64::consts::PI, 100.0_f64.to_radians()] {
-        let end = sent(&Corner { angle }, angle, 0.3, setting);
+        let end = sent(&CORNER.with([("angle", angle)]), angle, 0.3, setting);
         report.equal("outcome", end.outcome.kind(), "ambiguous");
     }
 }
 
 fn equal_masses(setting: Setting, report: &mut Report) {
-    let end = Course::new(&ThreeMasses::default(), &[0.0; 3], &[1.0, 0.0, 0.0], 1.0).run(setting);
+    let end = Course::new(&THREE_MASSES.model(), &[0.0; 3], &[1.0, 0.0, 0.0], 1.0).run(setting);
     report.class(&end.outcome, "done");
     report.equal("velocities", end.qdot, vec![0.0, 0.0, 1.0]);
 }
 
 fn unequal_masses(setting: Setting, report: &mut Report) {
-    let system = ThreeMasses { middle: 2.0 };
+    let system = THREE_MASSES.with([("middle", 2.0)]);
     let end = Course::new(&system, &[0.0; 3], &[1.0, 0.0, -1.0], 1.0).run(setting);
     report.equal("outcome", end.outcome.kind(), "ambiguous");
 }
@@ -226,8 +217,13 @@ fn digits_of_pi(setting: Setting, report: &mut Report, powers: core::ops::RangeI
         let mass = 100.0_f64.powi(power);
         let count = (core::f64::consts::PI / 10.0_f64.powi(-power).atan()).ceil() as u64 - 1;
         // The block is far out again, and the small mass slower than it, well before this time.
-        let end = Course::new(&BlockAndWall { M: mass }, &[1.0, 2.0], &[0.0, -1.0], 100.0)
-            .follow(setting, &mut ());
+        let end = Course::new(
+            &BLOCK_AND_WALL.with([("M", mass)]),
+            &[1.0, 2.0],
+            &[0.0, -1.0],
+            100.0,
+        )
+        .follow(setting, &mut ());
         report.class(&end.outcome, "done");
         report.equal(
             format!("collisions, 100^{power}"),
@@ -253,7 +249,7 @@ fn digits_of_pi(setting: Setting, report: &mut Report, powers: core::ops::RangeI
 
 fn cusp(setting: Setting, report: &mut Report) {
     for (slope, count) in [(0.05, 5), (0.01, 14), (0.001, 73)] {
-        let end = Course::new(&Cusp {}, &[1.0, 0.0], &[-1.0, slope], 3.0).run(setting);
+        let end = Course::new(&CUSP.model(), &[1.0, 0.0], &[-1.0, slope], 3.0).run(setting);
         report.class(&end.outcome, "done");
         report.equal(format!("reflections, {slope}"), end.hits.len(), count);
         if slope == 0.01 {

@@ -6,17 +6,21 @@ use dalembert::integrate::{Chosen, Counters};
 use dalembert::law::Law;
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
-    Dop853, DormandPrince5, Event, Hold, Observer, Outcome, Policies, Rest, Scene, SceneEffects,
-    Segment, Simulation, StateVector, Taylor, TaylorField, Tolerance,
+    Dla2, Dla4, Dop853, DormandPrince5, Event, Gauss4, Gauss6, Hold, Lagrangian, Observer, Outcome,
+    Policies, Rest, Rk4, Run, Scene, SceneEffects, Segment, Simulation, StateVector, Taylor,
+    TaylorField, Tolerance,
 };
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::Setting;
+
+use super::by_hand::Point;
+use super::text::{Large, Model};
 
 /// Half a unit in the last place of 1.
 pub const U: f64 = f64::EPSILON / 2.0;
 
 /// A run to be made.
-pub struct Course<'a, M: Scene + TaylorField> {
+pub struct Course<'a, M: Driven> {
     system: &'a M,
     t0: f64,
     state: M::State,
@@ -81,7 +85,7 @@ pub struct End {
     pub counters: Counters,
 }
 
-impl<'a, M: Scene + TaylorField> Course<'a, M> {
+impl<'a, M: Driven> Course<'a, M> {
     /// From these positions and velocities at time 0 to `until`; velocities off the constraints are projected.
     ///
     /// # Panics
@@ -181,40 +185,17 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
     /// Makes the run, and shows it to an observer; the end has no impacts.
     pub fn follow(self, setting: Setting, observer: &mut impl Observer<M>) -> End {
         let [relative, absolute] = self.tolerance;
-        let tolerance = Tolerance::of(relative, absolute).expect("a positive tolerance");
-        let longest = setting.max_step.unwrap_or(f64::INFINITY);
-        macro_rules! step {
-            ($stepper:expr) => {{
-                let mut stepper = $stepper.with_max_step(longest).expect("a positive step");
-                self.step(Chosen::new(&mut stepper), setting, observer)
-            }};
-        }
-        match setting.integrator {
-            Integrator::Dop853 => step!(Dop853::new(tolerance)),
-            Integrator::Dopri5 => step!(DormandPrince5::new(tolerance)),
-            Integrator::Taylor => step!(Taylor::new(tolerance)),
-            other => unreachable!("the suite runs no integrator of fixed step: {other:?}"),
-        }
-    }
-
-    fn step(self, stepper: Chosen<'_, M>, setting: Setting, observer: &mut dyn Observer<M>) -> End {
-        let Self {
-            system,
-            t0,
-            state,
-            until,
-            steps,
-            effects,
-            ..
-        } = self;
-        let mut reader = Reader {
-            dense: setting.dense,
-            observer,
+        let system = self.system;
+        let drive = Drive {
+            setting,
+            tolerance: Tolerance::of(relative, absolute).expect("a positive tolerance"),
+            steps: self.steps,
+            effects: self.effects,
+            t0: self.t0,
+            state: self.state,
+            until: self.until,
         };
-        let run = Simulation::new(system, stepper, effects)
-            .with_step_budget(steps)
-            .run(t0, state, until, &mut reader)
-            .expect("a start");
+        let run = system.drive(drive, observer);
         let velocity = system.velocity(run.t, &run.state);
         End {
             outcome: run.outcome,
@@ -228,6 +209,106 @@ impl<'a, M: Scene + TaylorField> Course<'a, M> {
             holds: Vec::new(),
             counters: run.counters,
         }
+    }
+}
+
+/// Runs of a system, compiled in this crate: a case, or a test, only calls them.
+pub trait Driven: Scene + TaylorField {
+    /// Makes a run, and shows it to an observer.
+    fn drive(&self, drive: Drive<Self>, observer: &mut dyn Observer<Self>) -> Run<Self::State>;
+}
+
+/// What a run is made of, besides its system.
+#[derive(Debug)]
+pub struct Drive<M: Scene> {
+    /// How it is made.
+    pub setting: Setting,
+    /// How accurately.
+    pub tolerance: Tolerance,
+    /// The most steps.
+    pub steps: u64,
+    /// What happens on the way.
+    pub effects: M::Effects,
+    /// The first time.
+    pub t0: f64,
+    /// The first state.
+    pub state: M::State,
+    /// The last time.
+    pub until: f64,
+}
+
+/// Implements [`Driven`] of a type of system, with the integrators that a function of [`Drive`] has.
+macro_rules! driven {
+    ($(impl[$($generics:tt)*] $system:ty: $integrators:ident),*) => {$(
+        impl<$($generics)*> Driven for $system {
+            fn drive(
+                &self,
+                drive: Drive<Self>,
+                observer: &mut dyn Observer<Self>,
+            ) -> Run<Self::State> {
+                drive.$integrators(self, observer)
+            }
+        }
+    )*};
+}
+driven!(impl[] Model: every, impl[] Large: every, impl[const S: usize] Point<S>: adaptive);
+
+/// Runs with an integrator.
+macro_rules! run {
+    ($drive:ident, $stepper:expr, $system:ident, $observer:ident) => {{
+        let mut stepper = $stepper;
+        $drive.with($system, Chosen::new(&mut stepper), $observer)
+    }};
+}
+
+impl<M: Scene + TaylorField + Lagrangian> Drive<M> {
+    /// With any integrator.
+    fn every(self, system: &M, observer: &mut dyn Observer<M>) -> Run<M::State> {
+        let tolerance = self.tolerance;
+        match self.setting.integrator {
+            Integrator::Rk4 => run!(self, Rk4::new(tolerance), system, observer),
+            Integrator::Gauss4 => run!(self, Gauss4::new(tolerance), system, observer),
+            Integrator::Gauss6 => run!(self, Gauss6::new(tolerance), system, observer),
+            Integrator::Dla2 => run!(self, Dla2::new(tolerance), system, observer),
+            Integrator::Dla4 => run!(self, Dla4::new(tolerance), system, observer),
+            _ => self.adaptive(system, observer),
+        }
+    }
+}
+
+impl<M: Scene + TaylorField> Drive<M> {
+    /// With an integrator that chooses its steps.
+    fn adaptive(self, system: &M, observer: &mut dyn Observer<M>) -> Run<M::State> {
+        let (tolerance, setting) = (self.tolerance, self.setting);
+        let longest = setting.max_step.unwrap_or(f64::INFINITY);
+        macro_rules! bounded {
+            ($stepper:ty) => {{
+                let bounded = <$stepper>::new(tolerance).with_max_step(longest);
+                run!(self, bounded.expect("a positive step"), system, observer)
+            }};
+        }
+        match setting.integrator {
+            Integrator::Dop853 => bounded!(Dop853<M::State>),
+            Integrator::Dopri5 => bounded!(DormandPrince5<M::State>),
+            Integrator::Taylor => bounded!(Taylor<M>),
+            other => unreachable!("a system written by hand has no discrete principle: {other:?}"),
+        }
+    }
+
+    fn with(
+        self,
+        system: &M,
+        stepper: Chosen<'_, M>,
+        observer: &mut dyn Observer<M>,
+    ) -> Run<M::State> {
+        let mut reader = Reader {
+            dense: self.setting.dense,
+            observer,
+        };
+        Simulation::new(system, stepper, self.effects)
+            .with_step_budget(self.steps)
+            .run(self.t0, self.state, self.until, &mut reader)
+            .expect("a start")
     }
 }
 

@@ -8,31 +8,32 @@ use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 
 use super::by_hand::{Gap, Point};
 use super::course::{Course, Hit, U, location};
+use super::text::{Model, Text, value};
 
-dalembert::model! {
-    /// A free point in the plane, and a wall that it may cross with gap rate 0.
-    pub FlatCrossing {
+/// A free point in the plane, and a wall that it may cross with gap rate 0.
+static FLAT_CROSSING: Text = Text::new(
+    "FlatCrossing {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { wall: y - x^3 >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A free rotor that counts its passages of the vertical.
-    pub Rotor {
+/// A free rotor that counts its passages of the vertical.
+static ROTOR: Text = Text::new(
+    "Rotor {
         coordinates { theta: angle; }
         lagrangian = dot(theta)^2/2;
         impacts {
             setting: cos(theta) >= 0 => reset { };
             rising: cos(theta) <= 0 => reset { };
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A thin slab at x = 1.
-    pub Slab {
+/// A thin slab at x = 1.
+static SLAB: Text = Text::new(
+    "Slab {
         coordinates { x; }
         parameters { w > 0 = 1e-10; }
         lagrangian = dot(x)^2/2;
@@ -40,73 +41,72 @@ dalembert::model! {
             near: x <= 1 when x < 1 + w/2;
             far: x >= 1 + w when x > 1 + w/2;
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A channel of width 1.
-    pub Channel {
+/// A channel of width 1.
+static CHANNEL: Text = Text::new(
+    "Channel {
         coordinates { x; }
         lagrangian = dot(x)^2/2;
         impacts { left: x >= 0; right: x <= 1; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A free point over a corrugated wall.
-    pub Corrugated {
+/// A free point over a corrugated wall.
+static CORRUGATED: Text = Text::new(
+    "Corrugated {
         coordinates { x; y; }
         parameters { A = 0.05; w = 200; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { wall: y >= A*sin(w*x); }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// An oscillator with a wall just inside its amplitude.
-    pub Oscillator {
+/// An oscillator with a wall just inside its amplitude.
+pub static OSCILLATOR: Text = Text::new(
+    "Oscillator {
         coordinates { x; }
         parameters { W > 0 = 1; depth = 1e-12; }
         lagrangian = dot(x)^2/2 - W^2*x^2/2;
         impacts { wall: x + 1 - depth >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point that falls away from one wall and moves towards another.
-    pub TwoWalls {
+/// A point that falls away from one wall and moves towards another.
+static TWO_WALLS: Text = Text::new(
+    "TwoWalls {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 + 2*x;
         impacts { end: y <= 1.05; dip: x >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A gap that changes its sign through a pole.
-    pub Pole {
+/// A gap that changes its sign through a pole.
+static POLE: Text = Text::new(
+    "Pole {
         coordinates { x; }
         lagrangian = dot(x)^2/2;
         impacts { pole: x/(x - 1) >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Attraction by 1/x^2.
-    pub Collapse {
+/// Attraction by 1/x^2.
+static COLLAPSE: Text = Text::new(
+    "Collapse {
         coordinates { x; }
         lagrangian = dot(x)^2/2 + 1/x;
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Repulsion by 2 x^3.
-    pub BlowUp {
+/// Repulsion by 2 x^3.
+static BLOW_UP: Text = Text::new(
+    "BlowUp {
         coordinates { x; }
         lagrangian = dot(x)^2/2 + x^4/2;
-    }
-}
+    }",
+);
 
-/// Why times of events that do not bounce drift.
 /// The cases.
 pub const CASES: &[Case] = &[
     Case {
@@ -220,7 +220,7 @@ pub const CASES: &[Case] = &[
 ];
 
 fn flat_crossing(setting: Setting, report: &mut Report) {
-    let end = Course::new(&FlatCrossing {}, &[-1.0, 0.0], &[1.0, 0.0], 2.0).run(setting);
+    let end = Course::new(&FLAT_CROSSING.model(), &[-1.0, 0.0], &[1.0, 0.0], 2.0).run(setting);
     report.class(&end.outcome, "tangential_crossing");
     report.equal("impacts", end.hits.len(), 0);
     // Where the cube of the distance is below the rounding of the gap.
@@ -251,7 +251,7 @@ fn irregular_surfaces(setting: Setting, report: &mut Report) {
 }
 
 fn slab(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Slab::default(), &[0.0], &[1e6], 1e-5).run(setting);
+    let end = Course::new(&SLAB.model(), &[0.0], &[1e6], 1e-5).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 1);
     report.near("x", end.q[0], -8.0, 64.0 * U * 8.0);
@@ -262,7 +262,7 @@ fn slab(setting: Setting, report: &mut Report) {
 }
 
 fn channel(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Channel {}, &[0.0], &[1e4], 1.0).run(setting);
+    let end = Course::new(&CHANNEL.model(), &[0.0], &[1e4], 1.0).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 10_000);
     let late = |(k, hit): (usize, &Hit)| {
@@ -274,7 +274,7 @@ fn channel(setting: Setting, report: &mut Report) {
 }
 
 fn corrugated(setting: Setting, report: &mut Report, depth: f64, w: f64, t: f64) {
-    let wall = Corrugated { A: depth, w };
+    let wall = CORRUGATED.with([("A", depth), ("w", w)]);
     let end = Course::new(&wall, &[0.0, 1.0], &[1.0, -1.0], 1.0)
         .impacts(1)
         .run(setting);
@@ -296,11 +296,8 @@ fn oscillator(setting: Setting, report: &mut Report) {
         1000
     };
     for rate in [1.0, 1e6] {
-        let system = Oscillator {
-            W: rate,
-            ..Oscillator::default()
-        };
-        let turn = 2.0 * (0.5 * system.depth).sqrt().asin();
+        let system = OSCILLATOR.with([("W", rate)]);
+        let turn = 2.0 * (0.5 * value(&system, "depth")).sqrt().asin();
         let first = (core::f64::consts::PI - turn) / rate;
         let end = Course::new(&system, &[1.0], &[0.0], (2 * count) as f64 * first)
             .tol(1e-15)
@@ -338,8 +335,8 @@ struct Passages {
     worst: f64,
 }
 
-impl Observer<Rotor> for Passages {
-    fn event(&mut self, event: &Event<<Rotor as VectorField>::State>) -> ControlFlow<()> {
+impl Observer<Model> for Passages {
+    fn event(&mut self, event: &Event<<Model as VectorField>::State>) -> ControlFlow<()> {
         let t = core::f64::consts::PI * (self.count as f64 + 0.5);
         self.worst = self.worst.max((event.t - t).abs() / (4.0 * U * t));
         self.count += 1;
@@ -352,14 +349,14 @@ fn rotor(setting: Setting, report: &mut Report, until: f64, events: usize) {
         count: 0,
         worst: 0.0,
     };
-    let end = Course::new(&Rotor::default(), &[0.0], &[1.0], until).follow(setting, &mut passages);
+    let end = Course::new(&ROTOR.model(), &[0.0], &[1.0], until).follow(setting, &mut passages);
     report.class(&end.outcome, "done");
     report.equal("events", passages.count, events);
     report.error("worst time over its bound", passages.worst, 1.0);
 }
 
 fn two_walls(setting: Setting, report: &mut Report) {
-    let end = Course::new(&TwoWalls {}, &[0.99, 0.0], &[-2.0, 1.0], 1.5).run(setting);
+    let end = Course::new(&TWO_WALLS.model(), &[0.99, 0.0], &[-2.0, 1.0], 1.5).run(setting);
     report.class(&end.outcome, "done");
     let surfaces: Vec<usize> = end.hits.iter().map(|hit| hit.surface).collect();
     report.equal("surfaces", surfaces, vec![1, 0]);
@@ -374,13 +371,13 @@ fn two_walls(setting: Setting, report: &mut Report) {
 }
 
 fn pole(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Pole {}, &[3.0], &[-1.1], 2.5).run(setting);
+    let end = Course::new(&POLE.model(), &[3.0], &[-1.1], 2.5).run(setting);
     report.one_of(&end.outcome, &["starts_inside", "non_finite"]);
     report.equal("impacts", end.hits.len(), 0);
 }
 
 fn collapse(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Collapse {}, &[1.0], &[0.0], 2.0).run(setting);
+    let end = Course::new(&COLLAPSE.model(), &[1.0], &[0.0], 2.0).run(setting);
     report.class(&end.outcome, "step_underflow");
     report.near("time", end.t, core::f64::consts::PI / 8.0_f64.sqrt(), 1e-8);
     report.equal(
@@ -391,7 +388,7 @@ fn collapse(setting: Setting, report: &mut Report) {
 }
 
 fn blow_up(setting: Setting, report: &mut Report) {
-    let end = Course::new(&BlowUp {}, &[1.0], &[1.0], 2.0).run(setting);
+    let end = Course::new(&BLOW_UP.model(), &[1.0], &[1.0], 2.0).run(setting);
     report.one_of(&end.outcome, &["non_finite", "step_underflow"]);
     report.near("time", end.t, 1.0, 1e-6);
     report.equal(

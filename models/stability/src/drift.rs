@@ -2,13 +2,13 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{Constrained, Instance, Observer, Segment, System, VectorField};
+use dalembert::{Constrained, Instance, Observer, Segment, StateVector, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
-use super::constrained::{disk_at, wide_disk};
-use super::course::{Course, Random};
-use dalembert_models::RollingDisk;
+use super::constrained::{RADIUS, disk_at, wide_disk};
+use super::course::{Course, Random, vector};
+use super::text::Model;
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -45,9 +45,9 @@ fn off_the_constraint(setting: Setting, report: &mut Report) {
     let disk = wide_disk().global();
     let qdot = [0.7, -0.2, 1.5, 0.6];
     let state = disk
-        .state_unchecked(0.0, &[0.0; 4].into(), &qdot.into())
+        .state_unchecked(0.0, &vector(&[0.0; 4]), &vector(&qdot))
         .expect("a state");
-    let residuals = |state: &<<RollingDisk as Instance>::Global as VectorField>::State| {
+    let residuals = |state: &<Model as VectorField>::State| {
         let (q, qdot) = (disk.position(state), disk.velocity(0.0, state));
         disk.residuals(0.0, &q, &qdot.expect("a velocity")).0
     };
@@ -88,14 +88,14 @@ fn long_disk(report: &mut Report) {
         ];
         let [roll, turn, phi] = start;
         let velocity = [
-            disk.R * phi.cos() * roll,
-            disk.R * phi.sin() * roll,
+            RADIUS * phi.cos() * roll,
+            RADIUS * phi.sin() * roll,
             roll,
             turn,
         ];
         for (t, square) in marks.into_iter().zip(&mut squares) {
             let end = Course::new(&disk, &[0.0, 0.0, 0.0, phi], &velocity, t).run(setting);
-            let [x, y, path] = disk_at(&disk, start, t);
+            let [x, y, path] = disk_at(start, t);
             *square += ((end.q[0] - x).hypot(end.q[1] - y) / path).powi(2) / 32.0;
         }
     }

@@ -2,13 +2,13 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{Event, Observer, Scene, System, TaylorField};
+use dalembert::{Event, Observer, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, Random, U};
-use super::location::Fall;
-use dalembert_models::RollingDisk;
+use super::location::FALL;
+use super::text::{Model, shipped, value};
 
 const WALK: &str = "rounding errors that add up like a random walk";
 const BOUND: &str = "root mean square below 16 u sqrt(n); exponent at most 0.6";
@@ -72,7 +72,7 @@ const FIRST: f64 = 64.0;
 fn balls(setting: Setting, report: &mut Report, doublings: u32) {
     let mut random = Random::new(4);
     let mut walk = Walk::new(doublings);
-    let ball = Fall::default();
+    let ball = FALL.model();
     for _ in 0..STARTS {
         let speed = random.between(0.5, 2.0);
         let course = Course::new(&ball, &[0.0], &[speed], 1e9);
@@ -84,12 +84,16 @@ fn balls(setting: Setting, report: &mut Report, doublings: u32) {
 fn disks(setting: Setting, report: &mut Report, doublings: u32) {
     let mut walk = Walk::new(doublings);
     // In the middle of the table, rolling and turning.
-    let (disk, upright) = (RollingDisk::default(), core::f64::consts::FRAC_PI_2);
+    let (disk, upright) = (
+        shipped("rolling_disk").model(),
+        core::f64::consts::FRAC_PI_2,
+    );
+    let radius = value(&disk, "R");
     for start in 0..STARTS {
         let roll = 8.0 + 0.125 * f64::from(start);
         let velocity = [
-            disk.R * upright.cos() * roll,
-            disk.R * upright.sin() * roll,
+            radius * upright.cos() * roll,
+            radius * upright.sin() * roll,
             roll,
             0.2,
         ];
@@ -113,10 +117,10 @@ impl Walk {
         }
     }
 
-    fn follow<'a, M: Scene + TaylorField>(
+    fn follow<'a>(
         &mut self,
-        system: &'a M,
-        course: Course<'a, M>,
+        system: &'a Model,
+        course: Course<'a, Model>,
         setting: Setting,
         report: &mut Report,
     ) {
@@ -154,15 +158,15 @@ impl Walk {
     }
 }
 
-struct Energies<'a, M> {
-    system: &'a M,
+struct Energies<'a> {
+    system: &'a Model,
     start: f64,
     count: u64,
     squares: &'a mut [f64],
 }
 
-impl<M: System> Observer<M> for Energies<'_, M> {
-    fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
+impl Observer<Model> for Energies<'_> {
+    fn event(&mut self, event: &Event<<Model as VectorField>::State>) -> ControlFlow<()> {
         self.count += 1;
         if self.count.is_power_of_two() {
             let energy = self

@@ -2,13 +2,13 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{Observer, Segment, System, VectorField};
+use dalembert::{Observer, Segment, StateVector, System, VectorField};
 use dalembert_cli::suite::{Case, Report, Run, Setting};
-use dalembert_cli::{Entry, Exit, Integrator, Streams, run_with};
+use dalembert_cli::{Exit, Integrator, Streams, run_with};
 
 use super::course::Course;
-use super::tables::Sinai;
-use dalembert_models::{BouncingBall, PointBilliard};
+use super::tables::{SINAI, elliptic_table};
+use super::text::Model;
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -50,11 +50,7 @@ fn rows(heights: &[f64]) -> (Vec<String>, Exit) {
         terminal: false,
     };
     let line = "dalembert ensemble bouncing_ball --from - --until 1 --csv -";
-    let exit = run_with(
-        line.split(' '),
-        &[Entry::of::<BouncingBall>()],
-        &mut streams,
-    );
+    let exit = run_with(line.split(' '), &dalembert_command::all(), &mut streams);
     let text = String::from_utf8_lossy(&output);
     (text.lines().skip(1).map(str::to_owned).collect(), exit)
 }
@@ -85,8 +81,13 @@ fn hash(setting: Setting, threads: usize, backwards: bool) -> u64 {
     const MEMBERS: usize = 16;
     let member = |index: usize| {
         let angle = 0.1 + index as f64;
-        let end =
-            Course::new(&Sinai {}, &[0.7, 0.1], &[angle.cos(), angle.sin()], 50.0).run(setting);
+        let end = Course::new(
+            &SINAI.model(),
+            &[0.7, 0.1],
+            &[angle.cos(), angle.sin()],
+            50.0,
+        )
+        .run(setting);
         let bits = end.q.iter().chain(&end.qdot).map(|value| value.to_bits());
         bits.fold(0_u64, |hash, bits| hash.rotate_left(7) ^ bits)
     };
@@ -127,23 +128,24 @@ fn threads(setting: Setting, report: &mut Report) {
 }
 
 /// Counts the cells a path is in at equal times.
-struct Cells {
+struct Cells<'a> {
+    system: &'a Model,
     next: f64,
     counts: [f64; 64],
 }
 
-impl Observer<Sinai> for Cells {
+impl Observer<Model> for Cells<'_> {
     fn step(
         &mut self,
-        segment: &mut Segment<'_, <Sinai as VectorField>::State>,
+        segment: &mut Segment<'_, <Model as VectorField>::State>,
     ) -> ControlFlow<()> {
         while self.next <= segment.t_end() {
             let Ok(state) = segment.at(self.next) else {
                 return ControlFlow::Break(());
             };
-            let q = Sinai {}.position(&state);
+            let q = self.system.position(&state);
             let cell = |x: f64| ((x + 1.0) * 4.0).clamp(0.0, 7.0) as usize;
-            self.counts[8 * cell(q[0]) + cell(q[1])] += 1.0;
+            self.counts[8 * cell(q.as_slice()[0]) + cell(q.as_slice()[1])] += 1.0;
             self.next += 7.0;
         }
         ControlFlow::Continue(())
@@ -152,11 +154,13 @@ impl Observer<Sinai> for Cells {
 
 fn uniform(report: &mut Report) {
     let setting = Setting::free(Integrator::Dop853);
+    let system = SINAI.model();
     let mut cells = Cells {
+        system: &system,
         next: 7.0,
         counts: [0.0; 64],
     };
-    let end = Course::new(&Sinai {}, &[0.7, 0.1], &[0.6, 0.8], 1e9)
+    let end = Course::new(&system, &[0.7, 0.1], &[0.6, 0.8], 1e9)
         .impacts(1_000_000)
         .follow(setting, &mut cells);
     report.class(&end.outcome, "impact_budget");
@@ -203,10 +207,10 @@ fn resident_pages() -> Option<f64> {
 /// Adds up times of impacts.
 struct Sum(f64);
 
-impl Observer<PointBilliard> for Sum {
+impl Observer<Model> for Sum {
     fn event(
         &mut self,
-        event: &dalembert::Event<<PointBilliard as VectorField>::State>,
+        event: &dalembert::Event<<Model as VectorField>::State>,
     ) -> ControlFlow<()> {
         self.0 += event.t;
         ControlFlow::Continue(())
@@ -215,11 +219,7 @@ impl Observer<PointBilliard> for Sum {
 
 fn flat_memory(report: &mut Report) {
     let setting = Setting::free(Integrator::Dop853);
-    let circle = PointBilliard {
-        m: 1.0,
-        ta: 1.0,
-        tb: 1.0,
-    };
+    let circle = elliptic_table(1.0, 1.0);
     let run = |impacts: u64| {
         let course = Course::new(&circle, &[1.0, 0.0], &[-0.8, 0.6], 1e12).impacts(impacts);
         course.follow(setting, &mut Sum(0.0))

@@ -5,14 +5,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use dalembert::{
     Dop853, Event, EventLog, Instance, Observer, Outcome, Scene, Segment, Simulation, StartError,
-    StateError, System, Tolerance, VectorField,
+    StateError, StateVector, System, Tolerance, VectorField,
 };
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
-use super::course::Course;
+use super::course::{Course, vector};
 use super::ensembles;
-use super::location::Fall;
-use dalembert_models::{BouncingBall, RollingDisk};
+use super::location::FALL;
+use super::text::{Model, shipped};
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -106,21 +106,21 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-fn stepper<S: dalembert::StateVector>() -> Dop853<S> {
+fn stepper<S: StateVector>() -> Dop853<S> {
     Dop853::new(Tolerance::new(1e-12).expect("a tolerance"))
 }
 
 fn not_finite(report: &mut Report) {
-    let ball = BouncingBall::default();
+    let ball = shipped("bouncing_ball").model();
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let refused = ball.state(0.0, &[value].into(), &[0.0].into());
+        let refused = ball.state(0.0, &vector(&[value]), &vector(&[0.0]));
         report.equal(
             format!("position {value}"),
             refused.err(),
             Some(StateError::NotFinite { component: 0 }),
         );
         let state = ball
-            .state_unchecked(0.0, &[1.0].into(), &[value].into())
+            .state_unchecked(0.0, &vector(&[1.0]), &vector(&[value]))
             .expect("a state");
         let run = Simulation::new(&ball, stepper(), ball.effects()).run(0.0, state, 1.0, &mut ());
         report.equal(
@@ -129,7 +129,7 @@ fn not_finite(report: &mut Report) {
             Some("non_finite"),
         );
         let good = ball
-            .state(0.0, &[1.0].into(), &[0.0].into())
+            .state(0.0, &vector(&[1.0]), &vector(&[0.0]))
             .expect("a state");
         for times in [(value, 1.0), (0.0, value)] {
             let run = Simulation::new(&ball, stepper(), ball.effects()).run(
@@ -149,17 +149,14 @@ fn not_finite(report: &mut Report) {
 
 fn bad_parameters(report: &mut Report) {
     for m in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
-        let ball = BouncingBall {
-            m,
-            ..BouncingBall::default()
-        };
-        let refused = ball.state(0.0, &[1.0].into(), &[0.0].into());
+        let ball = shipped("bouncing_ball").with([("m", m)]);
+        let refused = ball.state(0.0, &vector(&[1.0]), &vector(&[0.0]));
         let name = match refused {
             Err(StateError::Parameter(error)) => error.name,
             _ => "",
         };
         report.equal(format!("m = {m}"), name, "m");
-        let state = ball.state_unchecked(0.0, &[1.0].into(), &[0.0].into());
+        let state = ball.state_unchecked(0.0, &vector(&[1.0]), &vector(&[0.0]));
         let run = state.map(|state| {
             Simulation::new(&ball, stepper(), ball.effects()).run(0.0, state, 1.0, &mut ())
         });
@@ -172,9 +169,9 @@ fn bad_parameters(report: &mut Report) {
 }
 
 fn backwards(report: &mut Report) {
-    let ball = BouncingBall::default();
+    let ball = shipped("bouncing_ball").model();
     let state = ball
-        .state(0.0, &[1.0].into(), &[0.0].into())
+        .state(0.0, &vector(&[1.0]), &vector(&[0.0]))
         .expect("a state");
     let run =
         |t_end| Simulation::new(&ball, stepper(), ball.effects()).run(1.0, state, t_end, &mut ());
@@ -201,7 +198,7 @@ fn tolerances(report: &mut Report) {
 }
 
 fn inside(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Fall::default(), &[-1e-9], &[1.0], 1.0).run(setting);
+    let end = Course::new(&FALL.model(), &[-1e-9], &[1.0], 1.0).run(setting);
     report.class(&end.outcome, "starts_inside");
     report.equal(
         "outcome",
@@ -215,8 +212,8 @@ fn inside(setting: Setting, report: &mut Report) {
 }
 
 fn off_constraints(report: &mut Report) {
-    let disk = RollingDisk::default();
-    let (q, qdot) = ([0.0; 4].into(), [1.0, 0.0, 0.0, 0.0].into());
+    let disk = shipped("rolling_disk").model();
+    let (q, qdot) = (vector(&[0.0; 4]), vector(&[1.0, 0.0, 0.0, 0.0]));
     let refused = disk.state(0.0, &q, &qdot);
     report.equal(
         "refused",
@@ -232,15 +229,15 @@ fn off_constraints(report: &mut Report) {
     let global = disk.global();
     let kept = global.state_unchecked(0.0, &q, &qdot).expect("a state");
     let velocity = global.velocity(0.0, &kept).expect("a velocity");
-    report.near("kept", velocity[0], 1.0, 1e-15);
+    report.near("kept", velocity.as_slice()[0], 1.0, 1e-15);
 }
 
 fn small_log(report: &mut Report) {
-    let ball = BouncingBall::default();
+    let ball = shipped("bouncing_ball").model();
     let state = ball
-        .state(0.0, &[0.0].into(), &[1.0].into())
+        .state(0.0, &vector(&[0.0]), &vector(&[1.0]))
         .expect("a state");
-    let mut log = EventLog::<<BouncingBall as VectorField>::State, 2>::new();
+    let mut log = EventLog::<<Model as VectorField>::State, 2>::new();
     let run = Simulation::new(&ball, stepper(), ball.effects()).run(0.0, state, 11.0, &mut log);
     report.equal(
         "outcome",
@@ -275,9 +272,9 @@ impl<M: System> Observer<M> for Fails {
 }
 
 fn observers(report: &mut Report) {
-    let ball = BouncingBall::default();
+    let ball = shipped("bouncing_ball").model();
     let state = ball
-        .state(0.0, &[0.0].into(), &[1.0].into())
+        .state(0.0, &vector(&[0.0]), &vector(&[1.0]))
         .expect("a state");
     let mut simulation = Simulation::new(&ball, stepper(), ball.effects());
     let untouched = simulation.run(0.0, state, 11.0, &mut ());
@@ -335,7 +332,7 @@ impl<M: System> Observer<M> for StopsAfter<M::State> {
 }
 
 fn stops(setting: Setting, report: &mut Report) {
-    let disk = RollingDisk::default();
+    let disk = shipped("rolling_disk").model();
     let start = disk.initial();
     let velocity = disk
         .complete_velocity(0.0, &start.q, &start.qdot, &start.named)

@@ -1,24 +1,24 @@
 //! Section C, first part: single impacts by every law.
 
 use dalembert::law::{Contact, Law};
-use dalembert::{Constrained, Impacting, Outcome, Scene, StateVector, System};
+use dalembert::{Constrained, Impacting, Outcome, Scene, StateVector, System, VectorField};
 use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 
-use super::accumulation::Piston;
+use super::accumulation::PISTON;
 use super::course::{Course, Random, U, vector};
-use super::location::Fall;
-use dalembert_models::{ChaplyginSleigh, PointBilliard, RollingBallEuler, RollingDisk};
+use super::location::FALL;
+use super::text::{Model, Text, shipped, value};
 
-dalembert::model! {
-    /// A vertical disk that rolls towards a wall through its centre.
-    pub DiskAtWall {
+/// A vertical disk that rolls towards a wall through its centre.
+static DISK_AT_WALL: Text = Text::new(
+    "DiskAtWall {
         coordinates { x; y; theta: angle; phi: angle; }
         parameters { m > 0 = 1.5; R > 0 = 0.5; I > 0 = 0.25; J > 0 = 0.125; }
         lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + J/2*dot(phi)^2;
         constraints { along: dot(x) = R*cos(phi)*dot(theta); across: dot(y) = R*sin(phi)*dot(theta); }
         impacts { wall: x >= 0; }
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -106,7 +106,7 @@ fn laws_of<M: Scene + Impacting>(
     let (mut rate_error, mut energy_error, mut residual) = (0.0_f64, 0.0_f64, 0.0_f64);
     for _ in 0..64 {
         let mut draw = |low: f64, high: f64| {
-            let values: Vec<f64> = (0..M::Vector::CAPACITY)
+            let values: Vec<f64> = (0..system.coordinate_count())
                 .map(|_| random.between(low, high))
                 .collect();
             vector::<M::Vector>(&values)
@@ -114,7 +114,7 @@ fn laws_of<M: Scene + Impacting>(
         let (q, qdot) = (draw(0.2, 0.8), draw(-1.0, 1.0));
         let state = system.state_projected(0.0, &q, &qdot).expect("a state");
         let energy = system.energy(0.0, &state).expect("an energy");
-        for surface in 0..M::Gaps::CAPACITY {
+        for surface in 0..system.surface_count() {
             let contact = system.contact(surface, 0.0, &state).expect("a contact");
             let g = contact.gap_rate;
             for (law, c) in factors(&contact) {
@@ -146,55 +146,69 @@ fn residual<M: Constrained>(system: &M, state: &M::State) -> f64 {
 }
 
 fn every_law(report: &mut Report) {
-    let disk = RollingDisk {
-        m: 1.0,
-        R: 0.5,
-        I: 0.125,
-        J: 0.0625,
-        ta: 3.0,
-        tb: 2.0,
-    };
+    let disk = shipped("rolling_disk").with([
+        ("m", 1.0),
+        ("R", 0.5),
+        ("I", 0.125),
+        ("J", 0.0625),
+        ("ta", 3.0),
+        ("tb", 2.0),
+    ]);
     laws_of(&disk, "rolling disk", report, residual);
-    laws_of(&ChaplyginSleigh::default(), "sleigh", report, residual);
     laws_of(
-        &RollingBallEuler::default(),
+        &shipped("chaplygin_sleigh").model(),
+        "sleigh",
+        report,
+        residual,
+    );
+    laws_of(
+        &shipped("rolling_ball_euler").large([]),
         "rolling ball",
         report,
         residual,
     );
-    laws_of(&PointBilliard::default(), "point", report, |_, _| 0.0);
+    laws_of(
+        &shipped("point_billiard").model(),
+        "point",
+        report,
+        |_, _| 0.0,
+    );
 }
 
 /// The disk at the wall with heading `phi`, rolling into it at rate 1 and turning at 1/4.
-fn at_wall(system: &DiskAtWall, phi: f64) -> <DiskAtWall as dalembert::VectorField>::State {
-    let roll = -1.0;
+fn at_wall(system: &Model, phi: f64) -> <Model as VectorField>::State {
+    let (roll, radius) = (-1.0, value(system, "R"));
     let qdot = [
-        system.R * phi.cos() * roll,
-        system.R * phi.sin() * roll,
+        radius * phi.cos() * roll,
+        radius * phi.sin() * roll,
         roll,
         0.25,
     ];
     system
-        .state(0.0, &[0.0, 0.0, 0.0, phi].into(), &qdot.into())
+        .state(0.0, &vector(&[0.0, 0.0, 0.0, phi]), &vector(&qdot))
         .expect("a state")
 }
 
+/// The inertia `mR^2` of its way, and that with `I`.
+fn inertias(system: &Model) -> (f64, f64) {
+    let [m, radius, axis] = ["m", "R", "I"].map(|name| value(system, name));
+    let rolled = m * radius * radius;
+    (rolled, axis + rolled)
+}
+
 /// Velocities after one impact by a law.
-fn struck(
-    system: &DiskAtWall,
-    state: &mut <DiskAtWall as dalembert::VectorField>::State,
-    law: Law,
-) -> [f64; 4] {
+fn struck(system: &Model, state: &mut <Model as VectorField>::State, law: Law) -> [f64; 4] {
     let contact = system.contact(0, 0.0, state).expect("a contact");
     system.kick(state, contact.impulse(law), &contact.direction);
-    system.velocity(0.0, state).expect("a velocity").into()
+    let velocity = system.velocity(0.0, state).expect("a velocity");
+    velocity.as_slice().try_into().expect("four components")
 }
 
 fn disk_at_wall(report: &mut Report) {
-    let system = DiskAtWall::default();
-    let spin = system.I + system.m * system.R * system.R;
+    let system = DISK_AT_WALL.model();
+    let (rolled, spin) = inertias(&system);
     for phi in [0.1_f64, 0.7, 1.2] {
-        let rho = system.m * system.R * system.R * phi.cos() * phi.cos() / spin;
+        let rho = rolled * phi.cos() * phi.cos() / spin;
         let laws = [
             (Law::Elastic, -1.0),
             (Law::ImpactPlastic, 0.0),
@@ -219,15 +233,15 @@ fn disk_at_wall(report: &mut Report) {
 }
 
 fn still_approaching(setting: Setting, report: &mut Report, law: Law) {
-    let system = DiskAtWall::default();
+    let system = DISK_AT_WALL.model();
     let phi = 1.2_f64;
     let state = at_wall(&system, phi);
     let end = Course::from_state(&system, state, 1.0)
         .law(0, law)
         .run(setting);
     report.class(&end.outcome, "still_penetrating");
-    let spin = system.I + system.m * system.R * system.R;
-    let exact = system.m * system.R * system.R * phi.cos() * phi.cos() / spin;
+    let (rolled, spin) = inertias(&system);
+    let exact = rolled * phi.cos() * phi.cos() / spin;
     if let Outcome::StillPenetrating { rho, .. } = end.outcome {
         report.near("rho", rho, exact, 16.0 * U);
     }
@@ -253,10 +267,7 @@ fn same_surface_twice(report: &mut Report) {
 
 fn moving_wall(setting: Setting, report: &mut Report) {
     for u in [0.5, 0.01, 0.3] {
-        let system = Piston {
-            u,
-            ..Piston::default()
-        };
+        let system = PISTON.with([("u", u)]);
         let end = Course::new(&system, &[0.5], &[1.0], 10.0)
             .impacts(1)
             .run(setting);
@@ -280,7 +291,7 @@ fn moving_wall(setting: Setting, report: &mut Report) {
 }
 
 fn budget(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Fall::default(), &[0.0], &[1.0], 1e3)
+    let end = Course::new(&FALL.model(), &[0.0], &[1.0], 1e3)
         .impacts(3)
         .run(setting);
     report.class(&end.outcome, "impact_budget");

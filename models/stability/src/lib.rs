@@ -3,6 +3,8 @@
 //!
 //! The binary of this package is the `dalembert` command with these cases behind `stability`.
 //!
+//! No case needs a compiler: its model is a [`text`], loaded where it is first asked for.
+//!
 //! To add one, copy a [`Case`] and its function in the file of its section. Its number is never used again; what is
 //! right about it is a closed form, an exact count, a class of outcome, or a number that anyone can compute again with
 //! more digits. `u` is half a unit in the last place of 1. **P-LOC** is the bound of [`course::location`] on the time of
@@ -31,6 +33,7 @@ mod scaling;
 mod structure;
 mod switches;
 pub mod tables;
+pub mod text;
 mod variations;
 mod zeno;
 

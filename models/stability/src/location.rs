@@ -3,16 +3,17 @@
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, End, U, location};
+use super::text::Text;
 
-dalembert::model! {
-    /// A point that falls on a floor, or rises from it.
-    pub Fall {
+/// A point that falls on a floor, or rises from it.
+pub static FALL: Text = Text::new(
+    "Fall {
         coordinates { x; }
         parameters { g = 1; e in [0, 1] = 1; }
         lagrangian = dot(x)^2/2 - g*x;
         impacts { floor: x >= 0 => restitution(e); }
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -100,7 +101,7 @@ pub const CASES: &[Case] = &[
 
 /// Impacts at these times of a point thrown up or down from the floor.
 fn thrown(setting: Setting, report: &mut Report, speed: f64, times: &[f64]) {
-    let end = Course::new(&Fall::default(), &[0.0], &[speed], 5.0).run(setting);
+    let end = Course::new(&FALL.model(), &[0.0], &[speed], 5.0).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), times.len());
     for (hit, &t) in end.hits.iter().zip(times) {
@@ -114,7 +115,7 @@ fn thrown(setting: Setting, report: &mut Report, speed: f64, times: &[f64]) {
 }
 
 fn at_rest(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Fall::default(), &[0.0], &[0.0], 1e6)
+    let end = Course::new(&FALL.model(), &[0.0], &[0.0], 1e6)
         .resting()
         .run(setting);
     report.class(&end.outcome, "done");
@@ -124,10 +125,7 @@ fn at_rest(setting: Setting, report: &mut Report) {
 }
 
 fn pulled_away(setting: Setting, report: &mut Report) {
-    let system = Fall {
-        g: -1.0,
-        ..Fall::default()
-    };
+    let system = FALL.with([("g", -1.0)]);
     let end = Course::new(&system, &[0.0], &[0.0], 2.0).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 0);
@@ -137,10 +135,7 @@ fn pulled_away(setting: Setting, report: &mut Report) {
 
 /// `h'' = 2`, `h(0) = 1 - eps`, `h'(0) = -2`, to t = 3.
 fn parabola(setting: Setting, eps: f64) -> End {
-    let system = Fall {
-        g: -2.0,
-        ..Fall::default()
-    };
+    let system = FALL.with([("g", -2.0)]);
     Course::new(&system, &[1.0 - eps], &[-2.0], 3.0).run(setting)
 }
 
@@ -178,10 +173,7 @@ fn graze(setting: Setting, report: &mut Report, eps: f64) {
 }
 
 fn at_the_end(setting: Setting, report: &mut Report) {
-    let system = Fall {
-        g: 0.0,
-        ..Fall::default()
-    };
+    let system = FALL.with([("g", 0.0)]);
     let first = Course::new(&system, &[1.0], &[-1.0], 1.0).run(setting);
     report.class(&first.outcome, "done");
     report.equal("impacts up to the end", first.hits.len(), 1);
@@ -193,10 +185,7 @@ fn at_the_end(setting: Setting, report: &mut Report) {
 }
 
 fn on_a_boundary(setting: Setting, report: &mut Report) {
-    let system = Fall {
-        g: 0.0,
-        ..Fall::default()
-    };
+    let system = FALL.with([("g", 0.0)]);
     let end = Course::new(&system, &[1.0], &[-1.0], 2.0).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 1);

@@ -2,15 +2,15 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{Event, Observer, Segment, System, VectorField};
+use dalembert::{Event, Observer, Segment, StateVector, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, U};
-use super::crossing::Oscillator;
-use super::scaling::Hopper;
-use super::tables::{Rectangle, Sinai};
-use dalembert_models::PointBilliard;
+use super::crossing::OSCILLATOR;
+use super::scaling::HOPPER;
+use super::tables::{RECTANGLE, SINAI, elliptic_table};
+use super::text::{Model, value};
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -104,16 +104,15 @@ pub const CASES: &[Case] = &[
 ];
 
 /// Watches impacts of a planar model through their positions and velocities after them.
-struct Bounces<'a, M, F> {
-    system: &'a M,
+struct Bounces<'a, F> {
+    system: &'a Model,
     count: u64,
     /// Number of the bounce, time, position and velocity after it.
     see: F,
 }
 
-impl<M: System, F: FnMut(u64, f64, [f64; 2], [f64; 2])> Observer<M> for Bounces<'_, M, F> {
-    fn event(&mut self, event: &Event<M::State>) -> ControlFlow<()> {
-        use dalembert::StateVector;
+impl<F: FnMut(u64, f64, [f64; 2], [f64; 2])> Observer<Model> for Bounces<'_, F> {
+    fn event(&mut self, event: &Event<<Model as VectorField>::State>) -> ControlFlow<()> {
         self.count += 1;
         let q = self.system.position(&event.after);
         if let Ok(v) = self.system.velocity(event.t, &event.after) {
@@ -123,12 +122,6 @@ impl<M: System, F: FnMut(u64, f64, [f64; 2], [f64; 2])> Observer<M> for Bounces<
         ControlFlow::Continue(())
     }
 }
-
-const UNIT_CIRCLE: PointBilliard = PointBilliard {
-    m: 1.0,
-    ta: 1.0,
-    tb: 1.0,
-};
 
 fn circle(setting: Setting, report: &mut Report, bounces: u64) {
     const PLAIN: [(u64, f64); 4] = [
@@ -141,8 +134,9 @@ fn circle(setting: Setting, report: &mut Report, bounces: u64) {
     let (vy, vx) = 0.3_f64.sin_cos();
     let (mut worst, mut marks, mut last) = (0.0_f64, Vec::new(), [0.0; 2]);
     let (mut inwards, mut squares) = (0.0_f64, 0.0_f64);
+    let table = elliptic_table(1.0, 1.0);
     let mut watch = Bounces {
-        system: &UNIT_CIRCLE,
+        system: &table,
         count: 0,
         see: |n: u64, _, [x, y]: [f64; 2], [u, v]: [f64; 2]| {
             let (sin, cos) = (n as f64 * turn).sin_cos();
@@ -155,7 +149,7 @@ fn circle(setting: Setting, report: &mut Report, bounces: u64) {
             }
         },
     };
-    let end = Course::new(&UNIT_CIRCLE, &[1.0, 0.0], &[-vx, vy], 1e9)
+    let end = Course::new(&table, &[1.0, 0.0], &[-vx, vy], 1e9)
         .impacts(bounces)
         .follow(setting, &mut watch);
     report.class(&end.outcome, "impact_budget");
@@ -180,11 +174,7 @@ fn about_foci([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
 }
 
 fn ellipse(setting: Setting, report: &mut Report) {
-    let table = PointBilliard {
-        ta: 2.0,
-        tb: 1.0,
-        ..UNIT_CIRCLE
-    };
+    let table = elliptic_table(2.0, 1.0);
     let (q, v) = ([0.3, 0.2], [0.6, 0.8]);
     let exact = about_foci(q, v);
     let (mut worst, mut marks) = (0.0_f64, Vec::new());
@@ -217,15 +207,15 @@ fn folded(x: f64, length: f64) -> f64 {
 }
 
 fn rectangle(setting: Setting, report: &mut Report, bounces: u64) {
-    let table = Rectangle::default();
+    let table = RECTANGLE.model();
+    let [a, b] = ["a", "b"].map(|name| value(&table, name));
     let (q, v) = ([0.3, 0.2], [1.0, 2.0_f64.sqrt()]);
     let (mut worst, mut marks) = (0.0_f64, Vec::new());
     let mut watch = Bounces {
         system: &table,
         count: 0,
         see: |n: u64, t: f64, [x, y]: [f64; 2], _| {
-            let apart =
-                (x - folded(q[0] + v[0] * t, table.a)).hypot(y - folded(q[1] + v[1] * t, table.b));
+            let apart = (x - folded(q[0] + v[0] * t, a)).hypot(y - folded(q[1] + v[1] * t, b));
             let share = apart / (8.0 * U * t * v[0].hypot(v[1]) + 8.0 * U);
             worst = worst.max(share);
             if n.is_power_of_two() {
@@ -244,8 +234,9 @@ fn rectangle(setting: Setting, report: &mut Report, bounces: u64) {
 /// A chaotic run: one bit that differs anywhere is seen in all that follow. The hash is that of Fowler, Noll and Vo, 64 bits.
 fn same_bits(setting: Setting, report: &mut Report) {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let table = SINAI.model();
     let mut watch = Bounces {
-        system: &Sinai {},
+        system: &table,
         count: 0,
         see: |_, t: f64, q: [f64; 2], v: [f64; 2]| {
             for number in [t, q[0], q[1], v[0], v[1]] {
@@ -255,7 +246,7 @@ fn same_bits(setting: Setting, report: &mut Report) {
             }
         },
     };
-    let end = Course::new(&Sinai {}, &[0.7, 0.1], &[0.6, 0.8], 1e3)
+    let end = Course::new(&table, &[0.7, 0.1], &[0.6, 0.8], 1e3)
         .impacts(200)
         .follow(setting, &mut watch);
     report.class(&end.outcome, "impact_budget");
@@ -267,7 +258,7 @@ fn same_bits(setting: Setting, report: &mut Report) {
 }
 
 fn sinai(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Sinai {}, &[0.7, 0.1], &[0.6, 0.8], 1e3)
+    let end = Course::new(&SINAI.model(), &[0.7, 0.1], &[0.6, 0.8], 1e3)
         .impacts(45)
         .run(setting);
     report.class(&end.outcome, "impact_budget");
@@ -311,15 +302,8 @@ fn sinai(setting: Setting, report: &mut Report) {
 }
 
 fn turned_round(setting: Setting, report: &mut Report) {
-    let tables = [
-        UNIT_CIRCLE,
-        PointBilliard {
-            ta: 2.0,
-            tb: 1.0,
-            ..UNIT_CIRCLE
-        },
-    ];
-    for table in tables {
+    for ta in [1.0, 2.0] {
+        let table = elliptic_table(ta, 1.0);
         let (q, v) = ([0.3, 0.2], [0.6, 0.8]);
         let there = Course::new(&table, &q, &v, 150.0).run(setting);
         let back: Vec<f64> = there.qdot.iter().map(|v| -v).collect();
@@ -327,14 +311,14 @@ fn turned_round(setting: Setting, report: &mut Report) {
         report.class(&again.outcome, "done");
         report.equal("bounces", again.hits.len(), there.hits.len());
         for i in 0..2 {
-            report.near(format!("q, ta = {}", table.ta), again.q[i], q[i], 1e-10);
-            report.near(format!("v, ta = {}", table.ta), -again.qdot[i], v[i], 1e-10);
+            report.near(format!("q, ta = {ta}"), again.q[i], q[i], 1e-10);
+            report.near(format!("v, ta = {ta}"), -again.qdot[i], v[i], 1e-10);
         }
     }
 }
 
 fn order_across_impacts(setting: Setting, report: &mut Report) {
-    let system = Hopper::default();
+    let system = HOPPER.model();
     let run = |step: f64| {
         let forced = Setting {
             max_step: Some(step),
@@ -379,13 +363,18 @@ fn order_across_impacts(setting: Setting, report: &mut Report) {
 }
 
 /// The largest errors of an oscillator at ends of steps and between them.
-struct Errors {
+struct Errors<'a> {
+    system: &'a Model,
     t1: f64,
     ends: f64,
     between: f64,
 }
 
-impl Errors {
+impl Errors<'_> {
+    fn first(&self, state: &<Model as VectorField>::State) -> f64 {
+        self.system.position(state).as_slice()[0]
+    }
+
     /// Between reflections at odd multiples of `t1`, the oscillator is at the cosine of the time to the nearest even one.
     fn at(&self, t: f64, x: f64) -> f64 {
         let phase = (t + self.t1).rem_euclid(2.0 * self.t1) - self.t1;
@@ -393,33 +382,28 @@ impl Errors {
     }
 }
 
-impl Observer<Oscillator> for Errors {
+impl Observer<Model> for Errors<'_> {
     fn step(
         &mut self,
-        segment: &mut Segment<'_, <Oscillator as VectorField>::State>,
+        segment: &mut Segment<'_, <Model as VectorField>::State>,
     ) -> ControlFlow<()> {
-        let system = Oscillator::default();
         let (start, end) = (segment.t_start(), segment.t_end());
-        self.ends = self
-            .ends
-            .max(self.at(end, system.position(segment.end())[0]));
+        self.ends = self.ends.max(self.at(end, self.first(segment.end())));
         for part in 1..8 {
             let t = start + (end - start) * f64::from(part) / 8.0;
             let Ok(state) = segment.at(t) else {
                 return ControlFlow::Break(());
             };
-            self.between = self.between.max(self.at(t, system.position(&state)[0]));
+            self.between = self.between.max(self.at(t, self.first(&state)));
         }
         ControlFlow::Continue(())
     }
 }
 
 fn dense_across_impacts(setting: Setting, report: &mut Report) {
-    let system = Oscillator {
-        depth: 0.5,
-        ..Oscillator::default()
-    };
+    let system = OSCILLATOR.with([("depth", 0.5)]);
     let mut errors = Errors {
+        system: &system,
         t1: 2.0 * core::f64::consts::FRAC_PI_3,
         ends: 0.0,
         between: 0.0,

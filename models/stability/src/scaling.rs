@@ -3,34 +3,35 @@
 use dalembert::System;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
-use super::course::{Course, End, location};
-use super::location::Fall;
-use super::zeno::{Incline, SphereTop};
-use dalembert_models::{PointBilliard, RollingDisk};
+use super::course::{Course, End, location, vector};
+use super::location::FALL;
+use super::tables::elliptic_table;
+use super::text::{Text, shipped, value};
+use super::zeno::{INCLINE, SPHERE_TOP};
 
-dalembert::model! {
-    /// A point on a spring that stiffens, over a floor.
-    pub Hopper {
+/// A point on a spring that stiffens, over a floor.
+pub static HOPPER: Text = Text::new(
+    "Hopper {
         coordinates { x; }
         parameters { g = 1; c = 1/2; }
         lagrangian = dot(x)^2/2 - g*x - c*x^4/4;
         impacts { floor: x >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// The same, upside down.
-    pub HopperMirrored {
+/// The same, upside down.
+static HOPPER_MIRRORED: Text = Text::new(
+    "HopperMirrored {
         coordinates { x; }
         parameters { g = 1; c = 1/2; }
         lagrangian = dot(x)^2/2 + g*x - c*x^4/4;
         impacts { ceiling: x <= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// The rolling disk with other names in another order.
-    pub DiskRenamed {
+/// The rolling disk with other names in another order.
+static DISK_RENAMED: Text = Text::new(
+    "DiskRenamed {
         coordinates { heading: angle; roll: angle; north; east; }
         parameters { side = 0.2; front = 0.2; turning > 0 = 6.25e-8; rolling > 0 = 1.25e-7; radius > 0 = 0.01; mass > 0 = 0.0025; }
         let h(u, v) = 1 - v^2/side^2 - u^2/front^2;
@@ -43,8 +44,8 @@ dalembert::model! {
             back: h(north - radius*sin(heading), east - radius*cos(heading)) >= 0;
             front: h(north + radius*sin(heading), east + radius*cos(heading)) >= 0;
         }
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -118,10 +119,10 @@ pub const CASES: &[Case] = &[
 /// the way, because one number cannot scale like a length and like a speed.
 fn hopper(setting: Setting, length: f64, time: f64) -> End {
     let rate = length / time;
-    let system = Hopper {
-        g: rate / time,
-        c: 0.5 / (time * length) / (time * length),
-    };
+    let system = HOPPER.with([
+        ("g", rate / time),
+        ("c", 0.5 / (time * length) / (time * length)),
+    ]);
     Course::new(&system, &[length], &[0.3 * rate], 20.0 * time)
         .tols(1e-11, 1e-300)
         .run(setting)
@@ -165,8 +166,8 @@ fn scaled(setting: Setting, report: &mut Report, base: f64, bound: f64) {
 }
 
 fn mirrored(setting: Setting, report: &mut Report) {
-    let one = Course::new(&Hopper::default(), &[1.0], &[0.3], 20.0).run(setting);
-    let other = Course::new(&HopperMirrored::default(), &[-1.0], &[-0.3], 20.0).run(setting);
+    let one = Course::new(&HOPPER.model(), &[1.0], &[0.3], 20.0).run(setting);
+    let other = Course::new(&HOPPER_MIRRORED.model(), &[-1.0], &[-0.3], 20.0).run(setting);
     report.class(&one.outcome, "done");
     report.class(&other.outcome, "done");
     report.equal("times", other.times(), one.times());
@@ -175,17 +176,14 @@ fn mirrored(setting: Setting, report: &mut Report) {
 }
 
 fn renamed(setting: Setting, report: &mut Report) {
-    let disk = RollingDisk {
-        ta: 0.2,
-        tb: 0.2,
-        ..RollingDisk::default()
-    };
+    let disk = shipped("rolling_disk").with([("ta", 0.2), ("tb", 0.2)]);
     let (phi, roll, turn) = (1.2_f64, 10.0, 0.2);
-    let [vx, vy] = [disk.R * phi.cos() * roll, disk.R * phi.sin() * roll];
+    let radius = value(&disk, "R");
+    let [vx, vy] = [radius * phi.cos() * roll, radius * phi.sin() * roll];
     let one = Course::new(&disk, &[0.0, 0.0, 0.0, phi], &[vx, vy, roll, turn], 1e3)
         .impacts(10)
         .run(setting);
-    let again = DiskRenamed::default();
+    let again = DISK_RENAMED.model();
     let other = Course::new(&again, &[phi, 0.0, 0.0, 0.0], &[turn, roll, vy, vx], 1e3)
         .impacts(10)
         .run(setting);
@@ -205,10 +203,7 @@ fn renamed(setting: Setting, report: &mut Report) {
 
 fn denormal(setting: Setting, report: &mut Report) {
     let run = |size: f64| {
-        let system = Fall {
-            g: size,
-            ..Fall::default()
-        };
+        let system = FALL.with([("g", size)]);
         Course::new(&system, &[size], &[0.0], 5.0)
             .tols(1e-10, 1e-10)
             .run(setting)
@@ -220,9 +215,9 @@ fn denormal(setting: Setting, report: &mut Report) {
 }
 
 fn overflow(setting: Setting, report: &mut Report) {
-    let system = SphereTop::default();
+    let system = SPHERE_TOP.model();
     let state = system
-        .state_unchecked(0.0, &[2.0, 0.0].into(), &[0.0, 1e160].into())
+        .state_unchecked(0.0, &vector(&[2.0, 0.0]), &vector(&[0.0, 1e160]))
         .expect("a state");
     let end = Course::from_state(&system, state, 1.0).run(setting);
     report.class(&end.outcome, "non_finite");
@@ -235,11 +230,7 @@ fn overflow(setting: Setting, report: &mut Report) {
 
 fn late_start(setting: Setting, report: &mut Report) {
     // On a level incline `s` runs at rate 1, and shows the time.
-    let system = Incline {
-        g: 1.0,
-        slope: 0.0,
-        e: 1.0,
-    };
+    let system = INCLINE.with([("g", 1.0), ("slope", 0.0), ("e", 1.0)]);
     let end = Course::new(&system, &[0.0, 0.0], &[1.0, 5e-4], 1e9 + 0.1005)
         .at(1e9)
         .run(setting);
@@ -254,11 +245,7 @@ fn late_start(setting: Setting, report: &mut Report) {
 
 fn large_circle(setting: Setting, report: &mut Report) {
     let radius = 1e8;
-    let table = PointBilliard {
-        m: 1.0,
-        ta: radius,
-        tb: radius,
-    };
+    let table = elliptic_table(radius, radius);
     let gap = radius * f64::EPSILON;
     let end = Course::new(&table, &[radius - gap, 0.0], &[1.0, 0.0], 1.0).run(setting);
     report.class(&end.outcome, "done");

@@ -1,35 +1,37 @@
 //! Section F, third part: the energy over many steps of fixed length. Integrators that preserve structure keep it near
 //! its value where theory says so; the curves of the last case show where it grows.
 
+use dalembert::integrate::Chosen;
 use dalembert::{
-    Constrained, Described, Dla2, Dla4, Effect, Gauss4, Gauss6, Instance, Projection, Rk4,
-    StateVector, Stepper, Tolerance,
+    Dla2, Dla4, Gauss4, Gauss6, Instance, Projection, Rk4, Scene, Stepper, System, Tolerance,
+    VectorField,
 };
 use dalembert_cli::suite::{Case, Report, Run};
 use dalembert_driver::drift::{Request, Series, follow};
 
-use dalembert_models::{DoublePendulum, HarmonicOscillator, RollingDisk};
+use super::course::vector;
+use super::text::{Model, Text, shipped};
 
-dalembert::model! {
-    /// A knife edge in a quadratic potential, steered by a pendulum; `c` couples the steering to the place, `b` is a
-    /// magnetic field.
-    pub SteeredEdge {
+/// A knife edge in a quadratic potential, steered by a pendulum; `c` couples the steering to the place, `b` is a
+/// magnetic field.
+static STEERED_EDGE: Text = Text::new(
+    "SteeredEdge {
         coordinates { x; y; phi: angle; }
         parameters { k > 0 = 2; s = 0.4; c = 0; b = 0; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(phi)^2)/2 + b*(x*dot(y) - y*dot(x))/2
             - (x^2 + k*y^2)/2 + s*cos(phi) + c*x*sin(phi);
         constraints { edge: sin(phi)*d(x) - cos(phi)*d(y) = 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// The nonholonomic particle in a potential that does not separate.
-    pub HeldParticle {
+/// The nonholonomic particle in a potential that does not separate.
+static HELD_PARTICLE: Text = Text::new(
+    "HeldParticle {
         coordinates { x; y; z; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - (x^2 + y^2 + z^2 + x^2*z^2)/2;
         constraints { contact: d(z) - y*d(x) = 0; }
-    }
-}
+    }",
+);
 
 /// Steps of the quick cases and of the long ones.
 const QUICK: u64 = 20_000;
@@ -87,23 +89,25 @@ struct Long<'a> {
 
 impl Long<'_> {
     /// The energy in a hundred windows; its curve goes into the report.
-    fn energy<S: Described, Step: Stepper<S>, E: Effect<S>>(
+    fn energy(
         &mut self,
-        system: &S,
+        system: &Model,
         [q, qdot]: [&[f64]; 2],
         h: f64,
-        (stepper, effects): (Step, E),
+        (stepper, effects): (Chosen<'_, Model>, <Model as Scene>::Effects),
     ) -> Series {
-        let vector = |values: &[f64]| S::Vector::of(values);
         let state = system
             .state_projected(0.0, &vector(q), &vector(qdot))
             .expect("a state");
         let request = Request {
             until: self.steps as f64 * h,
             windows: 100,
-            quantity: |t: f64, state: &S::State| system.energy(t, state).unwrap_or(f64::NAN),
+            quantity: |t: f64, state: &<Model as VectorField>::State| {
+                system.energy(t, state).unwrap_or(f64::NAN)
+            },
         };
-        let name = format!("{}, {}, step {h}", S::DESCRIPTION.name, stepper.name());
+        let model = system.description().name;
+        let name = format!("{model}, {}, step {h}", stepper.name());
         let series = follow(system, state, (stepper, effects), request).expect("a start");
         self.report.class(&series.outcome, "done");
         self.report
@@ -147,17 +151,18 @@ impl Long<'_> {
 
 macro_rules! energy {
     ($long:ident, $method:ident, $h:expr, $system:expr, $start:expr) => {
-        energy!($long, $method, $h, $system, $start, ())
+        energy!($long, $method, $h, $system, $start, Default::default())
     };
     ($long:ident, $method:ident, $h:expr, $system:expr, $start:expr, $effects:expr) => {{
-        let stepper = $method::new(Tolerance::new(1e-9).expect("a tolerance")).with_step($h);
-        $long.energy(&$system, $start, $h, (stepper, $effects))
+        let stepper = $method::new(Tolerance::new(1e-9).expect("a tolerance"));
+        let mut stepper = stepper.with_step($h);
+        $long.energy(&$system, $start, $h, (Chosen::new(&mut stepper), $effects))
     }};
 }
 
 fn symplectic(report: &mut Report, steps: u64) {
     let mut long = Long { report, steps };
-    let oscillator = HarmonicOscillator::default();
+    let oscillator = shipped("harmonic_oscillator").model();
     let start: [&[f64]; 2] = [&[1.0], &[0.0]];
     // A quadratic invariant: nothing but a random walk of rounding errors, 1e-16 each.
     let series = energy!(long, Gauss4, 0.1, oscillator, start);
@@ -167,7 +172,7 @@ fn symplectic(report: &mut Report, steps: u64) {
     let classical = energy!(long, Rk4, 0.1, oscillator, start);
     long.grows(&classical, 0.95);
 
-    let pendulum = DoublePendulum::default();
+    let pendulum = shipped("double_pendulum").model();
     let start: [&[f64]; 2] = [&[0.4, 0.3], &[0.0, 0.0]];
     let series = energy!(long, Gauss4, 0.02, pendulum, start);
     long.bounded(&series, 4e-8, 4e-12);
@@ -187,27 +192,23 @@ fn symplectic(report: &mut Report, steps: u64) {
 
 fn nonholonomic(report: &mut Report, steps: u64) {
     let mut long = Long { report, steps };
-    let disk = RollingDisk::default();
+    let disk = shipped("rolling_disk").model();
     let start: [&[f64]; 2] = [&[0.0, 0.0, 0.0, 0.3], &[0.0, 0.0, 10.0, 0.7]];
     let free = energy!(long, Dla2, 0.02, disk, start);
     long.below(&free, 1e-11 * free.start);
 
-    let edge = SteeredEdge::default();
+    let edge = STEERED_EDGE.model();
     let start: [&[f64]; 2] = [&[1.0, 0.2, 0.3], &[0.5, 0.0, 0.7]];
     let series = energy!(long, Dla2, 0.05, edge, start);
     long.bounded(&series, 5e-4, 2e-7);
     let series = energy!(long, Dla4, 0.05, edge, start);
     long.bounded(&series, 4e-8, 2e-11);
-    let particle = HeldParticle::default();
+    let particle = HELD_PARTICLE.model();
     let start: [&[f64]; 2] = [&[1.0, 0.2, 0.3], &[0.5, 0.4, 0.0]];
     let series = energy!(long, Dla2, 0.05, particle, start);
     long.bounded(&series, 6e-4, 2e-6);
     let series = energy!(long, Dla4, 0.05, particle, start);
     long.bounded(&series, 2e-8, 2e-11);
-}
-
-fn projection<S: Constrained>(_: &S) -> Projection<S> {
-    Projection::new()
 }
 
 fn growing(report: &mut Report) {
@@ -217,22 +218,19 @@ fn growing(report: &mut Report) {
     };
     let start: [&[f64]; 2] = [&[1.0, 0.2, 0.3], &[0.5, 0.0, 0.7]];
     // Coupled to the place and in a magnetic field the motion is chaotic and not reversible: the energy walks.
-    let wild = SteeredEdge {
-        c: 0.5,
-        b: 0.8,
-        ..SteeredEdge::default()
-    };
+    let wild = STEERED_EDGE.with([("c", 0.5), ("b", 0.8)]);
     let second = energy!(long, Dla2, 0.05, wild, start);
     long.grows(&second, 0.3);
     let fourth = energy!(long, Dla4, 0.05, wild, start);
     long.grows(&fourth, 0.2);
     // In global form Gauss's method leaves D, and the energy goes with it; the effect that returns to D is not
     // symmetric. The form reduced to D needs no return.
-    let reduced = SteeredEdge::default();
+    let reduced = STEERED_EDGE.model();
     let edge = reduced.global();
     let leaving = energy!(long, Gauss4, 0.05, edge, start);
     long.grows(&leaving, 1.5);
-    let returned = energy!(long, Gauss4, 0.05, edge, start, projection(&edge));
+    let projected = (Some(Projection::new()), None, None);
+    let returned = energy!(long, Gauss4, 0.05, edge, start, projected);
     long.below(&returned, 1e-5);
     long.grows(&returned, 0.8);
     let series = energy!(long, Gauss4, 0.05, reduced, start);

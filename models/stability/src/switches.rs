@@ -3,11 +3,11 @@
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, U};
-use dalembert_models::{FilippovField, RefractedParticle};
+use super::text::{Text, shipped};
 
-dalembert::model! {
-    /// A slider that is caught at x = 1, while a clock goes on, and thrown back when the clock shows 2.
-    pub Latch {
+/// A slider that is caught at x = 1, while a clock goes on, and thrown back when the clock shows 2.
+static LATCH: Text = Text::new(
+    "Latch {
         coordinates { x; clock; }
         lagrangian = (dot(x)^2 + dot(clock)^2)/2;
         modes {
@@ -18,12 +18,12 @@ dalembert::model! {
             catch: free -> held when x >= 1;
             release: held -> free when clock >= 2 => reset { dot(x) = -1; };
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Two media above a floor.
-    pub Corner {
+/// Two media above a floor.
+static CORNER: Text = Text::new(
+    "Corner {
         coordinates { x; y; }
         parameters { m2 > 0 = 2; }
         modes {
@@ -34,12 +34,12 @@ dalembert::model! {
         }
         impacts { floor: y >= 0; }
         transitions { cross: left -> right when x >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A ledge that ends where the mode changes.
-    pub Brink {
+/// A ledge that ends where the mode changes.
+static BRINK: Text = Text::new(
+    "Brink {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         modes {
@@ -47,8 +47,8 @@ dalembert::model! {
             beyond { }
         }
         transitions { over: above -> beyond when x >= 0; }
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -111,7 +111,7 @@ pub const CASES: &[Case] = &[
 ];
 
 fn sliding(setting: Setting, report: &mut Report) {
-    let field = FilippovField::default();
+    let field = shipped("filippov_field").model();
     let end = Course::new(&field, &[1.0, 0.0], &[0.0; 2], 3.5).run(setting);
     report.class(&end.outcome, "done");
     report.equal("switches", end.hits.len(), 1);
@@ -121,10 +121,7 @@ fn sliding(setting: Setting, report: &mut Report) {
 }
 
 fn crossing(setting: Setting, report: &mut Report) {
-    let field = FilippovField {
-        gx: -1.0,
-        ..FilippovField::default()
-    };
+    let field = shipped("filippov_field").with([("gx", -1.0)]);
     let end = Course::new(&field, &[1.0, 0.0], &[0.0; 2], 3.5).run(setting);
     report.class(&end.outcome, "done");
     report.equal("switches", end.hits.len(), 1);
@@ -135,11 +132,7 @@ fn crossing(setting: Setting, report: &mut Report) {
 
 /// A particle that comes from the left with these momenta to a medium of mass `m` where the potential is `step`.
 fn entering(setting: Setting, p: [f64; 2], m2: f64, step: f64) -> ([f64; 2], super::course::End) {
-    let particle = RefractedParticle {
-        m2,
-        V2: step,
-        ..RefractedParticle::default()
-    };
+    let particle = shipped("refracted_particle").with([("m2", m2), ("V2", step)]);
     let end = Course::new(&particle, &[-1.0, 0.0], &p, 1.5 / p[0]).run(setting);
     let after = match end.hits.first() {
         Some(hit) => [hit.after[0], hit.after[1]],
@@ -197,7 +190,7 @@ fn refraction(setting: Setting, report: &mut Report) {
 }
 
 fn latch(setting: Setting, report: &mut Report) {
-    let end = Course::new(&Latch::default(), &[0.0; 2], &[1.0; 2], 3.0).run(setting);
+    let end = Course::new(&LATCH.model(), &[0.0; 2], &[1.0; 2], 3.0).run(setting);
     report.class(&end.outcome, "done");
     let surfaces: Vec<usize> = end.hits.iter().map(|hit| hit.surface).collect();
     report.equal("sequence", surfaces, vec![0, 1]);
@@ -210,7 +203,7 @@ fn latch(setting: Setting, report: &mut Report) {
 }
 
 fn corner(setting: Setting, report: &mut Report) {
-    let media = Corner::default();
+    let media = CORNER.model();
     let mut ends = Vec::new();
     for off in [0.0, 1e-15, -1e-15] {
         let start = [-1.0, 1.0 + off];
@@ -223,6 +216,6 @@ fn corner(setting: Setting, report: &mut Report) {
         report.near("x", end[0], ends[0][0], 1e-14);
         report.near("y", end[1], ends[0][1], 1e-14);
     }
-    let end = Course::new(&Brink::default(), &[-1.0, 1.0], &[1.0, -1.0], 2.0).run(setting);
+    let end = Course::new(&BRINK.model(), &[-1.0, 1.0], &[1.0, -1.0], 2.0).run(setting);
     report.class(&end.outcome, "ambiguous");
 }

@@ -1,6 +1,5 @@
 //! First variations: the two-form and the volume of section F, and section G's saltation, traces and grazes.
 
-use dalembert::contract::Variational;
 use dalembert::variations::Section;
 use dalembert::{
     Observer, Outcome, Run as Ran, Scene, SceneEffects, Simulation, StateVector, System, Tangent,
@@ -8,12 +7,13 @@ use dalembert::{
 };
 use dalembert_cli::suite::{Case, Report, Run};
 
-use super::course::U;
-use dalembert_models::PointBilliard;
+use super::course::{U, vector};
+use super::tables::elliptic_table;
+use super::text::{Model, Text, shipped, value};
 
-dalembert::model! {
-    /// Two fields that change at a bent line: `s` says which of them moves the point.
-    pub Switched {
+/// Two fields that change at a bent line: `s` says which of them moves the point.
+static SWITCHED: Text = Text::new(
+    "Switched {
         coordinates { x; y; s; }
         field {
             dot(x) = 1 + (1 - s)*y^2 + s*sin(x);
@@ -21,27 +21,27 @@ dalembert::model! {
             dot(s) = 0;
         }
         impacts { line: 1 - x - y^2/4 >= 0 => reset { s = 1; }; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A ball that falls and bounces.
-    pub Dropped {
+/// A ball that falls and bounces.
+static DROPPED: Text = Text::new(
+    "Dropped {
         coordinates { x; }
         parameters { g = 9.81; e in [0, 1] = 3/4; }
         lagrangian = dot(x)^2/2 - g*x;
         impacts { floor: x >= 0 => restitution(e); }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A free point in a corner.
-    pub Quadrant {
+/// A free point in a corner.
+static QUADRANT: Text = Text::new(
+    "Quadrant {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { right: x <= 1; above: y <= 1; }
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -96,35 +96,29 @@ pub const CASES: &[Case] = &[
 ];
 
 /// Along each component of the state.
-fn all_components<S: Variational>() -> Vec<Tangent<S>> {
-    (0..S::State::CAPACITY).map(Tangent::of_component).collect()
+fn all_components(system: &Model) -> Vec<Tangent<Model>> {
+    (0..system.state_len()).map(Tangent::of_component).collect()
 }
 
 /// A run with the derivatives of its end.
-struct Varied<S: Variational> {
-    run: Ran<S::State>,
-    columns: Result<Vec<Tangent<S>>, Undefined>,
+struct Varied {
+    run: Ran<<Model as VectorField>::State>,
+    columns: Result<Vec<Tangent<Model>>, Undefined>,
 }
 
 /// Makes a run from positions and velocities until a time or a number of impacts.
-fn vary<S: Scene + Variational>(
-    system: &S,
+fn vary(
+    system: &Model,
     (q, qdot): (&[f64], &[f64]),
     (until, impacts): (f64, Option<u64>),
-    mut columns: Vec<Tangent<S>>,
-) -> Option<Varied<S>> {
-    let (mut position, mut velocity) = (
-        S::Vector::zeros(S::Vector::CAPACITY),
-        S::Vector::zeros(S::Vector::CAPACITY),
-    );
-    position.as_mut_slice().copy_from_slice(q);
-    velocity.as_mut_slice().copy_from_slice(qdot);
-    let state = system.state(0.0, &position, &velocity).ok()?;
+    mut columns: Vec<Tangent<Model>>,
+) -> Option<Varied> {
+    let state = system.state(0.0, &vector(q), &vector(qdot)).ok()?;
     let stepper = Taylor::new(Tolerance::new(1e-15).ok()?);
     let mut effects = system.effects();
     effects.set_impact_budget(impacts);
     let mut variations = Variations::new(system, &mut columns);
-    let observer: &mut dyn Observer<S> = &mut variations;
+    let observer: &mut dyn Observer<Model> = &mut variations;
     let run = Simulation::new(system, stepper, effects)
         .run(0.0, state, until, &mut { observer })
         .ok()?;
@@ -133,24 +127,24 @@ fn vary<S: Scene + Variational>(
 }
 
 /// A run, and the derivative of its end by columns.
-type Derived<S> = (Ran<<S as VectorField>::State>, Vec<Vec<f64>>);
+type Derived = (Ran<<Model as VectorField>::State>, Vec<Vec<f64>>);
 
 /// The entries of a derivative, or a failure in the report.
-fn matrix<S: Variational>(report: &mut Report, varied: Option<Varied<S>>) -> Option<Derived<S>> {
+fn matrix(report: &mut Report, varied: Option<Varied>) -> Option<Derived> {
     let varied = varied.filter(|own| own.columns.is_ok());
     report.equal("has derivatives", varied.is_some(), true);
     let Varied { run, columns } = varied?;
+    let length = run.state.count();
     let columns = columns.ok()?.into_iter();
-    Some((
-        run,
-        columns.map(|own| own.state.as_slice().to_vec()).collect(),
-    ))
+    let entries = columns.map(|column| column.state.as_slice()[..length].to_vec());
+    let entries = entries.collect();
+    Some((run, entries))
 }
 
 fn symplectic(report: &mut Report) {
-    let table = PointBilliard::default();
+    let table = shipped("point_billiard").model();
     let start: (&[f64], &[f64]) = (&[0.25, 0.1], &[0.8, 0.6]);
-    let varied = vary(&table, start, (1e4, Some(100)), all_components());
+    let varied = vary(&table, start, (1e4, Some(100)), all_components(&table));
     let Some((run, columns)) = matrix(report, varied) else {
         return;
     };
@@ -200,12 +194,9 @@ fn determinant(mut columns: Vec<Vec<f64>>) -> f64 {
 fn identity_reset(report: &mut Report) {
     // At the line from the first instant on: the differential is that of the reset alone.
     let (x, y) = (0.75, 1.0);
-    let varied = vary(
-        &Switched {},
-        (&[x, y, 0.0], &[0.0; 3]),
-        (0.0, None),
-        all_components(),
-    );
+    let switched = SWITCHED.model();
+    let start: (&[f64], &[f64]) = (&[x, y, 0.0], &[0.0; 3]);
+    let varied = vary(&switched, start, (0.0, None), all_components(&switched));
     let Some((run, columns)) = matrix(report, varied) else {
         return;
     };
@@ -218,16 +209,12 @@ fn identity_reset(report: &mut Report) {
 }
 
 fn axes_of_an_ellipse(report: &mut Report) {
-    let table = PointBilliard {
-        m: 1.0,
-        ta: 2.0,
-        tb: 1.0,
-    };
+    let table = elliptic_table(2.0, 1.0);
     let Ok(tolerance) = Tolerance::new(1e-15) else {
         return;
     };
     for (name, velocity, trace) in [("minor", [0.0, 1.0], -1.0), ("major", [1.0, 0.0], 194.0)] {
-        let state = table.state(0.0, &[0.0; 2].into(), &velocity.into());
+        let state = table.state(0.0, &vector(&[0.0; 2]), &vector(&velocity));
         let taylor = Taylor::new(tolerance);
         let mut section = Section::new(&table, taylor, table.effects(), 0, 100.0).with_returns(2);
         let orbit = state.ok().and_then(|state| {
@@ -253,8 +240,9 @@ fn axes_of_an_ellipse(report: &mut Report) {
 }
 
 fn dropped(report: &mut Report) {
-    let ball = Dropped::default();
-    let (g, e, height, until) = (ball.g, ball.e, 1.3, 0.9_f64);
+    let ball = DROPPED.model();
+    let [g, e] = ["g", "e"].map(|name| value(&ball, name));
+    let (height, until) = (1.3, 0.9_f64);
     let columns = vec![
         Tangent::of_parameter(1),
         Tangent::of_parameter(0),
@@ -284,11 +272,16 @@ fn dropped(report: &mut Report) {
             1e-12 * right.abs(),
         );
     }
-    report.near("d x(T)/d T", run.state[1], e * g * fall - g * rest, 1e-12);
+    report.near(
+        "d x(T)/d T",
+        run.state.as_slice()[1],
+        e * g * fall - g * rest,
+        1e-12,
+    );
 }
 
 fn grazes(report: &mut Report) {
-    let ball = Dropped { g: -2.0, e: 1.0 };
+    let ball = DROPPED.with([("g", -2.0), ("e", 1.0)]);
     let through = |start: f64| {
         let columns = vec![Tangent::of_component(0)];
         vary(&ball, (&[start], &[-2.0]), (3.0, None), columns)
@@ -321,10 +314,10 @@ fn grazes(report: &mut Report) {
 }
 
 fn two_at_the_end(report: &mut Report) {
-    let until = 1.0 + 1e-12;
+    let (quadrant, until) = (QUADRANT.model(), 1.0 + 1e-12);
     let at = |offset: f64| {
         let start: (&[f64], &[f64]) = (&[0.0, -offset], &[1.0, 1.0]);
-        vary(&Quadrant {}, start, (until, None), all_components())
+        vary(&quadrant, start, (until, None), all_components(&quadrant))
     };
     let mut found = Vec::new();
     for offset in [5e-13, -5e-13] {

@@ -4,37 +4,38 @@ use dalembert::Outcome;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, End, U, location};
-use super::location::Fall;
+use super::location::FALL;
+use super::text::{Model, Text, value};
 
-dalembert::model! {
-    /// A ball on an incline, without friction: `s` downhill, `y` away from the plane.
-    pub Incline {
+/// A ball on an incline, without friction: `s` downhill, `y` away from the plane.
+pub static INCLINE: Text = Text::new(
+    "Incline {
         coordinates { s; y; }
         parameters { g > 0 = 1; slope = 0.3; e in [0, 1] = 0.5; }
         lagrangian = (dot(s)^2 + dot(y)^2)/2 + g*sin(slope)*s - g*cos(slope)*y;
         impacts { plane: y >= 0 => restitution(e); }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point outside a sphere, in polar coordinates.
-    pub SphereTop {
+/// A point outside a sphere, in polar coordinates.
+pub static SPHERE_TOP: Text = Text::new(
+    "SphereTop {
         coordinates { r; phi; }
         parameters { g > 0 = 1; }
         lagrangian = (dot(r)^2 + r^2*dot(phi)^2)/2 - g*r*cos(phi);
         impacts { sphere: r >= 1 => impact_plastic; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Two balls that do not know of each other.
-    pub TwoBalls {
+/// Two balls that do not know of each other.
+static TWO_BALLS: Text = Text::new(
+    "TwoBalls {
         coordinates { x; y; }
         parameters { e in [0, 1] = 0.5; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - x - y;
         impacts { first: x >= 0 => restitution(e); second: y >= 0; }
-    }
-}
+    }",
+);
 
 /// The cases.
 pub const CASES: &[Case] = &[
@@ -117,10 +118,7 @@ fn geometric(setting: Setting, report: &mut Report) {
         if e > 0.99 && setting.max_step.is_some() {
             continue;
         }
-        let ball = Fall {
-            e,
-            ..Fall::default()
-        };
+        let ball = FALL.with([("e", e)]);
         let limit = 2.0 / (1.0 - e);
         let end = Course::new(&ball, &[0.0], &[1.0], 2.0 * limit).run(setting);
         accumulates(report, &format!("e = {e}"), &end, limit, 1e-10 * limit);
@@ -141,10 +139,7 @@ fn geometric(setting: Setting, report: &mut Report) {
 
 fn after_accumulation(setting: Setting, report: &mut Report) {
     for e in [0.1, 0.5, 0.9, 0.99] {
-        let ball = Fall {
-            e,
-            ..Fall::default()
-        };
+        let ball = FALL.with([("e", e)]);
         let limit = 2.0 / (1.0 - e);
         let end = Course::new(&ball, &[0.0], &[1.0], 10.0 * limit)
             .resting()
@@ -167,10 +162,7 @@ fn after_accumulation(setting: Setting, report: &mut Report) {
 
 fn slow_loss(setting: Setting, report: &mut Report) {
     let e = 1.0 - 1e-6;
-    let ball = Fall {
-        e,
-        ..Fall::default()
-    };
+    let ball = FALL.with([("e", e)]);
     let end = Course::new(&ball, &[0.0], &[1.0], 1e3).run(setting);
     report.class(&end.outcome, "done");
     let count = ((1.0 - 500.0 * (1.0 - e)).ln() / e.ln()).floor();
@@ -179,19 +171,26 @@ fn slow_loss(setting: Setting, report: &mut Report) {
 
 fn tiny_hops(setting: Setting, report: &mut Report) {
     // The 50 000th impact is at the horizon itself; a part in 1e5 after it, none is.
-    let end = Course::new(&Fall::default(), &[0.0], &[1e-8], 1.00001e-3).run(setting);
+    let end = Course::new(&FALL.model(), &[0.0], &[1e-8], 1.00001e-3).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 50_000);
 }
 
 /// Distance along the plane from rest at speed `s1`.
-fn slid(system: &Incline, s1: f64, t: f64) -> f64 {
-    s1 * t + 0.5 * system.g * system.slope.sin() * t * t
+fn slid(system: &Model, s1: f64, t: f64) -> f64 {
+    let [g, slope] = ["g", "slope"].map(|name| value(system, name));
+    s1 * t + 0.5 * g * slope.sin() * t * t
+}
+
+/// When hops at first of speed 1 accumulate.
+fn accumulation(system: &Model) -> f64 {
+    let [g, slope, e] = ["g", "slope", "e"].map(|name| value(system, name));
+    2.0 / (g * slope.cos() * (1.0 - e))
 }
 
 fn incline(setting: Setting, report: &mut Report) {
-    let system = Incline::default();
-    let limit = 2.0 / (system.g * system.slope.cos() * (1.0 - system.e));
+    let system = INCLINE.model();
+    let limit = accumulation(&system);
     let end = Course::new(&system, &[0.0, 0.0], &[0.7, 1.0], 2.0 * limit).run(setting);
     accumulates(report, "plane", &end, limit, 1e-10 * limit);
     let s = slid(&system, 0.7, end.t);
@@ -199,8 +198,8 @@ fn incline(setting: Setting, report: &mut Report) {
 }
 
 fn incline_after(setting: Setting, report: &mut Report) {
-    let system = Incline::default();
-    let until = 4.0 / (system.g * system.slope.cos() * (1.0 - system.e));
+    let system = INCLINE.model();
+    let until = 2.0 * accumulation(&system);
     let end = Course::new(&system, &[0.0, 0.0], &[0.7, 1.0], until)
         .resting()
         .run(setting);
@@ -211,7 +210,7 @@ fn incline_after(setting: Setting, report: &mut Report) {
 }
 
 fn sphere(setting: Setting, report: &mut Report) {
-    let end = Course::new(&SphereTop::default(), &[1.0, 0.0], &[0.0, 0.5], 3.0)
+    let end = Course::new(&SPHERE_TOP.model(), &[1.0, 0.0], &[0.0, 0.5], 3.0)
         .resting()
         .run(setting);
     report.class(&end.outcome, "done");
@@ -231,7 +230,7 @@ fn sphere(setting: Setting, report: &mut Report) {
 }
 
 fn two_balls(setting: Setting, report: &mut Report) {
-    let end = Course::new(&TwoBalls::default(), &[0.0, 0.0], &[1.0, 1.0], 21.0)
+    let end = Course::new(&TWO_BALLS.model(), &[0.0, 0.0], &[1.0, 1.0], 21.0)
         .resting()
         .run(setting);
     report.class(&end.outcome, "done");

@@ -1,0 +1,137 @@
+//! Models that are loaded from their texts, so that no case needs a compiler.
+
+use std::sync::OnceLock;
+
+use dalembert::Instance;
+use dalembert::erased::Erased;
+use dalembert_jit::Loaded;
+
+/// A loaded model with values for its parameters, whose vectors have at most 8 components.
+pub type Model = Erased<8>;
+
+/// A loaded model whose vectors have at most 32 components.
+pub type Large = Erased<32>;
+
+/// The text of one model, loaded where it is first asked for:
+///
+/// ```
+/// use dalembert_stability::text::Text;
+///
+/// static FALL: Text = Text::new("
+///     Fall {
+///         coordinates { x; }
+///         parameters { g = 1; }
+///         lagrangian = dot(x)^2/2 - g*x;
+///     }
+/// ");
+/// let moon = FALL.with([("g", 1.62)]);
+/// ```
+pub struct Text {
+    text: &'static str,
+    loaded: OnceLock<Loaded>,
+}
+
+impl Text {
+    /// The model of this text. It is not looked at yet.
+    pub const fn new(text: &'static str) -> Self {
+        Self {
+            text,
+            loaded: OnceLock::new(),
+        }
+    }
+
+    /// The model with its declared values.
+    ///
+    /// # Panics
+    /// If the text is refused, or does not declare one model.
+    pub fn model(&self) -> Model {
+        self.sized()
+    }
+
+    /// The model with these values for some of its parameters, by name.
+    ///
+    /// # Panics
+    /// As [`Text::model`], and if there is no such parameter.
+    pub fn with<const K: usize>(&self, values: [(&str, f64); K]) -> Model {
+        self.sized_with(values)
+    }
+
+    /// As [`Text::with`], for a model whose vectors are too long for [`Model`].
+    ///
+    /// # Panics
+    /// As [`Text::with`].
+    pub fn large<const K: usize>(&self, values: [(&str, f64); K]) -> Large {
+        self.sized_with(values)
+    }
+
+    fn sized_with<const C: usize, const K: usize>(&self, values: [(&str, f64); K]) -> Erased<C> {
+        let mut model = self.sized();
+        for (name, value) in values {
+            set(&mut model, name, value);
+        }
+        model
+    }
+
+    /// The model with its declared values, in vectors of at most `C` components.
+    ///
+    /// # Panics
+    /// As [`Text::model`], and if a vector is longer.
+    pub fn sized<const C: usize>(&self) -> Erased<C> {
+        Erased::of(self.loaded().form).expect("vectors of no more components")
+    }
+
+    /// The scene of this name with its declared values.
+    ///
+    /// # Panics
+    /// As [`Text::model`], and if there is no such scene.
+    pub fn scene(&self, name: &str) -> Model {
+        let mut scenes = self.loaded().scenes.iter();
+        let scene = scenes.find(|(own, _)| *own == name);
+        let (_, form) = scene.unwrap_or_else(|| panic!("no scene `{name}`"));
+        Erased::of(form).expect("vectors of no more components")
+    }
+
+    fn loaded(&self) -> &Loaded {
+        self.loaded.get_or_init(|| {
+            let models = dalembert_jit::load("case", self.text);
+            let mut models = models.unwrap_or_else(|refused| panic!("{refused}"));
+            assert_eq!(models.len(), 1, "a text declares one model");
+            models.remove(0)
+        })
+    }
+}
+
+/// The shipped model of this name, such as `rolling_disk`.
+///
+/// # Panics
+/// If there is none.
+pub fn shipped(name: &str) -> &'static Text {
+    static SHIPPED: OnceLock<Vec<(&str, Text)>> = OnceLock::new();
+    let texts = dalembert_command::TEXTS.iter();
+    let all = SHIPPED.get_or_init(|| texts.map(|&(name, text)| (name, Text::new(text))).collect());
+    let found = all.iter().find(|(own, _)| *own == name);
+    let (_, text) = found.unwrap_or_else(|| panic!("no shipped model `{name}`"));
+    text
+}
+
+/// Sets a parameter by its name.
+///
+/// # Panics
+/// If there is no such parameter.
+pub fn set<const C: usize>(model: &mut Erased<C>, name: &str, value: f64) {
+    model.set_parameter(place(model, name), value);
+}
+
+/// The value of the parameter of this name.
+///
+/// # Panics
+/// If there is no such parameter.
+pub fn value<const C: usize>(model: &Erased<C>, name: &str) -> f64 {
+    model.parameter(place(model, name))
+}
+
+fn place<const C: usize>(model: &Erased<C>, name: &str) -> usize {
+    let mut parameters = model.description().parameters.iter();
+    let place = parameters.position(|parameter| parameter.name == name);
+    place.unwrap_or_else(|| panic!("no parameter `{name}`"))
+}
