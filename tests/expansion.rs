@@ -7,13 +7,14 @@
 use std::sync::Mutex;
 use std::time::Duration;
 
-use dalembert::{Described, Scene};
+use dalembert::Instance;
+use dalembert::describe::Description;
 use dalembert_codegen::claims::{Exactness, Problem, Undecided, decide};
 use dalembert_codegen::{mechanics, model, program, spec};
 use dalembert_emit::try_expand;
-use dalembert_models::{Chain2, Chain4, Chain8, Chain16};
+use dalembert_stability::text::shipped;
 use dalembert_tests::bodies::{ball, train};
-use dalembert_tests::sampling::{Visitor, visit_all};
+use dalembert_tests::sampling::every_system;
 use dalembert_tests::visible::{declaration, visible_systems};
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
@@ -110,39 +111,37 @@ fn milliseconds(optimised: u64, unoptimised: u64) -> Duration {
     })
 }
 
-struct Timed;
-
-impl Visitor for Timed {
-    fn visit<S: Described + Scene>(&mut self, _: S) {
-        let name = S::DESCRIPTION.name;
-        let Expansion {
-            time,
-            to_reading,
-            length,
-        } = expansion(&without_claims(S::DESCRIPTION.source));
-        let with_claims = expansion(S::DESCRIPTION.source).time;
-        let claims = with_claims.saturating_sub(time);
-        println!(
-            "{name:28} {:8.1} ms {length:8} characters, claims {:8.1} ms",
-            time.as_secs_f64() * 1e3,
-            claims.as_secs_f64() * 1e3,
-        );
+fn assert_expands_in_time(description: &Description) {
+    let name = description.name;
+    let Expansion {
+        time,
+        to_reading,
+        length,
+    } = expansion(&without_claims(description.source));
+    let with_claims = expansion(description.source).time;
+    let claims = with_claims.saturating_sub(time);
+    println!(
+        "{name:28} {:8.1} ms {length:8} characters, claims {:8.1} ms",
+        time.as_secs_f64() * 1e3,
+        claims.as_secs_f64() * 1e3,
+    );
+    assert!(
+        time < milliseconds(50, 1000) || to_reading < READINGS,
+        "{name}: {time:?}, {to_reading:.2} times as long as reading it"
+    );
+    if description.coordinates.len() <= 6 {
         assert!(
-            time < milliseconds(50, 1000) || to_reading < READINGS,
-            "{name}: {time:?}, {to_reading:.2} times as long as reading it"
+            claims < milliseconds(100, 1500) || claims < EXPANSIONS * time,
+            "{name}: claims {claims:?}"
         );
-        if S::DESCRIPTION.coordinates.len() <= 6 {
-            assert!(
-                claims < milliseconds(100, 1500) || claims < EXPANSIONS * time,
-                "{name}: claims {claims:?}"
-            );
-        }
     }
 }
 
 #[test]
 fn every_model_expands_in_time() {
-    visit_all(&mut Timed);
+    for system in every_system() {
+        assert_expands_in_time(system.description());
+    }
 }
 
 /// The least of three times for a verdict.
@@ -233,10 +232,10 @@ fn operations(source: &str) -> usize {
 #[test]
 fn the_chain_grows_no_faster_than_its_factorisation() {
     let sources = [
-        (2.0_f64, Chain2::DESCRIPTION.source),
-        (4.0, Chain4::DESCRIPTION.source),
-        (8.0, Chain8::DESCRIPTION.source),
-        (16.0, Chain16::DESCRIPTION.source),
+        (2.0_f64, shipped("chain2").description().source),
+        (4.0, shipped("chain4").description().source),
+        (8.0, shipped("chain8").description().source),
+        (16.0, shipped("chain16").description().source),
     ];
     let mut table = Vec::new();
     for (n, source) in sources {
@@ -260,7 +259,7 @@ fn the_chain_grows_no_faster_than_its_factorisation() {
 
 #[test]
 fn a_model_that_is_too_large_is_refused_with_its_size() {
-    let source = Chain16::DESCRIPTION.source;
+    let source = shipped("chain16").description().source;
     let larger = source.replace("16", "48");
     let _alone = ALONE.lock();
     let refused = try_expand(larger.parse().expect("tokens")).expect_err("48 links");

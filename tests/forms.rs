@@ -1,15 +1,19 @@
 //! The form reduced to D against values computed independently with 50 digits, and against the global form.
 
+use dalembert::erased::Bounded;
+use dalembert::integrate::Chosen;
 use dalembert::{
-    Constrained, Described, Dop853, Event, Fault, Impacting, Instance, Observer, Scene,
-    SceneEffects, Simulation, StateVector, System, Tolerance, VectorField,
+    Constrained, Dop853, Fault, Instance, Simulation, StateVector, System, Tolerance, VectorField,
 };
 use dalembert_cli::Exit;
-use dalembert_models::RollingBallEuler;
+use dalembert_cli::Integrator;
+use dalembert_cli::suite::Setting;
+use dalembert_stability::course::Course;
+use dalembert_stability::text::{Large, Model, shipped, value};
 use dalembert_tests::command::dalembert;
 use dalembert_tests::numeric::Reported;
 use dalembert_tests::reference::{compare, read};
-use dalembert_tests::sampling::{Random, Visitor, states, visit_all};
+use dalembert_tests::sampling::{Random, every_system, states};
 use serde_json::{Map, Value};
 
 /// Quantities of the files by the names `eval` gives them.
@@ -27,15 +31,16 @@ const QUANTITIES: [&str; 7] = [
 /// the energy does.
 #[test]
 fn a_frame_ends_where_its_angles_do() {
-    let ball = RollingBallEuler::default();
+    let ball = shipped("rolling_ball_euler").large([]);
     for theta in [0.0, core::f64::consts::PI] {
-        let state = [0.1, 0.2, 0.3, theta, 0.4, 1.0, -0.5, 0.25].into();
+        let state = Bounded::of(&[0.1, 0.2, 0.3, theta, 0.4, 1.0, -0.5, 0.25]);
         let mut rate = state;
         let fault = Err(Fault::SingularFrame { quasi: 1 });
         assert_eq!(ball.rate(0.0, &state, &mut rate), fault);
         let energy = ball.energy(0.0, &state).expect("an energy");
-        let square = ball.k * ball.k;
-        let expected = 0.5 * ((square + ball.r * ball.r) * 1.25 + square * 0.0625);
+        let (k, r) = (value(&ball, "k"), value(&ball, "r"));
+        let square = k * k;
+        let expected = 0.5 * ((square + r * r) * 1.25 + square * 0.0625);
         assert!((energy - expected).abs() < 1e-15 * expected.abs() * 4.0);
     }
 }
@@ -96,26 +101,26 @@ struct SameMotion {
     models: usize,
 }
 
-impl Visitor for SameMotion {
-    fn visit<S: Described + Scene>(&mut self, system: S) {
-        let quasi = S::DESCRIPTION.quasi_velocities.len();
+impl SameMotion {
+    fn compare(&mut self, system: &Large) {
+        let quasi = system.description().quasi_velocities.len();
         if quasi == 0 {
             return;
         }
         self.models += 1;
-        let name = S::DESCRIPTION.name;
+        let name = system.description().name;
         let global = system.global();
         let t = 0.3;
-        for state in states(&system, 10, 5) {
+        for state in states(system, 10, 5) {
             let (q, qdot) = (system.position(&state), system.velocity(t, &state));
             let qdot = qdot.expect("a velocity");
             let other = global.state_unchecked(t, &q, &qdot).expect("a state");
             let mut reported = Reported::default();
             global.inspect(t, &other, &mut reported).expect("a report");
             let expected = &reported.0["acceleration"];
-            let mut rate = S::State::zeros(S::State::CAPACITY);
+            let mut rate = system.zero_state();
             system.rate(t, &state, &mut rate).expect("a rate");
-            let actual = acceleration(&system, t, &state, &rate);
+            let actual = acceleration(system, t, &state, &rate);
             let size = expected
                 .iter()
                 .fold(1.0_f64, |size, own| size.max(own.abs()));
@@ -162,81 +167,51 @@ fn acceleration<S: System>(system: &S, t: f64, state: &S::State, rate: &S::State
 #[test]
 fn both_forms_are_the_same_motion() {
     let mut visitor = SameMotion::default();
-    visit_all(&mut visitor);
+    for system in every_system() {
+        visitor.compare(system);
+    }
     assert!(visitor.models >= 12, "{}", visitor.models);
 }
 
 /// A velocity off the constraints is taken to the same nearest one in both forms.
 #[test]
 fn both_forms_project_to_the_same_velocity() {
-    struct SameProjection;
-    impl Visitor for SameProjection {
-        fn visit<S: Described + Scene>(&mut self, system: S) {
-            let global = system.global();
-            let mut random = Random::new(9);
-            let (q, qdot): (S::Vector, S::Vector) =
-                (random.vector(0.2, 1.3), random.vector(-1.0, 1.0));
-            let own = system.state_nearest(0.1, &q, &qdot).expect("a state");
-            let other = global.state_nearest(0.1, &q, &qdot).expect("a state");
-            let [own, other] = [system.velocity(0.1, &own), global.velocity(0.1, &other)];
-            let [own, other] = [own.expect("a velocity"), other.expect("a velocity")];
-            for (own, other) in own.as_slice().iter().zip(other.as_slice()) {
-                let name = S::DESCRIPTION.name;
-                assert!((own - other).abs() < 1e-12, "{name}: {own} and {other}");
-            }
+    for system in every_system() {
+        let global = system.global();
+        let mut random = Random::new(9);
+        let zero = system.zero_vector();
+        let (q, qdot) = (random.like(&zero, 0.2, 1.3), random.like(&zero, -1.0, 1.0));
+        let own = system.state_nearest(0.1, &q, &qdot).expect("a state");
+        let other = global.state_nearest(0.1, &q, &qdot).expect("a state");
+        let [own, other] = [system.velocity(0.1, &own), global.velocity(0.1, &other)];
+        let [own, other] = [own.expect("a velocity"), other.expect("a velocity")];
+        for (own, other) in own.as_slice().iter().zip(other.as_slice()) {
+            let name = system.description().name;
+            assert!((own - other).abs() < 1e-12, "{name}: {own} and {other}");
         }
     }
-    visit_all(&mut SameProjection);
 }
 
-/// Times of impacts, and the last velocity after one.
-#[derive(Default)]
-struct Impacts(Vec<(f64, Vec<f64>)>);
-
-impl<S: System> Observer<S> for Impacts {
-    fn event(&mut self, event: &Event<S::State>) -> core::ops::ControlFlow<()> {
-        self.0.push((event.t, Vec::new()));
-        core::ops::ControlFlow::Continue(())
-    }
-}
-
-fn run<S: Impacting + Scene>(
-    system: &S,
-    q: &S::Vector,
-    qdot: &S::Vector,
-    count: u64,
-) -> (Vec<f64>, Vec<f64>) {
-    let state = system.state_unchecked(0.0, q, qdot).expect("a state");
-    let mut effects = system.effects();
-    effects.set_impact_budget(Some(count));
-    let stepper = Dop853::new(Tolerance::new(1e-14).expect("a tolerance"));
-    let mut impacts = Impacts::default();
-    let run = Simulation::new(system, stepper, effects)
-        .run(0.0, state, 1e4, &mut impacts)
-        .expect("a start");
-    let qdot = system.velocity(run.t, &run.state).expect("a velocity");
-    (
-        impacts.0.iter().map(|own| own.0).collect(),
-        qdot.as_slice().to_vec(),
-    )
+/// Times of impacts, and the velocities after the last of them.
+fn run(system: &Model, q: &[f64], qdot: &[f64], count: u64) -> (Vec<f64>, Vec<f64>) {
+    let course = Course::new(system, q, qdot, 1e4).tol(1e-14).impacts(count);
+    let end = course.run(Setting::free(Integrator::Dop853));
+    (end.times(), end.qdot)
 }
 
 /// Impacts included, both forms run alike: on the circular table, which amplifies errors slowly.
 #[test]
 fn both_forms_meet_the_same_impacts() {
-    let disk = dalembert_models::RollingDisk {
-        ta: 0.2,
-        tb: 0.2,
-        ..dalembert_models::RollingDisk::default()
-    };
+    let disk = shipped("rolling_disk").with([("ta", 0.2), ("tb", 0.2)]);
+    let radius = value(&disk, "R");
     let phi = core::f64::consts::FRAC_PI_2;
     let qdot = [
-        10.0 * disk.R * phi.cos(),
-        10.0 * disk.R * phi.sin(),
+        10.0 * radius * phi.cos(),
+        10.0 * radius * phi.sin(),
         10.0,
         0.2,
     ];
-    let (q, qdot) = ([0.0, 0.0, 0.0, phi].into(), qdot.into());
+    let q = [0.0, 0.0, 0.0, phi];
     let (own, last) = run(&disk, &q, &qdot, 20);
     let (other, global_last) = run(&disk.global(), &q, &qdot, 20);
     assert_eq!((own.len(), other.len()), (20, 20));
@@ -251,14 +226,14 @@ fn both_forms_meet_the_same_impacts() {
 /// On D by construction: no residual but that of rounding, however long the run and however loose the tolerance.
 #[test]
 fn a_reduced_state_never_leaves_the_constraints() {
-    let disk = dalembert_models::RollingDisk::default();
+    let disk = shipped("rolling_disk").model();
     let start = disk.initial();
     let qdot = disk.complete_velocity(0.0, &start.q, &start.qdot, &start.named);
     let state = disk
         .state(0.0, &start.q, &qdot.expect("velocities"))
         .expect("a state");
-    let stepper = Dop853::new(Tolerance::new(1e-3).expect("a tolerance"));
-    let run = Simulation::new(&disk, stepper, ())
+    let mut stepper = Dop853::new(Tolerance::new(1e-3).expect("a tolerance"));
+    let run = Simulation::new(&disk, Chosen::new(&mut stepper), ())
         .run(0.0, state, 1e4, &mut ())
         .expect("a start");
     let (q, qdot) = (disk.position(&run.state), disk.velocity(run.t, &run.state));

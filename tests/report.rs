@@ -1,9 +1,10 @@
 //! The density form as `derive` writes it out against the values of the claims' arithmetic.
 
-use dalembert::{Described, Scene};
+use dalembert::Instance;
+use dalembert::describe::Description;
 use dalembert_codegen::claims::geometry_at;
 use dalembert_codegen::report::{Item, density_form, report};
-use dalembert_tests::sampling::{Visitor, visit_all};
+use dalembert_tests::sampling::every_system;
 use dalembert_tests::verdict::Decided;
 
 /// Compares the density form of every model; counts those with one that is not 0.
@@ -13,10 +14,10 @@ struct Compared {
     not_zero: usize,
 }
 
-impl Visitor for Compared {
-    fn visit<S: Described + Scene>(&mut self, _: S) {
-        let name = S::DESCRIPTION.name;
-        let mut decided = Decided::of(S::DESCRIPTION.source);
+impl Compared {
+    fn compare(&mut self, description: &Description) {
+        let name = description.name;
+        let mut decided = Decided::of(description.source);
         if decided.derivation.constraints.is_empty() {
             return;
         }
@@ -55,7 +56,9 @@ impl Visitor for Compared {
 #[test]
 fn the_printed_density_form_is_the_one_that_is_decided_with() {
     let mut compared = Compared::default();
-    visit_all(&mut compared);
+    for system in every_system() {
+        compared.compare(system.description());
+    }
     assert!(compared.written >= 8, "{}", compared.written);
     assert!(compared.not_zero >= 3, "{}", compared.not_zero);
 }

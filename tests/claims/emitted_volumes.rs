@@ -2,7 +2,7 @@
 //! executes and to reference values; absent where nothing is claimed or known. To accept a difference, see `golden.rs`.
 
 use dalembert::describe::Report;
-use dalembert::{Described, Fault, Instance, InvariantVolume, Scene, StateVector, System};
+use dalembert::{Described, Fault, Instance, InvariantVolume, StateVector, System};
 use dalembert_models::{
     BallOnRotatingTable, HolonomicBeadOnEllipses, RollingBallEuler, RollingBallWall, RollingDisk,
     TwoWheelsRod,
@@ -10,13 +10,13 @@ use dalembert_models::{
 use dalembert_tests::flow::Flow;
 use dalembert_tests::golden;
 use dalembert_tests::reference::{number, numbers, read};
-use dalembert_tests::sampling::{Random, Visitor, states, visit_all};
+use dalembert_tests::sampling::{Random, every_system, states};
 use dalembert_tests::systems::{
     CurvedDual, FallingDisk, HelicalCircle, MixedDisk, NonholonomicParticle, OnePole, RouthSphere,
 };
 use dalembert_tests::volume::{WithVolume, divergence};
 
-/// Calls a generic function for every system that claims a density and has one, in the order of [`visit_all`].
+/// Calls a generic function for every system that claims a density and has one, in the order of [`every_system`].
 macro_rules! of_each_claimed {
     ($function:ident) => {
         [
@@ -95,34 +95,26 @@ impl Report for Names {
     }
 }
 
-/// Names of the systems for which a volume is emitted.
-#[derive(Default)]
-struct Emitted(Vec<&'static str>);
-
-impl Visitor for Emitted {
-    fn visit<S: Described + Scene>(&mut self, system: S) {
-        let description = S::DESCRIPTION;
-        let mut names = Names::default();
-        let state = states(&system, 1, 3)[0];
-        system.inspect(0.0, &state, &mut names).expect("a state");
-        let is_reported = names.0.iter().any(|name| name == "log_density");
-        let is_emitted = !emitted(description.source).is_empty();
-        assert_eq!(is_emitted, is_reported, "{}", description.name);
-        if is_emitted {
-            self.0.push(description.name);
-        }
-    }
-}
-
 fn name<S: Described + InvariantVolume>() -> &'static str {
     S::DESCRIPTION.name
 }
 
 #[test]
 fn a_volume_is_emitted_and_reported_where_a_density_is_claimed_and_nowhere_else() {
-    let mut emitted = Emitted::default();
-    visit_all(&mut emitted);
-    assert_eq!(emitted.0, of_each_claimed!(name));
+    let mut with_volume = Vec::new();
+    for system in every_system() {
+        let description = system.description();
+        let mut names = Names::default();
+        let state = states(system, 1, 3)[0];
+        system.inspect(0.0, &state, &mut names).expect("a state");
+        let is_reported = names.0.iter().any(|name| name == "log_density");
+        let is_emitted = !emitted(description.source).is_empty();
+        assert_eq!(is_emitted, is_reported, "{}", description.name);
+        if is_emitted {
+            with_volume.push(description.name);
+        }
+    }
+    assert_eq!(with_volume, of_each_claimed!(name));
 }
 
 fn vector<S: Described>(values: &[f64]) -> S::Vector {

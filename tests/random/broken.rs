@@ -3,10 +3,10 @@
 
 use std::fmt;
 
-use dalembert::{Described, Scene};
+use dalembert::Instance;
 use dalembert_codegen::diagnostics::{Diagnostic, Location};
 use dalembert_emit::try_expand;
-use dalembert_tests::sampling::{Visitor, visit_all};
+use dalembert_tests::sampling::every_system;
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 use proptest::prelude::*;
 use proptest::strategy::BoxedStrategy;
@@ -26,15 +26,8 @@ impl fmt::Debug for Tokens {
 
 /// The declarations of every system that the tests know.
 fn sources() -> Vec<&'static str> {
-    struct Sources(Vec<&'static str>);
-    impl Visitor for Sources {
-        fn visit<S: Described + Scene>(&mut self, _: S) {
-            self.0.push(S::DESCRIPTION.source);
-        }
-    }
-    let mut sources = Sources(Vec::new());
-    visit_all(&mut sources);
-    sources.0
+    let systems = every_system().iter();
+    systems.map(|system| system.description().source).collect()
 }
 
 /// The tokens, groups counted once for their brackets.

@@ -1,11 +1,15 @@
 //! The observed order of every method, on every declared system, against DOP853 at its finest. Those that choose their
 //! steps are held to a length, at a tolerance so loose that nothing else decides.
 
+use dalembert::integrate::Chosen;
 use dalembert::{
-    Described, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Lagrangian, Outcome, Rk4, Scene,
-    Simulation, StateVector, Stepper, Taylor, TaylorField, Tolerance, VectorField,
+    Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Instance, Outcome, Rk4, Simulation,
+    StateVector, Stepper, System, Taylor, Tolerance, VectorField,
 };
-use dalembert_tests::sampling::{Visitor, states, visit_all};
+use dalembert_stability::text::Large;
+use dalembert_tests::sampling::{every_system, states};
+
+type State = <Large as VectorField>::State;
 
 /// How long the motions are followed.
 const TIME: f64 = 0.5;
@@ -18,12 +22,12 @@ const RANGE: [f64; 2] = [2e-11, 1e-4];
 const TAYLOR_ORDER: usize = 5;
 
 /// Positions and velocities at the end, and the number of steps.
-fn end<S: Described + Lagrangian, Step: Stepper<S>>(
-    system: &S,
-    stepper: Step,
-    state: S::State,
-) -> Option<([S::Vector; 2], u64)> {
-    let run = Simulation::new(system, stepper, ())
+fn end(
+    system: &Large,
+    mut stepper: impl Stepper<Large>,
+    state: State,
+) -> Option<([State; 2], u64)> {
+    let run = Simulation::new(system, Chosen::new(&mut stepper), ())
         .run(0.0, state, TIME, &mut ())
         .expect("a start");
     if run.outcome != Outcome::Done {
@@ -88,20 +92,20 @@ impl Orders {
     }
 }
 
-impl Visitor for Orders {
-    fn visit<S: Described + Scene + TaylorField + Lagrangian>(&mut self, system: S) {
+impl Orders {
+    fn measure(&mut self, system: &Large) {
         let tolerance = Tolerance::new(1e-14).expect("a tolerance");
-        let state = states(&system, 1, 7)[0];
-        let name = S::DESCRIPTION.name;
-        let (reference, _) = end(&system, Dop853::new(tolerance), state).expect("an end");
+        let state = states(system, 1, 7)[0];
+        let name = system.description().name;
+        let (reference, _) = end(system, Dop853::new(tolerance), state).expect("an end");
         macro_rules! check {
             ($($method:ident)*) => {$(
                 let error = |h: f64| {
-                    let reached = end(&system, $method::new(tolerance).with_step(h), state);
+                    let reached = end(system, $method::new(tolerance).with_step(h), state);
                     reached.map_or(f64::NAN, |(reached, _)| difference(&reached, &reference))
                 };
-                let order = $method::<S::State>::ORDER;
-                let method = (Stepper::<S>::name(&$method::new(tolerance)), order);
+                let order = $method::<State>::ORDER;
+                let method = (Stepper::<Large>::name(&$method::new(tolerance)), order);
                 self.check(name, method, &slopes(error), true);
             )*};
         }
@@ -111,26 +115,27 @@ impl Visitor for Orders {
             ($method:ident, $order:expr, $limited:expr) => {{
                 let error = |h: f64| {
                     // Steps that the tolerance has shortened say nothing.
-                    let reached = end(&system, $limited(h), state);
+                    let reached = end(system, $limited(h), state);
                     let reached = reached.filter(|(_, steps)| *steps == (TIME / h).round() as u64);
                     reached.map_or(f64::NAN, |(reached, _)| difference(&reached, &reference))
                 };
-                let method = (Stepper::<S>::name(&$method::<S>::new(tolerance)), $order);
+                let method = (Stepper::<Large>::name(&<$method>::new(tolerance)), $order);
                 self.check(name, method, &slopes(error), false);
             }};
         }
-        type Eight<S> = Dop853<<S as VectorField>::State>;
-        type Five<S> = DormandPrince5<<S as VectorField>::State>;
-        check_limited!(Eight, 8, |h| Eight::<S>::new(loose)
+        type Eight = Dop853<State>;
+        type Five = DormandPrince5<State>;
+        type Series = Taylor<Large>;
+        check_limited!(Eight, 8, |h| Eight::new(loose)
             .with_max_step(h)
             .expect("a positive step")
             .with_first_step(h));
-        check_limited!(Five, 5, |h| Five::<S>::new(loose)
+        check_limited!(Five, 5, |h| Five::new(loose)
             .with_max_step(h)
             .expect("a positive step")
             .with_first_step(h));
         let coarse = Tolerance::new(1e-3).expect("a tolerance");
-        check_limited!(Taylor, TAYLOR_ORDER, |h| Taylor::<S>::new(coarse)
+        check_limited!(Series, TAYLOR_ORDER, |h| Series::new(coarse)
             .with_order(TAYLOR_ORDER)
             .with_max_step(h)
             .expect("a positive step"));
@@ -140,7 +145,9 @@ impl Visitor for Orders {
 #[test]
 fn every_method_has_its_order_on_every_system() {
     let mut orders = Orders::default();
-    visit_all(&mut orders);
+    for system in every_system() {
+        orders.measure(system);
+    }
     println!("{} measured", orders.measured);
     assert!(orders.wrong.is_empty(), "{:#?}", orders.wrong);
     assert!(orders.measured >= 120, "{}", orders.measured);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use dalembert::describe::{Description, Report};
 use dalembert::law::{Contact, Law};
-use dalembert::{Described, Instance, StateVector, System, VectorField};
+use dalembert::{Instance, StateVector, System, VectorField};
 
 /// What is known of a state.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,13 +82,13 @@ pub trait Numeric {
     fn impact(&self, surface: &str, law: Law, t: f64, state: &[f64]) -> Vec<f64>;
 }
 
-impl<S: Described> Numeric for S {
+impl<S: Instance> Numeric for S {
     fn description(&self) -> &'static Description {
-        &S::DESCRIPTION
+        Instance::description(self)
     }
 
     fn set(&mut self, name: &str, value: f64) -> bool {
-        let parameters = S::DESCRIPTION.parameters.iter();
+        let parameters = Instance::description(self).parameters.iter();
         match parameters.map(|own| own.name).position(|own| own == name) {
             Some(index) => {
                 self.set_parameter(index, value);

@@ -1,6 +1,11 @@
 //! Random states with a fixed seed.
 
-use dalembert::{Described, Lagrangian, Scene, StateVector, System, TaylorField};
+use std::sync::OnceLock;
+
+use dalembert::{Described, Instance, Lagrangian, Scene, StateVector, System, TaylorField};
+use dalembert_stability::text::{Large, Text, shipped};
+
+use crate::systems;
 
 /// A small generator (SplitMix64): the same numbers everywhere.
 #[derive(Debug, Clone)]
@@ -56,6 +61,32 @@ pub fn states<S: System>(system: &S, count: usize, seed: u64) -> Vec<S::State> {
             system.state_projected(0.0, &q, &qdot).expect("a state")
         })
         .collect()
+}
+
+/// Every shipped model of mechanics without modes, and every system of [`systems`], loaded from their texts, with their declared values.
+pub fn every_system() -> &'static [Large] {
+    static ALL: OnceLock<Vec<Large>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        let shipped = dalembert_command::TEXTS
+            .iter()
+            .map(|(name, _)| shipped(name));
+        let texts = shipped.chain(systems::texts());
+        let has_mechanics = |text: &&Text| {
+            let description = text.description();
+            !description.is_first_order && description.modes.is_empty()
+        };
+        texts.filter(has_mechanics).map(Text::sized).collect()
+    })
+}
+
+/// The one of [`every_system`] with this name.
+///
+/// # Panics
+/// If there is none.
+pub fn system(name: &str) -> Large {
+    let mut systems = every_system().iter();
+    let system = systems.find(|system| system.description().name == name);
+    *system.unwrap_or_else(|| panic!("no system `{name}`"))
 }
 
 /// Calls a macro-like function for every system that is known to tests: `visit` must be generic.

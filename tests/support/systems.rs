@@ -2,6 +2,10 @@
 //!
 //! Names, order, parameters and surfaces are those of the reference files in `tests/reference`, where there is one.
 
+use dalembert::Described;
+use dalembert_cli::Entry;
+use dalembert_stability::text::Text;
+
 dalembert::model! {
     /// Chaplygin sleigh on a support with a cross flow: affine constraint.
     pub AffineSleigh {
@@ -215,22 +219,21 @@ dalembert::model! {
     }
 }
 
+/// The texts of all systems of this file.
+pub fn texts() -> impl Iterator<Item = &'static Text> {
+    macro_rules! texts {
+        ($($system:ident)*) => {
+            [$(Text::new($system::DESCRIPTION.source)),*]
+        };
+    }
+    static TEXTS: [Text; 14] = texts! {
+        AffineSleigh TableWall MagneticDisk DampedSleigh IntegrableBead Rheonomic WalkerWithMultiplier FallingDisk MixedDisk
+        NonholonomicParticle HelicalCircle CurvedDual RouthSphere OnePole
+    };
+    TEXTS.iter()
+}
+
 /// Every system of this file, for the command line.
-pub fn all() -> Vec<dalembert_cli::Entry> {
-    dalembert_cli::models![
-        AffineSleigh,
-        TableWall,
-        MagneticDisk,
-        DampedSleigh,
-        IntegrableBead,
-        Rheonomic,
-        WalkerWithMultiplier,
-        FallingDisk,
-        MixedDisk,
-        NonholonomicParticle,
-        HelicalCircle,
-        CurvedDual,
-        RouthSphere,
-        OnePole,
-    ]
+pub fn all() -> Vec<Entry> {
+    texts().map(Text::entry).collect()
 }

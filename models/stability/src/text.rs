@@ -3,7 +3,9 @@
 use std::sync::OnceLock;
 
 use dalembert::Instance;
+use dalembert::describe::Description;
 use dalembert::erased::Erased;
+use dalembert_cli::Entry;
 use dalembert_jit::Loaded;
 
 /// A loaded model with values for its parameters, whose vectors have at most 8 components.
@@ -89,6 +91,22 @@ impl Text {
         let scene = scenes.find(|(own, _)| *own == name);
         let (_, form) = scene.unwrap_or_else(|| panic!("no scene `{name}`"));
         Erased::of(form).expect("vectors of no more components")
+    }
+
+    /// The model for the command line.
+    ///
+    /// # Panics
+    /// As [`Text::model`].
+    pub fn entry(&self) -> Entry {
+        Entry::of_text(self.description().name, self.text)
+    }
+
+    /// What the model says of itself.
+    ///
+    /// # Panics
+    /// As [`Text::model`].
+    pub fn description(&self) -> &'static Description {
+        &self.loaded().form.documentation.description
     }
 
     fn loaded(&self) -> &Loaded {

@@ -248,6 +248,23 @@ macro_rules! kernels {
                 }
             }
 
+            /// Evaluates a kernel that is given by name.
+            ///
+            /// # Errors
+            /// As the kernel; [`Fault::NotDerived`] for one that is not given.
+            pub fn run(&self, kernel: Kernel, at: At<'_, L>, values: &mut [L]) -> Result<(), Fault> {
+                match kernel {
+                    $(Kernel::$name => match self.$plain {
+                        Some(kernel) => kernel(at, values),
+                        None => Err(Fault::NotDerived),
+                    },)*
+                    $(Kernel::$surface_name(surface) => match self.$of_surface {
+                        Some(kernel) => kernel(surface, at, values),
+                        None => Err(Fault::NotDerived),
+                    },)*
+                }
+            }
+
             /// The kernels that are found by name; those of a surface by the name of their kind.
             pub fn found(
                 plain: impl Fn(Kernel) -> Option<&'static Plain<L>>,

@@ -1,0 +1,129 @@
+//! Whole runs of every model and scene by every integrator: behind pointers, loaded from the text, and of some with everything inlined, the same steps,
+//! impacts and states to the bit.
+
+use dalembert::Policies;
+use dalembert::describe::Description;
+use dalembert_driver::{
+    AnyModel, Code, Contact, Ending, Form, Impact, Integrator, OffConstraint, Origin, Piece, Rates,
+    Settings, Watch, of_form, of_type,
+};
+
+use super::models::{Compiled, Folded, every_model};
+
+/// The longest run.
+const UNTIL: f64 = 2.0;
+
+/// Keeps what happens, as text: a number that is none is no number's equal.
+#[derive(Default)]
+struct Log(Vec<String>);
+
+impl Watch for Log {
+    fn step(&mut self, piece: &dyn Piece) {
+        self.0.push(format!("{:?}", piece.span()));
+    }
+
+    fn impact(&mut self, impact: Impact) {
+        self.0.push(format!("{impact:?}"));
+    }
+
+    fn contact(&mut self, contact: Contact) {
+        self.0.push(format!("{contact:?}"));
+    }
+}
+
+/// The run of a model from its declared start.
+fn course(model: &dyn AnyModel, form: Form, integrator: Integrator) -> (Vec<String>, String) {
+    let start = model.initial();
+    let q = model.complete_position(&start.q, &start.placed);
+    let q = q.expect("positions");
+    let qdot = model.complete_velocity(&q, &start.qdot, &start.named);
+    let origin = Origin {
+        q,
+        rates: Rates::Velocities(qdot.expect("velocities")),
+        policy: OffConstraint::Error,
+    };
+    let is_long = model.description().coordinates.len() > 6;
+    let longest = if is_long { 0.1 * UNTIL } else { UNTIL };
+    let settings = Settings {
+        form,
+        integrator,
+        tol: 1e-9,
+        step: None,
+        max_step: None,
+        steps: None,
+        until: start.until.map_or(longest, |until| until.min(longest)),
+        impacts: None,
+        laws: Vec::new(),
+        policies: Policies::default(),
+        projection: None,
+    };
+    let mut log = Log::default();
+    let ended = model.simulate(&origin, &settings, &mut log);
+    let ended = ended.map(
+        |Ending {
+             outcome,
+             t,
+             last,
+             counters,
+             ..
+         }| (outcome, t, last, counters),
+    );
+    (log.0, format!("{ended:?}"))
+}
+
+/// Compares the runs of two models by every integrator.
+fn compare(expected: &dyn AnyModel, found: &dyn AnyModel, form: Form, what: &str) {
+    for &integrator in Integrator::every() {
+        let [expected, found] = [expected, found].map(|model| course(model, form, integrator));
+        assert_eq!(expected.1, found.1, "{what}, {}", integrator.name());
+        assert_eq!(expected.0, found.0, "{what}, {}", integrator.name());
+    }
+}
+
+fn compare_loaded(compiled: &Compiled) {
+    for (index, &(scene, emitted)) in compiled.emitted.iter().enumerate() {
+        let emitted = of_form(emitted, Code::Pointers).expect("room");
+        let loaded = of_form(compiled.loaded(index), Code::Loaded).expect("room");
+        let Description { name, modes, .. } = emitted.description();
+        compare(
+            &*emitted,
+            &*loaded,
+            Form::Reduced,
+            &format!("{name} {scene}"),
+        );
+        if modes.is_empty() && index == 0 {
+            compare(
+                &*emitted,
+                &*loaded,
+                Form::Global,
+                &format!("{name}, global"),
+            );
+        }
+    }
+}
+
+#[test]
+fn a_loaded_model_runs_as_the_compiled_one() {
+    every_model().iter().for_each(compare_loaded);
+}
+
+#[test]
+fn a_model_behind_pointers_runs_as_its_own_type() {
+    macro_rules! compare_inlined {
+        ($($model:ty),*) => {$({
+            let inlined = of_type::<$model>();
+            let name = inlined.description().name;
+            let mut models = every_model().iter();
+            let compiled = models.find(|compiled| compiled.description.name == name);
+            let (_, form) = compiled.expect("a model").emitted[0];
+            let erased = of_form(form, Code::Pointers).expect("room");
+            compare(&*inlined, &*erased, Form::Reduced, name);
+        })*};
+    }
+    compare_inlined!(
+        dalembert_models::Chain4,
+        dalembert_models::RimlessWheelFive,
+        dalembert_models::RollingDisk,
+        Folded
+    );
+}

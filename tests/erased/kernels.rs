@@ -1,0 +1,308 @@
+//! Every kernel of every form, emitted and loaded from its text, at random points: the same numbers to the bit, over every kind of number that it is
+//! behind a pointer for, and the same guards.
+
+use std::fmt::Debug;
+
+use dalembert::Fault;
+use dalembert::erased::Form;
+use dalembert::kernels::{At, Kernel};
+use dalembert::numbers::{Bent, Interval, LENGTH, Numbers, Rated, TaylorModel};
+use dalembert::variations::Dual;
+use dalembert_codegen::spec::{Declaration, STEPS};
+use dalembert_codegen::tables::FormOf;
+use dalembert_codegen::{compile_modes, compile_spec, read};
+use dalembert_tests::sampling::Random;
+use wide::f64x8;
+
+use super::models::{Compiled, every_model};
+
+/// Points that each kernel over doubles is evaluated at.
+const POINTS: usize = 1000;
+
+/// Points over other kinds of numbers.
+const POINTS_OVER: usize = 20;
+
+/// Numbers of a place, enough for every model.
+const ROOM: usize = 64;
+
+/// A form that was compiled, and the same one loaded from its text.
+#[derive(Clone, Copy)]
+struct Pair {
+    emitted: &'static Form,
+    loaded: &'static Form,
+}
+
+impl Pair {
+    /// The global forms, if they are others.
+    fn global(self) -> Option<Self> {
+        let globals = [self.emitted, self.loaded].map(|form| (form.global)());
+        assert_eq!(globals[0].is_some(), globals[1].is_some());
+        let [emitted, loaded] = globals;
+        emitted
+            .zip(loaded)
+            .map(|(emitted, loaded)| Self { emitted, loaded })
+    }
+}
+
+/// A number over which kernels are compared.
+trait Drawn: Numbers {
+    /// A number with a value near to 0 or beyond, and random parts of its kind.
+    fn draw(random: &mut Random) -> Self;
+}
+
+impl Drawn for f64 {
+    fn draw(random: &mut Random) -> Self {
+        random.within(-1.5, 1.5)
+    }
+}
+
+impl Drawn for f64x8 {
+    fn draw(random: &mut Random) -> Self {
+        Self::new(core::array::from_fn(|_| f64::draw(random)))
+    }
+}
+
+impl Drawn for Dual {
+    fn draw(random: &mut Random) -> Self {
+        Self::new(
+            f64::draw(random),
+            core::array::from_fn(|_| f64::draw(random)),
+        )
+    }
+}
+
+fn short(random: &mut Random) -> Interval {
+    let start = f64::draw(random);
+    Interval::between(start, start + random.within(0.0, 1e-2))
+}
+
+impl Drawn for Rated {
+    fn draw(random: &mut Random) -> Self {
+        let (value, rate) = (short(random), short(random));
+        Self { value, rate }
+    }
+}
+
+impl Drawn for Bent {
+    fn draw(random: &mut Random) -> Self {
+        Self::line(short(random), f64::draw(random))
+    }
+}
+
+impl Drawn for TaylorModel {
+    fn draw(random: &mut Random) -> Self {
+        let powers = [1.0, 0.1, 1e-2, 1e-3].map(|size| size * f64::draw(random));
+        Self::exact(powers)
+    }
+}
+
+/// A place where kernels are evaluated.
+struct Point<L> {
+    parameters: Vec<L>,
+    t: L,
+    first: Vec<L>,
+    second: Vec<L>,
+}
+
+impl<L: Drawn> Point<L> {
+    /// Near to the declared parameters; one without a value is near to 1.
+    fn draw(random: &mut Random, form: &Form) -> Self {
+        let mut declared = vec![1.0; form.tables.dimensions.parameters];
+        (form.defaults)(&mut declared);
+        let parameters = declared.into_iter().map(|value| {
+            let value = if value.is_nan() { 1.0 } else { value };
+            L::of(value * random.within(0.9, 1.1))
+        });
+        let parameters = parameters.collect();
+        let t = L::of(random.within(0.0, 2.0));
+        let [first, second] = [(); 2].map(|()| (0..ROOM).map(|_| L::draw(random)).collect());
+        Self {
+            parameters,
+            t,
+            first,
+            second,
+        }
+    }
+
+    fn at(&self) -> At<'_, L> {
+        At {
+            parameters: &self.parameters,
+            t: self.t,
+            first: &self.first,
+            second: &self.second,
+        }
+    }
+}
+
+/// Numbers of results that were compared: those with values, and guards that do not hold.
+#[derive(Debug, Default)]
+struct Count {
+    values: usize,
+    guarded: usize,
+}
+
+/// Compares a kernel over one kind of number at points; is it given?
+fn compare_kernel<L: Drawn>(
+    pair: Pair,
+    (kernel, length): (Kernel, usize),
+    points: &[Point<L>],
+    count: &mut Count,
+) -> bool {
+    let tables = [pair.emitted, pair.loaded].map(Form::kernels::<L>);
+    let [Some(emitted), Some(loaded)] = tables else {
+        assert!(tables[0].is_none(), "{kernel:?} is not loaded");
+        return false;
+    };
+    for point in points {
+        let [mut expected, mut found] = [(); 2].map(|()| vec![L::ZERO; length]);
+        let holds = emitted.run(kernel, point.at(), &mut expected);
+        if holds == Err(Fault::NotDerived) {
+            return false;
+        }
+        assert_eq!(
+            loaded.run(kernel, point.at(), &mut found),
+            holds,
+            "{kernel:?}"
+        );
+        match holds {
+            Ok(()) => assert_same(kernel, &expected, &found),
+            Err(_) => count.guarded += 1,
+        }
+        count.values += usize::from(holds.is_ok());
+    }
+    true
+}
+
+fn assert_same<L: Numbers + Debug>(what: impl Debug, expected: &[L], found: &[L]) {
+    // NOTE: text, since a number that is none is no number's equal.
+    if expected != found {
+        let [expected, found] = [expected, found].map(|numbers| format!("{numbers:?}"));
+        assert_eq!(expected, found, "{what:?}");
+    }
+}
+
+/// Compares the power series over one kind of number at points.
+fn compare_series<L: Drawn>(pair: Pair, points: &[Point<L>]) -> usize {
+    let series = [pair.emitted, pair.loaded].map(Form::series::<L>);
+    let [Some(emitted), Some(loaded)] = series else {
+        assert!(series[0].is_none(), "a series is not loaded");
+        return 0;
+    };
+    let mut compared = 0;
+    for point in points {
+        let state = &point.first[..pair.emitted.tables.dimensions.state];
+        let begin = |form: &Form, begin: &dyn Fn(&mut [L]) -> Result<(), Fault>| {
+            let mut firsts = vec![L::ZERO; form.firsts];
+            begin(&mut firsts).map(|()| firsts)
+        };
+        let of_emitted = begin(pair.emitted, &|firsts| {
+            (emitted.begin)(&point.parameters, point.t, state, firsts)
+        });
+        let of_loaded = begin(pair.loaded, &|firsts| {
+            (loaded.begin)(&point.parameters, point.t, state, firsts)
+        });
+        assert_eq!(of_emitted.is_ok(), of_loaded.is_ok());
+        let (Ok(of_emitted), Ok(of_loaded)) = (of_emitted, of_loaded) else {
+            continue;
+        };
+        for order in [0, 1, 2, 7, 20, LENGTH - 1] {
+            let to = (L::of(0.3), order);
+            let (mut expected, mut found) = (Vec::new(), Vec::new());
+            (emitted.advance)(
+                [&point.parameters, state, &of_emitted],
+                to,
+                &mut |_, a, b| {
+                    expected.extend(a.iter().chain(b).copied());
+                },
+            );
+            (loaded.advance)(
+                [&point.parameters, state, &of_loaded],
+                to,
+                &mut |_, a, b| {
+                    found.extend(a.iter().chain(b).copied());
+                },
+            );
+            assert_same(("order", order), &expected, &found);
+            compared += 1;
+        }
+    }
+    compared
+}
+
+/// Compares all kernels and the series over a kind of number.
+fn compare_over<L: Drawn>(pair: Pair, known: &FormOf<'_>, points: usize, given: &mut usize) {
+    let mut random = Random::new(3);
+    let points: Vec<Point<L>> = (0..points)
+        .map(|_| Point::draw(&mut random, pair.emitted))
+        .collect();
+    let mut count = Count::default();
+    for (kernel, function) in known.kernels() {
+        let kernel = (kernel, function.outputs.len());
+        *given += usize::from(compare_kernel(pair, kernel, &points, &mut count));
+    }
+    *given += usize::from(compare_series(pair, &points[..points.len().min(POINTS_OVER)]) > 0);
+    assert!(count.guarded <= count.values, "{count:?}");
+}
+
+fn compare(pair: Pair, known: &FormOf<'_>) {
+    let mut given = [0; 6];
+    compare_over::<f64>(pair, known, POINTS, &mut given[0]);
+    compare_over::<f64x8>(pair, known, POINTS_OVER, &mut given[1]);
+    compare_over::<Dual>(pair, known, POINTS_OVER, &mut given[2]);
+    compare_over::<TaylorModel>(pair, known, POINTS_OVER, &mut given[3]);
+    compare_over::<Bent>(pair, known, POINTS_OVER, &mut given[4]);
+    compare_over::<Rated>(pair, known, POINTS_OVER, &mut given[5]);
+    let name = pair.emitted.documentation.description.name;
+    assert_eq!(given[0], known.kernels().len() + 1, "{name}");
+    let has_surfaces = !pair.emitted.tables.surfaces.is_empty();
+    assert_eq!([given[3] > 0, given[4] > 0], [has_surfaces; 2], "{name}");
+    assert_eq!(given[2] > 0, pair.emitted.tables.varies, "{name}");
+}
+
+/// Compares a form and its global form.
+fn compare_forms(pair: Pair, known: &[FormOf<'_>]) {
+    compare(pair, &known[0]);
+    match (pair.global(), known.get(1)) {
+        (Some(global), Some(known)) => compare(global, known),
+        (global, known) => assert!(global.is_none() == known.is_none()),
+    }
+}
+
+fn compare_model(compiled: &Compiled) {
+    let declaration = read(compiled.description.source.parse().expect("tokens"));
+    let pair = |scene: usize| Pair {
+        emitted: compiled.emitted[scene].1,
+        loaded: compiled.loaded(scene),
+    };
+    match declaration.expect("a declaration") {
+        Declaration::Model(spec) => {
+            let model = compile_spec(&spec, STEPS).expect("a model");
+            let scenes = &model.model.scenes;
+            for (index, known) in core::iter::once(&model).chain(&model.scenes).enumerate() {
+                compare_forms(pair(index), &FormOf::all(known, scenes));
+            }
+        }
+        Declaration::Modes(modes) => {
+            let model = compile_modes(&modes).expect("a model with modes");
+            let scenes = &model.graph.modes[0].model.scenes;
+            let known: Vec<FormOf<'_>> = model
+                .modes
+                .iter()
+                .flat_map(|mode| FormOf::all(mode, scenes))
+                .collect();
+            let forms = [pair(0).emitted.forms, pair(0).loaded.forms];
+            assert_eq!(forms.map(<[_]>::len), [known.len(); 2]);
+            for ((&emitted, &loaded), known) in forms[0].iter().zip(forms[1]).zip(&known) {
+                compare(Pair { emitted, loaded }, known);
+            }
+        }
+    }
+}
+
+#[test]
+fn emitted_kernels_are_the_loaded_ones() {
+    for compiled in every_model() {
+        println!("{}", compiled.description.name);
+        compare_model(compiled);
+    }
+}

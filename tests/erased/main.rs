@@ -1,0 +1,47 @@
+//! The contract of kernels has several users: emitted code, the same behind pointers, and what is loaded from a text. Tables, kernels and whole runs
+//! are the same, to the bit.
+
+mod courses;
+mod kernels;
+mod models;
+
+use dalembert::erased::{Bounded, Erased, Form};
+use dalembert::{Instance, System};
+use models::{Compiled, every_model};
+
+fn assert_same_tables(emitted: &Form, loaded: &Form) {
+    let name = emitted.documentation.description.name;
+    assert_eq!(emitted.tables, loaded.tables, "{name}");
+    assert_eq!(emitted.documentation, loaded.documentation, "{name}");
+    assert_eq!((emitted.work)(), (loaded.work)(), "{name}");
+    let lengths = |form: &Form| {
+        let numbers = [form.series_gaps, form.firsts, form.room];
+        (form.capacity(), numbers, form.forms.len())
+    };
+    assert_eq!(lengths(emitted), lengths(loaded), "{name}");
+    for (emitted, loaded) in emitted.forms.iter().zip(loaded.forms) {
+        assert_same_tables(emitted, loaded);
+    }
+}
+
+#[test]
+fn tables_are_the_loaded_ones() {
+    for compiled in every_model() {
+        for (index, (_, emitted)) in compiled.emitted.iter().enumerate() {
+            assert_same_tables(emitted, compiled.loaded(index));
+        }
+    }
+}
+
+#[test]
+fn a_form_needs_room_for_its_vectors() {
+    let is_chain = |compiled: &&Compiled| compiled.description.name == "chain4";
+    let chain = every_model().iter().find(is_chain);
+    let (_, form) = chain.expect("a model").emitted[0];
+    assert_eq!(form.capacity(), Some(8));
+    assert_eq!(Erased::<4>::of(form), None);
+    let chain = Erased::<16>::of(form).expect("room");
+    assert_eq!(chain.description().name, "chain4");
+    let zeros: Bounded<f64, 16> = chain.zero_vector();
+    assert_eq!(zeros.as_ref(), [0.0; 4]);
+}

@@ -1,0 +1,112 @@
+//! Every model that tests know, compiled and loaded from its text.
+
+use std::sync::OnceLock;
+
+use dalembert::declaration::{Described, SceneVisitor};
+use dalembert::describe::Description;
+use dalembert::erased::Form;
+use dalembert::{Lagrangian, Scene, TaylorField};
+use dalembert_jit::Loaded;
+use dalembert_tests::systems;
+
+dalembert::model! {
+    /// A point in a square whose sides are one surface without a power series.
+    pub Folded {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts { sides: 1 - abs(x) - abs(y) >= 0; }
+        initial { x = 0.1; y = 0.2; dot(x) = 1; dot(y) = 0.3; until = 3; }
+    }
+}
+
+/// A model that was compiled.
+pub struct Compiled {
+    /// What it says of itself.
+    pub description: Description,
+    /// Its form and those of its scenes, by name; that of the model itself first, as `all`.
+    pub emitted: Vec<(&'static str, &'static Form)>,
+    loaded: OnceLock<Loaded>,
+}
+
+impl Compiled {
+    fn of<M>() -> Self
+    where
+        M: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian,
+    {
+        let mut compiled = Self {
+            description: M::DESCRIPTION,
+            emitted: Vec::new(),
+            loaded: OnceLock::new(),
+        };
+        compiled.add::<M>("all");
+        M::visit_scenes(&mut compiled);
+        compiled
+    }
+
+    fn add<M: Described>(&mut self, name: &'static str) {
+        let form = M::FORM.unwrap_or_else(|| panic!("{} has no form", M::DESCRIPTION.name));
+        self.emitted.push((name, form));
+    }
+
+    /// The form of a scene, loaded from the text of the model.
+    pub fn loaded(&self, scene: usize) -> &'static Form {
+        let loaded = self.loaded.get_or_init(|| {
+            let models = dalembert_jit::load(self.description.name, self.description.source);
+            let models = models.unwrap_or_else(|refused| panic!("{refused}"));
+            models.into_iter().next().expect("a model")
+        });
+        match scene.checked_sub(1) {
+            None => loaded.form,
+            Some(scene) => {
+                let (name, form) = loaded.scenes[scene];
+                assert_eq!(name, self.emitted[scene + 1].0);
+                form
+            }
+        }
+    }
+}
+
+impl SceneVisitor for Compiled {
+    fn visit<S>(&mut self, name: &'static str)
+    where
+        S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static,
+    {
+        self.add::<S>(name);
+    }
+}
+
+/// Every shipped model, the systems of the tests, and [`Folded`].
+pub fn every_model() -> &'static [Compiled] {
+    static MODELS: OnceLock<Vec<Compiled>> = OnceLock::new();
+    macro_rules! compiled {
+        ($package:path: $($model:ident)*) => {{
+            use $package as package;
+            vec![$(Compiled::of::<package::$model>()),*]
+        }};
+    }
+    MODELS.get_or_init(|| {
+        let mut models = compiled! {
+            dalembert_models:
+            AppellHamel BallOnRotatingTable BallOnSwitchingTable BouncingBall Chain2 Chain3 Chain4 Chain8 Chain16 ChaplyginSleigh
+            ConstantSpeed DimensionlessWalker DoublePendulum FilippovField HarmonicOscillator HolonomicBeadOnEllipses MovingWallDisk
+            PointBilliard RefractedParticle RimlessWheelFive RimlessWheelTen RollingBallEuler RollingBallWall RollingDisk
+            SmoothAndRoughPlane SpasmodicHamiltonian SphereInPlane SpringMassWalker SuperElasticStrip TentMap TwoWheelsArrested
+            TwoWheelsRod WalkerFootSlip
+        };
+        models.extend(compiled! {
+            systems:
+            AffineSleigh TableWall MagneticDisk DampedSleigh IntegrableBead Rheonomic WalkerWithMultiplier FallingDisk MixedDisk
+            NonholonomicParticle HelicalCircle CurvedDual RouthSphere OnePole
+        });
+        models.push(Compiled::of::<Folded>());
+        models
+    })
+}
+
+#[test]
+fn every_shipped_model_is_compared() {
+    let compared: Vec<&str> = every_model().iter().map(|it| it.description.name).collect();
+    for (name, _) in dalembert_command::TEXTS {
+        assert!(compared.contains(name), "{name}");
+    }
+}
