@@ -1,38 +1,17 @@
-//! Three routes to the same numbers: emitted code, the program's interpreter, and derivatives of the Lagrangian by
+//! Three routes to the same numbers: what is loaded, the program's interpreter, and derivatives of the Lagrangian by
 //! differences.
 
-use dalembert::erased::Erased;
-use dalembert::{Described, Instance, Scene, StateVector, System, VectorField};
+use dalembert::describe::Description;
+use dalembert::{Described, Instance, StateVector, System, VectorField};
 use dalembert_codegen::model::Model;
 use dalembert_codegen::program::{Lowered, interpret::interpret, verify::verify};
 use dalembert_codegen::{compile, mechanics, spec};
 use dalembert_expr::SymbolId;
-use dalembert_tests::command::models;
+use dalembert_stability::text::Large;
 use dalembert_tests::interpreted::{compare_motion, compare_report, input};
-use dalembert_tests::sampling::{Visitor, states, visit_all};
+use dalembert_tests::sampling::{Random, every_system, states};
 
-/// Names of what is visited.
-struct Names(Vec<&'static str>);
-
-impl Visitor for Names {
-    fn visit<S: Described + Scene>(&mut self, _: S) {
-        self.0.push(S::DESCRIPTION.name);
-    }
-}
-
-#[test]
-fn every_model_of_the_command_line_is_visited() {
-    let mut visited = Names(Vec::new());
-    visit_all(&mut visited);
-    // First-order systems have no mechanics to visit, and modes are models of their own; both have tests of their own.
-    let known: Vec<_> = models()
-        .iter()
-        .map(|entry| entry.description())
-        .filter(|description| !description.is_first_order && description.modes.is_empty())
-        .map(|description| description.name)
-        .collect();
-    assert_eq!(visited.0, known);
-}
+type State = <Large as VectorField>::State;
 
 /// A model derived again from its own source text.
 fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
@@ -40,27 +19,17 @@ fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
     (compiled.model, compiled.derivation, compiled.programs)
 }
 
-/// Emitted code does what the interpreter does, to the bit, inlined and behind pointers: the same operations in the same order.
-struct EmittedIsInterpreted(usize);
-
-impl Visitor for EmittedIsInterpreted {
-    fn visit<S: Described + Scene>(&mut self, system: S) {
-        let (_, _, programs) = derive(S::DESCRIPTION.source);
-        self.0 += compare_motion(&system, &programs.main);
-        self.0 += compare_motion(&system.global(), programs.global());
-        let form = S::FORM.expect("a form");
-        let erased = Erased::<32>::of(form).expect("room");
-        compare_motion(&erased, &programs.main);
-        compare_motion(&erased.global(), programs.global());
-        compare_report(&erased.global(), programs.global());
-    }
-}
-
+/// What is loaded does what the interpreter does, to the bit: the same operations in the same order. Emitted code does what is loaded does (`erased`).
 #[test]
-fn emitted_code_is_what_the_interpreter_executes() {
-    let mut visitor = EmittedIsInterpreted(0);
-    visit_all(&mut visitor);
-    assert!(visitor.0 >= 100);
+fn loaded_code_is_what_the_interpreter_executes() {
+    let mut states = 0;
+    for system in every_system() {
+        let (_, _, programs) = derive(system.description().source);
+        states += compare_motion(system, &programs.main);
+        states += compare_motion(&system.global(), programs.global());
+        compare_report(&system.global(), programs.global());
+    }
+    assert!(states >= 100);
 }
 
 dalembert::model! {
@@ -100,49 +69,42 @@ fn every_function_is_emitted_as_it_is_interpreted() {
     assert_eq!(emitted.as_slice(), interpreted);
 }
 
-/// The force `f = dL/dq + F` in the program against central differences of L, which is evaluated as an expression.
-struct ForceIsDifferenced;
-
-impl Visitor for ForceIsDifferenced {
-    fn visit<S: Described + Scene>(&mut self, system: S) {
-        let (model, derivation, _) = derive(S::DESCRIPTION.source);
-        for state in states(&system, 3, 2) {
-            let t = 0.4;
-            let qdot = system.velocity(t, &state).expect("a velocity");
-            for (k, coordinate) in model.coordinates.iter().enumerate() {
-                let lagrangian = |shift: f64| {
-                    let value = |symbol: SymbolId| {
-                        let shift = if symbol == coordinate.q { shift } else { 0.0 };
-                        value_of(&model, &system, t, &state, &qdot, symbol) + shift
-                    };
-                    model.pool.eval(&[model.lagrangian.whole], &value)[0]
+/// Asserts that the force `f = dL/dq + F` in the program is what central differences of L give, which is evaluated as an expression.
+fn assert_force_is_differenced(system: &Large) {
+    let Description { name, source, .. } = *system.description();
+    let (model, derivation, _) = derive(source);
+    for state in states(system, 3, 2) {
+        let t = 0.4;
+        let qdot = system.velocity(t, &state).expect("a velocity");
+        for (k, coordinate) in model.coordinates.iter().enumerate() {
+            let lagrangian = |shift: f64| {
+                let value = |symbol: SymbolId| {
+                    let shift = if symbol == coordinate.q { shift } else { 0.0 };
+                    value_of(&model, system, t, &state, &qdot, symbol) + shift
                 };
-                let value = |symbol| value_of(&model, &system, t, &state, &qdot, symbol);
-                let applied: f64 = model
-                    .forces
-                    .iter()
-                    .map(|force| model.pool.eval(&[force.form[k]], &value)[0])
-                    .sum();
-                let force = model.pool.eval(&[derivation.field.force[k]], &value)[0] - applied;
-                let h = 1e-5;
-                let difference = (lagrangian(h) - lagrangian(-h)) / (2.0 * h);
-                let scale = lagrangian(0.0).abs().max(1.0);
-                assert!(
-                    (force - difference).abs() < 1e-8 * scale,
-                    "{}: {k}",
-                    S::DESCRIPTION.name
-                );
-            }
+                model.pool.eval(&[model.lagrangian.whole], &value)[0]
+            };
+            let value = |symbol| value_of(&model, system, t, &state, &qdot, symbol);
+            let applied: f64 = model
+                .forces
+                .iter()
+                .map(|force| model.pool.eval(&[force.form[k]], &value)[0])
+                .sum();
+            let force = model.pool.eval(&[derivation.field.force[k]], &value)[0] - applied;
+            let h = 1e-5;
+            let difference = (lagrangian(h) - lagrangian(-h)) / (2.0 * h);
+            let scale = lagrangian(0.0).abs().max(1.0);
+            assert!((force - difference).abs() < 1e-8 * scale, "{name}: {k}");
         }
     }
 }
 
-fn value_of<S: Instance>(
+fn value_of(
     model: &Model,
-    system: &S,
+    system: &Large,
     t: f64,
-    state: &S::State,
-    qdot: &S::Vector,
+    state: &State,
+    qdot: &State,
     symbol: SymbolId,
 ) -> f64 {
     if symbol == model.time {
@@ -165,67 +127,53 @@ fn value_of<S: Instance>(
 
 #[test]
 fn forces_are_derivatives_of_the_lagrangian() {
-    visit_all(&mut ForceIsDifferenced);
-}
-
-/// Every function is well formed.
-struct WellFormed;
-
-impl Visitor for WellFormed {
-    fn visit<S: Described + Scene>(&mut self, _: S) {
-        let (_, _, programs) = derive(S::DESCRIPTION.source);
-        let functions = programs.main.functions().into_iter();
-        for function in functions.chain(programs.global().functions()) {
-            assert_eq!(verify(function), Ok(()), "{}", S::DESCRIPTION.name);
-        }
-    }
+    every_system().iter().for_each(assert_force_is_differenced);
 }
 
 #[test]
 fn programs_are_well_formed() {
-    visit_all(&mut WellFormed);
+    for system in every_system() {
+        let Description { name, source, .. } = system.description();
+        let (_, _, programs) = derive(source);
+        let functions = programs.main.functions().into_iter();
+        for function in functions.chain(programs.global().functions()) {
+            assert_eq!(verify(function), Ok(()), "{name}");
+        }
+    }
 }
 
 /// The field keeps the value of every constraint, on it and off it: `d/dt (eta(qdot) + eta_0) = 0`, by differences
-/// of the residual expression along the emitted rate.
+/// of the residual expression along the rate. Says how many constraints there are.
+fn assert_constraints_are_kept(system: &Large) -> usize {
+    let Description { name, source, .. } = *system.description();
+    let (model, derivation, _) = derive(source);
+    let system = system.global();
+    let mut random = Random::new(3);
+    for constraint in &derivation.constraints {
+        let zero = system.zero_vector();
+        let (q, qdot) = (random.like(&zero, 0.1, 1.4), random.like(&zero, -1.0, 1.0));
+        let t = 0.3;
+        let state = system.state_unchecked(t, &q, &qdot).expect("a state");
+        let mut rate = system.zero_state();
+        system.rate(t, &state, &mut rate).expect("a rate");
+        let residual = |h: f64| {
+            let mut moved = state;
+            for (x, v) in moved.as_mut_slice().iter_mut().zip(rate.as_slice()) {
+                *x += h * v;
+            }
+            let qdot = system.velocity(t + h, &moved).expect("a velocity");
+            let value = |symbol| value_of(&model, &system, t + h, &moved, &qdot, symbol);
+            model.pool.eval(&[constraint.residual], &value)[0]
+        };
+        let h = 1e-5;
+        let derivative = (residual(h) - residual(-h)) / (2.0 * h);
+        assert!(derivative.abs() < 1e-7, "{name}: {derivative:e}");
+    }
+    derivation.constraints.len()
+}
+
 #[test]
 fn the_field_keeps_the_constraints_everywhere() {
-    struct Kept(usize);
-    impl Visitor for Kept {
-        fn visit<S: Described + Scene>(&mut self, system: S) {
-            let (model, derivation, _) = derive(S::DESCRIPTION.source);
-            let system = system.global();
-            let mut random = dalembert_tests::sampling::Random::new(3);
-            for constraint in &derivation.constraints {
-                let (q, qdot) = (
-                    random.vector::<S::Vector>(0.1, 1.4),
-                    random.vector::<S::Vector>(-1.0, 1.0),
-                );
-                let t = 0.3;
-                let state = system.state_unchecked(t, &q, &qdot).expect("a state");
-                let mut rate = system.zero_state();
-                system.rate(t, &state, &mut rate).expect("a rate");
-                let residual = |h: f64| {
-                    let mut moved = state;
-                    for (x, v) in moved.as_mut_slice().iter_mut().zip(rate.as_slice()) {
-                        *x += h * v;
-                    }
-                    let qdot = system.velocity(t + h, &moved).expect("a velocity");
-                    let value = |symbol| value_of(&model, &system, t + h, &moved, &qdot, symbol);
-                    model.pool.eval(&[constraint.residual], &value)[0]
-                };
-                let h = 1e-5;
-                let derivative = (residual(h) - residual(-h)) / (2.0 * h);
-                assert!(
-                    derivative.abs() < 1e-7,
-                    "{}: {derivative:e}",
-                    S::DESCRIPTION.name
-                );
-                self.0 += 1;
-            }
-        }
-    }
-    let mut kept = Kept(0);
-    visit_all(&mut kept);
-    assert!(kept.0 >= 15);
+    let kept: usize = every_system().iter().map(assert_constraints_are_kept).sum();
+    assert!(kept >= 15);
 }
