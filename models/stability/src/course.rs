@@ -1,14 +1,15 @@
 //! How a case makes its runs: a system, a start and an end, under the setting it is given.
 
+use core::mem;
 use core::ops::ControlFlow;
 
 use dalembert::integrate::{Chosen, Counters};
 use dalembert::law::Law;
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
-    Dla2, Dla4, Dop853, DormandPrince5, Event, Gauss4, Gauss6, Hold, Lagrangian, Observer, Outcome,
-    Policies, Rest, Rk4, Run, Scene, SceneEffects, Segment, Simulation, StateVector, Taylor,
-    TaylorField, Tolerance,
+    Dla2, Dla4, Dop853, DormandPrince5, Event, Gauss4, Gauss6, Hold, Instance, Lagrangian,
+    Observer, Outcome, Policies, Rest, Rk4, Run, Scene, SceneEffects, Segment, Simulation,
+    StateVector, System, Taylor, TaylorField, Tolerance,
 };
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::Setting;
@@ -26,6 +27,8 @@ pub struct Course<'a, M: Driven> {
     state: M::State,
     until: f64,
     tolerance: [f64; 2],
+    step: Option<f64>,
+    order: Option<usize>,
     steps: u64,
     effects: M::Effects,
 }
@@ -105,6 +108,8 @@ impl<'a, M: Driven> Course<'a, M> {
             state,
             until,
             tolerance: [1e-12; 2],
+            step: None,
+            order: None,
             steps: STEP_BUDGET,
             effects: system.effects(),
         }
@@ -129,6 +134,18 @@ impl<'a, M: Driven> Course<'a, M> {
     /// With a relative and an absolute tolerance.
     pub fn tols(mut self, relative: f64, absolute: f64) -> Self {
         self.tolerance = [relative, absolute];
+        self
+    }
+
+    /// With steps of this length; with none longer, by an integrator that chooses its steps.
+    pub fn step(mut self, length: f64) -> Self {
+        self.step = Some(length);
+        self
+    }
+
+    /// With power series of this order instead of the one of least work.
+    pub fn order(mut self, order: usize) -> Self {
+        self.order = Some(order);
         self
     }
 
@@ -170,6 +187,20 @@ impl<'a, M: Driven> Course<'a, M> {
         self
     }
 
+    /// With these effects instead of those of its scene, and of what was set before.
+    pub fn effects(mut self, effects: M::Effects) -> Self {
+        self.effects = effects;
+        self
+    }
+
+    /// Without effects: nothing is hit, and nothing projected.
+    pub fn alone(self) -> Self
+    where
+        M::Effects: Default,
+    {
+        self.effects(M::Effects::default())
+    }
+
     /// Makes the run, and keeps every impact.
     pub fn run(self, setting: Setting) -> End {
         let mut log = Log {
@@ -183,19 +214,9 @@ impl<'a, M: Driven> Course<'a, M> {
     }
 
     /// Makes the run, and shows it to an observer; the end has no impacts.
-    pub fn follow(self, setting: Setting, observer: &mut impl Observer<M>) -> End {
-        let [relative, absolute] = self.tolerance;
+    pub fn follow(self, setting: Setting, observer: &mut dyn Observer<M>) -> End {
         let system = self.system;
-        let drive = Drive {
-            setting,
-            tolerance: Tolerance::of(relative, absolute).expect("a positive tolerance"),
-            steps: self.steps,
-            effects: self.effects,
-            t0: self.t0,
-            state: self.state,
-            until: self.until,
-        };
-        let run = system.drive(drive, observer);
+        let run = system.drive(&mut self.under(setting), observer);
         let velocity = system.velocity(run.t, &run.state);
         End {
             outcome: run.outcome,
@@ -210,12 +231,85 @@ impl<'a, M: Driven> Course<'a, M> {
             counters: run.counters,
         }
     }
+
+    /// Makes the run by an integrator, and shows it to an observer: as [`Simulation::run`] gives it.
+    pub fn observed(self, integrator: Integrator, observer: &mut dyn Observer<M>) -> Run<M::State> {
+        self.with_effects(integrator, observer).0
+    }
+
+    /// As [`Course::observed`], with the effects as the run leaves them.
+    pub fn with_effects(
+        self,
+        integrator: Integrator,
+        observer: &mut dyn Observer<M>,
+    ) -> (Run<M::State>, M::Effects) {
+        let system = self.system;
+        let mut drive = self.under(Setting::free(integrator));
+        let run = system.drive(&mut drive, observer);
+        (run, drive.effects)
+    }
+
+    /// What is run under a setting.
+    pub fn under(self, setting: Setting) -> Drive<M> {
+        let [relative, absolute] = self.tolerance;
+        Drive {
+            setting,
+            tolerance: Tolerance::of(relative, absolute).expect("a positive tolerance"),
+            step: self.step,
+            order: self.order,
+            steps: self.steps,
+            effects: self.effects,
+            t0: self.t0,
+            state: self.state,
+            until: self.until,
+        }
+    }
+
+    /// The system.
+    pub fn system(&self) -> &'a M {
+        self.system
+    }
+}
+
+impl<'a, M: Driven + Instance> Course<'a, M> {
+    /// From the declared start at time 0.
+    ///
+    /// # Panics
+    /// When the system has none.
+    pub fn declared(system: &'a M, until: f64) -> Self {
+        Self::from_state(system, declared(system), until)
+    }
+}
+
+/// The declared start of a system.
+///
+/// # Panics
+/// When it has none.
+pub fn declared<M: Instance>(system: &M) -> M::State {
+    let start = system.initial();
+    let q = system
+        .complete_position(0.0, &start.q, &start.placed)
+        .expect("positions");
+    let qdot = system
+        .complete_velocity(0.0, &q, &start.qdot, &start.named)
+        .expect("velocities");
+    system.state(0.0, &q, &qdot).expect("a state")
+}
+
+/// The state of these positions and velocities at time 0.
+///
+/// # Panics
+/// When they are refused.
+pub fn state<M: System>(system: &M, q: &[f64], qdot: &[f64]) -> M::State {
+    let state = system.state(0.0, &vector(q), &vector(qdot));
+    state.expect("an admissible start")
 }
 
 /// Runs of a system, compiled in this crate: a case, or a test, only calls them.
 pub trait Driven: Scene + TaylorField {
-    /// Makes a run, and shows it to an observer.
-    fn drive(&self, drive: Drive<Self>, observer: &mut dyn Observer<Self>) -> Run<Self::State>;
+    /// Makes a run, and shows it to an observer; leaves the effects as they are in the end.
+    fn drive(&self, drive: &mut Drive<Self>, observer: &mut dyn Observer<Self>)
+    -> Run<Self::State>;
 }
 
 /// What a run is made of, besides its system.
@@ -225,6 +319,10 @@ pub struct Drive<M: Scene> {
     pub setting: Setting,
     /// How accurately.
     pub tolerance: Tolerance,
+    /// The length of steps, at most for an integrator that chooses them.
+    pub step: Option<f64>,
+    /// The order of power series.
+    pub order: Option<usize>,
     /// The most steps.
     pub steps: u64,
     /// What happens on the way.
@@ -243,7 +341,7 @@ macro_rules! driven {
         impl<$($generics)*> Driven for $system {
             fn drive(
                 &self,
-                drive: Drive<Self>,
+                drive: &mut Drive<Self>,
                 observer: &mut dyn Observer<Self>,
             ) -> Run<Self::State> {
                 drive.$integrators(self, observer)
@@ -263,14 +361,25 @@ macro_rules! run {
 
 impl<M: Scene + TaylorField + Lagrangian> Drive<M> {
     /// With any integrator.
-    fn every(self, system: &M, observer: &mut dyn Observer<M>) -> Run<M::State> {
-        let tolerance = self.tolerance;
+    fn every(&mut self, system: &M, observer: &mut dyn Observer<M>) -> Run<M::State> {
+        // An infinite length is as good as none.
+        let (tolerance, step) = (self.tolerance, self.step.unwrap_or(f64::INFINITY));
+        macro_rules! fixed {
+            ($stepper:ident) => {
+                run!(
+                    self,
+                    $stepper::new(tolerance).with_step(step),
+                    system,
+                    observer
+                )
+            };
+        }
         match self.setting.integrator {
-            Integrator::Rk4 => run!(self, Rk4::new(tolerance), system, observer),
-            Integrator::Gauss4 => run!(self, Gauss4::new(tolerance), system, observer),
-            Integrator::Gauss6 => run!(self, Gauss6::new(tolerance), system, observer),
-            Integrator::Dla2 => run!(self, Dla2::new(tolerance), system, observer),
-            Integrator::Dla4 => run!(self, Dla4::new(tolerance), system, observer),
+            Integrator::Rk4 => fixed!(Rk4),
+            Integrator::Gauss4 => fixed!(Gauss4),
+            Integrator::Gauss6 => fixed!(Gauss6),
+            Integrator::Dla2 => fixed!(Dla2),
+            Integrator::Dla4 => fixed!(Dla4),
             _ => self.adaptive(system, observer),
         }
     }
@@ -278,25 +387,30 @@ impl<M: Scene + TaylorField + Lagrangian> Drive<M> {
 
 impl<M: Scene + TaylorField> Drive<M> {
     /// With an integrator that chooses its steps.
-    fn adaptive(self, system: &M, observer: &mut dyn Observer<M>) -> Run<M::State> {
+    fn adaptive(&mut self, system: &M, observer: &mut dyn Observer<M>) -> Run<M::State> {
         let (tolerance, setting) = (self.tolerance, self.setting);
-        let longest = setting.max_step.unwrap_or(f64::INFINITY);
+        let longest = setting.max_step.or(self.step).unwrap_or(f64::INFINITY);
         macro_rules! bounded {
-            ($stepper:ty) => {{
-                let bounded = <$stepper>::new(tolerance).with_max_step(longest);
+            ($stepper:expr) => {{
+                let bounded = $stepper.with_max_step(longest);
                 run!(self, bounded.expect("a positive step"), system, observer)
             }};
         }
-        match setting.integrator {
-            Integrator::Dop853 => bounded!(Dop853<M::State>),
-            Integrator::Dopri5 => bounded!(DormandPrince5<M::State>),
-            Integrator::Taylor => bounded!(Taylor<M>),
-            other => unreachable!("a system written by hand has no discrete principle: {other:?}"),
+        match (setting.integrator, self.order) {
+            (Integrator::Dop853, _) => bounded!(Dop853::new(tolerance)),
+            (Integrator::Dopri5, _) => bounded!(DormandPrince5::new(tolerance)),
+            (Integrator::Taylor, None) => bounded!(Taylor::new(tolerance)),
+            (Integrator::Taylor, Some(order)) => {
+                bounded!(Taylor::new(tolerance).with_order(order))
+            }
+            (other, _) => {
+                unreachable!("a system written by hand has no discrete principle: {other:?}")
+            }
         }
     }
 
     fn with(
-        self,
+        &mut self,
         system: &M,
         stepper: Chosen<'_, M>,
         observer: &mut dyn Observer<M>,
@@ -305,10 +419,13 @@ impl<M: Scene + TaylorField> Drive<M> {
             dense: self.setting.dense,
             observer,
         };
-        Simulation::new(system, stepper, self.effects)
-            .with_step_budget(self.steps)
+        let effects = mem::replace(&mut self.effects, system.effects());
+        let mut simulation = Simulation::new(system, stepper, effects).with_step_budget(self.steps);
+        let run = simulation
             .run(self.t0, self.state, self.until, &mut reader)
-            .expect("a start")
+            .expect("a start");
+        mem::swap(&mut self.effects, simulation.effects());
+        run
     }
 }
 

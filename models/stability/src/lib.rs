@@ -35,6 +35,7 @@ mod switches;
 pub mod tables;
 pub mod text;
 mod variations;
+pub mod varied;
 mod zeno;
 
 use dalembert_cli::suite::Case;

@@ -132,6 +132,20 @@ pub fn shipped(name: &str) -> &'static Text {
     text
 }
 
+/// A mode of a model by itself, which knows no other.
+///
+/// # Panics
+/// If there is no such mode.
+pub fn mode<const C: usize>(model: &Erased<C>, number: usize) -> Erased<C> {
+    let form = model.form();
+    let place = form.tables.modes[number].kernels;
+    let mut mode = Erased::of(form.forms[place]).expect("vectors of no more components");
+    for index in 0..model.description().parameters.len() {
+        mode.set_parameter(index, model.parameter(index));
+    }
+    mode
+}
+
 /// Sets a parameter by its name.
 ///
 /// # Panics
