@@ -6,16 +6,18 @@ use core::ops::ControlFlow;
 
 use dalembert::declaration::Described;
 use dalembert::{
-    Dop853, Event, Impacting, Observer, Outcome, Scene, Simulation, System, Taylor, TaylorField,
-    Tolerance, VectorField,
+    Event, Hold, Impacting, Instance, Observer, Outcome, StateVector, System, TaylorField,
+    VectorField,
 };
+use dalembert_cli::Integrator;
 use dalembert_models::refracted_particle::refracted_particle;
 use dalembert_models::two_wheels_arrested::two_wheels_arrested;
 use dalembert_models::{
-    BallOnSwitchingTable, RefractedParticle, RimlessWheelFive, RimlessWheelTen,
-    SmoothAndRoughPlane, SphereInPlane, TwoWheelsArrested,
+    RefractedParticle, SmoothAndRoughPlane, TwoWheelsArrested,
     smooth_and_rough_plane::smooth_and_rough_plane,
 };
+use dalembert_stability::course::{Course, Driven, state};
+use dalembert_stability::text::{Large, Model, Text, set, shipped, value};
 use dalembert_tests::interpreted::compare_motion;
 use dalembert_tests::reference::{number, numbers, read};
 use serde_json::Value;
@@ -30,32 +32,39 @@ impl<Sys: System> Observer<Sys> for Events<Sys::State> {
     }
 }
 
+/// A shipped model with values for some of its parameters.
+fn large<const K: usize>(name: &str, values: [(&str, f64); K]) -> Large {
+    let mut model = shipped(name).sized();
+    for (name, value) in values {
+        set(&mut model, name, value);
+    }
+    model
+}
+
 /// Runs with both kinds of integrators, which agree; returns the events and the end.
-fn run<S>(system: &S, q: &[f64], qdot: &[f64], until: f64) -> (Vec<Event<S::State>>, S::State)
-where
-    S: Scene + TaylorField + Impacting,
-{
-    let vector = |values: &[f64]| <S::Vector as dalembert::StateVector>::of(values);
-    let state = system
-        .state(0.0, &vector(q), &vector(qdot))
-        .expect("a state");
-    let tolerance = Tolerance::new(1e-13).expect("a tolerance");
-    let mut events = Events(Vec::new());
-    let end = Simulation::new(system, Dop853::new(tolerance), system.effects())
-        .run(0.0, state, until, &mut events)
-        .expect("a start");
-    assert_eq!(end.outcome, Outcome::Done);
-    let mut again = Events(Vec::new());
-    let other = Simulation::new(system, Taylor::new(tolerance), system.effects())
-        .run(0.0, state, until, &mut again)
-        .expect("a start");
-    assert_eq!(other.outcome, Outcome::Done);
-    assert_eq!(events.0.len(), again.0.len());
-    for (one, other) in events.0.iter().zip(&again.0) {
+fn run<S: Driven>(
+    system: &S,
+    q: &[f64],
+    qdot: &[f64],
+    until: f64,
+) -> (Vec<Event<S::State>>, S::State) {
+    let state = state(system, q, qdot);
+    let made = |integrator| {
+        let mut events = Events(Vec::new());
+        let end = Course::from_state(system, state, until)
+            .tol(1e-13)
+            .observed(integrator, &mut events);
+        assert_eq!(end.outcome, Outcome::Done);
+        (events.0, end.state)
+    };
+    let (events, end) = made(Integrator::Dop853);
+    let (again, _) = made(Integrator::Taylor);
+    assert_eq!(events.len(), again.len());
+    for (one, other) in events.iter().zip(&again) {
         assert_eq!(one.surface, other.surface);
         assert!((one.t - other.t).abs() < 1e-10 * (1.0 + one.t));
     }
-    (events.0, end.state)
+    (events, end)
 }
 
 fn close(own: f64, stored: f64, bound: f64, what: &str) {
@@ -73,9 +82,9 @@ fn euler_rates(theta: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
 }
 
 /// Velocities of the centre and angular velocities.
-fn speeds<S: Described>(system: &S, t: f64, state: &S::State) -> [f64; 5] {
+fn speeds<S: Instance>(system: &S, t: f64, state: &S::State) -> [f64; 5] {
     let qdot = system.velocity(t, state).expect("a velocity");
-    let qdot = dalembert::StateVector::as_slice(&qdot);
+    let qdot = qdot.as_slice();
     let mut spin = [0.0; 3];
     system.outputs(t, state, &mut spin).expect("outputs");
     [qdot[0], qdot[1], spin[0], spin[1], spin[2]]
@@ -85,7 +94,7 @@ fn speeds<S: Described>(system: &S, t: f64, state: &S::State) -> [f64; 5] {
 fn a_ball_comes_onto_a_rough_plane() {
     let file = read("cortes_vinogradov");
     let cases = file["cv61_smooth_rough"].as_array().expect("cases");
-    let ball = SmoothAndRoughPlane::default();
+    let ball = large("smooth_and_rough_plane", []);
     let mut reflected = 0;
     for case in cases {
         let velocity = numbers(&case["velocity_smooth"]);
@@ -103,7 +112,7 @@ fn a_ball_comes_onto_a_rough_plane() {
         let last = events.last().expect("an event");
         close(last.t, number(&case["t_cross"]), 1e-12, "time");
         close(
-            ball.position(&last.after)[1],
+            ball.position(&last.after).as_slice()[1],
             number(&case["y_cross"]),
             1e-12,
             "place",
@@ -127,7 +136,7 @@ fn a_ball_comes_onto_a_rough_plane() {
             "energy after",
         );
         let place = ball.position(&end);
-        for (own, stored) in place.iter().zip(numbers(&case["position_at_T"])) {
+        for (own, stored) in place.as_slice().iter().zip(numbers(&case["position_at_T"])) {
             close(*own, stored, 1e-11, "end");
         }
         let mode = if is_refracted {
@@ -147,13 +156,14 @@ fn a_table_switches_its_speed() {
         .as_array()
         .expect("trajectories")
     {
-        let ball = BallOnSwitchingTable::default();
-        assert_eq!(number(&trajectory["Omega_initial"]), ball.Om_minus);
+        let ball = large("ball_on_switching_table", []);
+        let slow = value(&ball, "Om_minus");
+        assert_eq!(number(&trajectory["Omega_initial"]), slow);
         let initial = numbers(&trajectory["initial(x,y,vx,vy,wz)"]);
         let (x, y, vx, vy) = (initial[0], initial[1], initial[2], initial[3]);
         let theta = 1.3;
-        let spin = [ball.Om_minus * x - vy, vx + ball.Om_minus * y, initial[4]];
-        let rates = euler_rates(theta, spin.map(|own| own / ball.r));
+        let spin = [slow * x - vy, vx + slow * y, initial[4]];
+        let rates = euler_rates(theta, spin.map(|own| own / value(&ball, "r")));
         let rates = [rates[0], rates[1], initial[4] - theta.cos() * rates[0]];
         let switches = trajectory["switches"].as_array().expect("switches");
         let until = number(&switches[switches.len() - 1]["t"]) + 1e-3;
@@ -163,7 +173,7 @@ fn a_table_switches_its_speed() {
         for (event, stored) in events.iter().zip(switches) {
             close(event.t, number(&stored["t"]), 1e-11, "time");
             close(
-                ball.position(&event.after)[0],
+                ball.position(&event.after).as_slice()[0],
                 number(&stored["x"]),
                 1e-11,
                 "place",
@@ -186,21 +196,21 @@ fn a_table_switches_its_speed() {
 fn a_rod_is_arrested() {
     let file = read("cortes_vinogradov");
     for case in file["cv64"]["cases"].as_array().expect("cases") {
-        let wheels = TwoWheelsArrested::default();
+        let wheels = large("two_wheels_arrested", []);
         let initial = numbers(&case["initial(x1,x2,v1,v2)"]);
         let first = &case["elastic_sequence"][0];
         let q = [initial[0], initial[1], 0.0, 0.0];
         let qdot = [
             initial[2],
             initial[3],
-            initial[2] / wheels.r1,
-            initial[3] / wheels.r2,
+            initial[2] / value(&wheels, "r1"),
+            initial[3] / value(&wheels, "r2"),
         ];
         let (events, _) = run(&wheels, &q, &qdot, 10.0);
         assert_eq!(events.len(), 1);
         close(events[0].t, number(&first["t"]), 1e-12, "time");
         let p = wheels.momentum(0.0, &events[0].after).expect("momenta");
-        for (own, stored) in p.iter().zip(numbers(&first["inelastic_p_plus"])) {
+        for (own, stored) in p.as_slice().iter().zip(numbers(&first["inelastic_p_plus"])) {
             close(*own, stored, 1e-13, "momentum");
         }
         let energy = wheels.energy(0.0, &events[0].after).expect("an energy");
@@ -214,19 +224,14 @@ fn light_is_refracted_as_snell_says() {
     let cases = file["snell"].as_array().expect("cases");
     let mut reflected = 0;
     for case in cases {
-        let particle = RefractedParticle {
-            m1: number(&case["m1"]),
-            m2: number(&case["m2"]),
-            V1: number(&case["V1"]),
-            V2: number(&case["V2"]),
-            ..RefractedParticle::default()
-        };
-        let p = numbers(&case["p_before"]);
-        let qdot = [p[0] / particle.m1, p[1] / particle.m1];
+        let values = ["m1", "m2", "V1", "V2"].map(|name| (name, number(&case[name])));
+        let particle = shipped("refracted_particle").with(values);
+        let (p, m1) = (numbers(&case["p_before"]), value(&particle, "m1"));
+        let qdot = [p[0] / m1, p[1] / m1];
         let (events, end) = run(&particle, &[-qdot[0], 0.0], &qdot, 1.5);
         assert_eq!(events.len(), 1);
         let after = particle.momentum(1.5, &end).expect("momenta");
-        for (own, stored) in after.iter().zip(numbers(&case["p_after"])) {
+        for (own, stored) in after.as_slice().iter().zip(numbers(&case["p_after"])) {
             close(*own, stored, 4e-16, "momentum");
         }
         let is_reflected = case["outcome"] == "total reflection";
@@ -241,10 +246,7 @@ fn a_point_crosses_a_sphere_in_a_plane() {
     let file = read("refraction");
     for case in file["sphere_in_plane"].as_array().expect("cases") {
         let initial = numbers(&case["initial(rho,x,y,px,py)"]);
-        let point = SphereInPlane {
-            rho: initial[0],
-            ..SphereInPlane::default()
-        };
+        let point: Model = shipped("sphere_in_plane").with([("rho", initial[0])]);
         let until = number(&case["t_out"]) + 0.5;
         let (events, _) = run(&point, &initial[1..3], &initial[3..5], until);
         assert_eq!(events.len(), 2);
@@ -271,10 +273,7 @@ fn a_point_crosses_a_sphere_in_a_plane() {
 }
 
 /// The steps of one turn on the limit cycle, from the first spoke on.
-fn check_wheel<S>(wheel: &S, stored: &Value)
-where
-    S: Scene + TaylorField + Impacting<State: AsRef<[f64]>>,
-{
+fn check_wheel<S: Driven + Impacting>(wheel: &S, stored: &Value) {
     let cycle = &stored["limit_cycle_xi_true"];
     let steps = cycle["steps"].as_array().expect("steps");
     let first = [
@@ -289,12 +288,12 @@ where
         t += number(&step["duration"]);
         close(event.t, t, 1e-11, "time");
         assert_eq!(wheel.mode(&event.before), n);
-        let before = [event.before.as_ref()[0], wheel_rate(wheel, &event.before)];
+        let before = [event.before.as_slice()[0], wheel_rate(wheel, &event.before)];
         close(before[0], number(&step["end_angle"]), 1e-11, "angle");
         close(before[1], number(&step["end_rate"]), 1e-11, "rate");
         let next = &steps[(n + 1) % steps.len()];
         close(
-            event.after.as_ref()[0],
+            event.after.as_slice()[0],
             number(&next["start_angle"]),
             1e-11,
             "angle after",
@@ -311,14 +310,15 @@ where
 
 fn wheel_rate<S: System>(wheel: &S, state: &S::State) -> f64 {
     let qdot = wheel.velocity(0.0, state).expect("a velocity");
-    dalembert::StateVector::as_slice(&qdot)[0]
+    qdot.as_slice()[0]
 }
 
 #[test]
 fn wheels_of_many_spokes_have_the_stored_limit_cycles() {
     let file = read("rimless_wheels");
-    check_wheel(&RimlessWheelFive::default(), &file["wheels"][0]);
-    check_wheel(&RimlessWheelTen::default(), &file["wheels"][1]);
+    let [five, ten] = ["rimless_wheel_five", "rimless_wheel_ten"].map(|name| large(name, []));
+    check_wheel(&five, &file["wheels"][0]);
+    check_wheel(&ten, &file["wheels"][1]);
 }
 
 /// A start anywhere is drawn to the limit cycle.
@@ -326,7 +326,7 @@ fn wheels_of_many_spokes_have_the_stored_limit_cycles() {
 fn a_wheel_tends_to_its_limit_cycle() {
     let file = read("rimless_wheels");
     let cycle = &file["wheels"][0]["limit_cycle_xi_true"]["steps"][0];
-    let wheel = RimlessWheelFive::default();
+    let wheel = shipped("rimless_wheel_five").model();
     let start = [number(&cycle["start_angle"]), -0.6];
     let (events, _) = run(&wheel, &start[..1], &start[1..], 60.0);
     let turns: Vec<_> = events
@@ -336,7 +336,7 @@ fn a_wheel_tends_to_its_limit_cycle() {
     assert!(turns.len() >= 3);
     let rate = wheel_rate(&wheel, &turns[2].after);
     close(rate, number(&cycle["start_rate"]), 1e-11, "rate");
-    assert_eq!(<RimlessWheelFive as VectorField>::State::default().len(), 3);
+    assert_eq!(wheel.state_len(), 3);
 }
 
 /// The modes of a model, derived again from its source.
@@ -373,9 +373,9 @@ fn emitted_code_of_modes_is_what_the_interpreter_executes() {
     check_emitted::<refracted_particle::Right>(&modes[1]);
 }
 
-dalembert::model! {
-    /// A field whose left side turns away from the line below `y = -1`.
-    Leaving {
+/// A field whose left side turns away from the line below `y = -1`.
+static LEAVING: Text = Text::new(
+    "Leaving {
         coordinates { x; y; }
         modes {
             right { field { dot(x) = -1; dot(y) = -1; } }
@@ -385,15 +385,15 @@ dalembert::model! {
             leftward: right -> left when x <= 0;
             rightward: left -> right when x >= 0;
         }
-    }
-}
+    }",
+);
 
 /// Where sliding begins and ends.
-struct Slides<S>(Vec<(f64, bool, S)>);
+struct Slides(Vec<(f64, bool)>);
 
-impl<Sys: System> Observer<Sys> for Slides<Sys::State> {
-    fn hold(&mut self, hold: &dalembert::Hold<Sys::State>) -> ControlFlow<()> {
-        self.0.push((hold.t, hold.begins, hold.state));
+impl<Sys: System> Observer<Sys> for Slides {
+    fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
+        self.0.push((hold.t, hold.begins));
         ControlFlow::Continue(())
     }
 }
@@ -401,23 +401,21 @@ impl<Sys: System> Observer<Sys> for Slides<Sys::State> {
 /// The motion slides down the line until one side leads away from it, and goes on there.
 #[test]
 fn a_slide_ends_where_one_side_leads_away() {
-    let field = Leaving::default();
-    let state = field
-        .state(0.0, &[0.5, 0.5].into(), &[0.0; 2].into())
-        .expect("a state");
-    let tolerance = Tolerance::new(1e-13).expect("a tolerance");
+    let field = LEAVING.model();
+    let state = state(&field, &[0.5, 0.5], &[0.0; 2]);
     let mut slides = Slides(Vec::new());
-    let run = Simulation::new(&field, Taylor::new(tolerance), field.effects())
-        .run(0.0, state, 3.0, &mut slides)
-        .expect("a start");
+    let run = Course::from_state(&field, state, 3.0)
+        .tol(1e-13)
+        .observed(Integrator::Taylor, &mut slides);
     assert_eq!((run.outcome, run.counters.impacts), (Outcome::Done, 1));
-    let times: Vec<(f64, bool)> = slides.0.iter().map(|own| (own.0, own.1)).collect();
+    let times = slides.0;
     assert_eq!(times.len(), 2);
     assert!((times[0].0 - 0.5).abs() < 1e-14 && times[0].1);
     assert!((times[1].0 - 1.5).abs() < 1e-13 && !times[1].1, "{times:?}");
-    assert_eq!(field.mode(&run.state), leaving::Mode::Left as usize);
+    assert_eq!(field.mode(&run.state), 1, "the left one");
     // x = -(t - 1.5)^2/2, y = 1/2 - t
     let q = field.position(&run.state);
+    let q = q.as_slice();
     assert!(
         (q[0] + 1.125).abs() < 1e-12 && (q[1] + 2.5).abs() < 1e-13,
         "{q:?}"
