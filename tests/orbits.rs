@@ -1,89 +1,83 @@
 //! Periodic orbits of sections and their multipliers: against references, closed forms, and differences of maps.
 
-use dalembert::contract::Variational;
-use dalembert::variations::{Orbit, OrbitError, Section, SectionError};
-use dalembert::{
-    Described, Impacts, Law, Outcome, Scene, StateVector, System, Tangent, Taylor, Tolerance,
-};
-use dalembert_cli::{Exit, models};
-use dalembert_models::{BouncingBall, DimensionlessWalker, MovingWallDisk, PointBilliard};
+use dalembert::variations::{Orbit, OrbitError, SectionError};
+use dalembert::{Described, Law, Outcome, Tangent, VectorField};
+use dalembert_cli::Exit;
+use dalembert_stability::course::{Course, state, vector};
+use dalembert_stability::text::{Model, Text, shipped, value};
+use dalembert_stability::varied::Returns;
 use dalembert_tests::command::{self, Finished};
 use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::systems::IntegrableBead;
 use serde_json::Value;
 
-dalembert::model! {
-    /// A spring that counts its passages of the middle, in scenes with and without variations.
-    pub Spring {
+/// A spring that counts its passages of the middle, in scenes with and without variations.
+static SPRING: Text = Text::new(
+    "Spring {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - x^2/2 - y^2/8;
         impacts { middle: x >= 0 => reset { }; wall: y >= -3; }
         initial { x = 1; y = 0.2; until = 20; }
         scenes { bare: wall; varied: wall, middle, variations; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A wheel that counts its turns.
-    pub Wheel {
+/// A wheel that counts its turns.
+static WHEEL: Text = Text::new(
+    "Wheel {
         coordinates { theta: angle; }
         lagrangian = dot(theta)^2/2;
         impacts { mark: sin(theta) <= 0 when cos(theta) > 0 => reset { }; }
-    }
-}
+    }",
+);
 
 /// Most of a return that any run here takes.
 const HORIZON: f64 = 1e4;
 
-fn taylor<S: Described + Variational>() -> Taylor<S> {
-    Taylor::new(Tolerance::new(1e-15).expect("a tolerance"))
-}
+type State = <Model as VectorField>::State;
 
 /// The orbit near the first arrival from a state.
-fn orbit<S: Described + Variational + Scene>(
-    system: &S,
-    start: &S::State,
+fn orbit(
+    system: &Model,
+    start: &State,
     surface: usize,
-    returns: u32,
-) -> Result<Orbit<S>, OrbitError> {
-    let mut section =
-        Section::new(system, taylor(), system.effects(), surface, HORIZON).with_returns(returns);
+    count: u32,
+) -> Result<Orbit<Model>, OrbitError> {
+    let section = Returns {
+        count,
+        ..Returns::new(system, surface, HORIZON)
+    };
     let first = section.arrive(start, &mut [])?;
-    section.periodic(&first.before, dalembert::variations::orbit::ITERATIONS)
+    section.periodic(&first.before)
 }
 
-/// Positions and velocities as a state.
-fn state<S: Described>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
-    let (mut position, mut velocity) = (
-        S::Vector::zeros(S::Vector::CAPACITY),
-        S::Vector::zeros(S::Vector::CAPACITY),
-    );
-    position.as_mut_slice().copy_from_slice(q);
-    velocity.as_mut_slice().copy_from_slice(qdot);
-    system.state(0.0, &position, &velocity).expect("a state")
+/// The walker of a set of the reference.
+fn walker(set: &Value) -> Model {
+    let names = ["mu", "eps", "alpha", "delta"];
+    shipped("dimensionless_walker").with(names.map(|name| (name, number(&set[name]))))
+}
+
+/// A table with half axes of 2 and 1.
+fn table() -> Model {
+    shipped("point_billiard").with([("m", 1.0), ("ta", 2.0), ("tb", 1.0)])
 }
 
 #[test]
 fn the_walkers_orbits_are_those_of_the_reference() {
     let file = read("walker_orbits");
     for set in file["sets"].as_array().expect("sets") {
-        let of = |name: &str| number(&set[name]);
-        let walker = DimensionlessWalker {
-            mu: of("mu"),
-            eps: of("eps"),
-            alpha: of("alpha"),
-            delta: of("delta"),
-        };
+        let walker = walker(set);
+        let delta = value(&walker, "delta");
         let fixed = numbers(&set["fixed_point_post_impact(xi,eta)"]);
-        let start = [walker.delta, 1.02 * fixed[0], 0.99 * fixed[1]];
-        let orbit = orbit(&walker, &start.into(), 0, 1).expect("an orbit");
-        let after = orbit.point.after;
+        let start = vector(&[delta, 1.02 * fixed[0], 0.99 * fixed[1]]);
+        let orbit = orbit(&walker, &start, 0, 1).expect("an orbit");
+        let after = orbit.point.after.as_ref();
         assert!(
             (after[1] - fixed[0]).abs() < 1e-13 && (after[2] - fixed[1]).abs() < 1e-13,
-            "{after}"
+            "{after:?}"
         );
         assert!(
-            (orbit.point.time - of("period")).abs() < 1e-13,
+            (orbit.point.time - number(&set["period"])).abs() < 1e-13,
             "{}",
             orbit.point.time
         );
@@ -102,26 +96,22 @@ fn the_walkers_orbits_are_those_of_the_reference() {
 fn the_derivative_of_the_walkers_return_is_that_of_the_reference() {
     let file = read("walker_orbits");
     for set in file["sets"].as_array().expect("sets") {
-        let of = |name: &str| number(&set[name]);
-        let walker = DimensionlessWalker {
-            mu: of("mu"),
-            eps: of("eps"),
-            alpha: of("alpha"),
-            delta: of("delta"),
-        };
+        let walker = walker(set);
+        let delta = value(&walker, "delta");
         // From `(xi, eta)` after a step to those after the next one: both states lie at theta = delta.
         let fixed = numbers(&set["fixed_point_post_impact(xi,eta)"]);
-        let start = [walker.delta, fixed[0], fixed[1]].into();
+        let start = vector(&[delta, fixed[0], fixed[1]]);
         let mut columns = [Tangent::of_component(1), Tangent::of_component(2)];
-        let mut section = Section::new(&walker, taylor(), walker.effects(), 0, HORIZON);
+        let section = Returns::new(&walker, 0, HORIZON);
         let arrival = section.arrive(&start, &mut columns).expect("an arrival");
         let reset = |xi: f64, eta: f64| {
-            let (c, s) = ((2.0 * walker.delta).cos(), walker.delta.cos());
+            let (c, s) = ((2.0 * delta).cos(), delta.cos());
             [c * xi, eta + s * (1.0 - c) * xi]
         };
         let rows = set["return_map_jacobian"].as_array().expect("rows");
         for (j, column) in columns.iter().enumerate() {
-            let image = reset(column.state[1], column.state[2]);
+            let column = column.state.as_ref();
+            let image = reset(column[1], column[2]);
             for (i, row) in rows.iter().enumerate() {
                 let expected = numbers(row)[j];
                 assert!(
@@ -131,24 +121,20 @@ fn the_derivative_of_the_walkers_return_is_that_of_the_reference() {
                 );
             }
         }
-        assert!((arrival.before[0] + walker.delta).abs() < 1e-15);
+        assert!((arrival.before.as_ref()[0] + delta).abs() < 1e-15);
     }
 }
 
 #[test]
 fn two_bounces_in_an_ellipse_have_the_traces_of_its_axes() {
-    let table = PointBilliard {
-        m: 1.0,
-        ta: 2.0,
-        tb: 1.0,
-    };
+    let table = table();
     let along_minor = state(&table, &[0.0, 0.0], &[0.0, 1.0]);
     let along_major = state(&table, &[0.0, 0.0], &[1.0, 0.0]);
     for (start, trace, period) in [(along_minor, -1.0, 4.0), (along_major, 194.0, 8.0)] {
         let orbit = orbit(&table, &start, 0, 2).expect("an orbit");
         assert!((orbit.point.time - period).abs() < 1e-12);
         assert_eq!(orbit.dimension, 3);
-        let diagonal: f64 = (0..3).map(|i| orbit.derivative[i][i]).sum();
+        let diagonal: f64 = (0..3).map(|i| orbit.derivative[i].as_ref()[i]).sum();
         // The energy gives a 1 besides.
         assert!((diagonal - 1.0 - trace).abs() < 1e-10, "{diagonal}");
         let product = orbit
@@ -164,23 +150,22 @@ fn two_bounces_in_an_ellipse_have_the_traces_of_its_axes() {
 
 #[test]
 fn an_orbit_is_found_from_beside_it() {
-    let table = PointBilliard {
-        m: 1.0,
-        ta: 2.0,
-        tb: 1.0,
-    };
+    let table = table();
     let start = state(&table, &[0.05, 0.0], &[0.02, 1.0]);
     let orbit = orbit(&table, &start, 0, 2).expect("an orbit");
-    let point = orbit.point.before;
-    assert!(point[0].abs() < 1e-12 && point[2].abs() < 1e-12, "{point}");
+    let point = orbit.point.before.as_ref();
+    assert!(
+        point[0].abs() < 1e-12 && point[2].abs() < 1e-12,
+        "{point:?}"
+    );
 }
 
 #[test]
 fn an_orbit_of_an_angle_closes_after_a_turn() {
-    let wheel = Wheel {};
+    let wheel = WHEEL.model();
     let orbit = orbit(&wheel, &state(&wheel, &[1.0], &[2.0]), 0, 1).expect("an orbit");
     assert!((orbit.point.time - std::f64::consts::PI).abs() < 1e-14);
-    let turns = orbit.point.before[0] / (2.0 * std::f64::consts::PI);
+    let turns = orbit.point.before.as_ref()[0] / (2.0 * std::f64::consts::PI);
     assert!(
         (turns - turns.round()).abs() < 1e-14 && turns > 0.5,
         "{turns}"
@@ -192,34 +177,34 @@ fn an_orbit_of_an_angle_closes_after_a_turn() {
 /// In the global form states can leave the constraint and the leaf of its level: neither is a direction of the section.
 #[test]
 fn directions_of_a_section_keep_constraints_and_levels() {
-    let bead = IntegrableBead::default();
+    let bead = Text::new(IntegrableBead::DESCRIPTION.source).model();
     let (x, y) = (-1.2, 0.8);
     let start = state(&bead, &[x, y], &[0.0, 0.0]);
     let orbit = orbit(&bead, &start, 0, 1).expect("an orbit");
-    assert_eq!((orbit.point.before.len(), orbit.dimension), (4, 1));
+    let point = orbit.point.before.as_ref();
+    assert_eq!((point.len(), orbit.dimension), (4, 1));
     let [multiplier, imaginary] = orbit.multipliers.iter().next().expect("one");
     assert!(
         (multiplier - 1.0).abs() < 1e-10 && imaginary == 0.0,
         "{multiplier}"
     );
     let level = |q: &[f64]| q[0] * q[0] / 4.0 + q[1] * q[1] - 1.0;
-    assert!(level(&orbit.point.before.as_slice()[..2]).abs() < 1e-12);
-    let direction = orbit.directions[0];
-    let along =
-        orbit.point.before[0] / 2.0 * direction[0] + 2.0 * orbit.point.before[1] * direction[1];
-    assert!(along.abs() < 1e-12, "{direction}");
+    assert!(level(&point[..2]).abs() < 1e-12);
+    let direction = orbit.directions[0].as_ref();
+    let along = point[0] / 2.0 * direction[0] + 2.0 * point[1] * direction[1];
+    assert!(along.abs() < 1e-12, "{direction:?}");
 }
 
 /// Each bounce is lower than the one before: in the limit the ball returns to where it is, at rest.
 #[test]
 fn a_motion_that_ceases_is_no_orbit() {
-    let ball = BouncingBall::default();
-    let effects = Impacts::declared(&ball).with_law(0, Law::Newton(0.5));
-    let mut section = Section::new(&ball, taylor(), effects, 0, HORIZON);
-    let first = section
-        .arrive(&state(&ball, &[1.0], &[0.0]), &mut [])
-        .expect("an arrival");
-    let missed = section.periodic(&first.before, dalembert::variations::orbit::ITERATIONS);
+    let ball = shipped("bouncing_ball").model();
+    let section = Returns {
+        law: Some(Law::Newton(0.5)),
+        ..Returns::new(&ball, 0, HORIZON)
+    };
+    let first = section.arrive(&state(&ball, &[1.0], &[0.0]), &mut []);
+    let missed = section.periodic(&first.expect("an arrival").before);
     assert!(matches!(
         missed.err(),
         Some(OrbitError::NotConverged { .. })
@@ -228,21 +213,16 @@ fn a_motion_that_ceases_is_no_orbit() {
 
 #[test]
 fn what_is_no_orbit_is_said() {
-    let walker = DimensionlessWalker::default();
-    let far = [walker.delta, 5.0, 0.0].into();
+    let walker = shipped("dimensionless_walker").model();
+    let far = vector(&[value(&walker, "delta"), 5.0, 0.0]);
     let missed = orbit(&walker, &far, 0, 1).err().expect("no orbit");
     assert!(
         matches!(missed, OrbitError::Section(SectionError::Ended(_))),
         "{missed}"
     );
-    let disk = MovingWallDisk::default();
-    let start = disk.state_projected(
-        0.0,
-        &[0.0, 0.0, 0.0, 0.3].into(),
-        &[0.0, 0.0, 8.0, 0.5].into(),
-    );
-    let start = start.expect("a state");
-    let mut short = Section::new(&disk, taylor(), disk.effects(), 0, 0.1);
+    let disk = shipped("moving_wall_disk").model();
+    let start = *Course::new(&disk, &[0.0, 0.0, 0.0, 0.3], &[0.0, 0.0, 8.0, 0.5], 0.0).start();
+    let short = Returns::new(&disk, 0, 0.1);
     let missed = short.arrive(&start, &mut []).expect_err("no arrival");
     assert_eq!(missed, SectionError::Ended(Outcome::Done));
     let moving = orbit(&disk, &start, 0, 1).err().expect("no orbit");
@@ -251,11 +231,9 @@ fn what_is_no_orbit_is_said() {
 
 /// A command line over the models of this file.
 fn run(line: &str) -> Finished {
-    command::line(
-        models![Spring, DimensionlessWalker, PointBilliard, MovingWallDisk],
-        line,
-        "",
-    )
+    let mut models = dalembert_command::all();
+    models.push(SPRING.entry("spring"));
+    command::line(models, line, "")
 }
 
 #[test]

@@ -2,9 +2,11 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::contract::Variational;
 use dalembert::numbers::Row;
-use dalembert::{Described, Hold, Observer, StateVector, System, Tangent, Variations};
+use dalembert::{Hold, Observer, StateVector, System, Tangent};
+use dalembert_cli::Integrator;
+use dalembert_stability::course::Course;
+use dalembert_stability::varied::Varied;
 
 /// The largest difference between a derivative and a difference of runs, in units of the largest entry of its column.
 const DIFFERENCE: f64 = 2e-9;
@@ -13,57 +15,63 @@ const DIFFERENCE: f64 = 2e-9;
 pub fn difference<V: StateVector>(step: f64, f: impl Fn(f64) -> V) -> V {
     let central = |h: f64| {
         let (ahead, behind) = (f(h), f(-h));
-        let mut slope = V::zeros(V::CAPACITY);
-        for i in 0..V::CAPACITY {
-            slope.as_mut_slice()[i] = (ahead.as_slice()[i] - behind.as_slice()[i]) / (2.0 * h);
+        let mut slope = ahead.zeroed();
+        for (i, own) in slope.as_mut_slice().iter_mut().enumerate() {
+            *own = (ahead.as_slice()[i] - behind.as_slice()[i]) / (2.0 * h);
         }
         slope
     };
     let [one, two, four] = [1.0, 2.0, 4.0].map(|factor| central(factor * step));
-    let mut slope = V::zeros(V::CAPACITY);
-    for i in 0..V::CAPACITY {
+    let mut slope = one.zeroed();
+    for (i, own) in slope.as_mut_slice().iter_mut().enumerate() {
         let [one, two, four] = [&one, &two, &four].map(|own| own.as_slice()[i]);
-        slope.as_mut_slice()[i] = (64.0 * one - 20.0 * two + four) / 45.0;
+        *own = (64.0 * one - 20.0 * two + four) / 45.0;
     }
     slope
 }
 
 /// Derivatives of the end of a run with respect to the first `used` components of its start and to all parameters, against
-/// differences of runs with as many impacts. `run` gives the end, and how many there were; so does this.
-pub fn check_differences<S>(
-    system: S,
-    start: S::State,
+/// differences of runs with as many impacts. Says how many there were.
+///
+/// # Panics
+/// Where they differ, and where a run does not come to its end.
+pub fn check_differences<M: Varied>(
+    system: &M,
+    start: M::State,
     used: usize,
-    run: impl Fn(&S, &S::State, &mut dyn Observer<S>) -> (S::State, u64),
-) -> u64
-where
-    S: Described + Variational,
-{
-    let name = S::DESCRIPTION.name;
-    let parameters = S::DESCRIPTION.parameters.len();
-    let mut columns: Vec<Tangent<S>> = (0..used).map(Tangent::of_component).collect();
+    course: impl for<'a> Fn(&'a M, M::State) -> Course<'a, M>,
+) -> u64 {
+    let name = system.description().name;
+    let parameters = system.description().parameters.len();
+    let mut columns: Vec<Tangent<M>> = (0..used).map(Tangent::of_component).collect();
     columns.extend((0..parameters).map(Tangent::of_parameter));
     let directions = columns.clone();
-    let mut variations = Variations::new(&system, &mut columns);
-    let (_, impacts) = run(&system, &start, &mut variations);
-    variations.tangents().expect("derivatives");
+    let (run, derived) = course(system, start).vary(Integrator::Taylor, &mut columns);
+    assert!(run.outcome.is_done(), "{name}: {}", run.outcome);
+    derived.expect("derivatives");
+    let impacts = run.counters.impacts;
     for (direction, column) in directions.iter().zip(&columns) {
         let expected = difference(3e-4, |h| {
             let (mut system, mut start) = (system.clone(), start);
-            for (k, own) in direction.parameters.as_slice().iter().enumerate() {
-                system.set_parameter(k, system.parameter(k) + h * own);
+            for k in 0..parameters {
+                let along = direction.parameters.as_slice()[k];
+                system.set_parameter(k, system.parameter(k) + h * along);
             }
             let parts = start.as_mut_slice().iter_mut();
             for (entry, own) in parts.zip(direction.state.as_slice()) {
                 *entry += h * own;
             }
-            let (state, seen) = run(&system, &start, &mut ());
-            assert_eq!(seen, impacts, "{name}");
-            state
+            let run = course(&system, start).observed(Integrator::Taylor, &mut ());
+            assert!(run.outcome.is_done(), "{name}: {}", run.outcome);
+            assert_eq!(run.counters.impacts, impacts, "{name}");
+            run.state
         });
-        let parts = expected.as_slice().iter();
-        let size = parts.fold(1.0, |size: f64, own| size.max(own.abs()));
-        for (found, expected) in column.state.as_slice().iter().zip(expected.as_slice()) {
+        let (found, expected) = (column.state.as_slice(), expected.as_slice());
+        assert!(found.len() >= expected.len());
+        let size = expected
+            .iter()
+            .fold(1.0, |size: f64, own| size.max(own.abs()));
+        for (found, expected) in found.iter().zip(expected) {
             assert!(
                 (found - expected).abs() <= DIFFERENCE * size,
                 "{name}: {column:?} along {direction:?}: {found} for {expected}",
