@@ -3,12 +3,15 @@
 use dalembert::jet::{Jets, LENGTH};
 use dalembert::numbers::Row;
 use dalembert::{
-    Described, Dop853, Scene, Simulation, StateVector, System, Taylor, TaylorField, Tolerance,
+    Described, Instance, Outcome, Scene, StateVector, System, Taylor, TaylorField, Tolerance,
 };
+use dalembert_cli::Integrator;
 use dalembert_codegen::program::jet::degree::Degree;
 use dalembert_codegen::program::jet::{Jet, Recurrence, interpret};
 use dalembert_codegen::program::{Input, Program};
 use dalembert_codegen::{compile, spec};
+use dalembert_stability::course::{Course, state};
+use dalembert_stability::text::{Large, Model, Text};
 use dalembert_tests::sampling::{Visitor, states, visit_all};
 
 fn program(source: &str) -> Program {
@@ -250,33 +253,36 @@ fn structure_makes_series_end() {
     );
 }
 
-dalembert::model! {
-    /// `x = 1/cosh(t)` solves `x'' = x - 2 x^3`.
-    pub Soliton {
+/// `x = 1/cosh(t)` solves `x'' = x - 2 x^3`.
+static SOLITON: Text = Text::new(
+    "Soliton {
         coordinates { x; }
         lagrangian = dot(x)^2/2 + x^2/2 - x^4/2;
-    }
-}
+    }",
+);
 
 fn soliton_at(t: f64) -> [f64; 2] {
     let x = 1.0 / t.cosh();
     [x, -x * t.tanh()]
 }
 
+/// The soliton from a time of its motion to another one.
+fn soliton(model: &Model, from: f64, until: f64) -> Course<'_, Model> {
+    let [x, v] = soliton_at(from);
+    Course::from_state(model, state(model, &[x], &[v]), until).at(from)
+}
+
 /// The error after `count` equal steps of a series of this order.
 fn error(order: usize, count: u32) -> f64 {
-    let h = 2.0 / f64::from(count);
-    let stepper = Taylor::new(Tolerance::new(1e3).expect("a tolerance"))
-        .with_order(order)
-        .with_max_step(h)
-        .expect("a positive step");
-    let run = Simulation::new(&Soliton::default(), stepper, ())
-        .run(-1.0, soliton_at(-1.0).into(), 1.0, &mut ())
-        .expect("a start");
+    let run = soliton(&SOLITON.model(), -1.0, 1.0)
+        .tol(1e3)
+        .order(order)
+        .step(2.0 / f64::from(count))
+        .observed(Integrator::Taylor, &mut ());
     assert_eq!(run.counters.accepted, u64::from(count));
-    let expected = soliton_at(1.0);
-    (0..2)
-        .map(|i| (run.state[i] - expected[i]).abs())
+    let pairs = run.state.as_ref().iter().zip(soliton_at(1.0));
+    pairs
+        .map(|(own, expected)| (own - expected).abs())
         .fold(0.0, f64::max)
 }
 
@@ -304,13 +310,14 @@ fn orders_and_work_are_as_stored() {
         (1e-18, 26, 13),
     ];
     for (tol, order, steps) in expected {
-        let stepper = Taylor::<Soliton>::new(Tolerance::new(tol).expect("a tolerance"));
-        assert_eq!(stepper.order_for(&Soliton::default()), order, "{tol:e}");
-        let run = Simulation::new(&Soliton::default(), stepper, ())
-            .run(0.0, soliton_at(0.0).into(), 5.0, &mut ())
-            .expect("a start");
+        let model = SOLITON.model();
+        let stepper = Taylor::<Model>::new(Tolerance::new(tol).expect("a tolerance"));
+        assert_eq!(stepper.order_for(&model), order, "{tol:e}");
+        let run = soliton(&model, 0.0, 5.0)
+            .tol(tol)
+            .observed(Integrator::Taylor, &mut ());
         let counters = run.counters;
-        let error = (run.state[0] - soliton_at(5.0)[0]).abs();
+        let error = (run.state.as_ref()[0] - soliton_at(5.0)[0]).abs();
         println!("tol {tol:e}: {counters:?}, error {error:.1e}");
         assert!(error < 200.0 * tol.max(1e-16), "{tol:e}: {error:e}");
         assert_eq!(
@@ -331,30 +338,27 @@ fn orders_and_work_are_as_stored() {
     }
 }
 
-dalembert::model! {
-    /// Two bodies that fall into each other, and friction whose sign changes where the motion turns.
-    pub Rough {
+/// Two bodies that fall into each other, and friction whose sign changes where the motion turns.
+static ROUGH: Text = Text::new(
+    "Rough {
         coordinates { r; x; }
         parameters { mu >= 0 = 0.1; }
         lagrangian = dot(r)^2/2 + dot(x)^2/2 + 1/r - x^2/2;
         forces { dry: -mu*dot(x)/abs(dot(x))*d(x); }
-    }
-}
+    }",
+);
 
 /// The series ends where the force jumps, though its coefficients do not show it.
 #[test]
 fn steps_do_not_pass_over_jumps_of_the_force() {
-    let rough = Rough::default();
-    let state = rough
-        .state(0.0, &[100.0, 1.0].into(), &[0.0, 0.3].into())
-        .expect("a state");
+    let rough = ROUGH.model();
     let end = |tol: f64| {
-        let stepper = Taylor::new(Tolerance::new(tol).expect("a tolerance"));
-        let run = Simulation::new(&rough, stepper, ())
-            .run(0.0, state, 2.0, &mut ())
-            .expect("a start");
+        let state = state(&rough, &[100.0, 1.0], &[0.0, 0.3]);
+        let run = Course::from_state(&rough, state, 2.0)
+            .tol(tol)
+            .observed(Integrator::Taylor, &mut ());
         assert!(run.counters.rejected > 0);
-        (run.state[1], run.counters)
+        (run.state.as_ref()[1], run.counters)
     };
     // On each side an oscillation about -mu or mu.
     let mu: f64 = 0.1;
@@ -368,18 +372,13 @@ fn steps_do_not_pass_over_jumps_of_the_force() {
 
 #[test]
 fn collapse_and_blow_up_are_named_where_they_happen() {
-    let rough = Rough { mu: 0.0 };
-    let state = rough
-        .state(0.0, &[1.0, 0.5].into(), &[0.0, 0.3].into())
-        .expect("a state");
-    let stepper = Taylor::new(Tolerance::new(1e-12).expect("a tolerance"));
-    let run = Simulation::new(&rough, stepper, ())
-        .run(0.0, state, 2.0, &mut ())
-        .expect("a start");
+    let rough = ROUGH.with([("mu", 0.0)]);
+    let state = state(&rough, &[1.0, 0.5], &[0.0, 0.3]);
+    let run = Course::from_state(&rough, state, 2.0).observed(Integrator::Taylor, &mut ());
     assert!(
         matches!(
             run.outcome,
-            dalembert::Outcome::StepUnderflow { .. } | dalembert::Outcome::NonFinite { .. }
+            Outcome::StepUnderflow { .. } | Outcome::NonFinite { .. }
         ),
         "{}",
         run.outcome
@@ -388,30 +387,27 @@ fn collapse_and_blow_up_are_named_where_they_happen() {
     assert!(run.state.is_finite());
 }
 
+static OSCILLATOR: Text = Text::new(
+    "Oscillator {
+        coordinates { x; }
+        parameters { k > 0 = 1; }
+        lagrangian = dot(x)^2/2 - k*x^2/2;
+    }",
+);
+
 /// Units of time near the range of exponents do not matter.
 #[test]
 fn steps_do_not_depend_on_units_of_time() {
-    dalembert::model! {
-        Oscillator {
-            coordinates { x; }
-            parameters { k > 0 = 1; }
-            lagrangian = dot(x)^2/2 - k*x^2/2;
-        }
-    }
     let steps = |power: i32| {
         let frequency = 2_f64.powi(power);
-        let oscillator = Oscillator {
-            k: frequency * frequency,
-        };
-        let state = oscillator
-            .state(0.0, &[1.0].into(), &[frequency].into())
-            .expect("a state");
+        let oscillator = OSCILLATOR.with([("k", frequency * frequency)]);
+        let state = state(&oscillator, &[1.0], &[frequency]);
         // The scale of a velocity is 1 in any units.
-        let tolerance = Tolerance::of(1e-12, 1e-300).expect("a tolerance");
-        let run = Simulation::new(&oscillator, Taylor::new(tolerance), ())
-            .run(0.0, state, 10.0 / frequency, &mut ())
-            .expect("a start");
-        assert!((run.state[0] - 10_f64.cos() - 10_f64.sin()).abs() < 1e-10);
+        let run = Course::from_state(&oscillator, state, 10.0 / frequency)
+            .tols(1e-12, 1e-300)
+            .observed(Integrator::Taylor, &mut ());
+        let x = run.state.as_ref()[0];
+        assert!((x - 10_f64.cos() - 10_f64.sin()).abs() < 1e-10);
         run.counters.accepted
     };
     assert_eq!(steps(0), steps(400));
@@ -421,33 +417,34 @@ fn steps_do_not_depend_on_units_of_time() {
 /// Two runs agree to the bit, and with DOP853 as well as its errors allow.
 #[test]
 fn runs_repeat_and_agree_with_another_method() {
-    struct Repeated;
-    impl Visitor for Repeated {
-        fn visit<S: Described + Scene + TaylorField>(&mut self, system: S) {
-            let name = S::DESCRIPTION.name;
-            for state in states(&system, 2, 7) {
-                let tolerance = Tolerance::new(1e-14).expect("a tolerance");
-                let taylor = || {
-                    Simulation::new(&system, Taylor::new(tolerance), ())
-                        .run(0.0, state, 0.5, &mut ())
-                        .expect("a start")
-                };
-                let (run, again) = (taylor(), taylor());
-                assert_eq!((run.t, run.state), (again.t, again.state), "{name}");
-                let other = Simulation::new(&system, Dop853::new(tolerance), ())
-                    .run(0.0, state, 0.5, &mut ())
-                    .expect("a start");
-                assert_eq!(run.outcome, other.outcome, "{name}");
-                let size = run
-                    .state
-                    .as_slice()
-                    .iter()
-                    .fold(1.0_f64, |a, b| a.max(b.abs()));
-                for (a, b) in run.state.as_slice().iter().zip(other.state.as_slice()) {
-                    assert!((a - b).abs() < 1e-11 * size, "{name}: {a} and {b}");
-                }
+    #[derive(Default)]
+    struct Sources(Vec<&'static str>);
+    impl Visitor for Sources {
+        fn visit<S: Described + Scene + TaylorField>(&mut self, _: S) {
+            self.0.push(S::DESCRIPTION.source);
+        }
+    }
+    let mut sources = Sources::default();
+    visit_all(&mut sources);
+    for source in sources.0 {
+        let system: Large = Text::new(source).sized();
+        let name = system.description().name;
+        for state in states(&system, 2, 7) {
+            let run = |integrator| {
+                Course::from_state(&system, state, 0.5)
+                    .tol(1e-14)
+                    .alone()
+                    .observed(integrator, &mut ())
+            };
+            let [one, again, other] =
+                [Integrator::Taylor, Integrator::Taylor, Integrator::Dop853].map(run);
+            assert_eq!((one.t, one.state), (again.t, again.state), "{name}");
+            assert_eq!(one.outcome, other.outcome, "{name}");
+            let (one, other) = (one.state.as_ref(), other.state.as_ref());
+            let size = one.iter().fold(1.0_f64, |a, b| a.max(b.abs()));
+            for (a, b) in one.iter().zip(other) {
+                assert!((a - b).abs() < 1e-11 * size, "{name}: {a} and {b}");
             }
         }
     }
-    visit_all(&mut Repeated);
 }
