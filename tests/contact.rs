@@ -2,25 +2,27 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::impacts::Impacts;
 use dalembert::{
-    Corner, Dop853, Event, Fault, Gauss6, Hold, Instance, Observer, Outcome, Penetration, Policies,
-    Rest, Rk4, Run, Scene, SceneEffects, Simulation, Stepper, System, Taylor, Tolerance,
+    Corner, EventLog, Fault, Hold, Instance, Law, Observer, Outcome, Penetration, Policies, Rest,
+    Run, System, VectorField,
 };
+use dalembert_cli::Integrator;
+use dalembert_stability::course::{Course, vector};
+use dalembert_stability::text::{Model, Text, value};
 use dalembert_tests::numeric::assert_near;
 
-dalembert::model! {
-    /// A point in a vertical loop.
-    pub Looping {
+/// A point in a vertical loop.
+static LOOPING: Text = Text::new(
+    "Looping {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
         impacts { wall: 1 - x^2 - y^2 >= 0 => impact_plastic; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point in a trough with sides of different slopes.
-    pub Trough {
+/// A point in a trough with sides of different slopes.
+static TROUGH: Text = Text::new(
+    "Trough {
         coordinates { x; y; }
         parameters { m > 0 = 2; left > 0 = 0.75; right > 0 = 2; }
         lagrangian = m/2*(dot(x)^2 + dot(y)^2) - m*y;
@@ -28,27 +30,27 @@ dalembert::model! {
             left_side: y + left*x >= 0;
             right_side: y - right*x >= 0;
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A knife edge that is driven against a wall.
-    pub Skate {
+/// A knife edge that is driven against a wall.
+static SKATE: Text = Text::new(
+    "Skate {
         coordinates { x; y; theta: angle; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(theta)^2/4)/2 - x/2;
         constraints { blade: sin(theta)*d(x) - cos(theta)*d(y) = 0; }
         impacts { wall: x + y^2/8 + sin(theta)/4 >= 0 => impact_plastic; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point that meets two walls at an angle of 100 degrees at once.
-    pub Wedge {
+/// A point that meets two walls at an angle of 100 degrees at once.
+static WEDGE: Text = Text::new(
+    "Wedge {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { floor: y >= 0; slope: x*sin(5*pi/9) - y*cos(5*pi/9) >= 0; }
-    }
-}
+    }",
+);
 
 const CONTACT: Policies = Policies {
     rest: Rest::Contact,
@@ -67,26 +69,20 @@ impl<M: System> Observer<M> for Holds<M::State> {
     }
 }
 
-type Ran<S> = (Run<S>, Vec<Hold<S>>);
+type State = <Model as VectorField>::State;
 
-fn ran<M: Scene>(
-    model: &M,
-    stepper: impl Stepper<M>,
-    policies: Policies,
-    state: M::State,
-    until: f64,
-) -> Ran<M::State> {
-    let mut effects = model.effects();
-    effects.set_policies(policies);
-    let mut holds = Holds(Vec::new());
-    let run = Simulation::new(model, stepper, effects)
-        .run(0.0, state, until, &mut holds)
-        .expect("a start");
-    (run, holds.0)
+type Ran = (Run<State>, Vec<Hold<State>>);
+
+/// A run from a state that is not looked at before.
+fn course<'a>(model: &'a Model, q: &[f64], qdot: &[f64], until: f64) -> Course<'a, Model> {
+    let state = model.state_unchecked(0.0, &vector(q), &vector(qdot));
+    Course::from_state(model, state.expect("a state"), until).tol(1e-13)
 }
 
-fn tolerance() -> Tolerance {
-    Tolerance::new(1e-13).expect("a tolerance")
+fn ran(course: Course<'_, Model>, integrator: Integrator, policies: Policies) -> Ran {
+    let mut holds = Holds(Vec::new());
+    let run = course.policies(policies).observed(integrator, &mut holds);
+    (run, holds.0)
 }
 
 #[test]
@@ -98,18 +94,18 @@ fn a_point_held_in_a_bowl_is_a_pendulum() -> Result<(), Fault> {
     }
     let period = 2.0 * core::f64::consts::PI / a;
     let start = [1.0_f64.sin(), -(1.0_f64.cos())];
-    let state = Looping {}.state_unchecked(0.0, &start.into(), &[0.0, 0.0].into())?;
-    macro_rules! check {
-        ($($stepper:expr)*) => {$(
-            let (run, holds) = ran(&Looping {}, $stepper, CONTACT, state, 3.0 * period);
-            assert_eq!(run.outcome, Outcome::Done);
-            assert_eq!(holds.len(), 1);
-            let q = Looping {}.position(&run.state);
-            assert_near("after three periods", q.as_slice(), &start, 1e-10);
-            assert_near("energy", &[Looping {}.energy(run.t, &run.state)?], &[start[1]], 1e-12);
-        )*};
+    let model = LOOPING.model();
+    for &integrator in Integrator::every() {
+        let course = course(&model, &start, &[0.0, 0.0], 3.0 * period);
+        let (run, holds) = ran(course, integrator, CONTACT);
+        let name = integrator.name();
+        assert_eq!(run.outcome, Outcome::Done, "{name}");
+        assert_eq!(holds.len(), 1, "{name}");
+        let q = model.position(&run.state);
+        assert_near(name, q.as_ref(), &start, 1e-10);
+        let energy = model.energy(run.t, &run.state)?;
+        assert_near(name, &[energy], &[start[1]], 1e-12);
     }
-    check!(Dop853::new(tolerance()) Taylor::new(tolerance()) Rk4::new(tolerance()) Gauss6::new(tolerance()));
     Ok(())
 }
 
@@ -117,84 +113,77 @@ fn a_point_held_in_a_bowl_is_a_pendulum() -> Result<(), Fault> {
 fn a_point_leaves_the_loop_where_it_stops_pressing() -> Result<(), Fault> {
     // From the bottom with v^2 = 3.5 it presses until v^2 = y, at the height y = (3.5 - 2)/3.
     let speed = 3.5_f64.sqrt();
-    let state = Looping {}.state_unchecked(0.0, &[0.0, -1.0].into(), &[speed, 0.0].into())?;
-    let (run, holds) = ran(&Looping {}, Dop853::new(tolerance()), CONTACT, state, 20.0);
+    let model = LOOPING.model();
+    let course = course(&model, &[0.0, -1.0], &[speed, 0.0], 20.0);
+    let (run, holds) = ran(course, Integrator::Dop853, CONTACT);
     assert_eq!(run.outcome, Outcome::Done);
     let places: Vec<(bool, f64)> = holds
         .iter()
-        .map(|hold| (hold.begins, Looping {}.position(&hold.state)[1]))
+        .map(|hold| (hold.begins, model.position(&hold.state).as_ref()[1]))
         .collect();
     assert!(places[0].0 && !places[1].0 && places[2].0, "{places:?}");
     assert_near("height", &[places[1].1], &[0.5], 1e-11);
     // It falls on the other side, loses the speed towards the wall, and never leaves it again.
     assert_eq!(places.len(), 3, "{places:?}");
-    let q = Looping {}.position(&run.state);
+    let q = model.position(&run.state);
+    let q = q.as_ref();
     assert_near("on the wall", &[q[0].hypot(q[1])], &[1.0], 1e-12);
     Ok(())
 }
 
 #[test]
 fn a_point_comes_to_rest_between_two_surfaces_that_carry_its_weight() -> Result<(), Fault> {
-    let trough = Trough::default();
-    let state = trough.state_unchecked(0.0, &[0.1, 1.0].into(), &[0.3, 0.0].into())?;
-    let mut effects = trough.effects();
-    effects.set_policies(CONTACT);
-    for surface in 0..2 {
-        effects.set_law(surface, dalembert::Law::ImpactPlastic);
-    }
-    let mut simulation = Simulation::new(&trough, Dop853::new(tolerance()), effects);
+    let trough = TROUGH.model();
     let mut holds = Holds(Vec::new());
-    let run = simulation
-        .run(0.0, state, 100.0, &mut holds)
-        .expect("a start");
+    let mut course = course(&trough, &[0.1, 1.0], &[0.3, 0.0], 100.0).policies(CONTACT);
+    for surface in 0..2 {
+        course = course.law(surface, Law::ImpactPlastic);
+    }
+    let (run, effects) = course.with_effects(Integrator::Dop853, &mut holds);
     assert_eq!(run.outcome, Outcome::Done, "{:?}", holds.0);
     assert_near(
         "corner",
-        trough.position(&run.state).as_slice(),
+        trough.position(&run.state).as_ref(),
         &[0.0, 0.0],
         1e-14,
     );
-    let impacts: &Impacts<Trough> = &simulation.effects().0;
-    let forces = impacts
+    let forces = effects
+        .1
+        .expect("impacts")
         .contact_forces(&trough, run.t, &run.state)?
         .expect("second rates");
-    let (a, b) = (forces[0], forces[1]);
-    assert_near(
-        "forces",
-        &[a * trough.left - b * trough.right, a + b],
-        &[0.0, trough.m],
-        1e-13,
-    );
+    let (a, b) = (forces.as_ref()[0], forces.as_ref()[1]);
+    let [left, right, m] = ["left", "right", "m"].map(|name| value(&trough, name));
+    assert_near("forces", &[a * left - b * right, a + b], &[0.0, m], 1e-13);
     Ok(())
 }
 
 #[test]
-fn both_forms_slide_along_a_wall_alike() -> Result<(), Fault> {
+fn both_forms_slide_along_a_wall_alike() {
     let (q, qdot) = ([0.3, 0.2, 0.4], [0.0, 0.0, 0.8]);
-    let ends = |until: f64| -> Result<[Vec<f64>; 2], Fault> {
-        let state = Skate {}.state_unchecked(0.0, &q.into(), &qdot.into())?;
-        let (reduced, holds) = ran(&Skate {}, Dop853::new(tolerance()), CONTACT, state, until);
+    let ends = |until: f64| {
+        let forms = [SKATE.model(), SKATE.model().global()];
+        let [(reduced, holds), (whole, others)] = forms
+            .each_ref()
+            .map(|form| ran(course(form, &q, &qdot, until), Integrator::Dop853, CONTACT));
         assert_eq!(reduced.outcome, Outcome::Done);
         assert!(!holds.is_empty(), "it is held");
-        let global = Skate {}.global();
-        let state = global.state_unchecked(0.0, &q.into(), &qdot.into())?;
-        let (run, others) = ran(&global, Dop853::new(tolerance()), CONTACT, state, until);
-        assert_eq!(run.outcome, Outcome::Done);
+        assert_eq!(whole.outcome, Outcome::Done);
         assert_eq!(holds.len(), others.len());
         for (one, other) in holds.iter().zip(&others) {
             assert_eq!(one.begins, other.begins);
             assert_near("time", &[one.t], &[other.t], 1e-8);
         }
-        Ok([
-            Skate {}.position(&reduced.state).as_slice().to_vec(),
-            global.position(&run.state).as_slice().to_vec(),
-        ])
+        let [skate, global] = &forms;
+        [
+            skate.position(&reduced.state).as_ref().to_vec(),
+            global.position(&whole.state).as_ref().to_vec(),
+        ]
     };
     for until in [4.0, 4.5, 5.0] {
-        let [reduced, global] = ends(until)?;
+        let [reduced, global] = ends(until);
         assert_near("positions", &reduced, &global, 1e-9);
     }
-    Ok(())
 }
 
 #[test]
@@ -203,28 +192,18 @@ fn repeated_laws_end_as_plastic_impacts() -> Result<(), Fault> {
         penetration: Penetration::Repeat,
         ..CONTACT
     };
-    let state = Skate {}.state_unchecked(0.0, &[0.3, 0.2, 0.4].into(), &[-1.0, 0.0, 0.8].into())?;
+    let skate = SKATE.model();
     let mut after = Vec::new();
-    for law in [
-        dalembert::Law::TotallyPlastic,
-        dalembert::Law::ImpactPlastic,
-    ] {
-        let mut effects = (Skate {}).effects();
-        effects.set_policies(repeat);
-        effects.set_law(0, law);
-        effects.set_impact_budget(Some(1));
-        let mut log = dalembert::EventLog::<_, 4>::new();
-        let run = Simulation::new(&Skate {}, Dop853::new(tolerance()), effects)
-            .run(0.0, state, 10.0, &mut log)
-            .expect("a start");
+    for law in [Law::TotallyPlastic, Law::ImpactPlastic] {
+        let mut log = EventLog::<_, 4>::new();
+        let run = course(&skate, &[0.3, 0.2, 0.4], &[-1.0, 0.0, 0.8], 10.0)
+            .policies(repeat)
+            .law(0, law)
+            .impacts(1)
+            .observed(Integrator::Dop853, &mut log);
         assert_eq!(run.outcome, Outcome::ImpactBudget);
-        let event: &Event<_> = log.iter().next().expect("an impact");
-        after.push(
-            Skate {}
-                .velocity(event.t, &event.after)?
-                .as_slice()
-                .to_vec(),
-        );
+        let event = log.iter().next().expect("an impact");
+        after.push(skate.velocity(event.t, &event.after)?.as_ref().to_vec());
     }
     assert_near("velocity", &after[0], &after[1], 1e-12);
     Ok(())
@@ -233,10 +212,11 @@ fn repeated_laws_end_as_plastic_impacts() -> Result<(), Fault> {
 #[test]
 fn the_order_at_a_corner_is_asked_for_where_it_matters() -> Result<(), Fault> {
     let (sin, cos) = (0.3 * 5.0 * core::f64::consts::PI / 9.0).sin_cos();
-    let state = Wedge {}.state_unchecked(0.0, &[cos, sin].into(), &[-cos, -sin].into())?;
+    let wedge = WEDGE.model();
     let end = |corner| {
         let policies = Policies { corner, ..CONTACT };
-        ran(&Wedge {}, Dop853::new(tolerance()), policies, state, 2.0).0
+        let course = course(&wedge, &[cos, sin], &[-cos, -sin], 2.0);
+        ran(course, Integrator::Dop853, policies).0
     };
     let stopped = end(Corner::Stop);
     assert_eq!(stopped.outcome, Outcome::Ambiguous { surfaces: [0, 1] });
@@ -264,10 +244,10 @@ fn the_order_at_a_corner_is_asked_for_where_it_matters() -> Result<(), Fault> {
     ] {
         let run = end(corner);
         assert_eq!(run.outcome, Outcome::Done);
-        let velocity = Wedge {}.velocity(run.t, &run.state)?;
+        let velocity = wedge.velocity(run.t, &run.state)?;
         assert_near(
             "velocity",
-            velocity.as_slice(),
+            velocity.as_ref(),
             &walls([-cos, -sin], order),
             1e-12,
         );

@@ -4,63 +4,65 @@
 use core::f64::consts::FRAC_PI_2;
 
 use dalembert::{
-    Described, Dla2, Dla4, Dop853, DormandPrince5, Event, EventLog, Gauss4, Gauss6, Lagrangian,
-    Outcome, Rk4, Run, Scene, Simulation, StateVector, Stepper, System, Taylor, TaylorField,
-    Tolerance,
+    Described, Event, EventLog, Lagrangian, Outcome, Run, Scene, StateVector, System, TaylorField,
+    VectorField,
 };
+use dalembert_cli::Integrator;
 use dalembert_models::{BallOnSwitchingTable, SmoothAndRoughPlane, TwoWheelsArrested};
+use dalembert_stability::course::{Course, vector};
+use dalembert_stability::text::{Model, Text};
 use dalembert_tests::sampling::{Visitor, visit_all};
 
-dalembert::model! {
-    /// The second form vanishes beside the first where `y` is 0.
-    pub Crossed {
+/// The second form vanishes beside the first where `y` is 0.
+static CROSSED: Text = Text::new(
+    "Crossed {
         coordinates { x; y; z; }
         parameters { wall = 10; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
         constraints { first: d(x) = 0; second: d(x) + y*d(z) = 0; }
         impacts { end: wall - y >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// It vanishes to the second order.
-    pub Touched {
+/// It vanishes to the second order.
+static TOUCHED: Text = Text::new(
+    "Touched {
         coordinates { x; y; z; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
         constraints { first: d(x) = 0; second: d(x) + y^2*d(z) = 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// It vanishes where a needle stands upright.
-    pub Upright {
+/// It vanishes where a needle stands upright.
+static UPRIGHT: Text = Text::new(
+    "Upright {
         coordinates { x; y; z; theta: angle; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(theta)^2)/2 - x*y/3;
         constraints { first: d(x) - y*d(y) = 0; second: cos(theta)*d(z) + d(x) - y*d(y) = 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// It vanishes at a time.
-    pub Timed {
+/// It vanishes at a time.
+static TIMED: Text = Text::new(
+    "Timed {
         coordinates { x; y; z; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - y;
         constraints { first: d(x) = 0; second: d(x) + (1 - t)*d(z) = 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// One form, which vanishes at the origin only, and turns round it.
-    pub Centred {
+/// One form, which vanishes at the origin only, and turns round it.
+static CENTRED: Text = Text::new(
+    "Centred {
         coordinates { x; y; z; w; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2)/2;
         constraints { only: x*d(z) + y*d(w) = 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Forms that are nearly dependent everywhere, which nothing shows while building.
-    pub NearlyDependent {
+/// Forms that are nearly dependent everywhere, which nothing shows while building.
+static NEARLY_DEPENDENT: Text = Text::new(
+    "NearlyDependent {
         coordinates { x; y; z; w; }
         parameters { delta = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2)/2 - x*z;
@@ -68,21 +70,21 @@ dalembert::model! {
             first: dot(z) - y*dot(x) = 0;
             second: dot(z) - y*dot(x) + delta*(dot(w) - x*dot(y)) = 0;
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A bead on a circle, whose form turns with it and has a constant length.
-    pub Ring {
+/// A bead on a circle, whose form turns with it and has a constant length.
+static RING: Text = Text::new(
+    "Ring {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         constraints { ring: (x*d(x) + y*d(y))*(1 + x^2) = 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Free on one side of `y = -1/2`, with forms that become dependent at `y = 0` on the other.
-    pub Entered {
+/// Free on one side of `y = -1/2`, with forms that become dependent at `y = 0` on the other.
+static ENTERED: Text = Text::new(
+    "Entered {
         coordinates { x; y; z; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
         modes {
@@ -90,26 +92,24 @@ dalembert::model! {
             bound { constraints { first: d(x) = 0; second: d(x) + y*d(z) = 0; } }
         }
         transitions { enter: free -> bound when y + 1/2 >= 0; }
-    }
-}
+    }",
+);
+
+type State = <Model as VectorField>::State;
 
 /// What a run met.
-type Log<M> = EventLog<<M as dalembert::VectorField>::State, 4>;
+type Log = EventLog<State, 4>;
 
-struct Start<'a, M: System> {
-    system: &'a M,
-    state: M::State,
+struct Start<'a> {
+    system: &'a Model,
+    state: State,
     until: f64,
 }
 
 const STEPS: [f64; 6] = [f64::INFINITY, 3.0, 0.5, 0.37, 0.1, 1.0 / 64.0];
 
-fn tolerance() -> Tolerance {
-    Tolerance::new(1e-10).expect("a tolerance")
-}
-
-impl<'a, M: Scene + TaylorField + Lagrangian> Start<'a, M> {
-    fn new(system: &'a M, q: &[f64], qdot: &[f64], until: f64) -> Self {
+impl<'a> Start<'a> {
+    fn new(system: &'a Model, q: &[f64], qdot: &[f64], until: f64) -> Self {
         let state = system.state_projected(0.0, &vector(q), &vector(qdot));
         Self {
             system,
@@ -118,64 +118,34 @@ impl<'a, M: Scene + TaylorField + Lagrangian> Start<'a, M> {
         }
     }
 
-    /// Runs with every integrator and every size of its steps.
-    fn every(&self, judge: impl Fn(&str, Run<M::State>, &Log<M>)) {
-        for step in STEPS {
-            let tol = tolerance();
-            self.run(
-                step,
-                Dop853::new(tol)
-                    .with_max_step(step)
-                    .expect("a positive step"),
-                &judge,
-            );
-            self.run(
-                step,
-                DormandPrince5::new(tol)
-                    .with_max_step(step)
-                    .expect("a positive step"),
-                &judge,
-            );
-            self.run(
-                step,
-                Taylor::new(tol)
-                    .with_max_step(step)
-                    .expect("a positive step"),
-                &judge,
-            );
-            self.run(step, Rk4::new(tol).with_step(step), &judge);
-            self.run(step, Gauss4::new(tol).with_step(step), &judge);
-            self.run(step, Gauss6::new(tol).with_step(step), &judge);
-        }
+    /// Runs with every integrator, but for those of the discrete principle, and every size of its steps.
+    fn every(&self, judge: impl Fn(&str, Run<State>, &Log)) {
+        self.run(false, judge);
     }
 
     /// Runs with the integrators of the discrete principle.
-    fn discrete(&self, judge: impl Fn(&str, Run<M::State>, &Log<M>)) {
+    fn discrete(&self, judge: impl Fn(&str, Run<State>, &Log)) {
+        self.run(true, judge);
+    }
+
+    fn run(&self, discrete: bool, judge: impl Fn(&str, Run<State>, &Log)) {
+        let is_discrete = |own: Integrator| matches!(own, Integrator::Dla2 | Integrator::Dla4);
         for step in STEPS {
-            let tol = tolerance();
-            self.run(step, Dla2::new(tol).with_step(step), &judge);
-            self.run(step, Dla4::new(tol).with_step(step), &judge);
+            for &integrator in Integrator::every() {
+                if is_discrete(integrator) != discrete {
+                    continue;
+                }
+                let mut log = Log::new();
+                let run = Course::from_state(self.system, self.state, self.until)
+                    .tol(1e-10)
+                    .step(step)
+                    .steps(100_000)
+                    .observed(integrator, &mut log);
+                let name = integrator.name();
+                judge(&format!("{name} with steps of {step}"), run, &log);
+            }
         }
     }
-
-    fn run<S: Stepper<M>>(
-        &self,
-        step: f64,
-        stepper: S,
-        judge: &impl Fn(&str, Run<M::State>, &Log<M>),
-    ) {
-        let mut log = Log::<M>::new();
-        let name = stepper.name();
-        let run = Simulation::new(self.system, stepper, self.system.effects())
-            .with_step_budget(100_000)
-            .run(0.0, self.state, self.until, &mut log)
-            .expect("a start");
-        judge(&format!("{name} with steps of {step}"), run, &log);
-    }
-}
-
-fn vector<V: StateVector>(values: &[f64]) -> V {
-    V::of(values)
 }
 
 /// The run ended where this constraint depends on the others, with this component of its state near a value.
@@ -197,10 +167,10 @@ fn assert_drop<S: StateVector>(
 
 #[test]
 fn a_drop_is_found_between_the_ends_of_steps() {
-    let system = Crossed::default();
+    let system = CROSSED.model();
     for v in [1.0, 0.3, 7.0] {
         let start = Start::new(&system, &[0.0, -1.0, 0.0], &[0.0, v, 0.0], 4.0);
-        let judge = |case: &str, run: Run<_>, _: &Log<Crossed>| {
+        let judge = |case: &str, run: Run<_>, _: &Log| {
             assert_drop(case, &run, 1, (1, 0.0), 1e-12);
             assert!((run.t - 1.0 / v).abs() < 1e-11, "{case}: {}", run.t);
         };
@@ -212,7 +182,7 @@ fn a_drop_is_found_between_the_ends_of_steps() {
 #[test]
 fn a_drop_next_to_the_start_is_found() {
     for y in [-1e-3, -1e-8, -1e-15] {
-        let system = Crossed::default();
+        let system = CROSSED.model();
         Start::new(&system, &[0.0, y, 0.0], &[0.0, 1.0, 0.0], 2.0).every(|case, run, _| {
             assert_drop(case, &run, 1, (1, 0.0), 1e-12);
         });
@@ -221,7 +191,7 @@ fn a_drop_next_to_the_start_is_found() {
 
 #[test]
 fn a_drop_of_even_order_is_found() {
-    Start::new(&Touched {}, &[0.0, -1.0, 0.0], &[0.0, 1.0, 0.0], 2.0).every(|case, run, _| {
+    Start::new(&TOUCHED.model(), &[0.0, -1.0, 0.0], &[0.0, 1.0, 0.0], 2.0).every(|case, run, _| {
         // Nearer than this the forms are dependent to rounding: `y^2 < 4 * 2^-52`.
         assert_drop(case, &run, 1, (1, 0.0), 3e-8);
     });
@@ -229,14 +199,15 @@ fn a_drop_of_even_order_is_found() {
 
 #[test]
 fn a_drop_by_an_angle_is_found() {
-    let system = Upright {};
+    let system = UPRIGHT.model();
     let start = Start::new(&system, &[0.1, 0.4, 0.0, 0.2], &[0.2, 0.5, 0.0, 0.9], 3.0);
     start.every(|case, run, _| assert_drop(case, &run, 1, (3, FRAC_PI_2), 1e-9));
 }
 
 #[test]
 fn a_drop_at_a_time_is_found() {
-    let start = Start::new(&Timed {}, &[0.0; 3], &[0.0, 1.0, 0.0], 4.0);
+    let system = TIMED.model();
+    let start = Start::new(&system, &[0.0; 3], &[0.0, 1.0, 0.0], 4.0);
     start.every(|case, run, _| {
         assert_drop(case, &run, 1, (0, 0.0), 1e-9);
         assert!((run.t - 1.0).abs() < 1e-12, "{case}: {}", run.t);
@@ -245,9 +216,10 @@ fn a_drop_at_a_time_is_found() {
 
 #[test]
 fn a_form_that_vanishes_is_told_from_one_that_turns_fast() {
+    let system = CENTRED.model();
     let start = |miss: f64| {
         Start::new(
-            &Centred {},
+            &system,
             &[-0.6, -0.8 + miss, 0.0, 0.0],
             &[0.6, 0.8, 0.0, 0.0],
             2.0,
@@ -264,7 +236,7 @@ fn a_form_that_vanishes_is_told_from_one_that_turns_fast() {
 fn forms_that_are_small_or_turn_are_no_drop() {
     for delta in [1.0, 1e-3, 1e-6, 1e-9] {
         let (x, y) = (0.7, -0.4);
-        let system = NearlyDependent { delta };
+        let system = NEARLY_DEPENDENT.with([("delta", delta)]);
         let qdot = [0.3, 0.9, y * 0.3, x * 0.9];
         Start::new(&system, &[x, y, 0.2, 0.1], &qdot, 2.0).every(|case, run, _| {
             // The longest steps of Gauss's methods have no solution to rounding where the forms nearly coincide.
@@ -276,27 +248,27 @@ fn forms_that_are_small_or_turn_are_no_drop() {
             );
         });
     }
-    Start::new(&Ring {}, &[1.0, 0.0], &[0.0, 1.0], 20.0)
+    Start::new(&RING.model(), &[1.0, 0.0], &[0.0, 1.0], 20.0)
         .every(|case, run, _| assert_eq!(run.outcome, Outcome::Done, "{case}"));
 }
 
 #[test]
 fn what_comes_first_ends_the_step() {
     // A wall before the drop turns the motion round.
-    let system = Crossed { wall: -1e-6 };
+    let system = CROSSED.with([("wall", -1e-6)]);
     Start::new(&system, &[0.0, -1.0, 0.0], &[0.0, 1.0, 0.0], 3.0).every(|case, run, log| {
         assert_eq!(run.outcome, Outcome::Done, "{case}");
         assert_eq!(log.iter().count(), 1, "{case}");
     });
     // The drop comes before the wall.
-    let system = Crossed { wall: 1e-6 };
+    let system = CROSSED.with([("wall", 1e-6)]);
     Start::new(&system, &[0.0, -1.0, 0.0], &[0.0, 1.0, 0.0], 3.0).every(|case, run, log| {
         assert_drop(case, &run, 1, (1, 0.0), 1e-12);
         let none: Vec<&Event<_>> = log.iter().collect();
         assert!(none.is_empty(), "{case}");
     });
     // A wall that is met first sends the motion into the drop.
-    let system = Crossed { wall: 3.0 };
+    let system = CROSSED.with([("wall", 3.0)]);
     Start::new(&system, &[0.0, 1.0, 0.0], &[0.0, 1.0, 0.0], 9.0).every(|case, run, log| {
         assert_drop(case, &run, 1, (1, 0.0), 1e-12);
         assert_eq!(log.iter().count(), 1, "{case}");
@@ -305,7 +277,7 @@ fn what_comes_first_ends_the_step() {
 
 #[test]
 fn a_drop_in_a_mode_is_found() {
-    let system = Entered::default();
+    let system = ENTERED.model();
     let (q, qdot) = ([0.0, -1.0, 0.0], [0.0, 1.0, 0.0]);
     Start::new(&system, &q, &qdot, 2.0).every(|case, run, _| {
         assert_drop(case, &run, 1, (1, 0.0), 1e-12);
@@ -314,15 +286,15 @@ fn a_drop_in_a_mode_is_found() {
 
 #[test]
 fn a_start_where_the_rank_has_dropped_goes_nowhere() {
-    let system = Crossed::default();
+    let system = CROSSED.model();
     let (q, qdot) = ([0.0; 3], [0.0, 1.0, 0.0]);
     assert!(
         system
-            .state_projected(0.0, &q.into(), &qdot.into())
+            .state_projected(0.0, &vector(&q), &vector(&qdot))
             .is_err()
     );
     let state = system
-        .state_unchecked(0.0, &q.into(), &qdot.into())
+        .state_unchecked(0.0, &vector(&q), &vector(&qdot))
         .expect("a state");
     let start = Start {
         system: &system,

@@ -2,16 +2,15 @@
 
 mod along;
 
-use dalembert::impacts::Impacts;
 use dalembert::law::Law;
 use dalembert::{
-    Described, Dop853, EventLog, Impacting, Instance, Outcome, Scene, Simulation, StateVector,
-    System, Taylor, Tolerance,
+    Described, EventLog, Impacting, Instance, Outcome, StateVector, System, VectorField,
 };
-use dalembert_cli::Exit;
+use dalembert_cli::{Exit, Integrator};
 use dalembert_codegen::compile;
 use dalembert_codegen::program::{Input, Program, interpret::interpret};
-use dalembert_models::RollingBallWall;
+use dalembert_stability::course::{Course, Driven, state, vector};
+use dalembert_stability::text::{Large, Model, Text, shipped};
 use dalembert_tests::command::dalembert;
 use dalembert_tests::interpreted::input;
 use dalembert_tests::numeric::assert_near;
@@ -19,9 +18,11 @@ use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::sampling::{Random, states};
 use serde_json::Value;
 
-dalembert::model! {
-    /// The ball at a wall with the sign that the source prints: a wall on the other side.
-    pub PrintedWall {
+type State = <Model as VectorField>::State;
+
+/// The ball at a wall with the sign that the source prints: a wall on the other side.
+static PRINTED_WALL: Text = Text::new(
+    "PrintedWall {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
         parameters { r > 0 = 1; k > 0 = 2/3; }
         let omega_x = cos(psi)*dot(theta) + sin(psi)*sin(theta)*dot(phi);
@@ -37,12 +38,12 @@ dalembert::model! {
                 no_slip: dot(y) - r*(cos(theta)*dot(phi) + dot(psi)) = 0;
             };
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A disk that falls on a floor which is inclined by `alpha`, and does not slip on it.
-    pub Incline {
+/// A disk that falls on a floor which is inclined by `alpha`, and does not slip on it.
+static INCLINE: Text = Text::new(
+    "Incline {
         coordinates { x; y; theta; }
         parameters { m > 0 = 2; r > 0 = 1/2; I > 0 = 1/8; g > 0 = 9.81; alpha = 1/5; e in [0, 1] = 1/2; belt = 0; }
         lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + m*g*(x*sin(alpha) - y*cos(alpha));
@@ -50,18 +51,18 @@ dalembert::model! {
             floor: y >= r => newton(e), instantaneous { roll: dot(x) - r*dot(theta) = belt; };
         }
         scenes { dropped: floor; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point that a rough wall lets move across one direction only.
-    pub Rail {
+/// A point that a rough wall lets move across one direction only.
+static RAIL: Text = Text::new(
+    "Rail {
         coordinates { x; y; }
         parameters { slope != 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { wall: y >= 0 => elastic, instantaneous { rail: dot(x) + slope*dot(y) = 0; }; }
-    }
-}
+    }",
+);
 
 dalembert::model! {
     /// A knife edge whose tip sticks to a curved wall along a direction that turns.
@@ -79,9 +80,11 @@ dalembert::model! {
     }
 }
 
-dalembert::model! {
-    /// Walls that a point sticks to, one for each coordinate, and a floor that it does not stick to.
-    pub Corner {
+static TIP: Text = Text::new(Tip::DESCRIPTION.source);
+
+/// Walls that a point sticks to, one for each coordinate, and a floor that it does not stick to.
+static CORNER: Text = Text::new(
+    "Corner {
         const N = 2;
         coordinates { x[N]; z; w; }
         lagrangian = (dot(x[1])^2 + dot(x[2])^2 + dot(z)^2 + dot(w)^2)/2 - x[1] - x[2] - z;
@@ -89,26 +92,25 @@ dalembert::model! {
             wall[i in 1..=N]: x[i] >= 0 => impact_plastic, instantaneous { slip: dot(w) = i*dot(z); };
             floor: z + w >= 0 => impact_plastic;
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A constraint that becomes dependent on another one where x is 0.
-    pub Degenerate {
+/// A constraint that becomes dependent on another one where x is 0.
+static DEGENERATE: Text = Text::new(
+    "Degenerate {
         coordinates { x; y; z; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
         constraints { level: d(z) = 0; }
         impacts { wall: y >= 0 => elastic, instantaneous { stuck: x*d(x) + d(z) = 0; }; }
-    }
-}
+    }",
+);
 
 /// The state after an impact at `t = 0`, by the effect that runs use.
-fn struck<S: Scene + Impacting>(system: &S, law: Law, state: S::State) -> S::State {
-    let effects = Impacts::declared(system).with_law(0, law);
-    let stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
+fn struck<S: Driven>(system: &S, law: Law, state: S::State) -> S::State {
     let mut events = EventLog::<_, 4>::new();
-    let mut simulation = Simulation::new(system, stepper, effects);
-    simulation.run(0.0, state, 0.0, &mut events).expect("a run");
+    Course::from_state(system, state, 0.0)
+        .law(0, law)
+        .observed(Integrator::Dop853, &mut events);
     events.iter().next().expect("an impact").after
 }
 
@@ -120,7 +122,7 @@ fn velocities(q: &[f64], [vx, vy, w1, w2, w3]: [f64; 5]) -> [f64; 5] {
     [vx, vy, phi, theta, w3 - c * phi]
 }
 
-fn check_ball<S: Scene + Impacting>(system: &S, variant: &str) -> usize {
+fn check_ball(system: &Large, variant: &str) -> usize {
     let reference = read("cortes_vinogradov");
     let cases = reference["cv62_wall"]["cases"].as_array().expect("cases");
     let q = [
@@ -131,10 +133,8 @@ fn check_ball<S: Scene + Impacting>(system: &S, variant: &str) -> usize {
         -0.6,
     ];
     let of = |value: &Value| velocities(&q, numbers(value).try_into().expect("five numbers"));
-    let position = S::Vector::from_slice_of(&q);
     for case in cases {
-        let before = S::Vector::from_slice_of(&of(&case["velocity_minus"]));
-        let state = system.state(0.0, &position, &before).expect("a state");
+        let state = state(system, &q, &of(&case["velocity_minus"]));
         let energies = numbers(&case[variant]["energies"]);
         for (law, name, energy) in [
             (Law::Elastic, "elastic_velocity_plus", energies[1]),
@@ -157,38 +157,32 @@ fn check_ball<S: Scene + Impacting>(system: &S, variant: &str) -> usize {
     cases.len()
 }
 
-/// A vector from a slice of its length.
-trait FromSlice: StateVector {
-    fn from_slice_of(values: &[f64]) -> Self {
-        Self::of(values)
-    }
-}
-
-impl<V: StateVector> FromSlice for V {}
-
 #[test]
 fn a_ball_leaves_a_wall_without_slip_as_the_references_say() {
-    let ball = RollingBallWall::default();
+    let ball: Large = shipped("rolling_ball_wall").sized();
     assert!(check_ball(&ball, "physical") >= 4);
     check_ball(&ball.global(), "physical");
-    check_ball(&PrintedWall::default(), "printed");
-    check_ball(&PrintedWall::default().global(), "printed");
+    let printed: Large = PRINTED_WALL.sized();
+    check_ball(&printed, "printed");
+    check_ball(&printed.global(), "printed");
 }
 
 /// The states of `Tip` on its wall that approach it.
-fn at_the_wall(tip: &Tip, count: usize, seed: u64) -> Vec<<Tip as dalembert::VectorField>::State> {
+fn at_the_wall(tip: &Model, count: usize, seed: u64) -> Vec<State> {
     let mut random = Random::new(seed);
     (0..count)
         .map(|_| {
-            let mut q: <Tip as System>::Vector = random.vector(-1.0, 1.0);
+            let mut at = random.like(&tip.zero_vector(), -1.0, 1.0);
+            let q = at.as_mut();
             q[3] = -3.0 * (q[0] + q[1] * q[1] / 8.0 + q[2].sin() / 4.0);
-            let mut qdot: <Tip as System>::Vector = random.vector(-1.0, 1.0);
-            let state = tip.state_projected(0.0, &q, &qdot).expect("a state");
-            if tip.gap_rates(0.0, &state).expect("rates")[0] < 0.0 {
+            let mut qdot = random.like(&at, -1.0, 1.0);
+            let state = tip.state_projected(0.0, &at, &qdot).expect("a state");
+            if tip.gap_rates(0.0, &state).expect("rates").as_ref()[0] < 0.0 {
                 return state;
             }
-            qdot = -tip.velocity(0.0, &state).expect("a velocity");
-            tip.state(0.0, &q, &qdot).expect("a state")
+            qdot = tip.velocity(0.0, &state).expect("a velocity");
+            qdot.as_mut().iter_mut().for_each(|own| *own = -*own);
+            tip.state(0.0, &at, &qdot).expect("a state")
         })
         .collect()
 }
@@ -215,72 +209,67 @@ fn across([a, b, c]: [[f64; 4]; 3]) -> [f64; 4] {
 
 #[test]
 fn focusing_is_the_projection_on_all_constraints_and_the_law_acts_within_them() {
-    let tip = Tip::default();
+    let tip = TIP.model();
     let mut turned = 0;
     for before in at_the_wall(&tip, 200, 5) {
         let q = tip.position(&before);
+        let q = q.as_ref();
         let blade = [q[2].sin(), -q[2].cos(), 0.0, 0.0];
-        let [stick, drag] = rough_forms(q.as_slice());
+        let [stick, drag] = rough_forms(q);
         let left = across([blade, stick, drag]);
-        let impulse = tip
-            .focus(0, 0.0, &before)
-            .expect("no fault")
-            .expect("an impulse");
-        let mut focused = before;
-        tip.kick(&mut focused, 1.0, &impulse);
+        let focused = focused(&tip, &before);
         let qdot = tip.velocity(0.0, &focused).expect("a velocity");
         for form in [blade, stick, drag] {
-            assert!(dot(&form, qdot.as_slice()).abs() < 1e-13);
+            assert!(dot(&form, qdot.as_ref()).abs() < 1e-13);
         }
         // What an impulse of these constraints changes has no component along what they leave.
-        let change = tip.momentum(0.0, &focused).expect("momenta")
-            - tip.momentum(0.0, &before).expect("momenta");
-        assert!(dot(&left, change.as_slice()).abs() < 1e-13);
+        let [after, start] =
+            [&focused, &before].map(|own| tip.momentum(0.0, own).expect("momenta"));
+        assert!(dot(&left, &difference(after.as_ref(), start.as_ref())).abs() < 1e-13);
         // One direction is left, so that a law can only multiply the velocity along it.
-        let rate = tip.gap_rates(0.0, &focused).expect("rates")[0];
+        let rate = tip.gap_rates(0.0, &focused).expect("rates").as_ref()[0];
         let factor = if rate < 0.0 { -0.25 } else { 1.0 };
         turned += usize::from(rate >= 0.0);
+        let expected: Vec<f64> = qdot.as_ref().iter().map(|own| own * factor).collect();
         let after = struck(&tip, Law::Newton(0.25), before);
         let actual = tip.velocity(0.0, &after).expect("a velocity");
-        assert_near(
-            "newton",
-            actual.as_slice(),
-            (qdot * factor).as_slice(),
-            1e-13,
-        );
+        assert_near("newton", actual.as_ref(), &expected, 1e-13);
         let global = tip.global();
-        let state = global.state_unchecked(0.0, &q, &tip.velocity(0.0, &before).expect("one"));
+        let qdot = tip.velocity(0.0, &before).expect("one");
+        let state = global.state_unchecked(0.0, &vector(q), &qdot);
         let after = struck(&global, Law::Newton(0.25), state.expect("a state"));
         let actual = global.velocity(0.0, &after).expect("a velocity");
-        assert_near(
-            "global",
-            actual.as_slice(),
-            (qdot * factor).as_slice(),
-            1e-12,
-        );
+        assert_near("global", actual.as_ref(), &expected, 1e-12);
     }
     assert!((2..198).contains(&turned), "{turned} of 200");
+}
+
+/// The state once the constraints of the wall hold.
+fn focused(tip: &Model, before: &State) -> State {
+    let impulse = tip.focus(0, 0.0, before).expect("no fault");
+    let mut focused = *before;
+    tip.kick(&mut focused, 1.0, &impulse.expect("an impulse"));
+    focused
+}
+
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
 /// Carnot's theorem for linear constraints (Cortes and Vinogradov, 5.7): the energy never grows, and what focusing takes is
 /// the energy of the velocity it takes.
 #[test]
 fn energy_is_lost_in_focusing_and_kept_by_an_elastic_wall_within_the_constraints() {
-    let tip = Tip::default();
-    let energy =
-        |state: &<Tip as dalembert::VectorField>::State| tip.energy(0.0, state).expect("an energy");
+    let tip = TIP.model();
+    let energy = |state: &State| tip.energy(0.0, state).expect("an energy");
     for before in at_the_wall(&tip, 60, 6) {
-        let impulse = tip
-            .focus(0, 0.0, &before)
-            .expect("no fault")
-            .expect("an impulse");
-        let mut focused = before;
-        tip.kick(&mut focused, 1.0, &impulse);
-        let velocity =
-            tip.velocity(0.0, &before).expect("one") - tip.velocity(0.0, &focused).expect("one");
-        let momentum =
-            tip.momentum(0.0, &before).expect("one") - tip.momentum(0.0, &focused).expect("one");
-        let taken = 0.5 * velocity.dot(&momentum);
+        let focused = focused(&tip, &before);
+        let states = [&before, &focused];
+        let [v, v_focused] = states.map(|own| tip.velocity(0.0, own).expect("one"));
+        let [p, p_focused] = states.map(|own| tip.momentum(0.0, own).expect("one"));
+        let velocity = difference(v.as_ref(), v_focused.as_ref());
+        let momentum = difference(p.as_ref(), p_focused.as_ref());
+        let taken = 0.5 * dot(&velocity, &momentum);
         assert!(taken > 1e-6);
         let after = struck(&tip, Law::Elastic, before);
         let lost = energy(&before) - energy(&after);
@@ -296,7 +285,7 @@ fn energy_is_lost_in_focusing_and_kept_by_an_elastic_wall_within_the_constraints
             assert!(lost >= taken * (1.0 - 1e-12), "{law}: {lost} of {taken}");
         }
         // A state that satisfies them already loses nothing.
-        if tip.gap_rates(0.0, &focused).expect("rates")[0] < 0.0 {
+        if tip.gap_rates(0.0, &focused).expect("rates").as_ref()[0] < 0.0 {
             let after = struck(&tip, Law::Elastic, focused);
             assert_near("focused", &[energy(&after)], &[energy(&focused)], 1e-14);
         }
@@ -305,13 +294,11 @@ fn energy_is_lost_in_focusing_and_kept_by_an_elastic_wall_within_the_constraints
 
 #[test]
 fn constraints_may_turn_the_motion_round_before_the_law_does() {
-    let rail = Rail::default();
+    let rail = RAIL.model();
     for (velocity, expected) in [([3.0, -1.0], [-2.0, 2.0]), ([-3.0, -1.0], [-1.0, 1.0])] {
-        let state = rail
-            .state(0.0, &[0.5, 0.0].into(), &velocity.into())
-            .expect("a state");
+        let state = state(&rail, &[0.5, 0.0], &velocity);
         let after = struck(&rail, Law::Elastic, state);
-        assert_near("rail", &after.as_slice()[2..], &expected, 1e-15);
+        assert_near("rail", &after.as_ref()[2..], &expected, 1e-15);
     }
 }
 
@@ -360,33 +347,16 @@ fn emitted_functions_are_what_the_interpreter_executes() {
 
 #[test]
 fn integrators_agree_on_a_ball_that_rolls_against_its_wall() {
-    let ball = RollingBallWall::default();
-    let start = ball.initial();
-    let qdot = ball
-        .complete_velocity(0.0, &start.q, &start.qdot, &start.named)
-        .expect("one");
-    let state = ball.state(0.0, &start.q, &qdot).expect("a state");
-    let tolerance = Tolerance::new(1e-13).expect("a tolerance");
-    let steps = Simulation::new(&ball, Dop853::new(tolerance), ball.effects()).run(
-        0.0,
-        state,
-        4.0,
-        &mut (),
-    );
-    let series = Simulation::new(&ball, Taylor::new(tolerance), ball.effects()).run(
-        0.0,
-        state,
-        4.0,
-        &mut (),
-    );
-    let (steps, series) = (steps.expect("a run"), series.expect("a run"));
-    assert_eq!((steps.counters.impacts, series.counters.impacts), (1, 1));
-    assert_near(
-        "state",
-        steps.state.as_slice(),
-        series.state.as_slice(),
-        1e-11,
-    );
+    let ball: Large = shipped("rolling_ball_wall").sized();
+    let made = |integrator| {
+        let run = Course::declared(&ball, 4.0)
+            .tol(1e-13)
+            .observed(integrator, &mut ());
+        assert_eq!(run.counters.impacts, 1);
+        run.state
+    };
+    let (steps, series) = (made(Integrator::Dop853), made(Integrator::Taylor));
+    assert_near("state", steps.as_ref(), series.as_ref(), 1e-11);
 }
 
 /// What a model with claims is told; its messages if it is refused.
@@ -451,9 +421,9 @@ fn the_state_at_the_constraints_is_printed_beside_the_laws() {
     assert!(text.contains("psi[no_slip]"), "{text}");
 }
 
-dalembert::model! {
-    /// The rail of one of two modes; the other one has a surface of its own before it.
-    pub Modal {
+/// The rail of one of two modes; the other one has a surface of its own before it.
+static MODAL: Text = Text::new(
+    "Modal {
         coordinates { x; y; }
         modes {
             free { impacts { side: x >= -9; } }
@@ -463,18 +433,15 @@ dalembert::model! {
         }
         transitions { enter: free -> rough when x >= 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
-    }
-}
+    }",
+);
 
 #[test]
 fn a_mode_has_the_instantaneous_constraints_of_its_surfaces() {
-    let modal = Modal::default();
-    let start = modal.state(0.0, &[0.0, 1.0].into(), &[3.0, -1.0].into());
-    let stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
-    let run = Simulation::new(&modal, stepper, modal.effects())
-        .run(0.0, start.expect("a state"), 2.0, &mut ())
-        .expect("a run");
+    let modal = MODAL.model();
+    let start = state(&modal, &[0.0, 1.0], &[3.0, -1.0]);
+    let run = Course::from_state(&modal, start, 2.0).observed(Integrator::Dop853, &mut ());
     assert_eq!(run.outcome, Outcome::Done);
     let qdot = modal.velocity(run.t, &run.state).expect("a velocity");
-    assert_near("rail", qdot.as_slice(), &[-2.0, 2.0], 1e-12);
+    assert_near("rail", qdot.as_ref(), &[-2.0, 2.0], 1e-12);
 }
