@@ -1,31 +1,29 @@
 //! First-order systems: `field` in place of a Lagrangian.
 
-use dalembert::{
-    Described, Dla2, Dop853, DormandPrince5, Fault, Gauss4, Gauss6, Impacting, Outcome, Rk4, Scene,
-    Simulation, StateVector, Stepper, System, Taylor, Tolerance, VectorField,
-};
-
-use dalembert_cli::{Exit, models};
+use dalembert::{Described, Fault, Impacting, Outcome, StateVector, System, VectorField};
+use dalembert_cli::{Exit, Integrator};
 use dalembert_codegen::compile;
 use dalembert_codegen::program::{Form, Function, Input, interpret::interpret};
 use dalembert_models::DimensionlessWalker;
+use dalembert_stability::course::{Course, state, vector};
+use dalembert_stability::text::Text;
 use dalembert_tests::command::{self, Finished};
 use serde_json::Value;
 
-dalembert::model! {
-    /// A rotor that is driven and damped: `x' = -x/tau + cos(t)`, `phi' = omega`.
-    pub Driven {
+/// A rotor that is driven and damped: `x' = -x/tau + cos(t)`, `phi' = omega`.
+static DRIVEN: Text = Text::new(
+    "Driven {
         coordinates { x; phi: angle; }
         parameters { tau > 0 = 1/2; omega = 3; }
         field { dot(x) = -x/tau + cos(t); dot(phi) = omega + sin(phi)/10; }
         initial { x = 1; phi = 1/4; until = 3; }
         outputs { speed: dot(phi); }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Predator and prey; the first integral is that of Volterra.
-    pub Prey {
+/// Predator and prey; the first integral is that of Volterra.
+static PREY: Text = Text::new(
+    "Prey {
         coordinates { x in (0, 1000); y in (0, 1000); }
         parameters { a > 0 = 2/3; b > 0 = 4/3; c > 0 = 1; k > 0 = 1; }
         field { dot(x) = a*x - b*x*y; dot(y) = k*x*y - c*y; }
@@ -34,8 +32,8 @@ dalembert::model! {
             conserved: k*x - c*ln(x) + b*y - a*ln(y);
             not conserved: x + y;
         }
-    }
-}
+    }",
+);
 
 dalembert::model! {
     /// A counter that starts again at 1, and a clock of how often.
@@ -51,20 +49,16 @@ dalembert::model! {
     }
 }
 
-/// The state at the end of a run by an integrator.
-fn run<Step: Stepper<Driven>>(system: &Driven, stepper: Step) -> [f64; 2] {
-    let start = system.state(0.0, &[1.0, 0.25].into(), &[0.0; 2].into());
-    let mut simulation = Simulation::new(system, stepper, ());
-    let run = simulation.run(0.0, start.expect("a state"), 3.0, &mut ());
-    let run = run.expect("a start");
-    assert_eq!(run.outcome, Outcome::Done);
-    run.state.into()
+static SAWTOOTH: Text = Text::new(Sawtooth::DESCRIPTION.source);
+
+/// Whether an integrator follows a field; those of the discrete principle do not.
+fn follows_fields(own: &&Integrator) -> bool {
+    !matches!(own, Integrator::Dla2 | Integrator::Dla4)
 }
 
 #[test]
 fn integrators_follow_the_field() {
-    let system = Driven::default();
-    let tolerance = Tolerance::new(1e-12).expect("a tolerance");
+    let system = DRIVEN.model();
     // x = A exp(-t/tau) + (tau cos t + tau^2 sin t)/(1 + tau^2), and tan((phi)/2) in closed form for constant rates.
     let (t, tau) = (3.0_f64, 0.5_f64);
     let steady = |t: f64| (tau * t.cos() + tau * tau * t.sin()) / (1.0 + tau * tau);
@@ -76,44 +70,32 @@ fn integrators_follow_the_field() {
     let turned = angle((0.125_f64).tan()) + 0.5 * root * t;
     let turns = (turned / core::f64::consts::PI + 0.5).floor();
     let phi = 2.0 * (((root * turned.tan() - half) / omega).atan() + turns * core::f64::consts::PI);
-    let close = |[own_x, own_phi]: [f64; 2], error: f64, name: &str| {
-        assert!((own_x - x).abs() <= error, "{name}: x {own_x} for {x}");
-        assert!(
-            (own_phi - phi).abs() <= error,
-            "{name}: phi {own_phi} for {phi}"
-        );
-    };
-    close(run(&system, Taylor::new(tolerance)), 1e-11, "taylor");
-    close(run(&system, Dop853::new(tolerance)), 1e-11, "dop853");
-    close(
-        run(&system, DormandPrince5::new(tolerance)),
-        1e-10,
-        "dopri5",
-    );
-    let step = 1e-3;
-    close(
-        run(&system, Gauss6::new(tolerance).with_step(step)),
-        1e-11,
-        "gauss6",
-    );
-    close(
-        run(&system, Gauss4::new(tolerance).with_step(step)),
-        1e-10,
-        "gauss4",
-    );
-    close(
-        run(&system, Rk4::new(tolerance).with_step(step)),
-        1e-10,
-        "rk4",
-    );
+    for &integrator in Integrator::every().iter().filter(follows_fields) {
+        let mut course = Course::new(&system, &[1.0, 0.25], &[0.0; 2], 3.0);
+        if !matches!(
+            integrator,
+            Integrator::Taylor | Integrator::Dop853 | Integrator::Dopri5
+        ) {
+            course = course.step(1e-3);
+        }
+        let run = course.observed(integrator, &mut ());
+        let name = integrator.name();
+        assert_eq!(run.outcome, Outcome::Done, "{name}");
+        let is_high = integrator.order().is_none_or(|order| order > 5);
+        let error = if is_high { 1e-11 } else { 1e-10 };
+        for (own, expected) in run.state.as_slice().iter().zip([x, phi]) {
+            assert!(
+                (own - expected).abs() <= error,
+                "{name}: {own} for {expected}"
+            );
+        }
+    }
 }
 
 #[test]
 fn the_state_is_the_position() {
-    let system = Driven::default();
-    let state = system
-        .state(0.0, &[1.0, 0.25].into(), &[7.0; 2].into())
-        .expect("a state");
+    let system = DRIVEN.model();
+    let state = state(&system, &[1.0, 0.25], &[7.0; 2]);
     assert_eq!(state.as_slice(), [1.0, 0.25]);
     let mut rate = state;
     system.rate(0.5, &state, &mut rate).expect("a rate");
@@ -170,57 +152,63 @@ fn what_is_emitted_is_what_was_lowered() {
 
 #[test]
 fn mechanics_is_refused() {
-    let system = Driven::default();
-    let state = [1.0, 0.25].into();
+    let system = DRIVEN.model();
+    let state = vector(&[1.0, 0.25]);
     assert_eq!(system.energy(0.0, &state), Err(Fault::FirstOrder));
     assert_eq!(system.momentum(0.0, &state), Err(Fault::FirstOrder));
     assert_eq!(
         system.state_from_momenta(0.0, &state, &state),
         Err(Fault::FirstOrder)
     );
-    let tolerance = Tolerance::new(1e-8).expect("a tolerance");
-    let stepper = Dla2::new(tolerance).with_step(1e-2);
-    let run = Simulation::new(&system, stepper, ()).run(0.0, state, 1.0, &mut ());
-    assert_eq!(run.expect("a start").outcome, Outcome::FirstOrder);
+    for integrator in [Integrator::Dla2, Integrator::Dla4] {
+        let run = Course::from_state(&system, state, 1.0)
+            .tol(1e-8)
+            .step(1e-2)
+            .observed(integrator, &mut ());
+        assert_eq!(run.outcome, Outcome::FirstOrder);
+    }
 }
 
 #[test]
 fn resets_act_on_positions() {
-    let system = Sawtooth::default();
-    let tolerance = Tolerance::new(1e-10).expect("a tolerance");
-    let start = [0.0, 0.0, 0.0].into();
-    let mut taylor = Simulation::new(&system, Taylor::new(tolerance), system.effects());
-    let run = taylor.run(0.0, start, 2.5, &mut ()).expect("a start");
+    let system = SAWTOOTH.model();
+    let start = [0.0, 0.0, 0.0];
+    let run = Course::new(&system, &start, &start, 2.5)
+        .tol(1e-10)
+        .observed(Integrator::Taylor, &mut ());
     assert_eq!((run.outcome, run.counters.impacts), (Outcome::Done, 2));
     let expected = [0.5, 2.5 / 3.0, 2.0];
     for (own, expected) in run.state.as_slice().iter().zip(expected) {
         assert!((own - expected).abs() <= 1e-14, "{own} for {expected}");
     }
-    let free = sawtooth::Free(system);
-    let mut dop853 = Simulation::new(&free, Dop853::new(tolerance), ());
-    let run = dop853.run(0.0, start, 2.5, &mut ()).expect("a start");
+    let free = SAWTOOTH.scene("free");
+    let run = Course::new(&free, &start, &start, 2.5)
+        .tol(1e-10)
+        .observed(Integrator::Dop853, &mut ());
     assert_eq!((run.outcome, run.counters.impacts), (Outcome::Done, 0));
-    assert!((run.state[0] - 2.5).abs() <= 1e-14);
+    assert!((run.state.as_slice()[0] - 2.5).abs() <= 1e-14);
 }
 
 #[test]
 fn integrals_are_kept() {
-    let system = Prey::default();
-    let integral = |[x, y]: [f64; 2]| x - x.ln() + 4.0 / 3.0 * y - 2.0 / 3.0 * y.ln();
-    let tolerance = Tolerance::new(1e-12).expect("a tolerance");
+    let system = PREY.model();
+    let integral =
+        |own: &[f64]| own[0] - own[0].ln() + 4.0 / 3.0 * own[1] - 2.0 / 3.0 * own[1].ln();
     let start = [1.0, 0.5];
-    let mut simulation = Simulation::new(&system, Taylor::new(tolerance), ());
-    let run = simulation
-        .run(0.0, start.into(), 20.0, &mut ())
-        .expect("a start");
+    let run = Course::new(&system, &start, &[0.0; 2], 20.0).observed(Integrator::Taylor, &mut ());
     assert_eq!(run.outcome, Outcome::Done);
-    let drift = integral(run.state.into()) - integral(start);
+    let drift = integral(run.state.as_slice()) - integral(&start);
     assert!(drift.abs() <= 1e-11, "{drift:e}");
 }
 
 /// The command line over these models, with an input: exit, output, errors.
 fn command(line: &str, given: &str) -> Finished {
-    command::line(models![Driven, Prey, Sawtooth], line, given)
+    let models = [
+        DRIVEN.entry("driven"),
+        PREY.entry("prey"),
+        SAWTOOTH.entry("sawtooth"),
+    ];
+    command::line(models.to_vec(), line, given)
 }
 
 #[test]

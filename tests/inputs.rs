@@ -1,13 +1,16 @@
 //! Inputs that the caller supplies, and the work along a run.
 
 use dalembert::impacts::Impacts;
+use dalembert::integrate::Chosen;
 use dalembert::projection::Projection;
 use dalembert::{
-    Actuated, Described, Dop853, EventLog, Gauss6, Instance, Outcome, Powered, Simulation, System,
-    Taylor, Tolerance, VectorField, Work,
+    Actuated, Described, Dop853, Effect, EventLog, Gauss6, Instance, Observer, Outcome, Powered,
+    Run, Simulation, Steered, Stepper, System, Tolerance, VectorField, Work,
 };
-use dalembert_cli::{Exit, models};
+use dalembert_cli::{Exit, Integrator};
 use dalembert_codegen::compile;
+use dalembert_stability::course::Course;
+use dalembert_stability::text::{Model, Text};
 use dalembert_tests::command::{self, Finished};
 use dalembert_tests::interpreted::compare_motion;
 use dalembert_tests::numeric::assert_near;
@@ -61,7 +64,50 @@ fn tolerance() -> Tolerance {
     Tolerance::new(1e-13).expect("a tolerance")
 }
 
-fn at_rest(cart: &Cart, x: f64) -> <Cart as VectorField>::State {
+/// The cart, loaded.
+static CART: Text = Text::new(Cart::DESCRIPTION.source);
+
+type State = <Cart as VectorField>::State;
+
+/// What an input of the cart is made of, in one type, so that its runs are compiled once.
+type Steering = fn(f64, &State) -> [f64; 1];
+
+/// Effects of a cart that nothing stops.
+const NO_WALLS: Option<Impacts<Steered<Cart, Steering>>> = None;
+
+/// A run that is compiled once for all integrators and observers.
+fn run<S: System>(
+    system: &S,
+    stepper: &mut impl Stepper<S>,
+    effects: impl Effect<S>,
+    (start, until): (S::State, f64),
+    mut observer: &mut dyn Observer<S>,
+) -> Run<S::State> {
+    Simulation::new(system, Chosen::new(stepper), effects)
+        .run(0.0, start, until, &mut observer)
+        .expect("a run")
+}
+
+/// A run of a system that nothing happens to, by steps.
+fn steered<S: System>(system: &S, start: S::State, until: f64) -> Run<S::State> {
+    run(
+        system,
+        &mut Dop853::new(tolerance()),
+        (),
+        (start, until),
+        &mut (),
+    )
+}
+
+/// The loaded cart with this torque, undamped.
+fn held(u: f64) -> Model {
+    let mut cart = CART.with([("c", 0.0)]);
+    // An input comes after the parameters.
+    cart.set_parameter(Cart::DESCRIPTION.parameters.len(), u);
+    cart
+}
+
+fn at_rest(cart: &Cart, x: f64) -> State {
     cart.state(0.0, &[x].into(), &[0.0].into())
         .expect("a state")
 }
@@ -84,42 +130,50 @@ fn an_input_is_held_at_zero_until_it_is_set() {
 /// A linear oscillator under `u = sin(w t)/(1 + x^2/10)` has a closed form.
 #[test]
 fn inputs_are_functions_of_time_and_state() {
+    const W: f64 = 0.7;
     let cart = Cart {
         c: 0.0,
         ..Cart::default()
     };
-    let w = 0.7;
-    let steered = cart.with_inputs(|t, state| [(w * t).sin() / (1.0 + state[0] * state[0] / 10.0)]);
+    let steering: Steering = |t, state| [(W * t).sin() / (1.0 + state[0] * state[0] / 10.0)];
+    let steered = cart.with_inputs(steering);
     let own = (cart.k / cart.m).sqrt();
-    let size = 1.0 / (cart.k - cart.m * w * w);
-    let position = |t: f64| size * ((w * t).sin() - w / own * (own * t).sin());
-    let run = Simulation::new(&steered, Dop853::new(tolerance()), ())
-        .run(0.0, at_rest(&cart, 0.0), 7.0, &mut ())
-        .expect("a run");
-    assert_near("x", &[run.state[0]], &[position(7.0)], 1e-12);
-    let run = Simulation::new(&steered, Gauss6::new(tolerance()), ())
-        .run(0.0, at_rest(&cart, 0.0), 7.0, &mut ())
-        .expect("a run");
-    assert_near("x", &[run.state[0]], &[position(7.0)], 1e-8);
+    let size = 1.0 / (cart.k - cart.m * W * W);
+    let position = |t: f64| size * ((W * t).sin() - W / own * (own * t).sin());
+    let start = (at_rest(&cart, 0.0), 7.0);
+    let mut steps = Dop853::new(tolerance());
+    let end = run(&steered, &mut steps, NO_WALLS, start, &mut ());
+    assert_near("x", &[end.state[0]], &[position(7.0)], 1e-12);
+    let mut steps = Gauss6::new(tolerance());
+    let end = run(&steered, &mut steps, NO_WALLS, start, &mut ());
+    assert_near("x", &[end.state[0]], &[position(7.0)], 1e-8);
 }
 
 #[test]
 fn a_held_input_is_a_constant_for_every_integrator() {
+    let loaded = held(1.0);
+    let series = Course::new(&loaded, &[0.1], &[0.0], 3.0)
+        .tol(1e-13)
+        .alone()
+        .observed(Integrator::Taylor, &mut ());
     let cart = Cart {
-        u: 1.0,
+        u: -3.0,
         c: 0.0,
         ..Cart::default()
     };
-    let series = Simulation::new(&cart, Taylor::new(tolerance()), ())
-        .run(0.0, at_rest(&cart, 0.1), 3.0, &mut ())
-        .expect("a run");
-    let steered = Cart { u: -3.0, ..cart }.with_inputs(|_, _| [1.0]);
-    let steps = Simulation::new(&steered, Dop853::new(tolerance()), ())
-        .run(0.0, at_rest(&cart, 0.1), 3.0, &mut ())
-        .expect("a run");
+    let steering: Steering = |_, _| [1.0];
+    let mut steps = Dop853::new(tolerance());
+    let start = (at_rest(&cart, 0.1), 3.0);
+    let steps = run(
+        &cart.with_inputs(steering),
+        &mut steps,
+        NO_WALLS,
+        start,
+        &mut (),
+    );
     assert_near(
         "state",
-        series.state.as_slice(),
+        series.state.as_ref(),
         steps.state.as_slice(),
         1e-12,
     );
@@ -132,12 +186,12 @@ fn the_energy_between_impacts_is_the_work_by_cause() {
     let start = cart
         .state(0.0, &[0.7].into(), &[1.0].into())
         .expect("a state");
-    let steered = cart.with_inputs(|t, state| [(2.0 * t).cos() - state[1] / 4.0]);
+    let steering: Steering = |t, state| [(2.0 * t).cos() - state[1] / 4.0];
+    let steered = cart.with_inputs(steering);
     let mut watch = (Work::of(&steered), EventLog::<_, 64>::new());
-    let effects = Impacts::declared(&steered);
-    let run = Simulation::new(&steered, Dop853::new(tolerance()), effects)
-        .run(0.0, start, 20.0, &mut watch)
-        .expect("a run");
+    let walls = Some(Impacts::declared(&steered));
+    let mut steps = Dop853::new(tolerance());
+    let run = run(&steered, &mut steps, walls, (start, 20.0), &mut watch);
     assert_eq!(run.outcome, Outcome::Done);
     assert!(run.counters.impacts >= 1);
     let energy = |state| cart.energy(0.0, state).expect("an energy");
@@ -166,9 +220,8 @@ fn constraints_and_time_do_work_too() {
     let steered =
         tug.with_inputs(|t, state| [t.sin(), 0.5 - state[1] / 9.0, (3.0 * t).cos() / 4.0]);
     let mut work = Work::of(&steered);
-    let run = Simulation::new(&steered, Dop853::new(tolerance()), ())
-        .run(0.0, start, 5.0, &mut work)
-        .expect("a run");
+    let mut steps = Dop853::new(tolerance());
+    let run = self::run(&steered, &mut steps, (), (start, 5.0), &mut work);
     let energy = |t, state| tug.energy(t, state).expect("an energy");
     let gained = energy(5.0, &run.state) - energy(0.0, &start);
     assert!(
@@ -183,9 +236,9 @@ fn constraints_and_time_do_work_too() {
     let steered =
         global.with_inputs(|t, state| [t.sin(), 0.5 - state[1] / 9.0, (3.0 * t).cos() / 4.0]);
     let mut both = Work::of(&steered);
-    Simulation::new(&steered, Dop853::new(tolerance()), (Projection::new(),))
-        .run(0.0, start, 5.0, &mut both)
-        .expect("a run");
+    let mut steps = Dop853::new(tolerance());
+    let projection = (Projection::new(),);
+    self::run(&steered, &mut steps, projection, (start, 5.0), &mut both);
     assert_near(
         "forms",
         both.done().as_slice(),
@@ -197,9 +250,7 @@ fn constraints_and_time_do_work_too() {
 #[test]
 fn a_field_and_a_scene_take_inputs() {
     let tank = Tank::default().with_inputs(|t, state| [1.0 + t - state[0] / 2.0]);
-    let run = Simulation::new(&tank, Dop853::new(tolerance()), ())
-        .run(0.0, [0.0].into(), 3.0, &mut ())
-        .expect("a run");
+    let run = steered(&tank, [0.0].into(), 3.0);
     // ydot = 1 + t - y
     assert_near("level", run.state.as_slice(), &[3.0], 1e-12);
     let free = cart::Free(Cart {
@@ -207,13 +258,11 @@ fn a_field_and_a_scene_take_inputs() {
         k: 1e-300,
         ..Cart::default()
     });
-    let steered = free.with_inputs(|_, state| [2.0 / (1.0 + state[0] * state[0] / 10.0)]);
+    let pushed = free.with_inputs(|_, state| [2.0 / (1.0 + state[0] * state[0] / 10.0)]);
     let start = free
         .state(0.0, &[0.0].into(), &[0.0].into())
         .expect("a state");
-    let run = Simulation::new(&steered, Dop853::new(tolerance()), ())
-        .run(0.0, start, 2.0, &mut ())
-        .expect("a run");
+    let run = steered(&pushed, start, 2.0);
     assert_near("x", &[run.state[0]], &[2.0], 1e-12);
 }
 
@@ -229,7 +278,7 @@ fn emitted_code_is_what_the_interpreter_executes_with_inputs() {
 
 /// Runs the command line over the models of this file.
 fn command(arguments: &[&str], input: &str) -> Finished {
-    command::run(models![Cart], arguments, input)
+    command::run(vec![CART.entry("cart")], arguments, input)
 }
 
 #[test]
@@ -250,18 +299,15 @@ fn the_command_line_holds_inputs() {
     assert_eq!(document["inputs"], serde_json::json!({ "u": 0.5 }));
     let samples = document["samples"].as_array().expect("samples");
     let last = &samples.last().expect("a sample")["q"][0];
-    let cart = Cart {
-        u: 0.5,
-        c: 0.0,
-        ..Cart::default()
-    };
-    let expected = Simulation::new(&cart, Dop853::new(tolerance()), ())
-        .run(0.0, at_rest(&cart, 0.0), 1.0, &mut ())
-        .expect("a run");
+    let cart = held(0.5);
+    let expected = Course::new(&cart, &[0.0], &[0.0], 1.0)
+        .tol(1e-13)
+        .alone()
+        .observed(Integrator::Dop853, &mut ());
     assert_near(
         "x",
         &[last.as_f64().expect("a number")],
-        &[expected.state[0]],
+        &expected.state.as_ref()[..1],
         1e-8,
     );
     for (input, expected) in [

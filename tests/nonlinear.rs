@@ -3,21 +3,22 @@
 use dalembert::law::Law;
 use dalembert::projection::Projection;
 use dalembert::{
-    Constrained, Described, Dla2, Dop853, Fault, Impacting, Instance, Lagrangian, Outcome, Rk4,
-    Scene, SceneEffects, Simulation, StateError, StateVector, System, Tolerance, VectorField,
+    Constrained, Fault, Impacting, Instance, Lagrangian, Outcome, SceneEffects, StateError, System,
+    VectorField,
 };
-use dalembert_cli::Exit;
+use dalembert_cli::{Exit, Integrator};
 use dalembert_codegen::compile;
-use dalembert_models::{AppellHamel, ConstantSpeed};
+use dalembert_stability::course::{Course, state, vector};
+use dalembert_stability::text::{Large, Text, shipped};
 use dalembert_tests::command::dalembert;
 use dalembert_tests::numeric::assert_near;
 use dalembert_tests::sampling::{Random, states};
 use serde_json::{Value, json};
 
-dalembert::model! {
-    /// Everything that a nonlinear constraint may meet: a metric that is not constant, forces, time, a linear constraint and
-    /// an integrable one.
-    pub Mixed {
+/// Everything that a nonlinear constraint may meet: a metric that is not constant, forces, time, a linear constraint and
+/// an integrable one.
+static MIXED: Text = Text::new(
+    "Mixed {
         coordinates { x; y; z; theta: angle; w; }
         parameters { m > 0 = 2; a > 0 = 1/2; }
         lagrangian = m/2*(dot(x)^2 + dot(y)^2*(1 + x^2/4)) + dot(z)^2/2 + dot(theta)^2/2 + dot(w)^2/2
@@ -28,32 +29,32 @@ dalembert::model! {
             circle: d(w - x*y/4) = 0;
         }
         forces { drag: -a*dot(x)*dot(y)*d(x) + cos(t)*d(theta); }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// An affine constraint as it is, and a second one that is none.
-    pub Belt {
+/// An affine constraint as it is, and a second one that is none.
+static BELT: Text = Text::new(
+    "Belt {
         coordinates { x; y; theta: angle; }
         lagrangian = (dot(x)^2 + (1 + x^2)*dot(y)^2 + dot(theta)^2)/2 - y + x*dot(theta)/2;
         constraints { belt: cos(theta)*dot(x) + sin(theta)*dot(y) = 1 + x*t; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// The same, written as an equation that is not linear.
-    pub BentBelt {
+/// The same, written as an equation that is not linear.
+static BENT_BELT: Text = Text::new(
+    "BentBelt {
         coordinates { x; y; theta: angle; }
         lagrangian = (dot(x)^2 + (1 + x^2)*dot(y)^2 + dot(theta)^2)/2 - y + x*dot(theta)/2;
         constraints {
             belt: exp((cos(theta)*dot(x) + sin(theta)*dot(y) - 1 - x*t)*(2 + dot(theta)^2)) = 1;
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point at constant speed between walls that turn it round, one of them wrongly.
-    pub Runner {
+/// A point at constant speed between walls that turn it round, one of them wrongly.
+static RUNNER: Text = Text::new(
+    "Runner {
         coordinates { x; y; }
         parameters { v > 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
@@ -63,30 +64,30 @@ dalembert::model! {
             top: y <= 5 => reset { dot(y) = -2*dot(y); };
             bottom: y >= -100 => reset { };
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A square that would have to be negative.
-    pub Impossible {
+/// A square that would have to be negative.
+static IMPOSSIBLE: Text = Text::new(
+    "Impossible {
         coordinates { x; y; }
         parameters { k > 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         constraints { c: dot(x)^2 + dot(y)^2 = -k; }
-    }
-}
+    }",
+);
 
-fn tolerance() -> Tolerance {
-    Tolerance::new(1e-13).expect("a tolerance")
-}
-
-fn residuals<S: Constrained>(system: &S, t: f64, state: &S::State) -> S::Multipliers {
+/// The residuals of the constraints.
+fn residuals(system: &Large, t: f64, state: &State) -> Vec<f64> {
     let qdot = system.velocity(t, state).expect("a velocity");
-    system.residuals(t, &system.position(state), &qdot).0
+    let (residuals, _) = system.residuals(t, &system.position(state), &qdot);
+    residuals.as_ref().to_vec()
 }
+
+type State = <Large as VectorField>::State;
 
 /// Random states near the constraints and on them.
-fn near<S: Described>(system: &S, count: usize) -> Vec<S::State> {
+fn near(system: &Large, count: usize) -> Vec<State> {
     let mut random = Random::new(17);
     let mut found = states(system, count, 3);
     found.extend(states(system, count, 4).into_iter().map(|state| {
@@ -95,8 +96,8 @@ fn near<S: Described>(system: &S, count: usize) -> Vec<S::State> {
             system.velocity(0.0, &state).expect("one"),
         );
         let mut off = qdot;
-        let shift: S::Vector = random.vector(-0.1, 0.1);
-        for (own, shift) in off.as_mut_slice().iter_mut().zip(shift.as_slice()) {
+        let shift = random.like(&qdot, -0.1, 0.1);
+        for (own, shift) in off.as_mut().iter_mut().zip(shift.as_ref()) {
             *own += shift;
         }
         system.state_unchecked(0.0, &q, &off).expect("a state")
@@ -105,66 +106,77 @@ fn near<S: Described>(system: &S, count: usize) -> Vec<S::State> {
 }
 
 /// The state moved along its rate.
-fn moved<S: System>(state: &S::State, rate: &S::State, step: f64) -> S::State {
+fn moved(state: &State, rate: &State, step: f64) -> State {
     let mut moved = *state;
-    for (own, rate) in moved.as_mut_slice().iter_mut().zip(rate.as_slice()) {
+    for (own, rate) in moved.as_mut().iter_mut().zip(rate.as_ref()) {
         *own += step * rate;
     }
     moved
 }
 
 /// On the constraint and off it the field keeps the value of every constraint.
-fn check_kept<S: Described + Constrained>(system: &S) {
+fn check_kept(system: &Large) {
     for state in near(system, 8) {
         let (t, h) = (0.0, 1e-5);
-        let mut rate = S::State::zeros(S::State::CAPACITY);
+        let mut rate = system.zero_state();
         system.rate(t, &state, &mut rate).expect("a rate");
-        let ahead = residuals(system, t + h, &moved::<S>(&state, &rate, h));
-        let behind = residuals(system, t - h, &moved::<S>(&state, &rate, -h));
-        for (ahead, behind) in ahead.as_slice().iter().zip(behind.as_slice()) {
+        let ahead = residuals(system, t + h, &moved(&state, &rate, h));
+        let behind = residuals(system, t - h, &moved(&state, &rate, -h));
+        assert!(!ahead.is_empty());
+        for (ahead, behind) in ahead.iter().zip(behind) {
             let slope = (ahead - behind) / (2.0 * h);
-            assert!(slope.abs() < 1e-8, "{}: {slope}", S::DESCRIPTION.name);
+            assert!(slope.abs() < 1e-8, "{}: {slope}", system.description().name);
         }
     }
 }
 
+/// The systems that most is looked at with.
+fn systems() -> [Large; 3] {
+    [
+        shipped("constant_speed").sized(),
+        shipped("appell_hamel").sized(),
+        MIXED.sized(),
+    ]
+}
+
 #[test]
 fn the_field_keeps_the_value_of_every_constraint() {
-    check_kept(&ConstantSpeed::default());
-    check_kept(&AppellHamel::default());
-    check_kept(&Mixed::default());
+    for system in systems() {
+        check_kept(&system);
+    }
 }
 
 /// The force of the constraints is that of Chetaev's rule, by differences of the constraints over the velocities.
-fn check_rule<S: Described + Constrained + Lagrangian>(system: &S) {
+fn check_rule(system: &Large) {
+    let n = system.coordinate_count();
     for state in near(system, 8) {
         let (t, h) = (0.0, 1e-5);
         let (q, qdot) = (
             system.position(&state),
             system.velocity(t, &state).expect("one"),
         );
-        let mut rate = S::State::zeros(S::State::CAPACITY);
+        let mut rate = system.zero_state();
         system.rate(t, &state, &mut rate).expect("a rate");
         let force = system.force(t, &q, &qdot);
         let multipliers = system.multipliers(t, &state).expect("multipliers");
-        for k in 0..S::Vector::CAPACITY {
+        for k in 0..n {
             let at = |step: f64| {
                 let mut qdot = qdot;
-                qdot.as_mut_slice()[k] += step;
+                qdot.as_mut()[k] += step;
                 system.residuals(t, &q, &qdot).0
             };
             let (ahead, behind) = (at(h), at(-h));
-            let slopes = ahead.as_slice().iter().zip(behind.as_slice());
+            let slopes = ahead.as_ref().iter().zip(behind.as_ref());
             let reaction: f64 = slopes
-                .zip(multipliers.as_slice())
+                .zip(multipliers.as_ref())
                 .map(|((ahead, behind), lambda)| lambda * (ahead - behind) / (2.0 * h))
                 .sum();
-            let pdot = rate.as_slice()[S::Vector::CAPACITY + k];
-            let expected = force.as_slice()[k] + reaction;
+            let pdot = rate.as_ref()[n + k];
+            let expected = force.as_ref()[k] + reaction;
             assert!(
                 (pdot - expected).abs() < 1e-8 * (1.0 + expected.abs()),
                 "{}: {pdot} for {expected}",
-                S::DESCRIPTION.name
+                system.description().name
             );
         }
     }
@@ -172,14 +184,14 @@ fn check_rule<S: Described + Constrained + Lagrangian>(system: &S) {
 
 #[test]
 fn the_force_is_a_multiple_of_the_derivative_by_the_velocities() {
-    check_rule(&ConstantSpeed::default());
-    check_rule(&AppellHamel::default());
-    check_rule(&Mixed::default());
+    for system in systems() {
+        check_rule(&system);
+    }
 }
 
 #[test]
 fn an_affine_constraint_and_its_bent_form_have_the_same_field() {
-    let (belt, bent) = (Belt::default(), BentBelt::default());
+    let (belt, bent) = (BELT.model(), BENT_BELT.model());
     let straight = belt.global();
     for state in states(&straight, 12, 5) {
         let t = 0.7;
@@ -191,19 +203,20 @@ fn an_affine_constraint_and_its_bent_form_have_the_same_field() {
         let (mut rate, mut bent_rate) = (on, other);
         straight.rate(t, &on, &mut rate).expect("a rate");
         bent.rate(t, &other, &mut bent_rate).expect("a rate");
-        assert_near("rate", rate.as_slice(), bent_rate.as_slice(), 1e-12);
+        assert_near("rate", rate.as_ref(), bent_rate.as_ref(), 1e-12);
         // lambda eta: the bent form is `2 + thetadot^2` times the other one there.
-        let factor = 2.0 + qdot[2] * qdot[2];
-        let lambda = straight.multipliers(t, &on).expect("one")[0];
-        let bent_lambda = bent.multipliers(t, &other).expect("one")[0];
+        let factor = 2.0 + qdot.as_ref()[2].powi(2);
+        let lambda = straight.multipliers(t, &on).expect("one").as_ref()[0];
+        let bent_lambda = bent.multipliers(t, &other).expect("one").as_ref()[0];
         assert_near("lambda", &[bent_lambda * factor], &[lambda], 1e-12);
     }
 }
 
 #[test]
 fn velocities_off_the_constraint_are_refused_or_moved_to_it() {
-    let machine = AppellHamel::default();
-    let (q, off) = ([0.1, 0.2, 0.3].into(), [0.7, -0.4, -0.5].into());
+    let machine: Large = shipped("appell_hamel").sized();
+    let given = [0.7, -0.4, -0.5];
+    let (q, off) = (vector(&[0.1, 0.2, 0.3]), vector(&given));
     let refused = machine.state(0.0, &q, &off);
     assert!(
         matches!(
@@ -214,12 +227,19 @@ fn velocities_off_the_constraint_are_refused_or_moved_to_it() {
     );
     let state = machine.state_projected(0.0, &q, &off).expect("a state");
     assert!(residuals(&machine, 0.0, &state)[0].abs() < 1e-15);
-    assert!((machine.velocity(0.0, &state).expect("one") - off).amax() < 0.2);
+    let moved = machine.velocity(0.0, &state).expect("one");
+    let pairs = moved.as_ref().iter().zip(given);
+    assert!(
+        pairs
+            .map(|(own, given)| (own - given).abs())
+            .fold(0.0, f64::max)
+            < 0.2
+    );
     let kept = machine.state_unchecked(0.0, &q, &off).expect("a state");
     assert!(residuals(&machine, 0.0, &kept)[0].abs() > 0.1);
     // At rest the constraint has no gradient.
     let rest = machine
-        .state_projected(0.0, &q, &[0.0; 3].into())
+        .state_projected(0.0, &q, &vector(&[0.0; 3]))
         .expect("a state");
     let mut rate = rest;
     let fault = machine.rate(0.0, &rest, &mut rate);
@@ -231,14 +251,14 @@ fn velocities_off_the_constraint_are_refused_or_moved_to_it() {
 
 #[test]
 fn velocities_that_are_not_named_follow_and_those_that_contradict_are_refused() {
-    let particle = ConstantSpeed::default();
+    let particle = shipped("constant_speed").model();
     let complete = |qdot: [f64; 2], named: [f64; 2]| {
-        particle.complete_velocity(0.0, &[0.0; 2].into(), &qdot.into(), &named.into())
+        particle.complete_velocity(0.0, &vector(&[0.0; 2]), &vector(&qdot), &vector(&named))
     };
     let both = complete([0.0; 2], [0.0; 2]).expect("velocities");
-    assert_near("both", both.as_slice(), &[2.0_f64.sqrt(); 2], 1e-15);
+    assert_near("both", both.as_ref(), &[2.0_f64.sqrt(); 2], 1e-15);
     let one = complete([-1.2, 0.0], [1.0, 0.0]).expect("velocities");
-    assert_near("one", one.as_slice(), &[-1.2, 1.6], 1e-15);
+    assert_near("one", one.as_ref(), &[-1.2, 1.6], 1e-15);
     for (qdot, named) in [([2.5, 0.0], [1.0, 0.0]), ([1.2, 1.5], [1.0, 1.0])] {
         let refused = complete(qdot, named);
         assert!(
@@ -246,28 +266,28 @@ fn velocities_that_are_not_named_follow_and_those_that_contradict_are_refused() 
             "{refused:?}"
         );
     }
-    let mixed = Mixed::default();
-    let q = [0.3, -0.2, 0.1, 0.4, 0.0].into();
+    let mixed: Large = MIXED.sized();
+    let q = vector(&[0.3, -0.2, 0.1, 0.4, 0.0]);
     let completed = mixed
         .complete_velocity(
             0.0,
             &q,
-            &[0.2, 0.0, 0.0, 0.0, 0.0].into(),
-            &[1.0, 0.0, 0.0, 0.0, 0.0].into(),
+            &vector(&[0.2, 0.0, 0.0, 0.0, 0.0]),
+            &vector(&[1.0, 0.0, 0.0, 0.0, 0.0]),
         )
         .expect("velocities");
     assert!(mixed.state(0.0, &q, &completed).is_ok());
-    assert_eq!(completed[0], 0.2);
+    assert_eq!(completed.as_ref()[0], 0.2);
 }
 
 #[test]
 fn a_constraint_without_solutions_is_said_to_have_none() {
-    let impossible = Impossible::default();
-    let (q, qdot) = ([0.0; 2].into(), [0.3, 0.2].into());
+    let impossible = IMPOSSIBLE.model();
+    let (q, qdot) = (vector(&[0.0; 2]), vector(&[0.3, 0.2]));
     let state = impossible.state_projected(0.0, &q, &qdot);
     let fault = Fault::ProjectionFailed { constraint: 0 };
     assert_eq!(state, Err(StateError::Fault(fault)));
-    let completed = impossible.complete_velocity(0.0, &q, &qdot, &[1.0, 0.0].into());
+    let completed = impossible.complete_velocity(0.0, &q, &qdot, &vector(&[1.0, 0.0]));
     assert!(
         matches!(
             completed,
@@ -279,23 +299,22 @@ fn a_constraint_without_solutions_is_said_to_have_none() {
 
 #[test]
 fn projection_brings_a_coarse_run_back() {
-    let mixed = Mixed::default();
-    let q = [0.3, -0.2, 0.1, 0.4, 0.5].into();
-    let state = mixed
-        .state_projected(0.0, &q, &[0.6, 0.5, 0.2, -0.1, 0.3].into())
-        .expect("a state");
+    let mixed: Large = MIXED.sized();
+    let (q, qdot) = ([0.3, -0.2, 0.1, 0.4, 0.5], [0.6, 0.5, 0.2, -0.1, 0.3]);
     let run = |on: bool| {
-        let mut effects = (Projection::new(),);
+        let mut effects = (Some(Projection::new()), None, None);
         effects.set_projection(on);
-        let stepper = Rk4::new(tolerance()).with_step(0.05);
-        let run = Simulation::new(&mixed, stepper, effects)
-            .run(0.0, state, 2.0, &mut ())
-            .expect("a run");
+        let run = Course::new(&mixed, &q, &qdot, 2.0)
+            .tol(1e-13)
+            .step(0.05)
+            .effects(effects)
+            .observed(Integrator::Rk4, &mut ());
         assert_eq!(run.outcome, Outcome::Done);
         let left = residuals(&mixed, run.t, &run.state);
         (
-            left.amax(),
-            mixed.levels(run.t, &mixed.position(&run.state))[0],
+            left.iter()
+                .fold(0.0, |worst: f64, own| worst.max(own.abs())),
+            mixed.levels(run.t, &mixed.position(&run.state)).as_ref()[0],
             run.counters.projections,
         )
     };
@@ -307,55 +326,50 @@ fn projection_brings_a_coarse_run_back() {
 
 #[test]
 fn walls_with_resets_are_the_only_ones_that_are_left() {
-    let runner = Runner::default();
+    let runner = RUNNER.model();
+    let [right, top] = [0, 1];
     let run = |qdot: [f64; 2], law: Option<Law>| {
-        let mut effects = runner.effects();
+        let state = state(&runner, &[0.0; 2], &qdot);
+        let mut course = Course::from_state(&runner, state, 10.0).tol(1e-13);
         if let Some(law) = law {
-            effects.set_law(runner::surface::right, law);
+            course = course.law(right, law);
         }
-        let state = runner
-            .state(0.0, &[0.0; 2].into(), &qdot.into())
-            .expect("a state");
-        let mut simulation = Simulation::new(&runner, Dop853::new(tolerance()), effects);
-        simulation.run(0.0, state, 10.0, &mut ()).expect("a run")
+        course.observed(Integrator::Dop853, &mut ())
     };
     let turned = run([1.0, 0.0], None);
     assert_eq!(turned.outcome, Outcome::Done);
     assert_near(
         "turned",
-        turned.state.as_slice(),
+        turned.state.as_ref(),
         &[-8.0, 0.0, -1.0, 0.0],
         1e-12,
     );
-    let surface = runner::surface::top;
     let wrong = run([0.0, 1.0], None).outcome;
     assert_eq!(
         wrong,
         Outcome::ResetOffConstraint {
-            surface,
+            surface: top,
             constraint: 0
         }
     );
     let outcome = run([1.0, 0.0], Some(Law::Elastic)).outcome;
     assert_eq!(outcome, Outcome::NonlinearConstraints);
-    let state = runner
-        .state(0.0, &[0.0; 2].into(), &[1.0, 0.0].into())
-        .expect("a state");
+    let state = state(&runner, &[0.0; 2], &[1.0, 0.0]);
     assert_eq!(
-        runner.contact(0, 0.0, &state).err(),
+        runner.contact(right, 0.0, &state).err(),
         Some(Fault::NonlinearConstraints)
     );
 }
 
 #[test]
 fn the_discrete_principle_is_not_defined() {
-    let particle = ConstantSpeed::default();
-    let state = particle
-        .state(0.0, &[0.0; 2].into(), &[0.0, 2.0].into())
-        .expect("a state");
-    let stepper = Dla2::new(tolerance()).with_step(0.1);
-    let run = Simulation::new(&particle, stepper, particle.effects()).run(0.0, state, 1.0, &mut ());
-    assert_eq!(run.expect("a run").outcome, Outcome::NonlinearConstraints);
+    let particle = shipped("constant_speed").model();
+    let state = state(&particle, &[0.0; 2], &[0.0, 2.0]);
+    let run = Course::from_state(&particle, state, 1.0)
+        .tol(1e-13)
+        .step(0.1)
+        .observed(Integrator::Dla2, &mut ());
+    assert_eq!(run.outcome, Outcome::NonlinearConstraints);
 }
 
 #[test]

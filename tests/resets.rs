@@ -2,16 +2,15 @@
 
 use dalembert::declaration::Described;
 use dalembert::law::Law;
-use dalembert::{
-    Dop853, EventLog, Impacting, Instance, Outcome, Run, Scene, Simulation, StateVector, Stepper,
-    System, Tolerance,
-};
-use dalembert_cli::{Exit, models};
+use dalembert::{EventLog, Impacting, Instance, Outcome, Run, StateVector, System, VectorField};
+use dalembert_cli::{Exit, Integrator};
 use dalembert_codegen::claims::Verdict;
 use dalembert_codegen::compile;
 use dalembert_codegen::program::{Program, interpret::interpret};
 use dalembert_emit::try_expand;
 use dalembert_models::WalkerFootSlip;
+use dalembert_stability::course::{Course, state};
+use dalembert_stability::text::{Model, Text};
 use dalembert_tests::claim::Declaration;
 use dalembert_tests::command::{self, Finished};
 use dalembert_tests::interpreted::{compare_report, input};
@@ -69,6 +68,12 @@ dalembert::model! {
         }
     }
 }
+
+static SWAP: Text = Text::new(Swap::DESCRIPTION.source);
+
+static MIRROR_SLEIGH: Text = Text::new(MirrorSleigh::DESCRIPTION.source);
+
+static STRIP: Text = Text::new(Strip::DESCRIPTION.source);
 
 /// Emitted resets do what the interpreter does, to the bit.
 fn compare<S: Described + Impacting>(system: &S, program: &Program) -> usize {
@@ -133,15 +138,15 @@ fn right_sides_take_the_values_before_the_impact() {
 type Impact = (f64, usize, bool);
 
 /// A run with its impacts.
-fn run<S: Scene>(system: &S, state: S::State, until: f64) -> (Run<S::State>, Vec<Impact>)
-where
-    Dop853<S::State>: Stepper<S>,
-{
-    let mut log = EventLog::<S::State, 64>::new();
-    let stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
-    let run = Simulation::new(system, stepper, system.effects())
-        .run(0.0, state, until, &mut log)
-        .expect("a start");
+fn run(
+    system: &Model,
+    q: &[f64],
+    qdot: &[f64],
+    until: f64,
+) -> (Run<<Model as VectorField>::State>, Vec<Impact>) {
+    let mut log = EventLog::<_, 64>::new();
+    let run = Course::from_state(system, state(system, q, qdot), until)
+        .observed(Integrator::Dop853, &mut log);
     let events = log
         .iter()
         .map(|own| (own.t, own.surface, own.before != own.after));
@@ -150,28 +155,17 @@ where
 
 #[test]
 fn both_forms_go_the_same_way_through_resets_of_positions() {
-    let sleigh = MirrorSleigh::default();
+    let sleigh = MIRROR_SLEIGH.model();
     let global = sleigh.global();
-    let (q, qdot) = (
-        [0.5, 0.0, 0.4].into(),
-        [0.4_f64.cos(), 0.4_f64.sin(), 0.7].into(),
-    );
-    let reduced = run(
-        &sleigh,
-        sleigh.state(0.0, &q, &qdot).expect("a state"),
-        12.0,
-    );
-    let whole = run(
-        &global,
-        global.state(0.0, &q, &qdot).expect("a state"),
-        12.0,
-    );
+    let (q, qdot) = ([0.5, 0.0, 0.4], [0.4_f64.cos(), 0.4_f64.sin(), 0.7]);
+    let reduced = run(&sleigh, &q, &qdot, 12.0);
+    let whole = run(&global, &q, &qdot, 12.0);
     assert_eq!(
         (reduced.0.outcome, whole.0.outcome),
         (Outcome::Done, Outcome::Done)
     );
     let energy = |state: &_| sleigh.energy(0.0, state).expect("an energy");
-    let start = sleigh.state(0.0, &q, &qdot).expect("a state");
+    let start = state(&sleigh, &q, &qdot);
     assert!((energy(&reduced.0.state) - energy(&start)).abs() < 1e-10);
     let surfaces: Vec<usize> = reduced.1.iter().map(|own| own.1).collect();
     assert!(
@@ -190,9 +184,12 @@ fn both_forms_go_the_same_way_through_resets_of_positions() {
         sleigh.position(&reduced.0.state),
         global.position(&whole.0.state),
     ];
+    let pairs = left.as_slice().iter().zip(right.as_slice());
     assert!(
-        (left - right).iter().all(|part| part.abs() < 1e-8),
-        "{left} {right}"
+        pairs
+            .into_iter()
+            .all(|(one, other)| (one - other).abs() < 1e-8),
+        "{left:?} {right:?}"
     );
 }
 
@@ -301,7 +298,12 @@ fn a_reset_off_the_constraints_is_refused_with_a_state() {
 
 /// The command line over the models of this file.
 fn command(line: &str, given: &str) -> Finished {
-    command::line(models![Swap, MirrorSleigh, Strip], line, given)
+    let models = [
+        SWAP.entry("swap"),
+        MIRROR_SLEIGH.entry("mirror_sleigh"),
+        STRIP.entry("strip"),
+    ];
+    command::line(models.to_vec(), line, given)
 }
 
 #[test]

@@ -5,13 +5,15 @@ use std::collections::BTreeMap;
 use dalembert::declaration::SceneVisitor;
 use dalembert::kernels::Tables;
 use dalembert::{
-    Described, Divergence, Dop853, Impacting, Impacts, Lagrangian, Outcome, Projection, Scene,
-    Simulation, System, TaylorField, Tolerance,
+    Described, Divergence, Impacting, Impacts, Lagrangian, Outcome, Projection, Scene, System,
+    TaylorField,
 };
-use dalembert_cli::Exit;
+use dalembert_cli::{Exit, Integrator};
 use dalembert_codegen::Compiled;
 use dalembert_codegen::program::Program;
 use dalembert_codegen::tables::FormOf;
+use dalembert_stability::course::Course;
+use dalembert_stability::text::{Text, set};
 use dalembert_tests::command::dalembert;
 use quote::ToTokens;
 
@@ -232,37 +234,29 @@ fn a_surface_of_a_scene_has_its_own_functions_at_its_own_place() {
     );
 }
 
-/// A run of a system with the effects it comes with.
-fn run<S: Described + Scene>(system: &S, until: f64) -> (S::State, Outcome, u64) {
-    let initial = system.initial();
-    let state = system
-        .state(0.0, &initial.q, &initial.qdot)
-        .expect("a state");
-    let stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
-    let run = Simulation::new(system, stepper, system.effects())
-        .run(0.0, state, until, &mut ())
-        .expect("a start");
-    (run.state, run.outcome, run.counters.impacts)
+/// A run of a scene of a loaded [`Thrown`] from its declared start: place along x, outcome and number of impacts.
+fn run(scene: &str, until: f64) -> (f64, Outcome, u64) {
+    static THROWN: Text = Text::new(Thrown::DESCRIPTION.source);
+    let mut thrown = THROWN.scene(scene);
+    set(&mut thrown, "f", -1.0);
+    let run = Course::declared(&thrown, until).observed(Integrator::Dop853, &mut ());
+    (run.state.as_ref()[0], run.outcome, run.counters.impacts)
 }
 
 #[test]
 fn a_scene_moves_under_what_it_uses() {
-    let thrown = Thrown {
-        f: -1.0,
-        ..Thrown::default()
-    };
-    let (state, outcome, impacts) = run(&thrown::Free(thrown), 10.0);
+    let (x, outcome, impacts) = run("free", 10.0);
     assert_eq!((outcome, impacts), (Outcome::Done, 0));
-    assert!((state.as_slice()[0] - 10.0).abs() < 1e-12);
+    assert!((x - 10.0).abs() < 1e-12);
     // x = m v/c (1 - exp(-c t/m))
-    let (state, _, impacts) = run(&thrown::Slowed(thrown), 10.0);
+    let (x, _, impacts) = run("slowed", 10.0);
     assert_eq!(impacts, 0);
-    assert!((state.as_slice()[0] - 4.0 * (1.0 - (-2.5_f64).exp())).abs() < 1e-11);
+    assert!((x - 4.0 * (1.0 - (-2.5_f64).exp())).abs() < 1e-11);
     // Elastic on the left, half the speed from the right: 1, 1 + 2/0.5, 5 + 2/0.5, ..
-    let (state, _, impacts) = run(&thrown::Walls(thrown), 9.5);
+    let (x, _, impacts) = run("walls", 9.5);
     assert_eq!(impacts, 3);
-    assert!((state.as_slice()[0] - 0.875).abs() < 1e-12, "{state:?}");
-    let (_, _, impacts) = run(&thrown::SlowedRight(thrown), 10.0);
+    assert!((x - 0.875).abs() < 1e-12, "{x}");
+    let (_, _, impacts) = run("slowed_right", 10.0);
     assert_eq!(impacts, 1);
 }
 

@@ -1,32 +1,32 @@
 //! Starts that the declaration leaves open: what `check` says of them, and how equations of positions complete them.
 
-use dalembert::{
-    Described, Dop853, Instance, Keep, Outcome, ParameterError, Scene, Simulation, StateError,
-    System, Tolerance,
-};
-use dalembert_cli::{Exit, models};
+use dalembert::{Instance, Keep, Outcome, ParameterError, StateError, System};
+use dalembert_cli::{Exit, Integrator};
+use dalembert_stability::course::{Course, state, vector};
+use dalembert_stability::text::{Model, Text};
 use dalembert_tests::command::{self, Finished};
 
-dalembert::model! {
-    /// A particle that may be beyond 1 only; nothing says where it starts, which is at 0.
-    pub Behind {
+/// A particle that may be beyond 1 only; nothing says where it starts, which is at 0.
+static BEHIND: Text = Text::new(
+    "Behind {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { wall: x >= 1; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// The same with a wall that ends above the start.
-    pub Beside {
+/// The same with a wall that ends above the start.
+static BESIDE: Text = Text::new(
+    "Beside {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { wall: x >= 1 when y > 1; }
-    }
-}
+    }",
+);
 
 fn checked(model: &str) -> Finished {
-    command::run(models![Behind, Beside], &["check", model], "")
+    let models = [BEHIND.entry("behind"), BESIDE.entry("beside")];
+    command::run(models.to_vec(), &["check", model], "")
 }
 
 #[test]
@@ -43,20 +43,20 @@ fn a_start_beside_a_wall_is_admissible() {
     assert_eq!(exit, Exit::Reached, "{output}");
 }
 
-dalembert::model! {
-    /// A pendulum in Cartesian coordinates; where it starts follows from `y`.
-    pub Rod {
+/// A pendulum in Cartesian coordinates; where it starts follows from `y`.
+static ROD: Text = Text::new(
+    "Rod {
         coordinates { x; y; }
         parameters { l > 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
         constraints { rod: x^2 + y^2 = l^2; }
         initial { y = -4/5; dot(y) = 3; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Two links and a coupler between two fixed points at a distance of 2: a loop that closes in one way of two.
-    pub FourBar {
+/// Two links and a coupler between two fixed points at a distance of 2: a loop that closes in one way of two.
+static FOUR_BAR: Text = Text::new(
+    "FourBar {
         coordinates { a: angle; b: angle; c: angle; }
         lagrangian = (dot(a)^2 + dot(b)^2 + dot(c)^2)/2 - sin(a)/4;
         constraints {
@@ -64,12 +64,12 @@ dalembert::model! {
             up: sin(a) + 2*sin(b) - 3/2*sin(c) = 0;
         }
         initial { a = 1; dot(a) = 1/2; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A free particle that a ring is to catch where it is not.
-    pub Caught {
+/// A free particle that a ring is to catch where it is not.
+static CAUGHT: Text = Text::new(
+    "Caught {
         modes {
             free {
                 coordinates { x; y; }
@@ -84,52 +84,47 @@ dalembert::model! {
         }
         parameters { y0 = 1; }
         transitions { caught: free -> ring when x >= 0; }
-    }
-}
+    }",
+);
 
 /// The declared start, solved for, and the same run to `end`.
-fn start<S: Described + Scene>(system: &S, end: f64) -> ([S::Vector; 2], Outcome) {
-    let own = system.initial();
-    let q = system
-        .complete_position(0.0, &own.q, &own.placed)
-        .expect("positions");
-    let qdot = system
-        .complete_velocity(0.0, &q, &own.qdot, &own.named)
-        .expect("velocities");
-    let state = system.state(0.0, &q, &qdot).expect("a state");
-    let stepper = Dop853::new(Tolerance::new(1e-6).expect("a tolerance"));
-    let run = Simulation::new(system, stepper, system.effects())
-        .run(0.0, state, end, &mut ())
-        .expect("a run");
-    ([q, system.position(&run.state)], run.outcome)
+fn start(system: &Model, end: f64) -> ([Vec<f64>; 2], Outcome) {
+    let course = Course::declared(system, end).tol(1e-6);
+    let start = *course.start();
+    let run = course.observed(Integrator::Dop853, &mut ());
+    let places = [start, run.state].map(|state| system.position(&state).as_ref().to_vec());
+    (places, run.outcome)
 }
 
 #[test]
 fn equations_of_positions_are_solved_and_kept() {
     for l in [1.0, 1.25, 7.0] {
-        let rod = Rod { l };
+        let rod = ROD.with([("l", l)]);
         let ([begin, end], outcome) = start(&rod, 200.0);
         assert_eq!(outcome, Outcome::Done);
         assert_eq!(begin[1], -0.8);
         assert!(begin[0] > 0.0, "of two places the one to the right");
         for q in [begin, end] {
-            assert!((q[0].hypot(q[1]) - l).abs() < 1e-12, "{q} for a rod of {l}");
+            assert!(
+                (q[0].hypot(q[1]) - l).abs() < 1e-12,
+                "{q:?} for a rod of {l}"
+            );
         }
     }
-    let bars = FourBar::with_defaults();
+    let bars = FOUR_BAR.model();
     let ([begin, end], outcome) = start(&bars, 200.0);
     assert_eq!(outcome, Outcome::Done);
-    for q in [begin, end] {
+    for q in [&begin, &end] {
         let across = q[0].cos() + 2.0 * q[1].cos() - 1.5 * q[2].cos();
         let up = q[0].sin() + 2.0 * q[1].sin() - 1.5 * q[2].sin();
-        assert!((across - 2.0).abs() < 1e-12 && up.abs() < 1e-12, "{q}");
+        assert!((across - 2.0).abs() < 1e-12 && up.abs() < 1e-12, "{q:?}");
     }
     assert_eq!(begin[0], 1.0);
 }
 
 #[test]
 fn places_off_the_equations_are_refused() {
-    let rod = Rod { l: 0.5 };
+    let rod = ROD.with([("l", 0.5)]);
     let own = rod.initial();
     let refused = Err(StateError::OffPosition {
         constraint: 0,
@@ -137,21 +132,22 @@ fn places_off_the_equations_are_refused() {
         scale: 0.8 * 0.8 + 0.25,
     });
     assert_eq!(rod.complete_position(0.0, &own.q, &own.placed), refused);
-    let refused = rod.state(0.0, &[0.5, 1e-3].into(), &[0.0, 0.0].into());
+    let refused = rod.state(0.0, &vector(&[0.5, 1e-3]), &vector(&[0.0, 0.0]));
     assert!(
         matches!(refused, Err(StateError::OffPosition { constraint: 0, .. })),
         "{refused:?}"
     );
-    let near = rod.state_projected(0.0, &[0.5, 1e-3].into(), &[1.0, 1.0].into());
+    let near = rod.state_projected(0.0, &vector(&[0.5, 1e-3]), &vector(&[1.0, 1.0]));
     let q = rod.position(&near.expect("a state"));
+    let q = q.as_ref();
     assert!((q[0].hypot(q[1]) - 0.5).abs() < 1e-15 && (q[1] - 1e-3).abs() < 1e-6);
 }
 
 #[test]
 fn a_mode_is_not_entered_off_its_equations() {
-    let caught = Caught::with_defaults();
+    let caught = CAUGHT.model();
     assert_eq!(start(&caught, 3.0).1, Outcome::Done);
-    let beside = Caught { y0: 0.5, ..caught };
+    let beside = CAUGHT.with([("y0", 0.5)]);
     let expected = Outcome::ResetOffConstraint {
         surface: 0,
         constraint: 0,
@@ -161,7 +157,7 @@ fn a_mode_is_not_entered_off_its_equations() {
 
 #[test]
 fn the_command_line_solves_for_positions_or_refuses_them() {
-    let run = |line: &str| command::line(models![Rod], line, "");
+    let run = |line: &str| command::line(vec![ROD.entry("rod")], line, "");
     let Finished { exit, output, .. } = run("check rod");
     assert_eq!(exit, Exit::Reached, "{output}");
     let Finished { output, .. } = run("simulate rod --until 0.1 --csv - --initial y=0.6");
@@ -180,20 +176,20 @@ fn the_command_line_solves_for_positions_or_refuses_them() {
     assert!(errors.contains("the positions violate"), "{errors}");
 }
 
-dalembert::model! {
-    /// A skate whose blade stands off its centre of mass, in the state (q, u).
-    pub Skate {
+/// A skate whose blade stands off its centre of mass, in the state (q, u).
+static SKATE: Text = Text::new(
+    "Skate {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 1; J > 0 = 1; a = 1/2; }
         let c = sin(theta)*dot(x) - cos(theta)*dot(y);
         lagrangian = m/2*(dot(x)^2 + dot(y)^2) + J/2*dot(theta)^2;
         constraints { blade: c = a*dot(theta); }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A mass that becomes another one's burden at x = 1.
-    pub Loaded {
+/// A mass that becomes another one's burden at x = 1.
+static LOADED: Text = Text::new(
+    "Loaded {
         coordinates { x; }
         parameters { m > 0 = 1; load > 0 = 3; }
         modes {
@@ -201,41 +197,36 @@ dalembert::model! {
             both { lagrangian = (m + load)/2*dot(x)^2; }
         }
         transitions { taken: free -> both when x >= 1 => reset { dot(x) = dot(x); }; }
-    }
-}
+    }",
+);
 
 #[test]
 fn what_stays_is_said_where_parameters_change() {
-    let (light, heavy) = (
-        Skate::default(),
-        Skate {
-            m: 4.0,
-            J: 2.0,
-            a: 0.5,
-        },
-    );
-    let (q, qdot) = ([0.0, 0.0, 0.3].into(), |u: f64, w: f64, a: f64| {
-        let (sin, cos) = 0.3_f64.sin_cos();
-        [u * cos + a * w * sin, u * sin - a * w * cos, w].into()
-    });
-    let state = light.state(0.0, &q, &qdot(2.0, 1.0, 0.5)).expect("a state");
+    let light = SKATE.model();
+    let heavy = SKATE.with([("m", 4.0), ("J", 2.0), ("a", 0.5)]);
+    let (u, w, a) = (2.0, 1.0, 0.5);
+    let (sin, cos) = 0.3_f64.sin_cos();
+    let qdot = [u * cos + a * w * sin, u * sin - a * w * cos, w];
+    let state = state(&light, &[0.0, 0.0, 0.3], &qdot);
     let as_fast = heavy
         .carried(&light, 0.0, &state, Keep::Velocities)
         .expect("a state");
     let velocity = heavy.velocity(0.0, &as_fast).expect("a state");
+    let pairs = velocity.as_ref().iter().zip(qdot);
     assert!(
-        (velocity - qdot(2.0, 1.0, 0.5))
-            .iter()
-            .all(|own| own.abs() < 1e-15)
+        pairs
+            .into_iter()
+            .all(|(own, given)| (own - given).abs() < 1e-15)
     );
     let as_heavy = heavy
         .carried(&light, 0.0, &state, Keep::Momenta)
         .expect("a state");
     // The momentum along the blade is that of the mass, so the speed along it is a quarter.
     let slower = heavy.velocity(0.0, &as_heavy).expect("a state");
+    let slower = slower.as_ref();
     let along = slower[0] * 0.3_f64.cos() + slower[1] * 0.3_f64.sin();
     assert!((along - 0.5).abs() < 1e-15, "{along}");
-    let turned = Skate { a: 0.25, ..light };
+    let turned = SKATE.with([("a", 0.25)]);
     let refused = turned.carried(&light, 0.0, &state, Keep::Velocities);
     assert!(
         matches!(
@@ -244,7 +235,7 @@ fn what_stays_is_said_where_parameters_change() {
         ),
         "{refused:?}"
     );
-    let hollow = Skate { m: -1.0, ..light };
+    let hollow = SKATE.with([("m", -1.0)]);
     let refused = hollow.carried(&light, 0.0, &state, Keep::Momenta);
     assert!(
         matches!(
@@ -257,22 +248,17 @@ fn what_stays_is_said_where_parameters_change() {
 
 #[test]
 fn a_motion_is_carried_on_in_the_mode_that_it_is_in() {
-    let system = Loaded::default();
-    let state = system
-        .state(0.0, &[0.0].into(), &[2.0].into())
-        .expect("a state");
-    let stepper = Dop853::new(Tolerance::new(1e-9).expect("a tolerance"));
-    let run = Simulation::new(&system, stepper, system.effects())
-        .run(0.0, state, 3.0, &mut ())
-        .expect("a run");
-    assert_eq!(system.mode(&run.state), loaded::Mode::Both as usize);
-    let heavier = Loaded {
-        load: 7.0,
-        ..system
-    };
+    let system = LOADED.model();
+    let run = Course::new(&system, &[0.0], &[2.0], 3.0)
+        .tol(1e-9)
+        .observed(Integrator::Dop853, &mut ());
+    let both = 1;
+    assert_eq!(system.mode(&run.state), both);
+    let heavier = LOADED.with([("load", 7.0)]);
     let carried = heavier
         .carried(&system, 3.0, &run.state, Keep::Momenta)
         .expect("a state");
-    assert_eq!(heavier.mode(&carried), loaded::Mode::Both as usize);
-    assert_eq!(heavier.velocity(3.0, &carried).expect("a state")[0], 1.0);
+    assert_eq!(heavier.mode(&carried), both);
+    let velocity = heavier.velocity(3.0, &carried).expect("a state");
+    assert_eq!(velocity.as_ref()[0], 1.0);
 }
