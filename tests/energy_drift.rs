@@ -2,11 +2,10 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{
-    Constrained, Dop853, Observer, Outcome, Scene, SceneEffects, Segment, Simulation, System,
-    Tolerance, VectorField,
-};
-use dalembert_models::RollingDisk;
+use dalembert::{Constrained, Observer, Outcome, Segment, System, VectorField};
+use dalembert_cli::Integrator;
+use dalembert_stability::course::{Course, state};
+use dalembert_stability::text::{Model, shipped, value};
 
 const IMPACTS: u64 = 10_000;
 
@@ -16,55 +15,49 @@ const BY_HAND: [(f64, f64); 3] = [(1e-8, 1.6e-13), (1e-10, 9.0e-14), (1e-12, 1.0
 
 /// The largest constraint residual at the ends of steps, as a share of its natural scale.
 struct Residual<'a> {
-    disk: &'a RollingDisk,
+    disk: &'a Model,
     worst: f64,
 }
 
-impl Observer<RollingDisk> for Residual<'_> {
-    fn step(
-        &mut self,
-        segment: &mut Segment<'_, <RollingDisk as dalembert::VectorField>::State>,
-    ) -> ControlFlow<()> {
+impl Observer<Model> for Residual<'_> {
+    fn step(&mut self, segment: &mut Segment<'_, State>) -> ControlFlow<()> {
         let state = segment.end();
         let (q, qdot) = (self.disk.position(state), self.disk.velocity(0.0, state));
         let (residuals, scales) = self.disk.residuals(0.0, &q, &qdot.expect("a velocity"));
-        for (residual, scale) in residuals.as_slice().iter().zip(scales.as_slice()) {
+        for (residual, scale) in residuals.as_ref().iter().zip(scales.as_ref()) {
             self.worst = self.worst.max(residual.abs() / scale);
         }
         ControlFlow::Continue(())
     }
 }
 
-type State = <RollingDisk as VectorField>::State;
+type State = <Model as VectorField>::State;
 
 /// The disk upright in the middle of the table, rolling and turning.
-fn rolling(disk: &RollingDisk, roll: f64) -> State {
-    let phi = core::f64::consts::FRAC_PI_2;
+fn rolling(disk: &Model, roll: f64) -> State {
+    let (phi, radius) = (core::f64::consts::FRAC_PI_2, value(disk, "R"));
     let qdot = [
-        disk.R * phi.cos() * roll,
-        disk.R * phi.sin() * roll,
+        radius * phi.cos() * roll,
+        radius * phi.sin() * roll,
         roll,
         0.2,
     ];
-    disk.state(0.0, &[0.0, 0.0, 0.0, phi].into(), &qdot.into())
-        .expect("a state")
+    state(disk, &[0.0, 0.0, 0.0, phi], &qdot)
 }
 
 /// Relative energy error and largest residual after 10 000 impacts.
 fn drift(roll: f64, tol: f64) -> (f64, f64) {
-    let disk = RollingDisk::default();
+    let disk = shipped("rolling_disk").model();
     let state = rolling(&disk, roll);
     let before = disk.energy(0.0, &state).expect("an energy");
-    let mut effects = disk.effects();
-    effects.set_impact_budget(Some(IMPACTS));
-    let stepper = Dop853::new(Tolerance::new(tol).expect("a tolerance"));
     let mut residual = Residual {
         disk: &disk,
         worst: 0.0,
     };
-    let run = Simulation::new(&disk, stepper, effects)
-        .run(0.0, state, 1e7, &mut residual)
-        .expect("a start");
+    let run = Course::from_state(&disk, state, 1e7)
+        .tol(tol)
+        .impacts(IMPACTS)
+        .observed(Integrator::Dop853, &mut residual);
     assert_eq!(
         (run.outcome, run.counters.impacts),
         (Outcome::ImpactBudget, IMPACTS)

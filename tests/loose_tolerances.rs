@@ -6,13 +6,17 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{
-    Dop853, DormandPrince5, Event, Impacting, Observer, Scene, Simulation, Stepper, System, Taylor,
-    Tolerance, VectorField,
-};
-use dalembert_models::RollingDisk;
+use dalembert::{Event, Impacting, Observer, VectorField};
+use dalembert_cli::Integrator;
+use dalembert_stability::course::{Course, state};
+use dalembert_stability::text::{Model, shipped, value};
 
-type State = <RollingDisk as VectorField>::State;
+type State = <Model as VectorField>::State;
+
+/// Whose runs they are.
+fn disk() -> Model {
+    shipped("rolling_disk").model()
+}
 
 /// Seconds by which impacts may be off, for a tolerance of 1: the disk's ends move at 0.1 to 0.3 m/s, a step may be off
 /// by the tolerance in metres, and the edge is met at an angle.
@@ -32,7 +36,7 @@ struct First {
     wanted: usize,
 }
 
-impl Observer<RollingDisk> for First {
+impl Observer<Model> for First {
     fn event(&mut self, event: &Event<State>) -> ControlFlow<()> {
         self.impacts.push(Impact {
             t: event.t,
@@ -47,48 +51,41 @@ impl Observer<RollingDisk> for First {
 }
 
 fn impacts(
-    stepper: impl Stepper<RollingDisk>,
+    (integrator, tol): (Integrator, f64),
     state: State,
     (t_end, wanted): (f64, usize),
 ) -> Vec<Impact> {
-    let disk = RollingDisk::default();
     let mut first = First {
         impacts: Vec::new(),
         wanted,
     };
-    Simulation::new(&disk, stepper, disk.effects())
-        .run(0.0, state, t_end, &mut first)
-        .expect("a run");
+    Course::from_state(&disk(), state, t_end)
+        .tol(tol)
+        .observed(integrator, &mut first);
     first.impacts
 }
 
-fn tolerance(tol: f64) -> Tolerance {
-    Tolerance::new(tol).expect("a tolerance")
-}
+/// The motion that others are compared with.
+const EXACT: (Integrator, f64) = (Integrator::Taylor, 1e-13);
 
 /// The disk upright in the middle of the table, rolling and turning.
 fn start(roll: f64) -> State {
-    let disk = RollingDisk::default();
+    let disk = disk();
     let phi = core::f64::consts::FRAC_PI_2;
-    let qdot = [0.0, disk.R * roll, roll, 0.2];
-    disk.state(0.0, &[0.0, 0.0, 0.0, phi].into(), &qdot.into())
-        .expect("a state")
+    let qdot = [0.0, value(&disk, "R") * roll, roll, 0.2];
+    state(&disk, &[0.0, 0.0, 0.0, phi], &qdot)
 }
 
 /// Every flight of a run has its exact partner.
-fn assert_flights_are_exact<Step: Stepper<RollingDisk>>(
-    name: &str,
-    make: impl Fn(Tolerance) -> Step,
-    tol: f64,
-) {
+fn assert_flights_are_exact(integrator: Integrator, tol: f64) {
+    let name = integrator.name();
     for roll in [10.0, 10.001, 9.7] {
-        let run = impacts(make(tolerance(tol)), start(roll), (200.0, usize::MAX));
+        let run = impacts((integrator, tol), start(roll), (200.0, usize::MAX));
         assert!(run.len() > 100, "{name} at {tol}: {} impacts", run.len());
         for pair in run.windows(2) {
             let [from, to] = [pair[0], pair[1]];
             let flight = to.t - from.t;
-            let exact = Taylor::new(tolerance(1e-13));
-            let exact = impacts(exact, from.after, (flight + 3.0, 1))
+            let exact = impacts(EXACT, from.after, (flight + 3.0, 1))
                 .first()
                 .copied();
             let exact = exact
@@ -107,14 +104,14 @@ fn assert_flights_are_exact<Step: Stepper<RollingDisk>>(
 
 #[test]
 fn flights_of_taylor_series_are_exact() {
-    assert_flights_are_exact("taylor", Taylor::new, 1e-3);
-    assert_flights_are_exact("taylor", Taylor::new, 1e-4);
+    assert_flights_are_exact(Integrator::Taylor, 1e-3);
+    assert_flights_are_exact(Integrator::Taylor, 1e-4);
 }
 
 #[test]
 fn flights_of_dop853_are_exact() {
-    assert_flights_are_exact("dop853", Dop853::new, 1e-3);
-    assert_flights_are_exact("dop853", Dop853::new, 1e-4);
+    assert_flights_are_exact(Integrator::Dop853, 1e-3);
+    assert_flights_are_exact(Integrator::Dop853, 1e-4);
 }
 
 /// By how much the gap of a loose run may be wrong, for a tolerance of 1: gaps are 1 in the middle of the table, and a step
@@ -126,15 +123,11 @@ const MOMENTS: usize = 64;
 
 /// In every flight of a run the exact motion stays inside as far as tolerance can tell, and ends on the surface that was
 /// met.
-fn assert_flights_stay_inside<Step: Stepper<RollingDisk>>(
-    name: &str,
-    make: impl Fn(Tolerance) -> Step,
-    tol: f64,
-) {
-    let disk = RollingDisk::default();
+fn assert_flights_stay_inside(integrator: Integrator, tol: f64) {
+    let (name, disk) = (integrator.name(), disk());
     let wrong = WRONG * tol;
     for roll in [10.0, 10.001, 9.7, 9.86, 10.62] {
-        let run = impacts(make(tolerance(tol)), start(roll), (200.0, usize::MAX));
+        let run = impacts((integrator, tol), start(roll), (200.0, usize::MAX));
         assert!(run.len() > 100, "{name} at {tol}: {} impacts", run.len());
         for pair in run.windows(2) {
             let [from, to] = [pair[0], pair[1]];
@@ -143,13 +136,18 @@ fn assert_flights_stay_inside<Step: Stepper<RollingDisk>>(
             let (mut t, mut state) = (0.0, from.after);
             for moment in 1..=MOMENTS {
                 let next = flight * moment as f64 / MOMENTS as f64;
-                let exact = Taylor::new(tolerance(1e-13));
-                let ended = Simulation::new(&disk, exact, ()).run(t, state, next, &mut ());
-                (t, state) = (next, ended.expect("a run").state);
+                let (exact, tol) = EXACT;
+                let ended = Course::from_state(&disk, state, next)
+                    .at(t)
+                    .tol(tol)
+                    .alone()
+                    .observed(exact, &mut ());
+                (t, state) = (next, ended.state);
                 let gaps = disk.gaps(t, &state);
-                assert!(gaps.min() >= -wrong, "{label}: {:e} at {t}", gaps.min());
+                let least = gaps.as_ref().iter().copied().fold(f64::INFINITY, f64::min);
+                assert!(least >= -wrong, "{label}: {least:e} at {t}");
             }
-            let gap = disk.gaps(t, &state)[to.surface];
+            let gap = disk.gaps(t, &state).as_ref()[to.surface];
             assert!(gap <= wrong, "{label}: an impact at a gap of {gap:e}");
         }
     }
@@ -157,6 +155,6 @@ fn assert_flights_stay_inside<Step: Stepper<RollingDisk>>(
 
 #[test]
 fn flights_of_dormand_prince_stay_inside() {
-    assert_flights_stay_inside("dopri5", DormandPrince5::new, 1e-3);
-    assert_flights_stay_inside("dopri5", DormandPrince5::new, 1e-4);
+    assert_flights_stay_inside(Integrator::Dopri5, 1e-3);
+    assert_flights_stay_inside(Integrator::Dopri5, 1e-4);
 }

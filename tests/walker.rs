@@ -2,52 +2,39 @@
 
 use core::ops::ControlFlow;
 
-use dalembert::{
-    Dop853, Event, Observer, Outcome, Scene, Simulation, Stepper, System, Taylor, Tolerance,
-    VectorField,
-};
-use dalembert_models::DimensionlessWalker;
+use dalembert::{Event, Observer, Outcome, VectorField};
+use dalembert_cli::Integrator;
+use dalembert_stability::course::{Course, state};
+use dalembert_stability::text::{Model, shipped, value};
 use dalembert_tests::reference::{number, numbers, read};
 use serde_json::Value;
 
-type State = <DimensionlessWalker as VectorField>::State;
+type State = <Model as VectorField>::State;
 
 /// Times of steps with the states before and after.
 #[derive(Default)]
 struct Steps(Vec<(f64, State, State)>);
 
-impl Observer<DimensionlessWalker> for Steps {
+impl Observer<Model> for Steps {
     fn event(&mut self, event: &Event<State>) -> ControlFlow<()> {
         self.0.push((event.t, event.before, event.after));
         ControlFlow::Continue(())
     }
 }
 
-fn walk<Step: Stepper<DimensionlessWalker>>(
-    walker: &DimensionlessWalker,
-    stepper: Step,
-    [xi, eta]: [f64; 2],
-    until: f64,
-) -> Steps {
+fn walk(walker: &Model, integrator: Integrator, [xi, eta]: [f64; 2], until: f64) -> Steps {
     let mut steps = Steps::default();
-    let start = [walker.delta, xi, eta].into();
-    let start = walker.state(0.0, &start, &State::zeros()).expect("a state");
-    let mut simulation = Simulation::new(walker, stepper, walker.effects());
-    let run = simulation
-        .run(0.0, start, until, &mut steps)
-        .expect("a start");
+    let start = state(walker, &[value(walker, "delta"), xi, eta], &[0.0; 3]);
+    let run = Course::from_state(walker, start, until)
+        .tol(1e-13)
+        .observed(integrator, &mut steps);
     assert_eq!(run.outcome, Outcome::Done);
     steps
 }
 
-fn walker(set: &Value) -> DimensionlessWalker {
-    let parameter = |name: &str| number(&set[name]);
-    DimensionlessWalker {
-        mu: parameter("mu"),
-        eps: parameter("eps"),
-        alpha: parameter("alpha"),
-        delta: parameter("delta"),
-    }
+fn walker(set: &Value) -> Model {
+    let names = ["mu", "eps", "alpha", "delta"];
+    shipped("dimensionless_walker").with(names.map(|name| (name, number(&set[name]))))
 }
 
 fn pair(value: &Value) -> [f64; 2] {
@@ -62,10 +49,10 @@ fn error(steps: &Steps, stored: &[Value]) -> f64 {
     for ((t, before, after), stored) in steps.0.iter().zip(stored) {
         let mut compare = |own: f64, stored: f64| largest = largest.max((own - stored).abs());
         compare(*t, number(&stored["t"]));
-        for (own, stored) in before.as_slice().iter().zip(numbers(&stored["before"])) {
+        for (own, stored) in before.as_ref().iter().zip(numbers(&stored["before"])) {
             compare(*own, stored);
         }
-        for (own, stored) in after.as_slice()[1..]
+        for (own, stored) in after.as_ref()[1..]
             .iter()
             .zip(numbers(&stored["after(xi,eta)"]))
         {
@@ -80,14 +67,13 @@ fn transients_are_the_stored_ones() {
     let file = read("walker_orbits");
     let sets = file["sets"].as_array().expect("sets");
     assert!(!sets.is_empty());
-    let tolerance = Tolerance::new(1e-13).expect("a tolerance");
     for set in sets {
         let (walker, transient) = (walker(set), &set["transient"]);
         let start = pair(&transient["initial(xi,eta)"]);
         let stored = transient["steps"].as_array().expect("steps");
         let until = number(&stored[stored.len() - 1]["t"]) + 0.1;
-        let of_taylor = error(&walk(&walker, Taylor::new(tolerance), start, until), stored);
-        let of_dop853 = error(&walk(&walker, Dop853::new(tolerance), start, until), stored);
+        let of_taylor = error(&walk(&walker, Integrator::Taylor, start, until), stored);
+        let of_dop853 = error(&walk(&walker, Integrator::Dop853, start, until), stored);
         assert!(
             of_taylor <= 1e-11 && of_dop853 <= 1e-11,
             "{of_taylor:e}, {of_dop853:e}"
@@ -98,23 +84,22 @@ fn transients_are_the_stored_ones() {
 #[test]
 fn the_fixed_point_comes_back_after_a_period() {
     let file = read("walker_orbits");
-    let tolerance = Tolerance::new(1e-13).expect("a tolerance");
     for set in file["sets"].as_array().expect("sets") {
         let (walker, period) = (walker(set), number(&set["period"]));
         let fixed = pair(&set["fixed_point_post_impact(xi,eta)"]);
-        let steps = walk(&walker, Taylor::new(tolerance), fixed, 1.5 * period);
+        let steps = walk(&walker, Integrator::Taylor, fixed, 1.5 * period);
         let [(t, before, after)] = steps.0.as_slice() else {
             panic!("{} steps", steps.0.len());
         };
         assert!((t - period).abs() <= 1e-11, "{t} for {period}");
         for (own, stored) in before
-            .as_slice()
+            .as_ref()
             .iter()
             .zip(numbers(&set["state_before_impact"]))
         {
             assert!((own - stored).abs() <= 1e-11, "{own} for {stored}");
         }
-        for (own, stored) in after.as_slice()[1..].iter().zip(fixed) {
+        for (own, stored) in after.as_ref()[1..].iter().zip(fixed) {
             assert!((own - stored).abs() <= 1e-11, "{own} for {stored}");
         }
     }
