@@ -5,7 +5,7 @@ use dalembert_cli::{Exit, Integrator};
 use dalembert_codegen::compile;
 use dalembert_codegen::program::{Form, Function, Input, interpret::interpret};
 use dalembert_models::DimensionlessWalker;
-use dalembert_stability::course::{Course, state, vector};
+use dalembert_stability::course::{Course, is_discrete, state, vector};
 use dalembert_stability::text::Text;
 use dalembert_tests::command::{self, Finished};
 use serde_json::Value;
@@ -51,11 +51,6 @@ dalembert::model! {
 
 static SAWTOOTH: Text = Text::new(Sawtooth::DESCRIPTION.source);
 
-/// Whether an integrator follows a field; those of the discrete principle do not.
-fn follows_fields(own: &&Integrator) -> bool {
-    !matches!(own, Integrator::Dla2 | Integrator::Dla4)
-}
-
 #[test]
 fn integrators_follow_the_field() {
     let system = DRIVEN.model();
@@ -70,12 +65,12 @@ fn integrators_follow_the_field() {
     let turned = angle((0.125_f64).tan()) + 0.5 * root * t;
     let turns = (turned / core::f64::consts::PI + 0.5).floor();
     let phi = 2.0 * (((root * turned.tan() - half) / omega).atan() + turns * core::f64::consts::PI);
-    for &integrator in Integrator::every().iter().filter(follows_fields) {
+    for &integrator in Integrator::every() {
+        if is_discrete(integrator) {
+            continue;
+        }
         let mut course = Course::new(&system, &[1.0, 0.25], &[0.0; 2], 3.0);
-        if !matches!(
-            integrator,
-            Integrator::Taylor | Integrator::Dop853 | Integrator::Dopri5
-        ) {
+        if !integrator.is_adaptive() {
             course = course.step(1e-3);
         }
         let run = course.observed(integrator, &mut ());

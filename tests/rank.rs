@@ -9,7 +9,7 @@ use dalembert::{
 };
 use dalembert_cli::Integrator;
 use dalembert_models::{BallOnSwitchingTable, SmoothAndRoughPlane, TwoWheelsArrested};
-use dalembert_stability::course::{Course, vector};
+use dalembert_stability::course::{Course, is_discrete, vector};
 use dalembert_stability::text::{Model, Text};
 use dalembert_tests::sampling::{Visitor, visit_all};
 
@@ -129,7 +129,6 @@ impl<'a> Start<'a> {
     }
 
     fn run(&self, discrete: bool, judge: impl Fn(&str, Run<State>, &Log)) {
-        let is_discrete = |own: Integrator| matches!(own, Integrator::Dla2 | Integrator::Dla4);
         for step in STEPS {
             for &integrator in Integrator::every() {
                 if is_discrete(integrator) != discrete {

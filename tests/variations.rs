@@ -293,7 +293,6 @@ fn every_law_has_its_derivative() {
     }
 }
 
-/// Integrators as accurate as that are compared: those that choose their steps.
 #[test]
 fn any_integrator_may_make_the_run() {
     let system = shipped("dimensionless_walker").model();

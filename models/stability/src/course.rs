@@ -429,6 +429,12 @@ impl<M: Scene + TaylorField> Drive<M> {
     }
 }
 
+/// Whether an integrator follows the discrete principle of Lagrange and d'Alembert, which first-order systems and
+/// constraints that are not linear have none of.
+pub const fn is_discrete(integrator: Integrator) -> bool {
+    matches!(integrator, Integrator::Dla2 | Integrator::Dla4)
+}
+
 /// A vector of the system's type.
 pub fn vector<V: StateVector>(values: &[f64]) -> V {
     V::of(values)
