@@ -198,11 +198,7 @@ fn integrals_are_kept() {
 
 /// The command line over these models, with an input: exit, output, errors.
 fn command(line: &str, given: &str) -> Finished {
-    let models = [
-        DRIVEN.entry("driven"),
-        PREY.entry("prey"),
-        SAWTOOTH.entry("sawtooth"),
-    ];
+    let models = [DRIVEN.entry(), PREY.entry(), SAWTOOTH.entry()];
     command::line(models.to_vec(), line, given)
 }
 

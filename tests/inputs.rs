@@ -278,7 +278,7 @@ fn emitted_code_is_what_the_interpreter_executes_with_inputs() {
 
 /// Runs the command line over the models of this file.
 fn command(arguments: &[&str], input: &str) -> Finished {
-    command::run(vec![CART.entry("cart")], arguments, input)
+    command::run(vec![CART.entry()], arguments, input)
 }
 
 #[test]

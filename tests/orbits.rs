@@ -232,7 +232,7 @@ fn what_is_no_orbit_is_said() {
 /// A command line over the models of this file.
 fn run(line: &str) -> Finished {
     let mut models = dalembert_command::all();
-    models.push(SPRING.entry("spring"));
+    models.push(SPRING.entry());
     command::line(models, line, "")
 }
 

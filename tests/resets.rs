@@ -298,11 +298,7 @@ fn a_reset_off_the_constraints_is_refused_with_a_state() {
 
 /// The command line over the models of this file.
 fn command(line: &str, given: &str) -> Finished {
-    let models = [
-        SWAP.entry("swap"),
-        MIRROR_SLEIGH.entry("mirror_sleigh"),
-        STRIP.entry("strip"),
-    ];
+    let models = [SWAP.entry(), MIRROR_SLEIGH.entry(), STRIP.entry()];
     command::line(models.to_vec(), line, given)
 }
 

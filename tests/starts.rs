@@ -25,7 +25,7 @@ static BESIDE: Text = Text::new(
 );
 
 fn checked(model: &str) -> Finished {
-    let models = [BEHIND.entry("behind"), BESIDE.entry("beside")];
+    let models = [BEHIND.entry(), BESIDE.entry()];
     command::run(models.to_vec(), &["check", model], "")
 }
 
@@ -157,7 +157,7 @@ fn a_mode_is_not_entered_off_its_equations() {
 
 #[test]
 fn the_command_line_solves_for_positions_or_refuses_them() {
-    let run = |line: &str| command::line(vec![ROD.entry("rod")], line, "");
+    let run = |line: &str| command::line(vec![ROD.entry()], line, "");
     let Finished { exit, output, .. } = run("check rod");
     assert_eq!(exit, Exit::Reached, "{output}");
     let Finished { output, .. } = run("simulate rod --until 0.1 --csv - --initial y=0.6");

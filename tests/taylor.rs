@@ -3,7 +3,7 @@
 use dalembert::jet::{Jets, LENGTH};
 use dalembert::numbers::Row;
 use dalembert::{
-    Described, Instance, Outcome, Scene, StateVector, System, Taylor, TaylorField, Tolerance,
+    Described, Instance, Outcome, StateVector, System, Taylor, TaylorField, Tolerance,
 };
 use dalembert_cli::Integrator;
 use dalembert_codegen::program::jet::degree::Degree;
@@ -11,8 +11,8 @@ use dalembert_codegen::program::jet::{Jet, Recurrence, interpret};
 use dalembert_codegen::program::{Input, Program};
 use dalembert_codegen::{compile, spec};
 use dalembert_stability::course::{Course, state};
-use dalembert_stability::text::{Large, Model, Text};
-use dalembert_tests::sampling::{Visitor, states, visit_all};
+use dalembert_stability::text::{Model, Text};
+use dalembert_tests::sampling::{every_system, states};
 
 fn program(source: &str) -> Program {
     compile(source.parse().expect("tokens"))
@@ -22,12 +22,12 @@ fn program(source: &str) -> Program {
 }
 
 /// The arguments of a rate at a state of a system.
-fn input<'a, S: Described>(
+fn input<'a, S: Instance>(
     system: &'a S,
     t: f64,
     state: &'a S::State,
 ) -> impl Fn(Input) -> f64 + 'a {
-    let n = S::Vector::CAPACITY;
+    let n = system.coordinate_count();
     move |input| match input {
         Input::Time => t,
         Input::Parameter(k) => system.parameter(k),
@@ -67,14 +67,10 @@ fn expand<S: TaylorField>(
         .collect()
 }
 
-/// Emitted coefficients are those that the interpreter computes; the first is the rate but for the rounding of its
+/// Coefficients are those that the interpreter computes; the first is the rate but for the rounding of its
 /// products, whose constant factors are taken in another order.
-fn assert_emitted_is_interpreted<S: Described + TaylorField>(
-    system: &S,
-    jet: &Jet,
-    state: S::State,
-) {
-    let name = S::DESCRIPTION.name;
+fn assert_is_interpreted<S: Instance + TaylorField>(system: &S, jet: &Jet, state: S::State) {
+    let name = system.description().name;
     let (t, unit, order) = (0.25, 0.125, 12);
     let emitted = expand(system, t, (unit, order), state);
     let at = input(system, t, &state);
@@ -108,20 +104,16 @@ fn assert_emitted_is_interpreted<S: Described + TaylorField>(
 }
 
 #[test]
-fn emitted_coefficients_are_what_the_interpreter_computes() {
-    struct Compared(usize);
-    impl Visitor for Compared {
-        fn visit<S: Described + Scene + TaylorField>(&mut self, system: S) {
-            let program = program(S::DESCRIPTION.source);
-            for state in states(&system, 5, 1) {
-                assert_emitted_is_interpreted(&system, &program.jet, state);
-                self.0 += 1;
-            }
+fn coefficients_are_what_the_interpreter_computes() {
+    let mut compared = 0;
+    for system in every_system() {
+        let program = program(system.description().source);
+        for state in states(system, 5, 1) {
+            assert_is_interpreted(system, &program.jet, state);
+            compared += 1;
         }
     }
-    let mut compared = Compared(0);
-    visit_all(&mut compared);
-    assert!(compared.0 >= 100);
+    assert!(compared >= 100);
 }
 
 dalembert::model! {
@@ -145,7 +137,7 @@ fn every_function_is_expanded_as_it_is_interpreted() {
     let state = system
         .state(0.25, &[0.4, -0.3].into(), &[0.5, 0.7].into())
         .expect("a state");
-    assert_emitted_is_interpreted(&system, &program.jet, state);
+    assert_is_interpreted(&system, &program.jet, state);
     for name in spec::FUNCTIONS {
         assert!(
             EveryForce::DESCRIPTION
@@ -417,21 +409,11 @@ fn steps_do_not_depend_on_units_of_time() {
 /// Two runs agree to the bit, and with DOP853 as well as its errors allow.
 #[test]
 fn runs_repeat_and_agree_with_another_method() {
-    #[derive(Default)]
-    struct Sources(Vec<&'static str>);
-    impl Visitor for Sources {
-        fn visit<S: Described + Scene + TaylorField>(&mut self, _: S) {
-            self.0.push(S::DESCRIPTION.source);
-        }
-    }
-    let mut sources = Sources::default();
-    visit_all(&mut sources);
-    for source in sources.0 {
-        let system: Large = Text::new(source).sized();
+    for system in every_system() {
         let name = system.description().name;
-        for state in states(&system, 2, 7) {
+        for state in states(system, 2, 7) {
             let run = |integrator| {
-                Course::from_state(&system, state, 0.5)
+                Course::from_state(system, state, 0.5)
                     .tol(1e-14)
                     .alone()
                     .observed(integrator, &mut ())

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use dalembert::{Described, Instance, Lagrangian, Scene, StateVector, System, TaylorField};
+use dalembert::{Instance, StateVector, System};
 use dalembert_stability::text::{Large, Text, shipped};
 
 use crate::systems;
@@ -87,34 +87,4 @@ pub fn system(name: &str) -> Large {
     let mut systems = every_system().iter();
     let system = systems.find(|system| system.description().name == name);
     *system.unwrap_or_else(|| panic!("no system `{name}`"))
-}
-
-/// Calls a macro-like function for every system that is known to tests: `visit` must be generic.
-pub trait Visitor {
-    /// Visits one system.
-    fn visit<S: Described + Scene + TaylorField + Lagrangian>(&mut self, system: S);
-}
-
-/// Visits every shipped model and every system of [`crate::systems`], at their defaults.
-pub fn visit_all(visitor: &mut impl Visitor) {
-    use crate::systems;
-    macro_rules! visit {
-        ($package:ident: $($model:ident)*) => {
-            $(visitor.visit($package::$model::default());)*
-        };
-    }
-    visit! {
-        dalembert_models:
-        AppellHamel BallOnRotatingTable BouncingBall Chain2 Chain3 Chain4 Chain8 Chain16 ChaplyginSleigh ConstantSpeed
-        DoublePendulum
-        HarmonicOscillator HolonomicBeadOnEllipses MovingWallDisk PointBilliard RollingBallEuler RollingBallWall RollingDisk
-        SuperElasticStrip TwoWheelsRod
-        WalkerFootSlip
-    }
-    visit! {
-        systems:
-        AffineSleigh TableWall MagneticDisk DampedSleigh IntegrableBead Rheonomic
-        WalkerWithMultiplier FallingDisk MixedDisk NonholonomicParticle HelicalCircle
-        CurvedDual RouthSphere OnePole
-    }
 }
