@@ -92,7 +92,7 @@ impl<'f, 'a, Sys: Variational> Course<'f, 'a, Sys> {
         let from_middle = self.unit * (units - middle);
         let (crude, centre) = (self.at(units), self.at(middle));
         let rates = self.field.rates(times, &crude)?;
-        let centred = Bounds::of(|i| centre.at(i) + from_middle * rates.at(i));
+        let centred = Bounds::of(crude.count(), |i| centre.at(i) + from_middle * rates.at(i));
         let states = crude.within(&centred);
         Some(Part {
             times,

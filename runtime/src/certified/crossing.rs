@@ -175,8 +175,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             tube,
             all,
             centre,
-            turned: [Matrix::zero(), Matrix::zero()],
-            slopes: [Bounds::point(&Sys::State::zeros(Sys::State::CAPACITY)); BLOCKS],
+            turned: [Matrix::zero(hull.count()); BLOCKS],
+            slopes: [Bounds::point(&hull.lo.zeroed()); BLOCKS],
             whole,
             rate,
         };
@@ -266,8 +266,9 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let centre_units = self.narrowed(units, |units| self.gap_of(&self.centre, units))?;
         let part = self.all.part(units)?;
         let rate = self.rate_in(units)?;
+        let n = part.states.count();
         let delays = [0, 1]
-            .map(|block: usize| Bounds::of(|k| -(self.slopes[block].at(k) / rate) * self.unit));
+            .map(|block: usize| Bounds::of(n, |k| -(self.slopes[block].at(k) / rate) * self.unit));
         Some(Meeting {
             units,
             centre_units,
@@ -305,7 +306,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let later = times.hi;
         let rest = (Interval::point(later) - Interval::point(self.t)) / self.unit;
         let centre = self.struck_centre(strike, meeting, rest).ok_or(unsure)?;
-        let mut changes = [Matrix::<Sys>::zero(), Matrix::zero()];
+        let n = centre.after.count();
+        let mut changes = [Matrix::<Sys>::zero(n); BLOCKS];
         let mut after = self.applied(strike, times, &meeting.before).ok_or(unsure)?;
         for (block, k, _) in self.frame.axes() {
             let along = self.met_along(meeting, &self.turned[block], &meeting.delays[block], k);
@@ -314,11 +316,11 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             let column = applied_along(self.surfaces.field, strike, met, &along, delay);
             changes[block].set_column(k, &column.ok_or(unsure)?);
         }
-        let centred = Bounds::of(|i| {
+        let centred = Bounds::of(n, |i| {
             centre.after.at(i) + self.frame.along(|block, k| changes[block].at(i, k))
         });
         after = after.within(&centred);
-        let before = Bounds::of(|i| {
+        let before = Bounds::of(n, |i| {
             let along = |block: usize, k: usize| {
                 self.met_along(meeting, &self.turned[block], &meeting.delays[block], k)
                     .at(i)
@@ -354,7 +356,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             let column = departure.carried(&departed, &after, along, delay);
             column.ok_or(Reason::NoTube)
         };
-        let mut turned = [Matrix::<Sys>::zero(), Matrix::zero()];
+        let mut turned = [Matrix::<Sys>::zero(n); BLOCKS];
         for (block, k, _) in self.frame.axes() {
             let along = changes[block].column(k);
             let later = column(&along, meeting.delays[block].at(k))?;
@@ -362,8 +364,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         }
         let mut derivatives = None;
         if let Some(derivative) = derivative {
-            let mut both = [Matrix::<Sys>::zero(), Matrix::zero()];
-            for k in 0..Sys::State::CAPACITY {
+            let mut both = [Matrix::<Sys>::zero(n); BLOCKS];
+            for k in 0..n {
                 let struck = self.struck_along(strike, meeting, &derivative.column(k));
                 let (along, delay) = struck.ok_or(unsure)?;
                 both[0].set_column(k, &along);
@@ -392,7 +394,9 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
     ) -> Option<(Bounds<Sys::State>, Interval)> {
         let (column, slope) = self.swept(direction)?;
         let delay = -(slope / meeting.rate) * self.unit;
-        let along = Bounds::of(|i| column.at(i) + meeting.rates_before.at(i) * delay);
+        let along = Bounds::of(column.count(), |i| {
+            column.at(i) + meeting.rates_before.at(i) * delay
+        });
         let met = (self.all.times(meeting.units), &meeting.before);
         let after = applied_along(self.surfaces.field, strike, met, &along, delay)?;
         Some((after, delay))
@@ -414,13 +418,14 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         let late = (units - middle) * self.unit;
         let near = course.at(middle);
         let arriving = course.at(units);
-        let before = Bounds::of(|i| arriving.at(i).hull(near.at(i)));
+        let n = near.count();
+        let before = Bounds::of(n, |i| arriving.at(i).hull(near.at(i)));
         let all_after = self.applied(strike, time, &before)?;
         let point = Bounds::point(&near.middle());
         let after_in_middle = self.applied(strike, time_in_middle, &point)?;
         let [rates_before, rates_after] = [&before, &all_after].map(|at| field.rates(time, at));
         let (rates_before, rates_after) = (rates_before?, rates_after?);
-        let offset = Bounds::of(|i| near.at(i) - point.at(i));
+        let offset = Bounds::of(n, |i| near.at(i) - point.at(i));
         let along = |along: &Bounds<Sys::State>, delay: f64| {
             applied_along(
                 field,
@@ -431,7 +436,9 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             )
         };
         let (by_offset, by_time) = (along(&offset, 0.0)?, along(&rates_before, 1.0)?);
-        let after = Bounds::of(|i| after_in_middle.at(i) + by_offset.at(i) + by_time.at(i) * late);
+        let after = Bounds::of(n, |i| {
+            after_in_middle.at(i) + by_offset.at(i) + by_time.at(i) * late
+        });
         let ahead_of = |units: Interval| ahead(rest, units);
         let during = Interval::new(0.0, (self.unit * ahead_of(units)).hi);
         let tube = field.tube(&all_after, time + during, during)?;
@@ -444,13 +451,13 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             ORDER,
         )?;
         let end = from.at(ahead_of(middle));
-        let shift = Bounds::of(|i| by_time.at(i) - rates_after.at(i));
+        let shift = Bounds::of(n, |i| by_time.at(i) - rates_after.at(i));
         let carried = |along: &Bounds<Sys::State>| {
             let from = [&all_after, &tube, along];
             carried(field, from, time, self.unit, ahead_of(units), ORDER)
         };
         let (by_offset, by_time) = (carried(&by_offset)?, carried(&shift)?);
-        let moved = Bounds::of(|i| end.at(i) + by_offset.at(i) + by_time.at(i) * late);
+        let moved = Bounds::of(n, |i| end.at(i) + by_offset.at(i) + by_time.at(i) * late);
         moved.is_finite().then_some(Centre {
             time,
             before: arriving,
@@ -496,7 +503,9 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         delays: &Bounds<Sys::State>,
         k: usize,
     ) -> Bounds<Sys::State> {
-        Bounds::of(|i| turned.at(i, k) + meeting.rates_before.at(i) * delays.at(k))
+        Bounds::of(turned.count(), |i| {
+            turned.at(i, k) + meeting.rates_before.at(i) * delays.at(k)
+        })
     }
 }
 
@@ -515,7 +524,7 @@ fn applied_along<Sys: Variational + Impacting>(
     let states = rated_row::<Sys>(states, along);
     let after = strike.applied(field.system, &field.steady_parameters(), times, &states);
     let after = after.ok()??;
-    let changes = Bounds::of(|i| after.as_slice()[i].rate);
+    let changes = Bounds::of(along.count(), |i| after.as_slice()[i].rate);
     changes.is_finite().then_some(changes)
 }
 
@@ -573,7 +582,9 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
         along: &Bounds<Sys::State>,
         delay: Interval,
     ) -> Option<Bounds<Sys::State>> {
-        let along = Bounds::of(|i| along.at(i) - departed.rates.at(i) * delay);
+        let along = Bounds::of(along.count(), |i| {
+            along.at(i) - departed.rates.at(i) * delay
+        });
         let from = [after, &departed.tube, &along];
         let (field, unit) = (self.surfaces.field, self.unit);
         carried(field, from, self.times, unit, self.rest, ORDER)
@@ -595,7 +606,7 @@ pub(super) fn carried<Sys: Variational>(
     let series = field.series_along(from, along, start, unit, order)?;
     let remainder = field.series_along(tube, &tube_along, times, unit, order)?;
     let end = Arc::new(&series, &remainder, order).at(Rated::steady(units));
-    let changes = Bounds::of(|i| end.as_slice()[i].rate);
+    let changes = Bounds::of(from.count(), |i| end.as_slice()[i].rate);
     changes.is_finite().then_some(changes)
 }
 

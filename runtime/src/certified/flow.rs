@@ -9,7 +9,7 @@
 //!
 //! with the Taylor coefficients `c_k` of the motion over intervals, and `J` the derivative of the sum by the start, over all of `Y`.
 
-use super::frame::{Bounds, Frame, Matrix, Turned};
+use super::frame::{BLOCKS, Bounds, Frame, Matrix, Turned};
 use super::lost::{Lost, Reason};
 use super::series::{Arc, Field, bounds, row};
 use crate::contract::Variational;
@@ -85,7 +85,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         Self {
             field: Field::new(system),
             t,
-            frame: Frame::of(&Bounds::of(start)),
+            frame: Frame::of(&Bounds::of(system.state_len(), start)),
             remainder: REMAINDER,
             next: None,
             steps: 0,
@@ -159,7 +159,8 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         if !hull.is_finite() {
             return Err(lost(Reason::NotFinite));
         }
-        let reach = self.reach().ok_or(lost(Reason::NoTube))?;
+        let no_rates = || lost(self.field.no_rates(Interval::point(self.t), &hull));
+        let reach = self.reach().ok_or_else(no_rates)?;
         let wished = self.next.map_or(reach, |next| next.min(reach));
         let mut h = wished.min(t_end - self.t);
         loop {
@@ -169,7 +170,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
             };
             let is_ahead = later > self.t && h >= least_step(self.t).min(t_end - self.t);
             if !is_ahead {
-                return Err(lost(Reason::NoTube));
+                return Err(no_rates());
             }
             let length = Interval::point(later) - Interval::point(self.t);
             let made = self.tube(&hull, length).and_then(|tube| {
@@ -251,7 +252,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
             self.frame.hull(),
         );
         let last = remainder.coefficients[ORDER].as_slice();
-        let excess = (0..Sys::State::CAPACITY).fold(0.0_f64, |most, i| {
+        let excess = (0..hull.count()).fold(0.0_f64, |most, i| {
             let size = self.frame.centre.as_slice()[i].abs() + scale.as_slice()[i];
             let allowed = self.remainder * size + SHARE * hull.at(i).width();
             most.max(last[i].width() / allowed)
@@ -262,12 +263,13 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
     /// The derivatives of the sum of a step by its start, all over the hull, along the axes of the frame.
     fn turned(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Turned<Sys>> {
         let now = Interval::point(self.t);
-        let mut turned = [Matrix::zero(), Matrix::zero()];
+        let n = hull.count();
+        let mut turned = [Matrix::zero(n); BLOCKS];
         for (block, k, axis) in self.frame.axes() {
             let series = self
                 .field
                 .series_along(hull, &axis, now, length, ORDER - 1)?;
-            let column = Bounds::of(|i| {
+            let column = Bounds::of(n, |i| {
                 let terms = (0..ORDER)
                     .rev()
                     .map(|order| series.coefficients[order].as_slice()[i].rate);

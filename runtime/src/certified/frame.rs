@@ -25,13 +25,18 @@ impl<S: StateVector> Bounds<S> {
         }
     }
 
-    /// The box whose component `i` is `of(i)`.
-    pub(super) fn of(of: impl Fn(usize) -> Interval) -> Self {
-        let mut bounds = Self::point(&S::zeros(S::CAPACITY));
-        for i in 0..S::CAPACITY {
+    /// The box of `n` components whose component `i` is `of(i)`.
+    pub(super) fn of(n: usize, of: impl Fn(usize) -> Interval) -> Self {
+        let mut bounds = Self::point(&S::zeros(n));
+        for i in 0..bounds.count() {
             bounds.set(i, of(i));
         }
         bounds
+    }
+
+    /// The number of components.
+    pub(super) fn count(&self) -> usize {
+        self.lo.count()
     }
 
     pub(super) fn at(&self, i: usize) -> Interval {
@@ -45,7 +50,7 @@ impl<S: StateVector> Bounds<S> {
 
     /// The point in the middle.
     pub(super) fn middle(&self) -> S {
-        let mut middle = S::zeros(S::CAPACITY);
+        let mut middle = self.lo.zeroed();
         for (i, entry) in middle.as_mut_slice().iter_mut().enumerate() {
             *entry = self.at(i).middle();
         }
@@ -54,17 +59,35 @@ impl<S: StateVector> Bounds<S> {
 
     /// The width of the widest component.
     pub(super) fn width(&self) -> f64 {
-        (0..S::CAPACITY).fold(0.0, |most, i| most.max(self.at(i).width()))
+        (0..self.count()).fold(0.0, |most, i| most.max(self.at(i).width()))
     }
 
     /// What both boxes contain; the other one where they do not meet.
     pub(super) fn within(&self, other: &Self) -> Self {
-        Self::of(|i| self.at(i).intersection(other.at(i)).unwrap_or(other.at(i)))
+        Self::of(self.count(), |i| {
+            self.at(i).intersection(other.at(i)).unwrap_or(other.at(i))
+        })
     }
 
     pub(super) fn is_finite(&self) -> bool {
         self.lo.is_finite() && self.hi.is_finite()
     }
+}
+
+/// The columns of a square matrix of zeros, and of what there is room for besides.
+pub(super) fn columns<Sys: Variational>(n: usize) -> Sys::Columns {
+    let mut columns = Sys::columns();
+    columns.as_mut().fill(Sys::State::zeros(n));
+    columns
+}
+
+/// The columns of the identity.
+pub(super) fn identity<Sys: Variational>(n: usize) -> Sys::Columns {
+    let mut identity = columns::<Sys>(n);
+    for (j, column) in identity.as_mut().iter_mut().enumerate().take(n) {
+        column.as_mut_slice()[j] = 1.0;
+    }
+    identity
 }
 
 /// A matrix of intervals by its columns.
@@ -82,11 +105,14 @@ impl<Sys: Variational> Clone for Matrix<Sys> {
 impl<Sys: Variational> Copy for Matrix<Sys> {}
 
 impl<Sys: Variational> Matrix<Sys> {
-    pub(super) fn zero() -> Self {
-        Self {
-            lo: Sys::columns(),
-            hi: Sys::columns(),
-        }
+    /// As many rows and columns of zeros.
+    pub(super) fn zero(n: usize) -> Self {
+        Self::of(&columns::<Sys>(n))
+    }
+
+    /// The number of rows, and of columns.
+    pub(super) fn count(&self) -> usize {
+        self.lo.as_ref().first().map_or(0, StateVector::count)
     }
 
     pub(super) fn at(&self, i: usize, j: usize) -> Interval {
@@ -109,8 +135,9 @@ impl<Sys: Variational> Matrix<Sys> {
 
     /// Numbers in the middle of its entries.
     pub(super) fn middle(&self) -> Sys::Columns {
-        let mut middle = Sys::columns();
-        for (j, column) in middle.as_mut().iter_mut().enumerate() {
+        let n = self.count();
+        let mut middle = columns::<Sys>(n);
+        for (j, column) in middle.as_mut().iter_mut().enumerate().take(n) {
             for (i, entry) in column.as_mut_slice().iter_mut().enumerate() {
                 *entry = self.at(i, j).middle();
             }
@@ -120,7 +147,7 @@ impl<Sys: Variational> Matrix<Sys> {
 
     /// Column `j`.
     pub(super) fn column(&self, j: usize) -> Bounds<Sys::State> {
-        Bounds::of(|i| self.at(i, j))
+        Bounds::of(self.count(), |i| self.at(i, j))
     }
 
     /// Replaces column `j`.
@@ -131,9 +158,9 @@ impl<Sys: Variational> Matrix<Sys> {
 
     /// The product with a box.
     pub(super) fn times_bounds(&self, bounds: &Bounds<Sys::State>) -> Bounds<Sys::State> {
-        Bounds::of(|i| {
-            (0..Sys::State::CAPACITY)
-                .fold(Interval::ZERO, |sum, k| sum + self.at(i, k) * bounds.at(k))
+        let n = self.count();
+        Bounds::of(n, |i| {
+            (0..n).fold(Interval::ZERO, |sum, k| sum + self.at(i, k) * bounds.at(k))
         })
     }
 }
@@ -154,21 +181,21 @@ impl<Sys: Variational> Copy for Block<Sys> {}
 
 impl<Sys: Variational> Block<Sys> {
     /// Nothing, in the axes of the state.
-    fn none() -> Self {
-        let mut axes = Sys::columns();
-        for (j, axis) in axes.as_mut().iter_mut().enumerate() {
-            axis.as_mut_slice()[j] = 1.0;
-        }
+    fn none(n: usize) -> Self {
         Self {
-            axes,
-            rest: Bounds::point(&Sys::State::zeros(Sys::State::CAPACITY)),
+            axes: identity::<Sys>(n),
+            rest: Bounds::point(&Sys::State::zeros(n)),
         }
+    }
+
+    /// The axes, by number.
+    fn axes(&self) -> impl Iterator<Item = (usize, &Sys::State)> {
+        self.axes.as_ref()[..self.rest.count()].iter().enumerate()
     }
 
     /// The square of half its diagonal, if its edges are normal to each other.
     fn size(&self) -> f64 {
-        let axes = self.axes.as_ref().iter().enumerate();
-        axes.fold(0.0, |sum, (k, axis)| {
+        self.axes().fold(0.0, |sum, (k, axis)| {
             let reach = self.rest.at(k).magnitude();
             sum + inner(axis, axis) * reach * reach
         })
@@ -202,17 +229,18 @@ impl<Sys: Variational> Frame<Sys> {
     /// A box, in the axes of the state.
     pub(super) fn of(bounds: &Bounds<Sys::State>) -> Self {
         let centre = bounds.middle();
-        let mut first = Block::none();
-        first.rest = Bounds::of(|i| bounds.at(i) - Interval::point(centre.as_slice()[i]));
+        let n = bounds.count();
+        let mut first = Block::none(n);
+        first.rest = Bounds::of(n, |i| bounds.at(i) - Interval::point(centre.as_slice()[i]));
         Self {
             centre,
-            blocks: [first, Block::none()],
+            blocks: [first, Block::none(n)],
         }
     }
 
     /// The smallest box found that contains the set.
     pub(super) fn hull(&self) -> Bounds<Sys::State> {
-        Bounds::of(|i| {
+        Bounds::of(self.centre.count(), |i| {
             let along = |block: usize, k: usize| {
                 let axis = &self.blocks[block].axes.as_ref()[k];
                 Interval::point(axis.as_slice()[i])
@@ -225,8 +253,9 @@ impl<Sys: Variational> Frame<Sys> {
     pub(super) fn axes(&self) -> impl Iterator<Item = (usize, usize, Bounds<Sys::State>)> + '_ {
         let blocks = self.blocks.iter().enumerate();
         blocks.flat_map(|(b, block)| {
-            let axes = block.axes.as_ref().iter().enumerate();
-            let used = axes.filter(|(k, _)| block.rest.at(*k) != Interval::ZERO);
+            let used = block
+                .axes()
+                .filter(|(k, _)| block.rest.at(*k) != Interval::ZERO);
             used.map(move |(k, axis)| (b, k, Bounds::point(axis)))
         })
     }
@@ -240,33 +269,33 @@ impl<Sys: Variational> Frame<Sys> {
 
     /// The set that the map `centre -> moved`, with derivatives in `turned` all over the hull, makes of this one.
     pub(super) fn moved(&self, moved: &Bounds<Sys::State>, turned: &Turned<Sys>) -> Self {
-        let centre = moved.middle();
+        let (centre, n) = (moved.middle(), moved.count());
         let [first, second] = &self.blocks;
         let axes = turned[0].middle();
         let carried = Block::<Sys> {
             axes,
             rest: first.rest,
         };
-        let shift = Bounds::of(|i| {
+        let shift = Bounds::of(n, |i| {
             let rounded = |k: usize| {
                 let middle = Interval::point(axes.as_ref()[k].as_slice()[i]);
                 (turned[0].at(i, k) - middle) * first.rest.at(k)
             };
             let from_centre = moved.at(i) - Interval::point(centre.as_slice()[i]);
-            (0..Sys::State::CAPACITY).fold(from_centre, |sum, k| sum + rounded(k))
+            (0..n).fold(from_centre, |sum, k| sum + rounded(k))
         });
         let added = Block::<Sys> {
             axes: turned[1].middle(),
             rest: second.rest,
         };
-        let axes = orthonormal(&[&added]);
+        let axes = orthonormal(n, &[&added]);
         let added = Block::<Sys> {
             axes,
             rest: components::<Sys>(&axes, &[(&turned[1], &second.rest)], &shift),
         };
         let blocks = match added.size() < carried.size() {
             true => [carried, added],
-            false => [joined(&carried, &added), Block::none()],
+            false => [joined(&carried, &added), Block::none(n)],
         };
         Self { centre, blocks }
     }
@@ -274,10 +303,10 @@ impl<Sys: Variational> Frame<Sys> {
 
 /// Both blocks in one.
 fn joined<Sys: Variational>(first: &Block<Sys>, second: &Block<Sys>) -> Block<Sys> {
-    let axes = orthonormal(&[first, second]);
+    let axes = orthonormal(first.rest.count(), &[first, second]);
     let [one, other] = [first, second].map(|block| Matrix::<Sys>::of(&block.axes));
     let parts = [(&one, &first.rest), (&other, &second.rest)];
-    let none = Bounds::point(&Sys::State::zeros(Sys::State::CAPACITY));
+    let none = Bounds::point(&Sys::State::zeros(first.rest.count()));
     Block {
         axes,
         rest: components::<Sys>(&axes, &parts, &none),
@@ -285,10 +314,11 @@ fn joined<Sys: Variational>(first: &Block<Sys>, second: &Block<Sys>) -> Block<Sy
 }
 
 pub(super) fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Matrix<Sys> {
-    let mut product = Matrix::zero();
-    for i in 0..Sys::State::CAPACITY {
-        for j in 0..Sys::State::CAPACITY {
-            let terms = (0..Sys::State::CAPACITY).map(|k| a.at(i, k) * b.at(k, j));
+    let n = a.count();
+    let mut product = Matrix::zero(n);
+    for i in 0..n {
+        for j in 0..n {
+            let terms = (0..n).map(|k| a.at(i, k) * b.at(k, j));
             product.set(i, j, terms.fold(Interval::ZERO, |sum, term| sum + term));
         }
     }
@@ -297,13 +327,12 @@ pub(super) fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Mat
 
 /// Orthonormal axes along the edges of boxes: at each turn along the edge that reaches furthest beyond those before it (modified
 /// Gram-Schmidt, twice).
-fn orthonormal<Sys: Variational>(blocks: &[&Block<Sys>]) -> Sys::Columns {
-    let n = Sys::State::CAPACITY;
-    let mut axes = Sys::columns();
+fn orthonormal<Sys: Variational>(n: usize, blocks: &[&Block<Sys>]) -> Sys::Columns {
+    let mut axes = columns::<Sys>(n);
     for j in 0..n {
-        let mut longest = (0.0, Sys::State::zeros(Sys::State::CAPACITY));
+        let mut longest = (0.0, Sys::State::zeros(n));
         for block in blocks {
-            for (k, edge) in block.axes.as_ref().iter().enumerate() {
+            for (k, edge) in block.axes() {
                 let mut edge = scaled(edge, block.rest.at(k).magnitude());
                 let whole = length(&edge);
                 for _ in 0..2 {
@@ -320,17 +349,17 @@ fn orthonormal<Sys: Variational>(blocks: &[&Block<Sys>]) -> Sys::Columns {
         let (size, edge) = longest;
         axes.as_mut()[j] = match size > 0.0 && size.is_finite() {
             true => scaled(&edge, 1.0 / size),
-            false => another::<Sys>(&axes, j),
+            false => another::<Sys>(n, &axes, j),
         };
     }
     axes
 }
 
 /// An axis normal to the first `count`: the axis of the state of which most is left.
-fn another<Sys: Variational>(axes: &Sys::Columns, count: usize) -> Sys::State {
-    let mut best = (0.0, Sys::State::zeros(Sys::State::CAPACITY));
-    for i in 0..Sys::State::CAPACITY {
-        let mut axis = Sys::State::zeros(Sys::State::CAPACITY);
+fn another<Sys: Variational>(n: usize, axes: &Sys::Columns, count: usize) -> Sys::State {
+    let mut best = (0.0, Sys::State::zeros(n));
+    for i in 0..n {
+        let mut axis = Sys::State::zeros(n);
         axis.as_mut_slice()[i] = 1.0;
         for _ in 0..2 {
             let before = &axes.as_ref()[..count];
@@ -372,8 +401,8 @@ fn components<Sys: Variational>(
     parts: &[(&Matrix<Sys>, &Bounds<Sys::State>)],
     shift: &Bounds<Sys::State>,
 ) -> Bounds<Sys::State> {
-    let n = Sys::State::CAPACITY;
-    let mut transpose = Matrix::<Sys>::zero();
+    let n = shift.count();
+    let mut transpose = Matrix::<Sys>::zero(n);
     for i in 0..n {
         for j in 0..n {
             transpose.set(i, j, Interval::point(axes.as_ref()[i].as_slice()[j]));
@@ -393,19 +422,19 @@ fn components<Sys: Variational>(
     let mut image = transpose.times_bounds(shift);
     for (matrix, rest) in parts {
         let linear = product(&transpose, matrix).times_bounds(rest);
-        image = Bounds::of(|i| image.at(i) + linear.at(i));
+        image = Bounds::of(n, |i| image.at(i) + linear.at(i));
     }
     let added = |own: &Bounds<Sys::State>| defect.times_bounds(own);
     let first = added(&image);
-    let wide = Bounds::of(|i| {
+    let wide = Bounds::of(n, |i| {
         let reach = 4.0 * first.at(i).magnitude() + f64::MIN_POSITIVE;
         image.at(i).widened(reach)
     });
     let more = added(&wide);
-    let found = Bounds::of(|i| image.at(i) + more.at(i));
+    let found = Bounds::of(n, |i| image.at(i) + more.at(i));
     let holds = (0..n).all(|i| wide.at(i).contains(found.at(i)));
     match norm < 0.5 && holds {
         true => found,
-        false => Bounds::of(|_| Interval::WHOLE),
+        false => Bounds::of(n, |_| Interval::WHOLE),
     }
 }

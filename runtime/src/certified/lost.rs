@@ -17,6 +17,8 @@ pub struct Lost {
 pub enum Reason {
     /// No box was found that holds the motion for the shortest step: it may end, or its rate may not exist.
     NoTube,
+    /// The system has no kernels over intervals: its form was compiled without them.
+    NotDerived,
     /// The box has no finite ends any more.
     NotFinite,
     /// The surface may be met at a gap rate of 0, more than once, or by a part of the motions alone.
@@ -79,6 +81,7 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NoTube => write!(f, "no box holds the motion for the shortest step"),
+            Self::NotDerived => write!(f, "the system has no kernels over intervals"),
             Self::SeveralModes => write!(f, "the box has states of several modes"),
             Self::NotFinite => write!(f, "the box is not finite"),
             Self::MayGraze { surface } => write!(f, "surface {surface} may be grazed"),

@@ -16,7 +16,7 @@
 
 use core::fmt;
 
-use super::frame::{Bounds, Matrix, product};
+use super::frame::{Bounds, Matrix, identity, product};
 use super::lost::Lost;
 use super::run::{CertifiedImpact, CertifiedRun};
 use super::series::Field;
@@ -158,7 +158,8 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         near: &Sys::State,
         radius: f64,
     ) -> Result<CertifiedOrbit<Sys>, NotProved> {
-        let whole = Bounds::of(|i| Interval::point(near.as_slice()[i]).widened(radius));
+        let n = near.count();
+        let whole = Bounds::of(n, |i| Interval::point(near.as_slice()[i]).widened(radius));
         let mut region = whole;
         for _ in 0..TRIALS {
             let (image, orbit) = self.contraction(&region)?;
@@ -169,7 +170,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
                 let (image, region) = (image.at(i), region.at(i));
                 image.lo > region.lo && image.hi < region.hi
             };
-            if (0..Sys::State::CAPACITY).all(is_inside) {
+            if (0..n).all(is_inside) {
                 return Ok(self.refined(orbit));
             }
             // A box of another shape about the image.
@@ -178,10 +179,10 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
                 let range = range.widened(0.25 * range.width() + f64::MIN_POSITIVE);
                 range.intersection(whole.at(i))
             };
-            if (0..Sys::State::CAPACITY).any(|i| wider(i).is_none()) {
+            if (0..n).any(|i| wider(i).is_none()) {
                 return Err(NotProved::NotContained);
             }
-            region = Bounds::of(|i| wider(i).unwrap_or(whole.at(i)));
+            region = Bounds::of(n, |i| wider(i).unwrap_or(whole.at(i)));
         }
         Err(NotProved::NotContained)
     }
@@ -205,20 +206,20 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         &self,
         region: &Bounds<Sys::State>,
     ) -> Result<(Bounds<Sys::State>, CertifiedOrbit<Sys>), NotProved> {
-        let n = Sys::State::CAPACITY;
+        let n = region.count();
         let whole = self.returned(region)?;
         let derivative = whole.derivative.ok_or(NotProved::Singular)?;
         let centre = region.middle();
         let point = Bounds::point(&centre);
         let end = self.returned(&point)?.after;
         let unit = |i: usize, j: usize| Interval::point(if i == j { 1.0 } else { 0.0 });
-        let mut excess = Matrix::<Sys>::zero();
+        let mut excess = Matrix::<Sys>::zero(n);
         for i in 0..n {
             for j in 0..n {
                 excess.set(i, j, derivative.at(i, j) - unit(i, j));
             }
         }
-        let inverse = inverted::<Sys>(excess.middle()).ok_or(NotProved::Singular)?;
+        let inverse = inverted::<Sys>(n, excess.middle()).ok_or(NotProved::Singular)?;
         let inverse = Matrix::<Sys>::of(&inverse);
         let mut rest = product(&inverse, &excess);
         for i in 0..n {
@@ -226,10 +227,10 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
                 rest.set(i, j, unit(i, j) - rest.at(i, j));
             }
         }
-        let missing = Bounds::of(|i| end.at(i) - point.at(i));
-        let around = Bounds::of(|i| region.at(i) - point.at(i));
+        let missing = Bounds::of(n, |i| end.at(i) - point.at(i));
+        let around = Bounds::of(n, |i| region.at(i) - point.at(i));
         let (newton, linear) = (inverse.times_bounds(&missing), rest.times_bounds(&around));
-        let image = Bounds::of(|i| point.at(i) - newton.at(i) + linear.at(i));
+        let image = Bounds::of(n, |i| point.at(i) - newton.at(i) + linear.at(i));
         let orbit = CertifiedOrbit {
             point: image,
             derivative,
@@ -265,12 +266,12 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
             value: Interval::WHOLE,
             rate: Interval::WHOLE,
         };
-        let mut states = Sys::Row::<Rated>::zeros(Sys::Row::<Rated>::CAPACITY);
+        let mut states = Sys::Row::<Rated>::zeros(impact.before.count());
         for (i, entry) in states.as_mut_slice().iter_mut().enumerate() {
             *entry = Rated::steady(impact.before(i));
         }
         let parameters = self.field.steady_parameters();
-        let mut firsts = Sys::Firsts::<Rated>::zeros(Sys::Firsts::<Rated>::CAPACITY);
+        let mut firsts = Sys::Firsts::<Rated>::zeros(self.field.system.firsts_len());
         let begun = self
             .field
             .system
@@ -285,7 +286,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         let (Ok(()), Ok(gaps), Ok(Some(after))) = (begun, gaps, after) else {
             return true;
         };
-        let rates = &firsts.as_slice()[..Sys::State::CAPACITY];
+        let rates = &firsts.as_slice()[..impact.before.count()];
         let parts = [rates, gaps.as_slice(), after.as_slice()];
         let mut all = parts.into_iter().flatten();
         all.any(|entry| entry.rate != Interval::ZERO || entry.value.is_whole())
@@ -312,19 +313,16 @@ fn spectral_bound<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
 
 /// The largest sum of absolute values in a row.
 fn norm<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
-    (0..Sys::State::CAPACITY).fold(0.0, |most, i| {
-        let row = (0..Sys::State::CAPACITY).map(|j| Interval::point(matrix.at(i, j).magnitude()));
+    let n = matrix.count();
+    (0..n).fold(0.0, |most, i| {
+        let row = (0..n).map(|j| Interval::point(matrix.at(i, j).magnitude()));
         f64::max(most, row.fold(Interval::ZERO, |sum, entry| sum + entry).hi)
     })
 }
 
 /// The inverse of a matrix by its columns, as far as rounding lets it (Gauss and Jordan, with pivots by columns).
-fn inverted<Sys: Variational>(mut columns: Sys::Columns) -> Option<Sys::Columns> {
-    let n = Sys::State::CAPACITY;
-    let mut inverse = Sys::columns();
-    for (j, column) in inverse.as_mut().iter_mut().enumerate() {
-        column.as_mut_slice()[j] = 1.0;
-    }
+fn inverted<Sys: Variational>(n: usize, mut columns: Sys::Columns) -> Option<Sys::Columns> {
+    let mut inverse = identity::<Sys>(n);
     // Columns are combined until the matrix is the identity: what that does to the identity is the inverse.
     for row in 0..n {
         let size = |j: usize, columns: &Sys::Columns| columns.as_ref()[j].as_slice()[row].abs();

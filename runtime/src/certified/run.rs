@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 use super::course::{Course, Met, Side, Sides, Surfaces};
 use super::crossing::{Crossed, carried, cross};
 use super::flow::{CertifiedFlow, ORDER, Step};
-use super::frame::{Bounds, Matrix};
+use super::frame::{Bounds, Matrix, identity};
 use super::lost::{Lost, Reason};
 use super::series::Field;
 use crate::contract::{Impacting, Variational};
@@ -14,7 +14,6 @@ use crate::integrate::controller::least_step;
 use crate::law::Law;
 use crate::numbers::{Interval, Row};
 use crate::per_surface::PerSurface;
-use crate::state::StateVector;
 use crate::variations::transition::Strike;
 
 /// How far before an impact it is approached: parts of a step, each tried after the last.
@@ -131,8 +130,9 @@ impl<Sys: Variational + Impacting> Progress<'_, Sys> {
         let flow = &self.flow;
         let (now, hull) = (Interval::point(flow.t), flow.frame.hull());
         let (unit, end) = (step.length, Interval::point(1.0));
-        let mut later = Matrix::zero();
-        for k in 0..Sys::State::CAPACITY {
+        let n = hull.count();
+        let mut later = Matrix::zero(n);
+        for k in 0..n {
             let column = derivative.column(k);
             let from = [&hull, &step.tube, &column];
             later.set_column(k, &carried(&flow.field, from, now, unit, end, ORDER)?);
@@ -266,11 +266,8 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
 
     /// With all derivatives by the start; they are those at [`CertifiedRun::t`].
     pub(super) fn with_derivative(mut self) -> Self {
-        let mut identity = Sys::columns();
-        for (j, column) in identity.as_mut().iter_mut().enumerate() {
-            column.as_mut_slice()[j] = 1.0;
-        }
-        self.progress.derivative = Some(Matrix::of(&identity));
+        let n = self.field().system.state_len();
+        self.progress.derivative = Some(Matrix::of(&identity::<Sys>(n)));
         self
     }
 

@@ -10,7 +10,9 @@
 //! variations.
 
 use super::frame::Bounds;
+use super::lost::Reason;
 use crate::contract::Variational;
+use crate::error::Fault;
 use crate::integrate::taylor::expansion::Expansion;
 use crate::jet::LENGTH;
 use crate::numbers::{Interval, Numbers, Rated, Row};
@@ -39,9 +41,8 @@ impl<Sys: Variational> Copy for Field<'_, Sys> {}
 impl<'a, Sys: Variational> Field<'a, Sys> {
     /// A system with its own parameters.
     pub(super) fn new(system: &'a Sys) -> Self {
-        let mut parameters =
-            Sys::Parameters::<Interval>::zeros(Sys::Parameters::<Interval>::CAPACITY);
         let values = system.parameters();
+        let mut parameters = Sys::Parameters::<Interval>::zeros(values.as_slice().len());
         for (parameter, value) in parameters.as_mut_slice().iter_mut().zip(values.as_slice()) {
             *parameter = Interval::of(*value);
         }
@@ -61,8 +62,8 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
 
     /// The parameters, which no direction changes.
     pub(super) fn steady_parameters(&self) -> Sys::Parameters<Rated> {
-        let mut parameters = Sys::Parameters::<Rated>::zeros(Sys::Parameters::<Rated>::CAPACITY);
         let values = self.parameters.as_slice();
+        let mut parameters = Sys::Parameters::<Rated>::zeros(values.len());
         for (parameter, value) in parameters.as_mut_slice().iter_mut().zip(values) {
             *parameter = Rated::steady(*value);
         }
@@ -75,12 +76,29 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         times: Interval,
         states: &Bounds<Sys::State>,
     ) -> Option<Bounds<Sys::State>> {
-        let mut firsts = Sys::Firsts::<Interval>::zeros(Sys::Firsts::<Interval>::CAPACITY);
+        let mut firsts = Sys::Firsts::<Interval>::zeros(self.system.firsts_len());
         self.system
             .begin(&self.parameters, times, &row::<Sys>(states), &mut firsts)
             .ok()?;
-        let rates = Bounds::of(|i| firsts.as_slice()[i]);
+        let rates = Bounds::of(states.count(), |i| firsts.as_slice()[i]);
         rates.is_finite().then_some(rates)
+    }
+
+    /// Why there are no rates in a box: they may not exist, or are not known over intervals at all.
+    pub(super) fn no_rates(&self, times: Interval, states: &Bounds<Sys::State>) -> Reason {
+        let row = row::<Sys>(states);
+        let mut firsts = Sys::Firsts::<Interval>::zeros(self.system.firsts_len());
+        let of_values = self
+            .system
+            .begin(&self.parameters, times, &row, &mut firsts);
+        let steady = rated_row::<Sys>(states, &Bounds::point(&states.lo.zeroed()));
+        let (parameters, times) = (self.steady_parameters(), Rated::steady(times));
+        let mut firsts = Sys::Firsts::<Rated>::zeros(self.system.firsts_len());
+        let of_rates = self.system.begin(&parameters, times, &steady, &mut firsts);
+        match of_values.and(of_rates) {
+            Err(Fault::NotDerived) => Reason::NotDerived,
+            _ => Reason::NoTube,
+        }
     }
 
     /// All changes of the rates along changes of the state.
@@ -90,13 +108,13 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         states: &Bounds<Sys::State>,
         along: &Bounds<Sys::State>,
     ) -> Option<Bounds<Sys::State>> {
-        let mut firsts = Sys::Firsts::<Rated>::zeros(Sys::Firsts::<Rated>::CAPACITY);
-        let states = rated_row::<Sys>(states, along);
+        let mut firsts = Sys::Firsts::<Rated>::zeros(self.system.firsts_len());
+        let row = rated_row::<Sys>(states, along);
         let (parameters, times) = (self.steady_parameters(), Rated::steady(times));
         self.system
-            .begin(&parameters, times, &states, &mut firsts)
+            .begin(&parameters, times, &row, &mut firsts)
             .ok()?;
-        let changes = Bounds::of(|i| firsts.as_slice()[i].rate);
+        let changes = Bounds::of(states.count(), |i| firsts.as_slice()[i].rate);
         changes.is_finite().then_some(changes)
     }
 
@@ -185,22 +203,23 @@ fn held<S: StateVector>(
     during: Interval,
     rates: impl Fn(&Bounds<S>) -> Option<Bounds<S>>,
 ) -> Option<Bounds<S>> {
+    let n = start.count();
     let reached = |tube: &Bounds<S>| {
         let rates = rates(tube)?;
-        let reached = Bounds::of(|i| start.at(i) + during * rates.at(i));
+        let reached = Bounds::of(n, |i| start.at(i) + during * rates.at(i));
         reached.is_finite().then_some(reached)
     };
     let mut tube = reached(start)?;
     for _ in 0..TRIALS {
-        let wider = Bounds::of(|i| {
+        let wider = Bounds::of(n, |i| {
             let range = tube.at(i).hull(start.at(i));
             range.widened(ROOM * range.width() + f64::MIN_POSITIVE)
         });
         let found = reached(&wider)?;
-        if (0..S::CAPACITY).all(|i| wider.at(i).contains(found.at(i))) {
+        if (0..n).all(|i| wider.at(i).contains(found.at(i))) {
             return reached(&found);
         }
-        tube = Bounds::of(|i| found.at(i).hull(tube.at(i)));
+        tube = Bounds::of(n, |i| found.at(i).hull(tube.at(i)));
     }
     None
 }
@@ -237,7 +256,7 @@ impl<Sys: Variational, L: Numbers> Arc<Sys, L> {
 
 /// A box as numbers.
 pub(super) fn row<Sys: Variational>(bounds: &Bounds<Sys::State>) -> Sys::Row<Interval> {
-    let mut row = Sys::Row::<Interval>::zeros(Sys::Row::<Interval>::CAPACITY);
+    let mut row = Sys::Row::<Interval>::zeros(bounds.count());
     for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
         *entry = bounds.at(i);
     }
@@ -249,7 +268,7 @@ pub(super) fn rated_row<Sys: Variational>(
     bounds: &Bounds<Sys::State>,
     along: &Bounds<Sys::State>,
 ) -> Sys::Row<Rated> {
-    let mut row = Sys::Row::<Rated>::zeros(Sys::Row::<Rated>::CAPACITY);
+    let mut row = Sys::Row::<Rated>::zeros(bounds.count());
     for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
         *entry = Rated {
             value: bounds.at(i),
@@ -261,5 +280,5 @@ pub(super) fn rated_row<Sys: Variational>(
 
 /// Numbers as a box.
 pub(super) fn bounds<S: StateVector>(row: &[Interval]) -> Bounds<S> {
-    Bounds::of(|i| row[i])
+    Bounds::of(row.len(), |i| row[i])
 }
