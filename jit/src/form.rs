@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use dalembert::Fault;
 use dalembert::erased::{Expanded, Form, Kinds, SeriesTable};
 use dalembert::kernels::{At, KernelTable, OfSurface, Plain};
-use dalembert::numbers::{Bent, Numbers, Rated, TaylorModel};
+use dalembert::numbers::{Bent, Interval, Numbers, Rated, TaylorModel};
 use dalembert::variations::Dual;
 use dalembert_codegen::model::{Model, Scene};
 use dalembert_codegen::spec::SURFACES;
@@ -78,7 +78,7 @@ pub(crate) fn of_modes(compiled: &CompiledModes) -> &'static Form {
     })
 }
 
-/// A form, with rates over intervals if they `may_be_narrow`.
+/// A form, with rates over intervals if they `may_be_narrow`. What varies has all that certified motion takes.
 fn form(known: &FormOf<'_>, may_be_narrow: bool, global: Option<&'static Form>) -> &'static Form {
     let series: &'static Series = leak(Series::of(
         &known.program.jet,
@@ -100,8 +100,9 @@ fn form(known: &FormOf<'_>, may_be_narrow: bool, global: Option<&'static Form>) 
         kernels_over: [
             has_surfaces.then(|| any(functions.table::<TaylorModel>())),
             has_surfaces.then(|| any(functions.table::<Bent>())),
-            may_be_narrow.then(|| any(functions.table::<Rated>())),
+            (may_be_narrow || tables.varies).then(|| any(functions.table::<Rated>())),
             tables.varies.then(|| any(functions.table::<Dual>())),
+            tables.varies.then(|| any(functions.table::<Interval>())),
         ],
         series: match compiled {
             Some(compiled) => native_series(leak(compiled.series)),
@@ -110,7 +111,8 @@ fn form(known: &FormOf<'_>, may_be_narrow: bool, global: Option<&'static Form>) 
         series_over: [
             tables.varies.then(|| any(series_table::<Dual>(series))),
             Some(any(series_table::<f64x8>(series))),
-            None,
+            tables.varies.then(|| any(series_table::<Interval>(series))),
+            tables.varies.then(|| any(series_table::<Rated>(series))),
             None,
         ],
         work: leak(move || work),

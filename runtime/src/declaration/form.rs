@@ -84,6 +84,8 @@ impl<S: Emitted> Of<S> {
                 false => None,
                 true => Some(of_variations),
             },
+            // NOTE: certified motion takes kernels over intervals, which cost the compiler more than all others; forms that are loaded have them.
+            None,
         ]
     }
 
@@ -107,6 +109,7 @@ impl<S: Emitted> Of<S> {
             false => Some(&Self::series::<wide::f64x8>()),
         },
         #[cfg(not(feature = "lanes"))]
+        None,
         None,
         None,
         None,

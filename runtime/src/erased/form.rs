@@ -30,7 +30,7 @@ pub const MOST_FIRSTS: usize = FIRSTS * CAPACITIES[CAPACITIES.len() - 1];
 pub(super) const GEOMETRY: usize = 64;
 
 /// Tables over other numbers than `f64`, each of a type of its own.
-pub type Kinds = [Option<&'static (dyn Any + Send + Sync)>; 4];
+pub type Kinds = [Option<&'static (dyn Any + Send + Sync)>; 5];
 
 /// A form of a model, or of a scene: tables, and pointers to its functions.
 pub struct Form {

@@ -1,0 +1,152 @@
+//! Certified motion of what is loaded from a text has the enclosures of the compiled type, to the bit.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+use std::ops::ControlFlow;
+
+use dalembert::certified::{CertifiedFlow, CertifiedRun, Reason};
+use dalembert::declaration::Described;
+use dalembert::erased::{Erased, Form};
+use dalembert::numbers::Interval;
+use dalembert::state::StateVector;
+use dalembert::{Impacting, Instance, Variational};
+
+mod ball {
+    dalembert::model_file!("../models/src/bouncing_ball.dal");
+}
+
+mod billiard {
+    dalembert::model_file!("../models/src/point_billiard.dal");
+}
+
+mod pendulum {
+    dalembert::model_file!("../models/src/double_pendulum.dal");
+}
+
+mod sleigh {
+    dalembert::model_file!("../models/src/chaplygin_sleigh.dal");
+}
+
+fn loaded<M: Described>() -> &'static Form {
+    let models = dalembert_jit::load(M::DESCRIPTION.name, M::DESCRIPTION.source);
+    models.unwrap_or_else(|refused| panic!("{refused}"))[0].form
+}
+
+fn start<M: Instance>(model: &M) -> Vec<f64> {
+    let initial = model.initial();
+    let state = model.state(0.0, &initial.q, &initial.qdot).unwrap();
+    state.as_slice().to_vec()
+}
+
+/// Times, states before and after, and the state at the end, from a box about a state.
+fn enclosures<Sys: Variational + Impacting>(
+    system: &Sys,
+    start: &[f64],
+    radius: f64,
+    (until, impacts): (f64, u64),
+) -> Vec<Interval> {
+    let n = start.len();
+    assert_eq!(system.state_len(), n);
+    let mut found = Vec::new();
+    let mut count = 0;
+    let mut run = CertifiedRun::new(system, 0.0, |i| Interval::point(start[i]).widened(radius));
+    run.run(until, |impact| {
+        found.push(Interval::point(impact.surface as f64));
+        found.push(impact.time);
+        found.extend((0..n).map(|i| impact.before(i)));
+        found.extend((0..n).map(|i| impact.after(i)));
+        count += 1;
+        match count == impacts {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    })
+    .unwrap();
+    assert_eq!(count, impacts);
+    found.extend((0..n).map(|i| run.component(i)));
+    found
+}
+
+/// Runs on a stack that has room for the longest vectors in code that nothing optimises.
+fn with_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(16 << 20);
+        thread.spawn_scoped(scope, work).unwrap().join().unwrap()
+    })
+}
+
+fn bits(ranges: &[Interval]) -> Vec<[u64; 2]> {
+    let bits = |range: &Interval| [range.lo, range.hi].map(f64::to_bits);
+    ranges.iter().map(bits).collect()
+}
+
+/// Asserts that a model and its text have the same enclosures, in rooms of two sizes.
+fn assert_same<M>(model: &M, settings: &[(&str, f64)], radius: f64, until: (f64, u64))
+where
+    M: Described + Instance + Variational + Impacting,
+{
+    let start = start(model);
+    let expected = bits(&enclosures(model, &start, radius, until));
+    let form = loaded::<M>();
+    let parameters = form.documentation.description.parameters;
+    let place = |name: &str| parameters.iter().position(|own| own.name == name).unwrap();
+    let (mut small, mut large) = (
+        Erased::<8>::of(form).unwrap(),
+        Erased::<32>::of(form).unwrap(),
+    );
+    for (name, value) in settings {
+        small.set_parameter(place(name), *value);
+        large.set_parameter(place(name), *value);
+    }
+    assert_eq!(bits(&enclosures(&small, &start, radius, until)), expected);
+    assert_eq!(
+        bits(&with_stack(|| enclosures(&large, &start, radius, until))),
+        expected
+    );
+}
+
+#[test]
+fn a_bouncing_ball_has_the_same_enclosures() {
+    let ball = ball::BouncingBall::default();
+    assert_same(&ball, &[], 0.0, (20.0, 3));
+    assert_same(&ball, &[], 1e-6, (20.0, 3));
+}
+
+#[test]
+fn a_circular_billiard_has_the_same_enclosures() {
+    let table = billiard::PointBilliard {
+        ta: 1.0,
+        ..billiard::PointBilliard::default()
+    };
+    assert_same(&table, &[("ta", 1.0)], 1e-9, (50.0, 3));
+}
+
+#[test]
+fn a_sleigh_has_the_same_enclosures() {
+    assert_same(&sleigh::ChaplyginSleigh::default(), &[], 0.0, (40.0, 2));
+}
+
+#[test]
+fn a_double_pendulum_has_the_same_enclosures() {
+    fn end<Sys: Variational>(system: &Sys, start: &[f64]) -> Vec<Interval> {
+        let mut flow = CertifiedFlow::new(system, 0.0, |i| Interval::point(start[i]));
+        flow.run(0.5).unwrap();
+        (0..start.len()).map(|i| flow.component(i)).collect()
+    }
+    let model = pendulum::DoublePendulum::default();
+    let start = start(&model);
+    let expected = bits(&end(&model, &start));
+    let form = loaded::<pendulum::DoublePendulum>();
+    let small = Erased::<4>::of(form).unwrap();
+    assert_eq!(bits(&end(&small, &start)), expected);
+    let large = Erased::<32>::of(form).unwrap();
+    assert_eq!(bits(&with_stack(|| end(&large, &start))), expected);
+}
+
+#[test]
+fn a_form_that_was_compiled_has_no_kernels_over_intervals_and_says_so() {
+    let form = <ball::BouncingBall as Described>::FORM.unwrap();
+    let system = Erased::<4>::of(form).unwrap();
+    let mut run = CertifiedRun::new(&system, 0.0, |_| Interval::point(1.0));
+    let lost = run.next_impact(1.0).err().unwrap();
+    assert_eq!((lost.t, lost.reason), (0.0, Reason::NotDerived));
+}
