@@ -7,6 +7,7 @@
 //! | `run/` | one run: how it is made, what watches it, how it ended |
 //! | `accuracy/` | measured errors of integrators, with work and time |
 //! | `orbit.rs` | periodic orbits |
+//! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | what a long run keeps of a quantity |
 //!
 //! A model that has a form is run by the system of all forms ([`of_form`]), which is compiled here, once; any other is compiled with all
@@ -15,6 +16,7 @@
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
+mod certify;
 pub mod drift;
 mod grid;
 mod integrator;
@@ -24,12 +26,13 @@ mod refusal;
 mod run;
 mod typed;
 
+pub use certify::{Certification, Certified, Ranges, Strike};
 pub use grid::Grid;
 pub use integrator::{Form, Integrator};
 pub use model::{
     AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
 };
 pub use orbit::{Found, Search};
-pub use refusal::Refusal;
+pub use refusal::{Refusal, Uncertified};
 pub use run::{Contact, Ending, Impact, Piece, Settings, Watch};
 pub use typed::{Model, of_form, of_type};

@@ -5,6 +5,7 @@ use dalembert::law::Law;
 use dalembert::{Fault, OrbitError, ParameterError, StateError};
 
 use crate::accuracy::{Plan, Study, Verified};
+use crate::certify::{Certification, Certified, Strike};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
 use crate::run::{Ending, Settings, Watch};
@@ -197,6 +198,16 @@ pub trait Runs {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal>;
+    /// Encloses the motion from this state on, and shows its impacts.
+    ///
+    /// # Errors
+    /// Why no motion of the model is certified. Where it is lost later is said by what is returned.
+    fn certify(
+        &self,
+        origin: &Origin,
+        request: &Certification,
+        observer: &mut (dyn FnMut(&Strike) + Send),
+    ) -> Result<Certified, Refusal>;
 }
 
 /// One of several runs that are made at once.

@@ -4,6 +4,28 @@ use dalembert::integrate::ToleranceError;
 use dalembert::{MaxStepError, StartError, StateError};
 use thiserror::Error;
 
+/// Why no motion of a model is certified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum Uncertified {
+    /// The model has no kernels over intervals.
+    #[error(
+        "certified motion runs models that are loaded from a text, and this one is compiled into the program; give the file of its declaration"
+    )]
+    Compiled,
+    /// The model has modes.
+    #[error("certified motion does not go from mode to mode, and the model has modes")]
+    Modes,
+    /// The scene was declared without what the derivatives of a motion take.
+    #[error(
+        "the scene was declared without `variations`, which certified motion takes; add it to what the scene uses"
+    )]
+    WithoutVariations,
+    /// There is no thread with the stack that is needed.
+    #[error("certified motion needs 16 MiB of stack, which the system does not give")]
+    NoThread,
+}
+
 /// Why a run does not begin.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
@@ -20,4 +42,7 @@ pub enum Refusal {
     /// The runtime refuses the start.
     #[error(transparent)]
     Start(#[from] StartError),
+    /// No motion of the model is certified.
+    #[error(transparent)]
+    Uncertified(#[from] Uncertified),
 }

@@ -4,6 +4,7 @@ use dalembert::declaration::Described;
 use dalembert::describe::{Description, Instance, Report};
 use dalembert::erased::{self, Erased};
 use dalembert::law::{Contact, Law};
+use dalembert::numbers::Row;
 use dalembert::state::StateVector;
 use dalembert::{
     Fault, Lagrangian, OrbitError, ParameterError, Scene, SceneEffects, StateError, System,
@@ -11,6 +12,7 @@ use dalembert::{
 };
 
 use crate::accuracy::{self, Plan, Study, Verified};
+use crate::certify::{Certification, Certified, Strike, Subject};
 use crate::integrator::Form;
 use crate::model::{
     AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
@@ -34,6 +36,8 @@ impl<M> Model for M where
 struct Typed<M> {
     model: M,
     code: Code,
+    /// The form, of the system of a form.
+    form: Option<&'static erased::Form>,
 }
 
 /// The model of a type with its declared values.
@@ -41,6 +45,7 @@ pub fn of_type<M: Model + Described>() -> Box<dyn AnyModel> {
     Box::new(Typed {
         model: M::with_defaults(),
         code: Code::Inlined,
+        form: None,
     })
 }
 
@@ -52,7 +57,11 @@ pub fn of_form(form: &'static erased::Form, code: Code) -> Option<Box<dyn AnyMod
         code: Code,
     ) -> Option<Box<dyn AnyModel>> {
         let model = Erased::<C>::of(form)?;
-        Some(Box::new(Typed { model, code }))
+        Some(Box::new(Typed {
+            model,
+            code,
+            form: Some(form),
+        }))
     }
     with_room::<4>(form, code)
         .or_else(|| with_room::<8>(form, code))
@@ -311,6 +320,24 @@ impl<M: Model> Runs for Typed<M> {
         };
         self.model.visit_variational(finder).transpose()
     }
+
+    fn certify(
+        &self,
+        origin: &Origin,
+        request: &Certification,
+        observer: &mut (dyn FnMut(&Strike) + Send),
+    ) -> Result<Certified, Refusal> {
+        in_form!(self, origin, request, |model, state| {
+            let values = TaylorField::parameters(model);
+            let subject = Subject {
+                form: self.form,
+                values: values.as_slice(),
+                origin,
+                state: StateVector::as_slice(&state),
+            };
+            subject.certify(request, observer)
+        })
+    }
 }
 
 /// Makes several runs at once, in a form of the model. Runs that have no state to begin with are told why.
@@ -327,6 +354,7 @@ fn abreast<M: Model, S: Model<Vector = M::Vector>>(
         let mut member = Typed {
             model: typed.model.clone(),
             code: typed.code,
+            form: typed.form,
         };
         for (index, value) in run.parameters.iter().enumerate() {
             member.model.set_parameter(index, *value);

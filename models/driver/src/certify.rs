@@ -1,0 +1,272 @@
+//! Certified motion of a model: enclosures of times, positions and velocities, as plain data.
+//!
+//! It is that of the runtime over the system of all forms, compiled for two capacities alone. A form has to have kernels over intervals:
+//! those that are loaded from a text have them.
+
+use std::ops::ControlFlow;
+use std::panic::resume_unwind;
+use std::thread;
+
+use dalembert::certified::{CertifiedImpact, CertifiedRun, Lost};
+use dalembert::erased::{self, Erased};
+use dalembert::law::Law;
+use dalembert::numbers::{Interval, Numbers, Row};
+use dalembert::{Instance, StateError, TaylorField, Variational, VectorField};
+
+use crate::integrator::Form;
+use crate::model::{OffConstraint, Origin, Rates};
+use crate::refusal::{Refusal, Uncertified};
+
+/// Bytes of stack that the longest vectors take in code that nothing optimises, four times over.
+const STACK: usize = 16 << 20;
+
+/// What is to be certified, from `t = 0` on.
+#[derive(Debug, Clone)]
+pub struct Certification {
+    /// The form of the equations.
+    pub form: Form,
+    /// The last time.
+    pub until: f64,
+    /// Stop after this many impacts.
+    pub impacts: Option<u64>,
+    /// Laws by index of the surface, instead of the declared ones; a later one counts.
+    pub laws: Vec<(usize, Law)>,
+    /// Ranges in place of the values of parameters, by index.
+    pub parameters: Vec<(usize, Interval)>,
+    /// Ranges in place of the origin's positions, by index of the coordinate.
+    pub positions: Vec<(usize, Interval)>,
+    /// Ranges in place of velocities by index: of the origin's in the global form of a model without constraints, of quasi-velocities in
+    /// the reduced form. Elsewhere, and beside momenta, they count for nothing.
+    pub rates: Vec<(usize, Interval)>,
+}
+
+/// All positions and velocities that are possible, one range per coordinate; all numbers for a velocity that may not exist.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranges {
+    /// Positions.
+    pub q: Vec<Interval>,
+    /// Velocities.
+    pub qdot: Vec<Interval>,
+}
+
+/// An impact that every motion from the start has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Strike {
+    /// The index of the surface.
+    pub surface: usize,
+    /// All times that it may have.
+    pub time: Interval,
+    /// All states that arrive.
+    pub before: Ranges,
+    /// All states after it.
+    pub after: Ranges,
+}
+
+/// The end of certified motion.
+#[derive(Debug, Clone)]
+pub struct Certified {
+    /// The time up to which the motion is certified: until then there are no impacts but those that were shown.
+    pub t: f64,
+    /// All states at that time.
+    pub last: Ranges,
+    /// The number of impacts.
+    pub impacts: u64,
+    /// The number of steps.
+    pub steps: u64,
+    /// Why it is not certified as far as was asked for.
+    pub lost: Option<Lost>,
+}
+
+/// A form with values for its parameters.
+pub(crate) struct Subject<'a> {
+    /// The form, of a model that has one.
+    pub form: Option<&'static erased::Form>,
+    /// The values of all parameters, inputs included.
+    pub values: &'a [f64],
+    /// The origin, and the state that it is in the form that was asked for.
+    pub origin: &'a Origin,
+    pub state: &'a [f64],
+}
+
+impl Subject<'_> {
+    /// Follows the motion, and shows its impacts.
+    pub(crate) fn certify(
+        &self,
+        request: &Certification,
+        observer: &mut (dyn FnMut(&Strike) + Send),
+    ) -> Result<Certified, Refusal> {
+        thread::scope(|scope| {
+            let work = || self.certify_here(request, observer);
+            let thread = thread::Builder::new().stack_size(STACK);
+            match thread.spawn_scoped(scope, work) {
+                Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+                Err(_) => Err(Uncertified::NoThread.into()),
+            }
+        })
+    }
+
+    /// The same on the stack there is.
+    fn certify_here(
+        &self,
+        request: &Certification,
+        observer: &mut dyn FnMut(&Strike),
+    ) -> Result<Certified, Refusal> {
+        let form = self.form.ok_or(Uncertified::Compiled)?;
+        if !form.tables.modes.is_empty() {
+            return Err(Uncertified::Modes.into());
+        }
+        if let Some(system) = Erased::<8>::of(form) {
+            return self.follow(system, request, observer);
+        }
+        let system = Erased::<32>::of(form).ok_or(Uncertified::Compiled)?;
+        self.follow(system, request, observer)
+    }
+
+    fn follow<const C: usize>(
+        &self,
+        mut system: Erased<C>,
+        request: &Certification,
+        observer: &mut dyn FnMut(&Strike),
+    ) -> Result<Certified, Refusal> {
+        for (index, value) in self.values.iter().enumerate() {
+            system.set_parameter(index, *value);
+        }
+        if request.form == Form::Global {
+            system = system.global();
+        }
+        let form = system.form();
+        if form.kernels::<Interval>().is_none() {
+            return Err(match form.tables.varies {
+                true => Uncertified::Compiled.into(),
+                false => Uncertified::WithoutVariations.into(),
+            });
+        }
+        let values = TaylorField::parameters(&system);
+        let mut parameters =
+            <Erased<C> as TaylorField>::Parameters::<Interval>::zeros(values.as_slice().len());
+        let entries = parameters.as_mut_slice().iter_mut();
+        for (entry, value) in entries.zip(values.as_slice()) {
+            *entry = Interval::of(*value);
+        }
+        for &(index, range) in &request.parameters {
+            if let Some(entry) = parameters.as_mut_slice().get_mut(index) {
+                *entry = range;
+            }
+        }
+        let start = self.start(&system, &parameters, request)?;
+        let shown = Shown {
+            system: &system,
+            parameters,
+        };
+        let mut run = CertifiedRun::new(&system, 0.0, |i| start[i]);
+        for &(index, range) in &request.parameters {
+            run = run.with_parameter(index, range);
+        }
+        for &(surface, law) in &request.laws {
+            run = run.with_law(surface, law);
+        }
+        let mut count = 0;
+        let ended = run.run(request.until, |impact| {
+            observer(&shown.strike(impact));
+            count += 1;
+            match request.impacts.is_some_and(|most| count >= most) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        });
+        let t = run.t();
+        Ok(Certified {
+            t,
+            last: shown.ranges(Interval::point(t), |i| run.component(i)),
+            impacts: run.impacts(),
+            steps: run.steps(),
+            lost: ended.err(),
+        })
+    }
+
+    /// All states that the motion may begin with.
+    fn start<const C: usize>(
+        &self,
+        system: &Erased<C>,
+        parameters: &<Erased<C> as TaylorField>::Parameters<Interval>,
+        request: &Certification,
+    ) -> Result<Vec<Interval>, Refusal> {
+        type Positions<const C: usize> = <Erased<C> as Variational>::Configuration<Interval>;
+        let n = self.origin.q.len();
+        let dimensions = &system.form().tables.dimensions;
+        let is_free = request.form == Form::Global && dimensions.constraints == 0;
+        let boxed = |values: &[f64], ranges: &[(usize, Interval)]| {
+            let mut row = Positions::<C>::zeros(n);
+            for (entry, value) in row.as_mut_slice().iter_mut().zip(values) {
+                *entry = Interval::of(*value);
+            }
+            replace(row.as_mut_slice(), ranges);
+            row
+        };
+        let mut start: Vec<Interval> = match (&self.origin.rates, self.origin.policy) {
+            (Rates::Velocities(qdot), OffConstraint::Error | OffConstraint::Keep) => {
+                let of_box = |ranges: [&[(usize, Interval)]; 2]| {
+                    let (q, qdot) = (boxed(&self.origin.q, ranges[0]), boxed(qdot, ranges[1]));
+                    let row = system.composed(parameters, Interval::ZERO, &q, &qdot);
+                    row.map_err(StateError::from)
+                };
+                let row = match is_free {
+                    true => of_box([&request.positions, &request.rates])?,
+                    // Velocities at the origin: elsewhere the constraints allow others.
+                    false => of_box([&[], &[]])?,
+                };
+                row.as_slice().to_vec()
+            }
+            _ => self.state.iter().copied().map(Interval::point).collect(),
+        };
+        let (q, motion) = start.split_at_mut(n);
+        replace(q, &request.positions);
+        if request.form == Form::Reduced {
+            replace(motion, &request.rates);
+        }
+        debug_assert_eq!(start.len(), system.state_len(), "a state of the form");
+        Ok(start)
+    }
+}
+
+fn replace(entries: &mut [Interval], ranges: &[(usize, Interval)]) {
+    for &(index, range) in ranges {
+        if let Some(entry) = entries.get_mut(index) {
+            *entry = range;
+        }
+    }
+}
+
+/// A system with ranges for its parameters.
+struct Shown<'a, const C: usize> {
+    system: &'a Erased<C>,
+    parameters: <Erased<C> as TaylorField>::Parameters<Interval>,
+}
+
+impl<const C: usize> Shown<'_, C> {
+    fn strike(&self, impact: &CertifiedImpact<Erased<C>>) -> Strike {
+        Strike {
+            surface: impact.surface,
+            time: impact.time,
+            before: self.ranges(impact.time, |i| impact.before(i)),
+            after: self.ranges(impact.time, |i| impact.after(i)),
+        }
+    }
+
+    /// Positions and velocities of all states of a box.
+    fn ranges(&self, times: Interval, component: impl Fn(usize) -> Interval) -> Ranges {
+        let mut state = <Erased<C> as TaylorField>::Row::<Interval>::zeros(self.system.state_len());
+        for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
+            *entry = component(i);
+        }
+        let n = self.system.form().tables.dimensions.coordinates;
+        let velocities = self.system.velocities(&self.parameters, times, &state);
+        Ranges {
+            q: state.as_slice()[..n].to_vec(),
+            qdot: match velocities {
+                Ok(velocities) => velocities.as_slice().to_vec(),
+                Err(_) => vec![Interval::WHOLE; n],
+            },
+        }
+    }
+}
