@@ -1,6 +1,7 @@
 //! The command line's grammar. What it accepts is an interface; values are checked where they are used,
 //! because only there is it known which names the model has.
 
+mod certify;
 mod choice;
 mod ensemble;
 mod file;
@@ -16,6 +17,7 @@ use dalembert::policy::{Corner, Penetration, Policies, Rest, Split};
 use dalembert_driver::{Form, Integrator, OffConstraint};
 
 use crate::scalar;
+pub use certify::CertifyArgs;
 pub use ensemble::EnsembleArgs;
 pub use file::{BuildArgs, NewArgs, WatchArgs};
 pub use gallery::GalleryArgs;
@@ -47,7 +49,7 @@ pub enum Command {
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
     /// Run a model from a state to an end time or a number of impacts.
-    #[command(after_help = SIMULATE_EXAMPLES)]
+    #[command(after_help = [SIMULATE_EXAMPLES, certify::EXAMPLES].concat())]
     Simulate(Box<SimulateArgs>),
     /// Run many members of one scene: initial states and parameters on a grid, at random or from a file.
     #[command(after_help = ensemble::EXAMPLES)]
@@ -433,6 +435,9 @@ pub struct SimulateArgs {
     /// Its integrator and its end.
     #[command(flatten)]
     pub course: CourseArgs,
+    /// Certified motion.
+    #[command(flatten)]
+    pub certify: CertifyArgs,
     /// Measure the error of the run against a reference as exact as `f64` allows, which takes three more runs. The impacts of
     /// all of them are audited by enclosures, without the search that found them; where they are not confirmed, or differ, the
     /// run is `not verified` and the exit status is 1.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use dalembert::describe::{Assumption, Description};
 use dalembert::{Fault, StateError};
-use dalembert_driver::{AnyModel, Refusal};
+use dalembert_driver::{AnyModel, Refusal, Uncertified};
 use thiserror::Error;
 
 /// A request that cannot be carried out.
@@ -73,6 +73,9 @@ pub enum CliError {
         /// The scene.
         scene: String,
     },
+    /// A model that no motion is certified of.
+    #[error("--certify: {0}")]
+    Uncertified(Uncertified),
     /// Flags that do not go together, or one that needs another.
     #[error("{0}")]
     Usage(&'static str),

@@ -102,7 +102,20 @@ fn set_input(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
 /// # Errors
 /// Anything about the flags, or why the system refuses the state.
 pub fn initial_state(model: &dyn AnyModel, args: &StateArgs) -> Result<Origin, CliError> {
-    let beginning = Beginning::of(model, args)?;
+    initial_state_with(model, args, |_| Ok(()))
+}
+
+/// The state that the flags describe, with changes.
+///
+/// # Errors
+/// As [`initial_state`]; why there is no such change.
+pub fn initial_state_with(
+    model: &dyn AnyModel,
+    args: &StateArgs,
+    change: impl FnOnce(&mut Beginning) -> Result<(), CliError>,
+) -> Result<Origin, CliError> {
+    let mut beginning = Beginning::of(model, args)?;
+    change(&mut beginning)?;
     let refuse = |error| CliError::state(beginning.place(args), &model.description(), error);
     beginning.settle(model, args.off_constraint).map_err(refuse)
 }
@@ -210,6 +223,17 @@ impl Beginning {
             } => qdot[index] = value,
             Self::Given { .. } => {}
         }
+    }
+
+    /// Whether momenta are given.
+    pub fn has_momenta(&self) -> bool {
+        matches!(
+            self,
+            Self::Given {
+                rates: Rates::Momenta(_),
+                ..
+            }
+        )
     }
 
     /// The state, complete and checked.

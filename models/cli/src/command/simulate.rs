@@ -1,5 +1,6 @@
 //! `simulate`: a run from a state to its end, kept as a summary, a table, a document and a picture.
 
+mod certify;
 mod document;
 pub mod summary;
 
@@ -49,6 +50,9 @@ pub fn run(
     args: &SimulateArgs,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
+    if args.certify.certify {
+        return certify::run(models, args, streams);
+    }
     run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
     let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;

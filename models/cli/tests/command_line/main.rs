@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod accuracy;
+mod certify;
 mod check;
 mod derive;
 mod ensemble;

@@ -1,0 +1,80 @@
+//! `simulate --certify`: enclosures of impacts and of the state at the end, as text or as a document.
+
+mod document;
+mod report;
+mod within;
+
+use dalembert_driver::{AnyModel, Certification, Certified, Refusal, Strike};
+
+use self::within::Within;
+use crate::args::SimulateArgs;
+use crate::entry::Entry;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::sink::Sink;
+use crate::state_input::{build_run, initial_state_with};
+use crate::{Streams, run_request};
+
+/// Certified motion that has ended.
+struct Enclosed<'a> {
+    model: &'a dyn AnyModel,
+    scene: &'a str,
+    request: &'a Certification,
+    /// Ranges that were given, by the names of what they are of.
+    within: Vec<(String, [f64; 2])>,
+    strikes: Vec<Strike>,
+    certified: Certified,
+}
+
+/// Carries out `simulate --certify`.
+///
+/// # Errors
+/// Bad flags, a state that is refused, a model that no motion is certified of. Motion that is lost is no error but an [`Exit`].
+pub(super) fn run(
+    models: &[Entry],
+    args: &SimulateArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    let mut model = build_run(models, &args.run)?;
+    let settings = run_request::course(model.as_ref(), &args.run, &args.course)?;
+    let within = Within::parse(model.as_mut(), settings.form, &args.certify)?;
+    let origin = initial_state_with(model.as_ref(), &args.run.state, |beginning| {
+        within.begin(settings.form, beginning)
+    })?;
+    let json = Sink::open_given("--json", args.json.as_deref())?;
+    let request = Certification {
+        form: settings.form,
+        until: settings.until,
+        impacts: settings.impacts,
+        laws: settings.laws,
+        parameters: within.parameters,
+        positions: within.positions,
+        rates: within.rates,
+    };
+    let mut strikes = Vec::new();
+    let certified = model.certify(&origin, &request, &mut |strike| {
+        strikes.push(strike.clone())
+    });
+    let certified = certified.map_err(|refusal| match refusal {
+        Refusal::Uncertified(why) => CliError::Uncertified(why),
+        other => CliError::refused(model.as_ref(), &other),
+    })?;
+    let enclosed = Enclosed {
+        model: model.as_ref(),
+        scene: &args.run.model.scene,
+        request: &request,
+        within: within.named,
+        strikes,
+        certified,
+    };
+    if let Some(sink) = json {
+        sink.write(streams, |output| document::write(output, &enclosed))?;
+    }
+    if !run_request::uses_stdout([&args.json, &None]) {
+        report::write(streams.output, &enclosed)?;
+    }
+    Ok(match enclosed.certified.lost {
+        None => Exit::Reached,
+        Some(_) => Exit::Other,
+    })
+}

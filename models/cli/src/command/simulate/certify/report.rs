@@ -1,0 +1,146 @@
+//! Certified motion in a few lines of text, and why it is lost in the model's names.
+
+use std::io::{self, Write};
+
+use dalembert::certified::{Lost, Reason};
+use dalembert::describe::Description;
+use dalembert::numbers::Interval;
+
+use super::Enclosed;
+use crate::error::counted;
+use crate::names;
+
+/// Writes the report.
+pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Result<()> {
+    let Enclosed {
+        model,
+        scene,
+        request,
+        strikes,
+        certified,
+        ..
+    } = enclosed;
+    let description = model.description();
+    match *scene {
+        "all" => writeln!(output, "{}", description.name)?,
+        scene => writeln!(output, "{}, scene {scene}", description.name)?,
+    }
+    let rows = rows(enclosed);
+    let names = rows.iter().map(|(name, _)| name.chars().count());
+    let width = names.max().unwrap_or_default().max(10) + 2;
+    for (number, strike) in strikes.iter().enumerate() {
+        let surface = surface(&description, strike.surface);
+        let (name, time) = (format!("impact {}", number + 1), range(strike.time));
+        writeln!(output, "  {name:<width$}t in {time}, {surface}")?;
+    }
+    let t = certified.t;
+    match &certified.lost {
+        None => writeln!(output, "  {:<width$}up to t = {t}", "certified")?,
+        Some(lost) => {
+            let lost = text(&description, lost);
+            writeln!(output, "  {:<width$}{lost}", "lost")?;
+        }
+    }
+    let others = match (description.surfaces, certified.impacts) {
+        ([], _) => "the model has no surfaces".to_owned(),
+        (_, 0) => format!("there are none until t = {t}"),
+        (_, count) => format!("{count}; there are no others until t = {t}"),
+    };
+    writeln!(output, "  {:<width$}{others}", "impacts")?;
+    for (name, value) in rows {
+        writeln!(output, "  {name:<width$}{}", range(value))?;
+    }
+    let (form, steps) = (request.form.name(), counted_steps(certified.steps));
+    writeln!(output, "  {:<width$}{steps}, {form} form", "steps")
+}
+
+fn counted_steps(steps: u64) -> String {
+    counted(usize::try_from(steps).unwrap_or(usize::MAX), "step")
+}
+
+/// Positions and velocities at the end, by name.
+fn rows(enclosed: &Enclosed<'_>) -> Vec<(String, Interval)> {
+    let description = enclosed.model.description();
+    let last = &enclosed.certified.last;
+    let coordinates = names::coordinates(&description);
+    let velocities = coordinates.clone().map(names::velocity);
+    let positions = coordinates.map(str::to_owned).zip(last.q.iter().copied());
+    positions
+        .chain(velocities.zip(last.qdot.iter().copied()))
+        .collect()
+}
+
+/// Both ends, which read back to the same numbers, and how far they are apart.
+fn range(range: Interval) -> String {
+    let Interval { lo, hi } = range;
+    format!("[{lo:?}, {hi:?}] (width {:.1e})", range.width())
+}
+
+/// Up to when motion is certified, and why no further.
+pub(super) fn text(description: &Description, lost: &Lost) -> String {
+    let reason = reason(description, lost.reason);
+    format!("certified up to t = {} and no further: {reason}", lost.t)
+}
+
+/// A reason in the model's names.
+pub(super) fn reason(description: &Description, reason: Reason) -> String {
+    let name = |index| surface(description, index);
+    match reason {
+        Reason::NoTube => {
+            "no box holds the motion for the shortest step; it may end there, or the box is too wide"
+                .to_owned()
+        }
+        Reason::NotFinite => "the box is not finite any more".to_owned(),
+        Reason::MayGraze { surface } => format!("surface `{}` may be grazed", name(surface)),
+        Reason::MayMeetTogether { surface, other } => format!(
+            "surfaces `{}` and `{}` may be met together, or in either order",
+            name(surface),
+            name(other)
+        ),
+        Reason::UnsureCondition { surface } => {
+            format!("the conditions of surface `{}` may hold or not", name(surface))
+        }
+        Reason::MayBeBehind { surface } => {
+            format!("the motion may be behind surface `{}`", name(surface))
+        }
+        Reason::MayStay { surface } => {
+            format!("the motion may stay at surface `{}`", name(surface))
+        }
+        Reason::UnsureLaw { surface } => format!(
+            "the law of surface `{}` does not certainly give one finite state",
+            name(surface)
+        ),
+        Reason::OffConstraint { surface } => format!(
+            "the reset of surface `{}` leads off the constraints",
+            name(surface)
+        ),
+        Reason::EndsAtImpact { surface } => format!(
+            "the end of the time may lie before the impact on surface `{}` or after it; choose another --until",
+            name(surface)
+        ),
+        other => other.to_string(),
+    }
+}
+
+/// The reason as a word, and its surface.
+pub(super) fn kind(reason: Reason) -> (&'static str, Option<usize>) {
+    match reason {
+        Reason::NoTube => ("no_tube", None),
+        Reason::NotDerived => ("not_derived", None),
+        Reason::NotFinite => ("not_finite", None),
+        Reason::MayGraze { surface } => ("may_graze", Some(surface)),
+        Reason::MayMeetTogether { surface, .. } => ("may_meet_together", Some(surface)),
+        Reason::UnsureCondition { surface } => ("unsure_condition", Some(surface)),
+        Reason::MayBeBehind { surface } => ("may_be_behind", Some(surface)),
+        Reason::MayStay { surface } => ("may_stay", Some(surface)),
+        Reason::UnsureLaw { surface } => ("unsure_law", Some(surface)),
+        Reason::OffConstraint { surface } => ("off_constraint", Some(surface)),
+        Reason::EndsAtImpact { surface } => ("ends_at_impact", Some(surface)),
+        _ => ("other", None),
+    }
+}
+
+/// The name of a surface.
+pub(super) fn surface(description: &Description, index: usize) -> &'static str {
+    names::surfaces(description).nth(index).unwrap_or("?")
+}

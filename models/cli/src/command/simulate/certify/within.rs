@@ -1,0 +1,204 @@
+//! Ranges of `--certify-within`.
+
+use dalembert::describe::Assumption;
+use dalembert::numbers::Interval;
+use dalembert_driver::{AnyModel, Form};
+
+use crate::args::CertifyArgs;
+use crate::error::CliError;
+use crate::state_input::Beginning;
+use crate::{names, scalar};
+
+const FLAG: &str = "--certify-within";
+
+/// Largest absolute value of a factor of an end, and the largest of its inverse.
+const LARGEST: f64 = 1e30;
+
+/// Ranges by what they are of.
+#[derive(Debug, Default)]
+pub(super) struct Within {
+    pub parameters: Vec<(usize, Interval)>,
+    pub positions: Vec<(usize, Interval)>,
+    /// Of velocities, or of quasi-velocities.
+    pub rates: Vec<(usize, Interval)>,
+    /// All of them, in the order of the flags.
+    pub named: Vec<(String, [f64; 2])>,
+}
+
+impl Within {
+    /// Reads the ranges. Parameters are set to the middle of theirs.
+    ///
+    /// # Errors
+    /// An unknown name, ends that are no numbers, a range against the declaration of a parameter.
+    pub(super) fn parse(
+        model: &mut dyn AnyModel,
+        form: Form,
+        args: &CertifyArgs,
+    ) -> Result<Self, CliError> {
+        let mut within = Self::default();
+        for text in &args.certify_within {
+            within.add(model, form, text)?;
+        }
+        Ok(within)
+    }
+
+    fn add(&mut self, model: &mut dyn AnyModel, form: Form, text: &str) -> Result<(), CliError> {
+        let description = model.description();
+        let (name, value) = names::assignment(FLAG, text, "NAME=LO..HI")?;
+        let coordinates: Vec<&str> = names::coordinates(&description).collect();
+        let velocities: Vec<String> = coordinates.iter().map(|one| names::velocity(one)).collect();
+        let is_reduced = form == Form::Reduced;
+        let is_start = coordinates.contains(&name) || velocities.iter().any(|own| own == name);
+        let is_bound = !description.constraints.is_empty() && !is_reduced;
+        if is_start && is_bound {
+            return Err(CliError::Usage(
+                "--certify-within: without a reduced form the constraints choose the start; only parameters may have ranges",
+            ));
+        }
+        let rates: Vec<&str> = match (is_reduced, description.is_first_order) {
+            (true, _) => description.quasi_velocities.to_vec(),
+            (false, true) => Vec::new(),
+            (false, false) => velocities.iter().map(String::as_str).collect(),
+        };
+        let starts = if is_bound { &[][..] } else { &coordinates };
+        let rates = if is_bound { &[][..] } else { &rates };
+        let parameters = description.parameters.iter().map(|own| own.name);
+        let accepted = starts.iter().chain(rates).copied().chain(parameters);
+        let what = match is_reduced {
+            true => "coordinate, quasi-velocity or parameter",
+            false => "coordinate, velocity or parameter",
+        };
+        let index = names::find(FLAG, what, name, accepted)?;
+        let range = range(name, value)?;
+        self.named.push((name.to_owned(), [range.lo, range.hi]));
+        let after = starts.len() + rates.len();
+        if index < starts.len() {
+            self.positions.push((index, range));
+        } else if index < after {
+            self.rates.push((index - starts.len(), range));
+        } else {
+            let index = index - after;
+            let assumption = description.parameters[index].assumption;
+            let is_split = assumption == Assumption::NonZero && !range.excludes_zero();
+            if is_split || !assumption.holds(range.lo) || !assumption.holds(range.hi) {
+                let expected = format!("a range of values {assumption}");
+                return Err(CliError::value(format!("{FLAG} {name}"), value, expected));
+            }
+            model.set_parameter(index, range.middle());
+            self.parameters.push((index, range));
+        }
+        Ok(())
+    }
+
+    /// Puts the middles of the ranges into the start, from which the constraints choose what is not given.
+    ///
+    /// # Errors
+    /// Ranges of velocities beside momenta.
+    pub(super) fn begin(&self, form: Form, beginning: &mut Beginning) -> Result<(), CliError> {
+        for &(index, range) in &self.positions {
+            beginning.set_position(index, range.middle());
+        }
+        if form == Form::Reduced {
+            return Ok(());
+        }
+        if !self.rates.is_empty() && beginning.has_momenta() {
+            return Err(CliError::Usage(
+                "--certify-within: velocities have no ranges beside --p; give --qdot",
+            ));
+        }
+        for &(index, range) in &self.rates {
+            beginning.set_velocity(index, range.middle());
+        }
+        Ok(())
+    }
+}
+
+/// `LO..HI`, with ends that are moved outward where they are no doubles.
+fn range(name: &str, text: &str) -> Result<Interval, CliError> {
+    let ends = || {
+        let (lo, hi) = text.split_once("..")?;
+        let is_clear = !hi.starts_with('.') && !hi.contains("..");
+        let range = Interval::new(end(lo, f64::next_down)?, end(hi, f64::next_up)?);
+        (is_clear && range.lo <= range.hi).then_some(range)
+    };
+    ends().ok_or_else(|| {
+        let expected = "LO..HI with LO not above HI, such as 0.99..1.01 or -pi/2..pi/2";
+        CliError::value(format!("{FLAG} {name}"), text, expected)
+    })
+}
+
+/// The number of an end, moved further as far as rounding may have moved it back.
+fn end(text: &str, further: fn(f64) -> f64) -> Option<f64> {
+    let text = text.trim();
+    let value = scalar::parse(text).ok()?;
+    let factors = || text.split(['*', '/']).map(str::trim);
+    let is_decimal = !text.contains("pi") && factors().count() == 1;
+    if is_decimal && is_exact(text, value) {
+        return Some(value);
+    }
+    let moves = match is_decimal {
+        true => 1,
+        // Each factor is rounded, and each product.
+        false => 4 * factors().count(),
+    };
+    let is_moderate = |factor: &str| {
+        scalar::parse(factor).is_ok_and(|factor| {
+            let size = factor.abs();
+            size == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&size)
+        })
+    };
+    let is_short = factors().count() <= 4 && factors().all(is_moderate);
+    if !is_decimal && !is_short {
+        return None;
+    }
+    let moved = (0..moves).fold(value, |value, _| further(value));
+    moved.is_finite().then_some(moved)
+}
+
+/// Whether a decimal is a double.
+fn is_exact(text: &str, value: f64) -> bool {
+    let digits = |text: &str| {
+        let text = text.trim_start_matches(['+', '-']);
+        let (whole, rest) = text.split_once('.').unwrap_or((text, ""));
+        let (whole, rest) = (whole.trim_start_matches('0'), rest.trim_end_matches('0'));
+        format!("{whole}.{rest}")
+    };
+    // The digits of a double end after so many places.
+    digits(text) == digits(&format!("{value:.1074}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_that_are_no_doubles_are_moved_outward() {
+        let ends = |text| {
+            let range = range("x", text).unwrap_or(Interval::WHOLE);
+            [range.lo, range.hi]
+        };
+        assert_eq!(ends("0.5..1"), [0.5, 1.0]);
+        assert_eq!(ends("-02.50..+3."), [-2.5, 3.0]);
+        assert_eq!(ends("0.1..0.1"), [0.1_f64.next_down(), 0.1_f64.next_up()]);
+        let [lo, hi] = ends("-pi/2..pi/2");
+        assert!(lo < -std::f64::consts::FRAC_PI_2 && hi > std::f64::consts::FRAC_PI_2);
+        assert!(hi - lo < 1.000_001 * std::f64::consts::PI);
+    }
+
+    #[test]
+    fn what_is_no_range_is_refused() {
+        for text in [
+            "",
+            "1",
+            "2..1",
+            "1..",
+            "..1",
+            "0...1",
+            "1..x",
+            "1..inf",
+            "1e200*1e-200*1..2",
+        ] {
+            assert!(range("x", text).is_err(), "{text}");
+        }
+    }
+}
