@@ -31,7 +31,8 @@ pub struct Certification {
     pub impacts: Option<u64>,
     /// Laws by index of the surface, instead of the declared ones; a later one counts.
     pub laws: Vec<(usize, Law)>,
-    /// Ranges in place of the values of parameters, by index.
+    /// Ranges in place of the values of parameters, by index. A model with modes takes no ranges but these, and begins with the same state
+    /// for all of them.
     pub parameters: Vec<(usize, Interval)>,
     /// Ranges in place of the origin's positions, by index of the coordinate.
     pub positions: Vec<(usize, Interval)>,
@@ -40,9 +41,12 @@ pub struct Certification {
     pub rates: Vec<(usize, Interval)>,
 }
 
-/// All positions and velocities that are possible, one range per coordinate; all numbers for a velocity that may not exist.
+/// All positions and velocities that are possible, one range per coordinate; all numbers for a velocity that may not exist, NaN of a
+/// coordinate that the mode does not have.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranges {
+    /// The name of the mode, of a model with modes.
+    pub mode: Option<&'static str>,
     /// Positions.
     pub q: Vec<Interval>,
     /// Velocities.
@@ -112,9 +116,6 @@ impl Subject<'_> {
         observer: &mut dyn FnMut(&Strike),
     ) -> Result<Certified, Refusal> {
         let form = self.form.ok_or(Uncertified::Compiled)?;
-        if !form.tables.modes.is_empty() {
-            return Err(Uncertified::Modes.into());
-        }
         if let Some(system) = Erased::<8>::of(form) {
             return self.follow(system, request, observer);
         }
@@ -135,7 +136,9 @@ impl Subject<'_> {
             system = system.global();
         }
         let form = system.form();
-        if form.kernels::<Interval>().is_none() {
+        // Of a model with modes, those of its modes.
+        let known = form.forms.first().copied().unwrap_or(form);
+        if known.kernels::<Interval>().is_none() {
             return Err(match form.tables.varies {
                 true => Uncertified::Compiled.into(),
                 false => Uncertified::WithoutVariations.into(),
@@ -193,7 +196,11 @@ impl Subject<'_> {
     ) -> Result<Vec<Interval>, Refusal> {
         type Positions<const C: usize> = <Erased<C> as Variational>::Configuration<Interval>;
         let n = self.origin.q.len();
-        let dimensions = &system.form().tables.dimensions;
+        let tables = &system.form().tables;
+        if !tables.modes.is_empty() {
+            return Ok(self.state.iter().copied().map(Interval::point).collect());
+        }
+        let dimensions = &tables.dimensions;
         let is_free = request.form == Form::Global && dimensions.constraints == 0;
         let boxed = |values: &[f64], ranges: &[(usize, Interval)]| {
             let mut row = Positions::<C>::zeros(n);
@@ -261,12 +268,27 @@ impl<const C: usize> Shown<'_, C> {
         }
         let n = self.system.form().tables.dimensions.coordinates;
         let velocities = self.system.velocities(&self.parameters, times, &state);
-        Ranges {
-            q: state.as_slice()[..n].to_vec(),
-            qdot: match velocities {
-                Ok(velocities) => velocities.as_slice().to_vec(),
-                Err(_) => vec![Interval::WHOLE; n],
-            },
+        let qdot = match velocities {
+            Ok(velocities) => velocities.as_slice().to_vec(),
+            Err(_) => vec![Interval::WHOLE; n],
+        };
+        let modes = self.system.description().modes;
+        let number = state.as_slice().last().map_or(0.0, |last| last.middle());
+        let Some(mode) = modes.get((number + 0.5) as usize) else {
+            let q = state.as_slice()[..n].to_vec();
+            let mode = None;
+            return Ranges { mode, q, qdot };
+        };
+        let absent = Interval::new(f64::NAN, f64::NAN);
+        let mut ranges = Ranges {
+            mode: Some(mode.name),
+            q: vec![absent; n],
+            qdot: vec![absent; n],
+        };
+        for (range, &place) in state.as_slice().iter().zip(mode.coordinates) {
+            ranges.q[place] = *range;
+            ranges.qdot[place] = qdot[place];
         }
+        ranges
     }
 }

@@ -13,9 +13,6 @@ pub enum Uncertified {
         "certified motion runs models that are loaded from a text, and this one is compiled into the program; give the file of its declaration"
     )]
     Compiled,
-    /// The model has modes.
-    #[error("certified motion does not go from mode to mode, and the model has modes")]
-    Modes,
     /// The scene was declared without what the derivatives of a motion take.
     #[error(
         "the scene was declared without `variations`, which certified motion takes; add it to what the scene uses"

@@ -28,14 +28,19 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
         .iter()
         .map(|(name, ends)| (name.clone(), vector(ends)));
     let event = |strike: &Strike| {
-        json!({
+        let mut event = json!({
             "t": range(strike.time),
             "surface": report::surface(&description, strike.surface),
             "q_minus": ranges(&strike.before.q),
             "qdot_minus": ranges(&strike.before.qdot),
             "q_plus": ranges(&strike.after.q),
             "qdot_plus": ranges(&strike.after.qdot),
-        })
+        });
+        if let (Some(before), Some(after)) = (strike.before.mode, strike.after.mode) {
+            event["mode_minus"] = before.into();
+            event["mode_plus"] = after.into();
+        }
+        event
     };
     let mut outcome = Map::new();
     let kind = match certified.lost {
@@ -54,6 +59,9 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
         let text = report::reason(&description, lost.reason);
         outcome.insert("text".to_owned(), text.into());
     }
+    if let Some(mode) = certified.last.mode {
+        outcome.insert("mode".to_owned(), mode.into());
+    }
     outcome.insert("q".to_owned(), ranges(&certified.last.q));
     outcome.insert("qdot".to_owned(), ranges(&certified.last.qdot));
 
@@ -69,8 +77,12 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
     document.end()
 }
 
+/// A range; `null` for a coordinate that the mode does not have.
 fn range(range: Interval) -> Value {
-    vector(&[range.lo, range.hi])
+    match range.lo.is_nan() {
+        true => Value::Null,
+        false => vector(&[range.lo, range.hi]),
+    }
 }
 
 fn ranges(all: &[Interval]) -> Value {

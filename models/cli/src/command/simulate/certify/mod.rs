@@ -4,7 +4,7 @@ mod document;
 mod report;
 mod within;
 
-use dalembert_driver::{AnyModel, Certification, Certified, Refusal, Strike};
+use dalembert_driver::{AnyModel, Certification, Certified, OffConstraint, Refusal, Strike};
 
 use self::within::Within;
 use crate::args::SimulateArgs;
@@ -37,6 +37,12 @@ pub(super) fn run(
 ) -> Result<Exit, CliError> {
     let mut model = build_run(models, &args.run)?;
     let settings = run_request::course(model.as_ref(), &args.run, &args.course)?;
+    let is_projected = args.run.state.off_constraint == OffConstraint::Project;
+    if is_projected && !args.certify.certify_within.is_empty() {
+        return Err(CliError::Usage(
+            "--certify-within: a start that is projected is a single one; leave out --off-constraint project",
+        ));
+    }
     let within = Within::parse(model.as_mut(), settings.form, &args.certify)?;
     let origin = initial_state_with(model.as_ref(), &args.run.state, |beginning| {
         within.begin(settings.form, beginning)

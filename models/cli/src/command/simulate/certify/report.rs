@@ -29,7 +29,10 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
     let names = rows.iter().map(|(name, _)| name.chars().count());
     let width = names.max().unwrap_or_default().max(10) + 2;
     for (number, strike) in strikes.iter().enumerate() {
-        let surface = surface(&description, strike.surface);
+        let mut surface = surface(&description, strike.surface).to_owned();
+        if let (Some(before), Some(after)) = (strike.before.mode, strike.after.mode) {
+            surface += &format!(", {before} to {after}");
+        }
         let (name, time) = (format!("impact {}", number + 1), range(strike.time));
         writeln!(output, "  {name:<width$}t in {time}, {surface}")?;
     }
@@ -47,6 +50,9 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
         (_, count) => format!("{count}; there are no others until t = {t}"),
     };
     writeln!(output, "  {:<width$}{others}", "impacts")?;
+    if let Some(mode) = certified.last.mode {
+        writeln!(output, "  {:<width$}{mode}", "mode")?;
+    }
     for (name, value) in rows {
         writeln!(output, "  {name:<width$}{}", range(value))?;
     }
@@ -65,8 +71,10 @@ fn rows(enclosed: &Enclosed<'_>) -> Vec<(String, Interval)> {
     let coordinates = names::coordinates(&description);
     let velocities = coordinates.clone().map(names::velocity);
     let positions = coordinates.map(str::to_owned).zip(last.q.iter().copied());
+    // A mode need not have all coordinates.
     positions
         .chain(velocities.zip(last.qdot.iter().copied()))
+        .filter(|(_, range)| !range.lo.is_nan())
         .collect()
 }
 

@@ -44,6 +44,11 @@ impl Within {
 
     fn add(&mut self, model: &mut dyn AnyModel, form: Form, text: &str) -> Result<(), CliError> {
         let description = model.description();
+        if !description.modes.is_empty() {
+            return Err(CliError::Usage(
+                "--certify-within: the motion of a model with modes is certified from single starts alone",
+            ));
+        }
         let (name, value) = names::assignment(FLAG, text, "NAME=LO..HI")?;
         let coordinates: Vec<&str> = names::coordinates(&description).collect();
         let velocities: Vec<String> = coordinates.iter().map(|one| names::velocity(one)).collect();
