@@ -132,6 +132,7 @@ impl Subject<'_> {
         for (index, value) in self.values.iter().enumerate() {
             system.set_parameter(index, *value);
         }
+        let own = system.form();
         if request.form == Form::Global {
             system = system.global();
         }
@@ -139,10 +140,12 @@ impl Subject<'_> {
         // Of a model with modes, those of its modes.
         let known = form.forms.first().copied().unwrap_or(form);
         if known.kernels::<Interval>().is_none() {
-            return Err(match form.tables.varies {
-                true => Uncertified::Compiled.into(),
-                false => Uncertified::WithoutVariations.into(),
-            });
+            let why = match (form.tables.varies, own.tables.varies) {
+                (true, _) => Uncertified::Compiled,
+                (false, true) => Uncertified::OnlyReduced,
+                (false, false) => Uncertified::WithoutVariations,
+            };
+            return Err(why.into());
         }
         let values = TaylorField::parameters(&system);
         let mut parameters =

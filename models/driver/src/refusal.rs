@@ -13,6 +13,11 @@ pub enum Uncertified {
         "certified motion runs models that are loaded from a text, and this one is compiled into the program; give the file of its declaration"
     )]
     Compiled,
+    /// The global form of a model that has a reduced one.
+    #[error(
+        "certified motion takes the reduced form of this model; leave out what asks for the global one: --form global, --off-constraint keep"
+    )]
+    OnlyReduced,
     /// The scene was declared without what the derivatives of a motion take.
     #[error(
         "the scene was declared without `variations`, which certified motion takes; add it to what the scene uses"

@@ -34,6 +34,17 @@ const DRAIN: &str = "
         initial { x = 1; until = 1; }
     }";
 
+const SCENES: &str = "
+    Pushed {
+        coordinates { x; }
+        inputs { push; }
+        lagrangian = dot(x)^2/2 - x;
+        forces { pushed: push*d(x); }
+        impacts { floor: x >= 0; }
+        scenes { free; lively: pushed, floor, variations; }
+        initial { x = 1; until = 1.5; }
+    }";
+
 const SLEIGH: &str = include_str!("../../../src/chaplygin_sleigh.dal");
 
 const WALKER: &str = include_str!("../../../src/spring_mass_walker.dal");
@@ -242,6 +253,16 @@ fn motion_that_is_lost_says_where_and_why() {
 
 #[test]
 fn models_that_no_motion_is_certified_of_say_so() {
+    let done = certify(SLEIGH, "--form global");
+    assert_eq!(done.exit, Exit::Refused);
+    let text = "--certify: certified motion takes the reduced form of this model";
+    assert!(done.errors.contains(text), "{}", done.errors);
+    let done = certify(SCENES, "--scene free");
+    assert_eq!(done.exit, Exit::Refused);
+    let text = "--certify: the scene was declared without `variations`";
+    assert!(done.errors.contains(text), "{}", done.errors);
+    let done = certify(SCENES, "--scene lively --input push=-1");
+    assert!(done.output.contains("impacts     1;"), "{}", done.output);
     let words = ["simulate", "compiled_ball", "--certify"];
     for done in [
         run("simulate oscillator --set k=4 --certify"),
