@@ -16,18 +16,16 @@
 //! differential equations with discontinuous right-hand sides*, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958).
 
 use super::course::{Course, Part, Side, Sides, Surfaces};
+use super::departure::{Departure, ORDER, carried, together};
 use super::frame::{BLOCKS, Bounds, Frame, Matrix, Slopes, Turned};
 use super::lost::Reason;
-use super::series::{Arc, Field, bounds, rated_row, row};
+use super::series::{Field, bounds, rated_row, row};
 use crate::contract::{Impacting, Variational};
 use crate::numbers::{Interval, Numbers, Rated, Row};
 use crate::outcome::Outcome;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 use crate::variations::transition::Strike;
-
-/// Order of the series about an impact.
-const ORDER: usize = 8;
 
 /// Lengths of time that are tried, each twice the last.
 const TRIALS: u32 = 8;
@@ -534,82 +532,6 @@ fn ahead(rest: Interval, units: Interval) -> Interval {
     Interval::new(rest.lo.max(0.0), rest.hi.max(0.0))
 }
 
-/// Motion from an impact, at whatever time it comes, to one time after it.
-struct Departure<'f, 'a, Sys: Variational + Impacting> {
-    surfaces: &'f Surfaces<'f, 'a, Sys>,
-    surface: usize,
-    /// All times of the impact.
-    times: Interval,
-    unit: Interval,
-    /// All lengths of time from it, in units.
-    rest: Interval,
-}
-
-/// All motions after an impact.
-struct Departed<Sys: Variational + Impacting> {
-    tube: Bounds<Sys::State>,
-    rates: Bounds<Sys::State>,
-    sides: Sides<Sys>,
-}
-
-impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
-    /// Passes all surfaces.
-    fn departed(
-        &self,
-        after: &Bounds<Sys::State>,
-        sides: &Sides<Sys>,
-    ) -> Result<Departed<Sys>, Reason> {
-        let (field, unit, surface) = (self.surfaces.field, self.unit, self.surface);
-        let during = Interval::new(0.0, (unit * self.rest).hi);
-        let times = self.times + during;
-        let tube = field.tube(after, times, during).ok_or(Reason::NoTube)?;
-        let course = Course::new(field, after, &tube, self.times, unit, ORDER);
-        let course = course.ok_or(Reason::NoTube)?;
-        let passed = self.surfaces.passed_in(course.part(self.rest), sides, None);
-        let sides = passed.map_err(|(other, reason)| match other == surface {
-            true => Reason::MayStay { surface },
-            false => together(surface, other, reason),
-        })?;
-        let rates = field.rates(self.times, after).ok_or(Reason::NoTube)?;
-        Ok(Departed { tube, rates, sides })
-    }
-
-    /// Changes of the state at the time after all impacts, from those where the surface is met.
-    fn carried(
-        &self,
-        departed: &Departed<Sys>,
-        after: &Bounds<Sys::State>,
-        along: &Bounds<Sys::State>,
-        delay: Interval,
-    ) -> Option<Bounds<Sys::State>> {
-        let along = Bounds::of(along.count(), |i| {
-            along.at(i) - departed.rates.at(i) * delay
-        });
-        let from = [after, &departed.tube, &along];
-        let (field, unit) = (self.surfaces.field, self.unit);
-        carried(field, from, self.times, unit, self.rest, ORDER)
-    }
-}
-
-/// All changes of the states along directions after so many units of time, from all states of a box with a tube.
-pub(super) fn carried<Sys: Variational>(
-    field: &Field<'_, Sys>,
-    [from, tube, along]: [&Bounds<Sys::State>; 3],
-    start: Interval,
-    unit: Interval,
-    units: Interval,
-    order: usize,
-) -> Option<Bounds<Sys::State>> {
-    let during = Interval::new(0.0, (unit * units).hi);
-    let times = start + during;
-    let tube_along = field.tube_along(tube, along, times, during)?;
-    let series = field.series_along(from, along, start, unit, order)?;
-    let remainder = field.series_along(tube, &tube_along, times, unit, order)?;
-    let end = Arc::new(&series, &remainder, order).at(Rated::steady(units));
-    let changes = Bounds::of(from.count(), |i| end.as_slice()[i].rate);
-    changes.is_finite().then_some(changes)
-}
-
 /// The gap of a surface and its rate at a time.
 fn gap_now<Sys: Variational + Impacting>(
     surfaces: &Surfaces<'_, '_, Sys>,
@@ -630,12 +552,4 @@ fn gap_now<Sys: Variational + Impacting>(
         .ok()?;
     let gap = gaps.as_slice()[surface];
     Some([gap.value, gap.rate])
-}
-
-/// The reason why a surface is not certainly passed at the impact on another.
-fn together(surface: usize, other: usize, reason: Reason) -> Reason {
-    match reason {
-        Reason::UnsureCondition { .. } => reason,
-        _ => Reason::MayMeetTogether { surface, other },
-    }
 }

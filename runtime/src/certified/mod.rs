@@ -7,6 +7,7 @@
 //! | `series.rs` | tubes, and series with remainder, of motions and of their derivatives |
 //! | `course.rs` | gaps along a step: which surfaces are certainly not met |
 //! | `crossing.rs` | the impact of all motions of a box: when, where, and the states at one time after it |
+//! | `departure.rs` | the motions after it, and changes of states along them |
 //! | `run.rs` | smooth motion and impacts by turns |
 //! | `orbit.rs` | periodic orbits that exist and attract by proof |
 //! | `lost.rs` | where certified motion ends, and why |
@@ -20,6 +21,7 @@
 
 mod course;
 mod crossing;
+mod departure;
 mod flow;
 mod frame;
 mod lost;

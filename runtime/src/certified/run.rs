@@ -3,7 +3,8 @@
 use core::ops::ControlFlow;
 
 use super::course::{Course, Met, Side, Sides, Surfaces};
-use super::crossing::{Crossed, carried, cross};
+use super::crossing::{Crossed, cross};
+use super::departure::carried;
 use super::flow::{CertifiedFlow, ORDER, Step};
 use super::frame::{Bounds, Matrix, identity};
 use super::lost::{Lost, Reason};
