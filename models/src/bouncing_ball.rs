@@ -5,18 +5,3 @@
 //! Source: W. Clark, thesis, Example IX.9.
 
 dalembert::model_file!("src/bouncing_ball.dal");
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use dalembert::{System, VectorField};
-
-    #[test]
-    fn falls_with_the_acceleration_of_gravity() {
-        let ball = BouncingBall { m: 2.0, g: 9.81 };
-        let state = ball.state(0.0, &[1.0].into(), &[0.5].into()).unwrap();
-        let mut rate = state;
-        ball.rate(0.0, &state, &mut rate).unwrap();
-        assert_eq!(rate.as_slice(), [0.5, -2.0 * 9.81]);
-    }
-}

@@ -1,0 +1,29 @@
+//! A known fact of each shipped model: what is said of it in closed form, or by its source, is so of its runs.
+
+mod billiards;
+mod fields;
+mod forces;
+mod rolling;
+mod walkers;
+
+use dalembert::erased::Erased;
+use dalembert::{Instance, Run, VectorField};
+use dalembert_cli::Integrator;
+use dalembert_stability::course::{Course, Driven, state};
+
+/// A run from these positions and velocities, which the constraints admit.
+fn course<'a, M: Driven>(model: &'a M, q: &[f64], qdot: &[f64], until: f64) -> Course<'a, M> {
+    Course::from_state(model, state(model, q, qdot), until)
+}
+
+/// Where a run ends by [`Integrator::Dop853`].
+fn end<M: Driven>(course: Course<'_, M>) -> Run<<M as VectorField>::State> {
+    course.observed(Integrator::Dop853, &mut ())
+}
+
+/// The number of the mode of this name.
+fn mode_number<const C: usize>(model: &Erased<C>, name: &str) -> usize {
+    let mut modes = model.description().modes.iter();
+    let place = modes.position(|mode| mode.name == name);
+    place.unwrap_or_else(|| panic!("no mode `{name}`"))
+}
