@@ -23,7 +23,7 @@ fn the_contact_point_runs_on_a_circle() {
 
 #[test]
 fn the_centre_moves_on_a_straight_line() -> Result<(), Fault> {
-    let ball = shipped("rolling_ball_euler").model();
+    let ball = shipped("rolling_ball_euler").large([]);
     let (q, qdot) = ([0.0, 0.0, 0.2, 1.1, -0.4], [0.0, 0.0, 0.3, -0.2, 0.5]);
     let course = Course::new(&ball, &q, &qdot, 2.0).alone().tol(1e-13);
     let before = ball.velocity(0.0, course.start())?;
@@ -36,7 +36,7 @@ fn the_centre_moves_on_a_straight_line() -> Result<(), Fault> {
 
 #[test]
 fn the_ball_leaves_the_wall_rolling_along_it() -> Result<(), Fault> {
-    let ball = shipped("rolling_ball_wall").model();
+    let ball = shipped("rolling_ball_wall").large([]);
     let (q, qdot) = ([0.0, 0.0, 0.2, 1.1, -0.4], [1.0, 0.4, -0.5, 0.8, 0.3]);
     let start = ball.state_projected(0.0, &vector(&q), &vector(&qdot));
     let start = start.expect("an admissible start");
@@ -60,7 +60,7 @@ fn the_ball_leaves_the_wall_rolling_along_it() -> Result<(), Fault> {
 
 #[test]
 fn the_centre_of_the_circle_stands_still() -> Result<(), Fault> {
-    let ball = shipped("ball_on_rotating_table").model();
+    let ball = shipped("ball_on_rotating_table").large([]);
     let (q, qdot) = ([1.0, 0.5, 0.2, 1.1, -0.4], [0.0, 0.0, 0.1, 0.05, 0.1]);
     let [table, r, k] = ["Om", "r", "k"].map(|name| value(&ball, name));
     let rate = table * k.powi(2) / (r.powi(2) + k.powi(2));

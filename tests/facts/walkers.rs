@@ -58,7 +58,7 @@ fn is_the_dimensionless_walker_in_other_units() -> Result<(), Fault> {
 
 #[test]
 fn it_walks_and_keeps_its_energy() -> Result<(), Fault> {
-    let walker = shipped("spring_mass_walker").model();
+    let walker = shipped("spring_mass_walker").large([]);
     let start = declared(&walker);
     let energy = walker.energy(0.0, &start)?;
     let mut changes = EventLog::<_, 32>::new();

@@ -2,7 +2,7 @@
 //!
 //! A [`Function`] is a list of operations in an order that can be executed; every operand was defined before
 //! it is used. Linear algebra has already become operations here (see [`linear`]), with guards where a pivot
-//! must be positive. Nothing downstream decides anything: [`crate::emit`] writes down what stands here, and
+//! must be positive. Nothing downstream decides anything: `dalembert-emit` writes down what stands here, and
 //! [`interpret`] executes it without a compiler.
 
 pub mod builder;
