@@ -8,6 +8,8 @@ use dalembert_driver::{
     Settings, Watch, of_form, of_type,
 };
 
+use dalembert_tests::sampling::Random;
+
 use super::models::{Compiled, every_model};
 
 /// The longest run.
@@ -33,17 +35,33 @@ impl Watch for Log {
     }
 }
 
-/// The run of a model from its declared start.
-fn course(model: &dyn AnyModel, form: Form, integrator: Integrator) -> (Vec<String>, String) {
+/// The declared start of a model; of one without a start, some state inside of its chart.
+fn origin(model: &dyn AnyModel) -> Origin {
     let start = model.initial();
-    let q = model.complete_position(&start.q, &start.placed);
-    let q = q.expect("positions");
-    let qdot = model.complete_velocity(&q, &start.qdot, &start.named);
-    let origin = Origin {
-        q,
-        rates: Rates::Velocities(qdot.expect("velocities")),
-        policy: OffConstraint::Error,
-    };
+    let declared = model
+        .complete_position(&start.q, &start.placed)
+        .and_then(|q| Ok((model.complete_velocity(&q, &start.qdot, &start.named)?, q)));
+    match declared {
+        Ok((qdot, q)) if q.iter().chain(&qdot).all(|value| value.is_finite()) => Origin {
+            q,
+            rates: Rates::Velocities(qdot),
+            policy: OffConstraint::Error,
+        },
+        _ => {
+            let mut random = Random::new(7);
+            let mut values = |low| start.q.iter().map(|_| random.within(low, 1.0)).collect();
+            Origin {
+                q: values(0.1),
+                rates: Rates::Velocities(values(-1.0)),
+                policy: OffConstraint::Project,
+            }
+        }
+    }
+}
+
+/// The run of a model from its start.
+fn course(model: &dyn AnyModel, form: Form, integrator: Integrator) -> (Vec<String>, String) {
+    let origin = origin(model);
     let is_long = model.description().coordinates.len() > 6;
     let longest = if is_long { 0.1 * UNTIL } else { UNTIL };
     let settings = Settings {
@@ -53,7 +71,10 @@ fn course(model: &dyn AnyModel, form: Form, integrator: Integrator) -> (Vec<Stri
         step: None,
         max_step: None,
         steps: None,
-        until: start.until.map_or(longest, |until| until.min(longest)),
+        until: model
+            .initial()
+            .until
+            .map_or(longest, |until| until.min(longest)),
         impacts: None,
         laws: Vec::new(),
         policies: Policies::default(),
