@@ -19,7 +19,7 @@ fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
     (compiled.model, compiled.derivation, compiled.programs)
 }
 
-/// What is loaded does what the interpreter does, to the bit: the same operations in the same order. Emitted code does what is loaded does (`erased`).
+/// What is loaded does what the interpreter does, to the bit: the same operations in the same order. Emitted code does the same (`erased`).
 #[test]
 fn loaded_code_is_what_the_interpreter_executes() {
     let mut states = 0;

@@ -92,7 +92,12 @@ where
     let expected = bits(&enclosures(model, &start, radius, until));
     let form = loaded::<M>();
     let parameters = form.documentation.description.parameters;
-    let place = |name: &str| parameters.iter().position(|own| own.name == name).unwrap();
+    let place = |name: &str| {
+        parameters
+            .iter()
+            .position(|parameter| parameter.name == name)
+            .unwrap()
+    };
     let mut large = Erased::<32>::of(form).unwrap();
     for (name, value) in settings {
         large.set_parameter(place(name), *value);

@@ -15,7 +15,7 @@ use super::models::{Compiled, every_model};
 /// The longest run.
 const UNTIL: f64 = 2.0;
 
-/// Of all integrators; steps of one size and of low order that suit a tighter one are many.
+/// The tolerance of all integrators; steps of one size and of low order that suit a tighter one are many.
 const TOLERANCE: f64 = 1e-7;
 
 /// Keeps what happens, as text: a number that is none is no number's equal.

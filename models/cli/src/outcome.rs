@@ -1,4 +1,4 @@
-//! How runs and searches for orbits ended, in the names of the model.
+//! Ends of runs and of searches for orbits, in the names of the model.
 
 use dalembert::Outcome;
 use dalembert::describe::Description;
@@ -8,13 +8,13 @@ use serde_json::Value;
 
 use crate::{json, names};
 
-/// What a kind says besides, by name.
+/// Facts that go with a kind, by name.
 pub type Details = Vec<(&'static str, Value)>;
 
 /// A kind, and what it says besides.
 pub type Told = (&'static str, Details);
 
-/// What an outcome says besides its kind and its time, in the model's names.
+/// The facts of an outcome besides its kind and its time, in the model's names.
 pub fn details(description: &Description, outcome: &Outcome) -> Details {
     let surface = |index: usize| ("surface", name(names::surfaces(description), index));
     let constraint = |index: usize| {

@@ -225,7 +225,7 @@ impl Beginning {
         }
     }
 
-    /// Whether momenta are given.
+    /// True if momenta are given.
     pub fn has_momenta(&self) -> bool {
         matches!(
             self,

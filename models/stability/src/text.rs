@@ -88,7 +88,7 @@ impl Text {
     /// As [`Text::model`], and if there is no such scene.
     pub fn scene(&self, name: &str) -> Model {
         let mut scenes = self.loaded().scenes.iter();
-        let scene = scenes.find(|(own, _)| *own == name);
+        let scene = scenes.find(|(scene, _)| *scene == name);
         let (_, form) = scene.unwrap_or_else(|| panic!("no scene `{name}`"));
         Erased::of(form).expect("vectors of no more components")
     }
@@ -127,7 +127,7 @@ pub fn shipped(name: &str) -> &'static Text {
     static SHIPPED: OnceLock<Vec<(&str, Text)>> = OnceLock::new();
     let texts = dalembert_command::TEXTS.iter();
     let all = SHIPPED.get_or_init(|| texts.map(|&(name, text)| (name, Text::new(text))).collect());
-    let found = all.iter().find(|(own, _)| *own == name);
+    let found = all.iter().find(|(shipped, _)| *shipped == name);
     let (_, text) = found.unwrap_or_else(|| panic!("no shipped model `{name}`"));
     text
 }

@@ -60,7 +60,7 @@ macro_rules! varied {
                 &self,
                 drive: &mut Drive<Self>,
                 tangents: &mut [Tangent<Self>],
-                    ) -> (Run<Self::State>, Result<(), Undefined>) {
+            ) -> (Run<Self::State>, Result<(), Undefined>) {
                 let mut variations = Variations::new(self, tangents);
                 let run = self.drive(drive, &mut variations);
                 (run, variations.tangents().map(|_| ()))

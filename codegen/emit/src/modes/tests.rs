@@ -10,7 +10,7 @@ fn read(source: &str) -> Modes {
     }
 }
 
-/// What is emitted, without the source.
+/// The emitted items, without the source.
 fn emitted(source: &str) -> String {
     let mut declared = read(source);
     for mode in &mut declared.modes {

@@ -43,7 +43,7 @@ pub fn form() -> ValueParser {
     }))
 }
 
-/// What to do off the constraints.
+/// The policies for positions or velocities off the constraints.
 pub fn off_constraint() -> ValueParser {
     one_of(OffConstraint::every().iter().map(|&policy| {
         let help = match policy {

@@ -23,7 +23,10 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
     let values: Vec<f64> = (0..description.parameters.len())
         .map(|index| model.parameter(index))
         .collect();
-    let parameters = description.parameters.iter().map(|own| own.name);
+    let parameters = description
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name);
     let within = within
         .iter()
         .map(|(name, ends)| (name.clone(), vector(ends)));

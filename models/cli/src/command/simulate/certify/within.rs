@@ -19,7 +19,7 @@ const LARGEST: f64 = 1e30;
 pub(super) struct Within {
     pub parameters: Vec<(usize, Interval)>,
     pub positions: Vec<(usize, Interval)>,
-    /// Of velocities, or of quasi-velocities.
+    /// Those of velocities, or of quasi-velocities.
     pub rates: Vec<(usize, Interval)>,
     /// All of them, in the order of the flags.
     pub named: Vec<(String, [f64; 2])>,
@@ -53,7 +53,8 @@ impl Within {
         let coordinates: Vec<&str> = names::coordinates(&description).collect();
         let velocities: Vec<String> = coordinates.iter().map(|one| names::velocity(one)).collect();
         let is_reduced = form == Form::Reduced;
-        let is_start = coordinates.contains(&name) || velocities.iter().any(|own| own == name);
+        let is_start =
+            coordinates.contains(&name) || velocities.iter().any(|velocity| velocity == name);
         let is_bound = !description.constraints.is_empty() && !is_reduced;
         if is_start && is_bound {
             return Err(CliError::Usage(
@@ -67,7 +68,10 @@ impl Within {
         };
         let starts = if is_bound { &[][..] } else { &coordinates };
         let rates = if is_bound { &[][..] } else { &rates };
-        let parameters = description.parameters.iter().map(|own| own.name);
+        let parameters = description
+            .parameters
+            .iter()
+            .map(|parameter| parameter.name);
         let accepted = starts.iter().chain(rates).copied().chain(parameters);
         let what = match is_reduced {
             true => "coordinate, quasi-velocity or parameter",
@@ -160,7 +164,7 @@ fn end(text: &str, further: fn(f64) -> f64) -> Option<f64> {
     moved.is_finite().then_some(moved)
 }
 
-/// Whether a decimal is a double.
+/// Tells if a decimal is a double.
 fn is_exact(text: &str, value: f64) -> bool {
     let digits = |text: &str| {
         let text = text.trim_start_matches(['+', '-']);
