@@ -1,6 +1,6 @@
 //! Certified motion of a model: enclosures of times, positions and velocities, as plain data.
 //!
-//! It is that of the runtime over the system of all forms, compiled for two capacities alone. A form has to have kernels over intervals:
+//! It is that of the runtime over the system of all forms, compiled for the largest capacity alone. A form has to have kernels over intervals:
 //! those that are loaded from a text have them.
 
 use std::ops::ControlFlow;
@@ -19,6 +19,9 @@ use crate::refusal::{Refusal, Uncertified};
 
 /// Bytes of stack that the longest vectors take in code that nothing optimises, four times over.
 const STACK: usize = 16 << 20;
+
+/// The system that certified motion is compiled for: the one that holds every form.
+type System = Erased<32>;
 
 /// What is to be certified, from `t = 0` on.
 #[derive(Debug, Clone)]
@@ -116,19 +119,7 @@ impl Subject<'_> {
         observer: &mut dyn FnMut(&Strike),
     ) -> Result<Certified, Refusal> {
         let form = self.form.ok_or(Uncertified::Compiled)?;
-        if let Some(system) = Erased::<8>::of(form) {
-            return self.follow(system, request, observer);
-        }
-        let system = Erased::<32>::of(form).ok_or(Uncertified::Compiled)?;
-        self.follow(system, request, observer)
-    }
-
-    fn follow<const C: usize>(
-        &self,
-        mut system: Erased<C>,
-        request: &Certification,
-        observer: &mut dyn FnMut(&Strike),
-    ) -> Result<Certified, Refusal> {
+        let mut system = System::of(form).ok_or(Uncertified::Compiled)?;
         for (index, value) in self.values.iter().enumerate() {
             system.set_parameter(index, *value);
         }
@@ -149,7 +140,7 @@ impl Subject<'_> {
         }
         let values = TaylorField::parameters(&system);
         let mut parameters =
-            <Erased<C> as TaylorField>::Parameters::<Interval>::zeros(values.as_slice().len());
+            <System as TaylorField>::Parameters::<Interval>::zeros(values.as_slice().len());
         let entries = parameters.as_mut_slice().iter_mut();
         for (entry, value) in entries.zip(values.as_slice()) {
             *entry = Interval::of(*value);
@@ -191,13 +182,13 @@ impl Subject<'_> {
     }
 
     /// All states that the motion may begin with.
-    fn start<const C: usize>(
+    fn start(
         &self,
-        system: &Erased<C>,
-        parameters: &<Erased<C> as TaylorField>::Parameters<Interval>,
+        system: &System,
+        parameters: &<System as TaylorField>::Parameters<Interval>,
         request: &Certification,
     ) -> Result<Vec<Interval>, Refusal> {
-        type Positions<const C: usize> = <Erased<C> as Variational>::Configuration<Interval>;
+        type Positions = <System as Variational>::Configuration<Interval>;
         let n = self.origin.q.len();
         let tables = &system.form().tables;
         if !tables.modes.is_empty() {
@@ -206,7 +197,7 @@ impl Subject<'_> {
         let dimensions = &tables.dimensions;
         let is_free = request.form == Form::Global && dimensions.constraints == 0;
         let boxed = |values: &[f64], ranges: &[(usize, Interval)]| {
-            let mut row = Positions::<C>::zeros(n);
+            let mut row = Positions::zeros(n);
             for (entry, value) in row.as_mut_slice().iter_mut().zip(values) {
                 *entry = Interval::of(*value);
             }
@@ -248,13 +239,13 @@ fn replace(entries: &mut [Interval], ranges: &[(usize, Interval)]) {
 }
 
 /// A system with ranges for its parameters.
-struct Shown<'a, const C: usize> {
-    system: &'a Erased<C>,
-    parameters: <Erased<C> as TaylorField>::Parameters<Interval>,
+struct Shown<'a> {
+    system: &'a System,
+    parameters: <System as TaylorField>::Parameters<Interval>,
 }
 
-impl<const C: usize> Shown<'_, C> {
-    fn strike(&self, impact: &CertifiedImpact<Erased<C>>) -> Strike {
+impl Shown<'_> {
+    fn strike(&self, impact: &CertifiedImpact<System>) -> Strike {
         Strike {
             surface: impact.surface,
             time: impact.time,
@@ -265,7 +256,7 @@ impl<const C: usize> Shown<'_, C> {
 
     /// Positions and velocities of all states of a box.
     fn ranges(&self, times: Interval, component: impl Fn(usize) -> Interval) -> Ranges {
-        let mut state = <Erased<C> as TaylorField>::Row::<Interval>::zeros(self.system.state_len());
+        let mut state = <System as TaylorField>::Row::<Interval>::zeros(self.system.state_len());
         for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
             *entry = component(i);
         }
