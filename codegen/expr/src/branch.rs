@@ -12,7 +12,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::node::{Assumption, ExprId, Function, Node};
+use crate::function::Function;
+use crate::node::{Assumption, ExprId, Node};
 use crate::point::ModularPoint;
 use crate::pool::Pool;
 use crate::zero::SamplePoints;

@@ -1,6 +1,7 @@
 //! Constructors of functions: exact values, parity, and the few rewrites listed in `construct.rs`.
 
-use crate::node::{ExprId, Function, Node};
+use crate::function::{Function, Parity};
+use crate::node::{ExprId, Node};
 use crate::pool::Pool;
 use crate::rational::Rational;
 use crate::sign::Sign;
@@ -21,7 +22,7 @@ impl Pool {
             _ => {}
         }
         let opposite = coefficient.is_negative();
-        match Parity::of(function) {
+        match function.parity() {
             Parity::Odd if opposite => {
                 let positive = self.neg(argument);
                 let value = self.intern(Node::Call(function, positive));
@@ -72,7 +73,7 @@ impl Pool {
         match (function, self.as_number(argument)?.to_i64()?) {
             (Function::Exp | Function::Cosh, 0) => Some(self.one()),
             (Function::Ln, 1) => Some(self.zero()),
-            (_, 0) if Parity::of(function) == Parity::Odd => Some(self.zero()),
+            (_, 0) if function.parity() == Parity::Odd => Some(self.zero()),
             _ => None,
         }
     }
@@ -108,28 +109,6 @@ impl Pool {
         };
         let value = self.call(function, rest);
         Some(if negative { self.neg(value) } else { value })
-    }
-}
-
-/// What a function makes of the opposite argument.
-#[derive(Copy, Clone, PartialEq, Eq)]
-enum Parity {
-    /// `f(-x) = -f(x)`
-    Odd,
-    /// `f(-x) = f(x)`
-    Even,
-    /// Something else.
-    Neither,
-}
-
-impl Parity {
-    fn of(function: Function) -> Self {
-        use Function::{Abs, Acos, Asin, Atan, Cos, Cosh, Exp, Ln, Sin, Sinh, Tan, Tanh};
-        match function {
-            Sin | Tan | Asin | Atan | Sinh | Tanh => Self::Odd,
-            Cos | Cosh | Abs => Self::Even,
-            Acos | Exp | Ln => Self::Neither,
-        }
     }
 }
 

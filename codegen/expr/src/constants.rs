@@ -1,6 +1,7 @@
 //! Constants that are written in a simpler way: angles whose sines are square roots, and square roots of `a + b sqrt(r)`.
 
-use crate::node::{ExprId, Function, Node};
+use crate::function::Function;
+use crate::node::{ExprId, Node};
 use crate::pool::Pool;
 use crate::rational::Rational;
 

@@ -1,6 +1,6 @@
 //! Partial derivatives, remembered per expression and symbol.
 
-use crate::node::{ExprId, Function, Node, SymbolId};
+use crate::node::{ExprId, Node, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
 
@@ -53,7 +53,7 @@ impl Pool {
             Node::Sum { terms, .. } => self.diff_sum(&terms, symbol),
             Node::Product(factors) => self.diff_product(&factors, symbol),
             Node::Call(function, argument) => {
-                let outer = self.diff_call(function, argument, id);
+                let outer = function.derivative(self, argument, id);
                 let inner = self.derivative_of(argument, symbol);
                 self.mul(outer, inner)
             }
@@ -88,45 +88,6 @@ impl Pool {
             summands.push((exponent.clone(), self.power_product(&powers)));
         }
         self.combine(&summands)
-    }
-
-    /// `f'(argument)`; `value` is `f(argument)`.
-    fn diff_call(&mut self, function: Function, argument: ExprId, value: ExprId) -> ExprId {
-        let two = || Rational::from(2);
-        match function {
-            Function::Sin => self.call(Function::Cos, argument),
-            Function::Cos => {
-                let sine = self.call(Function::Sin, argument);
-                self.neg(sine)
-            }
-            Function::Tan => self.one_plus(Rational::ONE, value, two()),
-            Function::Tanh => self.one_plus(Rational::MINUS_ONE, value, two()),
-            Function::Asin | Function::Acos => {
-                let radicand = self.one_plus(Rational::MINUS_ONE, argument, two());
-                let slope = self.pow(radicand, -Rational::HALF);
-                if function == Function::Asin {
-                    slope
-                } else {
-                    self.neg(slope)
-                }
-            }
-            Function::Atan => {
-                let denominator = self.one_plus(Rational::ONE, argument, two());
-                self.pow(denominator, Rational::MINUS_ONE)
-            }
-            Function::Exp => value,
-            Function::Ln => self.pow(argument, Rational::MINUS_ONE),
-            Function::Sinh => self.call(Function::Cosh, argument),
-            Function::Cosh => self.call(Function::Sinh, argument),
-            Function::Abs => self.div(argument, value),
-        }
-    }
-
-    /// `1 + coefficient * base^exponent`
-    fn one_plus(&mut self, coefficient: Rational, base: ExprId, exponent: Rational) -> ExprId {
-        let power = self.pow(base, exponent);
-        let one = self.one();
-        self.combine(&[(Rational::ONE, one), (coefficient, power)])
     }
 
     /// `(x y' - y x') / (x^2 + y^2)`

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::ops::{Add, Mul};
 
 use crate::interval::Interval;
-use crate::node::{ExprId, Function, Node, SymbolId};
+use crate::node::{ExprId, Node, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
 
@@ -64,7 +64,7 @@ impl Pool {
                 }
                 Some(product)
             }
-            Node::Call(function, argument) => call_range(*function, ranges[argument.index()]?),
+            Node::Call(function, argument) => function.range(ranges[argument.index()]?),
             Node::Atan2(y, x) => {
                 let origin = [y, x].map(|part| ranges[part.index()]);
                 let [Some(y), Some(x)] = origin else {
@@ -183,27 +183,6 @@ fn nested(powers: &BTreeMap<i64, Interval>, x: Interval) -> Option<Interval> {
         power = *lower;
     }
     Some(sum)
-}
-
-fn call_range(function: Function, x: Interval) -> Option<Interval> {
-    Some(match function {
-        Function::Sin => x.sin(),
-        Function::Cos => x.cos(),
-        Function::Tan => x.sin().mul(x.cos().inverse()?),
-        Function::Exp => {
-            let range = x.increasing(libm::exp);
-            Interval::new(range.lo.max(0.0), range.hi)
-        }
-        Function::Sinh => x.increasing(libm::sinh),
-        Function::Cosh => x.cosh(),
-        Function::Tanh => x.increasing(libm::tanh).within(-1.0, 1.0),
-        Function::Atan => x.increasing(libm::atan),
-        Function::Abs => x.abs(),
-        Function::Ln if x.lo > 0.0 => x.increasing(libm::log),
-        Function::Asin if x.lo >= -1.0 && x.hi <= 1.0 => x.increasing(libm::asin),
-        Function::Acos if x.lo >= -1.0 && x.hi <= 1.0 => (-x).increasing(|x| libm::acos(-x)),
-        Function::Ln | Function::Asin | Function::Acos => return None,
-    })
 }
 
 struct Search<'s> {

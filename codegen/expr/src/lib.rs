@@ -7,6 +7,7 @@
 //! | file | job |
 //! |---|---|
 //! | `rational.rs`, `decimal.rs` | exact numbers; from text, to doubles |
+//! | `function.rs` | the functions of one argument, and what is known of each |
 //! | `node.rs`, `pool.rs`, `intern.rs` | what an expression is, and where it is kept |
 //! | `construct.rs`, `sum.rs`, `product.rs`, `call.rs`, `constants.rs` | the constructors and every rewrite they make |
 //! | `sign.rs` | what is known of signs and finiteness |
@@ -52,6 +53,7 @@ mod expand;
 mod field;
 #[cfg(test)]
 mod fixture;
+mod function;
 mod intern;
 mod interval;
 mod modular;
@@ -75,9 +77,10 @@ pub use ball::Ball;
 pub use branch::{Branches, Covered};
 pub use enclose::{Domain, Zeros};
 pub use field::Modulus;
+pub use function::{Course, Function};
 pub use intern::{WordHash, WordHasher};
 pub use interval::Interval;
-pub use node::{Assumption, ExprId, Function, Node, SymbolId};
+pub use node::{Assumption, ExprId, Node, SymbolId};
 pub use point::{ModularFailure, ModularPoint};
 pub use pool::Pool;
 pub use profile::Profile;

@@ -10,7 +10,8 @@
 //!   `x`, `-x` that is a square;
 //! - ln, asin, acos, atan, atan2: one atom for each value of the argument.
 
-use crate::node::{ExprId, Function, Node};
+use crate::function::Function;
+use crate::node::{ExprId, Node};
 use crate::point::{
     Atom, ModularFailure, ModularPoint, add_angles, multiple_angle, twelfths_of_pi,
 };

@@ -1,5 +1,6 @@
 //! What an expression is: the node types, and the names of nodes and symbols.
 
+use crate::function::Function;
 use crate::rational::Rational;
 
 /// Names a symbol of a [`Pool`](crate::Pool).
@@ -40,65 +41,6 @@ pub enum Assumption {
     NonNegative,
     /// Not equal to 0.
     NonZero,
-}
-
-/// The functions from one table: what they are, and the name as written in expressions.
-macro_rules! functions {
-    ($(#[doc = $meaning:literal] $variant:ident $name:literal)*) => {
-        /// The functions of one argument. The square root is the power 1/2.
-        #[derive(Copy, Clone, Eq, PartialEq, Ord, PartialOrd, Hash, Debug)]
-        pub enum Function {
-            $(#[doc = $meaning] $variant,)*
-        }
-
-        impl Function {
-            /// All functions, in the order of the enumeration.
-            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$variant),*];
-
-            /// The name as written in expressions: `sin`, `ln`, ...
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $name,)*
-                }
-            }
-        }
-    };
-}
-
-functions! {
-    /// Sine.
-    Sin "sin"
-    /// Cosine.
-    Cos "cos"
-    /// Tangent.
-    Tan "tan"
-    /// Inverse sine, in `[-pi/2, pi/2]`.
-    Asin "asin"
-    /// Inverse cosine, in `[0, pi]`.
-    Acos "acos"
-    /// Inverse tangent, in `(-pi/2, pi/2)`.
-    Atan "atan"
-    /// Exponential.
-    Exp "exp"
-    /// Natural logarithm.
-    Ln "ln"
-    /// Hyperbolic sine.
-    Sinh "sinh"
-    /// Hyperbolic cosine.
-    Cosh "cosh"
-    /// Hyperbolic tangent.
-    Tanh "tanh"
-    /// Absolute value.
-    Abs "abs"
-}
-
-impl Function {
-    /// The function of that name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|function| function.name() == name)
-    }
 }
 
 /// An expression whose operands are expressions of the same pool.

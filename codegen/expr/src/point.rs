@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use crate::field::{Modulus, draw};
+use crate::function::Function;
 use crate::intern::WordHash;
-use crate::node::{Assumption, Function, SymbolId};
+use crate::node::{Assumption, SymbolId};
 use crate::rational::Rational;
 
 /// Why expressions have no value at a point; another point may do.

@@ -1,6 +1,7 @@
 //! What a set of expressions is made of, as far as it decides how much a modular evaluation proves.
 
-use crate::node::{ExprId, Function, Node};
+use crate::function::{Function, Residue};
+use crate::node::{ExprId, Node};
 use crate::pool::Pool;
 use crate::rational::Rational;
 use crate::squares::Squares;
@@ -22,36 +23,6 @@ impl Profile {
     /// Whether a value other than 0 modulo a prime proves that an expression is not 0.
     pub fn is_exact(&self) -> bool {
         !self.branches && !self.hidden_relations
-    }
-}
-
-/// What a function is modulo a prime, see `modular.rs`.
-#[derive(Copy, Clone, PartialEq, Eq)]
-enum Residue {
-    /// A rational function of the half-angle tangents of base angles.
-    Circular,
-    /// A rational function of exponentials of base exponents.
-    Exponential,
-    /// One atom for each value of the argument.
-    Atom,
-    /// The argument or its opposite.
-    Branch,
-}
-
-impl Residue {
-    fn of(function: Function) -> Self {
-        use Function::{Abs, Acos, Asin, Atan, Cos, Cosh, Exp, Ln, Sin, Sinh, Tan, Tanh};
-        match function {
-            Sin | Cos | Tan => Self::Circular,
-            Exp | Sinh | Cosh | Tanh => Self::Exponential,
-            Asin | Acos | Atan | Ln => Self::Atom,
-            Abs => Self::Branch,
-        }
-    }
-
-    /// Whether it is taken apart into multiples of base angles or exponents.
-    fn has_base(self) -> bool {
-        matches!(self, Self::Circular | Self::Exponential)
     }
 }
 
@@ -88,7 +59,7 @@ impl Pool {
     }
 
     fn add_call(&self, profile: &mut Profile, function: Function, argument: ExprId) {
-        let residue = Residue::of(function);
+        let residue = function.residue();
         match residue {
             Residue::Branch => profile.branches = true,
             Residue::Atom => profile.hidden_relations = true,
@@ -158,7 +129,7 @@ impl Pool {
 
     /// Base angles and exponentials have degrees (2, 2) and 2; multiples multiply them.
     fn degree_of_call(&self, function: Function, argument: ExprId, denominator: f64) -> (f64, f64) {
-        if !Residue::of(function).has_base() {
+        if !function.residue().has_base() {
             return (1.0, 0.0);
         }
         let (constant, terms) = self.linear_form(argument);

@@ -3,7 +3,8 @@
 //! A sign holds wherever the expression is defined: `1/x` is [`Sign::NonZero`], because it is undefined where `x`
 //! is 0. Finiteness is total: it holds for all values of the symbols that satisfy their assumptions.
 
-use crate::node::{Assumption, ExprId, Function, Node};
+use crate::function::{Arguments, Function};
+use crate::node::{Assumption, ExprId, Node};
 use crate::pool::Pool;
 use crate::rational::Rational;
 
@@ -51,7 +52,7 @@ impl Sign {
         matches!(self, Self::Negative | Self::NonPositive | Self::Zero)
     }
 
-    fn known(nonzero: bool, nonnegative: bool, nonpositive: bool) -> Self {
+    pub(crate) fn known(nonzero: bool, nonnegative: bool, nonpositive: bool) -> Self {
         match (nonzero, nonnegative, nonpositive) {
             (_, true, true) => Self::Zero,
             (true, true, false) => Self::Positive,
@@ -120,7 +121,7 @@ impl Pool {
                 .fold(Sign::Positive, |sign, (base, exponent)| {
                     sign.times(self.sign(*base).to_power(exponent))
                 }),
-            Node::Call(function, argument) => call_sign(*function, self.sign(*argument)),
+            Node::Call(function, argument) => function.sign(self.sign(*argument)),
             Node::Atan2(..) => Sign::Unknown,
         }
     }
@@ -160,15 +161,14 @@ impl Pool {
 
     /// Whether a function has a value at an argument that has one; `None` if that is not known.
     fn has_value(&self, function: Function, argument: ExprId) -> Option<bool> {
-        use Function::{Abs, Acos, Asin, Atan, Cos, Cosh, Exp, Ln, Sin, Sinh, Tan, Tanh};
-        match function {
-            Sin | Cos | Atan | Exp | Sinh | Cosh | Tanh | Abs => Some(true),
-            Tan => None,
-            Ln => match self.sign(argument) {
+        match function.arguments() {
+            Arguments::All => Some(true),
+            Arguments::OffPoles => None,
+            Arguments::Positive => match self.sign(argument) {
                 Sign::Positive => Some(true),
                 sign => sign.is_nonpositive().then_some(false),
             },
-            Asin | Acos => Some(self.as_number(argument)?.abs() <= Rational::ONE),
+            Arguments::Unit => Some(self.as_number(argument)?.abs() <= Rational::ONE),
         }
     }
 
@@ -189,17 +189,6 @@ impl Pool {
                 }
                 _ => false,
             })
-    }
-}
-
-fn call_sign(function: Function, argument: Sign) -> Sign {
-    match function {
-        Function::Exp | Function::Cosh => Sign::Positive,
-        Function::Abs => Sign::known(argument.is_nonzero(), true, argument == Sign::Zero),
-        // Increasing and 0 at 0.
-        Function::Sinh | Function::Tanh | Function::Atan | Function::Asin => argument,
-        Function::Acos => Sign::NonNegative,
-        Function::Sin | Function::Cos | Function::Tan | Function::Ln => Sign::Unknown,
     }
 }
 

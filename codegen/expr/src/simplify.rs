@@ -3,7 +3,8 @@
 //! The rules keep the domain: an angle that vanishes must be known finite. Work is bounded: larger expressions are
 //! returned unchanged.
 
-use crate::node::{ExprId, Function, Node};
+use crate::function::Function;
+use crate::node::{ExprId, Node};
 use crate::pool::Pool;
 use crate::rational::Rational;
 use crate::subst::Rebuilt;

@@ -5,7 +5,8 @@
 //! argument with the fewest, until it and all others that are known by then are squares, and so on with the rest.
 
 use crate::field::mix;
-use crate::node::{ExprId, Function, Node, SymbolId};
+use crate::function::Function;
+use crate::node::{ExprId, Node, SymbolId};
 use crate::point::ModularPoint;
 use crate::pool::Pool;
 

@@ -50,16 +50,7 @@ pub(super) fn possible_jump(
 fn chooses_branch(pool: &Pool, id: ExprId) -> bool {
     match pool.node(id) {
         Node::Product(factors) => factors.iter().any(|(_, exponent)| !exponent.is_integer()),
-        Node::Call(function, _) => match function {
-            Function::Asin | Function::Acos | Function::Atan | Function::Ln | Function::Abs => true,
-            Function::Sin
-            | Function::Cos
-            | Function::Tan
-            | Function::Exp
-            | Function::Sinh
-            | Function::Cosh
-            | Function::Tanh => false,
-        },
+        Node::Call(function, _) => function.chooses_branch(),
         Node::Atan2(..) => true,
         Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => false,
     }

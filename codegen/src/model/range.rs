@@ -2,7 +2,7 @@
 //!
 //! `[low, high]` contains every value; where a parameter occurs twice it may contain more.
 
-use dalembert_expr::{ExprId, Function, Node, Pool, Rational, SymbolId};
+use dalembert_expr::{Course, ExprId, Function, Node, Pool, Rational, SymbolId};
 
 use super::{Assumption, Parameter};
 
@@ -131,15 +131,11 @@ impl Range {
             low: -1.0,
             high: 1.0,
         };
-        match function {
-            Function::Sin | Function::Cos => unit,
-            Function::Exp => self.map(f64::exp),
-            Function::Tanh => self.map(f64::tanh),
-            Function::Atan => self.map(f64::atan),
-            Function::Sinh => self.map(f64::sinh),
-            Function::Cosh => self.magnitude().map(f64::cosh),
-            Function::Abs => self.magnitude(),
-            Function::Tan | Function::Asin | Function::Acos | Function::Ln => Self::ALL,
+        match function.course() {
+            Course::Wave => unit,
+            Course::Increasing => self.map(|x| function.value(x)),
+            Course::Valley => self.magnitude().map(|x| function.value(x)),
+            Course::Partial => Self::ALL,
         }
     }
 }

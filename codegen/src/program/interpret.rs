@@ -89,18 +89,12 @@ fn holds(guard: &Guard, values: &[f64]) -> bool {
 
 /// The value of a function of the language, over any kind of number.
 pub fn elementary<L: Numbers>(function: Elementary, x: L) -> L {
-    match function {
-        Elementary::Sin => x.sin(),
-        Elementary::Cos => x.cos(),
-        Elementary::Tan => x.tan(),
-        Elementary::Asin => x.asin(),
-        Elementary::Acos => x.acos(),
-        Elementary::Atan => x.atan(),
-        Elementary::Exp => x.exp(),
-        Elementary::Ln => x.ln(),
-        Elementary::Sinh => x.sinh(),
-        Elementary::Cosh => x.cosh(),
-        Elementary::Tanh => x.tanh(),
-        Elementary::Abs => x.abs(),
+    macro_rules! by_name {
+        ($($meaning:literal $variant:ident $name:ident)*) => {
+            match function {
+                $(Elementary::$variant => x.$name(),)*
+            }
+        };
     }
+    dalembert_expr::with_functions!(by_name)
 }

@@ -22,44 +22,47 @@ pub(super) enum OfSeries {
     Middle,
 }
 
-macro_rules! functions {
-    ($($name:ident($($argument:ident),+);)*) => {
+macro_rules! functions_of_one_number {
+    ($($meaning:literal $variant:ident $name:ident)*) => {
         $(
             convention! {
-                fn $name($($argument: f64),+) -> f64 {
-                    math::$name($($argument),+)
+                fn $name(x: f64) -> f64 {
+                    math::$name(x)
                 }
             }
         )*
+
+        /// Where a function of one number lies.
+        fn address_of(function: Elementary) -> usize {
+            let function: convention!(fn(f64) -> f64) = match function {
+                $(Elementary::$variant => $name,)*
+            };
+            function as usize
+        }
     };
 }
-functions! {
-    sin(x); cos(x); tan(x); asin(x); acos(x); atan(x); exp(x); ln(x); sinh(x); cosh(x); tanh(x);
-    atan2(y, x); powf(x, e);
+dalembert_expr::with_functions!(functions_of_one_number);
+
+convention! {
+    fn atan2(y: f64, x: f64) -> f64 {
+        math::atan2(y, x)
+    }
+}
+
+convention! {
+    fn powf(x: f64, e: f64) -> f64 {
+        math::powf(x, e)
+    }
 }
 
 impl OfNumbers {
     /// Where the function lies.
     pub(super) fn address(self) -> usize {
-        let of_one: convention!(fn(f64) -> f64) = match self {
-            Self::Atan2 => return atan2 as *const () as usize,
-            Self::Power => return powf as *const () as usize,
-            Self::Elementary(function) => match function {
-                Elementary::Sin => sin,
-                Elementary::Cos => cos,
-                Elementary::Tan => tan,
-                Elementary::Asin => asin,
-                Elementary::Acos => acos,
-                Elementary::Atan => atan,
-                Elementary::Exp => exp,
-                Elementary::Ln => ln,
-                Elementary::Sinh => sinh,
-                Elementary::Cosh => cosh,
-                Elementary::Tanh => tanh,
-                Elementary::Abs => abs,
-            },
-        };
-        of_one as usize
+        match self {
+            Self::Elementary(function) => address_of(function),
+            Self::Atan2 => atan2 as *const () as usize,
+            Self::Power => powf as *const () as usize,
+        }
     }
 }
 
@@ -76,12 +79,6 @@ impl OfSeries {
 /// Where [`sine_and_cosine`] lies.
 pub(super) fn address_of_sine_and_cosine() -> usize {
     sine_and_cosine as *const () as usize
-}
-
-convention! {
-    fn abs(x: f64) -> f64 {
-        x.abs()
-    }
 }
 
 convention! {

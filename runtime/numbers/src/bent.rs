@@ -52,13 +52,13 @@ impl Bent {
 
     /// The value of a function, with its first two derivatives.
     #[inline(always)]
-    fn chain(self, value: Interval, first: Interval, second: Interval) -> Self {
+    fn chain(self, value: Interval, first: Interval, second: impl FnOnce() -> Interval) -> Self {
         match self.is_steady() {
             true => Self::steady(value),
             false => Self {
                 value,
                 rate: first * self.rate,
-                bend: second * self.rate.square() + first * self.bend,
+                bend: second() * self.rate.square() + first * self.bend,
             },
         }
     }
@@ -138,7 +138,7 @@ impl Div for Bent {
         let inverse = other.value.inverse();
         let square = inverse.square();
         let second = square * inverse;
-        self * other.chain(inverse, -square, second + second)
+        self * other.chain(inverse, -square, || second + second)
     }
 }
 
@@ -177,7 +177,7 @@ impl Numbers for Bent {
 
     fn square(self) -> Self {
         let two = Interval::point(2.0);
-        self.chain(self.value.square(), self.value + self.value, two)
+        self.chain(self.value.square(), self.value + self.value, || two)
     }
 
     fn sqrt(self) -> Self {
@@ -185,7 +185,7 @@ impl Numbers for Bent {
         let first = (root + root).inverse();
         let cubed = self.value * root;
         let four = Interval::point(4.0);
-        self.chain(root, first, -(four * cubed).inverse())
+        self.chain(root, first, || -(four * cubed).inverse())
     }
 
     fn abs(self) -> Self {
@@ -246,7 +246,7 @@ impl Numbers for Bent {
         let below = Interval::point(exponent) - Interval::point(1.0);
         let first = factor * self.value.powf_below(exponent);
         let second = first * below * self.value.inverse();
-        self.chain(self.value.powf(exponent), first, second)
+        self.chain(self.value.powf(exponent), first, || second)
     }
 
     fn power(self, exponent: Self) -> Self {
@@ -256,79 +256,12 @@ impl Numbers for Bent {
     fn sin_cos(self) -> (Self, Self) {
         let (sine, cosine) = self.value.sin_cos();
         (
-            self.chain(sine, cosine, -sine),
-            self.chain(cosine, -sine, -cosine),
+            self.chain(sine, cosine, || -sine),
+            self.chain(cosine, -sine, || -cosine),
         )
     }
 
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    fn cos(self) -> Self {
-        self.sin_cos().1
-    }
-
-    fn tan(self) -> Self {
-        let tangent = self.value.tan();
-        let first = Interval::point(1.0) + tangent.square();
-        let second = tangent * first;
-        self.chain(tangent, first, second + second)
-    }
-
-    fn asin(self) -> Self {
-        let one = Interval::point(1.0);
-        let squared = (one - self.value) * (one + self.value);
-        let first = squared.sqrt().inverse();
-        self.chain(
-            self.value.asin(),
-            first,
-            self.value * first * squared.inverse(),
-        )
-    }
-
-    fn acos(self) -> Self {
-        let arc = self.asin();
-        Self {
-            value: self.value.acos(),
-            rate: -arc.rate,
-            bend: -arc.bend,
-        }
-    }
-
-    fn atan(self) -> Self {
-        let first = (Interval::point(1.0) + self.value.square()).inverse();
-        let second = self.value * first.square();
-        self.chain(self.value.atan(), first, -(second + second))
-    }
-
-    fn exp(self) -> Self {
-        let power = self.value.exp();
-        self.chain(power, power, power)
-    }
-
-    fn ln(self) -> Self {
-        let inverse = self.value.inverse();
-        self.chain(self.value.ln(), inverse, -inverse.square())
-    }
-
-    fn sinh(self) -> Self {
-        let (sine, cosine) = (self.value.sinh(), self.value.cosh());
-        self.chain(sine, cosine, sine)
-    }
-
-    fn cosh(self) -> Self {
-        let (sine, cosine) = (self.value.sinh(), self.value.cosh());
-        self.chain(cosine, sine, cosine)
-    }
-
-    fn tanh(self) -> Self {
-        let tangent = self.value.tanh();
-        let one = Interval::point(1.0);
-        let first = ((one - tangent) * (one + tangent)).within(0.0, 1.0);
-        let second = tangent * first;
-        self.chain(tangent, first, -(second + second))
-    }
+    crate::functions_of_one_number!(crate::functions_by_derivatives);
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! | `math.rs` | elementary functions of doubles, from the configured source |
 //! | `lanes.rs` | vectors of eight doubles, with the feature `lanes` |
 //! | `interval.rs` | intervals that contain every value, rounded outwards |
+//! | `smooth.rs` | functions with their derivatives, for numbers that carry derivatives |
 //! | `rated.rs` | intervals of values and of rates along a stretch of motion |
 //! | `bent.rs` | intervals of values, rates and bends along lines through a box |
 //! | `taylor_model.rs` | cubics along a stretch of motion, and how far from them values and rates may be |
@@ -30,6 +31,7 @@ pub mod law;
 pub mod math;
 pub mod numbers;
 pub mod rated;
+pub mod smooth;
 pub mod tables;
 pub mod taylor_model;
 

@@ -170,6 +170,16 @@ pub trait Numbers:
     fn tanh(self) -> Self;
 }
 
+/// Hands the functions of one number to a macro, by the names that they have in [`Numbers`]. Kinds of numbers that make all of them by one
+/// rule take them from here.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! functions_of_one_number {
+    ($($then:tt)+) => {
+        $($then)+! { sin cos tan asin acos atan exp ln sinh cosh tanh }
+    };
+}
+
 /// The functions of [`Numbers`] that take every lane by itself, for numbers whose lanes are doubles.
 // NOTE: no defaults of the trait: a kind of number that forgot one would compute it in the doubles of its lanes, in silence.
 macro_rules! functions_of_lanes {
@@ -197,16 +207,14 @@ macro_rules! functions_of_lanes {
             <Self as $crate::Numbers>::powf(self, exponent.lane(0))
         }
 
-        $crate::numbers::functions_of_lanes! {
-            sin, cos, tan, asin, acos, atan, exp, ln, sinh, cosh, tanh
-        }
+        $crate::functions_of_one_number!($crate::numbers::functions_of_lanes);
     };
-    ($($name:ident),*) => {$(
+    ($($name:ident)+) => {$(
         #[inline(always)]
         fn $name(self) -> Self {
             Self::gathered(|lane| $crate::math::$name(self.lane(lane)))
         }
-    )*};
+    )+};
 }
 pub(crate) use functions_of_lanes;
 

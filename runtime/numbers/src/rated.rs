@@ -219,70 +219,7 @@ impl Numbers for Rated {
         (self.chain(sine, cosine), self.chain(cosine, -sine))
     }
 
-    #[inline]
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    #[inline]
-    fn cos(self) -> Self {
-        self.sin_cos().1
-    }
-
-    #[inline]
-    fn tan(self) -> Self {
-        let tangent = self.value.tan();
-        self.chain(tangent, Interval::point(1.0) + tangent.square())
-    }
-
-    #[inline]
-    fn asin(self) -> Self {
-        let one = Interval::point(1.0);
-        let cosine = ((one - self.value) * (one + self.value)).sqrt();
-        self.chain(self.value.asin(), cosine.inverse())
-    }
-
-    #[inline]
-    fn acos(self) -> Self {
-        let one = Interval::point(1.0);
-        let sine = ((one - self.value) * (one + self.value)).sqrt();
-        self.chain(self.value.acos(), -sine.inverse())
-    }
-
-    #[inline]
-    fn atan(self) -> Self {
-        let slope = (Interval::point(1.0) + self.value.square()).inverse();
-        self.chain(self.value.atan(), slope)
-    }
-
-    #[inline]
-    fn exp(self) -> Self {
-        let power = self.value.exp();
-        self.chain(power, power)
-    }
-
-    #[inline]
-    fn ln(self) -> Self {
-        self.chain(self.value.ln(), self.value.inverse())
-    }
-
-    #[inline]
-    fn sinh(self) -> Self {
-        self.chain(self.value.sinh(), self.value.cosh())
-    }
-
-    #[inline]
-    fn cosh(self) -> Self {
-        self.chain(self.value.cosh(), self.value.sinh())
-    }
-
-    #[inline]
-    fn tanh(self) -> Self {
-        let tangent = self.value.tanh();
-        let one = Interval::point(1.0);
-        let slope = ((one - tangent) * (one + tangent)).within(0.0, 1.0);
-        self.chain(tangent, slope)
-    }
+    crate::functions_of_one_number!(crate::functions_by_first_derivatives);
 }
 
 #[cfg(test)]

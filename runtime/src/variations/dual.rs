@@ -228,66 +228,7 @@ impl Numbers for Dual {
         (self.chain(sine, cosine), self.chain(cosine, -sine))
     }
 
-    #[inline(always)]
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    #[inline(always)]
-    fn cos(self) -> Self {
-        self.sin_cos().1
-    }
-
-    #[inline(always)]
-    fn tan(self) -> Self {
-        let tangent = math::tan(self.value);
-        self.chain(tangent, 1.0 + tangent * tangent)
-    }
-
-    #[inline(always)]
-    fn asin(self) -> Self {
-        let cosine = math::sqrt((1.0 - self.value) * (1.0 + self.value));
-        self.chain(math::asin(self.value), 1.0 / cosine)
-    }
-
-    #[inline(always)]
-    fn acos(self) -> Self {
-        let sine = math::sqrt((1.0 - self.value) * (1.0 + self.value));
-        self.chain(math::acos(self.value), -1.0 / sine)
-    }
-
-    #[inline(always)]
-    fn atan(self) -> Self {
-        let slope = 1.0 / (1.0 + self.value * self.value);
-        self.chain(math::atan(self.value), slope)
-    }
-
-    #[inline(always)]
-    fn exp(self) -> Self {
-        let power = math::exp(self.value);
-        self.chain(power, power)
-    }
-
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.chain(math::ln(self.value), 1.0 / self.value)
-    }
-
-    #[inline(always)]
-    fn sinh(self) -> Self {
-        self.chain(math::sinh(self.value), math::cosh(self.value))
-    }
-
-    #[inline(always)]
-    fn cosh(self) -> Self {
-        self.chain(math::cosh(self.value), math::sinh(self.value))
-    }
-
-    #[inline(always)]
-    fn tanh(self) -> Self {
-        let tangent = math::tanh(self.value);
-        self.chain(tangent, (1.0 - tangent) * (1.0 + tangent))
-    }
+    dalembert_numbers::functions_of_one_number!(dalembert_numbers::functions_by_first_derivatives);
 }
 
 #[cfg(test)]

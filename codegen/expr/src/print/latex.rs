@@ -1,7 +1,7 @@
 //! Layouts in LaTeX.
 
 use super::layout::Layout;
-use crate::node::Function;
+use crate::function::{Function, Notation};
 use crate::pool::Pool;
 use crate::rational::Rational;
 
@@ -101,23 +101,13 @@ fn render_power(pool: &Pool, base: &Layout, exponent: &Rational) -> String {
 
 /// Whether the exponent is written after the function's name, `\cos^{2}(x)`.
 fn takes_power(function: Function) -> bool {
-    !matches!(function, Function::Abs | Function::Exp)
+    matches!(function.notation(), Notation::Command(_))
 }
 
 fn render_call(function: Function, exponent: &str, argument: &str) -> String {
-    let name = match function {
-        Function::Sin => r"\sin",
-        Function::Cos => r"\cos",
-        Function::Tan => r"\tan",
-        Function::Asin => r"\arcsin",
-        Function::Acos => r"\arccos",
-        Function::Atan => r"\arctan",
-        Function::Ln => r"\ln",
-        Function::Sinh => r"\sinh",
-        Function::Cosh => r"\cosh",
-        Function::Tanh => r"\tanh",
-        Function::Exp => return format!("e^{{{argument}}}"),
-        Function::Abs => return format!(r"\left|{argument}\right|"),
-    };
-    format!("{name}{exponent}{}", parenthesised(argument))
+    match function.notation() {
+        Notation::Command(name) => format!("{name}{exponent}{}", parenthesised(argument)),
+        Notation::PowerOfE => format!("e^{{{argument}}}"),
+        Notation::Bars => format!(r"\left|{argument}\right|"),
+    }
 }

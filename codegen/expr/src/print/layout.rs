@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-use crate::node::{ExprId, Function, Node, SymbolId};
+use crate::function::Function;
+use crate::node::{ExprId, Node, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
 use crate::sign::is_even;

@@ -6,7 +6,8 @@ use super::arithmetic::Arithmetic;
 use super::enclosed::{RangePoint, decimal};
 use super::expand::{ExpansionPoint, RealPoint};
 use crate::ball::Ball;
-use crate::node::{ExprId, Function, Node, SymbolId};
+use crate::function::Function;
+use crate::node::{ExprId, Node, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
 

@@ -5,8 +5,9 @@ use std::cmp::Ordering;
 use super::arithmetic::Arithmetic;
 use super::expand::{ExpansionPoint, RealPoint};
 use crate::enclose::Domain;
+use crate::function::Function;
 use crate::interval::Interval;
-use crate::node::{ExprId, Function, SymbolId};
+use crate::node::{ExprId, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
 

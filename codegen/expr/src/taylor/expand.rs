@@ -3,7 +3,8 @@
 use super::arithmetic::{Arithmetic, Reals};
 use super::jet::{self, Jets, Pair};
 use crate::field::Modulus;
-use crate::node::{ExprId, Function, Node, SymbolId};
+use crate::function::Function;
+use crate::node::{ExprId, Node, SymbolId};
 use crate::point::ModularPoint;
 use crate::pool::Pool;
 use crate::rational::Rational;

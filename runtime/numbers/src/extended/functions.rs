@@ -175,6 +175,14 @@ pub(super) fn sin_cos(x: Wide) -> (Wide, Wide) {
     }
 }
 
+pub(super) fn sin(x: Wide) -> Wide {
+    sin_cos(x).0
+}
+
+pub(super) fn cos(x: Wide) -> Wide {
+    sin_cos(x).1
+}
+
 pub(super) fn tan(x: Wide) -> Wide {
     let (sine, cosine) = sin_cos(x);
     sine / cosine
@@ -205,6 +213,10 @@ pub(super) fn atan2(y: Wide, x: Wide) -> Wide {
         angle = angle + (sine * c - cosine * s);
     }
     angle
+}
+
+pub(super) fn atan(x: Wide) -> Wide {
+    atan2(x, ONE)
 }
 
 pub(super) fn asin(x: Wide) -> Wide {

@@ -247,6 +247,15 @@ impl<const PARTS: usize> Neg for Extended<PARTS> {
     }
 }
 
+/// The functions of one number, each taken in more parts.
+macro_rules! functions_in_more_parts {
+    ($($name:ident)+) => {$(
+        fn $name(self) -> Self {
+            self.by(functions::$name)
+        }
+    )+};
+}
+
 impl<const PARTS: usize> Numbers for Extended<PARTS> {
     const LANES: usize = 1;
     const ZERO: Self = {
@@ -326,47 +335,5 @@ impl<const PARTS: usize> Numbers for Extended<PARTS> {
         (sine.converted(), cosine.converted())
     }
 
-    fn sin(self) -> Self {
-        Numbers::sin_cos(self).0
-    }
-
-    fn cos(self) -> Self {
-        Numbers::sin_cos(self).1
-    }
-
-    fn tan(self) -> Self {
-        self.by(functions::tan)
-    }
-
-    fn asin(self) -> Self {
-        self.by(functions::asin)
-    }
-
-    fn acos(self) -> Self {
-        self.by(functions::acos)
-    }
-
-    fn atan(self) -> Self {
-        self.by(|x| functions::atan2(x, Wide::plain(1.0)))
-    }
-
-    fn exp(self) -> Self {
-        self.by(functions::exp)
-    }
-
-    fn ln(self) -> Self {
-        self.by(functions::ln)
-    }
-
-    fn sinh(self) -> Self {
-        self.by(functions::sinh)
-    }
-
-    fn cosh(self) -> Self {
-        self.by(functions::cosh)
-    }
-
-    fn tanh(self) -> Self {
-        self.by(functions::tanh)
-    }
+    crate::functions_of_one_number!(functions_in_more_parts);
 }

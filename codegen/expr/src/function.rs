@@ -1,0 +1,373 @@
+//! The functions of one argument: their table, and what is known of each of them.
+//!
+//! A function is named in the table and described by the matches below; the compiler asks for each of them. What takes its values in other
+//! numbers asks in turn: residues (`modular.rs`), balls (`taylor/balls.rs`), Taylor series (`taylor/expand.rs`).
+
+use std::ops::Mul;
+
+use crate::interval::Interval;
+use crate::node::ExprId;
+use crate::pool::Pool;
+use crate::rational::Rational;
+use crate::sign::Sign;
+
+/// Hands the table of functions to a macro: the meaning, the variant of [`Function`], and the name, which is that of `f64` and of all other
+/// numbers too.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! with_functions {
+    ($($then:tt)+) => {
+        $($then)+! {
+            "Sine." Sin sin
+            "Cosine." Cos cos
+            "Tangent." Tan tan
+            "Inverse sine, in `[-pi/2, pi/2]`." Asin asin
+            "Inverse cosine, in `[0, pi]`." Acos acos
+            "Inverse tangent, in `(-pi/2, pi/2)`." Atan atan
+            "Exponential." Exp exp
+            "Natural logarithm." Ln ln
+            "Hyperbolic sine." Sinh sinh
+            "Hyperbolic cosine." Cosh cosh
+            "Hyperbolic tangent." Tanh tanh
+            "Absolute value." Abs abs
+        }
+    };
+}
+
+macro_rules! functions {
+    ($($meaning:literal $variant:ident $name:ident)*) => {
+        /// The functions of one argument. The square root is the power 1/2.
+        #[derive(Copy, Clone, Eq, PartialEq, Ord, PartialOrd, Hash, Debug)]
+        pub enum Function {
+            $(#[doc = $meaning] $variant,)*
+        }
+
+        impl Function {
+            /// All functions, in the order of the enumeration.
+            pub const ALL: [Self; [$($meaning),*].len()] = [$(Self::$variant),*];
+
+            /// The name as written in expressions: `sin`, `ln`, ...
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => stringify!($name),)*
+                }
+            }
+
+            /// The value in double precision; NaN outside of the domain.
+            pub fn value(self, x: f64) -> f64 {
+                match self {
+                    $(Self::$variant => x.$name(),)*
+                }
+            }
+        }
+    };
+}
+with_functions!(functions);
+
+/// How a function is written in LaTeX.
+pub(crate) enum Notation {
+    /// By a command, before its argument.
+    Command(&'static str),
+    /// `e^x`
+    PowerOfE,
+    /// `|x|`
+    Bars,
+}
+
+/// What a function makes of the opposite argument.
+#[derive(Copy, Clone, PartialEq, Eq)]
+pub(crate) enum Parity {
+    /// `f(-x) = -f(x)`
+    Odd,
+    /// `f(-x) = f(x)`
+    Even,
+    /// Something else.
+    Neither,
+}
+
+/// Arguments for which a function has a value.
+#[derive(Copy, Clone, PartialEq, Eq)]
+pub(crate) enum Arguments {
+    /// All numbers.
+    All,
+    /// All but the poles.
+    OffPoles,
+    /// `x > 0`
+    Positive,
+    /// `-1 <= x <= 1`
+    Unit,
+}
+
+/// The course of a function over all numbers.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Course {
+    /// Between -1 and 1.
+    Wave,
+    /// Increasing.
+    Increasing,
+    /// The same for opposite arguments, and increasing with their size.
+    Valley,
+    /// Without a value for some arguments.
+    Partial,
+}
+
+/// What a function is modulo a prime, see `modular.rs`.
+#[derive(Copy, Clone, PartialEq, Eq)]
+pub(crate) enum Residue {
+    /// A rational function of the half-angle tangents of base angles.
+    Circular,
+    /// A rational function of exponentials of base exponents.
+    Exponential,
+    /// One atom for each value of the argument.
+    Atom,
+    /// The argument or its opposite.
+    Branch,
+}
+
+impl Residue {
+    /// Whether it is taken apart into multiples of base angles or exponents.
+    pub(crate) fn has_base(self) -> bool {
+        matches!(self, Self::Circular | Self::Exponential)
+    }
+}
+
+impl Function {
+    /// The function of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|function| function.name() == name)
+    }
+
+    /// The notation in LaTeX.
+    pub(crate) fn notation(self) -> Notation {
+        Notation::Command(match self {
+            Self::Sin => r"\sin",
+            Self::Cos => r"\cos",
+            Self::Tan => r"\tan",
+            Self::Asin => r"\arcsin",
+            Self::Acos => r"\arccos",
+            Self::Atan => r"\arctan",
+            Self::Ln => r"\ln",
+            Self::Sinh => r"\sinh",
+            Self::Cosh => r"\cosh",
+            Self::Tanh => r"\tanh",
+            Self::Exp => return Notation::PowerOfE,
+            Self::Abs => return Notation::Bars,
+        })
+    }
+
+    pub(crate) fn parity(self) -> Parity {
+        match self {
+            Self::Sin | Self::Tan | Self::Asin | Self::Atan | Self::Sinh | Self::Tanh => {
+                Parity::Odd
+            }
+            Self::Cos | Self::Cosh | Self::Abs => Parity::Even,
+            Self::Acos | Self::Exp | Self::Ln => Parity::Neither,
+        }
+    }
+
+    pub(crate) fn arguments(self) -> Arguments {
+        match self {
+            Self::Sin | Self::Cos | Self::Atan | Self::Abs => Arguments::All,
+            Self::Exp | Self::Sinh | Self::Cosh | Self::Tanh => Arguments::All,
+            Self::Tan => Arguments::OffPoles,
+            Self::Ln => Arguments::Positive,
+            Self::Asin | Self::Acos => Arguments::Unit,
+        }
+    }
+
+    /// The course over all numbers.
+    pub fn course(self) -> Course {
+        match self {
+            Self::Sin | Self::Cos => Course::Wave,
+            Self::Exp | Self::Sinh | Self::Tanh | Self::Atan => Course::Increasing,
+            Self::Cosh | Self::Abs => Course::Valley,
+            Self::Tan | Self::Asin | Self::Acos | Self::Ln => Course::Partial,
+        }
+    }
+
+    pub(crate) fn residue(self) -> Residue {
+        match self {
+            Self::Sin | Self::Cos | Self::Tan => Residue::Circular,
+            Self::Exp | Self::Sinh | Self::Cosh | Self::Tanh => Residue::Exponential,
+            Self::Asin | Self::Acos | Self::Atan | Self::Ln => Residue::Atom,
+            Self::Abs => Residue::Branch,
+        }
+    }
+
+    /// Whether the value is one of several that satisfy the same equation, as an angle is of its sine.
+    pub fn chooses_branch(self) -> bool {
+        !self.residue().has_base()
+    }
+
+    /// The sign of the value at an argument with this sign.
+    pub(crate) fn sign(self, argument: Sign) -> Sign {
+        match self {
+            Self::Exp | Self::Cosh => Sign::Positive,
+            Self::Abs => Sign::known(argument.is_nonzero(), true, argument == Sign::Zero),
+            // Increasing and 0 at 0.
+            Self::Sinh | Self::Tanh | Self::Atan | Self::Asin => argument,
+            Self::Acos => Sign::NonNegative,
+            Self::Sin | Self::Cos | Self::Tan | Self::Ln => Sign::Unknown,
+        }
+    }
+
+    /// All values on an interval of arguments; `None` where one may be missing.
+    pub(crate) fn range(self, x: Interval) -> Option<Interval> {
+        let has_values = match self.arguments() {
+            Arguments::All | Arguments::OffPoles => true,
+            Arguments::Positive => x.lo > 0.0,
+            Arguments::Unit => x.lo >= -1.0 && x.hi <= 1.0,
+        };
+        if !has_values {
+            return None;
+        }
+        Some(match self {
+            Self::Sin => x.sin(),
+            Self::Cos => x.cos(),
+            Self::Tan => x.sin().mul(x.cos().inverse()?),
+            Self::Exp => {
+                let range = x.increasing(libm::exp);
+                Interval::new(range.lo.max(0.0), range.hi)
+            }
+            Self::Sinh => x.increasing(libm::sinh),
+            Self::Cosh => x.cosh(),
+            Self::Tanh => x.increasing(libm::tanh).within(-1.0, 1.0),
+            Self::Atan => x.increasing(libm::atan),
+            Self::Abs => x.abs(),
+            Self::Ln => x.increasing(libm::log),
+            Self::Asin => x.increasing(libm::asin),
+            Self::Acos => (-x).increasing(|x| libm::acos(-x)),
+        })
+    }
+
+    /// The derivative, up to its sign.
+    pub(crate) fn slope(self, x: f64) -> f64 {
+        match self {
+            Self::Sin => x.cos(),
+            Self::Cos => x.sin(),
+            Self::Tan => 1.0 + x.tan() * x.tan(),
+            Self::Asin | Self::Acos => 1.0 / (1.0 - x * x).sqrt(),
+            Self::Atan => 1.0 / (1.0 + x * x),
+            Self::Exp => x.exp(),
+            Self::Ln => 1.0 / x,
+            Self::Sinh => x.cosh(),
+            Self::Cosh => x.sinh(),
+            Self::Tanh => 1.0 - x.tanh() * x.tanh(),
+            Self::Abs => 1.0,
+        }
+    }
+
+    /// `f'(argument)`; `value` is `f(argument)`.
+    pub(crate) fn derivative(self, pool: &mut Pool, argument: ExprId, value: ExprId) -> ExprId {
+        match self {
+            Self::Sin => pool.call(Self::Cos, argument),
+            Self::Cos => {
+                let sine = pool.call(Self::Sin, argument);
+                pool.neg(sine)
+            }
+            Self::Tan => one_plus_square(pool, Rational::ONE, value),
+            Self::Tanh => one_plus_square(pool, Rational::MINUS_ONE, value),
+            Self::Asin => inverse_cosine(pool, argument),
+            Self::Acos => {
+                let slope = inverse_cosine(pool, argument);
+                pool.neg(slope)
+            }
+            Self::Atan => {
+                let denominator = one_plus_square(pool, Rational::ONE, argument);
+                pool.pow(denominator, Rational::MINUS_ONE)
+            }
+            Self::Exp => value,
+            Self::Ln => pool.pow(argument, Rational::MINUS_ONE),
+            Self::Sinh => pool.call(Self::Cosh, argument),
+            Self::Cosh => pool.call(Self::Sinh, argument),
+            Self::Abs => pool.div(argument, value),
+        }
+    }
+}
+
+/// `1 + coefficient * base^2`
+fn one_plus_square(pool: &mut Pool, coefficient: Rational, base: ExprId) -> ExprId {
+    let (square, one) = (pool.pow(base, Rational::from(2)), pool.one());
+    pool.combine(&[(Rational::ONE, one), (coefficient, square)])
+}
+
+/// `1 / sqrt(1 - sine^2)`
+fn inverse_cosine(pool: &mut Pool, sine: ExprId) -> ExprId {
+    let radicand = one_plus_square(pool, Rational::MINUS_ONE, sine);
+    pool.pow(radicand, -Rational::HALF)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Arguments in the domain of every function.
+    const COMMON: [f64; 3] = [0.1, 0.4, 0.9];
+
+    #[test]
+    fn slopes_are_derivatives() {
+        for function in Function::ALL {
+            for x in COMMON {
+                let h = 1e-6;
+                let difference = (function.value(x + h) - function.value(x - h)) / (2.0 * h);
+                let slope = function.slope(x).abs();
+                let error = (slope - difference.abs()).abs();
+                assert!(
+                    error < 1e-7 * (1.0 + slope),
+                    "{} at {x}: {slope} for {difference}",
+                    function.name()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn parities_signs_and_courses_are_those_of_the_values() {
+        for function in Function::ALL {
+            let at = |x: f64| function.value(x);
+            let name = function.name();
+            for x in COMMON {
+                match function.parity() {
+                    Parity::Odd => assert_eq!(at(-x), -at(x), "{name}"),
+                    Parity::Even => assert_eq!(at(-x), at(x), "{name}"),
+                    Parity::Neither => {
+                        assert!(at(-x).is_nan() || at(-x).abs() != at(x).abs(), "{name}");
+                    }
+                }
+                let sign = function.sign(Sign::Positive);
+                assert!(sign != Sign::Positive || at(x) > 0.0, "{name}");
+                assert!(!sign.is_nonnegative() || at(x) >= 0.0, "{name}");
+            }
+            let is_increasing = |from: f64, to: f64| at(from) < at(to);
+            match function.course() {
+                Course::Wave => assert!((-20..20).all(|k| at(f64::from(k)).abs() <= 1.0)),
+                Course::Increasing => {
+                    assert!((-4..4).all(|k| is_increasing(f64::from(k), f64::from(k) + 1.0)));
+                }
+                Course::Valley => {
+                    assert!((0..4).all(|k| is_increasing(f64::from(k), f64::from(k) + 1.0)));
+                }
+                Course::Partial => assert!(function.arguments() != Arguments::All, "{name}"),
+            }
+        }
+    }
+
+    #[test]
+    fn ranges_hold_the_values() {
+        for function in Function::ALL {
+            for (lo, hi) in [(0.1, 0.4), (0.4, 0.9), (0.1, 0.1)] {
+                let range = function.range(Interval::new(lo, hi)).unwrap();
+                for k in 0..=8 {
+                    let value = function.value(lo + (hi - lo) * f64::from(k) / 8.0);
+                    let slack = 1e-15 * value.abs();
+                    let is_inside = range.lo - slack <= value && value <= range.hi + slack;
+                    assert!(is_inside, "{}: {value} {range:?}", function.name());
+                }
+            }
+            let is_partial = function.range(Interval::new(-3.0, 3.0)).is_none();
+            assert_eq!(is_partial, function.course() == Course::Partial);
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Values and derivatives of the functions of one number, each written once for all numbers that carry derivatives: [`crate::Rated`],
+//! [`crate::Bent`] and the dual numbers of variations.
+
+use crate::interval::Interval;
+use crate::numbers::Numbers;
+
+/// A number that functions are differentiated at: a double, or an interval that holds all arguments.
+pub trait Smooth: Numbers {
+    /// `1 / x`
+    #[must_use]
+    fn reciprocal(self) -> Self;
+
+    /// The part of an interval that is possible; a double as it is.
+    #[must_use]
+    fn within(self, lo: f64, hi: f64) -> Self;
+}
+
+impl Smooth for f64 {
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        1.0 / self
+    }
+
+    #[inline(always)]
+    fn within(self, _: f64, _: f64) -> Self {
+        self
+    }
+}
+
+impl Smooth for Interval {
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        self.inverse()
+    }
+
+    #[inline(always)]
+    fn within(self, lo: f64, hi: f64) -> Self {
+        Interval::within(self, lo, hi)
+    }
+}
+
+/// Functions that give the value, the first derivative, and the second where it is asked for.
+macro_rules! smooth {
+    ($($(#[$doc:meta])* $name:ident($x:ident) $body:block)*) => {$(
+        $(#[$doc])*
+        #[inline(always)]
+        pub fn $name<S: Smooth>($x: S) -> (S, S, impl FnOnce() -> S) $body
+    )*};
+}
+
+smooth! {
+    /// `sin' = cos`
+    sin(x) {
+        let (sine, cosine) = x.sin_cos();
+        (sine, cosine, move || -sine)
+    }
+
+    /// `cos' = -sin`
+    cos(x) {
+        let (sine, cosine) = x.sin_cos();
+        (cosine, -sine, move || -cosine)
+    }
+
+    /// `tan' = 1 + tan^2`
+    tan(x) {
+        let tangent = x.tan();
+        let first = S::of(1.0) + tangent.square();
+        (tangent, first, move || twice(tangent * first))
+    }
+
+    /// `asin' = 1 / sqrt(1 - x^2)`
+    asin(x) {
+        let squared = (S::of(1.0) - x) * (S::of(1.0) + x);
+        let first = squared.sqrt().reciprocal();
+        (x.asin(), first, move || x * first * squared.reciprocal())
+    }
+
+    /// `acos' = -1 / sqrt(1 - x^2)`
+    acos(x) {
+        let squared = (S::of(1.0) - x) * (S::of(1.0) + x);
+        let first = squared.sqrt().reciprocal();
+        (x.acos(), -first, move || -(x * first * squared.reciprocal()))
+    }
+
+    /// `atan' = 1 / (1 + x^2)`
+    atan(x) {
+        let first = (S::of(1.0) + x.square()).reciprocal();
+        (x.atan(), first, move || -twice(x * first.square()))
+    }
+
+    /// `exp' = exp`
+    exp(x) {
+        let power = x.exp();
+        (power, power, move || power)
+    }
+
+    /// `ln' = 1 / x`
+    ln(x) {
+        let first = x.reciprocal();
+        (x.ln(), first, move || -first.square())
+    }
+
+    /// `sinh' = cosh`
+    sinh(x) {
+        let (sine, cosine) = (x.sinh(), x.cosh());
+        (sine, cosine, move || sine)
+    }
+
+    /// `cosh' = sinh`
+    cosh(x) {
+        let (sine, cosine) = (x.sinh(), x.cosh());
+        (cosine, sine, move || cosine)
+    }
+
+    /// `tanh' = 1 - tanh^2`
+    tanh(x) {
+        let tangent = x.tanh();
+        let first = ((S::of(1.0) - tangent) * (S::of(1.0) + tangent)).within(0.0, 1.0);
+        (tangent, first, move || -twice(tangent * first))
+    }
+}
+
+#[inline(always)]
+fn twice<S: Numbers>(x: S) -> S {
+    x + x
+}
+
+/// The functions of one number of a type that carries a derivative: its `value` and `chain(value, first)` make all of them.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! functions_by_first_derivatives {
+    ($($name:ident)+) => {$(
+        #[inline]
+        fn $name(self) -> Self {
+            let (value, first, _) = $crate::smooth::$name(self.value);
+            self.chain(value, first)
+        }
+    )+};
+}
+
+/// The same of a type that carries two: `chain(value, first, second)`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! functions_by_derivatives {
+    ($($name:ident)+) => {$(
+        #[inline]
+        fn $name(self) -> Self {
+            let (value, first, second) = $crate::smooth::$name(self.value);
+            self.chain(value, first, second)
+        }
+    )+};
+}
