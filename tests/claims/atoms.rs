@@ -25,6 +25,7 @@ fn functions_of_one_coordinate_and_of_two() {
         "(3 + S)^(1/3)",
         "ln(3 + S)",
         "tanh(S)",
+        "asinh(S)",
         "atan(S)",
         "cosh(k*S)",
     ] {

@@ -48,6 +48,11 @@ const VALUES: &[(&str, &[f64], &str)] = &[
     ("tanh", &[0.2], "1.973753202249040114078777922452633402797309868612557932339276773218705e-1"),
     ("tanh", &[-0.3], "-2.913126124515908956581600157693989482617220391278626469821929337105998e-1"),
     ("tanh", &[40.7], "9.99999999999999999999999999999999991098582547830565565191408512658512e-1"),
+    ("asinh", &[1e-30], "1.000000000000000083336420607585985350931336026868654502364509616882196e-30"),
+    ("asinh", &[0.2], "1.986901103492414173612693524957378743794250544223527897252239389415718e-1"),
+    ("asinh", &[-0.3], "-2.956730475634224284687025752964713192803524314876418184090139247115441e-1"),
+    ("asinh", &[2.5], "1.647231146371095710624858610443619663504414430193236528220310093084398"),
+    ("asinh", &[1e+200], "4.612101657793690820827486452708413792897283556341530323478010487840682e+2"),
     ("sqrt", &[2.0], "1.414213562373095048801688724209698078569671875376948073176679737990732"),
     ("sqrt", &[1e-200], "9.999999999999999910501311995413797579771301219335625545734285277601106e-101"),
     ("sqrt", &[3e+250], "1.732050807568877225195299352525922941995286083838415187761263081937718e+125"),
@@ -69,18 +74,16 @@ const VALUES: &[(&str, &[f64], &str)] = &[
 fn evaluated<const P: usize>(function: &str, at: &[f64]) -> Extended<P> {
     let x = Extended::<P>::from(at[0]);
     let other = || Extended::<P>::from(at[1]);
+    macro_rules! of_one_number {
+        ($($name:ident)+) => {
+            match function {
+                $(stringify!($name) => return Numbers::$name(x),)+
+                _ => {}
+            }
+        };
+    }
+    dalembert_numbers::functions_of_one_number!(of_one_number);
     match function {
-        "sin" => Numbers::sin(x),
-        "cos" => Numbers::cos(x),
-        "tan" => Numbers::tan(x),
-        "asin" => Numbers::asin(x),
-        "acos" => Numbers::acos(x),
-        "atan" => Numbers::atan(x),
-        "exp" => Numbers::exp(x),
-        "ln" => Numbers::ln(x),
-        "sinh" => Numbers::sinh(x),
-        "cosh" => Numbers::cosh(x),
-        "tanh" => Numbers::tanh(x),
         "sqrt" => Numbers::sqrt(x),
         "atan2" => Numbers::atan2(x, other()),
         "powf" => Numbers::powf(x, at[1]),
@@ -120,6 +123,17 @@ fn functions_have_all_digits_of_their_numbers() {
     check_values::<2>(2.0);
     check_values::<3>(2.0);
     check_values::<4>(4.0);
+}
+
+#[test]
+fn every_function_of_one_number_has_values() {
+    macro_rules! assert_tried {
+        ($($name:ident)+) => {$(
+            let has_value = VALUES.iter().any(|(function, ..)| *function == stringify!($name));
+            assert!(has_value, "write values of {} above", stringify!($name));
+        )+};
+    }
+    dalembert_numbers::functions_of_one_number!(assert_tried);
 }
 
 /// Numbers with digits everywhere, of many sizes.

@@ -8,7 +8,7 @@
 //! - exp, sinh, cosh, tanh: each `exp(x_i / N)` is a square, and `exp(ln x) = x`;
 //! - `x^(a/b)` is the root among the squares; `x` must be a square, else the point is refused. `abs(x)` is the one of
 //!   `x`, `-x` that is a square;
-//! - ln, asin, acos, atan, atan2: one atom for each value of the argument.
+//! - ln, asin, acos, atan, asinh, atan2: one atom for each value of the argument.
 
 use crate::function::Function;
 use crate::node::{ExprId, Node};
@@ -117,7 +117,7 @@ impl Pool {
                 let (up, down) = self.exponentials(argument, values, point)?;
                 divide(field.sub(up, down), field.add(up, down))
             }
-            Function::Asin | Function::Atan => Ok(point.odd_atom(function, x)),
+            Function::Asin | Function::Atan | Function::Asinh => Ok(point.odd_atom(function, x)),
             // acos x = pi/2 - asin x
             Function::Acos => {
                 let quarter = field.mul(point.draw(Atom::Pi, 0, 0), half()?);

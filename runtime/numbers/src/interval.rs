@@ -530,6 +530,11 @@ impl Numbers for Interval {
     fn tanh(self) -> Self {
         self.increasing(libm::tanh).within(-1.0, 1.0)
     }
+
+    #[inline]
+    fn asinh(self) -> Self {
+        self.increasing(libm::asinh)
+    }
 }
 
 impl Interval {
@@ -619,6 +624,7 @@ pub(crate) mod tests {
         "sinh" on -4.0, 4.0 => |x| Numbers::sinh(x);
         "cosh" on -4.0, 4.0 => |x| Numbers::cosh(x);
         "tanh" on -4.0, 4.0 => |x| Numbers::tanh(x);
+        "asinh" on -7.0, 7.0 => |x| Numbers::asinh(x);
         "powf" on 0.01, 5.0 => |x| Numbers::powf(x, 1.7);
         "inverse power" on 0.01, 5.0 => |x| Numbers::powf(x, -0.4);
         "power" on 0.01, 5.0 => |x| Numbers::power(x, like(x, 0.3));
@@ -647,6 +653,17 @@ pub(crate) mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn every_function_of_one_number_is_tried() {
+        macro_rules! assert_tried {
+            ($($name:ident)+) => {$(
+                let is_tried = FUNCTIONS.iter().any(|function| function.name == stringify!($name));
+                assert!(is_tried, "write a line for {} above", stringify!($name));
+            )+};
+        }
+        crate::functions_of_one_number!(assert_tried);
     }
 
     #[test]

@@ -34,6 +34,7 @@ elementary! {
     sinh(x) = sinh, sinh, sinh;
     cosh(x) = cosh, cosh, cosh;
     tanh(x) = tanh, tanh, tanh;
+    asinh(x) = asinh, asinh, asinh;
     cbrt(x) = cbrt, cbrt, cbrt;
     powf(x, e) = powf, pow, pow;
 }

@@ -168,6 +168,10 @@ pub trait Numbers:
     /// Hyperbolic tangent.
     #[must_use]
     fn tanh(self) -> Self;
+
+    /// Inverse hyperbolic sine.
+    #[must_use]
+    fn asinh(self) -> Self;
 }
 
 /// Hands the functions of one number to a macro, by the names that they have in [`Numbers`]. Kinds of numbers that make all of them by one
@@ -176,7 +180,7 @@ pub trait Numbers:
 #[macro_export]
 macro_rules! functions_of_one_number {
     ($($then:tt)+) => {
-        $($then)+! { sin cos tan asin acos atan exp ln sinh cosh tanh }
+        $($then)+! { sin cos tan asin acos atan exp ln sinh cosh tanh asinh }
     };
 }
 

@@ -88,6 +88,13 @@ smooth! {
         (x.atan(), first, move || -twice(x * first.square()))
     }
 
+    /// `asinh' = 1 / sqrt(1 + x^2)`
+    asinh(x) {
+        let squared = S::of(1.0) + x.square();
+        let first = squared.sqrt().reciprocal();
+        (x.asinh(), first, move || -(x * first * squared.reciprocal()))
+    }
+
     /// `exp' = exp`
     exp(x) {
         let power = x.exp();

@@ -803,6 +803,27 @@ impl Numbers for TaylorModel {
             Interval::tanh,
         )
     }
+
+    fn asinh(self) -> Self {
+        self.function(
+            |c, _| {
+                let square = 1.0 / (1.0 + c * c);
+                let first = math::sqrt(square);
+                Expansion {
+                    terms: [
+                        libm::asinh(c),
+                        first,
+                        -0.5 * c * first * square,
+                        (2.0 * c * c - 1.0) / 6.0 * first * square * square,
+                    ],
+                    // `|x| |9 - 6 x^2| (1 + x^2)^(-7/2) / 24`, which is largest at 0.3615.
+                    fourth: 0.081,
+                }
+            },
+            Rated::asinh,
+            Interval::asinh,
+        )
+    }
 }
 
 #[cfg(test)]

@@ -261,7 +261,7 @@ impl<P: ExpansionPoint> Expansion<'_, '_, P> {
         argument: ExprId,
         value: Scalar<P>,
     ) -> Option<Series<P>> {
-        use Function::{Abs, Acos, Asin, Atan, Cos, Cosh, Exp, Ln, Sin, Sinh, Tan, Tanh};
+        use Function::{Abs, Acos, Asin, Asinh, Atan, Cos, Cosh, Exp, Ln, Sin, Sinh, Tan, Tanh};
         let jets = self.jets;
         match function {
             Sin | Cos | Tan | Sinh | Cosh | Tanh => self.pair(function, argument),
@@ -273,6 +273,12 @@ impl<P: ExpansionPoint> Expansion<'_, '_, P> {
             Atan => {
                 let u = self.of(argument);
                 let rate = jets.inverse(&jets.add(&self.one(), &jets.mul(u, u)))?;
+                jets.integral(&rate, u, value)
+            }
+            Asinh => {
+                let u = self.of(argument);
+                let below = jets.add(&self.one(), &jets.mul(u, u));
+                let rate = self.power(&below, &Rational::new(-1, 2))?;
                 jets.integral(&rate, u, value)
             }
             Asin | Acos => {

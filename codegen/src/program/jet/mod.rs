@@ -294,6 +294,10 @@ fn call(builder: &mut Builder, value: Value, function: Elementary, a: Value) -> 
         Elementary::Tanh => integral(one_minus_square(builder, value), false),
         Elementary::Ln => quotient(a, false),
         Elementary::Atan => quotient(one_plus_square(builder, a), false),
+        Elementary::Asinh => {
+            let squared = one_plus_square(builder, a);
+            quotient(builder.sqrt(squared), false)
+        }
         Elementary::Asin | Elementary::Acos => {
             let squared = one_minus_square(builder, a);
             quotient(builder.sqrt(squared), function == Elementary::Acos)

@@ -273,3 +273,25 @@ pub(super) fn tanh(x: Wide) -> Wide {
         (ONE - power) / (ONE + power)
     })
 }
+
+pub(super) fn asinh(x: Wide) -> Wide {
+    /// Squares of larger numbers may be infinite, and 1 is nothing beside them.
+    const LARGE: f64 = 1e150;
+    odd(x, |x| match x.nearest() {
+        leading if leading < SMALL => small_asinh(x),
+        leading if leading > LARGE => ln(x) + LN_2,
+        _ => ln(x + (x * x + ONE).root()),
+    })
+}
+
+/// The argument whose hyperbolic sine this is, by steps of third order: a sum with 1 would lose the last digits.
+fn small_asinh(x: Wide) -> Wide {
+    let mut argument = Wide::plain(math::asinh(x.nearest()));
+    for _ in 0..STEPS {
+        let (sine, slope) = (sinh(argument), cosh(argument));
+        let missing = (x - sine) / slope;
+        // asinh(sine + d) = argument + d/slope - sine (d/slope)^2 / (2 slope) + ..
+        argument = argument + (missing - (sine / slope).scaled(0.5) * missing * missing);
+    }
+    argument
+}
