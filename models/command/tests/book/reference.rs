@@ -1,0 +1,61 @@
+//! The page of the command line, made from `--help`.
+
+use std::process::Command;
+
+use crate::pages;
+use crate::session::PROGRAM;
+
+const PAGE: &str = "reference/command_line.md";
+const HEAD: &str = "# Command line
+
+The texts below are printed by `dalembert --help` and `dalembert COMMAND --help`.
+A test compares this page with them; `ACCEPT=1 cargo test -p dalembert-command --test book` writes it anew.
+";
+
+fn help(command: Option<&str>) -> String {
+    let mut program = Command::new(PROGRAM);
+    let done = program.args(command).arg("--help").output();
+    let printed = done.expect("the command runs").stdout;
+    String::from_utf8(printed).expect("text")
+}
+
+/// Names of the commands, from the help of the whole.
+fn commands(overview: &str) -> Vec<&str> {
+    let (_, list) = overview.split_once("Commands:\n").expect("commands");
+    let list = list.split("\n\n").next().unwrap_or_default();
+    let names = list.lines().filter_map(|line| line.strip_prefix("  "));
+    names
+        .filter(|line| !line.starts_with(' '))
+        .filter_map(|line| line.split_whitespace().next())
+        .filter(|name| *name != "help")
+        .collect()
+}
+
+fn block(title: &str, text: &str) -> String {
+    let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
+    format!(
+        "\n## {title}\n\n```text\n{}\n```\n",
+        lines.join("\n").trim()
+    )
+}
+
+#[test]
+fn the_page_of_the_command_line_is_the_help() {
+    let overview = help(None);
+    let mut made = format!("{HEAD}{}", block("dalembert", &overview));
+    let names = commands(&overview);
+    assert!(names.len() >= 10, "{names:?}");
+    for name in names {
+        made.push_str(&block(&format!("dalembert {name}"), &help(Some(name))));
+    }
+    if std::env::var_os("ACCEPT").is_some() {
+        std::fs::write(pages::folder().join(PAGE), &made).expect("a writable folder");
+    }
+    let stored = pages::text(PAGE);
+    let differing = stored.lines().zip(made.lines()).find(|(a, b)| a != b);
+    assert_eq!(
+        differing, None,
+        "stored and printed; write it with ACCEPT=1"
+    );
+    assert_eq!(stored.len(), made.len(), "write it with ACCEPT=1");
+}
