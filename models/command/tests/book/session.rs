@@ -18,7 +18,11 @@ impl Session {
     pub fn begin(name: &str) -> Self {
         let name = format!("dalembert-book-{name}-{}", std::process::id());
         let folder = std::env::temp_dir().join(name);
-        fs::create_dir_all(&folder).expect("a folder");
+        fs::create_dir_all(folder.join("python")).expect("a folder");
+        let checker = "python/check_certificate.py";
+        let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        fs::copy(repository.join(checker), folder.join(checker))
+            .expect("the checker of certificates");
         Self { folder }
     }
 
@@ -57,10 +61,6 @@ impl Session {
             .args(["-c", &format!("{{ {command}\n}} 2>&1")])
             .current_dir(&self.folder)
             .env("PATH", path)
-            .env(
-                "PYTHON",
-                Path::new(env!("CARGO_MANIFEST_DIR")).join("../../python"),
-            )
             .output()
             .map_err(|error| error.to_string())?;
         let output = String::from_utf8_lossy(&done.stdout).into_owned();
