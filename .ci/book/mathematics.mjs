@@ -1,7 +1,8 @@
-// mdBook preprocessor: turns `$..$` and `$$..$$` into MathML while the book is built.
+// mdBook preprocessor: sets `$..$` and `$$..$$` with KaTeX while the book is built.
 //
-// Browsers draw MathML by themselves, so that a page needs no script, style sheet or font for its formulas. A formula that KaTeX does not
-// understand ends the build. Code is left alone.
+// A page runs no script for its formulas. A page with formulas loads the style sheet and fonts of KaTeX, which `build` puts beside the
+// pages: MathML alone would need a font for mathematics on the reader's machine. A formula that KaTeX does not understand ends the
+// build. Code is left alone.
 
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -15,9 +16,9 @@ const katex = createRequire(process.env.KATEX_FOLDER + "/")("katex");
 /** Characters that Markdown would read as its own. */
 const MARKDOWN = /[*_[\]|`~\\]/g;
 
-/** MathML of a formula, on one line, safe inside Markdown. */
-function mathml(formula, displayMode) {
-    const html = katex.renderToString(formula, { displayMode, output: "mathml", strict: "error", throwOnError: true });
+/** A formula on one line, safe inside Markdown. Its source is left out: it would be read as text. */
+function typeset(formula, displayMode) {
+    const html = katex.renderToString(formula, { displayMode, strict: "error", throwOnError: true });
     const bare = html.replace(/<annotation[^]*?<\/annotation>/g, "").replace(/\n/g, " ");
     return bare.replace(/>[^<]+</g, (text) => text.replace(MARKDOWN, (character) => `&#${character.codePointAt(0)};`));
 }
@@ -25,18 +26,24 @@ function mathml(formula, displayMode) {
 /** A fenced block, a code span, a displayed formula, or a formula in a line: whichever begins first. */
 const PIECES = /^( *)(```+|~~~+)[^]*?^ *\2 *$|(`+)[^]*?[^`]\3(?!`)|\$\$([^]+?)\$\$|\$([^\s$](?:[^$\n]*[^\s$])?)\$/gm;
 
-function rendered(text) {
-    return text.replace(PIECES, (piece, _indent, _fence, _ticks, display, inline) => {
-        if (display !== undefined) return mathml(display, true);
-        return inline === undefined ? piece : mathml(inline, false);
+/** The text of a page with its formulas set. */
+function rendered(text, path) {
+    let formulas = 0;
+    const replaced = text.replace(PIECES, (piece, _indent, _fence, _ticks, display, inline) => {
+        const formula = display ?? inline;
+        if (formula === undefined) return piece;
+        formulas += 1;
+        return typeset(formula, display !== undefined);
     });
+    const root = "../".repeat(path.split("/").length - 1);
+    return formulas === 0 ? text : `<link rel="stylesheet" href="${root}katex/katex.min.css">\n\n${replaced}`;
 }
 
 function visit(items) {
     for (const { Chapter: chapter } of items) {
         if (!chapter) continue;
         try {
-            chapter.content = rendered(chapter.content);
+            chapter.content = rendered(chapter.content, chapter.path);
         } catch (error) {
             console.error(`${chapter.path}: ${error.message}`);
             process.exit(1);

@@ -30,6 +30,12 @@ pub mod visible_models;
 pub mod volume;
 pub mod witness;
 
+/// The Rust examples of the guide.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/guide/derivatives.md")]
+#[doc = include_str!("../../docs/guide/embedded.md")]
+struct Guide;
+
 /// The examples of the README, compiled and run.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]

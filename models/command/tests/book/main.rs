@@ -15,6 +15,7 @@
 mod fences;
 mod output;
 mod pages;
+mod prose;
 mod reference;
 mod session;
 
