@@ -59,3 +59,21 @@ fn the_page_of_the_command_line_is_the_help() {
     );
     assert_eq!(stored.len(), made.len(), "write it with ACCEPT=1");
 }
+
+/// Names of the outcomes, as the runtime writes them.
+fn outcomes() -> impl Iterator<Item = &'static str> {
+    let source = include_str!("../../../../runtime/src/outcome.rs");
+    let (_, kinds) = source.split_once("fn kind(").expect("the names");
+    let kinds = kinds.split("fn ").next().unwrap_or_default();
+    kinds.split('"').skip(1).step_by(2)
+}
+
+#[test]
+fn every_outcome_is_explained() {
+    let page = pages::text("reference/messages.md");
+    let (_, table) = page.split_once("## Outcomes").expect("the table");
+    assert!(outcomes().count() >= 25);
+    for kind in outcomes() {
+        assert!(table.contains(&format!("`{kind}`")), "`{kind}` is missing");
+    }
+}
