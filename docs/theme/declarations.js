@@ -11,5 +11,8 @@
         },
         contains: [hljs.COMMENT("//", "$"), { className: "number", begin: /\b\d[\d_]*(\.\d*)?([eE][+-]?\d+)?\b/ }],
     }));
-    for (const block of document.querySelectorAll("code.language-dal")) hljs.highlightBlock(block);
+    for (const block of document.querySelectorAll(".declaration code")) {
+        block.className = "language-dal";
+        hljs.highlightBlock(block);
+    }
 })();

@@ -1,4 +1,4 @@
-// mdBook preprocessor: sets `$..$` and `$$..$$` with KaTeX while the book is built.
+// mdBook preprocessor: sets `$..$` and `$$..$$` with KaTeX while the book is built, and marks declarations for `theme/declarations.js`.
 //
 // A page runs no script for its formulas. A page with formulas loads the style sheet and fonts of KaTeX, which `build` puts beside the
 // pages: MathML alone would need a font for mathematics on the reader's machine. A formula that KaTeX does not understand ends the
@@ -26,17 +26,25 @@ function typeset(formula, displayMode) {
 /** A fenced block, a code span, a displayed formula, or a formula in a line: whichever begins first. */
 const PIECES = /^( *)(```+|~~~+)[^]*?^ *\2 *$|(`+)[^]*?[^`]\3(?!`)|\$\$([^]+?)\$\$|\$([^\s$](?:[^$\n]*[^\s$])?)\$/gm;
 
+/** A block of code; a declaration stands in an element of its own, because highlight.js does not know the language. */
+function marked(block) {
+    const declaration = /^```dal\b.*$/m;
+    if (!declaration.test(block)) return block;
+    return `<div class="declaration">\n\n${block.replace(declaration, "```text")}\n\n</div>`;
+}
+
 /** The text of a page with its formulas set. */
 function rendered(text, path) {
     let formulas = 0;
-    const replaced = text.replace(PIECES, (piece, _indent, _fence, _ticks, display, inline) => {
+    const replaced = text.replace(PIECES, (piece, _indent, fence, _ticks, display, inline) => {
+        if (fence) return marked(piece);
         const formula = display ?? inline;
         if (formula === undefined) return piece;
         formulas += 1;
         return typeset(formula, display !== undefined);
     });
     const root = "../".repeat(path.split("/").length - 1);
-    return formulas === 0 ? text : `<link rel="stylesheet" href="${root}katex/katex.min.css">\n\n${replaced}`;
+    return formulas === 0 ? replaced : `<link rel="stylesheet" href="${root}katex/katex.min.css">\n\n${replaced}`;
 }
 
 function visit(items) {
