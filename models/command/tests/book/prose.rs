@@ -25,8 +25,8 @@ const OPENINGS: [&str; 4] = ["What ", "Whether ", "How ", "Of "];
 /// Words of the longest sentence.
 const LONGEST: usize = 36;
 
-/// Pages that were written as a book; the reference pages below `docs/` are older.
-const BOOK: [&str; 9] = [
+/// Beginnings of the names of the pages that are examined.
+const BOOK: [&str; 12] = [
     "introduction",
     "start",
     "tutorial/",
@@ -34,6 +34,9 @@ const BOOK: [&str; 9] = [
     "theory/",
     "glossary",
     "cases",
+    "conventions",
+    "ensembles",
+    "testing",
     "reference/json",
     "reference/messages",
 ];
