@@ -1,4 +1,4 @@
-//! The book under `docs/`: its commands run and print what the pages show, its models load, its pictures are those that the commands draw.
+//! The book under `docs/`, and the README: their commands run and print what the pages show, their models load, their pictures are those that the commands draw.
 //!
 //! Blocks of the pages that are tested:
 //!
@@ -9,6 +9,7 @@
 //! | `` ```dal NAME.dal refused `` | a declaration that is refused |
 //! | `` ```console `` | commands after `$ `, each with its output; a line `..` stands for any lines, ` ..` at the end of one for its rest |
 //! | `` ```console fails `` | the same with an exit status other than 0 |
+//! | `` ```sh `` | lines that begin with `cargo run --release -- ` are run, but for the gallery, which `tests/gallery.rs` draws |
 //!
 //! `ACCEPT=1` stores pictures and the page of the command line anew.
 
@@ -47,6 +48,7 @@ fn tried(session: &mut Session, fence: &Fence<'_>) -> Result<(), String> {
         ["console"] => session.commands(fence.text, true),
         ["console", "fails"] => session.commands(fence.text, false),
         ["console" | "dal", ..] => Err(format!("unknown words after ```: {:?}", fence.words)),
+        ["sh"] => session.cargo_commands(fence.text),
         _ => Ok(()),
     }
 }
@@ -55,7 +57,7 @@ fn tried(session: &mut Session, fence: &Fence<'_>) -> Result<(), String> {
 fn every_block_of_the_book_does_what_the_page_says() {
     let mut found = Vec::new();
     let mut commands = 0;
-    for page in pages::all() {
+    for page in pages::all().into_iter().chain(["../README.md".to_owned()]) {
         let text = pages::text(&page);
         let consoles = fences::of(&text).filter(|fence| fence.words[0] == "console");
         commands += consoles

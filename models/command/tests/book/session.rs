@@ -52,6 +52,20 @@ impl Session {
         Ok(())
     }
 
+    /// Runs the commands that a block makes cargo run.
+    pub fn cargo_commands(&mut self, text: &str) -> Result<(), String> {
+        let commands = text
+            .lines()
+            .filter_map(|line| line.strip_prefix("cargo run --release -- "));
+        for command in commands.filter(|command| !command.starts_with("gallery")) {
+            let (status, output) = self.run(&format!("dalembert {command}"))?;
+            if status != 0 {
+                return Err(format!("`{command}`: exit status {status}\n{output}"));
+            }
+        }
+        Ok(())
+    }
+
     /// Status and output of a command line, messages among it.
     fn run(&self, command: &str) -> Result<(i32, String), String> {
         let programs = Path::new(PROGRAM).parent().map(Path::display);
