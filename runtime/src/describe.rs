@@ -1,4 +1,4 @@
-//! What a model says of itself: names, documentation, parameters, and where to look at it.
+//! Interface of a model to tools: names, documentation, parameters, and the view it is drawn in.
 //!
 //! Implemented by `model!` for every model, so that a tool can list, set and re-derive any of them.
 
@@ -11,7 +11,7 @@ use crate::contract::{System, Variational};
 use crate::effects::Scene;
 use crate::error::Fault;
 
-/// A declared model with values for its parameters: what it tells of itself, and of its states.
+/// A declared model with values for its parameters. Describes itself and its states to tools.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a model declared with `dalembert::model!`"
 )]
@@ -24,7 +24,7 @@ pub trait Instance: System + Clone {
         &[]
     }
 
-    /// Shows the system to a visitor if its runs can be varied: the model itself can, and scenes with `variations`.
+    /// Calls the visitor with the system if its runs can be varied: the model itself, and scenes with `variations`.
     fn visit_variational<Visitor: VariationalVisitor>(
         &self,
         visitor: Visitor,
@@ -33,8 +33,8 @@ pub trait Instance: System + Clone {
         None
     }
 
-    /// The same system in its global form, with the state (q, p) on T*Q, off the constraints too. The model itself
-    /// where it has no form reduced to D.
+    /// The same system in its global form, with the state (q, p) on T*Q, defined off the constraints as well. `Self`
+    /// for a model that has no form reduced to D.
     type Global: Instance<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
 
     /// The system in its global form.
@@ -46,8 +46,8 @@ pub trait Instance: System + Clone {
     /// Sets a parameter by index; an index past the end changes nothing.
     fn set_parameter(&mut self, index: usize, value: f64);
 
-    /// Chooses the mode, by number, in which states are made and that a run begins in; a number past the end changes
-    /// nothing, and so does any where there are no modes.
+    /// Selects the mode, by number, in which states are made and in which a run begins. A number past the end changes
+    /// nothing, nor does any number in a system without modes.
     fn set_mode(&mut self, mode: usize) {
         let _ = mode;
     }
@@ -73,8 +73,8 @@ pub trait Instance: System + Clone {
     /// A [`Fault`] where the equations of motion do not exist.
     fn inspect(&self, t: f64, state: &Self::State, report: &mut dyn Report) -> Result<(), Fault>;
 
-    /// Reports what is derived in the frame of D alone: quasi-velocities and their rates, `X_0`, the rows `X_i`, `G_D`, the
-    /// density of `mu_C` in positions and quasi-velocities. Nothing in global form.
+    /// Reports the quantities that exist only in the frame of D: quasi-velocities and their rates, `X_0`, the rows
+    /// `X_i`, `G_D`, and the density of `mu_C` in positions and quasi-velocities. Reports nothing in global form.
     ///
     /// # Errors
     /// A [`Fault`] where the equations of motion do not exist.
@@ -89,12 +89,12 @@ pub trait Instance: System + Clone {
     }
 }
 
-/// Sees a system whose runs can be varied (see [`Instance::visit_variational`]).
+/// Receives a system whose runs can be varied, in its own type (see [`Instance::visit_variational`]).
 pub trait VariationalVisitor {
-    /// What it makes of it.
+    /// Result of the visit.
     type Output;
 
-    /// The system, in its own type.
+    /// Visits the system, in its own type.
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output;
 }
 

@@ -1,4 +1,5 @@
-//! Effects: what else happens along a motion. They compose as tuples at the type level; `()` compiles to nothing.
+//! Effects: everything besides smooth motion that acts on a run. They compose as tuples at the type level; `()`
+//! compiles to nothing.
 //!
 //! In every step each effect proposes the earliest crossing inside it; the motion is cut at the earliest of all,
 //! the effects that proposed it act there, and integration starts again from the state they leave.
@@ -14,7 +15,7 @@ use crate::outcome::Outcome;
 use crate::policy::Policies;
 use crate::record::{Interpolant, Observer};
 
-/// An accepted step, as effects look at it.
+/// Read access of effects to an accepted step.
 pub struct StepView<'a, Sys: System, Step> {
     /// The system.
     pub system: &'a Sys,
@@ -42,7 +43,7 @@ impl<Sys: System, Step: Stepper<Sys>> StepView<'_, Sys, Step> {
         self.stepper.length()
     }
 
-    /// Time at a part of the step; exact at both ends.
+    /// Time at a fraction `theta` of the step; exact at both ends.
     #[inline(always)]
     pub fn time(&self, theta: f64) -> f64 {
         if theta >= 1.0 {
@@ -79,8 +80,8 @@ impl<Sys: System, Step: Stepper<Sys>> StepView<'_, Sys, Step> {
         self.stepper.prepare_dense(self.system, self.counters)
     }
 
-    /// State at a part of the step; at the end, exactly [`StepView::end`]. Inside, only after
-    /// [`StepView::prepare`].
+    /// State at a fraction `theta` of the step. At the end it is exactly [`StepView::end`]. Inside the step, call
+    /// [`StepView::prepare`] first.
     #[inline(always)]
     pub fn state(&self, theta: f64) -> Sys::State {
         if theta >= 1.0 {
@@ -113,23 +114,23 @@ pub struct Moment<'a, Sys: System> {
     pub system: &'a Sys,
     /// The time.
     pub t: f64,
-    /// The state; whatever an effect leaves here, the motion goes on from.
+    /// The state. The run goes on from the value that an effect leaves here.
     pub state: &'a mut Sys::State,
     /// Work done so far.
     pub counters: &'a mut Counters,
 }
 
-/// Whether an effect changed the state.
+/// Result of an effect on the state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Change {
-    /// The state is as it was.
+    /// The state is unchanged.
     Kept,
-    /// The state is another.
+    /// The state was changed.
     Changed,
 }
 
 impl Change {
-    /// Changed if either did.
+    /// [`Change::Changed`] if either is.
     #[inline(always)]
     #[must_use]
     pub fn or(self, other: Self) -> Self {
@@ -137,18 +138,18 @@ impl Change {
     }
 }
 
-/// What else happens along a motion. An `Err` from any hook ends the run with that outcome.
+/// Acts on a run besides its smooth motion. An `Err` from any hook ends the run with that outcome.
 pub trait Effect<Sys: System> {
     /// The forces it may add to the motion; [`NoForces`] if it never does.
     type Forces: Forces<Sys>;
 
-    /// The forces it adds to the motion from now on. Asked for after every cut; a run in which they change goes on with
-    /// an integrator that is begun anew.
+    /// Forces that the effect adds to the motion from now on. The driver asks for them after every cut; where they
+    /// change, it restarts the integrator.
     fn forces(&self) -> Option<Self::Forces> {
         None
     }
 
-    /// At the first instant of a run, before the first step.
+    /// Called at the first instant of a run, before the first step.
     ///
     /// # Errors
     /// The [`Outcome`] that ends the run.
@@ -161,8 +162,8 @@ pub trait Effect<Sys: System> {
         Ok(())
     }
 
-    /// Proposes the earliest crossing in the step, as a part in \[0, 1\] of it; at 0 the step is not made at all.
-    /// `None`: let it pass whole.
+    /// Proposes the earliest crossing in the step, as a fraction in \[0, 1\] of it. 0 discards the step. `None`
+    /// accepts the step to its end.
     ///
     /// # Errors
     /// The [`Outcome`] that ends the run, at the start of the step.
@@ -174,7 +175,7 @@ pub trait Effect<Sys: System> {
         Ok(None)
     }
 
-    /// After smooth motion has arrived somewhere: at the end of a step, or where `cut` by a crossing.
+    /// Called where smooth motion has arrived: at the end of a step, or at the crossing that `cut` it.
     ///
     /// # Errors
     /// The [`Outcome`] that ends the run here.
@@ -183,7 +184,7 @@ pub trait Effect<Sys: System> {
         Ok(Change::Kept)
     }
 
-    /// Acts where the step was cut; `theta` is the part an effect proposed, this one or another.
+    /// Acts where the step was cut, at the fraction `theta` proposed by this effect or by another.
     ///
     /// # Errors
     /// The [`Outcome`] that ends the run here.
@@ -198,7 +199,8 @@ pub trait Effect<Sys: System> {
     }
 }
 
-/// What a caller may choose in a scene's effects at run time. Effects that do not know a setting ignore it.
+/// Settings of a scene's effects that a caller may choose at run time. An effect ignores the settings that it does
+/// not know.
 pub trait SceneEffects<Sys: System>: Effect<Sys> {
     /// Replaces the law of a surface.
     fn set_law(&mut self, surface: usize, law: Law) {
@@ -221,13 +223,13 @@ pub trait SceneEffects<Sys: System>: Effect<Sys> {
         let _ = on;
     }
 
-    /// Says what impacts do where a law alone does not tell how to go on.
+    /// Sets the policies for impacts whose law alone does not decide how the run goes on.
     fn set_policies(&mut self, policies: Policies) {
         let _ = policies;
     }
 
-    /// Makes an audit of the surfaces that act, and hands it to `work`. False if nothing was made: there are no surfaces, or no
-    /// audit that is independent of how these effects find impacts.
+    /// Makes an audit of the surfaces that act, and passes it to `work`. Returns false if there are no surfaces, or
+    /// no audit that is independent of the event location of these effects.
     fn audit(&self, system: &Sys, work: &mut dyn FnMut(&mut dyn Auditor<Sys>)) -> bool {
         let _ = (system, work);
         false
@@ -236,7 +238,7 @@ pub trait SceneEffects<Sys: System>: Effect<Sys> {
 
 /// A system with the effects its declaration asks for.
 pub trait Scene: System + Sized {
-    /// Their type.
+    /// Type of the effects.
     type Effects: SceneEffects<Self>;
 
     /// The effects as declared.
@@ -249,7 +251,7 @@ impl<Sys: System> Effect<Sys> for () {
 
 impl<Sys: System> SceneEffects<Sys> for () {}
 
-/// An effect that a system may have or not, which is known only at run time.
+/// An optional effect, chosen at run time.
 impl<Sys: System, E: Effect<Sys>> Effect<Sys> for Option<E> {
     type Forces = E::Forces;
 

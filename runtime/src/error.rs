@@ -1,4 +1,4 @@
-//! What can go wrong at run time: small `Copy` values that say where.
+//! Run-time errors: small `Copy` values that name the place of the failure.
 
 use core::fmt;
 
@@ -8,25 +8,27 @@ use dalembert_numbers::description::Assumption;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The metric is not positive definite: the pivot of this number in its LDL^T factorisation
-    /// (coordinate order) is not a positive number.
+    /// The metric is not positive definite: this pivot of its LDL^T factorisation (coordinate order) is not a
+    /// positive number.
     MetricNotPositive {
         /// Index of the coordinate at which the factorisation stopped.
         pivot: usize,
         /// The pivot's value; may be NaN.
         value: f64,
     },
-    /// The constraint one-forms are dependent, or too nearly so to solve for the multipliers. A run ends with it, at the
-    /// last state before, also where they are so at one instant between two evaluations of the rates
-    /// ([`System::rank_drop`](crate::System::rank_drop)); it does not begin where they are.
+    /// The constraint one-forms are dependent, or too nearly dependent to solve for the multipliers. A run ends with
+    /// this fault at the last state before, even where the forms are dependent only at one instant between two
+    /// evaluations of the rates ([`System::rank_drop`](crate::System::rank_drop)). A run does not begin at such a
+    /// state.
     SingularConstraint {
         /// Index of the first constraint that depends on the earlier ones.
         constraint: usize,
-        /// Estimated condition number of the forms in the metric; infinite when dependent, and where a run reaches that.
+        /// Estimated condition number of the forms in the metric. Infinite where they are dependent, and where a run
+        /// reaches such a state.
         condition: f64,
     },
-    /// The form of a declared quasi-velocity follows from the constraints and the other forms: velocities do not
-    /// follow from the quasi-velocities here.
+    /// The form of a declared quasi-velocity depends on the constraints and the other forms: quasi-velocities do not
+    /// determine the velocities here.
     SingularFrame {
         /// Index of the quasi-velocity.
         quasi: usize,
@@ -37,15 +39,15 @@ pub enum Fault {
         /// Index of the surface.
         surface: usize,
     },
-    /// A function was asked for that was not derived of this system.
+    /// A function was called that was not derived for this system.
     NotDerived,
-    /// Momenta, an energy or an impulse were asked of a first-order system, which has none.
+    /// Momenta, an energy or an impulse were requested of a first-order system, which has none.
     FirstOrder,
-    /// The parts of Lagrange and d'Alembert's principle, or a state over numbers of positions and velocities alone, were asked
-    /// of a system with modes: they belong to one mode.
+    /// The terms of Lagrange and d'Alembert's principle, or a state over numbers from positions and velocities alone,
+    /// were requested of a system with modes. They belong to one mode.
     SeveralModes,
-    /// An impulse, or a step of a discrete principle, was asked of a system with constraints that are not linear in the
-    /// velocities, for which neither is defined.
+    /// An impulse, or a step of a discrete principle, was requested of a system with constraints that are nonlinear
+    /// in the velocities. Neither is defined for them.
     NonlinearConstraints,
     /// No velocity that satisfies this constraint was found near the given one.
     ProjectionFailed {
@@ -117,7 +119,7 @@ pub struct ParameterError {
     pub name: &'static str,
     /// The refused value.
     pub value: f64,
-    /// What the declaration asks for.
+    /// The declared assumption.
     pub expected: Assumption,
 }
 
@@ -131,7 +133,7 @@ impl fmt::Display for ParameterError {
     }
 }
 
-/// A state was refused.
+/// Reasons to refuse a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum StateError {
@@ -166,7 +168,7 @@ pub enum StateError {
         /// Index of the coordinate.
         coordinate: usize,
     },
-    /// The system is larger than the fixed buffers of what was asked for.
+    /// The system is larger than the fixed buffers of the requested function.
     TooLarge {
         /// Number of coordinates they hold.
         limit: usize,

@@ -1,4 +1,5 @@
-//! Forces that an effect adds to the motion for a while, as a surface does along which the motion is held.
+//! Forces that an effect adds to the motion for a time, for example the contact force of a surface that holds the
+//! motion.
 
 use crate::contract::{System, VectorField};
 use crate::error::Fault;
@@ -7,10 +8,10 @@ use crate::jet::LENGTH;
 
 /// Forces on a system.
 pub trait Forces<Sys: System>: Copy + PartialEq {
-    /// Adds to `rate`, the rate of `state` without these forces.
+    /// Adds the forces to `rate`, the rate of `state` without them.
     ///
     /// # Errors
-    /// A [`Fault`] where they do not exist; `rate` is unspecified then.
+    /// A [`Fault`] where the forces do not exist; `rate` is unspecified then.
     fn add(
         &self,
         system: &Sys,
@@ -65,8 +66,8 @@ impl<Sys: System, F: Forces<Sys>> VectorField for Driven<'_, Sys, F> {
     }
 }
 
-/// An integrator of a system under forces, where one of the system alone is expected: whatever field it is handed, it
-/// integrates its own.
+/// Adapter of an integrator of a system under forces to the interface of an integrator of the system alone: it
+/// integrates its own field and ignores the one it is given.
 pub(crate) struct Along<'a, F, Step> {
     pub(crate) field: &'a F,
     pub(crate) stepper: Step,

@@ -1,4 +1,4 @@
-//! What generated code calls, besides the public traits. Not part of the interface.
+//! Functions that generated code calls, besides the public traits. Not part of the interface.
 
 use nalgebra::SVector;
 
@@ -9,8 +9,8 @@ use crate::numbers::Numbers;
 use crate::state::StateVector;
 use dalembert_numbers::description::Assumption;
 
-/// A constraint residual up to this share of the sum of the absolute values of its terms counts as satisfied
-/// when a state is made by hand: rounded decimal input passes, a wrong velocity does not.
+/// Accepted residual of a constraint, as a share of the sum of the absolute values of its terms, for states made by
+/// hand: rounded decimal input passes, a wrong velocity does not.
 const ADMITTED_RESIDUAL: f64 = 1e-9;
 
 /// The components of a vector.
@@ -67,7 +67,7 @@ pub fn part<const OFFSET: usize, const D: usize, const N: usize>(
     vector(values)
 }
 
-/// Positions and what a state holds of the motion as one state.
+/// Joins positions and the velocity part of a state (velocities, momenta or quasi-velocities) to one state.
 #[inline(always)]
 pub fn join<const N: usize, const K: usize, const D: usize>(
     q: &SVector<f64, N>,
@@ -89,8 +89,8 @@ pub fn positive_pivot(pivot: usize, value: f64) -> Result<(), Fault> {
     }
 }
 
-/// Below this ratio of squared norms a constraint form counts as dependent on the earlier ones: what is left
-/// of it after their directions were projected out consists of rounding errors.
+/// Ratio of squared norms below which a constraint form counts as dependent on the earlier ones: the rest of it after
+/// their directions are projected out consists of rounding errors.
 const LEAST_SQUARED_RATIO: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
 
 /// `squared > LEAST_SQUARED_RATIO * reference`, or the fault of a dependent constraint.
@@ -106,7 +106,7 @@ pub fn independent_constraint(
     }
 }
 
-/// Below this ratio of a pivot of the constraint mass matrix to the entry it comes from more than six digits are lost.
+/// Ratio of a pivot of the constraint mass matrix to its diagonal entry below which more than six digits are lost.
 const LEAST_PIVOT_RATIO: f64 = 1e-6;
 
 /// `pivot > LEAST_PIVOT_RATIO * diagonal`, or the fault of a dependent constraint.
@@ -118,7 +118,7 @@ pub fn regular_mass(constraint: usize, pivot: f64, diagonal: f64) -> Result<(), 
     }
 }
 
-/// As [`independent_constraint`], or the fault of a frame that is singular.
+/// Same test as [`independent_constraint`], with the fault of a singular frame.
 #[inline(always)]
 pub fn independent_form(quasi: usize, squared: f64, reference: f64) -> Result<(), Fault> {
     match squared > LEAST_SQUARED_RATIO * reference {
@@ -141,7 +141,7 @@ fn singular_constraint(constraint: usize, squared: f64, reference: f64) -> Fault
     }
 }
 
-/// `squared > 0`, or the fault of a surface that no allowed impulse moves.
+/// `squared > 0`, or the fault of a surface whose gap rate no allowed impulse changes.
 #[inline(always)]
 pub fn regular_surface(surface: usize, squared: f64) -> Result<(), Fault> {
     match squared > 0.0 {
@@ -150,8 +150,8 @@ pub fn regular_surface(surface: usize, squared: f64) -> Result<(), Fault> {
     }
 }
 
-/// As [`independent_constraint`], or the fault of a surface whose instantaneous constraints depend on each other or on
-/// the constraints.
+/// Same test as [`independent_constraint`], with the fault of a surface whose instantaneous constraints depend on
+/// each other or on the constraints.
 #[inline(always)]
 pub fn independent_at(surface: usize, squared: f64, reference: f64) -> Result<(), Fault> {
     match squared > LEAST_SQUARED_RATIO * reference {
@@ -160,11 +160,11 @@ pub fn independent_at(surface: usize, squared: f64, reference: f64) -> Result<()
     }
 }
 
-/// A declared coefficient of restitution against \[0, 1\]. A caller who wants a surface that adds energy sets its
-/// law at run time.
+/// Checks a declared coefficient of restitution against \[0, 1\]. Set the law at run time for a surface that adds
+/// energy.
 ///
 /// # Errors
-/// [`ParameterError`] naming the surface.
+/// [`ParameterError`] with the surface's name where the coefficient is outside \[0, 1\].
 pub fn check_coefficient(name: &'static str, value: f64) -> Result<(), ParameterError> {
     let expected = Assumption::Within {
         low: 0.0,
@@ -180,10 +180,10 @@ pub fn check_coefficient(name: &'static str, value: f64) -> Result<(), Parameter
     }
 }
 
-/// Reports what is derived at a state through the global form.
+/// Reports the quantities derived at a state through the global form.
 ///
 /// # Errors
-/// A fault met on the way.
+/// The first [`Fault`] of the global form at this state.
 pub fn inspect_globally<S: Instance>(
     system: &S,
     t: f64,
@@ -199,7 +199,7 @@ pub fn inspect_globally<S: Instance>(
 /// Refuses positions and velocities off the constraints.
 ///
 /// # Errors
-/// [`StateError::OffPosition`], [`StateError::OffConstraint`].
+/// [`StateError::OffPosition`] for an equation of positions, [`StateError::OffConstraint`] for a constraint.
 pub fn admit<S: Constrained>(
     system: &S,
     t: f64,
@@ -225,7 +225,7 @@ pub fn admit<S: Constrained>(
 /// Refuses positions off the equations of positions among the constraints.
 ///
 /// # Errors
-/// [`StateError::OffPosition`].
+/// [`StateError::OffPosition`] with the first violated equation.
 pub(crate) fn check_positions<S: Constrained>(
     system: &S,
     t: f64,
@@ -249,8 +249,8 @@ pub(crate) fn check_positions<S: Constrained>(
     Ok(())
 }
 
-/// The names of arguments of generated functions, as functions: imported around generated code, they hide constants
-/// of these names that its surroundings may have, and give way to locals.
+/// Names of the arguments of generated functions, declared as functions. Imported around generated code, they hide
+/// constants of the same names in the surrounding scope, and local variables hide them in turn.
 #[rustfmt::skip]
 #[allow(missing_docs)]
 pub mod arguments {
@@ -293,7 +293,7 @@ pub mod arguments {
 
 /// The gaps of a declared system over any kind of number.
 pub trait OverNumbers {
-    /// The gap of one surface; arguments as those of [`Impacting::gap_along`](crate::Impacting::gap_along).
+    /// The gap of one surface. Arguments: see [`Impacting::gap_along`](crate::Impacting::gap_along).
     fn gap_over<L: Numbers>(&self, surface: usize, t: L, component: &dyn Fn(usize) -> L) -> L;
 }
 
@@ -301,7 +301,7 @@ pub trait OverNumbers {
 pub mod certain {
     use crate::numbers::Interval;
 
-    /// Whether a condition with these margins holds: of a closed one a margin may be 0.
+    /// True if the condition with this margin holds; a margin of 0 satisfies a closed condition.
     #[inline]
     pub fn holds(margin: Interval, is_closed: bool) -> Option<bool> {
         let (is_true, is_false) = match is_closed {
@@ -311,7 +311,7 @@ pub mod certain {
         (is_true || is_false).then_some(is_true)
     }
 
-    /// Whether all of these hold.
+    /// True if all conditions hold.
     #[inline]
     pub fn all(conditions: impl Iterator<Item = Option<bool>>) -> Option<bool> {
         let mut all = Some(true);
@@ -325,14 +325,15 @@ pub mod certain {
         all
     }
 
-    /// Whether none of these holds.
+    /// True if no condition holds.
     #[inline]
     pub fn none(conditions: impl Iterator<Item = Option<bool>>) -> Option<bool> {
         all(conditions.map(|condition| condition.map(|holds| !holds)))
     }
 
-    /// Whether the last of several transitions counts and is taken, where its own conditions hold and no other's do. Where none of them is
-    /// taken, the motion ends, which is not certain motion.
+    /// Decision for the last of several transitions: true if its own conditions hold, false if they fail while no
+    /// other transition counts. The remaining case, in which no transition is taken, ends the motion and is not
+    /// certain motion.
     #[inline]
     pub fn last(own: Option<bool>, no_other: Option<bool>) -> Option<bool> {
         match (own, no_other) {
@@ -343,24 +344,24 @@ pub mod certain {
     }
 }
 
-/// Guards over several numbers at once: the fault of the first lane that has one.
+/// Checks over several numbers at once: each returns the fault of the first lane that fails.
 pub mod lanes {
     use crate::error::Fault;
     use crate::numbers::Numbers;
 
-    /// As [`positive_pivot`](super::positive_pivot), of every lane.
+    /// Same test as [`positive_pivot`](super::positive_pivot), in every lane.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// The [`Fault`] of the first lane that fails.
     #[inline(always)]
     pub fn positive_pivot<L: Numbers>(pivot: usize, value: L) -> Result<(), Fault> {
         (0..L::LANES).try_for_each(|lane| super::positive_pivot(pivot, value.lane(lane)))
     }
 
-    /// As [`independent_constraint`](super::independent_constraint), of every lane.
+    /// Same test as [`independent_constraint`](super::independent_constraint), in every lane.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// The [`Fault`] of the first lane that fails.
     #[inline(always)]
     pub fn independent_constraint<L: Numbers>(
         constraint: usize,
@@ -372,10 +373,10 @@ pub mod lanes {
         })
     }
 
-    /// As [`regular_mass`](super::regular_mass), of every lane.
+    /// Same test as [`regular_mass`](super::regular_mass), in every lane.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// The [`Fault`] of the first lane that fails.
     #[inline(always)]
     pub fn regular_mass<L: Numbers>(constraint: usize, pivot: L, diagonal: L) -> Result<(), Fault> {
         (0..L::LANES).try_for_each(|lane| {
@@ -383,10 +384,10 @@ pub mod lanes {
         })
     }
 
-    /// As [`independent_form`](super::independent_form), of every lane.
+    /// Same test as [`independent_form`](super::independent_form), in every lane.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// The [`Fault`] of the first lane that fails.
     #[inline(always)]
     pub fn independent_form<L: Numbers>(
         quasi: usize,
@@ -398,19 +399,19 @@ pub mod lanes {
         })
     }
 
-    /// As [`regular_surface`](super::regular_surface), of every lane.
+    /// Same test as [`regular_surface`](super::regular_surface), in every lane.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// The [`Fault`] of the first lane that fails.
     #[inline(always)]
     pub fn regular_surface<L: Numbers>(surface: usize, squared: L) -> Result<(), Fault> {
         (0..L::LANES).try_for_each(|lane| super::regular_surface(surface, squared.lane(lane)))
     }
 
-    /// As [`independent_at`](super::independent_at), of every lane.
+    /// Same test as [`independent_at`](super::independent_at), in every lane.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// The [`Fault`] of the first lane that fails.
     #[inline(always)]
     pub fn independent_at<L: Numbers>(
         surface: usize,

@@ -1,5 +1,5 @@
-//! Completing initial states: positions from the equations of positions among the constraints, then velocities as small as
-//! the constraints allow.
+//! Completion of initial states: first positions that satisfy the equations of positions among the constraints, then
+//! the smallest velocities that satisfy the constraints.
 
 use crate::contract::Constrained;
 use crate::error::StateError;
@@ -7,23 +7,23 @@ use crate::generated::check_positions;
 use crate::linalg::qr::least_norm;
 use crate::state::StateVector;
 
-/// Room for the constraint forms: constraints times coordinates.
+/// Size of the buffer for the constraint forms: constraints times coordinates.
 const ENTRIES: usize = 64 * 64;
 
-/// Largest part of the sum of a residual's absolute terms that the result may leave, as for
+/// Accepted residual, as a share of the sum of the absolute values of its terms; the same as for
 /// [`System::state`](crate::System::state).
 const ACCEPTED: f64 = 1e-9;
 
-/// Newton's steps where constraints are not linear in the velocities, and for positions.
+/// Maximum number of Newton steps, for positions and for constraints that are nonlinear in the velocities.
 const STEPS: u32 = 48;
 
-/// What the free positions begin at, in this order, where Newton's steps from the given ones lead nowhere: at 0, the usual
-/// beginning, a square has no slope.
+/// Start values of the free positions, in this order, for a Newton iteration that fails from the given ones. At 0,
+/// the usual start value, a square has no slope.
 const BEGINNINGS: [f64; 6] = [1.0, -1.0, 0.25, -0.25, 4.0, -4.0];
 
-/// The positions of `q` where `placed` is not 0, and elsewhere those to which Newton's steps of least norm lead from `q`, or,
-/// if these lead nowhere or out of a chart, from 1, -1, 1/4, -1/4, 4 or -4: of several solutions one that is positive where it
-/// can be. With everything placed, `q` is only checked.
+/// Completes positions. Where `placed` is not 0, a position of `q` is kept; the others come from least-norm Newton
+/// steps from `q` or, if these fail or leave the chart, from 1, -1, 1/4, -1/4, 4 or -4. Of several solutions it
+/// prefers a positive one. With everything placed, `q` is only checked.
 ///
 /// # Errors
 /// [`StateError::OffPosition`], of `q` as given, if no solution was found; [`StateError::NotFinite`] for a position that is not
@@ -63,7 +63,7 @@ pub fn complete_positions<Sys: Constrained>(
     found.ok_or(refused)
 }
 
-/// Where Newton's steps lead from `q`, if that satisfies the equations of positions and lies in the chart.
+/// Result of Newton's iteration from `q`, if it satisfies the equations of positions and lies in the chart.
 fn solved_from<Sys: Constrained>(
     system: &Sys,
     t: f64,
@@ -81,7 +81,7 @@ fn solved_from<Sys: Constrained>(
             if !level.is_zero {
                 continue;
             }
-            // Rows are moved to the front; each comes from its place or further back.
+            // Rows move to the front: the source index is never below the target index.
             for i in 0..n {
                 let entry = forms[level.constraint * n + i];
                 forms[rows * n + i] = if is_free(i) { entry } else { 0.0 };
@@ -105,14 +105,13 @@ fn solved_from<Sys: Constrained>(
     (is_inside && check_positions(system, t, &q).is_ok()).then_some(q)
 }
 
-/// The velocities with the components of `qdot` where `named` is not 0, and elsewhere those of least norm that
-/// satisfy every constraint `eta(qdot) + eta_0 = 0`. Where constraints are not linear in the velocities, they are those to which
-/// Newton's steps lead from 1: of several solutions one that is positive where it can be.
+/// Completes velocities. Where `named` is not 0, a velocity of `qdot` is kept; the others are those of least norm
+/// that satisfy every constraint `eta(qdot) + eta_0 = 0`. For constraints that are nonlinear in the velocities they
+/// come from Newton steps from 1, so that of several solutions a positive one is preferred.
 ///
 /// # Errors
-/// [`StateError::OffConstraint`] if the components that are free cannot satisfy a constraint;
-/// [`StateError::NotFinite`] for a named component that is not finite; [`StateError::TooLarge`] beyond 64
-/// coordinates.
+/// [`StateError::OffConstraint`] if the free components cannot satisfy a constraint; [`StateError::NotFinite`] for a
+/// named component that is not finite; [`StateError::TooLarge`] beyond 64 coordinates.
 pub fn complete_velocities<Sys: Constrained>(
     system: &Sys,
     t: f64,

@@ -5,7 +5,8 @@ use crate::error::{Fault, ParameterError, StateError};
 use crate::law::{Blow, Contact, Jump, Law};
 use crate::numbers::{Bent, TaylorModel};
 
-/// A system whose `inputs` the caller supplies. It holds their values like parameters, 0 at first, until they are set.
+/// A system whose declared `inputs` the caller supplies. It stores their values like parameters; they are 0 until
+/// they are set.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no inputs: declare `inputs {{ u; }}` in its `model!`"
 )]
@@ -16,7 +17,7 @@ pub trait Actuated: System + Copy {
     /// Sets all inputs.
     fn set_inputs(&mut self, inputs: &Self::Inputs);
 
-    /// The system with inputs that are a function of time and state.
+    /// The system with inputs given by a function of time and state.
     fn with_inputs<F>(self, inputs: F) -> Steered<Self, F>
     where
         F: Fn(f64, &Self::State) -> Self::Inputs,
@@ -30,9 +31,10 @@ pub trait Actuated: System + Copy {
 
 /// A system whose inputs are given by a function; [`Actuated::with_inputs`] makes one.
 ///
-/// The function is called wherever the motion is evaluated, also at states that no run accepts; it should be smooth between
-/// impacts, as the integrators expect. Series of the motion (`Taylor`) and the discrete principle are not known for it.
-/// Effects are made for it as for any system: `Projection::new()`, `Impacts::declared(&steered)`.
+/// The function is called wherever the motion is evaluated, also at trial states that no run accepts. It should be
+/// smooth between impacts, as the integrators expect. Power series of the motion (`Taylor`) and the discrete
+/// principle are not available for it. Effects are made for it as for any system: `Projection::new()`,
+/// `Impacts::declared(&steered)`.
 #[derive(Debug, Clone, Copy)]
 pub struct Steered<Sys, F> {
     /// The system; the values of its inputs are replaced.
@@ -42,7 +44,7 @@ pub struct Steered<Sys, F> {
 }
 
 impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> Steered<Sys, F> {
-    /// The system with the inputs of this instant.
+    /// The system with the input values at this instant.
     #[inline(always)]
     pub fn at(&self, t: f64, state: &Sys::State) -> Sys {
         let mut system = self.system;

@@ -1,12 +1,12 @@
-//! Sums over Taylor coefficients, as generated code calls them.
+//! Sums over Taylor coefficients, called by generated code.
 
 use crate::numbers::Numbers;
 pub use crate::numbers::{INVERSES, LENGTH};
 pub use dalembert_numbers::tables::Work;
 
-/// Room for the coefficients of several series.
+/// Storage for the coefficients of several series.
 pub trait Jets: Copy {
-    /// All of them zero.
+    /// Storage with all coefficients zero.
     const ZERO: Self;
 }
 
@@ -14,7 +14,7 @@ impl Jets for () {
     const ZERO: Self = ();
 }
 
-/// Room for the series of several modes, of which one is used.
+/// Storage for the series of several modes; one of them is used at a time.
 impl<A: Jets, B: Jets> Jets for (A, B) {
     const ZERO: Self = (A::ZERO, B::ZERO);
 }
@@ -24,8 +24,8 @@ impl<L: Numbers, const W: usize, const H: usize> Jets for [[L; W]; H] {
 }
 
 /// `sum a_j b_(k-j)` for `j` in `1..k`, of `W` pairs of series side by side. Row `j` holds coefficient `j` of all
-/// series: the `a` from place `a` on, the `b` from place `b` on. Row `k - 1`, the newest, is given besides: it need not
-/// be read back from where it has just been written.
+/// series: the `a` from place `a` on, the `b` from place `b` on. Row `k - 1`, the newest, is passed separately, so
+/// that it need not be read back from memory that has just been written.
 #[inline(always)]
 pub fn middles<L: Numbers, const W: usize, const P: usize>(
     rows: &[[L; P]; LENGTH],
@@ -91,7 +91,7 @@ pub fn halves<L: Numbers, const W: usize, const P: usize>(
     sums
 }
 
-/// Keeps coefficients of one order, from a place on.
+/// Stores the coefficients of one order, starting at a given place.
 #[inline(always)]
 pub fn keep<L: Numbers, const W: usize, const P: usize>(
     row: &mut [L; P],
@@ -121,7 +121,7 @@ pub fn short<L: Numbers, const P: usize>(
 
 /// `sum a_j b_(k-j)` for `j` in `1..k`.
 ///
-/// Two sums side by side halve the time that one addition waits for the last.
+/// Two partial sums run side by side, which halves the latency of the chain of additions.
 #[inline(always)]
 pub fn middle<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize) -> L {
     let k = k.clamp(1, LENGTH - 1);
@@ -141,7 +141,7 @@ pub fn middle<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize) -> L {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
-/// As [`middle`], for functions with so many sums that writing each out would not pay.
+/// Same sum as [`middle`], not inlined: for functions with too many sums to write each out.
 #[inline(never)]
 pub fn shared_middle<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize) -> L {
     middle(a, b, k)

@@ -1,8 +1,8 @@
-//! Many runs of one scene with Taylor series, several abreast.
+//! Many runs of one scene with Taylor series, several in parallel in SIMD lanes.
 //!
-//! The series of eight motions are computed at once, one in every lane of a vector; what happens at impacts, and whatever else
-//! effects do, happens to one motion after the other. A lane whose run has ended takes the next one. Every run has
-//! the bits that it has alone, whatever goes on beside it.
+//! The series of eight motions are computed at once, one in every lane of a vector. Impacts and the work of other
+//! effects are computed for one motion after the other. A lane whose run has ended takes the next run. Every run
+//! gives the same bits as when it is run alone.
 
 use arrayvec::ArrayVec;
 use wide::f64x8;
@@ -16,13 +16,14 @@ use crate::record::Observer;
 use crate::run::Run;
 use crate::simulation::{Course, Next, Progress, STEP_BUDGET, Simulation, check_start};
 
-/// Lanes that are worth a vector: fewer motions make their steps alone.
+/// Least number of motions for which a vector step pays; fewer motions make their steps one by one.
 const FEW: usize = 2;
 
-/// Largest room, in bytes, for the series of all lanes: it lies on the stack, and what no cache holds is not fast.
+/// Largest storage, in bytes, for the series of all lanes. They lie on the stack, and data that exceeds every cache
+/// is slow.
 const LARGEST: usize = 1 << 18;
 
-/// A run to be made.
+/// A run to be computed.
 pub struct Member<'a, Sys: TaylorField, Effects, O> {
     tag: usize,
     system: &'a Sys,
@@ -37,8 +38,9 @@ pub struct Member<'a, Sys: TaylorField, Effects, O> {
 }
 
 impl<'a, Sys: TaylorField, Effects, O> Member<'a, Sys, Effects, O> {
-    /// A run of a system from `state` at `t` to `t_end`, as [`Simulation::run`](crate::Simulation::run) makes it, under a
-    /// tag of the caller's. An integrator of another order than that in the first lane makes its steps alone.
+    /// A run of a system from `state` at `t` to `t_end`, as computed by [`Simulation::run`](crate::Simulation::run).
+    /// `tag` identifies it to the caller. An integrator of another order than the one in the first lane makes its
+    /// steps alone.
     pub fn new(
         tag: usize,
         system: &'a Sys,
@@ -69,7 +71,8 @@ impl<'a, Sys: TaylorField, Effects, O> Member<'a, Sys, Effects, O> {
         self
     }
 
-    /// Says that the observer looks at states inside steps. It may do so anyway, at the price of the series of that step.
+    /// Declares that the observer evaluates states inside steps. Without it the observer may still do so, at the cost
+    /// of computing the series of that step again.
     #[must_use]
     pub fn with_look_inside(mut self, looks_inside: bool) -> Self {
         self.looks_inside = looks_inside;
@@ -77,8 +80,8 @@ impl<'a, Sys: TaylorField, Effects, O> Member<'a, Sys, Effects, O> {
     }
 }
 
-/// Makes all runs; `finished` is given each tag with what came of the run, in the order in which they end. Systems whose
-/// series take more than 256 KiB in eight lanes make their runs one after the other.
+/// Computes all runs. Calls `finished` with the tag and the result of each run, in the order in which they end.
+/// Systems whose series take more than 256 KiB in eight lanes make their runs one after the other.
 pub fn run_abreast<'a, Sys, Effects, O>(
     members: impl IntoIterator<Item = Member<'a, Sys, Effects, O>>,
     mut finished: impl FnMut(usize, Result<Run<Sys::State>, StartError>),
@@ -186,15 +189,15 @@ struct Lane<'a, Sys: System + TaylorField, Effects, O> {
     stage: Stage,
 }
 
-/// What comes next in a run.
+/// Next action of a run.
 enum Stage {
-    /// Everything before the first step.
+    /// The actions before the first step.
     Begin,
-    /// The integrator must be begun anew.
+    /// Restart the integrator.
     SetOff,
     /// A step.
     Step,
-    /// Nothing more.
+    /// The run has ended.
     Over(Outcome),
 }
 
@@ -215,7 +218,8 @@ where
         }
     }
 
-    /// Goes on until a step is to be made; whether there was nothing to do before it. The end of the run is an error.
+    /// Advances the run until its next action is a step. Returns true if it already was. The end of the run is an
+    /// error.
     fn reach_step(&mut self) -> Result<bool, Outcome> {
         let was_ready = matches!(self.stage, Stage::Step);
         let Self {
@@ -254,7 +258,7 @@ where
         }
     }
 
-    /// What follows a step, which is made here if it was not made with others.
+    /// Processes a step and returns the next action. Makes the step first if the vector step did not include it.
     fn after_step(&mut self, was_made: bool) -> Stage {
         let Self {
             member, progress, ..

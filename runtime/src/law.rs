@@ -1,4 +1,4 @@
-//! States after impacts, and what the laws of impacts need of them.
+//! States after impacts, and the quantities from which the impact laws are evaluated.
 
 use crate::state::StateVector;
 
@@ -9,9 +9,9 @@ pub use dalembert_numbers::law::Law;
 pub struct Landing<S> {
     /// The state.
     pub state: S,
-    /// Whether rounding may have decided between two ways to go on.
+    /// True if rounding may have decided between two possible continuations.
     pub is_graze: bool,
-    /// Whether there are other states that the motion could go on from.
+    /// True if the motion could go on from other states as well.
     pub is_one_of_several: bool,
 }
 
@@ -34,21 +34,21 @@ pub struct Jump<V> {
     pub velocity: V,
 }
 
-/// What a law that is an impulse does to a state.
+/// Effect of an impact law that is an impulse on a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blow<V> {
     /// The impulse is `size * direction`.
     pub size: f64,
-    /// What it takes of the gap rate: 2 turns it round, 1 ends it.
+    /// Share of the gap rate that the impulse removes: 2 reverses it, 1 ends it.
     pub share: f64,
-    /// As [`System::kick`](crate::System::kick) takes it; a multiple of [`Contact::direction`].
+    /// Direction in the form of [`System::kick`](crate::System::kick); a multiple of [`Contact::direction`].
     pub direction: V,
 }
 
-/// What the laws need of an impact at a state, derived and emitted for each surface.
+/// Quantities of an impact at a state from which every law is evaluated. Derived and emitted for each surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact<V> {
-    /// `dh(qdot) + d_t h` before the impact; an impact has it negative.
+    /// `dh(qdot) + d_t h` before the impact; negative at an impact.
     pub gap_rate: f64,
     /// `P(pi_D grad h)`: the momentum along the projected gradient.
     pub constrained_rate: f64,
@@ -69,7 +69,7 @@ impl<V: StateVector> Contact<V> {
         self.constrained_compliance / self.free_compliance
     }
 
-    /// What a law does; NaN for [`Law::Reset`].
+    /// Impulse of a law; NaN for [`Law::Reset`].
     pub fn blow(&self, law: Law) -> Blow<V> {
         Blow {
             size: self.impulse(law),
@@ -83,7 +83,7 @@ impl<V: StateVector> Contact<V> {
         -self.rate_taken(law) / self.constrained_compliance
     }
 
-    /// What a law takes from the gap rate; NaN for [`Law::Reset`].
+    /// Change of the gap rate by a law, with opposite sign; NaN for [`Law::Reset`].
     pub fn rate_taken(&self, law: Law) -> f64 {
         let scalars = [
             self.gap_rate,

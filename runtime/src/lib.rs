@@ -1,14 +1,14 @@
 //! Runtime of dalembert: runs mechanical systems with constraints and impacts, `no_std`, without allocation.
 //!
-//! A system says how its state changes ([`VectorField`]), what of it are positions, momenta and energy
-//! ([`System`]), what constrains it ([`Constrained`]) and what it hits ([`Impacting`]). The `model!` macro writes
-//! all of that from a declaration; it can also be written by hand. [`Simulation`] puts a system together with an
-//! integrator ([`Dop853`], [`DormandPrince5`], [`Taylor`]) and effects ([`Impacts`], [`Projection`], or what
-//! [`Scene::effects`] says), and runs it. A run ends in exactly one [`Outcome`], with the last good state.
+//! A system defines the rate of its state ([`VectorField`]), its positions, momenta and energy ([`System`]), its
+//! constraints ([`Constrained`]) and its surfaces ([`Impacting`]). The `model!` macro writes all of these from a
+//! declaration; they can also be written by hand. [`Simulation`] combines a system with an integrator ([`Dop853`],
+//! [`DormandPrince5`], [`Taylor`]) and effects ([`Impacts`], [`Projection`], or those of [`Scene::effects`]), and
+//! runs it. A run ends in exactly one [`Outcome`], with the last good state.
 //!
-//! Impacts are roots of the gaps along the dense output of each step: all of them, in order, to the last bits of
-//! the time, and none twice. What cannot be told from rounding is flagged ([`Event::graze`]) or ends the run with
-//! an outcome of its own.
+//! Impacts are roots of the gaps along the dense output of each step. Event location finds all of them, in order, to
+//! the last bits of the time, and none twice. An event that rounding may have decided is flagged ([`Event::graze`])
+//! or ends the run with its own outcome.
 //!
 //! A ball that bounces on the floor `x = 0`, written by hand:
 //!
@@ -185,7 +185,7 @@ pub use work::Work;
 #[cfg(feature = "macros")]
 pub use dalembert_macros::{model, model_file};
 
-/// What generated code names besides the public items. Not part of the interface.
+/// Items that generated code names besides the public ones. Not part of the interface.
 #[doc(hidden)]
 pub mod __private {
     pub use crate::generated::*;

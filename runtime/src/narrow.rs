@@ -1,16 +1,19 @@
-//! Rates along a step against those that the step assumed: a force that acts in a part of it that no stage has seen is found here.
+//! Verification of the rates along a step against the rates that the step assumed. Finds forces that act only between
+//! the stages of a step.
 //!
-//! On a part of the step all rates of the system are enclosed, for the states and times that the motion passes there:
+//! On a part of the step all rates of the system are enclosed, for the states and times on the motion's path there:
 //!
 //! ```text
 //! R = f(Y) and f(y_m) + [-1, 1] f'(Y) (b - a)/2,   Y the states on [a, b], y_m the one in the middle
 //! ```
 //!
-//! and compared with the interval `P` of rates that the step's polynomial has there. What `R` exceeds `P` by is a force that the step
-//! knows nothing of. It may be as large as what the rates of the step change by, or a quarter of them, since an enclosure is wider than the range; or so small that
-//! the error allowed in the step covers it. Other parts are halved; where that does not help the step is too long. So it is where the
-//! integral of `R` over the step does not contain what the step has gained. Of the shortest parts on which `R` has no bounds, as where a force
-//! jumps or has a pole, nothing is known; those beside them tell.
+//! and compared with the interval `P` of the rates that the step's polynomial has there. The excess of `R` over `P`
+//! is a force that the step has not seen. The excess may be as large as the change of the rates over the step, or a
+//! quarter of their size, since an enclosure is wider than the range; or so small that the error allowed in the step
+//! covers it. Other parts are halved. Where halving does not help, the step is too long. It is also too long where
+//! the integral of `R` over the step does not contain the change of the state over the step. The shortest parts on
+//! which `R` has no bounds, for example at a pole or at a jump of a force, are left undecided; the parts beside them
+//! decide.
 
 use crate::contract::System;
 use crate::effects::StepView;
@@ -20,29 +23,30 @@ use crate::numbers::{Interval, Rated};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Halvings of a step.
+/// Maximum number of halvings of a step.
 const DEPTH: u32 = 6;
 
-/// The same where rates have no bounds.
+/// Maximum number of halvings where rates have no bounds.
 const DEPTH_OF_POLES: u32 = 40;
 
-/// Parts that are looked at: rates that have bounds nowhere are not looked for any longer.
+/// Maximum number of parts that are examined. It ends the search where rates have bounds nowhere.
 const PARTS: u32 = 256;
 
-/// Halvings that steps begin with whose error nobody estimates: their integral is to tell.
+/// Initial halvings of steps without an error estimate: their integral decides.
 const DEPTH_OF_FIXED: u32 = 3;
 
-/// A step no longer than this part of its time is no part of it that anybody could tell: its rates are not looked at.
+/// Shortest step that is examined, as a share of its time: below it, times inside the step cannot be told apart.
 const SAME_MOMENT: f64 = 64.0 * f64::EPSILON;
 
-/// What an enclosure may exceed the rates of the step by: in parts of what these change by, and of their size.
+/// Allowed excess of an enclosure over the rates of the step: as shares of the change of these rates, and of their
+/// size.
 const OF_CHANGE: f64 = 1.0;
 const OF_SIZE: f64 = 0.25;
 
-/// The part of a step up to which its rates are what it assumed: 1 if all of it is.
+/// Fraction of a step up to which its rates agree with those it assumed: 1 if all of it does.
 ///
 /// # Errors
-/// Those of the dense output.
+/// The [`Outcome`] of a failed dense output.
 pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
 ) -> Result<f64, Outcome> {
@@ -110,27 +114,27 @@ fn allowed<Sys: System, Step: Stepper<Sys>>(
     allowed
 }
 
-/// What the rates on a part of a step are beside those that it assumed.
+/// Relation of the enclosed rates on a part of a step to those that it assumed.
 enum Rates {
     Assumed,
     Exceeded,
     Unbounded,
 }
 
-/// A step, and what it may err by.
+/// A step and the error allowed in it.
 struct Along<'a, Sys: System> {
     system: &'a Sys,
     path: &'a Path<Sys::State>,
     length: f64,
     allowed: Sys::State,
-    /// Bounds of what the components gain on the parts that are known.
+    /// Bounds of the change of the components over the parts with bounded rates.
     gained: [Sys::State; 2],
-    /// Whether there are parts of which nothing is known.
+    /// True if there are parts on which nothing is known of the rates.
     has_pole: bool,
 }
 
 impl<Sys: System> Along<'_, Sys> {
-    /// True if a step between these states has gained what the rates give, as far as that is known.
+    /// True if the change between these states agrees with the integral of the rates, as far as that is known.
     fn has_gained(&self, start: &Sys::State, end: &Sys::State) -> bool {
         let is_within = |i: usize| {
             let change = end.as_slice()[i] - start.as_slice()[i];
@@ -141,7 +145,8 @@ impl<Sys: System> Along<'_, Sys> {
         self.has_pole || (0..start.count()).all(is_within)
     }
 
-    /// Compares the rates on a part of the step with those that it assumed; what the components gain there is added if they are.
+    /// Compares the rates on a part of the step with those that it assumed. If they agree, adds their integral to
+    /// `gained`.
     fn compare(&mut self, part: [f64; 2]) -> Rates {
         let (path, width) = (self.path, part[1] - part[0]);
         let mut gained = self.gained;
@@ -167,7 +172,7 @@ impl<Sys: System> Along<'_, Sys> {
             let change = path.rated(i, [0.0, 1.0]).rate.width();
             let wider = OF_CHANGE * change + OF_SIZE * assumed.magnitude();
             let most = (wider * width).max(self.allowed.as_slice()[i]);
-            // Not a comparison that NaN passes.
+            // Written so that NaN fails the comparison.
             is_assumed &= excess * width <= most;
             is_bounded &= rates.lo.is_finite() && rates.hi.is_finite();
             gained[0].as_mut_slice()[i] += width * rates.lo;

@@ -4,19 +4,20 @@ use crate::contract::Constrained;
 use crate::error::Fault;
 use crate::state::StateVector;
 
-/// Newton's steps; each doubles the digits, once the first few have come near.
+/// Maximum number of Newton steps. Each doubles the number of correct digits once the first few have come near.
 const STEPS: u32 = 48;
 
-/// Part of the sum of a residual's absolute terms that counts as rounding.
+/// Residual, as a share of the sum of the absolute values of its terms, that counts as rounding.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// The largest part that is accepted where steps no longer help, as for [`System::state`](crate::System::state).
+/// Largest such share that is accepted where further steps do not help; the same as for
+/// [`System::state`](crate::System::state).
 const ACCEPTED: f64 = 1e-9;
 
-/// The state to which Newton's steps lead from a velocity; `step` makes one, orthogonal in the metric.
+/// State at the limit of Newton's iteration from a velocity; `step` makes one step, orthogonal in the metric.
 ///
 /// # Errors
-/// [`Fault::ProjectionFailed`] where they lead nowhere; a [`Fault`] of a step.
+/// [`Fault::ProjectionFailed`] where the iteration does not converge; the [`Fault`] of a step.
 pub fn nearest_by_steps<S: Constrained>(
     system: &S,
     t: f64,
@@ -29,7 +30,7 @@ pub fn nearest_by_steps<S: Constrained>(
     let mut least = f64::INFINITY;
     for _ in 0..STEPS {
         let (part, _) = worst(system, t, q, &velocity);
-        // Within rounding nothing is gained once a step does not halve what is left.
+        // Within rounding, a step that does not halve the residual ends the iteration.
         if part <= ROUNDING || part <= ACCEPTED && part > 0.5 * least {
             return Ok(state);
         }
@@ -43,7 +44,8 @@ pub fn nearest_by_steps<S: Constrained>(
     }
 }
 
-/// The largest residual in parts of the sum of its absolute terms, and whose it is; NaN counts as largest.
+/// The largest residual as a share of the sum of the absolute values of its terms, and the index of its constraint.
+/// NaN counts as largest.
 fn worst<S: Constrained>(system: &S, t: f64, q: &S::Vector, qdot: &S::Vector) -> (f64, usize) {
     let (residuals, scales) = system.residuals(t, q, qdot);
     let pairs = residuals.as_slice().iter().zip(scales.as_slice());

@@ -1,10 +1,10 @@
-//! How a run ends: exactly one [`Outcome`], never a panic, a silent NaN or an endless loop.
+//! End of a run: exactly one [`Outcome`], never a panic, a silent NaN or an endless loop.
 
 use core::fmt;
 
 use crate::error::{Fault, ParameterError};
 
-/// Why a run ended where it did.
+/// Reason for the end of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Outcome {
@@ -12,19 +12,19 @@ pub enum Outcome {
     Done,
     /// Impacts accumulate: their times no longer differ, or the hops between them are below the rounding of the gap.
     Zeno {
-        /// Where they accumulate, extrapolated from the last hops.
+        /// Time at which they accumulate, extrapolated from the last hops.
         t: f64,
         /// The surface last hit.
         surface: usize,
     },
     /// Impacts accumulate while the energy grows.
     Spasmodic {
-        /// Where they accumulate, extrapolated from the last flights.
+        /// Time at which they accumulate, extrapolated from the last flights.
         t: f64,
         /// The surface last hit.
         surface: usize,
     },
-    /// Several surfaces were hit at one time, and the state after it depends on the order of impacts.
+    /// Several surfaces were hit at one time, and the state afterwards depends on the order of the impacts.
     Ambiguous {
         /// The first and the last of them, in order of declaration.
         surfaces: [usize; 2],
@@ -48,32 +48,32 @@ pub enum Outcome {
         /// The surface.
         surface: usize,
     },
-    /// A surface that leads to another mode was reached by a mode that is run by itself.
+    /// A mode that is run by itself reached a surface that leads to another mode.
     LeftMode {
         /// The surface.
         surface: usize,
     },
-    /// A surface of several transitions was reached where the conditions of none of them hold.
+    /// The motion reached a surface of several transitions at which the conditions of none of them hold.
     Untaken {
         /// The last of these transitions.
         surface: usize,
     },
-    /// Modes lead to each other at one time, and no state goes on into one of them.
+    /// Modes lead to each other at one time, and no state from which the motion goes on lies in one of them.
     Trapped {
         /// The surface reached last.
         surface: usize,
     },
-    /// The state rests on a surface and the motion presses it in: going on needs a contact force.
+    /// The state rests on a surface and the motion presses into it: going on needs a contact force.
     Contact {
         /// The surface.
         surface: usize,
     },
-    /// A surface was crossed at gap rate 0, where no impact law acts.
+    /// The motion crossed a surface at gap rate 0, where no impact law acts.
     TangentialCrossing {
         /// The surface.
         surface: usize,
     },
-    /// A surface counts where its gap is clearly negative: at the start, or after an impact.
+    /// The gap of an active surface is clearly negative at the start or after an impact.
     StartsInside {
         /// The surface.
         surface: usize,
@@ -129,13 +129,13 @@ pub enum Outcome {
         /// Index of the component of the state; gaps are counted after its components.
         component: usize,
     },
-    /// The error stays too large in steps that no longer change the time.
+    /// The local error stays too large in steps that no longer change the time.
     StepUnderflow {
-        /// Where.
+        /// Time of the step.
         t: f64,
     },
-    /// A step of fixed size led to where the energy is no finite number though the rates are, as beyond the edge of the domain of
-    /// `ln(x)`. The state is that at the start of the step.
+    /// A step of fixed size led to a state without finite energy although its rates are finite, for example outside
+    /// the domain of `ln(x)`. The state is that at the start of the step.
     LeftDomain,
     /// An implicit step could not be solved: it is too long for the fastest motion.
     NotConverged {
@@ -193,7 +193,7 @@ impl Outcome {
         }
     }
 
-    /// Whether the requested end was reached.
+    /// True if the requested end was reached.
     pub const fn is_done(&self) -> bool {
         matches!(self, Self::Done)
     }
@@ -318,7 +318,7 @@ impl From<Fault> for Outcome {
     }
 }
 
-/// A run that was not begun.
+/// Reasons not to begin a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum StartError {

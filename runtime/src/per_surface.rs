@@ -4,12 +4,12 @@ use core::ops::{Index, IndexMut};
 
 use crate::state::{Plain, StateVector};
 
-/// One value per surface, in the order of declaration, of a system whose gaps are a `G`.
+/// One value per surface, in order of declaration, for a system whose gaps have type `G`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PerSurface<T: Plain, G: StateVector>(G::Each<T>);
 
 impl<T: Plain, G: StateVector> PerSurface<T, G> {
-    /// The same value for each surface, of as many as `gaps` has components.
+    /// The same value for every surface; `gaps` gives the number of surfaces.
     pub(crate) fn all(gaps: &G, value: T) -> Self {
         Self(G::each(gaps.count(), value))
     }
@@ -41,7 +41,7 @@ impl<T: Plain, G: StateVector> PerSurface<T, G> {
         self.0.as_ref().iter().copied()
     }
 
-    /// The values in order, to be changed.
+    /// Mutable references to the values, in order.
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.0.as_mut().iter_mut()
     }

@@ -1,9 +1,9 @@
-//! Projection: brings the state back to the constraints that integration has drifted from.
+//! Projection: brings a state that has drifted during integration back to the constraints.
 //!
-//! After a step, if a constraint is violated by more than rounding: positions first, by Newton's iteration
-//! `q -= correction(f(q) - f(q_0))` towards the levels at the start of the run (integrable constraints; 0 where the
-//! constraint is an equation of positions, unless the run was made to start off it), then
-//! velocities, orthogonally in the metric. A state reduced to D has nothing but positions to bring back.
+//! Acts after a step if a constraint is violated by more than rounding. It corrects positions first, by Newton's
+//! iteration `q -= correction(f(q) - f(q_0))` towards the levels at the start of the run (integrable constraints; 0
+//! where the constraint is an equation of positions, unless the run was made to start off it). Then it corrects
+//! velocities, orthogonally in the metric. In a state reduced to D only positions need correction.
 
 use crate::contract::Constrained;
 use crate::effects::{Change, Effect, Moment, SceneEffects};
@@ -15,11 +15,13 @@ use crate::outcome::Outcome;
 use crate::record::Observer;
 use crate::state::StateVector;
 
-/// Part of the sum of a residual's absolute terms that is let pass: `2^-44 = 6e-14`. Forming the sum rounds by about
-/// `2^-52` per term and projecting leaves as much, so a smaller one would project after every step for nothing.
+/// Residual that is accepted, as a share of the sum of the absolute values of its terms: `2^-44 = 6e-14`. Forming the
+/// sum rounds by about `2^-52` per term, and projection leaves as much. A smaller threshold would project after every
+/// step for nothing.
 const THRESHOLD: f64 = 1.0 / (1_u64 << 44) as f64;
 
-/// Newton steps towards the levels; each doubles the digits, so that four make a full number of a good start.
+/// Maximum number of Newton steps towards the levels. Each doubles the number of correct digits; four suffice from a
+/// good start.
 const NEWTON_STEPS: u32 = 8;
 
 /// Projects to the constraints after every step that needs it.
@@ -38,7 +40,7 @@ impl<Sys: Constrained> Projection<Sys> {
         }
     }
 
-    /// Brings positions back to their levels. Returns whether they had to move.
+    /// Brings positions back to their levels. Returns [`Change::Changed`] if they had to move.
     fn settle_levels(&self, now: &mut Moment<'_, Sys>) -> Result<Change, Outcome> {
         let mut q = now.system.position(now.state);
         let (mut excess, mut worst) = self.excess(now, &q);
@@ -51,8 +53,8 @@ impl<Sys: Constrained> Projection<Sys> {
             for (q, correction) in q.as_mut_slice().iter_mut().zip(correction.as_slice()) {
                 *q += correction;
             }
-            // NOTE: a level that vanishes at the start has no scale of its own; there Newton's steps themselves
-            // tell when no digit moves any more.
+            // NOTE: a level that vanishes at the start has no scale of its own. There the iteration ends when no
+            // digit moves.
             let moved = is_visible(&q, &correction);
             (excess, worst) = self.excess(now, &q);
             if worst.is_none() || !moved {
@@ -65,7 +67,7 @@ impl<Sys: Constrained> Projection<Sys> {
         })
     }
 
-    /// How far the levels are off, and the first that is off by more than the threshold.
+    /// Deviation of the levels, and the first level that deviates by more than the threshold.
     fn excess(&self, now: &Moment<'_, Sys>, q: &Sys::Vector) -> (Sys::Levels, Option<usize>) {
         let mut excess = now.system.levels(now.t, q);
         let sizes = now.system.level_scales(now.t, q);
@@ -82,16 +84,17 @@ impl<Sys: Constrained> Projection<Sys> {
         (excess, worst)
     }
 
-    /// Brings velocities back to the constraints. Returns whether they had to change.
+    /// Brings velocities back to the constraints. Returns [`Change::Changed`] if they had to change.
     fn settle_velocities(&self, now: &mut Moment<'_, Sys>, cut: bool) -> Result<Change, Outcome> {
-        // NOTE: where the step was cut for an impact even rounding is mended: it costs nothing there, as the rate is
-        // evaluated anew anyway, and what an impact law makes of a residual adds up over many impacts.
+        // NOTE: where an impact cuts the step, rounding is removed as well. This costs nothing, as the rate is
+        // evaluated anew anyway, and impact laws would accumulate the residual over many impacts.
         if now.system.is_reduced() || (!cut && violated(now)?.is_none()) {
             return Ok(Change::Kept);
         }
         let before = *now.state;
         now.system.restore(now.t, now.state)?;
-        // Restoring is linear; a second time mends the rounding of the first where constraints are ill-conditioned.
+        // The correction is linear; a second one removes the rounding of the first where constraints are
+        // ill-conditioned.
         if violated(now)?.is_some() {
             now.system.restore(now.t, now.state)?;
         }
@@ -108,7 +111,7 @@ impl<Sys: Constrained> Default for Projection<Sys> {
     }
 }
 
-/// Whether a correction changes any digit of the positions.
+/// True if a correction changes any digit of the positions.
 fn is_visible<V: StateVector>(q: &V, correction: &V) -> bool {
     let largest = |values: &V| {
         values
@@ -124,13 +127,13 @@ fn violated<Sys: Constrained>(now: &Moment<'_, Sys>) -> Result<Option<usize>, Fa
     exceeding(now, None, THRESHOLD)
 }
 
-/// The first constraint still violated so much that projection of the state `before` cannot be said to have worked: a
-/// thousand thresholds, the bound at which states are refused divided by twenty.
+/// The first constraint whose residual is too large for the projection of the state `before` to count as successful:
+/// a thousand thresholds, one twentieth of the bound at which states are refused.
 ///
-/// The terms of a constraint are no scale where all of them vanish: where the velocities that it holds at 0 are all that is left of
-/// it, as `y ydot` of a hanging pendulum, or where the motion rests. The terms are rounding errors then, and a residual is as
-/// large as they are, however small. What projection leaves is rounding of the velocity that it was given; so the scale are the terms
-/// with velocities as large as that speed allows.
+/// The terms of a constraint give no scale where all of them vanish: where only velocities remain that the constraint
+/// holds at 0, such as `y ydot` of a hanging pendulum, or where the motion rests. The terms are rounding errors
+/// there, and a residual is as large as they are, however small. Projection leaves the rounding of the velocity that
+/// it was given, so the scale is that of the terms with velocities as large as that speed allows.
 fn far<Sys: Constrained>(
     now: &Moment<'_, Sys>,
     before: &Sys::State,
@@ -142,8 +145,8 @@ fn far<Sys: Constrained>(
     }
 }
 
-/// The largest values that single velocities can have at the kinetic energy of a state: `|v_i| <= sqrt(g^ii v.p)` by the
-/// inequality of Cauchy and Schwarz.
+/// Largest values that single velocities can have at the kinetic energy of a state: `|v_i| <= sqrt(g^ii v.p)` by the
+/// Cauchy-Schwarz inequality.
 fn largest_velocities<Sys: Constrained>(
     now: &Moment<'_, Sys>,
     state: &Sys::State,
@@ -151,7 +154,7 @@ fn largest_velocities<Sys: Constrained>(
     let (system, t) = (now.system, now.t);
     let (v, p) = (system.velocity(t, state)?, system.momentum(t, state)?);
     let pairs = v.as_slice().iter().zip(p.as_slice());
-    // NOTE: roots before products, which would be 0 for velocities below 1e-162.
+    // NOTE: square roots come before products, which would be 0 for velocities below 1e-162.
     let speed: f64 = pairs
         .map(|(v, p)| math::sqrt(v.abs()) * math::sqrt(p.abs()))
         .sum();
@@ -168,7 +171,8 @@ fn largest_velocities<Sys: Constrained>(
     Ok(largest)
 }
 
-/// The first constraint violated by more than a part of its terms, or of those at other velocities if they are larger.
+/// The first constraint violated by more than a given share of its terms, or of the terms at other velocities if
+/// those are larger.
 fn exceeding<Sys: Constrained>(
     now: &Moment<'_, Sys>,
     velocities: Option<&Sys::Vector>,
@@ -182,7 +186,7 @@ fn exceeding<Sys: Constrained>(
     if let Some(velocities) = velocities {
         let (_, larger) = now.system.residuals(now.t, &q, velocities);
         let pairs = scales.as_mut_slice().iter_mut().zip(larger.as_slice());
-        // Numbers below the normal ones have lost digits.
+        // Subnormal numbers have lost digits.
         pairs.for_each(|(scale, larger)| {
             *scale = scale.max(*larger) + f64::MIN_POSITIVE / threshold
         });
@@ -222,9 +226,9 @@ impl<Sys: Constrained> Effect<Sys> for Projection<Sys> {
         if !self.on {
             return Ok(Change::Kept);
         }
-        // NOTE: this moves a state that lies on a surface off it by as much as integration erred. It has to be done
-        // there too, or a motion of which every step is cut would never be mended; the surface just hit counts as met
-        // exactly, whatever its gap.
+        // NOTE: this moves a state that lies on a surface off it by the size of the integration error. It is
+        // necessary there too: otherwise a motion of which every step is cut would never be corrected. The surface
+        // just hit counts as met exactly, whatever its gap.
         let moved = if self.levels.count() > 0 {
             self.settle_levels(now)?
         } else {

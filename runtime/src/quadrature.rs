@@ -1,10 +1,10 @@
-//! Line integrals of a gradient: the logarithm of a density that has no closed form.
+//! Line integrals of a gradient, for the logarithm of a density without closed form.
 
 use crate::error::Fault;
 use crate::state::StateVector;
 
-/// Nodes in `(0, 1)` and weights of Gauss and Legendre's rule of 16 points, the nodes below the midpoint; the others
-/// mirror them.
+/// Nodes in `(0, 1)` below the midpoint and weights of the Gauss-Legendre rule of 16 points. The other nodes mirror
+/// them.
 pub(crate) const NODES: [(f64, f64); 8] = [
     (0.005_299_532_504_175_031, 0.013_576_229_705_877_047),
     (0.027_712_488_463_383_7, 0.031_126_761_969_323_95),
@@ -16,17 +16,18 @@ pub(crate) const NODES: [(f64, f64); 8] = [
     (0.452_493_745_081_181_3, 0.094_725_305_227_534_25),
 ];
 
-/// Panels of the line are doubled up to this number.
+/// Maximum number of panels of the line; their number doubles until the integral agrees.
 const PANELS: u32 = 256;
-/// The integral must not change by more than this part of the integral of the absolute value, nor that by more than the
-/// second part of itself: across a pole the first may cancel.
+/// Largest change of the integral, as a share of the integral of the absolute value. The second number bounds the
+/// relative change of that integral: across a pole the first integral may cancel.
 const AGREEMENT: f64 = 1e-14;
 const GROWTH: f64 = 1e-6;
 
 /// The integral of `gradient` along the line from `from` to `to`.
 ///
 /// # Errors
-/// Whatever the gradient says; [`Fault::SingularConstraint`] if the integral does not converge, as across a pole.
+/// The [`Fault`] of the gradient; [`Fault::SingularConstraint`] if the integral does not converge, for example across
+/// a pole.
 pub fn line_integral<V: StateVector>(
     from: &[f64],
     to: &V,

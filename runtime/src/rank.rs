@@ -1,17 +1,18 @@
-//! Where constraint forms become dependent between the ends of a step.
+//! Detection of instants between the ends of a step at which the constraint forms become dependent.
 //!
-//! Rates are evaluated at a few places only, and a rank that drops at one instant is not seen from there: on either side the
-//! forms are as independent as can be. What gives it away is the plane that the forms span together with its orientation,
-//! the multivector `eta^1 ^ .. ^ eta^M`. It is continuous along the motion and vanishes where the forms are dependent. Where
-//! it vanishes to an odd order, however often it turns besides, it points the other way after it: two places between which
-//! it turned round are brought together until either the turn is seen to be a smooth one, or they are neighbours. Where it
-//! vanishes to an even order it comes back as it went, and the least of its size is sought instead.
+//! Rates are evaluated at a few places only, and a rank that drops at one instant is invisible from there: on either
+//! side the forms may be well independent. The test uses the plane that the forms span, with its orientation: the
+//! multivector `eta^1 ^ .. ^ eta^M`. It is continuous along the motion and vanishes where the forms are dependent.
+//! Where it vanishes to odd order it reverses its orientation, whatever rotation it makes besides. Two places between
+//! which it reverses are bracketed until the change proves to be a smooth rotation or the places are neighbouring
+//! numbers. Where it vanishes to even order it keeps its orientation, and a minimum of its size is searched for
+//! instead.
 
 use crate::contract::{Constrained, RankDrop};
 use crate::math::{abs, sqrt};
 
-/// Places at which a step is looked at. A minimum between two of them shows in the values at three: distances grow by no
-/// more than three times from one to the next.
+/// Places at which a step is examined. A minimum between two of them shows in the values at three: neighbouring
+/// distances differ by at most a factor of three.
 const PLACES: [f64; 11] = [
     0.0,
     1.0 / 256.0,
@@ -26,17 +27,18 @@ const PLACES: [f64; 11] = [
     1.0,
 ];
 
-/// A size that does not fall below this part of what it is nearby has no zero between: `((3 - 1)/(3 + 1))^2` for three
+/// A size that stays above this share of its values nearby has no zero between: `((3 - 1)/(3 + 1))^2` for three
 /// places with distances 1 and 3 and a zero of second order half way along the longer one, and a margin.
 const DIP: f64 = 0.5;
 
-/// What is left of a size where it vanishes.
+/// Relative size that counts as zero.
 const ZERO: f64 = 4.0 * f64::EPSILON;
 
-/// A turn that takes no more than this part of the time is one at an instant but for the rounding errors of the steps before.
+/// A rotation shorter than this share of the time counts as instantaneous, up to the rounding errors of the steps
+/// before.
 const INSTANT: f64 = 512.0 * f64::EPSILON;
 
-/// Steps of a search for a minimum: as many as bring a bracket down to neighbouring numbers.
+/// Steps of the search for a minimum: enough to reduce a bracket to neighbouring numbers.
 const NARROWINGS: u32 = 80;
 
 /// The plane of the forms at one place.
@@ -46,16 +48,16 @@ struct Plane<const M: usize, const N: usize> {
     theta: f64,
     /// The time there.
     t: f64,
-    /// How many forms there are.
+    /// Number of forms.
     count: usize,
     /// Its orthonormal basis; a row that depends on the earlier ones is 0.
     basis: [[f64; N]; M],
-    /// How long each form is without its components along the earlier ones.
+    /// Length of each form after its components along the earlier ones are removed.
     lengths: [f64; M],
 }
 
 impl<const M: usize, const N: usize> Plane<M, N> {
-    /// By the modified Gram-Schmidt method.
+    /// Computes the plane by the modified Gram-Schmidt method.
     fn of(theta: f64, t: f64, (mut forms, count): ([[f64; N]; M], usize)) -> Self {
         let mut lengths = [0.0; M];
         for a in 0..count {
@@ -81,7 +83,7 @@ impl<const M: usize, const N: usize> Plane<M, N> {
         }
     }
 
-    /// The cosine of the angle between the oriented planes: `det (Q_a Q_b^T)`.
+    /// Cosine of the angle between the oriented planes: `det (Q_a Q_b^T)`.
     fn cosine(&self, other: &Self) -> f64 {
         let mut products = [[0.0; M]; M];
         for (row, own) in products.iter_mut().zip(&self.basis[..self.count]) {
@@ -92,7 +94,7 @@ impl<const M: usize, const N: usize> Plane<M, N> {
         determinant(products, self.count)
     }
 
-    /// How large the multivector is, and each of its factors, beside those at another place.
+    /// Size of the multivector relative to that at another place.
     fn size_beside(&self, other: &Self) -> f64 {
         self.lengths_beside(other).product()
     }
@@ -107,7 +109,7 @@ fn inner<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// That of the first rows and columns, by elimination with the largest pivots.
+/// Determinant of the first rows and columns, by elimination with the largest pivots.
 fn determinant<const M: usize>(mut rows: [[f64; M]; M], count: usize) -> f64 {
     let mut product = 1.0;
     for k in 0..count {
@@ -133,7 +135,8 @@ fn determinant<const M: usize>(mut rows: [[f64; M]; M], count: usize) -> f64 {
     product
 }
 
-/// As [`System::rank_drop`](crate::System::rank_drop), of a system with up to M constraints on up to N coordinates.
+/// Implementation of [`System::rank_drop`](crate::System::rank_drop) for a system with up to M constraints on up to N
+/// coordinates.
 pub fn rank_drop<S: Constrained, const M: usize, const N: usize>(
     system: &S,
     motion: impl Fn(f64) -> (f64, S::State),
@@ -152,7 +155,7 @@ pub fn rank_drop<S: Constrained, const M: usize, const N: usize>(
     first_drop::<M, N>(plane, reach)
 }
 
-/// Rows of `columns` numbers, one behind the other, each in a row of its own.
+/// Splits consecutive rows of `columns` numbers into separate rows.
 fn apart<const M: usize, const N: usize>(forms: [[f64; N]; M], columns: usize) -> [[f64; N]; M] {
     let mut rows = [[0.0; N]; M];
     for (row, written) in rows
@@ -164,7 +167,7 @@ fn apart<const M: usize, const N: usize>(forms: [[f64; N]; M], columns: usize) -
     rows
 }
 
-/// The first drop among places up to `reach`.
+/// The first drop of the rank among places up to `reach`.
 fn first_drop<const M: usize, const N: usize>(
     plane: impl Fn(f64) -> Plane<M, N>,
     reach: f64,
@@ -180,7 +183,7 @@ fn first_drop<const M: usize, const N: usize>(
     };
     let size = |theta: f64| plane(theta).size_beside(&first);
     let mut last = first;
-    // Places with the sizes there: the last but one, and the last.
+    // Places with their sizes: the last but one, and the last.
     let (mut earlier, mut before) = (None, (0.0, 1.0));
     for (k, place) in PLACES.into_iter().enumerate().skip(1) {
         let next = plane(place * reach);
@@ -202,7 +205,7 @@ fn first_drop<const M: usize, const N: usize>(
     None
 }
 
-/// The neighbouring places between which the plane turns round, if it does so at one instant.
+/// Neighbouring places between which the plane reverses, if it reverses at one instant.
 fn turned_round<const M: usize, const N: usize>(
     plane: &impl Fn(f64) -> Plane<M, N>,
     mut before: Plane<M, N>,
@@ -218,7 +221,8 @@ fn turned_round<const M: usize, const N: usize>(
             return Some([before, after]);
         }
         let middle = plane(middle);
-        // NOTE: where the forms are dependent to the last digit the basis is 0, or noise that may lie across both sides.
+        // NOTE: where the forms are dependent to the last digit the basis is 0, or noise that may lie across both
+        // sides.
         if before.cosine(&middle) <= 0.0 {
             after = middle;
         } else if middle.cosine(&after) <= 0.0 {
@@ -230,8 +234,8 @@ fn turned_round<const M: usize, const N: usize>(
     }
 }
 
-/// The ends between which the last of these places shows that the size may vanish: around the one before it, or next to
-/// either end of the step.
+/// Bracket in which the last of these places shows a possible zero of the size: around the place before it, or next
+/// to either end of the step.
 fn dip(k: usize, [a, b, c]: [(f64, f64); 3]) -> Option<[f64; 2]> {
     let falls = |least: f64, most: f64| least < DIP * most;
     if b.1 <= a.1 && b.1 <= c.1 && falls(b.1, a.1.max(c.1)) {
@@ -244,7 +248,8 @@ fn dip(k: usize, [a, b, c]: [(f64, f64); 3]) -> Option<[f64; 2]> {
     (is_last && c.1 <= b.1 && falls(c.1, a.1)).then_some([b.0, c.0])
 }
 
-/// Where the size vanishes between these places, if its least is nothing beside the sizes there; by golden sections.
+/// Place between these two at which the size vanishes, if its minimum is negligible beside the sizes there; by
+/// golden-section search.
 fn vanishing(size: &impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> Option<f64> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let most = size(low).max(size(high));

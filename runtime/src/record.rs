@@ -1,4 +1,4 @@
-//! What a run shows while it goes on: stretches of smooth motion, and the impacts between them.
+//! Record of a run as it goes on: stretches of smooth motion, and the impacts between them.
 
 use core::ops::ControlFlow;
 
@@ -10,59 +10,59 @@ use crate::law::Law;
 /// One impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event<S> {
-    /// When.
+    /// Time of the impact.
     pub t: f64,
     /// Index of the surface.
     pub surface: usize,
     /// The law that was applied.
     pub law: Law,
-    /// The state just before.
+    /// State just before the impact.
     pub before: S,
-    /// The state just after.
+    /// State just after the impact.
     pub after: S,
-    /// Whether another surface was hit at the same time; such impacts are carried out in order of index.
+    /// True if another surface was hit at the same time. Simultaneous impacts are carried out in order of index.
     pub simultaneous: bool,
-    /// Whether the surface was touched so lightly that rounding, or the error of the integrator as far as it estimates one, may
-    /// have decided it.
+    /// True for a grazing impact: rounding, or the integrator's estimate of its error if it has one, may have decided
+    /// it.
     pub graze: bool,
 }
 
-/// The state comes to rest on a surface, or to slide along it, or leaves it.
+/// The state comes to rest on a surface, begins to slide along it, or leaves it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold<S> {
-    /// When.
+    /// Time.
     pub t: f64,
-    /// Index of the surface; where the motion slides between two modes, of the transition that was taken.
+    /// Index of the surface; for sliding between two modes, of the transition that was taken.
     pub surface: usize,
-    /// Where the motion slides, the transition that leads back: the state is of the mode that it leaves.
+    /// For sliding between two modes, the transition that leads back: the state belongs to the mode that it leaves.
     pub back: Option<usize>,
     /// The state, on the surface.
     pub state: S,
-    /// Whether the motion is held on the surface from now on, or no more.
+    /// True if the surface holds the motion from now on, false if it ceases to.
     pub begins: bool,
-    /// Where impacts on the surface accumulate, extrapolated from the last hops, if that is how it begins.
+    /// Time at which impacts on the surface accumulate, extrapolated from the last hops, if they lead to this hold.
     pub accumulation: Option<f64>,
 }
 
-/// A stretch of smooth motion, from one step's start to its end or to the impact that cuts it short.
+/// A stretch of smooth motion, from the start of a step to its end or to the impact that cuts it.
 pub struct Segment<'a, S> {
     pub(crate) t: [f64; 2],
     pub(crate) end: &'a S,
-    /// Length of the step the stretch is cut from, and the part of the step that the stretch is.
+    /// Length of the step from which the stretch is cut, and the fraction of the step that it covers.
     pub(crate) step: f64,
     pub(crate) part: f64,
     pub(crate) source: &'a mut dyn Interpolant<S>,
 }
 
-/// Where a segment has its states from.
+/// Source of the states of a segment.
 pub(crate) trait Interpolant<S> {
     /// The state at the start of the step.
     fn start(&self) -> &S;
 
-    /// The state at a part of the step.
+    /// State at a fraction `theta` of the step.
     fn at(&mut self, theta: f64) -> Result<S, Fault>;
 
-    /// Writes the coefficients of the dense output in powers of the part of the step, and returns the number of the last one.
+    /// Writes the coefficients of the dense output in powers of the fraction of the step, and returns the degree.
     fn powers(&mut self, coefficients: &mut [S; LENGTH]) -> Result<usize, Fault>;
 }
 
@@ -87,9 +87,9 @@ impl<S: Copy> Segment<'_, S> {
         self.end
     }
 
-    /// The state at time `t`, from the integrator's dense output; times outside count as the nearer end.
+    /// State at time `t`, from the integrator's dense output; times outside count as the nearer end.
     ///
-    /// Evaluations strictly inside make a step pay for its dense output, once.
+    /// The first evaluation strictly inside a step computes its dense output, once per step.
     ///
     /// # Errors
     /// The [`Fault`] of an extra stage of the dense output.
@@ -103,45 +103,45 @@ impl<S: Copy> Segment<'_, S> {
         Ok(*self.source.start())
     }
 
-    /// Length of the step that the stretch is cut from.
+    /// Length of the step from which the stretch is cut.
     pub(crate) fn step_length(&self) -> f64 {
         self.step
     }
 
-    /// The part of the step that the stretch is, in full precision.
+    /// Fraction of the step that the stretch covers, in full precision.
     pub(crate) fn part(&self) -> f64 {
         self.part
     }
 
-    /// Writes the coefficients of the dense output in powers of the part of the step, and returns the number of the last one.
+    /// Writes the coefficients of the dense output in powers of the fraction of the step, and returns the degree.
     pub(crate) fn powers(&mut self, coefficients: &mut [S; LENGTH]) -> Result<usize, Fault> {
         self.source.powers(coefficients)
     }
 }
 
-/// Watches a run. Every hook may ask to stop by returning [`ControlFlow::Break`]; the run then ends with
+/// Observes a run. Every hook may stop the run by returning [`ControlFlow::Break`]; it then ends with
 /// [`Outcome::Stopped`](crate::Outcome::Stopped).
 pub trait Observer<Sys: System> {
-    /// A stretch of smooth motion was made. Stretches follow each other without gap; impacts lie between them.
+    /// Called after a stretch of smooth motion. Stretches follow each other without gap; impacts lie between them.
     fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
         let _ = segment;
         ControlFlow::Continue(())
     }
 
-    /// An impact was carried out.
+    /// Called after an impact.
     fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
         let _ = event;
         ControlFlow::Continue(())
     }
 
-    /// A surface begins or ceases to hold the motion.
+    /// Called when a surface begins or ceases to hold the motion.
     fn hold(&mut self, hold: &Hold<Sys::State>) -> ControlFlow<()> {
         let _ = hold;
         ControlFlow::Continue(())
     }
 }
 
-/// Watches nothing.
+/// Observes nothing.
 impl<Sys: System> Observer<Sys> for () {}
 
 impl<Sys: System, O: Observer<Sys> + ?Sized> Observer<Sys> for &mut O {
@@ -158,7 +158,7 @@ impl<Sys: System, O: Observer<Sys> + ?Sized> Observer<Sys> for &mut O {
     }
 }
 
-/// Both watch, one after the other; the run ends where either asks for it.
+/// Both observe, one after the other; either may stop the run.
 impl<Sys: System, A: Observer<Sys>, B: Observer<Sys>> Observer<Sys> for (A, B) {
     fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
         self.0.step(segment)?;
@@ -202,7 +202,7 @@ impl<S: Copy, const CAP: usize> EventLog<S, CAP> {
         self.seen
     }
 
-    /// Number of impacts that found the log full.
+    /// Number of impacts dropped because the log was full.
     pub const fn dropped(&self) -> usize {
         self.seen.saturating_sub(CAP)
     }

@@ -1,17 +1,17 @@
-//! What a run gives.
+//! Result of a run.
 
 use crate::integrate::Counters;
 use crate::outcome::Outcome;
 
-/// A finished run: why and where it ended, in what state, and what it cost.
+/// A finished run: the reason, time and state of its end, and the work done.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Run<S> {
-    /// Why it ended.
+    /// Reason for the end.
     pub outcome: Outcome,
-    /// The time it ended at.
+    /// Time at the end.
     pub t: f64,
     /// The last good state, at `t`; after an impact at `t`, the state after it.
     pub state: S,
-    /// What it cost.
+    /// Work done.
     pub counters: Counters,
 }

@@ -1,4 +1,4 @@
-//! The driver: steps, cuts them where an effect proposes, lets the effects act, and ends in an [`Outcome`].
+//! The driver: makes steps, cuts them where an effect proposes, lets the effects act, and ends in an [`Outcome`].
 
 use core::ops::ControlFlow;
 
@@ -14,19 +14,19 @@ use crate::record::{Observer, Segment};
 use crate::run::Run;
 use crate::state::StateVector;
 
-/// Steps a run may make unless told otherwise: more than a day's work for most systems, less than for ever.
+/// Default limit of the number of steps of a run: more than a day's work for most systems.
 pub const STEP_BUDGET: u64 = 1_000_000_000;
 
-/// After an impact no step is longer than this many times the last flight, so that hops that shrink are followed
-/// by steps of their own size.
+/// Longest step after an impact, as a multiple of the last flight: shrinking hops are followed by steps of their own
+/// size.
 const FLIGHTS: f64 = 4.0;
 
-/// A step that passes a narrow force ends before it if that leaves this part of it at least; else it is made this many times as
-/// long.
+/// A step that passes a narrow force ends before it if at least this fraction of the step remains. Otherwise the step
+/// is repeated with this fraction of its length.
 const AHEAD: f64 = 1.0 / 8.0;
 
-/// A step whose dense output meets dependent constraints is made again as a step this many times as long: its stages lie
-/// elsewhere then.
+/// Factor of the length of a step that is repeated because its dense output meets dependent constraints. The stages
+/// of the shorter step lie elsewhere.
 const SHORTER: f64 = 0.3;
 
 /// A system with an integrator and effects.
@@ -39,7 +39,7 @@ pub struct Simulation<'a, Sys, Step, Effects> {
 }
 
 impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, Sys, Step, Effects> {
-    /// Puts the three together. [`Scene::effects`](crate::Scene::effects) are the effects a system declares.
+    /// Combines the three. [`Scene::effects`](crate::Scene::effects) are the effects that a system declares.
     pub fn new(system: &'a Sys, stepper: Step, effects: Effects) -> Self {
         Self {
             system,
@@ -56,7 +56,7 @@ impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, S
         self
     }
 
-    /// The step that the integrator kept in the last run; `None` if it chooses every step anew.
+    /// The step size of an integrator of fixed steps in the last run; `None` for step-size control.
     pub fn fixed_step(&self) -> Option<f64> {
         self.stepper.fixed_step()
     }
@@ -66,11 +66,11 @@ impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, S
         &mut self.effects
     }
 
-    /// Runs from `state` at `t0` to `t_end`, showing `observer` what happens.
+    /// Runs from `state` at `t0` to `t_end`, and reports the run to `observer`.
     ///
     /// # Errors
-    /// [`StartError`]: times that are not finite or run backwards, a parameter against its declaration. Whatever
-    /// happens after that is an [`Outcome`] with the last good state.
+    /// [`StartError`] for times that are not finite or run backwards, or a parameter that contradicts its
+    /// declaration. Any later failure is an [`Outcome`] with the last good state.
     pub fn run<O: Observer<Sys>>(
         &mut self,
         t0: f64,
@@ -95,7 +95,7 @@ impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, S
     }
 }
 
-/// Whether a run may begin.
+/// Checks that a run may begin with these times and parameters.
 pub(crate) fn check_start(system: &impl System, t0: f64, t_end: f64) -> Result<(), StartError> {
     if !(t0.is_finite() && t_end.is_finite() && t0 <= t_end) {
         return Err(StartError::Times { t0, t_end });
@@ -103,19 +103,20 @@ pub(crate) fn check_start(system: &impl System, t0: f64, t_end: f64) -> Result<(
     Ok(system.check_parameters()?)
 }
 
-/// Whether the energy of a state is a finite number.
+/// True if the energy of a state is a finite number.
 fn has_energy<Sys: System>(system: &Sys, t: f64, state: &Sys::State) -> bool {
     system.energy(t, state).is_ok_and(f64::is_finite)
 }
 
-/// How far a run has come.
+/// Progress of a run.
 pub(crate) struct Progress<S> {
-    /// Whether the integrator has made steps before.
+    /// True if the integrator has made steps before.
     is_begun: bool,
-    /// Whether the energy is looked at: it is finite at the start, and steps are of a size that knows no error.
+    /// True if the energy is checked: it is finite at the start, and the steps are of fixed size without an error
+    /// estimate.
     watches_energy: bool,
     pub(crate) t: f64,
-    /// The part of the time that `t` cannot hold: lengths of steps and flights add up without losing it.
+    /// Part of the time that `t` cannot hold: lengths of steps and flights add up without losing it.
     rest: f64,
     /// Time since the last cut, in full precision however short it is.
     flight: f64,
@@ -144,7 +145,7 @@ impl<S> Progress<S> {
         }
     }
 
-    /// Goes to a time.
+    /// Sets the time.
     fn set_time(&mut self, Instant { t, rest }: Instant) {
         (self.t, self.rest) = (t, rest);
     }
@@ -159,7 +160,7 @@ impl<S> Progress<S> {
     }
 }
 
-/// A run on its way.
+/// A run in progress.
 pub(crate) struct Course<'a, Sys: System, Step, Effects> {
     pub(crate) system: &'a Sys,
     pub(crate) stepper: &'a mut Step,
@@ -168,12 +169,12 @@ pub(crate) struct Course<'a, Sys: System, Step, Effects> {
     pub(crate) progress: &'a mut Progress<Sys::State>,
 }
 
-/// What comes after a step.
+/// Action after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Next {
-    /// Another.
+    /// Another step.
     Step,
-    /// Forces of effects begin or end: the integrator must be begun anew.
+    /// Forces of effects begin or end: restart the integrator.
     Forces,
 }
 
@@ -189,7 +190,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         Ok(())
     }
 
-    /// What comes before the first step.
+    /// Prepares the run before its first step.
     pub(crate) fn begin<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
         let Progress {
             t,
@@ -214,7 +215,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         self.effects.begin(&mut now, observer)
     }
 
-    /// Steps to the end, or to where the forces of the effects change.
+    /// Steps to the end, or to the next change of the effects' forces.
     fn drive<O: Observer<Sys>>(&mut self, t_end: f64, observer: &mut O) -> Result<(), Outcome> {
         self.set_off(t_end)?;
         let forces = self.effects.forces();
@@ -229,7 +230,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         Ok(())
     }
 
-    /// The integrator begins where the run is.
+    /// Starts or restarts the integrator at the present state of the run.
     pub(crate) fn set_off(&mut self, t_end: f64) -> Result<(), Outcome> {
         let now = self.progress.now();
         let Progress {
@@ -257,7 +258,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         }
     }
 
-    /// What effects make of the step that was made, of which some have these forces.
+    /// Applies the effects to the step that was made under these forces, and returns the next action.
     pub(crate) fn go_on<O: Observer<Sys>>(
         &mut self,
         forces: &Option<Effects::Forces>,
@@ -303,8 +304,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         Ok(Next::Step)
     }
 
-    /// Steps to the end, or to where the forces change. Whatever integrator was chosen, with [`Dop853`] at its
-    /// tolerance and its longest step: not every integrator takes forces that a system does not know.
+    /// Steps to the end, or to the next change of the forces, always with [`Dop853`] at the chosen integrator's
+    /// tolerance and longest step: not every integrator accepts forces that are not part of the system.
     #[inline(never)]
     pub(crate) fn drive_under<O: Observer<Sys>>(
         &mut self,
@@ -336,7 +337,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         end
     }
 
-    /// The step passes whole.
+    /// Accepts the whole step.
     #[inline(always)]
     fn pass<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
         if let Some(coordinate) = self.system.outside_chart(self.stepper.end_state()) {
@@ -366,7 +367,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         self.show(1.0, observer)
     }
 
-    /// The step ends at `theta`, where the effects act. Returns the longest step to go on with.
+    /// Ends the step at `theta`, where the effects act. Returns the longest step to go on with.
     #[inline(never)]
     fn cut<O: Observer<Sys>>(&mut self, theta: f64, observer: &mut O) -> Result<f64, Outcome> {
         if theta <= 0.0 {
@@ -415,7 +416,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         Ok(())
     }
 
-    /// Shows the motion from the start of the step to the present, which is at this part of it.
+    /// Reports to the observer the motion from the start of the step to the present, which is at this fraction of it.
     #[inline(always)]
     fn show<O: Observer<Sys>>(&mut self, part: f64, observer: &mut O) -> Result<(), Outcome> {
         let t = [self.stepper.t_start(), self.progress.t];
@@ -437,8 +438,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         }
     }
 
-    /// Makes the dense output ready. Whether a rate that it takes meets dependent constraints instead: then a shorter step
-    /// is to be made from the same start.
+    /// Prepares the dense output. Returns true if a rate in it meets dependent constraints: the step is then repeated
+    /// from the same start with a shorter length.
     fn shorten_where_dependent(&mut self) -> Result<bool, Outcome> {
         let now = self.progress.now();
         let Progress {
@@ -456,7 +457,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         }
     }
 
-    /// Whether the step passes a force that none of its stages has seen: then a shorter one is to be made from the same start.
+    /// Returns true if the step passes a force that none of its stages has seen: the step is then repeated from the
+    /// same start with a shorter length.
     #[inline(never)]
     fn shorten_where_narrow(&mut self) -> Result<bool, Outcome> {
         let mut view = StepView {
@@ -488,7 +490,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     fn keep_rank<O: Observer<Sys>>(&mut self, reach: f64, observer: &mut O) -> Result<(), Outcome> {
         let (start, end) = (self.stepper.t_start(), self.stepper.t_end());
         let stepper = &*self.stepper;
-        // At the ends the states that this step has in common with its neighbours, so that nothing passes between two steps.
+        // At both ends `motion` gives the states that this step shares with its neighbours, so that no gap is left
+        // between two steps.
         let motion = |theta: f64| match theta {
             0.0 => (start, *stepper.start_state()),
             1.0 => (end, *stepper.end_state()),
@@ -519,7 +522,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         }
     }
 
-    /// Returns the coordinate that leaves the chart first.
+    /// Goes to the end of the chart and returns the coordinate that leaves it first.
     fn go_to_end_of_chart<O: Observer<Sys>>(
         &mut self,
         theta: f64,

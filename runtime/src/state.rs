@@ -1,23 +1,24 @@
-//! Vectors of numbers on the stack: all that an integrator knows of a state.
+//! State vectors on the stack: the only view of a state that an integrator has.
 
 use core::fmt::Debug;
 
 use nalgebra::SVector;
 
-/// `f64` components, stored in a row on the stack.
+/// A vector of `f64` components, stored contiguously on the stack.
 ///
-/// Integrators work on these and on nothing else; what the components mean is the system's affair
-/// (see [`System`](crate::System)). Implemented by nalgebra's `SVector<f64, D>` for every `D`, zero included, whose number of
-/// components is part of its type. Other vectors have room for some numbers and use as many as the system says
+/// Integrators work on these alone; the system gives the components their meaning (see [`System`](crate::System)).
+/// Implemented by nalgebra's `SVector<f64, D>` for every `D`, zero included, whose number of components is part of
+/// its type. Other vectors have a fixed capacity and use as many components as the system declares
 /// ([`VectorField::state_len`](crate::VectorField::state_len) and its relatives).
 pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
-    /// The largest number of components; of a vector of a fixed size, their number.
+    /// Largest number of components; for a vector of fixed size, their number.
     const CAPACITY: usize;
 
-    /// A value beside each component.
+    /// Array with one value per component.
     type Each<T: Plain>: Plain + AsRef<[T]> + AsMut<[T]>;
 
-    /// The same value beside each of `count` components; where the type fixes their number, `count` is ignored.
+    /// An array with the same value for each of `count` components; where the type fixes their number, `count` is
+    /// ignored.
     fn each<T: Plain>(count: usize, value: T) -> Self::Each<T>;
 
     /// A vector of `count` zeros. Where the type fixes the number of components, `count` is ignored.
@@ -30,7 +31,7 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
         vector
     }
 
-    /// The vector of as many zeros.
+    /// A zero vector with the same number of components.
     #[inline(always)]
     fn zeroed(&self) -> Self {
         Self::zeros(self.count())
@@ -48,20 +49,20 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// The components in order, to be written.
     fn as_mut_slice(&mut self) -> &mut [f64];
 
-    /// All components that there is room for: those in use, then zeros. Their number is known while compiling, so that sums of
-    /// multiples, which keep the zeros, had better run over all of them.
+    /// All components within the capacity: those in use, then zeros. Their number is known at compile time, so sums
+    /// of multiples, which keep the zeros, are faster over all of them.
     #[inline(always)]
     fn padded(&self) -> &[f64] {
         self.as_slice()
     }
 
-    /// The same, to be written; what is behind those in use must stay 0.
+    /// Mutable form of [`StateVector::padded`]; the components behind those in use must stay 0.
     #[inline(always)]
     fn padded_mut(&mut self) -> &mut [f64] {
         self.as_mut_slice()
     }
 
-    /// Whether every component is finite.
+    /// True if every component is finite.
     fn is_finite(&self) -> bool {
         self.as_slice()
             .iter()
@@ -69,7 +70,7 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     }
 }
 
-/// What can stand beside a component: plain data.
+/// Plain data that may be stored per component.
 pub trait Plain: Copy + Debug + PartialEq + Send + Sync + 'static {}
 
 impl<T: Copy + Debug + PartialEq + Send + Sync + 'static> Plain for T {}

@@ -1,4 +1,4 @@
-//! The work along a run, by cause: what a balance of the energy is made of.
+//! Work along a run, by cause: the terms of an energy balance.
 
 use core::ops::ControlFlow;
 
@@ -8,11 +8,12 @@ use crate::quadrature::NODES;
 use crate::record::{Observer, Segment};
 use crate::state::StateVector;
 
-/// Watches a run and adds up the work of every cause in [`Powered::POWERS`]. Between impacts, and where no surface holds the
-/// motion, the energy changes by their sum, as exactly as the integrator follows the motion; impacts change it besides.
+/// Observes a run and adds up the work of every cause in [`Powered::POWERS`]. Between impacts, and where no surface
+/// holds the motion, the energy changes by their sum, up to the error of the integrator. Impacts change the energy
+/// besides.
 ///
-/// Powers are integrated over each stretch by Gauss and Legendre's rule of 16 points on the dense output, which every step pays
-/// for then. To watch with another observer as well, give a run the pair of them.
+/// Powers are integrated over each stretch by the Gauss-Legendre rule of 16 points on the dense output, which every
+/// step then computes. To observe with another observer as well, give a run the pair of them.
 #[derive(Debug, Clone, Copy)]
 pub struct Work<'a, Sys: Powered> {
     system: &'a Sys,
@@ -21,7 +22,7 @@ pub struct Work<'a, Sys: Powered> {
 }
 
 impl<'a, Sys: Powered> Work<'a, Sys> {
-    /// Nothing done yet by the forces on a system.
+    /// An observer of a system, with no work done yet.
     pub fn of(system: &'a Sys) -> Self {
         Self {
             system,
@@ -30,17 +31,17 @@ impl<'a, Sys: Powered> Work<'a, Sys> {
         }
     }
 
-    /// The work done so far, in the order of [`Powered::POWERS`].
+    /// Work done so far, in the order of [`Powered::POWERS`].
     pub fn done(&self) -> &Sys::Powers {
         &self.done
     }
 
-    /// The sum over all causes.
+    /// Sum over all causes.
     pub fn total(&self) -> f64 {
         self.done.as_slice().iter().sum()
     }
 
-    /// The fault that a power met; it stopped the run.
+    /// The fault of a power, if one stopped the run.
     pub fn fault(&self) -> Option<Fault> {
         self.fault
     }
