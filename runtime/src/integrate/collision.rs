@@ -1,14 +1,14 @@
-//! Impacts as a part of steps of one size: time and place are solved for by the method itself, and the step is completed
-//! to the end that it would have had.
+//! Variational collision integrator: an impact is part of a step of fixed size. The method itself solves for its time
+//! and place, and the step is completed to its original end.
 //!
 //! ```text
 //! S(q0, q1) = S_h'(q0, q) + S_(h-h')(q, q1),    q on the surface,    stationary in h' and in q along the surface
 //! ```
 //!
-//! Stationary in `q`, the momentum jumps along `dh` alone; stationary in `h'`, the discrete energy `-dS_h/dh` of the step
-//! that arrives is that of the step that departs. So the step across the impact has a generating function: it is
-//! symplectic. An exact reflection would keep the energy instead, which differs by the error of the method, and areas
-//! would change.
+//! Stationarity in `q` makes the momentum jump along `dh` alone. Stationarity in `h'` makes the discrete energy
+//! `-dS_h/dh` equal before and after the impact. The step across the impact therefore has a generating function and
+//! is symplectic. An exact reflection would keep the energy instead, which differs from the discrete energy by the
+//! error of the method, and would not preserve areas.
 //!
 //! # References
 //! R. Fetecau, J. Marsden, M. Ortiz, M. West, *Nonsmooth Lagrangian mechanics and variational collision integrators*,
@@ -22,16 +22,16 @@ use super::stepper::{EnergyAt, GapAt, Rebound, Stepper};
 use crate::contract::VectorField;
 use crate::state::StateVector;
 
-/// Iterations for the length of a step, and for the size of a jump; each gains several digits.
+/// Maximum number of iterations for the length of a step, and for the size of a jump. Each gains several digits.
 const LIMIT: u32 = 30;
 
-/// The length that is solved for lies within this part of the step of where dense output has it.
+/// The solved length lies within this fraction of the step of the length from dense output.
 const BESIDE: f64 = 1.0 / 16.0;
 
-/// Energies before and after an elastic impact agree to this part of them.
+/// Relative difference of the energies before and after an impact up to which it counts as elastic.
 const ELASTIC: f64 = 1e-12;
 
-/// Iterates `x -= correction(x)` while corrections decrease. `None` where they do not become small beside `unit`.
+/// Iterates `x -= correction(x)` while corrections decrease. `None` if they do not become small relative to `unit`.
 fn solve(mut x: f64, unit: f64, mut correction: impl FnMut(f64) -> Option<f64>) -> Option<f64> {
     let mut last = f64::INFINITY;
     for _ in 0..LIMIT {
@@ -95,7 +95,7 @@ pub(super) fn meet<F: VectorField, M: Advance<F>>(
     step.ends.t[1] = start.after(length);
     step.is_crowded |= whole.pending.is_some();
     (step.made, step.dense_ready) = (length, false);
-    // Where the step led to a point of the grid, the rest of it will.
+    // If the step led to a point of the grid, its remainder does as well.
     (step.has_met, step.target) = (true, whole.pending.or(Some(end)));
     step.prepare_dense(field, counters).is_ok() || {
         *step = whole;
@@ -103,16 +103,16 @@ pub(super) fn meet<F: VectorField, M: Advance<F>>(
     }
 }
 
-/// A piece of a step in two, of lengths whose sum is its own.
+/// A part of a step, made in two pieces whose lengths add up to its length.
 #[derive(Debug, Clone, Copy)]
 struct Pieces {
     lengths: [f64; 2],
-    /// The derivatives of both lengths by their sum.
+    /// Derivatives of both lengths by their sum.
     slopes: [f64; 2],
 }
 
 impl Pieces {
-    /// Up to an impact, `length` after the start of a step of length `span`.
+    /// The part up to an impact, `length` after the start of a step of length `span`.
     fn arriving(length: f64, span: f64) -> Self {
         let beta = 1.0 - length / span;
         let cube = beta * beta * beta;
@@ -124,7 +124,7 @@ impl Pieces {
         }
     }
 
-    /// From an impact to the end of a step, `length` later: the mirror image.
+    /// The part from an impact to the end of the step, `length` later: the mirror image of [`Pieces::arriving`].
     fn departing(length: f64, span: f64) -> Self {
         let Self {
             lengths: [long, back],
@@ -136,7 +136,7 @@ impl Pieces {
         }
     }
 
-    /// As it is: between two impacts in one step.
+    /// The part between two impacts in one step, in one piece.
     fn whole(length: f64) -> Self {
         Self {
             lengths: [length, 0.0],
@@ -144,7 +144,7 @@ impl Pieces {
         }
     }
 
-    /// Minus the derivative of the action by the sum of the lengths.
+    /// Negative derivative of the action by the sum of the lengths.
     fn energy<F: VectorField, M: Advance<F>>(
         &self,
         field: &mut Counted<'_, F>,
@@ -174,7 +174,7 @@ impl Pieces {
 }
 
 impl<S: StateVector, M: Method> FixedStep<S, M> {
-    /// The pieces of a step of this length after an impact.
+    /// Lengths of the pieces of a step of this length after an impact.
     pub(super) fn departing(&self, length: f64) -> [f64; 2] {
         self.departing_pieces(length).lengths
     }
@@ -187,7 +187,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         }
     }
 
-    /// The pieces of the step up to an impact. After another one in the same step nothing is left to mirror.
+    /// Pieces of the step up to an impact. After another impact in the same step there is nothing to mirror.
     fn arriving_pieces(&self, length: f64) -> Pieces {
         match M::KEEPS_ENERGY && self.pending.is_none() {
             true => Pieces::arriving(length, self.span),
@@ -196,7 +196,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     }
 }
 
-/// See [`Stepper::rebound`]. The jump is `scale` times that of the law, along the same direction.
+/// See [`Stepper::rebound`]. The jump is `scale` times the jump of the law, along the same direction.
 pub(super) fn rebound<F: VectorField, M: Advance<F>>(
     step: &FixedStep<F::State, M>,
     field: &F,
@@ -231,7 +231,8 @@ pub(super) fn rebound<F: VectorField, M: Advance<F>>(
     let mut after = *step;
     after.ends.place(now, Precise::new(arrived));
     let (h, _) = after.aim_within_run(step.step.min(rebound.limit));
-    // Where the next step does not end with this one, an impact at its end has the energy of the motion itself.
+    // Where the next step does not end with this one, the energy at an impact at its end is that of the motion
+    // itself.
     if after.target.map(|target| target.since(now)) != Some(h) {
         return None;
     }
@@ -252,8 +253,8 @@ pub(super) fn rebound<F: VectorField, M: Advance<F>>(
     ((scale - 1.0).abs() < BESIDE).then(|| jump(scale))
 }
 
-/// The derivative of the energy by the size of a jump, at its end; the last state is half way. `None` where the jump moves
-/// the positions, changes the energy, or is none.
+/// Derivative of the energy by the size of a jump, at the end of the jump; the last state lies half way. `None` if
+/// the jump has size 0, moves the positions or changes the energy.
 fn elastic_slope<S: StateVector>(
     rebound: &Rebound<'_, S>,
     t: f64,
@@ -263,7 +264,7 @@ fn elastic_slope<S: StateVector>(
     let [before, after, between] =
         [arrived, struck, middle].map(|state| (rebound.energy)(t, state).ok());
     let (before, after, between) = (before?, after?, between?);
-    // The energy is a parabola along the jump, and the same at both ends.
+    // The energy is a parabola along the jump, and equal at both ends.
     let slope = 4.0 * (before - between);
     let least = ELASTIC * slope.abs().max(before.abs());
     let stays = arrived.as_slice()[..start] == struck.as_slice()[..start];

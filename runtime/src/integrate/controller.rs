@@ -1,4 +1,4 @@
-//! Step size control (Hairer, Norsett, Wanner I, II.4; Gustafsson's PI controller).
+//! Step-size control (Hairer, Norsett, Wanner I, II.4; Gustafsson's PI controller).
 
 use core::fmt;
 
@@ -11,9 +11,9 @@ use crate::state::StateVector;
 /// Constants of the controller of one scheme.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Control {
-    /// Order of the error estimate plus one: the error is taken to grow like `h` to this power.
+    /// Order of the error estimate plus one: the error is modelled as proportional to `h` to this power.
     pub(super) power: f64,
-    /// Gustafsson's `beta`: how much the last error counts. 0 gives the classical controller.
+    /// Gustafsson's `beta`, the exponent of the last error. 0 gives the classical controller.
     pub(super) beta: f64,
     /// Least factor between successive step sizes.
     pub(super) shrink: f64,
@@ -21,16 +21,16 @@ pub struct Control {
     pub(super) grow: f64,
 }
 
-/// Part of the predicted step size that is taken, so that most trials pass.
+/// Safety factor of the predicted step size, so that most trials pass.
 const SAFETY: f64 = 0.9;
 
-/// Least error the controller remembers: below it the last error says nothing about the next.
+/// Least error in the controller's memory: below it the last error does not predict the next.
 const LEAST_ERROR: f64 = 1e-4;
 
-/// Factor after a trial that has no error estimate at all: a fault, or numbers that are not finite.
+/// Factor after a trial without an error estimate: a fault, or numbers that are not finite.
 pub(crate) const RETREAT: f64 = 0.25;
 
-/// What the controller remembers between steps.
+/// Memory of the controller between steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Memory {
     last_error: f64,
@@ -38,7 +38,7 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// Nothing known yet.
+    /// Memory before the first step.
     pub(super) const fn new() -> Self {
         Self {
             last_error: LEAST_ERROR,
@@ -46,14 +46,14 @@ impl Memory {
         }
     }
 
-    /// The factor for the next step size after a step with this error (at most 1) was accepted.
+    /// Factor for the next step size after a step with this error (at most 1) was accepted.
     #[inline]
     pub(super) fn accept(&mut self, control: &Control, error: f64) -> f64 {
         let mut predicted = SAFETY * power(error, -(1.0 / control.power - 0.75 * control.beta));
         if control.beta != 0.0 {
             predicted *= power(self.last_error, control.beta);
         }
-        // After a rejection the step does not grow at once, or it would be rejected again.
+        // The step does not grow right after a rejection, or it would be rejected again.
         let grow = if self.rejected { 1.0 } else { control.grow };
         *self = Self {
             last_error: error.max(LEAST_ERROR),
@@ -62,21 +62,21 @@ impl Memory {
         predicted.clamp(control.shrink, grow)
     }
 
-    /// The factor for the next trial after one with this error (more than 1) was rejected.
+    /// Factor for the next trial after one with this error (more than 1) was rejected.
     #[inline]
     pub(super) fn reject(&mut self, control: &Control, error: f64) -> f64 {
         self.rejected = true;
         (SAFETY * power(error, -1.0 / control.power)).clamp(control.shrink, 1.0)
     }
 
-    /// The factor for the next trial after one that has no error estimate.
+    /// Factor for the next trial after one without an error estimate.
     pub(super) fn retreat(&mut self) -> f64 {
         self.rejected = true;
         RETREAT
     }
 }
 
-/// `x^e`, where `x = 0` with negative `e` means: as large as you like.
+/// `x^e`; infinite for `x = 0` with negative `e`.
 #[inline]
 fn power(x: f64, e: f64) -> f64 {
     if x > 0.0 {
@@ -86,7 +86,7 @@ fn power(x: f64, e: f64) -> f64 {
     }
 }
 
-/// Error weights: component `i` may err by `absolute * scale_i + relative * size_i`.
+/// Error weights: the error allowed in component `i` is `absolute * scale_i + relative * size_i`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weights<S> {
     relative: f64,
@@ -94,8 +94,7 @@ pub(super) struct Weights<S> {
 }
 
 impl<S: StateVector> Weights<S> {
-    /// The weights of a tolerance where the system has this scale. A scale that is not a positive finite number
-    /// counts as 1.
+    /// Weights of a tolerance at this scale of the system. A scale that is not a positive finite number counts as 1.
     pub(super) fn new(tolerance: Tolerance, scale: &S) -> Self {
         let mut floor = *scale;
         for value in floor.as_mut_slice() {
@@ -115,32 +114,32 @@ impl<S: StateVector> Weights<S> {
             + self.relative * y0.as_slice()[i].abs().max(y1.as_slice()[i].abs())
     }
 
-    /// The largest of `value(i)` over the error allowed at a state.
+    /// Maximum over `i` of `value(i)` divided by the error allowed at a state.
     pub(super) fn norm(&self, at: &S, value: impl Fn(usize) -> f64) -> f64 {
         let ratios = (0..at.count()).map(|i| (value(i) / self.allowed(i, at, at)).abs());
         ratios.fold(0.0, larger)
     }
 }
 
-/// Shortest step that is chosen at a time: sixteen units in its last place. A tolerance relative to a component that is 0, as
-/// at a wall, would ask for steps of no length.
+/// Shortest step that is chosen at a time: sixteen units in its last place. A tolerance relative to a component that
+/// is 0, for example at a wall, would ask for steps of length 0.
 pub(crate) fn least_step(t: f64) -> f64 {
     (16.0 * f64::EPSILON * t.abs()).max(f64::MIN_POSITIVE)
 }
 
-/// Shortest step that one that failed is shortened to: a 64th of a unit in the last place of the time. Times are kept in two
+/// Lower limit for shortening a failed step: a 64th of a unit in the last place of the time. Times are kept in two
 /// parts, so that such a step moves them.
 pub(crate) fn least_trial(t: f64) -> f64 {
     (f64::EPSILON / 64.0 * t.abs()).max(f64::MIN_POSITIVE)
 }
 
-/// Steps longer than this many units in the last place of the time are differences of two rounded times.
+/// Relative length above which a step is computed as the difference of two rounded times.
 const LONG: f64 = 1024.0 * f64::EPSILON;
 
-/// The length and the end of a step of about `h`: `t_end` itself when a hundredth more would reach it.
+/// Length and end of a step of about `h`. The end is `t_end` itself if a step one percent longer would reach it.
 ///
-/// What the time lacks stays as it is in a step that is long beside the last place of the time. Its length has no digits
-/// below that place: those of `h` depend on units, which no run may.
+/// A step that is long relative to the last place of the time keeps the low part of the time. Its length has no
+/// digits below that place: those of `h` depend on the units, and a run must not.
 #[inline(always)]
 pub(crate) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
     let end = Instant::new(t_end);
@@ -155,10 +154,10 @@ pub(crate) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
     (t - start.t, Instant { t, ..start })
 }
 
-/// By how much a step may exceed the longest that is allowed: rounding of its ends.
+/// Factor by which a step may exceed the largest allowed one: rounding of its ends.
 const ROUNDED: f64 = 1.0 + 1e-9;
 
-/// As [`landing`], but in two steps where the one that reaches `t_end` is longer than `max_step`.
+/// Same as [`landing`], but in two steps where the one that reaches `t_end` is longer than `max_step`.
 #[inline(always)]
 pub(crate) fn landing_within(max_step: f64, start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
     let (made, arrival) = landing(start, h, t_end);
@@ -168,7 +167,7 @@ pub(crate) fn landing_within(max_step: f64, start: Instant, h: f64, t_end: f64) 
     (made, arrival)
 }
 
-/// A largest step that is not a positive number.
+/// Error for a largest step that is not a positive number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaxStepError {
     /// The refused value.
@@ -187,7 +186,7 @@ impl fmt::Display for MaxStepError {
 
 impl core::error::Error for MaxStepError {}
 
-/// The largest step, if it is one.
+/// Returns the largest step if it is positive.
 pub(super) fn check_max_step(value: f64) -> Result<f64, MaxStepError> {
     match value > 0.0 {
         true => Ok(value),
@@ -200,10 +199,11 @@ pub(super) fn not_finite(components: &[f64]) -> Option<usize> {
     components.iter().position(|value| !value.is_finite())
 }
 
-/// Size of the first step, by comparing an explicit Euler step with the rate at its end (Hairer, Norsett, Wanner
-/// I, II.4). `rate_after(h)` writes the rate after an Euler step of `h`; its failure leaves the cautious guess.
+/// Size of the first step, from the difference between the rates at both ends of an explicit Euler step (Hairer,
+/// Norsett, Wanner I, II.4). `rate_after(h)` writes the rate after an Euler step of `h`; where it fails, the cautious
+/// first guess is returned.
 ///
-/// The book's fallbacks are absolute numbers; here they are parts of the span, and time is measured in units of
+/// The book's fallbacks are absolute numbers. Here they are fractions of the span, and time is measured in units of
 /// `|y| / |y'|`, so that the choice does not depend on units.
 pub(super) fn first_step<S: StateVector>(
     power: f64,

@@ -7,9 +7,9 @@ use crate::state::StateVector;
 /// The state inside a step: with `s = 1 - theta`,
 /// `y(theta) = base + theta (c_0 + theta (c_1 + s (c_2 + s (c_3 + theta (c_4 + s (c_5 + ..))))))`.
 ///
-/// The form of Hairer's codes with the first two terms in powers of `theta`: it keeps its relative accuracy for `theta` near 0,
-/// where roots just after an impact lie, and of a step many times as long as the part that is looked at. There the ends
-/// differ by far more than the motion has changed.
+/// The form of Hairer's codes with the first two terms in powers of `theta`. It keeps its relative accuracy for
+/// `theta` near 0, where roots just after an impact lie, also if the step is many times as long as the part in use.
+/// In such a step its ends differ by far more than the motion has changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polynomial<S, const K: usize> {
     /// The state at `theta = 0`.
@@ -18,22 +18,22 @@ pub struct Polynomial<S, const K: usize> {
     pub(super) coefficients: [S; K],
 }
 
-/// What a component is to do at both ends of a step.
+/// Conditions on a component at both ends of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cubic {
     /// `h` times the rate at the start.
     pub(super) rate: f64,
-    /// What the end differs by from where that rate alone would lead.
+    /// Difference between the end of the step and an Euler step from its start.
     pub(super) bend: f64,
-    /// What `h` times the rate gains until the end.
+    /// Change of `h` times the rate over the step.
     pub(super) gained: f64,
-    /// What rounding errors may make of `bend`. Where the cubic is a parabola but for these, the parabola is taken: its bend is
-    /// half of what is gained, which errs far less than a sum with large weights does.
+    /// Bound of the rounding errors of `bend`. Where the cubic differs from a parabola by less than these, the
+    /// parabola is taken: its bend is half of `gained`, and has far smaller errors than a sum with large weights.
     pub(super) rounding: f64,
 }
 
 impl<S: StateVector, const K: usize> Polynomial<S, K> {
-    /// The polynomial 0, of states with as many components as this one.
+    /// The zero polynomial, for states with as many components as `like`.
     pub(super) fn zero(like: &S) -> Self {
         Self {
             base: Precise::new(like.zeroed()),
@@ -41,7 +41,7 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         }
     }
 
-    /// Sets the part every scheme shares, in component `i`.
+    /// Sets the base and the first three coefficients of component `i`, which every scheme shares.
     #[inline(always)]
     pub(super) fn set_cubic(&mut self, i: usize, start: &Precise<S>, cubic: Cubic) {
         let twist = 2.0 * cubic.bend - cubic.gained;
@@ -57,17 +57,18 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         }
     }
 
-    /// What `h` times the rate of a stage at a node gains over that at the start, component `i`, without that of the cubic.
+    /// Change of `h` times the rate between the start and the stage at a node, component `i`, minus the change of the
+    /// cubic.
     ///
-    /// The weights of the higher coefficients do not see the rates of a cubic, but for the weights' rounding errors, which
-    /// are the same in every step: unless the cubic's part is taken out they add up over a run.
+    /// The weights of the higher coefficients annihilate the rates of a cubic up to the weights' rounding errors.
+    /// These are the same in every step and would add up over a run, so the cubic's part is subtracted first.
     #[inline(always)]
     pub(super) fn beside_cubic(&self, node: f64, gained: f64, i: usize) -> f64 {
         let at = |k: usize| self.coefficients[k].as_slice()[i];
         gained - node * (2.0 * at(1) + (2.0 - 3.0 * node) * at(2))
     }
 
-    /// The coefficients in powers of `theta`; returns the number of the last one.
+    /// Writes the coefficients in powers of `theta`; returns the degree.
     pub(super) fn powers(&self, powers: &mut [S; LENGTH]) -> usize {
         powers[..=K].fill(self.base.value.zeroed());
         for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
@@ -98,7 +99,7 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         self.precisely_at(theta).value
     }
 
-    /// The state at `theta`, and what it is rounded off.
+    /// The state at `theta`, with its rounding error.
     #[inline(always)]
     pub(super) fn precisely_at(&self, theta: f64) -> Precise<S> {
         let mut value = self.base.value.zeroed();
@@ -113,23 +114,23 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
     }
 }
 
-/// Whether coefficient `k` and those above it are multiplied by `theta`, not by `1 - theta`.
+/// True if coefficient `k` and those above it are multiplied by `theta`, false if by `1 - theta`.
 #[inline(always)]
 fn is_along(k: usize) -> bool {
     matches!(k, 0 | 1) || (k > 3 && k.is_multiple_of(2))
 }
 
-/// Where the slopes inside are prescribed by [`Polynomial::set_inner`]: here and at one minus it, the outer nodes of
-/// Gauss's rule of three points. Lobatto's, where `a (1 - a) = 1/5`, would not determine the quintic.
+/// Place of the slopes prescribed by [`Polynomial::set_inner`], here and at `1 - INNER`: the outer nodes of the
+/// three-point Gauss rule. The Lobatto nodes, where `a (1 - a) = 1/5`, would not determine the quintic.
 pub(super) const INNER: f64 = 0.112_701_665_379_258_31;
 
 impl<S: StateVector> Polynomial<S, 5> {
-    /// Raises the cubic through the ends to the quintic that has `h` times these rates for slopes at [`INNER`] and at
-    /// `1 - INNER`.
+    /// Raises the cubic through the ends to the quintic with slopes `h` times these rates at [`INNER`] and at `1 -
+    /// INNER`.
     pub(super) fn set_inner(&mut self, h: f64, rates: [&S; 2]) {
         const A: f64 = INNER;
         const B: f64 = 1.0 - INNER;
-        // The slopes of theta^2 s^2 and theta^3 s^2 at A; at B that of the first has the opposite sign.
+        // Slopes of theta^2 s^2 and theta^3 s^2 at A; at B the first has the opposite sign.
         const FOURTH: f64 = 2.0 * A * B * (1.0 - 2.0 * A);
         const FIFTH: [f64; 2] = [A * A * B * (3.0 - 5.0 * A), B * B * A * (3.0 - 5.0 * B)];
         for i in 0..self.base.value.count() {

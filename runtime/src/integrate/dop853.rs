@@ -1,7 +1,7 @@
-//! Dormand and Prince, order 8 with errors of orders 5 and 3, seventh-order dense output.
+//! Dormand-Prince pair of order 8 with error estimates of orders 5 and 3, and seventh-order dense output.
 //!
-//! The three extra stages of dense output are evaluated only in steps that ask for it.
-//! (Hairer, Norsett, Wanner I, II.5, II.6; coefficients in the neighbouring table.)
+//! Only steps that need dense output evaluate its three extra stages. (Hairer, Norsett, Wanner I, II.5, II.6;
+//! coefficients in the neighbouring table.)
 
 use super::controller::Control;
 use super::dense::{Cubic, Polynomial};
@@ -66,7 +66,7 @@ impl Scheme for Dop853Scheme {
         Ok(())
     }
 
-    /// `|h| e5^2 / sqrt(n (e5^2 + e3^2 / 100))`: of order 8 although the estimates are of orders 5 and 3.
+    /// `|h| e5^2 / sqrt(n (e5^2 + e3^2 / 100))`: an estimate of order 8 from estimates of orders 5 and 3.
     #[inline(always)]
     fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64 {
         let (mut fifth, mut third) = (0.0, 0.0);
@@ -107,7 +107,7 @@ impl Scheme for Dop853Scheme {
     }
 }
 
-/// The dense output from differences of all stages, that of the rate at the end too.
+/// Dense output from the differences of all stages, including the rate at the end.
 #[inline(always)]
 fn fill_dense<F: VectorField>(
     field: &mut Counted<'_, F>,

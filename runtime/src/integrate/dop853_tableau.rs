@@ -111,8 +111,8 @@ pub(super) const A11: [Term; 9] = [
     (10, 0.6433927460157636),
 ];
 
-/// Weights of the eighth-order solution, each within two units in its last place, so that `sum b_i c_i` is 1/2 to a small part
-/// of a rounding error. What it errs by shifts every step under constant forces alike.
+/// Weights of the eighth-order solution, each within two units in its last place, chosen so that `sum b_i c_i` is 1/2
+/// to a small fraction of a rounding error. Its deviation would shift every step under constant forces alike.
 pub(super) const B: [Term; 8] = [
     (0, 0.054293734116568765),
     (5, 4.450312892752411),
@@ -160,7 +160,7 @@ pub(super) const A15: [Term; 8] = [
     (14, -9.15095847217987),
 ];
 
-/// Eighth-order weights minus those of the embedded fifth-order solution.
+/// Error estimate: eighth-order weights minus those of the embedded fifth-order solution.
 pub(super) const E5: [Term; 8] = [
     (0, 0.01312004499419488),
     (5, -1.2251564463762044),
@@ -172,7 +172,7 @@ pub(super) const E5: [Term; 8] = [
     (11, -0.022355307863886294),
 ];
 
-/// Eighth-order weights minus those of the embedded third-order solution.
+/// Error estimate: eighth-order weights minus those of the embedded third-order solution.
 pub(super) const E3: [Term; 8] = [
     (0, -0.18980075407240762),
     (5, 4.450312892752409),

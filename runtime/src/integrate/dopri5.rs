@@ -1,4 +1,5 @@
-//! Dormand and Prince, order 5 with an error of order 4, fourth-order dense output from the stages of the step.
+//! Dormand-Prince pair of order 5 with an error estimate of order 4, and fourth-order dense output from the stages of
+//! the step.
 //!
 //! J. R. Dormand, P. J. Prince, A family of embedded Runge-Kutta formulae, 1980; dense output by L. F. Shampine
 //! (Hairer, Norsett, Wanner I, II.5, II.6).
@@ -44,8 +45,9 @@ const A5: [Term; 5] = [
     (4, -5103.0 / 18656.0),
 ];
 
-/// Weights of the fifth-order solution: 500/1113, 125/192, -2187/6784 and 11/84, each within a few units in its last place, so
-/// that `sum b_i c_i` is 1/2 to 1/400 of a rounding error. What it errs by shifts every step under constant forces alike.
+/// Weights of the fifth-order solution: 500/1113, 125/192, -2187/6784 and 11/84, each within a few units in its last
+/// place, chosen so that `sum b_i c_i` is 1/2 to 1/400 of a rounding error. Its deviation would shift every step
+/// under constant forces alike.
 const B: [Term; 5] = [
     (0, 35.0 / 384.0),
     (2, 0.449_236_298_292_902_57),
@@ -54,7 +56,7 @@ const B: [Term; 5] = [
     (5, 0.130_952_380_952_380_9),
 ];
 
-/// Fifth-order weights minus those of the fourth-order solution, which uses the rate at the end too.
+/// Error estimate: fifth-order weights minus those of the fourth-order solution, which also uses the rate at the end.
 const E: [Term; 6] = [
     (0, 71.0 / 57600.0),
     (2, -71.0 / 16695.0),
@@ -64,7 +66,7 @@ const E: [Term; 6] = [
     (6, E_LAST),
 ];
 
-/// Its entry for the rate at the end.
+/// Entry of [`E`] for the rate at the end.
 const E_LAST: f64 = -1.0 / 40.0;
 
 /// The fourth coefficient of dense output; the others follow from the ends.
@@ -120,7 +122,7 @@ impl Scheme for DormandPrince5Scheme {
     fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64 {
         let mut largest = 0.0;
         for i in 0..stages[0].count() {
-            // The last stage is a rate; the entries add up to 0.
+            // The last stage is a rate, not a difference; the entries add up to 0.
             let ending = stages[Self::LAST].as_slice()[i] - stages[0].as_slice()[i];
             let error = sum(stages, &E[..5], i) + E_LAST * ending;
             let ratio = h * error / allowed(i);

@@ -1,7 +1,7 @@
-//! The step of an embedded Runge-Kutta pair: trial, error, acceptance or another trial.
+//! Step of an embedded Runge-Kutta pair: trial, error estimate, acceptance or another trial.
 //!
-//! First-same-as-last: the rate at the end of an accepted step is the first stage of the next one. Where the error
-//! estimate does without it, it is evaluated only once the error has passed.
+//! First-same-as-last: the rate at the end of an accepted step is the first stage of the next one. If the error
+//! estimate does not use it, it is evaluated only after the error has passed.
 
 use super::controller::{
     Control, MaxStepError, Memory, Weights, check_max_step, first_step, landing_within, least_step,
@@ -19,14 +19,14 @@ use crate::error::Fault;
 use crate::jet::LENGTH;
 use crate::state::StateVector;
 
-/// The vector field with its evaluations counted.
+/// A vector field that counts its evaluations.
 pub struct Counted<'a, F> {
     pub(super) field: &'a F,
     pub(super) counters: &'a mut Counters,
 }
 
 impl<F: VectorField> Counted<'_, F> {
-    /// One evaluation.
+    /// Evaluates the rate and counts the evaluation.
     #[inline(always)]
     pub(super) fn rate(
         &mut self,
@@ -39,7 +39,7 @@ impl<F: VectorField> Counted<'_, F> {
     }
 }
 
-/// One step of a scheme: where it starts, and how long it is.
+/// One step of a scheme: its start and its length.
 #[derive(Debug, Clone, Copy)]
 pub struct Span<'a, S> {
     pub(super) t: f64,
@@ -49,8 +49,9 @@ pub struct Span<'a, S> {
 }
 
 impl<S: StateVector> Span<'_, S> {
-    /// What the end differs by from where the rate at the start alone would lead, component `i`. `weights` are those of the
-    /// end. Computed from the stages, which tell it far better than the ends do; what the end was moved by since is added.
+    /// Difference between the end of the step and an Euler step from its start, component `i`. `weights` are those of
+    /// the end. It is computed from the stages, far more accurately than from the ends; a later displacement of the
+    /// end is added.
     #[inline(always)]
     pub(super) fn bend(&self, stages: &[S], weights: &[Term], i: usize) -> f64 {
         let differences = sum(stages, weights, i);
@@ -60,7 +61,8 @@ impl<S: StateVector> Span<'_, S> {
     }
 }
 
-/// The coefficients of an embedded pair, and what is computed from them. Implemented by the schemes here.
+/// The coefficients of an embedded pair and the functions computed from them. Implemented by the schemes of this
+/// crate.
 pub trait Scheme {
     /// See [`Stepper::name`].
     const NAME: &'static str;
@@ -70,21 +72,21 @@ pub trait Scheme {
     const DENSE_ORDER: usize;
     /// Index of the stage that is the rate at the end of the step.
     const LAST: usize;
-    /// Whether the error estimate uses the stage [`Scheme::LAST`].
+    /// True if the error estimate uses the stage [`Scheme::LAST`].
     const ERROR_TAKES_LAST: bool;
-    /// Constants of the step size control.
+    /// Constants of the step-size control.
     #[doc(hidden)]
     const CONTROL: Control;
 
-    /// Room for the stages.
+    /// Storage for the stages.
     type Stages<S: StateVector>: Copy + AsRef<[S]> + AsMut<[S]>;
-    /// The dense output of a step.
+    /// Dense output of a step.
     type Dense<S: StateVector>: Copy;
 
-    /// Stages of zeros, with as many components as this state has.
+    /// Zero stages, with as many components as `like`.
     fn stages<S: StateVector>(like: &S) -> Self::Stages<S>;
 
-    /// Dense output that is zero, of states with as many components as this one.
+    /// Zero dense output, for states with as many components as `like`.
     fn dense<S: StateVector>(like: &S) -> Self::Dense<S>;
 
     /// Weights of the solution at the end.
@@ -95,8 +97,8 @@ pub trait Scheme {
     #[doc(hidden)]
     const NODES: &'static [f64];
 
-    /// From the first stage, all others but [`Scheme::LAST`], with room for a state. The first stage and the last hold rates,
-    /// the others what their rates differ by from that of the first.
+    /// Computes all stages after the first except [`Scheme::LAST`]; takes storage for a state. The first and the last
+    /// stage hold rates, the others hold the differences of their rates from that of the first.
     #[doc(hidden)]
     fn advance<F: VectorField>(
         field: &mut Counted<'_, F>,
@@ -107,11 +109,11 @@ pub trait Scheme {
         inside: &mut F::State,
     ) -> Result<(), Fault>;
 
-    /// The error of the step over what is allowed. `allowed(i)` is the error allowed in component `i`.
+    /// Error of the step divided by the allowed error. `allowed(i)` is the error allowed in component `i`.
     #[doc(hidden)]
     fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64;
 
-    /// The dense output, after the extra stages it takes.
+    /// Builds the dense output, after evaluating the extra stages that it needs.
     #[doc(hidden)]
     fn build_dense<F: VectorField>(
         field: &mut Counted<'_, F>,
@@ -120,16 +122,16 @@ pub trait Scheme {
         dense: &mut Self::Dense<F::State>,
     ) -> Result<(), Fault>;
 
-    /// The coefficients of the dense output in powers of `theta`, as [`Stepper::powers`] gives them.
+    /// Writes the coefficients of the dense output in powers of `theta`, as specified in [`Stepper::powers`].
     #[doc(hidden)]
     fn dense_powers<S: StateVector>(dense: &Self::Dense<S>, powers: &mut [S; LENGTH]) -> usize;
 
-    /// The state at `theta`, and what it is rounded off.
+    /// The state at `theta`, with its rounding error.
     #[doc(hidden)]
     fn dense_at<S: StateVector>(dense: &Self::Dense<S>, theta: f64) -> Precise<S>;
 }
 
-/// An embedded pair at work.
+/// Integrator of an embedded pair.
 #[derive(Debug, Clone, Copy)]
 pub struct Embedded<S: StateVector, M: Scheme> {
     tolerance: Tolerance,
@@ -139,7 +141,7 @@ pub struct Embedded<S: StateVector, M: Scheme> {
     memory: Memory,
     /// The step size for the next trial.
     next: f64,
-    /// The error of the last step over what is allowed.
+    /// Error of the last step divided by the allowed error.
     error: f64,
     ends: Ends<S>,
     stages: M::Stages<S>,
@@ -166,24 +168,24 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         }
     }
 
-    /// With no step longer than `max_step`, in units of time; infinity is no limit. A short force, such as a blow between two
-    /// steps, is seen if it lasts longer than this.
+    /// Limits steps to `max_step`, in units of time; infinity is no limit. A short force, for example a blow between
+    /// two steps, is detected if it lasts longer than this.
     ///
     /// # Errors
-    /// [`MaxStepError`] unless `max_step` is positive.
+    /// [`MaxStepError`] if `max_step` is not positive.
     pub fn with_max_step(mut self, max_step: f64) -> Result<Self, MaxStepError> {
         self.max_step = check_max_step(max_step)?;
         Ok(self)
     }
 
-    /// With this size for the first trial instead of the automatic one. Anything but a positive number is ignored.
+    /// Sets the size of the first trial step instead of the automatic one. Anything but a positive number is ignored.
     #[must_use]
     pub fn with_first_step(mut self, first_step: f64) -> Self {
         self.first_step = (first_step > 0.0 && first_step.is_finite()).then_some(first_step);
         self
     }
 
-    /// Takes `(now, state)` for the end of a step, as a start does.
+    /// Sets `(now, state)` as the end of a step, for a start.
     fn place<F: VectorField<State = S>>(
         &mut self,
         field: &mut Counted<'_, F>,
@@ -212,7 +214,8 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         self.dense_ready = false;
     }
 
-    /// One trial of `h`: the error over what is allowed, at most 1 if and only if the step is good.
+    /// One trial of `h`. Returns the error divided by the allowed error; the step is good if and only if this is at
+    /// most 1.
     #[inline(always)]
     fn attempt<F: VectorField<State = S>>(
         &mut self,
@@ -253,7 +256,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         }
     }
 
-    /// Puts the last good state back in place after a failure.
+    /// Restores the last good state after a failure.
     fn retract(&mut self) {
         self.ends.retract();
         let stages = self.stages.as_mut();

@@ -1,4 +1,4 @@
-//! The two ends of a step, and where it is cut: what integrators keep of a step besides its stages.
+//! The two ends of a step and its cut: the data that integrators keep of a step besides its stages.
 
 use super::instant::Instant;
 use super::precise::Precise;
@@ -10,12 +10,12 @@ pub struct Ends<S> {
     pub(super) t: [Instant; 2],
     pub(super) start: Precise<S>,
     pub(super) end: Precise<S>,
-    /// Where the step was cut, until the next begins.
+    /// State at the cut of the step, until the next step begins.
     cut: Option<Precise<S>>,
 }
 
 impl<S: StateVector> Ends<S> {
-    /// No step yet, of states that [`Ends::place`] brings.
+    /// Ends before the first step; [`Ends::place`] sets the states.
     pub(super) fn new() -> Self {
         let zeros = Precise::new(S::zeros(0));
         Self {
@@ -26,7 +26,7 @@ impl<S: StateVector> Ends<S> {
         }
     }
 
-    /// A step of no length.
+    /// Sets a step of length 0.
     #[inline(always)]
     pub(super) fn place(&mut self, now: Instant, precise: Precise<S>) {
         *self = Self {
@@ -44,7 +44,7 @@ impl<S: StateVector> Ends<S> {
         self.start = self.end;
     }
 
-    /// Puts the last good state back in place after a failure.
+    /// Restores the last good state after a failure.
     #[inline(always)]
     pub(super) fn retract(&mut self) {
         self.t[1] = self.t[0];
@@ -56,13 +56,13 @@ impl<S: StateVector> Ends<S> {
         self.t[1].since(self.t[0])
     }
 
-    /// A state to begin again with, and what the components that it shares with the last cut were rounded off there.
+    /// A state to restart from. Components that it shares with the last cut keep their rounding errors from there.
     #[inline(always)]
     pub(super) fn kept(&self, state: &S) -> Precise<S> {
         self.cut.as_ref().unwrap_or(&self.end).kept(state)
     }
 
-    /// Cuts a step of this length at a part of it, where the state is `inside` unless it is the end.
+    /// Cuts a step of this length at a fraction of it; `inside` is the state there unless it is the end.
     #[inline(always)]
     pub(super) fn cut(
         &mut self,

@@ -1,9 +1,9 @@
-//! Steps of one size: what the methods without error estimate share.
+//! Steps of fixed size: the common frame of the methods without error estimate.
 //!
-//! A run is a grid of steps of the size that was asked for, or else of the automatic first step of the tolerance. What
-//! differs from it: the last step lands on the end; after an impact steps grow back from the length that the driver
-//! allows; a step in which the vector field does not exist is shortened until it does; and an implicit step that is
-//! not solved is made in 2, 4, 8, .. equal parts, which keeps the grid and what the method preserves.
+//! A run is a grid of steps of the given size, or of the automatic first step of the tolerance. Exceptions: the last
+//! step lands on the end; after an impact steps grow back from the length that the driver allows; a step in which the
+//! vector field does not exist is shortened until it does; and an implicit step that is not solved is made in 2, 4,
+//! 8, .. equal parts, which keeps the grid and the invariants of the method.
 
 use super::collision;
 use super::controller::{RETREAT, Weights, first_step, least_step, least_trial, not_finite};
@@ -20,21 +20,21 @@ use crate::error::Fault;
 use crate::jet::LENGTH;
 use crate::state::StateVector;
 
-/// Largest factor between successive steps on the way back to the size of the run.
+/// Largest factor between successive steps while they grow back to the size of the run.
 const GROW: f64 = 4.0;
 
-/// A rest of the way to the end that is shorter than this part of a step joins the step before: it is rounding of the
-/// number of steps, not a piece of motion.
+/// Remainder of the way to the end, as a fraction of a step, that is joined to the step before: it is a rounding
+/// error of the number of steps.
 const SLIVER: f64 = 1e-6;
 
-/// An implicit step is made in at most this many parts.
+/// Maximum number of parts of an implicit step.
 const PARTS: u32 = 1 << 10;
 
-/// The most steps that a run of an automatic step has: a method of low order would make more for a tight tolerance than anybody
-/// waits for. A step that is given may be shorter.
+/// Maximum number of automatic steps in a run: a method of low order would make unreasonably many for a tight
+/// tolerance. A given step may be shorter.
 pub const AUTOMATIC_STEPS: f64 = (1_u32 << 22) as f64;
 
-/// A method of fixed step: its names and orders. Implemented by the methods here.
+/// A method of fixed step size: its names and orders. Implemented by the methods of this crate.
 pub trait Method: Copy {
     /// See [`Stepper::name`].
     const NAME: &'static str;
@@ -42,23 +42,24 @@ pub trait Method: Copy {
     const ORDER: usize;
     /// Order of the dense output between them.
     const DENSE_ORDER: usize;
-    /// How often the cubic through the ends is refined by two rates inside; each time raises its order by one, up to 5.
+    /// Number of refinements of the cubic through the ends by two rates inside. Each raises its order by one, up to
+    /// 5.
     const REFINEMENTS: u32;
 
-    /// What the method keeps from one step for the next besides the state.
+    /// Data that the method keeps from one step for the next besides the state.
     type Memory<S: StateVector>: Copy;
 
-    /// Whether the step is the solution of equations, which shorter steps may have where a longer one has none.
+    /// True for implicit steps: shorter steps may have a solution where a longer one has none.
     const IS_IMPLICIT: bool = false;
 
-    /// Whether impacts are solved for inside the step.
+    /// True if the method solves for impacts inside the step.
     const MEETS: bool = false;
 
-    /// Whether the method has [`Method::mean_energy`].
+    /// True if the method has [`Method::mean_energy`].
     const KEEPS_ENERGY: bool = false;
 
-    /// The mean of an energy over the stages of the step that was made from `start` over `h`: minus the derivative of the
-    /// step's action by `h`. Of methods that come from a discrete action and keep their stages.
+    /// Mean of an energy over the stages of the step from `start` over `h`: the negative derivative of the step's
+    /// action by `h`. For methods that come from a discrete action and keep their stages.
     #[doc(hidden)]
     fn mean_energy<S: StateVector>(
         (t, h): (f64, f64),
@@ -70,13 +71,13 @@ pub trait Method: Copy {
         None
     }
 
-    /// Nothing kept, of states with as many components as this one.
+    /// Empty memory, for states with as many components as `like`.
     fn memory<S: StateVector>(like: &S) -> Self::Memory<S>;
 }
 
 /// One step of a method on a system.
 pub trait Advance<F: VectorField>: Method {
-    /// From `departure` over `h`; the state there.
+    /// Makes a step from `departure` over `h`, and returns the state at its end.
     #[doc(hidden)]
     fn advance(
         field: &mut Counted<'_, F>,
@@ -86,62 +87,62 @@ pub trait Advance<F: VectorField>: Method {
     ) -> Result<Precise<F::State>, StepFailure>;
 }
 
-/// Where a step starts.
+/// Start of a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Departure<'a, S> {
     pub(super) t: f64,
     pub(super) state: &'a Precise<S>,
     pub(super) rate: &'a S,
-    /// What counts as a unit of each component, [`VectorField::scale`] at the start of the run.
+    /// Unit of each component: [`VectorField::scale`] at the start of the run.
     pub(super) units: &'a S,
 }
 
-/// Times that steps of one size lead to.
+/// Grid of the times of steps of one size.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Grid {
     start: Instant,
-    /// Steps made so far.
+    /// Number of steps made so far.
     steps: u64,
 }
 
 impl Grid {
-    /// The grid that starts at a time.
+    /// Grid with this start.
     fn starting(start: Instant) -> Self {
         Self { start, steps: 0 }
     }
 
     /// The end of the next step of this size.
     ///
-    /// NOTE: the number of steps times their size does not add up rounding.
+    /// NOTE: the product of the number of steps and their size does not accumulate rounding errors.
     fn next(&self, step: f64) -> Instant {
         self.start.after((self.steps + 1) as f64 * step)
     }
 }
 
-/// A method at work in steps of one size.
+/// Integrator of a method with steps of one size.
 #[derive(Debug, Clone, Copy)]
 pub struct FixedStep<S: StateVector, M: Method> {
     tolerance: Tolerance,
     given: Option<f64>,
-    /// The size of the run.
+    /// Step size of the run.
     pub(super) step: f64,
-    /// The size of the next step: that of the run, or less after an impact.
+    /// Size of the next step: that of the run, or less after an impact.
     next: f64,
     /// The length of the last step.
     pub(super) made: f64,
-    /// In how many parts the last step was made.
+    /// Number of parts of the last step.
     pub(super) parts: u32,
-    /// Whether the last step ends where it was solved to meet a surface.
+    /// True if the length of the last step was solved for an impact at its end.
     pub(super) has_met: bool,
-    /// The point of the grid that is to be reached after an impact inside a step.
+    /// Point of the grid to be reached after an impact inside a step.
     pub(super) target: Option<Instant>,
-    /// The same as it was before the last step.
+    /// Value of `target` before the last step.
     pub(super) pending: Option<Instant>,
-    /// Whether several impacts fell into one step, until a whole step passes without any.
+    /// True if several impacts fell into one step, until a whole step passes without any.
     pub(super) is_crowded: bool,
-    /// Whether the last step leads to the end of the run.
+    /// True if the last step leads to the end of the run.
     pub(super) is_at_end: bool,
-    /// The length of the step that it is the end of.
+    /// Length of the step whose end is `target`.
     pub(super) span: f64,
     grid: Grid,
     pub(super) units: S,
@@ -156,9 +157,10 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     /// Order of the solution at the ends of steps.
     pub const ORDER: usize = M::ORDER;
 
-    /// An integrator whose step is found at the start: a power of two at most as long as the automatic first step of this
-    /// tolerance and the method's order, from the rate at the start alone, and then kept; long enough for [`AUTOMATIC_STEPS`] to
-    /// make the run. Prefer [`FixedStep::with_step`] where the motion becomes faster.
+    /// An integrator that chooses its step at the start and then keeps it. The step is a power of two, at most as
+    /// long as the automatic first step of this tolerance and the method's order, from the rate at the start alone;
+    /// it is long enough for the run to take at most [`AUTOMATIC_STEPS`] steps. Prefer [`FixedStep::with_step`] where
+    /// the motion becomes faster.
     pub fn new(tolerance: Tolerance) -> Self {
         let zeros = S::zeros(0);
         Self {
@@ -184,14 +186,14 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         }
     }
 
-    /// With steps of this size. Anything but a positive finite number is ignored.
+    /// Sets the step size. Anything but a positive finite number is ignored.
     #[must_use]
     pub fn with_step(mut self, step: f64) -> Self {
         self.given = (step > 0.0 && step.is_finite()).then_some(step);
         self
     }
 
-    /// Takes `(now, state)` for the end of a step, as a start does.
+    /// Sets `(now, state)` as the end of a step, for a start.
     fn place<F: VectorField<State = S>>(
         &mut self,
         field: &mut Counted<'_, F>,
@@ -213,8 +215,8 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         check_finite(state, &self.rates[1])
     }
 
-    /// The automatic first step, rounded down to a power of two: the times of the grid are exact then. No shorter than for
-    /// about [`AUTOMATIC_STEPS`] in the run.
+    /// The automatic first step, rounded down to a power of two so that the times of the grid are exact. It is long
+    /// enough for about [`AUTOMATIC_STEPS`] steps in the run.
     fn automatic_step<F: VectorField<State = S>>(
         &self,
         field: &mut Counted<'_, F>,
@@ -234,7 +236,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
             let known = evaluate(field, t + h, &moved, &mut after).is_ok();
             (known && after.is_finite()).then_some(after)
         });
-        // The least power of two that is no shorter than a step of the most.
+        // The least power of two that keeps the number of steps below the maximum.
         let least = 2.0 * power_below(span / AUTOMATIC_STEPS);
         power_below(step).max(least.min(span))
     }
@@ -248,13 +250,13 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         self.has_met = false;
     }
 
-    /// Puts the last good state back in place after a failure.
+    /// Restores the last good state after a failure.
     fn retract(&mut self) {
         self.ends.retract();
         self.rates[1] = self.rates[0];
     }
 
-    /// The length of a step of about `h`, and the time it leads to: `t_end` where that is in reach.
+    /// Length of a step of about `h`, and the time at its end: `t_end` if that is within reach.
     fn aim(&self, h: f64, t_end: f64) -> (f64, Instant) {
         let end = Instant::new(t_end);
         let rest = end.since(self.ends.t[0]);
@@ -266,7 +268,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         }
     }
 
-    /// As [`Self::aim`], as if the run had no end.
+    /// Same as [`Self::aim`], without the end of the run.
     pub(super) fn aim_within_run(&self, h: f64) -> (f64, Instant) {
         let now = self.ends.t[0];
         let next = self.grid.next(self.step);
@@ -287,7 +289,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         }
     }
 
-    /// Makes the step in as few equal parts as it takes to solve it.
+    /// Makes the step in the smallest number of equal parts that can be solved.
     fn cross<F: VectorField<State = S>>(
         &mut self,
         field: &mut Counted<'_, F>,
@@ -314,7 +316,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
                     self.memory = memory;
                     parts *= 2;
                 }
-                // Beside the edge of the domain of the vector field, or in an iteration that runs away.
+                // Near the edge of the domain of the vector field, or in a diverging iteration.
                 Err(StepFailure::NonFinite { .. }) if M::IS_IMPLICIT && parts < PARTS => {
                     field.counters.rejected += 1;
                     self.memory = memory;
@@ -379,7 +381,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         Ok(())
     }
 
-    /// Takes in a step that was made.
+    /// Records a step that was made.
     fn accept(&mut self, made: f64, arrival: Instant, parts: u32) {
         self.ends.t[1] = arrival;
         self.made = made;
@@ -397,8 +399,8 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         }
     }
 
-    /// Takes note that a step after an impact ends on the grid again, if it does: at the end of the step that was cut, or
-    /// one further on.
+    /// Records a step after an impact that ends on the grid again: at the end of the step that was cut, or one step
+    /// further. Returns true if it does.
     fn reaches_grid(&mut self, arrival: Instant, target: Instant) -> bool {
         let next = self.grid.next(self.step);
         let reaches = arrival == target || arrival == next;
@@ -418,7 +420,7 @@ fn power_below(x: f64) -> f64 {
     f64::from_bits(x.to_bits() & !MANTISSA)
 }
 
-/// The units with 1 for what is not a positive finite number.
+/// The units, with 1 in place of values that are not positive and finite.
 fn usable<S: StateVector>(mut units: S) -> S {
     for unit in units.as_mut_slice() {
         if !(*unit > 0.0 && unit.is_finite()) {
@@ -428,8 +430,8 @@ fn usable<S: StateVector>(mut units: S) -> S {
     units
 }
 
-/// One evaluation that is called and not inlined: steps are the same code for every method, and a system whose rate is
-/// long is compiled once for all of them.
+/// One evaluation, never inlined: the code of a step is then shared by all methods, and a long rate is compiled once
+/// for all of them.
 #[inline(never)]
 pub(super) fn evaluate<F: VectorField>(
     field: &mut Counted<'_, F>,

@@ -1,12 +1,12 @@
-//! Collocation at Gauss's points, orders 4 and 6: implicit, fixed step, symplectic and symmetric.
+//! Collocation at Gauss points, orders 4 and 6: implicit, fixed step, symplectic and symmetric.
 //!
 //! ```text
 //! Y_i = y + sum_j mu_ij L_j,    L_j = h b_j f(t + c_j h, Y_j),    y1 = y + sum_j L_j,    mu_ij = a_ij / b_j
 //! ```
 //!
-//! Written with `mu`, the method is symplectic iff `mu_ij + mu_ji = 1`, which holds to the last digit of the rounded
-//! numbers, whatever the rounding of `b`. The stages are solved by fixed-point iteration until the increments no longer
-//! decrease, and the sums over steps are compensated: what is left of rounding is a random walk (Brouwer's law).
+//! Written with `mu`, the method is symplectic iff `mu_ij + mu_ji = 1`, which holds exactly for the rounded numbers,
+//! whatever the rounding of `b`. The stages are solved by fixed-point iteration until the increments no longer
+//! decrease, and the sums over steps are compensated, so that rounding errors grow as a random walk (Brouwer's law).
 
 use super::controller::not_finite;
 use super::embedded::Counted;
@@ -19,31 +19,33 @@ use crate::state::StateVector;
 
 /// Gauss's method with two stages: order 4, dense output of order 4.
 ///
-/// What the fixed step makes true, for systems without constraints and impacts:
-/// - symplectic in `(q, p)`: phase volume is exact, and where `H` is analytic its error stays of size `h^4` over times
-///   exponentially long in `1/h`, without growing; quadratic invariants (angular momentum) hold to rounding;
-/// - symmetric: with velocities reversed it runs back along its way to rounding.
+/// Properties of the fixed step, for systems without constraints and impacts:
+/// - symplectic in `(q, p)`: phase volume is exact. Where `H` is analytic its error stays of size `h^4`, without
+///   growing, over times exponentially long in `1/h`. Quadratic invariants (angular momentum) hold to rounding;
+/// - symmetric: with velocities reversed the motion retraces its path to rounding.
 ///
-/// Measured over a million steps: harmonic oscillator (`h = 0.1`, `H = 0.5`) off by 4e-15 at most, a random walk of
-/// rounding; regular double pendulum (`h = 0.02`, `H = -27`) off by 2.7e-8 at most, without drift beyond 4e-13, where
-/// [`Rk4`](super::Rk4) loses 5e-3 steadily; with [`Gauss6`] 1.3e-11, and 1.1e-14 at `h = 0.005`.
+/// Measured over a million steps: the energy of a harmonic oscillator (`h = 0.1`, `H = 0.5`) is off by 4e-15 at most,
+/// a random walk of rounding; that of a regular double pendulum (`h = 0.02`, `H = -27`) by 2.7e-8 at most, without
+/// drift beyond 4e-13, where [`Rk4`](super::Rk4) loses 5e-3 steadily. With [`Gauss6`] the error is 1.3e-11, and
+/// 1.1e-14 at `h = 0.005`.
 ///
-/// With constraints, in the form reduced to D it is symmetric there: the energy of regular reversible motion is bounded
-/// (steered knife edge of `models/src/stability/structure.rs`, `h = 0.05`, `H = 0.5`: 1.8e-10, drift 1e-14). In global form it
-/// keeps D to order 4 only and leaves it further and further (energy error 6e-2, like `t^2`); the effect `Projection`
-/// returns to D, but is not symmetric, and the energy drifts steadily (5e-6). Prefer [`Dla4`](super::Dla4) there.
+/// With constraints, in the form reduced to D it is symmetric there: the energy of regular reversible motion is
+/// bounded (steered knife edge of `models/src/stability/structure.rs`, `h = 0.05`, `H = 0.5`: 1.8e-10, drift 1e-14).
+/// In global form it keeps D to order 4 only, and the distance grows (energy error 6e-2, growing like `t^2`). The
+/// effect `Projection` returns to D but is not symmetric, and the energy drifts steadily (5e-6). Prefer
+/// [`Dla4`](super::Dla4) there.
 ///
-/// An impact is solved for inside the step, and the step completed to the grid. Where nothing but a Lagrangian without time
-/// moves the system, single elastic impacts keep the discrete energy, and the step across is symplectic: a quartic well with
-/// a wall (`h = 0.05`) errs by 1.7e-7 at most over a million units of time, without drift beyond 3e-12. The velocity after the
-/// impact is that of the law to the order of the method. With several impacts in a step, other laws, forces or constraints
-/// the law alone acts.
+/// The method solves for an impact inside the step, and completes the step to the grid. For systems without
+/// constraints and forces whose Lagrangian does not depend on time, single elastic impacts keep the discrete energy,
+/// and the step across is symplectic: a quartic well with a wall (`h = 0.05`) errs by 1.7e-7 at most over a million
+/// units of time, without drift beyond 3e-12. The velocity after the impact is that of the law to the order of the
+/// method. With several impacts in a step, other laws, forces or constraints the law alone acts.
 ///
 /// Each step takes one evaluation of the rate and two for each of about 5 to 12 iterations. Use it for long runs of
-/// smooth conservative systems; for a given error over a short time [`Dop853`](super::Dop853) takes less work. Where the
-/// fixed point iteration does not contract (`h` times the fastest rate above about 1), the step is made in 2, 4, 8, ..
-/// equal parts, so that every step is still a symplectic map; a thousand parts that are not enough end the run with
-/// [`StepFailure::NotConverged`](super::StepFailure::NotConverged).
+/// smooth conservative systems; for a given error over a short time [`Dop853`](super::Dop853) takes less work. Where
+/// the fixed-point iteration does not contract (`h` times the fastest rate above about 1), the step is made in 2, 4,
+/// 8, .. equal parts, so that every step is still a symplectic map. If a thousand parts are not enough, the run ends
+/// with [`StepFailure::NotConverged`](super::StepFailure::NotConverged).
 ///
 /// # References
 /// Hairer, Lubich, Wanner, *Geometric numerical integration*, II.1.3, VI.4, VIII.6; E. Hairer, R. McLachlan,
@@ -54,26 +56,26 @@ pub type Gauss4<S> = FixedStep<S, Gauss<2>>;
 
 /// Gauss's method with three stages: order 6, dense output of order 5.
 ///
-/// As [`Gauss4`], with energy errors of size `h^6` and three evaluations per iteration.
+/// Same properties as [`Gauss4`], with energy errors of size `h^6` and three evaluations per iteration.
 pub type Gauss6<S> = FixedStep<S, Gauss<3>>;
 
 /// The step of [`Gauss4`] and [`Gauss6`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Gauss<const STAGES: usize>;
 
-/// A method of so many stages.
+/// Coefficients of a method with this number of stages.
 struct Table<const STAGES: usize> {
     nodes: [f64; STAGES],
     weights: [f64; STAGES],
     /// `mu_ij`
     couplings: [[f64; STAGES]; STAGES],
-    /// What the rates at the stages of a step, and the one at its end, contribute to those at the stages of the next, by
-    /// the polynomial through them.
+    /// Weights of the rates at the stages of a step, and of the rate at its end, in the extrapolation to the stages
+    /// of the next step by the polynomial through them.
     guess: [([f64; STAGES], f64); STAGES],
 }
 
 impl<const STAGES: usize> Table<STAGES> {
-    /// From the couplings below the diagonal.
+    /// Builds the table from the couplings below the diagonal.
     const fn new(
         nodes: [f64; STAGES],
         weights: [f64; STAGES],
@@ -118,8 +120,8 @@ impl<const STAGES: usize> Table<STAGES> {
         inside
     }
 
-    /// `sum_i b_i H(Y_i)`. The action of a step from `q0` to `q1` is `h sum_i b_i L(Q_i, V_i)` at its stationary `V_i`, and
-    /// this is minus its derivative by `h`.
+    /// `sum_i b_i H(Y_i)`, the negative derivative by `h` of the action of a step. That action, from `q0` to `q1`, is
+    /// `h sum_i b_i L(Q_i, V_i)` at its stationary `V_i`.
     fn mean_energy<S: StateVector>(
         &self,
         (t, h): (f64, f64),
@@ -138,7 +140,7 @@ impl<const STAGES: usize> Table<STAGES> {
     }
 }
 
-/// Lagrange's polynomials of the nodes and 1, at 1 plus each node.
+/// Lagrange polynomials of the nodes and 1, at 1 plus each node.
 const fn extrapolation<const STAGES: usize>(
     nodes: &[f64; STAGES],
 ) -> [([f64; STAGES], f64); STAGES] {
@@ -204,7 +206,7 @@ impl<S: StateVector, const STAGES: usize> Slopes<S, STAGES> {
         }
     }
 
-    /// Rates to start the iteration with: those of the last step carried on, if it was as long as this one.
+    /// Sets the start of the iteration: the rates of the last step, extrapolated if that step has the same length.
     fn predict(&mut self, table: &Table<STAGES>, h: f64, rate: &S) {
         let last = self.stages;
         let known = self.h == Some(h);
@@ -222,7 +224,7 @@ impl<S: StateVector, const STAGES: usize> Slopes<S, STAGES> {
     }
 }
 
-/// One step: iterates the stages, each from the newest rates of the others.
+/// One step: iterates over the stages, each with the newest rates of the others.
 fn advance<F: VectorField, const STAGES: usize>(
     table: &Table<STAGES>,
     field: &mut Counted<'_, F>,

@@ -1,19 +1,19 @@
-//! Times that are kept beyond their last digit.
+//! Times in two parts, with more digits than one double has.
 
-/// A time, and what it lacks since it is rounded.
+/// A time and its rounding error.
 ///
-/// Late in a run, or where impacts accumulate, steps and flights may be shorter than a unit in the last place of the time.
-/// Kept in two parts their sum is right to about 32 digits, and a step moves the time however short it is.
+/// Late in a run, or where impacts accumulate, steps and flights may be shorter than a unit in the last place of the
+/// time. The sum of two parts is accurate to about 32 digits, and a step moves the time however short it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Instant {
     /// The time, in units of time.
     pub t: f64,
-    /// What is to be added to it: at most half a unit in its last place.
+    /// Number to be added: at most half a unit in the last place of `t`.
     pub rest: f64,
 }
 
 impl Instant {
-    /// This very number.
+    /// An instant without rounding error.
     #[inline(always)]
     pub const fn new(t: f64) -> Self {
         Self { t, rest: 0.0 }

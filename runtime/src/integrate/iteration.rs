@@ -1,38 +1,38 @@
-//! When to stop a fixed-point iteration that is to be solved to rounding.
+//! Stopping rule of a fixed-point iteration that is solved to rounding.
 //!
-//! It goes on while its changes decrease (E. Hairer, R. McLachlan, A. Razakarivony, *Achieving Brouwer's law with implicit
-//! Runge-Kutta methods*, 2008): where they no longer do, either nothing but rounding is left of them, or the
-//! iteration does not contract.
+//! The iteration goes on while its changes decrease (E. Hairer, R. McLachlan, A. Razakarivony, *Achieving Brouwer's
+//! law with implicit Runge-Kutta methods*, 2008). Where they no longer decrease, either only rounding errors are
+//! left, or the iteration does not contract.
 
-/// Iterations after which a contraction has proved too slow: half the way to rounding per iteration takes as many.
+/// Maximum number of iterations; the error halved in each would reach rounding in as many.
 const LIMIT: u32 = 60;
 
-/// Changes below this part of the largest component may be rounding.
+/// Size of changes, relative to the largest component, below which they may be rounding.
 const ROUNDING: f64 = 1.0 / (1_u64 << 36) as f64;
 
-/// What the changes so far say.
+/// Conclusion from the changes so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// Another one.
+    /// Make another iteration.
     GoOn,
-    /// Nothing but rounding is left.
+    /// Only rounding errors are left.
     Solved,
-    /// It does not contract, or too slowly.
+    /// The iteration does not contract, or too slowly.
     Diverges,
 }
 
-/// An iteration on its way.
+/// State of an iteration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Iteration {
     made: u32,
     /// The last change; `None` before the first.
     last: Option<f64>,
-    /// Changes that were no smaller than the one before.
+    /// Number of changes that were no smaller than the one before.
     grown: u32,
 }
 
 impl Iteration {
-    /// Before the first.
+    /// State before the first iteration.
     pub(super) const fn new() -> Self {
         Self {
             made: 0,
@@ -41,7 +41,7 @@ impl Iteration {
         }
     }
 
-    /// After one more, that changed something of this size by this much.
+    /// Judges an iteration from the size of its change and of the changed value.
     pub(super) fn judge(&mut self, change: f64, size: f64) -> Verdict {
         self.made += 1;
         if change == 0.0 {
@@ -54,7 +54,7 @@ impl Iteration {
             if change <= ROUNDING * size {
                 return Verdict::Solved;
             }
-            // NOTE: one growth is let pass: the first guess may be better than it looks in some direction.
+            // NOTE: one growth is accepted: the first guess may be better than it looks in some direction.
             self.grown += 1;
         }
         self.last = Some(change);

@@ -7,14 +7,14 @@
 //! dL/dqdot(tm, qm, v) + h/2 f(tm, qm, v) = p1 - mu_a eta^a(t1, q1)        with   (q1, p1) on D at t1
 //! ```
 //!
-//! The first line, N + M equations, gives `v` and `lambda`; the second `p1`, which is
-//! `p0 + h f + lambda_a eta^a(t0, q0) + mu_a eta^a(t1, q1)`. Exchanging the ends with `h` for `-h` exchanges the lines:
-//! the step is self-adjoint, a map of D to itself. Two steps make `mu + lambda'` of one point the multiplier of the
-//! discrete Lagrange-d'Alembert equations of the midpoint Lagrangian with the midpoint constraint, so that the `q` are
-//! those of Cortes and Martinez. Compositions of it are maps of D, and self-adjoint where they are symmetric.
+//! The first line, N + M equations, gives `v` and `lambda`; the second gives `p1 = p0 + h f + lambda_a eta^a(t0, q0)
+//! + mu_a eta^a(t1, q1)`. Exchanging the ends with `h` for `-h` exchanges the lines: the step is self-adjoint, a map
+//! of D to itself. In two successive steps `mu + lambda'` at the common point is the multiplier of the discrete
+//! Lagrange-d'Alembert equations of the midpoint Lagrangian with the midpoint constraint, so that the `q` are those
+//! of Cortes and Martinez. Compositions of the step are maps of D, and self-adjoint where they are symmetric.
 //!
-//! The first line is solved for `v` by iterating the velocity that the constraints at the midpoint allow:
-//! `P = p0 + h/2 f(v) + lambda eta(q0)`, `(v, nu) = constrained_velocity(qm, P)`, `lambda += nu`; `nu` is 0 where it ends.
+//! The first line is solved for `v` by iterating the velocity that the constraints at the midpoint allow: `P = p0 +
+//! h/2 f(v) + lambda eta(q0)`, `(v, nu) = constrained_velocity(qm, P)`, `lambda += nu`; at the solution `nu` is 0.
 
 use super::controller::not_finite;
 use super::embedded::Counted;
@@ -28,15 +28,15 @@ use crate::state::{StateVector, scaled};
 
 /// The discrete Lagrange-d'Alembert midpoint rule: order 2 with dense output of order 2.
 ///
-/// - Constraints, affine and time dependent ones included, hold to rounding at the ends of all steps, without
-///   projection; a start off the constraints is brought to them by the first step.
-/// - Symmetric: reversible systems run back along their way to rounding, and where their motion is regular the energy
-///   error of size `h^2` does not grow. It is no symplectic method, as there is no symplectic structure to keep: where
-///   the motion is chaotic and not reversible the energy walks at random, like `t^(1/2)`.
-/// - Without constraints and forces it is the variational midpoint rule, symplectic in `(q, p)`, with all that follows
-///   (see [`Gauss4`](super::Gauss4)).
-/// - Holonomic constraints (`d(f) = 0`) hold on velocities; their levels `f` are kept to order 2, to rounding where `f` is
-///   quadratic, and the effect `Projection` returns to them.
+/// - Constraints, including affine and time-dependent ones, hold to rounding at the ends of all steps without
+///   projection. The first step brings a start off the constraints to them.
+/// - Symmetric: reversible systems retrace their path to rounding, and where their motion is regular the energy error
+///   of size `h^2` does not grow. The method is not symplectic, since there is no symplectic structure to keep: where
+///   the motion is chaotic and not reversible the energy makes a random walk, growing like `t^(1/2)`.
+/// - Without constraints and forces it is the variational midpoint rule, symplectic in `(q, p)`, with the
+///   consequences listed in [`Gauss4`](super::Gauss4).
+/// - Holonomic constraints (`d(f) = 0`) hold on velocities. Their levels `f` are kept to order 2, to rounding where
+///   `f` is quadratic, and the effect `Projection` returns to them.
 ///
 /// Measured over a million steps of 0.05 (`models/src/stability/structure.rs`), largest error of the energy and its drift: a
 /// knife edge in a quadratic potential, steered by a pendulum (`H = 0.5`) 3.8e-4 and 1e-8, with [`Dla4`] 2.2e-8 and
@@ -55,8 +55,8 @@ pub type Dla2<S> = FixedStep<S, MidpointPrinciple>;
 
 /// Five steps of [`Dla2`] composed to order 4 (Suzuki): dense output of order 4.
 ///
-/// Preserves what [`Dla2`] does, with energy errors of size `h^4`. One of the five steps goes back in time by 0.66 `h`,
-/// which strongly damped systems do not like.
+/// Preserves the same properties as [`Dla2`], with energy errors of size `h^4`. One of the five steps goes back in
+/// time by 0.66 `h`, which is unsuitable for strongly damped systems.
 ///
 /// # References
 /// M. Suzuki, *Fractal decomposition of exponential operators*, 1990; Hairer, Lubich, Wanner, *Geometric numerical
@@ -71,7 +71,7 @@ pub struct MidpointPrinciple;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ComposedPrinciple;
 
-/// Suzuki's `1/(4 - 4^(1/3))`, of which four go forward and `1 - 4 times it` goes back.
+/// Suzuki's `1/(4 - 4^(1/3))`: four steps of this fraction go forward, and one of `1 - 4 FORWARD` goes back.
 const FORWARD: f64 = 0.414_490_771_794_375_74;
 const BACK: f64 = 1.0 - 4.0 * FORWARD;
 
@@ -85,7 +85,7 @@ macro_rules! principle {
             const IS_IMPLICIT: bool = true;
             const MEETS: bool = true;
 
-            /// What was rounded off the positions: N numbers, for which a state has room.
+            /// Rounding error of the positions: N numbers, stored in a state.
             type Memory<S: StateVector> = S;
 
             fn memory<S: StateVector>(like: &S) -> Self::Memory<S> {
@@ -115,21 +115,21 @@ principle!(
     [FORWARD, FORWARD, BACK, FORWARD, FORWARD]
 );
 
-/// A point on the way, and what is expected of the step after it.
+/// A point on the path, with the predictions for the next step.
 struct Point<F: Lagrangian> {
     t: f64,
-    /// NOTE: compensated, as unwrapped angles grow: where their increments are rounded alike in every step, the midpoint
-    /// lies beside the middle always on the same side, and the energy drifts.
+    /// NOTE: compensated, since unwrapped angles grow. If their increments are rounded alike in every step, the
+    /// midpoint lies always on the same side of the middle, and the energy drifts.
     q: Precise<F::Vector>,
     p: F::Vector,
     qdot: F::Vector,
-    /// The rate of `qdot`.
+    /// Rate of `qdot`.
     bend: F::Vector,
-    /// The rate at which reactions act.
+    /// Reactions per unit of time.
     reactions: F::Reactions,
 }
 
-/// The parts of a step one after the other.
+/// Makes the substeps of a step one after the other.
 fn compose<F: Lagrangian>(
     field: &mut Counted<'_, F>,
     h: f64,
@@ -155,7 +155,7 @@ fn compose<F: Lagrangian>(
     Ok(Precise::new(end))
 }
 
-/// The start of a step; the bend from the velocity half a step ahead.
+/// The start of a step; `bend` comes from the velocity half a step ahead.
 fn depart<F: Lagrangian>(
     system: &F,
     h: f64,
@@ -190,7 +190,7 @@ fn midpoint_step<F: Lagrangian>(
     let mut qdot = combined(&from.qdot, 1.0, &from.bend, 0.5 * h);
     let mut reactions = scaled(&from.reactions, h);
     let mut iteration = Iteration::new();
-    // What the momenta gain over the step but for the reaction at its end.
+    // Change of the momenta over the step without the reaction at its end.
     let gain = loop {
         field.counters.rate_evaluations += 1;
         let qm = from.q.advanced(|i| 0.5 * h * qdot.padded()[i]).value;
@@ -240,7 +240,7 @@ fn combined<V: StateVector>(a: &V, alpha: f64, b: &V, beta: f64) -> V {
     sum
 }
 
-/// The largest difference of components; NaN where one is.
+/// Largest difference of components; NaN if any difference is.
 fn distance<V: StateVector>(a: &V, b: &V) -> f64 {
     let pairs = a.as_slice().iter().zip(b.as_slice());
     pairs.fold(0.0, |largest, (a, b)| {

@@ -1,4 +1,4 @@
-//! The order of power series at which a step takes the least work per unit of time.
+//! Order of the power series with the least work per unit of time.
 //!
 //! A step of order `p` takes `a + c p^2` multiplications and reaches `e^(-l / p)` of the radius of convergence, where
 //! `l = 2.7 - ln(tol)`. Work per unit of time is least at
@@ -7,26 +7,27 @@
 //! 2 c p^3 = l (a + c p^2)
 //! ```
 //!
-//! Where nothing is known of `a`, or it is small, that is the order of Jorba and Zou, `p = 1 - ln(tol) / 2` but for
-//! constants, and the step `e^-2` of the radius. What a step takes at any order makes higher orders worth while. Series that end
-//! are computed to their ends.
+//! Where `a` is unknown or small, this is the order of Jorba and Zou, `p = 1 - ln(tol) / 2` up to constants, with a
+//! step of `e^-2` of the radius. Work that every step takes, independent of the order, favours higher orders. Series
+//! that terminate are computed to their ends.
 //!
 //! Reference: A. Jorba and M. Zou, Experimental Mathematics 14 (2005), sections 3.1 and 3.2.
 
 use crate::jet::{LENGTH, Work};
 use crate::math;
 
-/// Lowest order: two coefficients are looked at for the step size, none of them that of the rate.
+/// Lowest order: the step size depends on two coefficients, and neither may be that of the rate.
 pub(super) const LEAST_ORDER: usize = 3;
 
-/// Binary logarithm of `e^-2.7`, the part of the tolerance that is used: `e^-2` makes a step that part of the radius of
-/// convergence, `e^-0.7` is the factor `e^(-0.7 / (p - 1))` by which Jorba and Zou shorten it.
+/// Binary logarithm of `e^-2.7`, the fraction of the tolerance that is used: `e^-2` makes a step this fraction of the
+/// radius of convergence, and `e^-0.7` is the factor `e^(-0.7 / (p - 1))` by which Jorba and Zou shorten it.
 pub(super) const PART_OF_TOLERANCE: f64 = -3.895_276_610_400_201_5;
 
-/// Work of a step besides values and sums, in multiplications: its size, its end, and what watches it.
+/// Work of a step besides values and sums, in multiplications: step size, end of the step, and the effects that
+/// examine it.
 const BOOKKEEPING: f64 = 200.0;
 
-/// The order that belongs to a tolerance.
+/// Order for a tolerance.
 pub(crate) fn order(tolerance: f64, work: Option<Work>) -> usize {
     let logarithm = -math::ln(tolerance);
     let length = logarithm - PART_OF_TOLERANCE * core::f64::consts::LN_2;

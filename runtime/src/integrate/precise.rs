@@ -1,10 +1,10 @@
-//! Compensated sums: states with the part that their components cannot hold.
+//! Compensated sums: states with the low parts that their components cannot hold.
 
 use crate::state::StateVector;
 
-/// A state and what was rounded off it so far (Kahan; the exact error of a sum by Knuth's two-sum).
+/// A state and its accumulated rounding error (Kahan; the exact error of a sum by Knuth's two-sum).
 ///
-/// A step adds a small increment to a large state; without the rest, what is rounded off adds up over many steps.
+/// A step adds a small increment to a large state. Without the compensation, rounding errors add up over many steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Precise<S> {
     pub(super) value: S,
@@ -12,7 +12,7 @@ pub struct Precise<S> {
 }
 
 impl<S: StateVector> Precise<S> {
-    /// A state known to its last digit.
+    /// A state without rounding error.
     pub(super) fn new(value: S) -> Self {
         Self {
             value,
@@ -20,7 +20,7 @@ impl<S: StateVector> Precise<S> {
         }
     }
 
-    /// This state, and what the components that it shares with `self` were rounded off.
+    /// This state, with the rounding errors of the components that it shares with `self`.
     #[inline]
     pub(super) fn kept(&self, state: &S) -> Self {
         let mut kept = Self::new(*state);
@@ -38,14 +38,15 @@ impl<S: StateVector> Precise<S> {
         self.value.padded()[i] + (self.rest.padded()[i] + increment)
     }
 
-    /// Component `i` less that of another, with what both were rounded off.
+    /// Component `i` minus that of another state, with the rounding errors of both.
     #[inline(always)]
     pub(super) fn minus(&self, other: &Self, i: usize) -> f64 {
         let rests = self.rest.padded()[i] - other.rest.padded()[i];
         (self.value.padded()[i] - other.value.padded()[i]) + rests
     }
 
-    /// The sum with `increment(i)` in each component, also in those of [`StateVector::padded`], and what is rounded off.
+    /// The sum with `increment(i)` in each component, also in those of [`StateVector::padded`], with its rounding
+    /// error.
     #[inline]
     pub(super) fn advanced(&self, increment: impl Fn(usize) -> f64) -> Self {
         let mut sum = *self;

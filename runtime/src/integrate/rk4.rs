@@ -1,4 +1,4 @@
-//! The classical method of Runge and Kutta, order 4: explicit, fixed step, for teaching and for comparison.
+//! Classical Runge-Kutta method, order 4: explicit, fixed step, for teaching and for comparison.
 //!
 //! ```text
 //! k1 = f(t, y),  k2 = f(t + h/2, y + h k1/2),  k3 = f(t + h/2, y + h k2/2),  k4 = f(t + h, y + h k3)
@@ -17,8 +17,9 @@ use crate::state::StateVector;
 
 /// The classical Runge-Kutta method: order 4, dense output of order 4, four evaluations per step.
 ///
-/// It preserves nothing but linear invariants: the energy error grows linearly in time, and constraints hold as the
-/// solution does, to order 4. Use it to compare with, and where a method that everybody knows is asked for; [`Dop853`](super::Dop853) is more accurate for the same work and tells its error.
+/// It preserves linear invariants only: the energy error grows linearly in time, and constraints hold to order 4, as
+/// the solution does. Use it for comparisons, and where a well-known method is required. [`Dop853`](super::Dop853) is
+/// more accurate for the same work and estimates its error.
 ///
 /// # References
 /// Hairer, Norsett, Wanner, *Solving ordinary differential equations I*, II.1, Table 1.2.
@@ -39,7 +40,7 @@ impl Method for ClassicalRungeKutta {
     fn memory<S: StateVector>(_: &S) -> Self::Memory<S> {}
 }
 
-/// The stages after the first: the part of the step that leads to each, and six times its weight.
+/// Stages after the first: the fraction of the step that leads to each, and six times its weight.
 const STAGES: [(f64, f64); 3] = [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)];
 
 impl<F: VectorField> Advance<F> for ClassicalRungeKutta {

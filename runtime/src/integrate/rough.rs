@@ -1,10 +1,10 @@
-//! Logarithms and powers of two to two or three digits, from the bits of a number: enough to choose a step, and the same
-//! on every machine.
+//! Logarithms and powers of two to two or three digits, from the bits of a number: accurate enough to choose a step,
+//! and the same on every machine.
 
 /// Bits of the exponent.
 const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
 
-/// The exponent of 1, and the place of exponents.
+/// Exponent bias of doubles.
 const BIAS: u64 = 1023;
 const PLACE: u32 = 52;
 
@@ -23,7 +23,7 @@ pub(super) fn log2(x: f64) -> f64 {
     exponent + part * (1.339_850_002_884_624_7 - 0.339_850_002_884_624_7 * part)
 }
 
-/// `2^x` to a part in 300, for exponents that a number may have.
+/// `2^x` to 1 part in 300, for exponents in the range of doubles.
 #[inline(always)]
 pub(super) fn exp2(x: f64) -> f64 {
     let x = x.clamp(-1022.0, 1023.0);

@@ -1,4 +1,4 @@
-//! The step interface: all that the driver knows of an integrator.
+//! The step interface: everything that the driver knows of an integrator.
 
 use core::fmt;
 
@@ -10,24 +10,24 @@ use crate::error::Fault;
 use crate::jet::LENGTH;
 use crate::outcome::Outcome;
 
-/// A one-step integrator with dense output, whether it chooses its steps by an error estimate or keeps a size.
+/// A one-step integrator with dense output, with step-size control or a fixed step.
 ///
-/// After [`Stepper::start`], every [`Stepper::step`] makes one accepted step from the end of the last one. Both
-/// ends of the step stay readable until the next; states between them are had from [`Stepper::interpolate`] after
+/// After [`Stepper::start`], every [`Stepper::step`] makes one accepted step from the end of the last one. Both ends
+/// of the step stay readable until the next. [`Stepper::interpolate`] gives states between them, after
 /// [`Stepper::prepare_dense`].
 pub trait Stepper<F: VectorField> {
-    /// Name, as the command line writes it.
+    /// Name, as written by the command line.
     fn name(&self) -> &'static str;
 
     /// The tolerance it was made with.
     fn tolerance(&self) -> Tolerance;
 
-    /// The longest step it may choose; infinite without a limit, and where it keeps a size.
+    /// The longest step it may choose; infinite without a limit, and for a fixed step.
     fn max_step(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// Begins at `(now, state)`, heading for `t_end`: finds a first step size.
+    /// Begins at `(now, state)` towards `t_end`, and finds a first step size.
     ///
     /// # Errors
     /// [`StepFailure`] where the vector field does not exist at the start.
@@ -40,9 +40,9 @@ pub trait Stepper<F: VectorField> {
         counters: &mut Counters,
     ) -> Result<(), StepFailure>;
 
-    /// Begins again after a jump, with the step size known so far but none larger than `limit`. An integrator that
-    /// keeps a size goes back to it within a few steps. Components of the state that are those of the last cut keep what they
-    /// were rounded off there.
+    /// Restarts after a jump, with the last step size but at most `limit`. An integrator with a fixed step returns to
+    /// it within a few steps. Components of the state that equal those at the last cut keep their rounding errors
+    /// from there.
     ///
     /// # Errors
     /// [`StepFailure`] where the vector field does not exist at the new state.
@@ -55,24 +55,24 @@ pub trait Stepper<F: VectorField> {
         counters: &mut Counters,
     ) -> Result<(), StepFailure>;
 
-    /// Makes one accepted step towards `t_end`, landing on it exactly when it is in reach. Trial steps that fail
-    /// are shortened here; only what no step size cures is reported.
+    /// Makes one accepted step towards `t_end`, landing on it exactly when it is within reach. Failed trial steps are
+    /// shortened here; only failures that persist at every step size are reported.
     ///
     /// # Errors
     /// [`StepFailure`]; the last good state is still [`Stepper::end_state`].
     fn step(&mut self, field: &F, t_end: f64, counters: &mut Counters) -> Result<(), StepFailure>;
 
-    /// The error that the last step is estimated to have made, as a part of the tolerance; 0 where it is not estimated.
+    /// Estimated error of the last step divided by the tolerance; 0 without an estimate.
     fn error(&self) -> f64 {
         0.0
     }
 
-    /// The size this integrator keeps in the run at hand; `None` if it chooses every step anew.
+    /// The fixed step of the present run; `None` with step-size control.
     fn fixed_step(&self) -> Option<f64> {
         None
     }
 
-    /// Takes `state` for the end of the last step, as a projection does, and evaluates the rate there anew.
+    /// Replaces the end of the last step by `state`, for a projection, and evaluates the rate there.
     ///
     /// # Errors
     /// [`StepFailure`] where the vector field does not exist at `state`.
@@ -116,26 +116,26 @@ pub trait Stepper<F: VectorField> {
     /// Rates at the start and at the end of the last step.
     fn end_rates(&self) -> [&F::State; 2];
 
-    /// The power series that the last step is made of, where it is.
+    /// The power series of the last step, if the step is one.
     fn series(&self) -> Option<Series> {
         None
     }
 
-    /// Coefficient `k` of the power series of all gaps along the last step; nothing where there are none.
+    /// Coefficient `k` of the power series of all gaps along the last step; empty if there are none.
     fn gap_coefficient(&self, k: usize) -> &[f64] {
         let _ = k;
         &[]
     }
 
-    /// The gaps at the end of the last step, where they have power series.
+    /// The gaps at the end of the last step, if they have power series.
     fn end_gaps(&self) -> &[f64] {
         &[]
     }
 
-    /// Whether the last step's dense output is ready.
+    /// True if the last step's dense output is ready.
     fn dense_ready(&self) -> bool;
 
-    /// Makes the last step's dense output ready, with what extra stages it takes; does nothing if it is.
+    /// Prepares the last step's dense output, with its extra stages; does nothing if it is ready.
     ///
     /// # Errors
     /// The [`Fault`] of an extra stage.
@@ -146,20 +146,21 @@ pub trait Stepper<F: VectorField> {
     /// Meaningful only while [`Stepper::dense_ready`].
     fn interpolate(&self, theta: f64) -> F::State;
 
-    /// Writes the coefficients of the dense output in powers of the part of the step, and returns the number of the last one. Those
-    /// above it are left as they are.
+    /// Writes the coefficients of the dense output in powers of the fraction of the step, and returns the degree.
+    /// Coefficients above the degree are unchanged.
     ///
     /// Meaningful only while [`Stepper::dense_ready`].
     fn powers(&self, coefficients: &mut [F::State; LENGTH]) -> usize;
 
-    /// How far rates along the step, times its length, are from those of the cubic through its ends, as far as rates are
-    /// known without dense output; `None` where none are known inside the step.
+    /// Largest known deviation of the rates along the step, times its length, from those of the cubic through its
+    /// ends, from data available without dense output; `None` if no rates inside the step are known.
     fn sway(&self) -> Option<F::State> {
         None
     }
 
-    /// Makes the last step again with the length at which its end has gap 0, near this part of it. `gap` gives a gap and its
-    /// rate. Returns whether that is done; the step is as it was otherwise. Only methods that solve for impacts do it.
+    /// Repeats the last step with the length at which the gap at its end is 0, near this fraction of it. `gap` gives
+    /// a gap and its rate. Returns true on success; otherwise the step is unchanged. Only methods that solve for
+    /// impacts succeed.
     fn meet(
         &mut self,
         field: &F,
@@ -171,9 +172,9 @@ pub trait Stepper<F: VectorField> {
         false
     }
 
-    /// Scales the jump from the end of the step that [`Stepper::meet`] made to `state`, so that the discrete energy of the
-    /// step that arrives is that of the step that departs. Without such a step, or where the jump is no elastic impact,
-    /// `state` stays as it is.
+    /// Scales the jump from the end of the step that [`Stepper::meet`] made to `state`, so that the discrete energies
+    /// of the steps before and after it are equal. Without such a step, or if the jump is not an elastic impact,
+    /// `state` is unchanged.
     fn rebound(
         &mut self,
         field: &F,
@@ -184,8 +185,9 @@ pub trait Stepper<F: VectorField> {
         let _ = (field, rebound, state, counters);
     }
 
-    /// Time and state at a part of the step where the motion is cut; after [`Stepper::prepare_dense`], unless it is the end.
-    /// [`Stepper::restart`] follows. What the state is rounded off is kept until then by integrators that carry it.
+    /// Time and state at the fraction of the step where the motion is cut; call [`Stepper::prepare_dense`] first
+    /// unless it is the end. [`Stepper::restart`] follows. Integrators with compensated sums keep the rounding error
+    /// of the state until then.
     fn cut(&mut self, theta: f64) -> (Instant, F::State) {
         match theta >= 1.0 {
             true => (self.end_time(), *self.end_state()),
@@ -203,32 +205,33 @@ pub type GapAt<'a, S> = dyn Fn(f64, &S) -> Result<(f64, f64), Fault> + 'a;
 /// The energy at a time and a state.
 pub type EnergyAt<'a, S> = dyn Fn(f64, &S) -> Result<f64, Fault> + 'a;
 
-/// An elastic impact in a step of fixed size, and the energy that motion keeps.
+/// An elastic impact in a step of fixed size, and the conserved energy.
 pub struct Rebound<'a, S> {
     /// The longest step to go on with.
     pub limit: f64,
-    /// Components of the state before those that hold its motion.
+    /// Number of components of the state before those of its velocities, momenta or quasi-velocities.
     pub motion_start: usize,
     /// The energy at a time and a state.
     pub energy: &'a EnergyAt<'a, S>,
 }
 
-/// That a step is a power series in `s`, at time `t_start + unit s`.
+/// Property of a step that is a power series in `s`, at time `t_start + unit s`.
 #[derive(Debug, Clone, Copy)]
 pub struct Series {
     /// Unit of time.
     pub unit: f64,
-    /// Number of the last coefficient.
+    /// Degree of the series.
     pub order: usize,
 }
 
-/// Why no step could be made.
+/// Reason why no step could be made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum StepFailure {
-    /// The error stays too large down to steps far shorter than the last digit of the time: a singularity of the motion.
+    /// The error stays too large down to steps far shorter than the last digit of the time: a singularity of the
+    /// motion.
     StepUnderflow {
-        /// Where.
+        /// Time of the failure.
         t: f64,
     },
     /// The equations of an implicit step cannot be solved, not even in many small parts: the step is too long for the
@@ -237,11 +240,11 @@ pub enum StepFailure {
         /// Start of the step.
         t: f64,
     },
-    /// The vector field does not exist in whatever short step.
+    /// The vector field does not exist, however short the step.
     Fault(Fault),
-    /// The state or its rate is not finite in whatever short step.
+    /// The state or its rate is not finite, however short the step.
     NonFinite {
-        /// First component concerned.
+        /// First component that is not finite.
         component: usize,
     },
 }

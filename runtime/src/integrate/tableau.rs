@@ -2,14 +2,14 @@
 
 use crate::state::StateVector;
 
-/// A non-zero entry of a row of a tableau: the stage it multiplies, and its value.
+/// A non-zero entry of a row of a tableau: the index of its stage, and its value.
 pub(super) type Term = (usize, f64);
 
 /// `sum over terms of coefficient * stage`, component `i`, without the first stage.
 ///
-/// Stages hold what their rates differ by from that of the first stage, whose own coefficient is what the node leaves of the
-/// row: coefficients are large beside their sum, and rounded, so that with the rates themselves a motion at rates that hardly
-/// change would err in every step, in the same direction.
+/// Stages hold the differences of their rates from that of the first stage. The coefficient of the first stage is the
+/// node minus the sum of the row. Coefficients are rounded, and large relative to their sum: with the rates
+/// themselves, a motion with almost constant rates would err in every step, in the same direction.
 #[inline(always)]
 pub(super) fn sum<S: StateVector>(stages: &[S], terms: &[Term], i: usize) -> f64 {
     let mut sum = 0.0;
@@ -21,7 +21,7 @@ pub(super) fn sum<S: StateVector>(stages: &[S], terms: &[Term], i: usize) -> f64
     sum
 }
 
-/// What rounding errors of values up to `size` make of their sum with these coefficients, at most.
+/// Bound of the rounding errors of a sum with these coefficients, for values up to `size`.
 #[inline(always)]
 pub(super) fn rounding(size: f64, terms: &[Term]) -> f64 {
     let weights = terms
@@ -30,7 +30,7 @@ pub(super) fn rounding(size: f64, terms: &[Term]) -> f64 {
     0.5 * f64::EPSILON * size * weights
 }
 
-/// `sum over terms of coefficient * value`, or 0 where [`rounding`] alone may make as much.
+/// `sum over terms of coefficient * value`, or 0 if it is within the bound of [`rounding`].
 #[inline(always)]
 pub(super) fn weigh_beyond_rounding(values: &[f64], terms: &[Term], size: f64) -> f64 {
     let mut sum = 0.0;
@@ -59,7 +59,7 @@ pub(super) fn combine<S: StateVector>(
     }
 }
 
-/// Makes of the rate of a stage its difference from that of the first.
+/// Replaces the rate of a stage by its difference from that of the first.
 #[inline(always)]
 pub(super) fn subtract_first<S: StateVector>(stages: &mut [S], stage: usize) {
     let first = stages[0];
@@ -68,10 +68,10 @@ pub(super) fn subtract_first<S: StateVector>(stages: &mut [S], stage: usize) {
     }
 }
 
-/// The larger of two sizes; not a number once one is.
+/// The larger of two sizes; NaN once either is.
 ///
-/// Errors are measured by their largest component, not by their mean: components that are integrated without error, as
-/// angles that turn uniformly, must not excuse the others.
+/// Errors are measured by their largest component, not by their mean: components without error, for example angles
+/// that turn uniformly, must not hide the others.
 #[inline(always)]
 pub(super) fn larger(largest: f64, value: f64) -> f64 {
     if value > largest || value.is_nan() {
@@ -82,7 +82,7 @@ pub(super) fn larger(largest: f64, value: f64) -> f64 {
 }
 
 /// Checks of tables, for the tests of the schemes.
-/// Makes stages one after the other, each of its row of the tableau: `inside` is room for a state.
+/// Computes stages one after the other, each from its row of the tableau; `inside` is storage for a state.
 macro_rules! make_stages {
     ($field:ident, ($t:expr, $h:expr, $start:expr), $stages:ident, $inside:expr, $nodes:ident: $($index:literal $row:ident)*) => {$(
         combine($start, $h, $stages, ($nodes[$index], &$row), $inside);
@@ -141,7 +141,8 @@ pub(super) mod check {
         }
     }
 
-    /// `sum b_i c_i` is 1/2 to a hundredth of a rounding error, computed without any: products and sums with what they lose.
+    /// `sum b_i c_i` is 1/2 to a hundredth of a rounding error, computed exactly from products and sums with their
+    /// rounding errors.
     pub(crate) fn constant_forces_shift_no_step(weights: &[Term], nodes: &[f64]) {
         let (mut sum, mut lost) = (-0.5, 0.0);
         for &(i, b) in weights {

@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-/// Error allowed in a step: each component `i` may err by `absolute * scale_i + relative * |y_i|`, where `scale` is [`VectorField::scale`](crate::VectorField::scale).
+/// Error allowed in a step: `absolute * scale_i + relative * |y_i|` in each component `i`, where `scale` is
+/// [`VectorField::scale`](crate::VectorField::scale).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     relative: f64,
@@ -10,16 +11,16 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// As small as doubles allow.
+    /// Smallest tolerance for doubles.
     pub(crate) const LEAST: Self = Self {
         relative: f64::EPSILON,
         absolute: f64::EPSILON,
     };
 
-    /// The same number for both.
+    /// The same number as relative and absolute tolerance.
     ///
     /// # Errors
-    /// [`ToleranceError`] unless it is positive and finite.
+    /// [`ToleranceError`] if it is not positive and finite.
     pub fn new(tolerance: f64) -> Result<Self, ToleranceError> {
         Self::of(tolerance, tolerance)
     }
@@ -27,7 +28,7 @@ impl Tolerance {
     /// A relative and an absolute tolerance.
     ///
     /// # Errors
-    /// [`ToleranceError`] unless both are positive and finite.
+    /// [`ToleranceError`] if either is not positive and finite.
     pub fn of(relative: f64, absolute: f64) -> Result<Self, ToleranceError> {
         for value in [relative, absolute] {
             if !(value > 0.0 && value.is_finite()) {
@@ -48,7 +49,7 @@ impl Tolerance {
     }
 }
 
-/// A tolerance that is not a positive finite number.
+/// Error for a tolerance that is not a positive finite number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ToleranceError {
     /// The refused value.

@@ -1,3 +1,3 @@
-//! The little dense linear algebra that the runtime itself needs; generated code brings its own.
+//! Dense linear algebra of the runtime itself; generated code contains its own.
 
 pub(crate) mod qr;

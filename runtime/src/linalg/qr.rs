@@ -1,17 +1,18 @@
 //! Orthogonalisation of the rows of a wide matrix, and least-norm solutions.
 //!
-//! `A x = b` with M rows of N: modified Gram-Schmidt on the rows, twice over (once more is enough), writes
-//! `a_i = sum_j r_ij q_j`; then `x = sum_j z_j q_j` with `R z = b` has the least norm of all solutions.
+//! For `A x = b` with M rows of length N, modified Gram-Schmidt on the rows, applied twice (the second pass
+//! suffices), gives `a_i = sum_j r_ij q_j`. Then `x = sum_j z_j q_j` with `R z = b` has the least norm of all
+//! solutions.
 
 use crate::math;
 
-/// A row is taken for dependent on the earlier ones if orthogonalisation leaves less than this part of it.
+/// Share of a row that must remain after orthogonalisation; below it the row counts as dependent on the earlier ones.
 const DEPENDENT: f64 = 1e-12;
 
 /// Overwrites `rows` (row after row, each of `width`) by orthonormal rows, zero where a row depends on earlier ones,
 /// and writes the least-norm solution of `rows x = values` to `solution`.
 ///
-/// Equations whose rows depend on earlier ones are left out; whether they hold is for the caller to check.
+/// Equations whose rows depend on earlier ones are skipped; the caller checks them.
 pub(crate) fn least_norm(rows: &mut [f64], width: usize, values: &[f64], solution: &mut [f64]) {
     solution.fill(0.0);
     if width == 0 {
@@ -23,7 +24,7 @@ pub(crate) fn least_norm(rows: &mut [f64], width: usize, values: &[f64], solutio
             return;
         };
         let before = math::sqrt(dot(row, row));
-        // What the solution so far gives this equation: exact on the earlier rows, nothing across them.
+        // Value of this equation at the solution so far: exact on the earlier rows, zero across them.
         let reached = dot(row, solution);
         for _ in 0..2 {
             for direction in earlier.chunks_exact(width) {

@@ -1,4 +1,4 @@
-//! A power series of the motion, of one state or of several at once, and the polynomials that are made of it.
+//! Power series of the motion, of one state or of several in SIMD lanes, and the polynomials made from them.
 
 use crate::contract::TaylorField;
 use crate::error::Fault;
@@ -6,7 +6,7 @@ use crate::jet::{Jets, LENGTH};
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
-/// What is known at one moment, and the coefficients above it.
+/// Values at one moment, and the coefficients above them.
 pub(crate) struct Expansion<F: TaylorField, L: Numbers> {
     pub(crate) coefficients: [F::Row<L>; LENGTH],
     pub(crate) gaps: [F::Gaps<L>; LENGTH],
@@ -23,7 +23,7 @@ impl<F: TaylorField, L: Numbers> Clone for Expansion<F, L> {
 impl<F: TaylorField, L: Numbers> Copy for Expansion<F, L> {}
 
 impl<F: TaylorField, L: Numbers> Expansion<F, L> {
-    /// Room for the series of a system.
+    /// Storage for the series of a system.
     pub(crate) fn of(field: &F) -> Self {
         Self::sized(
             field.state_len(),
@@ -32,7 +32,7 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         )
     }
 
-    /// Room that a system has yet to be known for.
+    /// Storage before the system is known.
     pub(crate) fn unset() -> Self {
         Self::sized(0, 0, 0)
     }
@@ -46,14 +46,14 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         }
     }
 
-    /// Makes the room that a system takes, unless it is there.
+    /// Makes the storage for a system, unless its size is right already.
     pub(crate) fn make_room(&mut self, field: &F) {
         if self.coefficients[0].as_slice().len() != field.state_len() {
             *self = Self::of(field);
         }
     }
 
-    /// Takes a state for the one that the next series begins at, and the one that the last ends at.
+    /// Evaluates the values at a state: the start of the next series and the end of the last.
     #[inline(always)]
     pub(crate) fn begin(
         &mut self,
@@ -65,7 +65,7 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         field.begin(parameters, t, state, &mut self.firsts)
     }
 
-    /// The coefficients from the state that was begun with.
+    /// Computes the coefficients from the state passed to [`Expansion::begin`].
     #[inline(always)]
     pub(crate) fn advance(
         &mut self,
@@ -87,20 +87,20 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         );
     }
 
-    /// The rate of the state that was begun with.
+    /// The rate at the state passed to [`Expansion::begin`].
     #[inline(always)]
     pub(crate) fn rate(&self) -> &[L] {
         &self.firsts.as_slice()[..self.coefficients[0].as_slice().len()]
     }
 
-    /// The gaps of the state that was begun with.
+    /// The gaps at the state passed to [`Expansion::begin`].
     #[inline(always)]
     pub(crate) fn begun_gaps(&self) -> &[L] {
         let (components, gaps) = (&self.coefficients[0], &self.gaps[0]);
         &self.firsts.as_slice()[components.as_slice().len()..][..gaps.as_slice().len()]
     }
 
-    /// The largest entries of the last coefficient and the one before it, each times its factor.
+    /// Largest entries of the last coefficient and of the one before it, each times its factor.
     #[inline(always)]
     pub(crate) fn sizes(&self, order: usize, factors: &F::Row<L>) -> [L; 2] {
         let mut sizes = [L::ZERO; 2];
@@ -113,7 +113,7 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         sizes
     }
 
-    /// What the polynomial adds to the start after `theta` units of time, and its derivative there.
+    /// Increment of the polynomial from the start over `theta` units of time, and its derivative there.
     #[inline(always)]
     pub(crate) fn change(&self, order: usize, theta: L) -> [F::Row<L>; 2] {
         let (mut change, mut slope) =
@@ -133,8 +133,8 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
     }
 }
 
-/// The end of a step from a start that lacks `rest` since it is rounded, and what the end lacks: the rounding error of the
-/// sum, exactly (Moller, Knuth).
+/// The end of a step from a start with rounding error `rest`, and the rounding error of the end: exactly that of the
+/// sum (Moller, Knuth).
 #[inline(always)]
 pub(crate) fn sum<L: Numbers>(start: L, change: L, rest: L) -> [L; 2] {
     let change = change + rest;

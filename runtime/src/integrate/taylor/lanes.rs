@@ -1,8 +1,8 @@
-//! Steps of several motions at once, each with the bits that it has alone.
+//! Steps of several motions in SIMD lanes, each with the same bits as in a run of its own.
 //!
-//! What takes the time of a step, the series and the sums over it, is computed in lanes; what decides about it (its
-//! length, whether it is accepted) for one motion after the other. A motion that needs something else, as a shorter step,
-//! makes its step alone, from the same start.
+//! The series and the sums over them, which dominate the cost of a step, are computed in lanes. The decisions about a
+//! step (its length, its acceptance) are made for one motion after the other. A motion that needs special treatment,
+//! for example a shorter step, makes its step alone, from the same start.
 
 use super::expansion::{Expansion, sum};
 use super::{LONGEST, Taylor, not_finite};
@@ -15,7 +15,7 @@ use crate::integrate::stats::Counters;
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
-/// Room for the steps of as many motions as `L` has lanes.
+/// Storage for the steps of as many motions as `L` has lanes.
 pub(crate) struct Abreast<F: TaylorField, L: Numbers> {
     parameters: F::Parameters<L>,
     expansion: Expansion<F, L>,
@@ -24,25 +24,25 @@ pub(crate) struct Abreast<F: TaylorField, L: Numbers> {
     slope: F::Row<L>,
 }
 
-/// A motion on its way, in a lane.
+/// A motion in a lane.
 pub(crate) trait Walker<F: TaylorField> {
-    /// Its integrator.
+    /// The integrator.
     fn taylor(&self) -> &Taylor<F>;
 
-    /// Its integrator, and the work done so far.
+    /// The integrator and the work counters, mutable.
     fn at_work(&mut self) -> (&mut Taylor<F>, &mut Counters);
 
-    /// Its system.
+    /// The system.
     fn field(&self) -> &F;
 
-    /// Where it is heading.
+    /// End of the run.
     fn t_end(&self) -> f64;
 
-    /// Whether states inside its steps are asked for anyway.
+    /// True if states inside every step will be requested.
     fn looks_inside(&self) -> bool;
 }
 
-/// The step of a lane, before it is made.
+/// Planned step of a lane.
 #[derive(Clone, Copy, Default)]
 struct Plan {
     reach: f64,
@@ -51,7 +51,7 @@ struct Plan {
 }
 
 impl<F: TaylorField, L: Numbers> Abreast<F, L> {
-    /// Room for the steps of systems like this one.
+    /// Storage for the steps of systems like this one.
     pub(crate) fn new(field: &F) -> Self {
         let components = field.state_len();
         Self {
@@ -63,7 +63,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         }
     }
 
-    /// The parameters of the system in each lane.
+    /// Sets the parameters of the system in each lane.
     pub(crate) fn set_parameters(&mut self, fields: &[&F]) {
         let mut of_lanes = [fields[0].parameters(); MOST];
         for (lane, own) in of_lanes.iter_mut().enumerate() {
@@ -72,8 +72,8 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         gather(&mut self.parameters, |lane, i| of_lanes[lane].as_slice()[i]);
     }
 
-    /// Makes the next step of every motion whose integrator has the order of the first; which of them it made. The others must
-    /// make theirs alone.
+    /// Makes the next step of every motion whose integrator has the order of the first, and returns true for each
+    /// step that was made. The other motions must make theirs alone.
     pub(crate) fn step(&mut self, walkers: &mut [impl Walker<F>]) -> [bool; MOST] {
         let order = walkers[0].taylor().order;
         for walker in walkers.iter_mut() {
@@ -149,7 +149,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         plans
     }
 
-    /// The ends of all steps, and what is known there.
+    /// Computes the ends of all steps, with the rates and gaps there.
     fn arrive(
         &mut self,
         walkers: &[impl Walker<F>],
@@ -169,7 +169,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             .begin(field, &self.parameters, arrival, &self.end)
     }
 
-    /// Gives an integrator the end of its step, if that is accepted.
+    /// Passes the end of its step to an integrator. Returns true if the step is accepted.
     fn hand_over(
         &self,
         lane: usize,
@@ -220,16 +220,16 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
     }
 }
 
-/// Most lanes that numbers may have.
+/// Largest number of lanes.
 pub(crate) const MOST: usize = 8;
 
-/// The integrator of a lane; lanes that nobody walks in have that of the last.
+/// Integrator of a lane; unused lanes have that of the last motion.
 #[inline(always)]
 fn of<F: TaylorField>(walkers: &[impl Walker<F>], lane: usize) -> &Taylor<F> {
     walkers[lane.min(walkers.len() - 1)].taylor()
 }
 
-/// The parts of time that steps take, in units.
+/// Lengths of the steps, in units of time of the series.
 #[inline(always)]
 fn theta<F: TaylorField, L: Numbers>(walkers: &[impl Walker<F>], plans: &[Plan; MOST]) -> L {
     L::gathered(|lane| {

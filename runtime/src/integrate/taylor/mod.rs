@@ -1,23 +1,24 @@
-//! Taylor series of the motion, with the steps of Jorba and Zou.
+//! Taylor series of the motion, with the step sizes of Jorba and Zou.
 //!
 //! ```text
 //! h_j = (tol e^-2.7 / |y_j|)^(1/j),   h = min(h_(p-1), h_p)
 //! ```
 //!
-//! with `|y_j|` the largest of the coefficients `j` of the state's components, each over the size that its tolerance
-//! is relative to. The order `p` is the one of least work ([`order`]). The step's polynomial is its dense output, so that states
-//! between its ends are as accurate as those at them and cost no evaluation.
+//! with `|y_j|` the largest of the coefficients `j` of the state's components, each divided by the size that its
+//! tolerance is relative to. The order `p` is the one of least work ([`order`]). The step's polynomial is its dense
+//! output, so states between its ends are as accurate as those at them and cost no evaluation.
 //!
-//! Coefficients are computed in a unit of time that is a power of two near the step: they neither overflow nor vanish
-//! whatever units the system has, and the change of unit is exact. What rounding takes from the sum of state and
+//! Coefficients are computed in a unit of time that is a power of two near the step. They neither overflow nor
+//! underflow in any system of units, and the change of unit is exact. The rounding error of the sum of state and
 //! increment is carried to the next step.
 //!
-//! No step is rejected because of its error. A rate at the end that is not the derivative of the polynomial shows a
-//! step past a point where the motion is not analytic; it is halved, which takes no new coefficients.
+//! No step is rejected because of its error. A rate at the end that differs from the derivative of the polynomial
+//! shows that the step passes a point where the motion is not analytic. The step is then halved, which needs no new
+//! coefficients.
 //!
 //! References: A. Jorba and M. Zou, *A software package for the numerical integration of ODEs by means of high-order
-//! Taylor methods*, Experimental Mathematics 14 (2005), sections 3.1 to 3.3; E. Hairer, C. Lubich, G. Wanner, *Geometric
-//! Numerical Integration* (2006), VIII.5, for the carried rest.
+//! Taylor methods*, Experimental Mathematics 14 (2005), sections 3.1 to 3.3; E. Hairer, C. Lubich, G. Wanner,
+//! *Geometric Numerical Integration* (2006), VIII.5, for the carried rounding error.
 
 pub(crate) mod expansion;
 #[cfg(feature = "lanes")]
@@ -47,7 +48,7 @@ use crate::math;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
-/// The name of [`Taylor`], known without a system.
+/// The name of [`Taylor`], independent of a system.
 pub const TAYLOR: &str = "taylor";
 
 /// Largest step in units of time of its expansion: powers up to the highest stay far from overflow.
@@ -59,14 +60,14 @@ const SHRINK: f64 = 1.0 / (1 << 16) as f64;
 /// Largest factor between a step that was limited from outside and the next.
 const GROW: f64 = 8.0;
 
-/// How far rate and polynomial may be apart at the end of a step, in units of the error allowed: the truncation error
-/// of a step in order is a small part of it.
+/// Allowed difference of rate and polynomial at the end of a step, in units of the error allowed: the truncation
+/// error of a regular step is a small fraction of it.
 const DEFECT: f64 = 1024.0;
 
-/// Rounding errors that a rate may have besides, in units of the size of its component.
+/// Additional rounding error allowed in a rate, in units of the size of its component.
 const NOISE: f64 = 64.0 * f64::EPSILON;
 
-/// Generated Taylor series at work.
+/// Integrator by generated Taylor series.
 pub struct Taylor<F: TaylorField> {
     tolerance: Tolerance,
     /// The order of the series, once a run has begun.
@@ -75,17 +76,17 @@ pub struct Taylor<F: TaylorField> {
     max_step: f64,
     first_step: Option<f64>,
     weights: Weights<F::State>,
-    /// Unit of time of the coefficients, a power of two; and that of the next ones.
+    /// Unit of time of the coefficients, a power of two, and the unit of the next ones.
     unit: f64,
     next_unit: f64,
-    /// No step longer than this for now: after a jump, and at the start.
+    /// Temporary limit of the step: after a jump, and at the start.
     limit: f64,
-    /// At least the error of the last step over what is allowed.
+    /// Upper bound of the error of the last step divided by the allowed error.
     error: f64,
     ends: Ends<F::State>,
     rates: [F::State; 2],
     expansion: Expansion<F, f64>,
-    /// Whether the coefficients of the last step are at hand: they are not where it was made abreast of others.
+    /// True if the coefficients of the last step are available. After a step in SIMD lanes they may not be.
     is_expanded: bool,
 }
 
@@ -109,7 +110,7 @@ impl<F: TaylorField> fmt::Debug for Taylor<F> {
 }
 
 impl<F: TaylorField> Taylor<F> {
-    /// An integrator with this tolerance, of the order that belongs to it.
+    /// An integrator with this tolerance, of the order chosen for it.
     pub fn new(tolerance: Tolerance) -> Self {
         let zeros = F::State::zeros(0);
         Self {
@@ -130,37 +131,37 @@ impl<F: TaylorField> Taylor<F> {
         }
     }
 
-    /// With series of this order, between 3 and 32, instead of the one that belongs to the tolerance.
+    /// Sets the order of the series, between 3 and 32, instead of the one chosen for the tolerance.
     #[must_use]
     pub fn with_order(mut self, order: usize) -> Self {
         self.given_order = Some(order.clamp(LEAST_ORDER, LENGTH - 1));
         self
     }
 
-    /// With no step longer than `max_step`, in units of time; infinity is no limit. A short force, such as a blow between two
-    /// steps, is seen if it lasts longer than this.
+    /// Limits steps to `max_step`, in units of time; infinity is no limit. A short force, for example a blow between
+    /// two steps, is detected if it lasts longer than this.
     ///
     /// # Errors
-    /// [`MaxStepError`] unless `max_step` is positive.
+    /// [`MaxStepError`] if `max_step` is not positive.
     pub fn with_max_step(mut self, max_step: f64) -> Result<Self, MaxStepError> {
         self.max_step = check_max_step(max_step)?;
         Ok(self)
     }
 
-    /// With no first step longer than this. Anything but a positive number is ignored.
+    /// Limits the first step. Anything but a positive number is ignored.
     #[must_use]
     pub fn with_first_step(mut self, first_step: f64) -> Self {
         self.first_step = (first_step > 0.0 && first_step.is_finite()).then_some(first_step);
         self
     }
 
-    /// The order of the series of a system.
+    /// Order of the series for a system.
     pub fn order_for(&self, field: &F) -> usize {
         let chosen = || order(self.tolerance.relative(), field.work());
         self.given_order.unwrap_or_else(chosen)
     }
 
-    /// Takes `(now, state)` for the end of a step, as a start does.
+    /// Sets `(now, state)` as the end of a step, for a start.
     fn place(
         &mut self,
         field: &F,
@@ -176,7 +177,7 @@ impl<F: TaylorField> Taylor<F> {
         self.begin(field)
     }
 
-    /// What is known at the end of the step, the rate among it.
+    /// Evaluates the rate and the other values at the end of the step.
     #[inline(always)]
     fn begin(&mut self, field: &F) -> Result<(), StepFailure> {
         self.expansion.begin(
@@ -192,7 +193,7 @@ impl<F: TaylorField> Taylor<F> {
         }
     }
 
-    /// The coefficients at the start of the step; the step they allow, in units of time.
+    /// Computes the coefficients at the start of the step, and returns the step that they allow, in units of time.
     fn expand(&mut self, field: &F, counters: &mut Counters) -> Result<f64, StepFailure> {
         loop {
             counters.expansions += 1;
@@ -212,7 +213,7 @@ impl<F: TaylorField> Taylor<F> {
         }
     }
 
-    /// The step that the last two coefficients allow, in units of time.
+    /// Step allowed by the last two coefficients, in units of time.
     #[inline(always)]
     fn reach(&self) -> f64 {
         let mut factors = self.expansion.coefficients[0].zeroed();
@@ -225,7 +226,7 @@ impl<F: TaylorField> Taylor<F> {
         self.reach_of(self.expansion.sizes(self.order, &factors))
     }
 
-    /// The step that the sizes of the last two coefficients allow, in units of time. The sizes hold the tolerance already.
+    /// Step allowed by the sizes of the last two coefficients, in units of time. The sizes include the tolerance.
     #[inline(always)]
     fn reach_of(&self, sizes: [f64; 2]) -> f64 {
         let [last, before] = [(0, self.order), (1, self.order - 1)]
@@ -233,7 +234,7 @@ impl<F: TaylorField> Taylor<F> {
         rough::exp2(last.min(before))
     }
 
-    /// The end of the last step is the start of the next.
+    /// Makes the end of the last step the start of the next.
     #[inline(always)]
     fn set_out(&mut self) {
         self.ends.move_on();
@@ -241,18 +242,18 @@ impl<F: TaylorField> Taylor<F> {
         self.unit = self.next_unit;
     }
 
-    /// The length of the step that the coefficients reach, as far as it is wanted.
+    /// Length of the step: the reach of the coefficients, within the limits.
     #[inline(always)]
     fn length(&self, reach: f64) -> f64 {
         let least = least_step(self.ends.t[0].t);
         reach.min(self.max_step).min(self.limit).max(least)
     }
 
-    /// What is left to do when a step of this length was made.
+    /// Records an accepted step of this length.
     #[inline(always)]
     fn accept(&mut self, made: f64, reach: f64, counters: &mut Counters) {
         counters.accepted += 1;
-        // The error grows with a power of the step that is the order and more.
+        // The error grows with a power of the step that is at least the order.
         let part = made / reach;
         self.error = (part * part) * (part * part);
         self.limit = if made < reach {
@@ -262,7 +263,7 @@ impl<F: TaylorField> Taylor<F> {
         };
     }
 
-    /// Sets the end of the step at `theta` units of time, and gives the derivative of the polynomial there.
+    /// Sets the end of the step at `theta` units of time, and returns the derivative of the polynomial there.
     #[inline(always)]
     fn arrive(&mut self, theta: f64) -> F::Row<f64> {
         let [change, slope] = self.expansion.change(self.order, theta);
@@ -276,7 +277,7 @@ impl<F: TaylorField> Taylor<F> {
         slope
     }
 
-    /// Whether the motion at the end of a step of `theta` units is that of the vector field.
+    /// True if a step of `theta` units ends on the motion of the vector field.
     #[inline(always)]
     fn attempt(
         &mut self,
@@ -295,7 +296,7 @@ impl<F: TaylorField> Taylor<F> {
         Ok(self.is_motion(theta, &slope))
     }
 
-    /// Whether the derivative of the polynomial at the end of a step is the rate there.
+    /// True if the derivative of the polynomial at the end of a step equals the rate there, within the tolerance.
     #[inline(always)]
     fn is_motion(&self, theta: f64, slope: &F::Row<f64>) -> bool {
         let length = theta * self.unit;
@@ -312,7 +313,7 @@ impl<F: TaylorField> Taylor<F> {
         })
     }
 
-    /// The state at a part of the step, and what it is rounded off.
+    /// The state at `theta` units of time, with its rounding error.
     #[inline(always)]
     fn state_at(&self, theta: f64) -> Precise<F::State> {
         let s = theta * (self.ends.length() / self.unit);
@@ -326,7 +327,7 @@ impl<F: TaylorField> Taylor<F> {
         self.ends.start.advanced(|i| change.padded()[i] * s)
     }
 
-    /// The coefficients of the last step, which was made abreast of others.
+    /// Computes the coefficients of the last step again, after it was made in SIMD lanes.
     fn expand_again(&mut self, field: &F) -> Result<(), Fault> {
         let (parameters, start) = (field.parameters(), row::<F>(&self.ends.start.value));
         let end = self.expansion.firsts;
@@ -339,7 +340,7 @@ impl<F: TaylorField> Taylor<F> {
         Ok(())
     }
 
-    /// Puts the last good state back in place after a failure.
+    /// Restores the last good state after a failure.
     fn retract(&mut self, field: &F) -> Result<(), StepFailure> {
         self.ends.retract();
         self.begin(field)

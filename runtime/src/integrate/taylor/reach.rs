@@ -1,8 +1,8 @@
-//! How far a series reaches before rounding is larger than what its last terms add.
+//! Reach of a series: the longest step at whose end its last terms are negligible beside its first ones.
 
 use crate::jet::LENGTH;
 
-/// Terms that tell how large a series is.
+/// Number of leading terms that determine the size of a series.
 const LEADING: usize = 4;
 
 /// Factor by which a step shrinks until its last terms are small enough.
@@ -11,8 +11,9 @@ const SHRINK: f64 = 0.75;
 /// Largest step in units of time of its expansion: powers up to the highest stay far from overflow.
 pub(crate) const LONGEST: f64 = 1024.0;
 
-/// The part of `wished` units of time at whose end the last two terms of every series are at most `last` of the first ones;
-/// `None` where series must be made in a shorter unit. `sizes` holds a row per order.
+/// Largest tried step, up to `wished` units of time, at whose end the last two terms of every series are at most
+/// `last` times the first ones. `None` if the series must be computed in a shorter unit. `sizes` holds a row per
+/// order.
 pub(crate) fn reach<const K: usize>(
     sizes: &[[f64; K]; LENGTH],
     order: usize,
@@ -29,7 +30,7 @@ pub(crate) fn reach<const K: usize>(
     Some(theta)
 }
 
-/// Whether the last two terms of a series are small beside its first ones.
+/// True if the last two terms of a series are at most `last` times its first ones.
 fn is_small(size: impl Fn(usize) -> f64, order: usize, theta: f64, last: f64) -> bool {
     let mut power = 1.0;
     let mut leading = 0.0;
