@@ -1,11 +1,12 @@
 //! Audit of a run: shows that the motion meets no surface between recorded impacts, and that recorded impacts lie on their surfaces.
 //!
-//! An audit observes a run and trusts nothing that the run says of its events. It encloses all values of every gap along every
-//! step, by interval arithmetic on the dense output (`motion.rs`) and bisection (`scan.rs`). Of the code that finds impacts it uses
-//! nothing. What it cannot show within its budget it reports as a [`Finding`], as it does a surface that was passed.
+//! An audit observes a run and does not rely on the events that the run reports. It encloses all values of every gap
+//! along every step, by interval arithmetic on the dense output (`motion.rs`) and bisection (`scan.rs`). It shares no
+//! code with event location. A claim that it cannot prove within its budget is reported as a [`Finding`], in the same
+//! way as a surface that was passed.
 //!
-//! Limits: the conditions of a surface (`when`) have no enclosure and are sampled where its gap is negative. A surface that holds
-//! the motion is not audited while it does.
+//! Limits: the conditions of a surface (`when`) have no enclosure and are sampled where its gap is negative. A
+//! surface is not audited while it holds the motion.
 //!
 //! ```
 //! use dalembert::audit::{Audit, Finding};
@@ -49,16 +50,16 @@ use crate::state::StateVector;
 use motion::{Motion, ROUNDING};
 use scan::Scan;
 
-/// A recorded impact lies on its surface if the gap is 0 within this many times its rounding.
+/// Tolerance of the gap at a recorded impact, in multiples of its rounding.
 const NEAR: f64 = 64.0;
 
-/// The same of impacts at one time: the rounding errors of the steps before add up along the flight.
+/// The same tolerance for simultaneous impacts: the rounding errors of the steps before add up along the flight.
 const BESIDE: f64 = 64.0 * NEAR;
 
-/// Part of its rounding that a gap may sink in every step along a surface.
+/// Allowed decrease of a gap in every step along a surface, as a fraction of its rounding.
 const DRIFT: f64 = 1.0 / 16.0;
 
-/// Why a run is not confirmed. Only the first reason is kept.
+/// Reason why a run is not confirmed. Only the first reason is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Finding {
@@ -66,38 +67,38 @@ pub enum Finding {
     MayBeMet {
         /// Index of the surface.
         surface: usize,
-        /// When.
+        /// Time.
         t: f64,
     },
     /// A surface is recorded as hit, or as holding the motion, where its gap is not 0 or does not fall.
     Misplaced {
         /// Index of the surface.
         surface: usize,
-        /// When.
+        /// Time.
         t: f64,
     },
     /// The step that begins here has no dense output.
     NoDenseOutput {
-        /// When.
+        /// Time.
         t: f64,
     },
 }
 
-/// Observes a run and says what is wrong with its events.
+/// Observes a run and reports errors in its events.
 pub trait Auditor<Sys: System>: Observer<Sys> {
-    /// Why the run is not confirmed; `None` if it is.
+    /// Reason why the run is not confirmed; `None` if it is.
     fn finding(&self) -> Option<Finding>;
 }
 
-/// The audit of the surfaces of a system. It may observe a run of any system with the same states.
+/// Audit of the surfaces of a system. It may observe a run of any system with the same states.
 #[derive(Debug, Clone)]
 pub struct Audit<'a, Sys: Impacting> {
     system: &'a Sys,
-    /// Surfaces that the motion may be on both sides of; only falls count there.
+    /// Surfaces that allow motion on both sides; only crossings into negative gaps count there.
     passable: PerSurface<bool, Sys::Gaps>,
     /// Surfaces that hold the motion.
     held: PerSurface<bool, Sys::Gaps>,
-    /// How far a gap may be negative by rounding errors of the motion up to here; 0 away from the surface.
+    /// Size of negative gaps that rounding errors of the motion up to here allow; 0 away from the surface.
     slack: Sys::Gaps,
     motion: Motion<Sys::State>,
     finding: Option<Finding>,
@@ -109,7 +110,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         Self::passing(system, |surface| system.is_passable(surface))
     }
 
-    /// The same, of surfaces that the motion may be on both sides of where `is_passable` says so.
+    /// The same, with the surfaces that allow motion on both sides given by `is_passable`.
     pub(crate) fn passing(system: &'a Sys, is_passable: impl Fn(usize) -> bool) -> Self {
         let none = PerSurface::all(&system.zero_gaps(), false);
         let mut passable = none;
@@ -126,7 +127,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         }
     }
 
-    /// Why the run is not confirmed; `None` if it is.
+    /// Reason why the run is not confirmed; `None` if it is.
     pub fn finding(&self) -> Option<Finding> {
         self.finding
     }
@@ -135,7 +136,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         self.passable[surface]
     }
 
-    /// Audits the gap of one surface along the motion that was taken in, up to `part` of the step and the state `end`.
+    /// Audits the gap of one surface along the present step, up to the fraction `part` of it and the state `end`.
     fn follow(&mut self, surface: usize, part: f64, end: &Sys::State) {
         let is_passable = self.is_passable(surface);
         let slack = &mut self.slack.as_mut_slice()[surface];
@@ -158,7 +159,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         *slack = match gap.lo > 0.0 {
             true => 0.0,
             false => {
-                // What a projection moves the end by moves the gap.
+                // A projection that moves the end moves the gap as well.
                 let t = self.motion.time_at(part);
                 let [arrived, kept] = [&self.motion.state(part), end]
                     .map(|state| self.system.gaps(t, state).as_slice()[surface]);
@@ -168,7 +169,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         };
     }
 
-    /// Keeps the surface of a step that may be met first.
+    /// Records the surface of a step that may be met first.
     fn note_met(&mut self, surface: usize, t: f64) {
         match self.finding {
             Some(Finding::MayBeMet { t: earlier, .. }) if earlier <= t => {}
@@ -176,7 +177,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         }
     }
 
-    /// The gap of a surface at a state, which the motion so far has rounded.
+    /// Enclosure of the gap of a surface at a state, including the rounding of the motion so far.
     fn gap_near(&self, surface: usize, t: f64, state: &Sys::State) -> Interval {
         let component = |i: usize| {
             let value = state.as_slice()[i];
@@ -203,7 +204,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
             && (may_rise || rates.is_ok_and(falls))
     }
 
-    /// Takes in that the gap of a surface at hand may be negative at a state by this many times its rounding.
+    /// Allows the gap of a surface to be negative at a state by this many times its rounding.
     fn allow(&mut self, surface: usize, t: f64, state: &Sys::State, roundings: f64) {
         let gap = self.gap_near(surface, t, state);
         if gap.lo <= 0.0 && gap.width().is_finite() {

@@ -1,8 +1,8 @@
 //! Enclosures of the dense output: all values and rates of a component of the state on a part of a step.
 //!
-//! The dense output is a polynomial `p` in the part of the step. With `m` the middle and `r` half the length of a part,
-//! `p(m + r x) = sum_k q_k r^k x^k` for `x` in `[-1, 1]`, where `x^k` lies in `[0, 1]` for even and in `[-1, 1]` for odd `k`
-//! (centred form). All of it is computed in intervals.
+//! The dense output is a polynomial `p` in the fraction of the step. With `m` the middle and `r` half the length of a
+//! part, `p(m + r x) = sum_k q_k r^k x^k` for `x` in `[-1, 1]`, where `x^k` lies in `[0, 1]` for even and in `[-1,
+//! 1]` for odd `k` (centred form). The computation is in interval arithmetic.
 
 use crate::error::Fault;
 use crate::jet::LENGTH;
@@ -10,8 +10,8 @@ use crate::numbers::{Interval, Rated};
 use crate::record::Segment;
 use crate::state::StateVector;
 
-/// Rounding of a state that the dense output gives, in parts of the sum of its terms: the polynomial is evaluated in nested form
-/// and known by its coefficients in powers.
+/// Rounding of a state from the dense output, relative to the sum of the absolute values of its terms: the integrator
+/// evaluates the polynomial in nested form, the enclosure uses its coefficients in powers.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The dense output of a step.
@@ -26,7 +26,7 @@ pub(super) struct Motion<S> {
 }
 
 impl<S: StateVector> Motion<S> {
-    /// No step, of states with as many components as this one.
+    /// Motion before the first step, for states with as many components as `like`.
     pub(super) fn new(like: &S) -> Self {
         Self {
             start: 0.0,
@@ -37,10 +37,10 @@ impl<S: StateVector> Motion<S> {
         }
     }
 
-    /// Takes in the step that a stretch of motion is cut from.
+    /// Sets the step from which a stretch of motion is cut.
     ///
     /// # Errors
-    /// Those of the dense output.
+    /// The [`Fault`] of the dense output.
     pub(super) fn follow(&mut self, segment: &mut Segment<'_, S>) -> Result<(), Fault> {
         (self.start, self.length) = (segment.t_start(), segment.step_length());
         self.order = segment.powers(&mut self.coefficients)?;
@@ -59,12 +59,12 @@ impl<S: StateVector> Motion<S> {
         self.doubts[0].as_slice()[i]
     }
 
-    /// Time at a part of the step.
+    /// Time at a fraction of the step.
     pub(super) fn time_at(&self, part: f64) -> f64 {
         self.start + part * self.length
     }
 
-    /// State at a part of the step.
+    /// State at a fraction of the step.
     pub(super) fn state(&self, part: f64) -> S {
         let mut state = self.coefficients[0].zeroed();
         for coefficient in self.coefficients[..=self.order].iter().rev() {
@@ -74,7 +74,7 @@ impl<S: StateVector> Motion<S> {
         state
     }
 
-    /// All times on a part of the step.
+    /// Enclosure of the times on a part of the step.
     pub(super) fn time(&self, [from, to]: [f64; 2]) -> Rated {
         let length = Interval::point(self.length);
         Rated {
@@ -83,7 +83,7 @@ impl<S: StateVector> Motion<S> {
         }
     }
 
-    /// All values that rounding allows component `i` at a part of the step.
+    /// Enclosure of component `i` at a fraction of the step, including rounding.
     fn component_at(&self, i: usize, part: f64) -> Interval {
         let part = Interval::point(part);
         let terms = self.coefficients[..=self.order].iter().rev();
@@ -93,7 +93,8 @@ impl<S: StateVector> Motion<S> {
         value.widened(self.doubts[0].as_slice()[i])
     }
 
-    /// All values of component `i` on a part of the step, and its rates by the part; at a single place no rates are asked for.
+    /// Enclosure of component `i` on a part of the step, and of its derivative by the fraction; at a single point,
+    /// without derivatives.
     pub(super) fn component(&self, i: usize, [from, to]: [f64; 2]) -> Rated {
         if from == to {
             return Rated::steady(self.component_at(i, from));
@@ -122,7 +123,7 @@ impl<S: StateVector> Motion<S> {
     }
 }
 
-/// All values of `x^k` for `x` in `[-1, 1]`.
+/// Range of `x^k` for `x` in `[-1, 1]`.
 fn sizes(k: usize) -> Interval {
     match (k, k % 2) {
         (0, _) => Interval::point(1.0),

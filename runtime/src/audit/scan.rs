@@ -4,13 +4,13 @@ use super::motion::Motion;
 use crate::contract::Impacting;
 use crate::numbers::{Bent, Interval, Rated};
 
-/// Halvings of a step; the scan of a piece that is shorter ends.
+/// Maximum number of halvings of a step; shorter pieces are not divided.
 const DEPTH: u32 = 44;
 
-/// Pieces of a step.
+/// Maximum number of pieces of a step.
 const PIECES: u32 = 1 << 14;
 
-/// Where in a piece the conditions of a surface are sampled.
+/// Places within a piece at which the conditions of a surface are sampled.
 const SAMPLES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// One gap along a step.
@@ -18,9 +18,9 @@ pub(super) struct Scan<'a, Sys: Impacting> {
     pub(super) system: &'a Sys,
     pub(super) motion: &'a Motion<Sys::State>,
     pub(super) surface: usize,
-    /// True if the gap may be negative, and only falls count.
+    /// True if the gap may be negative: only crossings from positive to negative count then.
     pub(super) is_passable: bool,
-    /// How far the gap may be negative by rounding errors of the motion before.
+    /// Size of negative gaps that rounding errors of the earlier motion allow.
     pub(super) slack: f64,
 }
 
@@ -33,12 +33,12 @@ enum Sign {
     Unclear,
 }
 
-/// The rounding of a gap with these values at one state: twice what the rounding of the state makes of it.
+/// Rounding of a gap with these values at one state: twice the effect of the rounding of the state.
 pub(super) fn floor(gap: Interval) -> f64 {
     2.0 * gap.width()
 }
 
-/// Values and rates of which it is not asked how they bend.
+/// Values and rates as a [`Bent`], without bounds of second derivatives.
 pub(super) fn bent(Rated { value, rate }: Rated) -> Bent {
     Bent {
         value,
@@ -48,7 +48,7 @@ pub(super) fn bent(Rated { value, rate }: Rated) -> Bent {
 }
 
 impl<Sys: Impacting> Scan<'_, Sys> {
-    /// All values and rates of the gap on a piece.
+    /// Enclosure of the gap and of its rate on a piece.
     pub(super) fn along(&self, piece: [f64; 2]) -> Rated {
         let component = |i: usize| bent(self.motion.component(i, piece));
         let time = bent(self.motion.time(piece));
@@ -56,15 +56,15 @@ impl<Sys: Impacting> Scan<'_, Sys> {
         Rated { value, rate }
     }
 
-    /// The gap at a part of the step.
+    /// The gap at a fraction of the step.
     pub(super) fn at(&self, part: f64) -> Interval {
         self.along([part, part]).value
     }
 
-    /// Shows that the surface is not met from the start of the step up to `part` of it.
+    /// Shows that the surface is not met from the start of the step up to the fraction `part` of it.
     ///
     /// # Errors
-    /// The first place where it may be met.
+    /// The first fraction at which it may be met.
     pub(super) fn exclude_falls(&self, part: f64) -> Result<(), f64> {
         let start = self.at(0.0);
         let mut is_above = start.lo > self.slack.max(floor(start));
@@ -100,7 +100,7 @@ impl<Sys: Impacting> Scan<'_, Sys> {
     /// The sign on a piece, from all values there and from the values at both ends with all rates between.
     fn sign(&self, [from, to]: [f64; 2]) -> Sign {
         let Rated { value, rate } = self.along([from, to]);
-        // Of a wall it does not matter how far it is.
+        // The distance from a wall does not matter while it is positive.
         if value.lo > 0.0 && !self.is_passable {
             return Sign::NotNegative;
         }
@@ -118,7 +118,7 @@ impl<Sys: Impacting> Scan<'_, Sys> {
         }
     }
 
-    /// Whether the surface counts somewhere on a piece, as far as samples tell.
+    /// True if the surface counts at one of the sample places of a piece.
     fn counts_on(&self, [from, to]: [f64; 2]) -> bool {
         SAMPLES.into_iter().any(|sample| {
             let part = from + sample * (to - from);

@@ -1,4 +1,4 @@
-//! Motions as differential equations of first order: their rates and their power series.
+//! Motions as first-order differential equations: their rates and their power series.
 
 use crate::error::Fault;
 use crate::jet::{Jets, LENGTH, Work};
@@ -10,16 +10,16 @@ use crate::state::StateVector;
     message = "`{Self}` has no vector field: declare it with `dalembert::model!`"
 )]
 pub trait VectorField {
-    /// The state; its components mean what the system says.
+    /// The state; the system gives its components their meaning.
     type State: StateVector;
 
-    /// The number of components of a state. Of a state of fixed size it is known.
+    /// Number of components of a state. The default is correct for states of fixed size.
     #[inline(always)]
     fn state_len(&self) -> usize {
         Self::State::CAPACITY
     }
 
-    /// A state of zeros, to be filled.
+    /// A state with all components 0.
     #[inline(always)]
     fn zero_state(&self) -> Self::State {
         StateVector::zeros(self.state_len())
@@ -31,8 +31,8 @@ pub trait VectorField {
     /// A [`Fault`] where the derivative does not exist; `rate` is unspecified then.
     fn rate(&self, t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault>;
 
-    /// The size of one unit of each component: absolute tolerances are multiplied by it, so that they mean
-    /// the same for a momentum as for the velocity it belongs to. Ones unless overridden.
+    /// Natural unit of each component. Absolute tolerances are multiplied by it, so that a tolerance means the same
+    /// for a momentum as for its velocity. Ones by default.
     fn scale(&self, t: f64, state: &Self::State) -> Self::State {
         let _ = (t, state);
         let mut ones = state.zeroed();
@@ -40,18 +40,18 @@ pub trait VectorField {
         ones
     }
 
-    /// Whether rates may have features that are narrow beside what a step passes, as bumps of an exponential are. Steps are
-    /// compared with [`VectorField::rates_along`] then.
+    /// True if rates may have features that are narrow relative to a step, for example narrow bumps of an
+    /// exponential. Steps are then checked against [`VectorField::rates_along`].
     #[inline(always)]
     fn can_be_narrow(&self) -> bool {
         false
     }
 
-    /// All rates along a stretch of motion: `component(i)` gives all values of component `i` of the state, `rate(i, ..)` takes all
-    /// values of its rate. Nothing where [`VectorField::can_be_narrow`] is false.
+    /// Encloses all rates along a stretch of motion. `component(i)` gives an enclosure of component `i` of the state;
+    /// `rate(i, ..)` receives an enclosure of its rate. Does nothing where [`VectorField::can_be_narrow`] is false.
     ///
     /// # Errors
-    /// [`Fault`] where the rates do not exist.
+    /// A [`Fault`] where the rates do not exist.
     fn rates_along(
         &self,
         t: Rated,
@@ -63,10 +63,10 @@ pub trait VectorField {
     }
 }
 
-/// A vector field with the power series of its motions: what [`Taylor`](crate::Taylor) integrates.
+/// A vector field with the power series of its motions, for the integrator [`Taylor`](crate::Taylor).
 ///
-/// Series are written over [`Numbers`]: of one motion with `f64`, of several at once with lanes. What belongs to one moment
-/// is computed by [`TaylorField::begin`], everything above it by [`TaylorField::advance`].
+/// Series are computed over [`Numbers`]: `f64` for one motion, SIMD lanes for several at once. [`TaylorField::begin`]
+/// computes the quantities at one moment, [`TaylorField::advance`] the higher coefficients.
 #[diagnostic::on_unimplemented(
     message = "the Taylor coefficients of `{Self}` are not known: declare it with `dalembert::model!`"
 )]
@@ -74,31 +74,32 @@ pub trait TaylorField: VectorField {
     /// The parameters of the system.
     type Parameters<L: Numbers>: Row<L>;
 
-    /// As many numbers as a state has components, in their order.
+    /// A state over `L`: one number per component, in the same order.
     type Row<L: Numbers>: Row<L>;
 
-    /// One number per surface, or none where a gap is not analytic, as `|x|` is not, or there are no surfaces.
+    /// One number per surface. Empty if a gap is not analytic, like `|x|`, or if there are no surfaces.
     type Gaps<L: Numbers>: Row<L>;
 
-    /// What is known at one moment: the rate, then the gaps, then whatever coefficients above order 0 take of it.
+    /// Quantities at one moment: the rate, then the gaps, then the other values that coefficients above order 0
+    /// depend on.
     type Firsts<L: Numbers>: Row<L>;
 
-    /// Room for the coefficients of intermediate values.
+    /// Storage for the coefficients of intermediate values.
     type Jets<L: Numbers>: Jets;
 
-    /// What an expansion takes, if it is known: the order of series is chosen by it.
+    /// Work of an expansion, if known. It determines the order of the series.
     #[inline(always)]
     fn work(&self) -> Option<Work> {
         None
     }
 
-    /// The number of gaps with series. Of gaps of fixed number it is known.
+    /// Number of gaps with series. The default is correct for a fixed number.
     #[inline(always)]
     fn series_gap_count(&self) -> usize {
         Self::Gaps::<f64>::CAPACITY
     }
 
-    /// How many numbers are known at one moment. Where it is fixed it is known.
+    /// Number of quantities at one moment. The default is correct for a fixed number.
     #[inline(always)]
     fn firsts_len(&self) -> usize {
         Self::Firsts::<f64>::CAPACITY
@@ -107,10 +108,10 @@ pub trait TaylorField: VectorField {
     /// The parameters.
     fn parameters(&self) -> Self::Parameters<f64>;
 
-    /// Writes what is known at `(t, state)` with these parameters, which need not be the system's own.
+    /// Writes the quantities at `(t, state)` for these parameters, which need not be the system's own.
     ///
     /// # Errors
-    /// A [`Fault`] where the derivative does not exist, in whatever lane; `firsts` is unspecified then.
+    /// A [`Fault`] where the derivative does not exist in any of the lanes; `firsts` is unspecified then.
     fn begin<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,
@@ -119,14 +120,14 @@ pub trait TaylorField: VectorField {
         firsts: &mut Self::Firsts<L>,
     ) -> Result<(), Fault>;
 
-    /// Writes the power series of the motion that is at `coefficients[0]`, where `firsts` is known, and of the gaps along
-    /// it, with these parameters:
+    /// Writes the power series of the motion through `coefficients[0]`, where the quantities `firsts` are known, and
+    /// of the gaps along it, with these parameters:
     ///
     /// ```text
     /// state(t + unit s) = coefficients[0] + coefficients[1] s + .. + coefficients[order] s^order + ..
     /// ```
     ///
-    /// `order` is 1 or more; orders above 32 are not computed. What `jets` holds before does not matter.
+    /// `order` is 1 or more; orders above 32 are not computed. The previous content of `jets` is ignored.
     #[allow(
         clippy::too_many_arguments,
         reason = "a series takes what is known and gives state, gaps and intermediate values"

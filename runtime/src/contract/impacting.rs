@@ -16,23 +16,24 @@ pub trait Impacting: System {
     /// S numbers, one per surface, in the order of declaration.
     type Gaps: StateVector;
 
-    /// S, the number of surfaces. Of gaps of fixed number it is known.
+    /// S, the number of surfaces. The default is correct for gaps of fixed number.
     #[inline(always)]
     fn surface_count(&self) -> usize {
         Self::Gaps::CAPACITY
     }
 
-    /// S zeros.
+    /// Gaps with S zeros.
     #[inline(always)]
     fn zero_gaps(&self) -> Self::Gaps {
         StateVector::zeros(self.surface_count())
     }
 
-    /// The gaps `h_s`; motion is allowed where they are not negative, and everywhere at a surface with a reset.
+    /// The gaps `h_s`. Motion is allowed where they are not negative; at a surface with a reset it is allowed
+    /// everywhere.
     fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps;
 
-    /// The gap of one surface along a stretch of motion. `component(i)` gives component `i` of the state along it; a gap takes positions
-    /// only.
+    /// The gap of one surface along a stretch of motion. `component(i)` gives component `i` of the state along it; a
+    /// gap depends on positions only.
     fn gap_along(
         &self,
         surface: usize,
@@ -40,8 +41,9 @@ pub trait Impacting: System {
         component: &dyn Fn(usize) -> TaylorModel,
     ) -> TaylorModel;
 
-    /// The gap of one surface along straight lines through a box, with arguments as [`Impacting::gap_along`] has them. It saves most
-    /// steps a closer look, and an [`Audit`](crate::audit::Audit) rests on it; without it nothing is known, and no run is confirmed.
+    /// The gap of one surface along straight lines through a box, with the arguments of [`Impacting::gap_along`]. It
+    /// spares most steps a closer enclosure, and an [`Audit`](crate::audit::Audit) requires it. Without it nothing is
+    /// known of the gap, and no run is confirmed.
     fn gap_about(&self, surface: usize, t: Bent, component: &dyn Fn(usize) -> Bent) -> Bent {
         let _ = (surface, t, component);
         Bent::ANYTHING
@@ -50,14 +52,14 @@ pub trait Impacting: System {
     /// The gap rates `dh_s(qdot) + d_t h_s`.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where the velocities do not exist.
     fn gap_rates(&self, t: f64, state: &Self::State) -> Result<Self::Gaps, Fault>;
 
-    /// The second rates `d^2h_s/dt^2` where the motion's part of the state, momenta or quasi-velocities, changes at the
-    /// rates `motion`. `None` for a system that does not know them: it cannot go on along a surface.
+    /// The second rates `d^2h_s/dt^2` if the momenta or quasi-velocities change at the rates `motion`. `None` for a
+    /// system that does not provide them: it cannot go on along a surface.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where they do not exist.
     fn gap_accelerations(
         &self,
         t: f64,
@@ -68,10 +70,10 @@ pub trait Impacting: System {
         Ok(None)
     }
 
-    /// What the impulse `motion` changes the gap rates by. `None` as for [`Impacting::gap_accelerations`].
+    /// Change of the gap rates by the impulse `motion`. `None` in the same cases as [`Impacting::gap_accelerations`].
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where they do not exist.
     fn gap_responses(
         &self,
         t: f64,
@@ -82,14 +84,14 @@ pub trait Impacting: System {
         Ok(None)
     }
 
-    /// Whether the surface counts here: all its `when` conditions hold. The last of several transitions of one gap counts also
-    /// where the conditions of none hold; see [`Impacting::takes`].
+    /// True if the surface counts here: all its `when` conditions hold. The last of several transitions of one gap
+    /// also counts where the conditions of none hold; see [`Impacting::takes`].
     fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         let _ = (surface, t, state);
         true
     }
 
-    /// Whether a surface that counts has a law here; where it has none, the run ends as
+    /// True if a surface that counts has a law here. If it has none, the run ends as
     /// [`Outcome::Untaken`](crate::Outcome::Untaken).
     fn takes(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         let _ = (surface, t, state);
@@ -99,10 +101,10 @@ pub trait Impacting: System {
     /// The declared law of a surface, at this system's parameters.
     fn law(&self, surface: usize) -> Law;
 
-    /// Positions and velocities after the declared reset of a surface; `None` where its law is no reset.
+    /// Positions and velocities after the declared reset of a surface; `None` if its law is not a reset.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] of the velocities before the reset, or of the reset itself.
     fn reset(
         &self,
         surface: usize,
@@ -113,12 +115,13 @@ pub trait Impacting: System {
         Ok(None)
     }
 
-    /// The impulse after which the instantaneous constraints of a surface hold, the nearest one in the metric; `None`
-    /// where it has none. It acts before the law, and then the law within those constraints: what
-    /// [`Impacting::blow`] and [`Impacting::contact`] say of the surface has them among the constraints.
+    /// The impulse after which the instantaneous constraints of a surface hold, the smallest in the metric; `None` if
+    /// it has none. It acts before the law, and the law then acts within those constraints: [`Impacting::blow`] and
+    /// [`Impacting::contact`] of the surface include them among the constraints.
     ///
     /// # Errors
-    /// [`Fault`]; [`Fault::SingularSurface`] where they depend on each other or on the constraints.
+    /// [`Fault::SingularSurface`] where they depend on each other or on the constraints; another [`Fault`] where the
+    /// metric or the constraints are singular.
     fn focus(
         &self,
         surface: usize,
@@ -129,11 +132,11 @@ pub trait Impacting: System {
         Ok(None)
     }
 
-    /// What must be added to the rates `motion` of momenta or quasi-velocities for the instantaneous constraints of a
-    /// surface to go on holding, as they do along it; `None` where it has none.
+    /// Correction of the rates `motion` of momenta or quasi-velocities that keeps the instantaneous constraints of a
+    /// surface while the motion goes on along it; `None` if it has none.
     ///
     /// # Errors
-    /// As [`Impacting::focus`].
+    /// The errors of [`Impacting::focus`].
     fn trace(
         &self,
         surface: usize,
@@ -145,23 +148,24 @@ pub trait Impacting: System {
         Ok(None)
     }
 
-    /// Whether motion is allowed on both sides of a surface, so that its gap may be negative: of surfaces with a reset, and of
-    /// transitions that are counted from both sides.
+    /// True if motion is allowed on both sides of a surface, so that its gap may be negative: surfaces with a reset,
+    /// and transitions that count from both sides.
     fn is_passable(&self, surface: usize) -> bool {
         self.law(surface) == Law::Reset
     }
 
-    /// The transition that leads back at once from the mode that a transition leads to, where first-order modes meet at one
-    /// surface and the state stays the same: there motions may slide.
+    /// The transition that leads back at once from the mode that a transition leads to, where first-order modes meet
+    /// at one surface and the state stays the same. Sliding motion may exist there.
     fn opposite(&self, surface: usize) -> Option<usize> {
         let _ = surface;
         None
     }
 
-    /// The state after the declared reset of a surface, or in the mode that it leads to.
+    /// The state after the declared reset of a surface, or in the mode that the surface leads to.
     ///
     /// # Errors
-    /// The [`Outcome`] that ends the run: a [`Fault`], a state that is not finite, outside the chart or off the constraints.
+    /// The [`Outcome`] that ends the run: a [`Fault`], or a state that is not finite, outside the chart or off the
+    /// constraints.
     fn landing(
         &self,
         surface: usize,
@@ -171,10 +175,10 @@ pub trait Impacting: System {
         after_reset(self, surface, t, state).map(Landing::from)
     }
 
-    /// The impulse of the declared law of a surface, where that is one.
+    /// The impulse of the declared law of a surface, if the law is an impulse.
     ///
     /// # Errors
-    /// As [`Impacting::contact`].
+    /// The errors of [`Impacting::contact`].
     fn blow(
         &self,
         surface: usize,
@@ -184,10 +188,11 @@ pub trait Impacting: System {
         Ok(self.contact(surface, t, state)?.blow(self.law(surface)))
     }
 
-    /// What an impact on this surface by any law needs, and motion along it.
+    /// Quantities of an impact on this surface, from which every law and the motion along the surface are evaluated.
     ///
     /// # Errors
-    /// [`Fault`]; [`Fault::SingularSurface`] where `dh(pi_D grad h)` is not positive, and as [`Impacting::focus`].
+    /// [`Fault::SingularSurface`] where `dh(pi_D grad h)` is not positive; the errors of [`Impacting::focus`];
+    /// another [`Fault`] where the metric or the constraints are singular.
     fn contact(
         &self,
         surface: usize,

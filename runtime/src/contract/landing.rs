@@ -6,7 +6,7 @@ use crate::law::Law;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// The state after the reset of a surface: in its chart, and on the constraints.
+/// The state after the reset of a surface, checked against its chart and the constraints.
 pub(crate) fn after_reset<Sys: Impacting + ?Sized>(
     system: &Sys,
     surface: usize,
@@ -23,7 +23,7 @@ pub(crate) fn after_reset<Sys: Impacting + ?Sized>(
         return Err(Outcome::NoReset { surface });
     };
     let (q, qdot) = (jump.position, jump.velocity);
-    // What a reset leaves alone keeps its last digit: momenta are not made of velocities and taken apart again.
+    // A component that the reset leaves unchanged keeps its last digit: momenta are not recomputed from velocities.
     if q == system.position(before) && qdot == system.velocity(t, before)? {
         return Ok(*before);
     }
@@ -43,7 +43,7 @@ pub(crate) fn after_reset<Sys: Impacting + ?Sized>(
             surface,
             constraint,
         }),
-        // `admit` refuses nothing else.
+        // `admit` gives no other error.
         _ => Ok(after),
     }
 }

@@ -1,6 +1,7 @@
-//! The traits between generated code and runtime: one per effect, so that a scene pays for what it declares.
+//! The traits between generated code and runtime: one per effect, so that a scene contains only the code for its
+//! declarations.
 //!
-//! Only [`VectorField`] is known to integrators. Time is an argument everywhere; autonomous systems ignore it.
+//! Integrators use [`VectorField`] alone. Every function takes the time; autonomous systems ignore it.
 
 mod constrained;
 mod field;

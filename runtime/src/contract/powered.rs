@@ -1,10 +1,10 @@
-//! Powers: the rates at which named causes change the energy of a system.
+//! Powers: the rates at which named forces and other causes change the energy of a system.
 
 use super::System;
 use crate::error::Fault;
 use crate::state::StateVector;
 
-/// A system with named forces: what changes its energy, by cause.
+/// A system with named forces, and the power of each cause that changes its energy.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no named forces: declare `forces {{ .. }}` in its `model!`"
 )]
@@ -12,19 +12,19 @@ pub trait Powered: System {
     /// One number per cause.
     type Powers: StateVector;
 
-    /// The number of causes. Of powers of fixed number it is known.
+    /// Number of causes. The default is correct for powers of fixed number.
     #[inline(always)]
     fn power_count(&self) -> usize {
         Self::Powers::CAPACITY
     }
 
-    /// The causes: the named forces in the order of declaration; then `constraints`, where constraints are affine or not
-    /// linear in the velocities, and `time`, where the Lagrangian depends on it.
+    /// Names of the causes: the named forces in order of declaration; then `constraints`, if constraints are affine
+    /// or nonlinear in the velocities, and `time`, if the Lagrangian depends on it.
     const POWERS: &'static [&'static str];
 
-    /// The powers, in units of energy per time; the energy changes at the rate of their sum.
+    /// The powers, in units of energy per time. Their sum is the rate of the energy.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where the velocities or the multipliers do not exist.
     fn powers(&self, t: f64, state: &Self::State) -> Result<Self::Powers, Fault>;
 }

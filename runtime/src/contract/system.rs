@@ -1,16 +1,16 @@
-//! Mechanical systems, and the principle that their motions come from.
+//! Mechanical systems, and the principle that gives their motions.
 
 use super::VectorField;
 use crate::error::{Fault, ParameterError, StateError};
 use crate::state::StateVector;
 
-/// What of a motion stays where parameters change: a state holds momenta or quasi-velocities, whose velocities are others with
-/// other parameters.
+/// Conserved quantity of a state when parameters change. A state holds momenta or quasi-velocities, and other
+/// parameters give them other velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
-    /// The velocities: a mass that is exchanged goes on as fast.
+    /// The velocities: a body whose mass is exchanged keeps its speed.
     Velocities,
-    /// The momenta: a mass that grows becomes slower.
+    /// The momenta: a body whose mass grows becomes slower.
     Momenta,
 }
 
@@ -22,29 +22,29 @@ pub trait System: VectorField {
     /// N numbers, one per coordinate, in the order of declaration: q, qdot or p.
     type Vector: StateVector;
 
-    /// A change of what the state holds of the motion: of the N momenta in the global form, of the N - M
-    /// quasi-velocities in the form reduced to D.
+    /// A change of the velocity part of a state: N momenta in the global form, N - M quasi-velocities in the form
+    /// reduced to D.
     type Impulse: StateVector;
 
-    /// N, the number of coordinates. Of vectors of fixed size it is known.
+    /// N, the number of coordinates. The default is correct for vectors of fixed size.
     #[inline(always)]
     fn coordinate_count(&self) -> usize {
         Self::Vector::CAPACITY
     }
 
-    /// The number of components of an impulse. Of impulses of fixed size it is known.
+    /// Number of components of an impulse. The default is correct for impulses of fixed size.
     #[inline(always)]
     fn impulse_len(&self) -> usize {
         Self::Impulse::CAPACITY
     }
 
-    /// N zeros.
+    /// A vector with N zeros.
     #[inline(always)]
     fn zero_vector(&self) -> Self::Vector {
         StateVector::zeros(self.coordinate_count())
     }
 
-    /// No impulse.
+    /// The zero impulse.
     #[inline(always)]
     fn zero_impulse(&self) -> Self::Impulse {
         StateVector::zeros(self.impulse_len())
@@ -62,11 +62,12 @@ pub trait System: VectorField {
     /// Momenta `p = g qdot + A`.
     ///
     /// # Errors
-    /// [`Fault`], for states that do not hold momenta themselves.
+    /// A [`Fault`], for states that do not hold momenta themselves.
     fn momentum(&self, t: f64, state: &Self::State) -> Result<Self::Vector, Fault>;
 
-    /// The state with these positions and velocities, taken as they are. A state reduced to D holds only velocities
-    /// that satisfy the constraints: there the quasi-velocities of `qdot` are taken, whatever it is off.
+    /// The state with these positions and velocities, without checks. A state reduced to D holds only velocities that
+    /// satisfy the constraints: there the quasi-velocities of `qdot` are taken, and its deviation from the
+    /// constraints is lost.
     ///
     /// # Errors
     /// [`Fault`] where the state cannot be formed.
@@ -77,8 +78,8 @@ pub trait System: VectorField {
         qdot: &Self::Vector,
     ) -> Result<Self::State, Fault>;
 
-    /// The state with these positions and momenta: taken as they are where the state holds momenta, else those
-    /// nearest to them in the metric that the constraints allow.
+    /// The state with these positions and momenta. They are taken unchanged if the state holds momenta; otherwise it
+    /// holds the nearest momenta in the metric that the constraints allow.
     ///
     /// # Errors
     /// [`Fault`] where the state cannot be formed.
@@ -95,13 +96,13 @@ pub trait System: VectorField {
     /// [`Fault::MetricNotPositive`].
     fn energy(&self, t: f64, state: &Self::State) -> Result<f64, Fault>;
 
-    /// Whether smooth motion is known to keep [`System::energy`]: no force does work, and time occurs nowhere. Methods that
-    /// keep a discrete energy carry it across elastic impacts then. False unless known.
+    /// True if smooth motion is known to conserve [`System::energy`]: no force does work, and nothing depends on
+    /// time. Methods that conserve a discrete energy then carry it across elastic impacts. The default is false.
     fn conserves_energy(&self) -> bool {
         false
     }
 
-    /// Adds `size * direction` to what the state holds of the motion: an impulse.
+    /// Adds the impulse `size * direction` to the momenta or quasi-velocities of the state.
     fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse);
 
     /// Checks every parameter against its declaration.
@@ -110,13 +111,13 @@ pub trait System: VectorField {
     /// The first [`ParameterError`], in order of declaration.
     fn check_parameters(&self) -> Result<(), ParameterError>;
 
-    /// How many components of a state, positions, come before those that hold its motion.
+    /// Number of components of a state, the positions, before its momenta or quasi-velocities.
     fn motion_start(&self, state: &Self::State) -> usize {
         let _ = state;
         self.coordinate_count()
     }
 
-    /// The mode that a state is of (see [`modes`](crate::modes)); 0 for systems without modes.
+    /// The mode of a state (see [`modes`](crate::modes)); 0 for systems without modes.
     fn mode(&self, state: &Self::State) -> usize {
         let _ = state;
         0
@@ -128,15 +129,15 @@ pub trait System: VectorField {
         None
     }
 
-    /// Whether the constraint forms may become dependent somewhere: not proved otherwise while building. A run watches such
-    /// systems in every step, and only them.
+    /// True if the constraint forms may become dependent somewhere: the generator has not proved the contrary. Only
+    /// such systems are checked in every step of a run.
     #[inline(always)]
     fn can_lose_rank(&self) -> bool {
         false
     }
 
     /// The first place in `[0, reach]` along a piece of smooth motion at which the constraint forms become dependent;
-    /// `motion` gives time and state at a part of it. None where [`System::can_lose_rank`] is false.
+    /// `motion` gives time and state at a fraction of it. `None` where [`System::can_lose_rank`] is false.
     fn rank_drop(
         &self,
         motion: impl Fn(f64) -> (f64, Self::State),
@@ -146,21 +147,21 @@ pub trait System: VectorField {
         None
     }
 
-    /// Refuses positions that an equation among the constraints forbids, and velocities off the constraints, both by more
-    /// than 1e-9 of the sum of absolute terms. Systems without constraints accept all.
+    /// Refuses positions that violate an equation among the constraints, and velocities that violate the constraints,
+    /// by more than 1e-9 of the sum of the absolute values of its terms. Systems without constraints accept every
+    /// state.
     ///
     /// # Errors
-    /// [`StateError::OffPosition`], [`StateError::OffConstraint`].
+    /// [`StateError::OffPosition`] for an equation of positions, [`StateError::OffConstraint`] for a constraint.
     fn admit(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<(), StateError> {
         let _ = (t, q, qdot);
         Ok(())
     }
 
-    /// The state with these positions, and with the velocities nearest to these in the metric that satisfy the
-    /// constraints.
+    /// The state with these positions, and with the nearest velocities in the metric that satisfy the constraints.
     ///
     /// # Errors
-    /// A [`Fault`] met on the way.
+    /// A [`Fault`] where the metric or the constraints are singular, or [`Fault::ProjectionFailed`].
     fn state_nearest(
         &self,
         t: f64,
@@ -170,11 +171,11 @@ pub trait System: VectorField {
         self.state_unchecked(t, q, qdot)
     }
 
-    /// The positions with those whose `placed` is not 1 moved to where they satisfy the equations of positions among the
-    /// constraints; without such equations, `q` as it is. With nothing left to move it is a check of `q`.
+    /// Completes positions: those whose `placed` is not 1 are moved to satisfy the equations of positions among the
+    /// constraints. Without such equations, returns `q` unchanged. With every position placed, `q` is only checked.
     ///
     /// # Errors
-    /// [`StateError::OffPosition`] where no such positions were found.
+    /// [`StateError::OffPosition`] if no such positions were found.
     fn complete_position(
         &self,
         t: f64,
@@ -185,12 +186,12 @@ pub trait System: VectorField {
         Ok(*q)
     }
 
-    /// The velocities with those whose `named` is not 1 replaced by what the constraints make of the named
-    /// ones. Without constraints there is nothing to choose, and `qdot` is returned as it is.
+    /// Completes velocities: those whose `named` is not 1 are chosen so that all velocities satisfy the constraints.
+    /// Without constraints, returns `qdot` unchanged.
     ///
     /// # Errors
-    /// [`StateError::OffConstraint`] where the named velocities contradict the constraints; a [`Fault`] met on
-    /// the way.
+    /// [`StateError::OffConstraint`] where the named velocities contradict the constraints; [`StateError::Fault`]
+    /// where the constraints are singular.
     fn complete_velocity(
         &self,
         t: f64,
@@ -205,9 +206,9 @@ pub trait System: VectorField {
     /// The state with these positions and velocities, if they satisfy every constraint and declaration.
     ///
     /// # Errors
-    /// [`StateError`]: a parameter against its declaration, a number that is not finite, a coordinate
-    /// outside its chart, a constraint (of positions or velocities) violated by more than 1e-9 of the sum of its absolute
-    /// terms.
+    /// [`StateError`] for a parameter that contradicts its declaration, a number that is not finite, a coordinate
+    /// outside its chart, or a constraint (of positions or velocities) violated by more than 1e-9 of the sum of the
+    /// absolute values of its terms.
     fn state(
         &self,
         t: f64,
@@ -219,11 +220,12 @@ pub trait System: VectorField {
         Ok(state)
     }
 
-    /// As [`System::state`], but moves positions to a place near by that the constraints allow, and then the velocity to
-    /// the nearest allowed one in the metric.
+    /// Same as [`System::state`], but moves positions to nearby ones that the constraints allow, and then the
+    /// velocity to the nearest allowed one in the metric.
     ///
     /// # Errors
-    /// As [`System::state`], without `OffConstraint`; `OffPosition` if no allowed place was found near by.
+    /// The errors of [`System::state`] except `OffConstraint`; `OffPosition` if no allowed positions were found
+    /// nearby.
     fn state_projected(
         &self,
         t: f64,
@@ -235,12 +237,12 @@ pub trait System: VectorField {
         Ok(self.state_nearest(t, &q, qdot)?)
     }
 
-    /// The state of this system that goes on where a state of `from`, the system with other parameters, ends. A state that is
-    /// merely handed on keeps its components: momenta in the global form, so that velocities jump with the masses, and
-    /// quasi-velocities on D.
+    /// The state of this system that continues a state of `from`, the same system with other parameters. A state that
+    /// is passed on directly keeps its components instead: momenta in the global form, so that velocities jump with
+    /// the masses, and quasi-velocities on D.
     ///
     /// # Errors
-    /// As [`System::state`]; [`Fault::FirstOrder`] for momenta of a first-order system.
+    /// The errors of [`System::state`]; [`Fault::FirstOrder`] for momenta of a first-order system.
     fn carried(
         &self,
         from: &Self,
@@ -251,10 +253,10 @@ pub trait System: VectorField {
         carried(self, from, t, state, keep)
     }
 
-    /// The state after every check but that of the constraints.
+    /// The state after every check except that of the constraints.
     ///
     /// # Errors
-    /// As [`System::state`], without `OffConstraint` and `OffPosition`.
+    /// The errors of [`System::state`] except `OffConstraint` and `OffPosition`.
     fn checked(
         &self,
         t: f64,
@@ -274,7 +276,7 @@ pub trait System: VectorField {
     }
 }
 
-/// As [`System::carried`], of a system that makes states in the mode of this one.
+/// Implementation of [`System::carried`] for a system that makes states in the mode of this one.
 pub(crate) fn carried<S: System + ?Sized>(
     system: &S,
     from: &S,
@@ -293,23 +295,23 @@ pub(crate) fn carried<S: System + ?Sized>(
     }
 }
 
-/// Where constraint forms become dependent along a motion.
+/// A place at which constraint forms become dependent along a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankDrop {
-    /// The last place before it, as a part of the motion.
+    /// The last place before it, as a fraction of the motion.
     pub theta: f64,
     /// Index of the constraint that depends on the earlier ones there, or vanishes.
     pub constraint: usize,
 }
 
-/// The parts of Lagrange and d'Alembert's principle
+/// The terms of Lagrange and d'Alembert's principle
 ///
 /// ```text
 /// d/dt dL/dqdot = f + lambda_a eta^a,   eta^a(qdot) + eta^a_0 = 0,   f = dL/dq + F
 /// ```
 ///
-/// that a discrete principle puts together anew: what the rate of the state has already put together cannot be
-/// taken apart. Positions, velocities and momenta are N numbers each, whatever the state holds.
+/// A discrete principle combines these terms in its own way and cannot recover them from the rate of the state.
+/// Positions, velocities and momenta are N numbers each, in every form of the state.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not give the parts of its equations: declare it with `dalembert::model!`"
 )]
@@ -317,29 +319,29 @@ pub trait Lagrangian: System {
     /// M numbers, one per constraint, in the order of declaration; none without constraints.
     type Reactions: StateVector;
 
-    /// M, the number of constraints; 0 without constraints. Of reactions of fixed number it is known.
+    /// M, the number of constraints; 0 without constraints. The default is correct for reactions of fixed number.
     #[inline(always)]
     fn reaction_count(&self) -> usize {
         Self::Reactions::CAPACITY
     }
 
-    /// M zeros.
+    /// Reactions with M zeros.
     #[inline(always)]
     fn zero_reactions(&self) -> Self::Reactions {
         StateVector::zeros(self.reaction_count())
     }
 
-    /// `f = dL/dq + F`: the force besides that of the constraints.
+    /// The force `f = dL/dq + F`, without the constraint force.
     fn force(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Self::Vector;
 
-    /// `lambda_a eta^a`: the force of the constraints for given multipliers.
+    /// The constraint force `lambda_a eta^a` for given multipliers.
     fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions)
     -> Self::Vector;
 
-    /// The velocity at the momenta `p + mu_a eta^a`, with the `mu` that make it satisfy the constraints; and `mu`.
+    /// The velocity at the momenta `p + mu_a eta^a`, with the `mu` for which it satisfies the constraints; and `mu`.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where the metric or the constraints are singular.
     fn constrained_velocity(
         &self,
         t: f64,

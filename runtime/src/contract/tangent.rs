@@ -1,17 +1,17 @@
-//! Directions in which a run is varied.
+//! Directions of first variations of a run.
 
 use crate::contract::TaylorField;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
-/// A first variation: how fast the state changes along a direction, and the parameters with it.
+/// A first variation: a tangent vector of state and parameters.
 ///
-/// Before a run it is the direction that its start is varied in; after the run `state` is the derivative of the end
-/// along that direction, at fixed times of start and end. `parameters` stays what it was.
+/// Before a run it is the direction of the variation of its start. After the run `state` is the derivative of the end
+/// along that direction, at fixed times of start and end. `parameters` is unchanged.
 pub struct Tangent<F: TaylorField> {
-    /// Of the state, in its order and units.
+    /// Variation of the state, in its order and units.
     pub state: F::State,
-    /// Of the parameters, in their order.
+    /// Variation of the parameters, in their order.
     pub parameters: F::Parameters<f64>,
 }
 
@@ -33,7 +33,7 @@ impl<F: TaylorField> core::fmt::Debug for Tangent<F> {
 }
 
 impl<F: TaylorField> Tangent<F> {
-    /// No variation.
+    /// The zero variation.
     pub fn zero() -> Self {
         Self {
             state: F::State::zeros(F::State::CAPACITY),
@@ -41,7 +41,7 @@ impl<F: TaylorField> Tangent<F> {
         }
     }
 
-    /// Along this direction of the state, at fixed parameters.
+    /// Variation along this direction of the state, at fixed parameters.
     pub fn of_state(direction: F::State) -> Self {
         Self {
             state: direction,
@@ -49,7 +49,7 @@ impl<F: TaylorField> Tangent<F> {
         }
     }
 
-    /// Along one component of the state; past the last one, no variation.
+    /// Variation of one component of the state; zero for an index past the last one.
     pub fn of_component(component: usize) -> Self {
         let mut tangent = Self::zero();
         if let Some(entry) = tangent.state.as_mut_slice().get_mut(component) {
@@ -58,7 +58,7 @@ impl<F: TaylorField> Tangent<F> {
         tangent
     }
 
-    /// Along one parameter, at a fixed state; past the last one, no variation.
+    /// Variation of one parameter, at a fixed state; zero for an index past the last one.
     pub fn of_parameter(parameter: usize) -> Self {
         let mut tangent = Self::zero();
         if let Some(entry) = tangent.parameters.as_mut_slice().get_mut(parameter) {

@@ -1,14 +1,15 @@
-//! What first variations need besides the power series of the motion: transitions, written over numbers.
+//! Data of first variations besides the power series of the motion: transitions, over any kind of number.
 
 use super::{System, Tangent, TaylorField};
 use crate::error::Fault;
 use crate::law::Law;
 use crate::numbers::{Interval, Numbers, Row};
 
-/// A system whose states, gaps and transitions can be computed in any [`Numbers`], and so be differentiated.
+/// A system whose states, gaps and transitions can be computed in any [`Numbers`], and therefore differentiated with
+/// dual numbers.
 ///
-/// Parameters are given as numbers too, in the order of [`TaylorField::parameters`]. Every function here is one of the
-/// system's own, written once more over `L`: with `f64` it gives the same value up to rounding.
+/// Parameters are passed as numbers too, in the order of [`TaylorField::parameters`]. Every function here equals one
+/// of the system's own up to rounding, and is generic over `L`.
 #[diagnostic::on_unimplemented(
     message = "the variations of `{Self}` are not known: add `variations` to the scene in its `model!`"
 )]
@@ -16,34 +17,34 @@ pub trait Variational: TaylorField + System + Sized {
     /// N numbers, one per coordinate: positions or velocities.
     type Configuration<L: Numbers>: Row<L>;
 
-    /// One number per surface, whether gaps have series or not.
+    /// One number per surface, with or without a series of its gap.
     type Clearances<L: Numbers>: Row<L>;
 
-    /// The numbers of a [`Contact`](crate::Contact), in its order, and the direction of the impulse after them.
+    /// The numbers of a [`Contact`](crate::Contact), in its order, followed by the direction of the impulse.
     type Collision<L: Numbers>: Row<L>;
 
-    /// One number per equation that the motion keeps to because of constraints: M in the global form, none in the form
-    /// reduced to D; and one per constraint that has a position level. Of a model with modes as many as a state has components
-    /// but one: those of the mode, the components that it does not use, the number of the mode, zeros.
+    /// One number per equation that constraints impose on the motion: M in the global form, none in the form reduced
+    /// to D; and one per constraint that has a position level. For a model with modes, one less than a state has
+    /// components: the deviations of the mode, the components that it does not use, the number of the mode, zeros.
     type Deviations<L: Numbers>: Row<L>;
 
-    /// As many states as a state has components: a square matrix by its columns.
+    /// One state per component of a state: a square matrix by its columns.
     type Columns: Copy + AsRef<[Self::State]> + AsMut<[Self::State]>;
 
-    /// The columns of a matrix of zeros.
+    /// The columns of a zero matrix.
     fn columns() -> Self::Columns;
 
-    /// As many directions as a state has components.
+    /// Array with one direction per component of a state.
     type Tangents: Copy + AsRef<[Tangent<Self>]> + AsMut<[Tangent<Self>]>;
 
-    /// No directions in any of these places.
+    /// Array without directions.
     fn tangents() -> Self::Tangents;
 
-    /// Whether a surface counts here, as [`Impacting::surface_active`](crate::Impacting::surface_active) says.
+    /// True if a surface counts here; see [`Impacting::surface_active`](crate::Impacting::surface_active).
     fn counts(&self, surface: usize, t: f64, state: &Self::State) -> bool;
 
-    /// Whether a surface counts, and has a law, at all times and states of a box; `None` where that is not certain. A system whose
-    /// surfaces count everywhere need not say so.
+    /// True if a surface counts, and has a law, at all times and states of a box; false if at none; `None` if neither
+    /// is certain. The default suffices for a system whose surfaces count everywhere.
     fn counts_throughout(
         &self,
         parameters: &Self::Parameters<Interval>,
@@ -58,7 +59,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// The velocities of a state.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where the metric is singular.
     fn velocities<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,
@@ -66,10 +67,10 @@ pub trait Variational: TaylorField + System + Sized {
         state: &Self::Row<L>,
     ) -> Result<Self::Configuration<L>, Fault>;
 
-    /// The state with these positions and velocities, as [`System::state_unchecked`] makes it.
+    /// The state with these positions and velocities; see [`System::state_unchecked`].
     ///
     /// # Errors
-    /// [`Fault`]; of a model with modes, [`Fault::SeveralModes`].
+    /// A [`Fault`] where the state cannot be formed; [`Fault::SeveralModes`] for a model with modes.
     fn composed<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,
@@ -78,11 +79,11 @@ pub trait Variational: TaylorField + System + Sized {
         qdot: &Self::Configuration<L>,
     ) -> Result<Self::Row<L>, Fault>;
 
-    /// `eta^a(qdot) + eta^a_0` of the constraints where a state may be off them, then the levels `f^k` of those that have one; of a model
-    /// with modes, the components that no variation changes after them.
+    /// The residuals `eta^a(qdot) + eta^a_0` of the constraints that a state may violate, then the levels `f^k` of
+    /// those that have one; for a model with modes, also the components that no variation changes.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where the velocities do not exist.
     fn deviations<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,
@@ -93,7 +94,7 @@ pub trait Variational: TaylorField + System + Sized {
     /// The gaps `h_s`.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where the gaps do not exist.
     fn clearances<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,
@@ -101,10 +102,10 @@ pub trait Variational: TaylorField + System + Sized {
         state: &Self::Row<L>,
     ) -> Result<Self::Clearances<L>, Fault>;
 
-    /// What an impact on a surface by any law that is an impulse needs.
+    /// Quantities of an impact on a surface, from which every law that is an impulse is evaluated.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] in the cases of [`Impacting::contact`](crate::Impacting::contact).
     fn collision<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,
@@ -113,11 +114,11 @@ pub trait Variational: TaylorField + System + Sized {
         state: &Self::Row<L>,
     ) -> Result<Self::Collision<L>, Fault>;
 
-    /// The state at the instantaneous constraints of a surface, as [`Impacting::focus`](crate::Impacting::focus) brings it
-    /// there; `None` where it has none.
+    /// The state after the impulse of [`Impacting::focus`](crate::Impacting::focus), on the instantaneous constraints
+    /// of a surface; `None` if it has none.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] in the cases of [`Impacting::focus`](crate::Impacting::focus).
     fn focus<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,
@@ -129,11 +130,11 @@ pub trait Variational: TaylorField + System + Sized {
         Ok(None)
     }
 
-    /// A rate of the state with the force that keeps the instantaneous constraints of a surface, as
-    /// [`Impacting::trace`](crate::Impacting::trace) gives it; `None` where it has none.
+    /// A rate of the state with the correction of [`Impacting::trace`](crate::Impacting::trace), which keeps the
+    /// instantaneous constraints of a surface; `None` if it has none.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] in the cases of [`Impacting::focus`](crate::Impacting::focus).
     fn trace<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,
@@ -146,11 +147,11 @@ pub trait Variational: TaylorField + System + Sized {
         Ok(None)
     }
 
-    /// Positions and velocities after the declared reset of a surface; `None` where its law is no reset, and of a model with
-    /// modes, whose resets are those of the mode ([`Self::passed`]).
+    /// Positions and velocities after the declared reset of a surface; `None` if its law is not a reset, and for a
+    /// model with modes, whose resets are those of the mode ([`Self::passed`]).
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] of the velocities before the reset, or of the reset itself.
     fn landing<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,
@@ -159,11 +160,11 @@ pub trait Variational: TaylorField + System + Sized {
         state: &Self::Row<L>,
     ) -> Result<Option<[Self::Configuration<L>; 2]>, Fault>;
 
-    /// The state after the declared reset of a surface, or after a transition to another mode; `None` where it is
-    /// neither, or not known over numbers.
+    /// The state after the declared reset of a surface, or after a transition to another mode; `None` if the surface
+    /// is neither, or if the map is not available over this kind of number.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] of the reset or of the transition.
     fn passed<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,
@@ -177,7 +178,7 @@ pub trait Variational: TaylorField + System + Sized {
         }
     }
 
-    /// The declared law of a surface, and its coefficient as a number of the parameters; 0 for a law without one.
+    /// The declared law of a surface, and its coefficient as a function of the parameters; 0 for a law without one.
     fn declared_law<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,

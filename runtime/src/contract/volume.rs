@@ -1,4 +1,4 @@
-//! Volumes that motions keep or change.
+//! Volumes that motions conserve or change.
 
 use super::System;
 use crate::error::Fault;
@@ -9,18 +9,18 @@ pub trait Divergence: System {
     /// Divergence of the motion on D* with respect to `mu_C` (the Leray quotient of the Liouville volume).
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where the metric or the constraints are singular.
     fn divergence(&self, t: f64, state: &Self::State) -> Result<f64, Fault>;
 
     /// The density form `theta = m_ab L_{W^a} eta^b` at a position: N components.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where the metric or the constraints are singular.
     fn density_form(&self, t: f64, q: &Self::Vector) -> Result<Self::Vector, Fault>;
 }
 
-/// A system whose motion keeps a volume `exp(G) mu_C`, with `G` a function of the configuration (and of `t`, where the
-/// system depends on it).
+/// A system whose motion conserves a volume `exp(G) mu_C`, with `G` a function of the configuration (and of `t`, if
+/// the system depends on it).
 ///
 /// ```text
 /// mu_C = det g / |det A_dep|  dq dv_ind
@@ -32,12 +32,12 @@ pub trait Divergence: System {
 /// `det g dq dv = dq dp`. Impacts by the law `elastic` keep `exp(G) mu_C` as well where the constraints are linear.
 ///
 /// Implemented for models with a proved claim `density: exact`, `density: locally_exact`, or `density = EXPR` where
-/// `EXPR` does not depend on velocities; then `G = ln |EXPR|`. Where `G` has no closed form, it is an integral; where it is
-/// not determined up to a constant either, the trait is not implemented, and the notes in the model's documentation say
-/// so.
+/// `EXPR` does not depend on velocities; then `G = ln |EXPR|`. If `G` has no closed form, it is an integral. If it is
+/// not determined up to a constant either, the trait is not implemented, and the notes in the model's documentation
+/// say so.
 ///
 /// At given parameters both logarithms are determined up to a constant: only their differences between configurations
-/// have a meaning. `G` depends on how the constraint forms were written, the volume does not.
+/// are meaningful. `G` depends on the choice of the constraint forms, the volume does not.
 ///
 /// # References
 /// W. Clark and A. Bloch, *Invariant forms in hybrid and impact systems and a taming of Zeno*, Theorem 2.8: with linear
@@ -48,29 +48,29 @@ pub trait Divergence: System {
                or state the density where none is found"
 )]
 pub trait InvariantVolume: System {
-    /// Indices of the coordinates whose velocities, with the positions, are the coordinates of the volume. In
-    /// increasing order, one for each dimension that the constraints leave.
+    /// Indices of the coordinates whose velocities, together with the positions, are the coordinates of the volume.
+    /// In increasing order, one for each dimension that the constraints leave.
     const INDEPENDENT: &'static [usize];
 
-    /// Whether `G` is a function of the configuration; else it grows by a constant with each turn of some angle, which
-    /// is stored unwrapped.
+    /// True if `G` is a function of the configuration. Otherwise it grows by a constant with each turn of some angle,
+    /// which is stored unwrapped.
     const IS_SINGLE_VALUED: bool;
 
-    /// Whether `G` is numeric: without a closed form, it is the integral of `dG` along the line from a regular
-    /// configuration, to rounding, and a [`Fault::SingularConstraint`] where a singularity lies on that line.
+    /// True if `G` has no closed form. It is then the integral of `dG` along the line from a regular configuration,
+    /// computed to rounding, and [`Fault::SingularConstraint`] if a singularity lies on that line.
     const IS_INTEGRAL: bool;
 
     /// `G`, the logarithm of the density with respect to `mu_C`.
     ///
     /// # Errors
-    /// A [`Fault`] where the metric or the constraints that `G` is made of are singular.
+    /// A [`Fault`] where the metric or the constraints in `G` are singular.
     fn log_density(&self, t: f64, q: &Self::Vector) -> Result<f64, Fault>;
 
     /// `G + ln det g - ln |det A_dep|`, the logarithm of the density of the volume in positions and independent
     /// velocities.
     ///
     /// # Errors
-    /// As [`InvariantVolume::log_density`], and [`Fault::SingularConstraint`] where the other velocities do not follow
-    /// from the independent ones.
+    /// The errors of [`InvariantVolume::log_density`]; [`Fault::SingularConstraint`] where the independent velocities
+    /// do not determine the others.
     fn log_volume(&self, t: f64, q: &Self::Vector) -> Result<f64, Fault>;
 }

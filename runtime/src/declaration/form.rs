@@ -11,7 +11,7 @@ use crate::kernels::{KernelSet, KernelTable};
 use crate::numbers::{Bent, Numbers, Rated, Row, TaylorModel};
 use crate::variations::Dual;
 
-/// The form of a type, where an erased system has room for it.
+/// The form of a type, if its sizes fit into an erased system.
 pub(super) const fn of<S: Emitted>() -> Option<&'static Form> {
     match Of::<S>::FORM.capacity() {
         Some(_) => Some(&Of::<S>::FORM),
@@ -19,7 +19,8 @@ pub(super) const fn of<S: Emitted>() -> Option<&'static Form> {
     }
 }
 
-/// The form of the type of a mode, with what transitions take besides, and rates over intervals if those of some mode may be `NARROW`.
+/// The form of the type of a mode, with the kernels of transitions. With `NARROW`, rates of some mode may be narrow,
+/// and the form includes rates over intervals.
 pub const fn of_mode<S: Emitted, const NARROW: bool>() -> &'static Form {
     &OfMode::<S, NARROW>::FORM
 }
@@ -84,16 +85,17 @@ impl<S: Emitted> Of<S> {
                 false => None,
                 true => Some(of_variations),
             },
-            // NOTE: certified motion takes kernels over intervals, which cost the compiler more than all others; forms that are loaded have them.
+            // NOTE: certified motion needs kernels over intervals, which take more compile time than all others;
+            // forms that are loaded at run time have them.
             None,
         ]
     }
 
-    /// Whether a series begins with more than an erased system has room for: it keeps the results and the time, and begins again
-    /// where it goes on.
+    /// True if a series has more initial values than an erased system can store: the system then stores results and
+    /// time, and computes the initial values again where it continues.
     const BEGINS_AGAIN: bool = <S::Firsts<f64> as Row<f64>>::CAPACITY > MOST_FIRSTS;
 
-    /// Rates and gaps.
+    /// Number of rates and gaps.
     const fn results() -> usize {
         S::TABLES.dimensions.state + <<S as TaylorField>::Gaps<f64> as Row<f64>>::CAPACITY
     }
@@ -162,7 +164,7 @@ impl<S: Emitted> Of<S> {
         let known = match firsts.last() {
             Some(&t) if Self::BEGINS_AGAIN => {
                 let mut known = S::Firsts::<L>::zeros(system.firsts_len());
-                // NOTE: it began there before.
+                // NOTE: the same call succeeded when the series began.
                 let _ = system.begin(&row(parameters), t, &row(state), &mut known);
                 known
             }

@@ -1,4 +1,4 @@
-//! What the type of a declared model tells, before there is a model: its description, its declared values, its scenes.
+//! Facts of the type of a declared model that need no instance: its description, its declared values, its scenes.
 
 mod form;
 
@@ -21,10 +21,10 @@ pub trait Described: Instance {
     /// The inputs; their values are the parameters after those of the description.
     const INPUTS: &'static [&'static str] = &[];
 
-    /// The model as data, for [`Erased`](crate::erased::Erased); `None` for one that only its own type can run.
+    /// The model as data, for [`Erased`](crate::erased::Erased); `None` for a model that only its own type can run.
     const FORM: Option<&'static Form> = None;
 
-    /// Shows the type of each declared scene, in order; the model itself, the scene `all`, is not among them.
+    /// Calls the visitor with the type of each declared scene, in order; without the model itself, the scene `all`.
     fn visit_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
         let _ = visitor;
     }
@@ -33,29 +33,29 @@ pub trait Described: Instance {
     fn with_defaults() -> Self;
 }
 
-/// Sees the types of a model's scenes (see [`Described::visit_scenes`]).
+/// Receives the types of a model's scenes (see [`Described::visit_scenes`]).
 pub trait SceneVisitor {
-    /// A scene of this name: the model with what the scene leaves of its effects, and the parameters of the model.
+    /// Visits a scene of this name: the model with the effects that the scene keeps, and the parameters of the model.
     fn visit<S>(&mut self, name: &'static str)
     where
         S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static;
 }
 
-/// A form of a declared model, or of a scene, of which everything but the values of parameters is constant: `model!` writes it.
+/// A form of a declared model or of a scene, as `model!` writes it: everything but the parameter values is constant.
 pub trait Emitted: Documented<Kernels: Given, Global: Described> + TaylorField {
-    /// What is known of the form.
+    /// Facts about the form besides its kernels.
     const TABLES: Tables;
 
-    /// What it says of itself.
+    /// Documentation of the form.
     const DOCUMENTATION: Documentation;
 
-    /// Of a model with modes, the forms of the modes and their global forms ([`Form::forms`]).
+    /// For a model with modes, the forms of the modes and their global forms ([`Form::forms`]).
     const FORMS: &'static [&'static Form] = &[];
 
-    /// As [`Described::with_defaults`].
+    /// Implementation of [`Described::with_defaults`].
     fn declared() -> Self;
 
-    /// As [`Described::visit_scenes`].
+    /// Implementation of [`Described::visit_scenes`].
     fn show_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
         let _ = visitor;
     }

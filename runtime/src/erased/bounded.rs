@@ -1,4 +1,4 @@
-//! Vectors and rows of a length that is known at run time, in rooms of a fixed capacity.
+//! Vectors and rows whose length is known at run time, stored in arrays of fixed capacity.
 
 use core::fmt;
 
@@ -13,7 +13,7 @@ pub struct Bounded<T, const C: usize> {
 }
 
 impl<T: Copy, const C: usize> Bounded<T, C> {
-    /// So many times this value; more than there is room for are left out.
+    /// A vector of `count` equal values; values beyond the capacity are dropped.
     #[inline(always)]
     pub fn all(count: usize, value: T) -> Self {
         Self {

@@ -8,35 +8,35 @@ use crate::jet::Work;
 use crate::kernels::{Documentation, KernelTable, Tables};
 use crate::numbers::Numbers;
 
-/// The capacities that there are systems of.
+/// Capacities for which erased systems are compiled.
 pub const CAPACITIES: [usize; 3] = [4, 8, 32];
 
-/// Most parameters of an erased system, inputs among them.
+/// Maximum number of parameters of an erased system, inputs included.
 pub const PARAMETERS: usize = 64;
 
-/// Rows of the capacity in the room for parameters that are numbers of other kinds.
+/// Number of rows of the capacity that store parameters over other kinds of number.
 pub(super) const ARGUMENTS: usize = 2;
 
-/// Rows of the capacity in the room for kernels that give several things at once.
+/// Number of rows of the capacity that store the values of kernels that give several quantities at once.
 pub(super) const ROWS: usize = 8;
 
-/// Rows of the capacity in the room for what a series begins with.
+/// Number of rows of the capacity that store the initial values of a series.
 pub(super) const FIRSTS: usize = 18;
 
-/// Most numbers that a series of an erased system begins with.
+/// Maximum number of initial values of a series of an erased system.
 pub const MOST_FIRSTS: usize = FIRSTS * CAPACITIES[CAPACITIES.len() - 1];
 
-/// Room for the quantities of the geometry at a state.
+/// Size of the storage for the quantities of the geometry at a state.
 pub(super) const GEOMETRY: usize = 64;
 
-/// Tables over other numbers than `f64`, each of a type of its own.
+/// Tables over other numbers than `f64`, each with its own type.
 pub type Kinds = [Option<&'static (dyn Any + Send + Sync)>; 5];
 
 /// A form of a model, or of a scene: tables, and pointers to its functions.
 pub struct Form {
-    /// What is known of it.
+    /// Facts about the form besides its kernels.
     pub tables: Tables,
-    /// What it says of itself.
+    /// Documentation of the form.
     pub documentation: Documentation,
     /// The kernels.
     pub kernels: KernelTable<f64>,
@@ -44,22 +44,22 @@ pub struct Form {
     pub kernels_over: Kinds,
     /// The power series of the motion.
     pub series: SeriesTable<f64>,
-    /// Those over other numbers ([`SeriesTable`]).
+    /// The power series over other numbers ([`SeriesTable`]).
     pub series_over: Kinds,
-    /// What an order of the series costs.
+    /// Work per order of the series, if known.
     pub work: &'static (dyn Fn() -> Option<Work> + Send + Sync),
-    /// Gaps that have a series: all of them, or none.
+    /// Number of gaps that have a series: all of them, or none.
     pub series_gaps: usize,
-    /// Numbers that a series begins with.
+    /// Number of initial values of a series.
     pub firsts: usize,
     /// Writes the declared values of the parameters; NaN for one without.
     pub defaults: &'static (dyn Fn(&mut [f64]) + Send + Sync),
     /// The global form.
     pub global: &'static (dyn Fn() -> Option<&'static Form> + Send + Sync),
-    /// Of a model with modes, their forms and their global forms, in the order of its kernels
+    /// For a model with modes, the forms of the modes and their global forms, in the order of the kernels
     /// ([`Mode::kernels`](crate::kernels::Mode::kernels)).
     pub forms: &'static [&'static Form],
-    /// Numbers of the largest kernel that gives several things at once.
+    /// Number of values of the largest kernel that gives several quantities at once.
     pub room: usize,
 }
 
@@ -73,7 +73,7 @@ impl fmt::Debug for Form {
 }
 
 impl Form {
-    /// The least of [`CAPACITIES`] that holds the vectors of this form and of the global one; `None` where none does.
+    /// The least of [`CAPACITIES`] that holds the vectors of this form and of the global one; `None` if none does.
     pub const fn capacity(&self) -> Option<usize> {
         let dimensions = &self.tables.dimensions;
         let n = dimensions.coordinates;
@@ -102,20 +102,20 @@ impl Form {
         None
     }
 
-    /// The kernels over these numbers, if it has any.
+    /// The kernels over these numbers, if the form has any.
     #[inline(always)]
     pub fn kernels<L: Numbers>(&'static self) -> Option<&'static KernelTable<L>> {
         found(&self.kernels, &self.kernels_over)
     }
 
-    /// The series over these numbers, if it has any.
+    /// The series over these numbers, if the form has any.
     #[inline(always)]
     pub fn series<L: Numbers>(&'static self) -> Option<&'static SeriesTable<L>> {
         found(&self.series, &self.series_over)
     }
 }
 
-/// The value of the wanted type, which is the first or among the others.
+/// The value of type `T`: the first one, or one of the others.
 #[inline(always)]
 fn found<T: Any>(first: &'static dyn Any, others: &Kinds) -> Option<&'static T> {
     match first.downcast_ref() {

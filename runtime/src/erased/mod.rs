@@ -1,11 +1,11 @@
-//! One type of system for all models: a model that is known only at run time, behind pointers.
+//! One type of system for all models: a model known only at run time, behind pointers.
 //!
-//! [`Form`] is a form of a model as data: its tables and pointers to its kernels. [`Erased`] is the system of a form with values for its
-//! parameters. Driver, integrators, effects and events run it as they run any declared model, and give the same bits; they are compiled
-//! once for all models, at the price of a call through a pointer for each kernel.
+//! [`Form`] is a form of a model as data: its tables and pointers to its kernels. [`Erased`] is the system of a form
+//! with values for its parameters. Driver, integrators, effects and events run it like any declared model and give
+//! the same bits. They are compiled once for all models; each kernel costs a call through a pointer.
 //!
-//! Vectors lie in rooms of a fixed capacity, and know how much of it they use: `Erased<8>` runs every model whose vectors have at most 8
-//! components ([`Form::capacity`]). Nothing is allocated.
+//! Vectors are stored in arrays of fixed capacity with their length: `Erased<8>` runs every model whose vectors have
+//! at most 8 components ([`Form::capacity`]). Nothing is allocated.
 //!
 //! | file | job |
 //! |---|---|

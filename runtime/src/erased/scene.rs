@@ -1,4 +1,4 @@
-//! The effects of an erased system: those that its form has.
+//! Effects of an erased system: those of its form.
 
 use super::system::Erased;
 use crate::effects::Scene;
@@ -19,7 +19,7 @@ impl<const C: usize> Scene for Erased<C> {
         (
             (tables.drifts && !has_modes).then(Projection::new),
             (tables.dimensions.surfaces > 0).then(|| Impacts::declared(self)),
-            // Where a mode is entered, projection begins after the transition.
+            // A projection begins after the transition into a mode.
             (tables.drifts && has_modes).then(|| InMode::new(Projection::new())),
         )
     }

@@ -11,13 +11,14 @@ use crate::modes::Lengths;
 use crate::modes::series::{self, Expansion};
 use crate::numbers::{Numbers, Row};
 
-/// Writes what a series begins with at parameters, a time and a state: the rates, then the gaps, then what else is known.
+/// Writes the initial values of a series for parameters, a time and a state: the rates, then the gaps, then the
+/// remaining values.
 pub type Begin<L> = dyn Fn(&[L], L, &[L], &mut [L]) -> Result<(), Fault> + Send + Sync;
 
-/// Takes the coefficients of an order: those of the state, those of the gaps.
+/// Receives the coefficients of an order: those of the state, those of the gaps.
 pub type Expanded<'a, L> = &'a mut dyn FnMut(usize, &[L], &[L]);
 
-/// A series from parameters, a state and what is known there, in a unit of time, up to an order.
+/// Computes a series from parameters, a state and the initial values there, in a unit of time, up to an order.
 pub type Advance<L> = dyn Fn([&[L]; 3], (L, usize), Expanded<'_, L>) + Send + Sync;
 
 /// Power series over one kind of number.
@@ -30,7 +31,7 @@ pub struct SeriesTable<L: Numbers> {
 }
 
 impl<L: Numbers> SeriesTable<L> {
-    /// No series.
+    /// Table without series.
     pub const NONE: Self = Self {
         begin: &|_, _, _, _| Err(Fault::NotDerived),
         advance: &|_, _, _| {},
@@ -76,7 +77,7 @@ fn advance<L: Numbers, const C: usize>(
     gaps: &mut [Bounded<L, C>; LENGTH],
 ) {
     let Some(series) = form.series::<L>() else {
-        // Nothing begins such a series.
+        // Such a series is never begun.
         return;
     };
     let state = coefficients[0];
@@ -92,7 +93,8 @@ impl<const C: usize> TaylorField for Erased<C> {
     type Row<L: Numbers> = Bounded<L, C>;
     type Gaps<L: Numbers> = Bounded<L, C>;
     type Firsts<L: Numbers> = Wide<L, C, FIRSTS>;
-    // NOTE: what a series computes on its way differs from model to model: it lies on the stack of the function that does.
+    // NOTE: the intermediate values of a series differ from model to model; they lie on the stack of the function
+    // that computes it.
     type Jets<L: Numbers> = ();
 
     fn work(&self) -> Option<Work> {

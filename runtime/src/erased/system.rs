@@ -17,18 +17,18 @@ use crate::numbers::Numbers;
 use crate::rank::rank_drop;
 use crate::state::StateVector;
 
-/// A model that is known only at run time, with values for its parameters; its vectors have at most `C` components.
+/// A model known only at run time, with values for its parameters; its vectors have at most `C` components.
 #[derive(Clone, Copy)]
 pub struct Erased<const C: usize> {
     form: &'static Form,
     values: Bounded<f64, PARAMETERS>,
-    /// The mode that states are made in.
+    /// The mode in which states are made.
     mode: usize,
 }
 
 impl<const C: usize> Erased<C> {
-    /// The model with its declared defaults; a parameter without default is NaN until it is set. `None` where the vectors of the form
-    /// are longer ([`Form::capacity`]).
+    /// The model with its declared defaults; a parameter without default is NaN until it is set. `None` if the
+    /// vectors of the form are longer than `C` ([`Form::capacity`]).
     pub fn of(form: &'static Form) -> Option<Self> {
         if form.capacity()? > C {
             return None;
@@ -54,12 +54,12 @@ impl<const C: usize> Erased<C> {
         &self.values
     }
 
-    /// The constraints of the form; of a model with modes, those of the mode that states are made in.
+    /// Number of constraints of the form; for a model with modes, of the mode in which states are made.
     fn constraints(&self) -> usize {
         Part::start(self).tables.dimensions.constraints
     }
 
-    /// A mode by itself.
+    /// A mode as a system of its own.
     fn of_mode(&self, number: usize) -> Option<Self> {
         let mode = self.form.tables.modes.get(number)?;
         Some(Self {

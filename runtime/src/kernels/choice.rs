@@ -1,12 +1,12 @@
-//! The kernels of several modes, of which a number chooses one.
+//! The kernels of several modes; a number selects one.
 
 use core::marker::PhantomData;
 
 use super::{Given, Kernels, NoKernels};
 
-/// Kernels that are chosen by a place in a list.
+/// Kernels selected by a place in a list.
 pub trait Chosen: Kernels {
-    /// Those at this place; [`NoKernels`] past the end.
+    /// The kernels at this place; [`NoKernels`] past the end.
     fn at(place: usize) -> Self;
 }
 
@@ -25,7 +25,7 @@ pub struct Choice<A, B> {
 }
 
 impl<A, B: Chosen> Choice<A, B> {
-    /// The kernels behind the first, if one of them is chosen.
+    /// The kernels after the first, if one of them is selected.
     #[inline(always)]
     pub(super) fn others(&self) -> Option<B> {
         self.place.checked_sub(1).map(B::at)
@@ -42,7 +42,7 @@ impl<A: Given, B: Chosen> Chosen for Choice<A, B> {
     }
 }
 
-// NOTE: as a form's own kernels they are none: those of its modes are asked for by place.
+// NOTE: as `GIVEN` of a form the list selects no kernels: those of its modes are selected by place.
 impl<A: Given, B: Chosen> Given for Choice<A, B> {
     const GIVEN: Self = Self {
         place: usize::MAX,

@@ -1,4 +1,4 @@
-//! `Constrained` of every declared model with constraints; of one with modes, of the mode that states are made in.
+//! `Constrained` for every declared model with constraints; for one with modes, of the mode in which states are made.
 
 use super::{At, Declared, Form, HasConstraints, Kernels, Part};
 use crate::contract::{Constrained, Level, System};
@@ -6,7 +6,7 @@ use crate::error::Fault;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
-/// The forms at a velocity, and their affine parts.
+/// Writes the forms at a velocity, and their affine parts.
 fn write_forms<S: Declared>(
     system: &S,
     t: f64,
@@ -19,7 +19,7 @@ fn write_forms<S: Declared>(
     let m = part.tables.dimensions.constraints;
     let kernel = (S::Kernels::forms, n * m + m);
     let [q, qdot] = [part.gathered(q), part.gathered(qdot)];
-    // Forms have no guards.
+    // The kernel of the forms has no guards, so it does not fail.
     let Ok(both) = part.several(kernel, t, [q.as_slice(), qdot.as_slice()]) else {
         return;
     };
@@ -71,7 +71,7 @@ impl<S: Declared + HasConstraints> Constrained for S {
         let (mut residuals, mut scales) = (self.zero_multipliers(), self.zero_multipliers());
         let [q, qdot] = [part.gathered(q), part.gathered(qdot)];
         let kernel = (S::Kernels::residuals, 2 * m);
-        // Residuals have no guards.
+        // The kernel of the residuals has no guards, so it does not fail.
         if let Ok(both) = part.several(kernel, t, [q.as_slice(), qdot.as_slice()]) {
             let (values, sizes) = both.as_slice()[..2 * m].split_at(m);
             residuals.as_mut_slice()[..m].copy_from_slice(values);
@@ -158,7 +158,7 @@ impl<S: Declared + HasConstraints> Constrained for S {
     }
 }
 
-/// One number per level by a kernel of positions.
+/// One number per level, from a kernel of the positions.
 #[inline(always)]
 fn levels_by<S: Declared>(
     part: &Part<'_, S>,

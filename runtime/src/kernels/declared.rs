@@ -8,7 +8,8 @@ use crate::error::{Fault, StateError};
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
-/// A form of a declared model, or of a scene: what `model!` writes. The traits of [`contract`](crate::contract) are made of it.
+/// A form of a declared model or of a scene, as `model!` writes it. The traits of [`contract`](crate::contract) are
+/// implemented for it.
 pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// A state.
     type State: StateVector;
@@ -28,49 +29,50 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
     type Components<L: Numbers>: Row<L>;
     /// One number per parameter.
     type Arguments<L: Numbers>: Row<L>;
-    /// The values of the parameters, or where they stand.
+    /// The values of the parameters, or a reference to them.
     type Values<'a>: AsRef<[f64]>;
-    /// Room for the values of every kernel that gives several things at once.
+    /// Storage for the values of every kernel that gives several quantities at once.
     type Room<L: Numbers>: Row<L>;
     /// The kernels.
     type Kernels: Kernels;
 
-    /// Whether rates may have narrow features ([`Tables::can_be_narrow`]), of some system of this type.
+    /// True if rates of some system of this type may have narrow features ([`Tables::can_be_narrow`]).
     const MAY_BE_NARROW: bool;
 
-    /// Whether some system of this type has modes.
+    /// True if some system of this type has modes.
     const HAS_MODES: bool = false;
 
-    /// The kernels. Of a model with modes, none: its modes have them.
+    /// The kernels. A model with modes has none itself: its modes have them.
     fn kernels(&self) -> Self::Kernels;
 
-    /// Those at a place among the kernels of the modes and of their global forms ([`Mode::kernels`](super::Mode::kernels)).
+    /// The kernels at a place in the list of the modes and their global forms
+    /// ([`Mode::kernels`](super::Mode::kernels)).
     #[inline(always)]
     fn kernels_at(&self, place: usize) -> Self::Kernels {
         let _ = place;
         self.kernels()
     }
 
-    /// The mode that states are made in; 0 without modes.
+    /// The mode in which states are made; 0 without modes.
     #[inline(always)]
     fn start(&self) -> usize {
         0
     }
 
-    /// The system with another mode that states are made in.
+    /// The same system, with another mode in which states are made.
     #[inline(always)]
     fn starting_in(&self, mode: usize) -> Self {
         let _ = mode;
         *self
     }
 
-    /// What is known besides.
+    /// Facts about the form besides its kernels: sizes, laws, conditions.
     fn tables(&self) -> &'static Tables;
 
     /// The values of the parameters.
     fn arguments(&self) -> Self::Values<'_>;
 
-    /// As [`System::rank_drop`], of a form whose constraint forms may become dependent.
+    /// Implementation of [`System::rank_drop`] for a form whose constraint forms may become dependent.
     fn rank_drop_along(
         &self,
         motion: impl Fn(f64) -> (f64, Self::State),
@@ -80,13 +82,13 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
         None
     }
 
-    /// As [`System::admit`], with constraints.
+    /// Implementation of [`System::admit`] with constraints.
     fn admits(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<(), StateError> {
         let _ = (t, q, qdot);
         Ok(())
     }
 
-    /// As [`System::complete_position`], with equations of positions.
+    /// Implementation of [`System::complete_position`] with equations of positions.
     fn completed_position(
         &self,
         t: f64,
@@ -97,7 +99,7 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
         Ok(*q)
     }
 
-    /// As [`System::complete_velocity`], with constraints.
+    /// Implementation of [`System::complete_velocity`] with constraints.
     fn completed_velocity(
         &self,
         t: f64,
@@ -109,7 +111,7 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
         Ok(*qdot)
     }
 
-    /// As [`System::state_nearest`], with constraints that are not linear in the velocities.
+    /// Implementation of [`System::state_nearest`] with constraints that are nonlinear in the velocities.
     fn nearest_by_steps(
         &self,
         t: f64,
@@ -123,7 +125,7 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
 /// Writes the values of a kernel.
 ///
 /// # Errors
-/// As [`Kernels`](super::Kernels).
+/// The [`Fault`] of the kernel; see [`Kernels`](super::Kernels).
 #[inline(always)]
 pub fn write<S: Declared>(
     system: &S,
@@ -138,7 +140,7 @@ pub fn write<S: Declared>(
 /// The only value of a kernel.
 ///
 /// # Errors
-/// As [`Kernels`](super::Kernels).
+/// The [`Fault`] of the kernel; see [`Kernels`](super::Kernels).
 #[inline(always)]
 pub fn number<S: Declared>(
     system: &S,

@@ -1,4 +1,4 @@
-//! `Instance` of every declared model.
+//! `Instance` for every declared model.
 
 use super::part::has_modes;
 use super::system::log_density;
@@ -11,29 +11,29 @@ use crate::generated::inspect_globally;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
-/// A declared form that tells of itself: [`Instance`] is made of it.
+/// A declared form with its documentation: [`Instance`] is implemented for it.
 pub trait Documented: Declared {
-    /// As many numbers as all quantities of the geometry have.
+    /// Storage for all quantities of the geometry.
     type Geometry: Row<f64>;
 
-    /// As [`Instance::Global`].
+    /// See [`Instance::Global`].
     type Global: Instance<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
 
-    /// Its self-description.
+    /// The documentation of the form.
     fn documentation(&self) -> &'static Documentation;
 
-    /// As [`Instance::global`].
+    /// Implementation of [`Instance::global`].
     fn globally(&self) -> Self::Global;
 
-    /// As [`Instance::set_parameter`].
+    /// Implementation of [`Instance::set_parameter`].
     fn set_argument(&mut self, index: usize, value: f64);
 
-    /// As [`Instance::set_mode`].
+    /// Implementation of [`Instance::set_mode`].
     fn set_start(&mut self, mode: usize) {
         let _ = mode;
     }
 
-    /// As [`Instance::inspect`], of a model with modes: what a mode by itself reports.
+    /// Implementation of [`Instance::inspect`] for a model with modes: the report of a mode by itself.
     fn inspect_mode(
         &self,
         mode: usize,
@@ -45,7 +45,7 @@ pub trait Documented: Declared {
         Ok(())
     }
 
-    /// As [`Instance::visit_variational`].
+    /// Implementation of [`Instance::visit_variational`].
     fn show_variational<Visitor: VariationalVisitor>(
         &self,
         visitor: Visitor,

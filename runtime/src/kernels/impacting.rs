@@ -1,4 +1,4 @@
-//! `Impacting` of every declared model with surfaces.
+//! `Impacting` for every declared model with surfaces.
 
 use super::part::{has_modes, number_of};
 use super::passage::passage;
@@ -13,7 +13,7 @@ use crate::numbers::{Bent, Interval, Numbers, Row, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// The bit of a coordinate; all from the last one on share it.
+/// Bit of a coordinate in a mask; all coordinates from the last bit on share it.
 #[inline(always)]
 fn place(coordinate: usize) -> u64 {
     1 << coordinate.min(63)
@@ -25,7 +25,8 @@ impl<S: Declared + HasSurfaces> OverNumbers for S {
     }
 }
 
-/// A gap over any kind of number, from those coordinates that it takes. That of a surface which the mode does not have is never met.
+/// A gap over any kind of number, from the coordinates that it depends on. A surface that the mode does not have is
+/// never met.
 fn gap_over<S: Declared, L: Numbers>(
     system: &S,
     surface: usize,
@@ -56,12 +57,12 @@ fn gap_over<S: Declared, L: Numbers>(
         second: &[],
     };
     let mut gap = [L::ZERO];
-    // Gaps have no guards.
+    // The kernel of a gap has no guards, so it does not fail.
     let _ = part.kernels.gap(own, at, &mut gap);
     gap[0]
 }
 
-/// Whether all conditions of a list hold, of which the margins come first; and the margins that follow.
+/// True if all conditions of a list hold; their margins come first in `margins`. Also returns the remaining margins.
 #[inline(always)]
 fn hold<'m>(conditions: &[Condition], margins: &'m [f64]) -> (bool, &'m [f64]) {
     let (own, rest) = margins.split_at(conditions.len());
@@ -72,7 +73,7 @@ fn hold<'m>(conditions: &[Condition], margins: &'m [f64]) -> (bool, &'m [f64]) {
     (all, rest)
 }
 
-/// Whether the conditions of a surface of a part hold, and those of some other list.
+/// True if the conditions of a surface of a part hold; true if those of one of its other lists hold.
 fn conditions<S: Declared>(
     part: &Part<'_, S>,
     (own, surface): (usize, &Surface),
@@ -90,7 +91,7 @@ fn conditions<S: Declared>(
         },
         count,
     );
-    // Conditions have no guards.
+    // The kernel of the conditions has no guards, so it does not fail.
     let Ok(margins) = part.several(kernel, t, [state.as_slice(), &[]]) else {
         return [false; 2];
     };
@@ -104,7 +105,7 @@ fn conditions<S: Declared>(
     [holds, other]
 }
 
-/// Whether a surface counts; none counts that the mode does not have.
+/// True if a surface counts; a surface that the mode does not have does not count.
 #[inline]
 pub(super) fn counts<S: Declared>(system: &S, surface: usize, t: f64, state: &S::State) -> bool {
     let part = Part::of(system, state.as_slice());
@@ -122,7 +123,7 @@ pub(super) fn counts<S: Declared>(system: &S, surface: usize, t: f64, state: &S:
     }
 }
 
-/// The same at all times and states of a box; `None` where that is not certain.
+/// True if a surface counts at all times and states of a box, false if at none; `None` if neither is certain.
 pub(super) fn counts_throughout<S: Declared>(
     system: &S,
     parameters: &[Interval],
@@ -170,7 +171,7 @@ pub(super) fn counts_throughout<S: Declared>(
 }
 
 impl<S: Declared> Part<'_, S> {
-    /// The values of a kernel, one per surface of the model; 0 for those that the part does not have.
+    /// Values of a kernel, one per surface of the model; 0 for surfaces that the part does not have.
     #[inline(always)]
     fn per_surface(
         &self,
@@ -213,7 +214,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         let part = Part::of(self, state.as_slice());
         let mut gaps = self.zero_gaps();
         let own = &mut gaps.as_mut_slice()[..part.tables.dimensions.surfaces];
-        // Gaps have no guards.
+        // The kernel of the gaps has no guards, so it does not fail.
         let _ = part.write(S::Kernels::gaps, t, [state.as_slice(), &[]], own);
         part.of_surfaces(gaps, 1.0)
     }
@@ -454,7 +455,7 @@ fn filled<V: StateVector>(mut vector: V, components: &[f64]) -> V {
     vector
 }
 
-/// Nothing for a kernel that a surface does not have.
+/// `None` for a kernel that a surface does not have.
 fn known<V>(found: Result<V, Fault>) -> Result<Option<V>, Fault> {
     match found {
         Err(Fault::NotDerived) => Ok(None),
@@ -462,7 +463,7 @@ fn known<V>(found: Result<V, Fault>) -> Result<Option<V>, Fault> {
     }
 }
 
-/// Why a surface has no impulse.
+/// Fault of a surface without an impulse.
 #[cold]
 pub(super) fn no_impulse(tables: &Tables, fault: Fault, surface: usize) -> Fault {
     match fault {

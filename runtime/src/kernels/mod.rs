@@ -1,13 +1,14 @@
-//! What a generator gives of a model: kernels over any numbers, and tables. Everything else is made of them, once.
+//! Interface between generator and runtime: kernels over any kind of number, and tables. Everything else is
+//! implemented on top of them, once for all models.
 //!
 //! | file | job |
 //! |---|---|
 //! | `declared.rs` | a model with values for its parameters: kernels, tables and the types of its vectors |
-//! | `part.rs` | the part that answers: the model, or the mode of a state |
-//! | `passage.rs` | the state that a mode is entered with |
+//! | `part.rs` | the part that is evaluated: the model, or the mode of a state |
+//! | `passage.rs` | the state at the entry of a mode |
 //! | `choice.rs` | the kernels of several modes |
-//! | `pointers.rs` | kernels behind pointers, of a form that is known only at run time |
-//! | `system.rs`, `constrained.rs`, `impacting.rs`, .. | the traits of `contract`, of every declared model |
+//! | `pointers.rs` | kernels behind pointers, for a form that is known only at run time |
+//! | `system.rs`, `constrained.rs`, `impacting.rs`, .. | the traits of `contract`, for every declared model |
 //! | `described.rs` | names, declared values and inspection |
 
 mod choice;
@@ -36,7 +37,7 @@ pub use part::Part;
 pub use pointers::{Pointers, Tabled};
 pub use system::{log_density, nearest_of_declared};
 
-/// What a kernel reads.
+/// Arguments of a kernel.
 #[derive(Debug, Clone, Copy)]
 pub struct At<'a, L> {
     /// The parameters, in the order of declaration.
@@ -65,7 +66,7 @@ pub trait HasSurfaces: Declared {}
 #[diagnostic::on_unimplemented(message = "the divergence of `{Self}` was not derived")]
 pub trait HasDivergence: Declared {}
 
-/// A declared form whose runs can be varied: the types of what that takes.
+/// A declared form whose runs can be varied, with the types that variations need.
 pub trait HasVariations: Declared + TaylorField<State = <Self as Declared>::State> {
     /// One number per surface.
     type Clearances<L: Numbers>: Row<L>;
@@ -75,17 +76,17 @@ pub trait HasVariations: Declared + TaylorField<State = <Self as Declared>::Stat
     type Deviations<L: Numbers>: Row<L>;
     /// A square matrix by its columns.
     type Columns: Copy + AsRef<[<Self as Declared>::State]> + AsMut<[<Self as Declared>::State]>;
-    /// As many directions as a state has components.
+    /// Array with one direction per component of a state.
     type Tangents: Copy + AsRef<[Tangent<Self>]> + AsMut<[Tangent<Self>]>;
 
     /// A matrix of zeros.
     fn columns() -> Self::Columns;
 
-    /// No directions.
+    /// Array without directions.
     fn tangents() -> Self::Tangents;
 }
 
-/// A function per kernel, in a trait, and kernels that have none of them.
+/// Generates the trait with one function per kernel, and the type without any kernel.
 macro_rules! kernels {
     (
         $(#[$doc:meta])*
@@ -94,20 +95,21 @@ macro_rules! kernels {
     ) => {
         $(#[$doc])*
         pub trait Kernels {
-            /// The kernels that this form shares with another.
+            /// Type of the kernels that this form shares with another.
             type Base: Given;
 
             /// The kernels that this form shares with another.
             const BASE: Self::Base;
 
-            /// The kernels that it does not share.
+            /// Names of the kernels that it does not share.
             const OWN: KernelSet;
 
             $(
                 #[doc = concat!("[`Kernel::", stringify!($name), "`].")]
                 ///
                 /// # Errors
-                /// The guard that does not hold; [`Fault::NotDerived`].
+                /// The [`Fault`] of the first guard that fails; [`Fault::NotDerived`] for a kernel that the form does
+                /// not have.
                 #[inline(always)]
                 fn $plain<L: Numbers>(
                     &self,
@@ -121,7 +123,8 @@ macro_rules! kernels {
                 #[doc = concat!("[`Kernel::", stringify!($surface_name), "`] of a surface.")]
                 ///
                 /// # Errors
-                /// The guard that does not hold; [`Fault::NotDerived`].
+                /// The [`Fault`] of the first guard that fails; [`Fault::NotDerived`] for a kernel that the form does
+                /// not have.
                 #[inline(always)]
                 fn $of_surface<L: Numbers>(
                     &self,
@@ -164,7 +167,7 @@ macro_rules! kernels {
             )*
         }
 
-        /// Kernels by name.
+        /// A set of kernels by name.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub struct KernelSet(u64);
 
@@ -195,14 +198,14 @@ macro_rules! kernels {
             }
         }
 
-        /// The places of kernels in a set.
+        /// Bits of the kernels in a set.
         #[derive(Clone, Copy)]
         enum Place {
             $($name,)*
             $($surface_name,)*
         }
 
-        /// Kernels over one kind of number behind pointers; `None` for those that are not given.
+        /// Kernels over one kind of number behind pointers; `None` for a kernel that the form does not have.
         #[derive(Clone, Copy)]
         pub struct KernelTable<L: Numbers> {
             $(
@@ -221,7 +224,7 @@ macro_rules! kernels {
                 $($of_surface: None,)*
             };
 
-            /// Some of the kernels of a form; those that it shares are pointers to the same functions.
+            /// The selected kernels of a form; shared kernels are pointers to the same functions.
             pub const fn of<K: Given>(which: KernelSet) -> Self {
                 if K::IS_NONE {
                     return Self::NONE;
@@ -248,10 +251,10 @@ macro_rules! kernels {
                 }
             }
 
-            /// Evaluates a kernel that is given by name.
+            /// Evaluates the kernel of this name.
             ///
             /// # Errors
-            /// As the kernel; [`Fault::NotDerived`] for one that is not given.
+            /// The [`Fault`] of the kernel; [`Fault::NotDerived`] for one that the table does not have.
             pub fn run(&self, kernel: Kernel, at: At<'_, L>, values: &mut [L]) -> Result<(), Fault> {
                 match kernel {
                     $(Kernel::$name => match self.$plain {
@@ -265,7 +268,7 @@ macro_rules! kernels {
                 }
             }
 
-            /// The kernels that are found by name; those of a surface by the name of their kind.
+            /// Builds a table by looking up every kernel by name; a kernel of surfaces by the name of its kind.
             pub fn found(
                 plain: impl Fn(Kernel) -> Option<&'static Plain<L>>,
                 of_surface: impl Fn(fn(usize) -> Kernel) -> Option<&'static OfSurface<L>>,
@@ -353,12 +356,12 @@ macro_rules! kernels {
     };
 }
 
-/// Kernels that are given by their type alone.
+/// Kernels that are determined by their type.
 pub trait Given: Kernels {
     /// The kernels.
     const GIVEN: Self;
 
-    /// Whether none of them is given.
+    /// True if the type has no kernels.
     const IS_NONE: bool = false;
 }
 
@@ -374,13 +377,14 @@ pub type Plain<L> = dyn Fn(At<'_, L>, &mut [L]) -> Result<(), Fault> + Send + Sy
 /// A kernel of surfaces behind a pointer.
 pub type OfSurface<L> = dyn Fn(usize, At<'_, L>, &mut [L]) -> Result<(), Fault> + Send + Sync;
 
-/// What a form that shares nothing with another begins with: every kernel is [`Fault::NotDerived`].
+/// Kernels of a form without any, and the base of a form that shares none: every kernel is [`Fault::NotDerived`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoKernels;
 
 kernels! {
-    /// The kernels of one form of a model: each writes its values, of which `values` has exactly as many places. A slice shorter than
-    /// what a kernel reads or writes is a mistake of the caller, and panics. What is not given is that of [`Kernels::BASE`].
+    /// The kernels of one form of a model. Each writes its values; `values` has exactly as many places as it writes.
+    /// A slice shorter than a kernel reads or writes is an error of the caller and panics. A kernel without its own
+    /// function is that of [`Kernels::BASE`].
     plain {
         rate: Rate,
         scale: Scale,

@@ -1,7 +1,8 @@
-//! The part of a declared model that answers: the model itself, or one of its modes.
+//! The part of a declared model that is evaluated: the model itself, or one of its modes.
 //!
-//! The state of a model with modes is that of the present mode, zeros up to the length of the longest, and the number of the mode. So a
-//! kernel of the mode reads the state as it is; what it gives of coordinates and surfaces is put to their places among those of the model.
+//! A state of a model with modes consists of the state of the present mode, zeros up to the length of the longest,
+//! and the number of the mode. A kernel of the mode reads this state unchanged. Its values per coordinate and surface
+//! are moved to their places in the model.
 
 use super::{At, Declared, Dimensions, Mode, Tables, Transition};
 use crate::contract::{RankDrop, System, VectorField};
@@ -10,32 +11,32 @@ use crate::numbers::{Numbers, Row};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// A part of a declared model. Kernels are asked through it.
+/// A part of a declared model. All kernels are evaluated through it.
 #[derive(Debug)]
 pub struct Part<'s, S: Declared> {
     system: &'s S,
     /// The kernels.
     pub(crate) kernels: S::Kernels,
-    /// What is known of it.
+    /// Facts about the part besides its kernels.
     pub(crate) tables: &'static Tables,
     mode: Option<(usize, &'static Mode)>,
 }
 
-/// The number of the mode of a state, which is its last component.
+/// Number of the mode of a state, stored in its last component.
 #[inline(always)]
 pub(crate) fn number_of<L: Numbers>(last: Option<&L>) -> usize {
-    // NOTE: the conversion saturates. A step that estimates derivatives may move every component a little.
+    // NOTE: the conversion saturates. A step that estimates derivatives may change every component a little.
     (last.map_or(0.0, |number| number.lane(0)) + 0.5) as usize
 }
 
-/// Whether a system has modes.
+/// True if a system has modes.
 #[inline(always)]
 pub(crate) fn has_modes<S: Declared>(system: &S) -> bool {
     S::HAS_MODES && !system.tables().modes.is_empty()
 }
 
 impl<'s, S: Declared> Part<'s, S> {
-    /// The mode of this number, the last one past the end; the model itself where there are no modes.
+    /// The mode of this number, or the last mode for a number past the end; the model itself without modes.
     #[inline(always)]
     pub(crate) fn numbered(system: &'s S, number: usize) -> Self {
         if const { S::HAS_MODES } {
@@ -67,7 +68,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// The mode that states are made in.
+    /// The mode in which states are made.
     #[inline(always)]
     pub(crate) fn start(system: &'s S) -> Self {
         match const { S::HAS_MODES } {
@@ -76,7 +77,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// The part that a surface of the model belongs to first, and its place in it.
+    /// The first part that has a surface of the model, and the place of the surface in it.
     pub(crate) fn of_surface(system: &'s S, surface: usize) -> Option<(Self, usize)> {
         if !has_modes(system) {
             return Some((Self::numbered(system, 0), surface));
@@ -89,19 +90,19 @@ impl<'s, S: Declared> Part<'s, S> {
         Some((Self::numbered(system, number), own))
     }
 
-    /// The mode; `None` where the model answers itself.
+    /// The mode; `None` if the part is the model itself.
     #[inline(always)]
     pub(crate) fn mode(&self) -> Option<&'static Mode> {
         self.mode.map(|(_, mode)| mode)
     }
 
-    /// The number of the mode; 0 where the model answers itself.
+    /// Number of the mode; 0 if the part is the model itself.
     #[inline(always)]
     pub(crate) fn number(&self) -> usize {
         self.mode.map_or(0, |(number, _)| number)
     }
 
-    /// The system with this mode as the one that states are made in.
+    /// The same system, with this mode as the one in which states are made.
     pub(crate) fn starting_here(&self) -> S {
         match self.mode {
             Some((number, _)) => self.system.starting_in(number),
@@ -125,7 +126,7 @@ impl<'s, S: Declared> Part<'s, S> {
         Self::numbered(self.system, number)
     }
 
-    /// Numbers of things of the model.
+    /// Dimensions of the model.
     #[inline(always)]
     pub(super) fn system_dimensions(&self) -> &'static Dimensions {
         &self.system.tables().dimensions
@@ -147,27 +148,28 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// The place of a surface that must be one of the part.
+    /// Place of a surface of the model, or a fault if the part does not have it.
     #[inline(always)]
     pub(crate) fn known(&self, surface: usize) -> Result<usize, Fault> {
         self.surface(surface)
             .ok_or(Fault::SingularSurface { surface })
     }
 
-    /// Where a surface of the model leads, if to another mode.
+    /// Target mode and transition of a surface of the model, if it leads to another mode.
     pub(crate) fn transition(&self, surface: usize) -> Option<(usize, Transition)> {
         let own = self.surface(surface)?;
         let transition = self.mode()?.transitions.get(own).copied().flatten()?;
         Some((own, transition))
     }
 
-    /// The place of a coordinate of the part among those of the model.
+    /// Index in the model of a coordinate of the part.
     #[inline(always)]
     pub(crate) fn coordinate(&self, own: usize) -> usize {
         self.mode().map_or(own, |mode| mode.coordinates[own])
     }
 
-    /// Values at the beginning of a vector, one per coordinate of the part, at their places among those of the model; 0 elsewhere.
+    /// Moves values, one per coordinate of the part, from the beginning of a vector to the places of these
+    /// coordinates in the model; 0 elsewhere.
     #[inline(always)]
     pub(crate) fn spread<V: StateVector>(&self, values: V) -> V {
         match self.mode() {
@@ -176,7 +178,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// The values of the part's coordinates, at the beginning of a vector.
+    /// Moves the values of the part's coordinates to the beginning of a vector.
     #[inline(always)]
     pub(crate) fn gathered<V: StateVector>(&self, values: &V) -> V {
         match self.mode() {
@@ -192,7 +194,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Values of the model's coordinates, and this number for those that the part does not have.
+    /// Values of the model's coordinates, with `elsewhere` for those that the part does not have.
     pub(crate) fn alone<V: StateVector>(&self, values: &V, elsewhere: f64) -> V {
         match self.mode() {
             None => *values,
@@ -200,7 +202,8 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Values at the beginning of a vector, one per surface of the part, at their places; this number elsewhere.
+    /// Moves values, one per surface of the part, from the beginning of a vector to their places; `elsewhere` for
+    /// other surfaces.
     #[inline(always)]
     pub(crate) fn of_surfaces<V: StateVector>(&self, values: V, elsewhere: f64) -> V {
         match self.mode() {
@@ -209,7 +212,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// As [`Part::spread`], over numbers.
+    /// Same as [`Part::spread`], over any kind of number.
     pub(crate) fn spread_row<L: Numbers, R: Row<L>>(&self, row: R) -> R {
         match self.mode() {
             None => row,
@@ -217,7 +220,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// As [`Part::of_surfaces`], over numbers.
+    /// Same as [`Part::of_surfaces`], over any kind of number.
     pub(crate) fn row_of_surfaces<L: Numbers, R: Row<L>>(&self, row: R, elsewhere: L) -> R {
         match self.mode() {
             None => row,
@@ -225,7 +228,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Writes the number of the mode behind a state of it.
+    /// Writes the number of the mode into the last component of a state.
     #[inline(always)]
     pub(crate) fn sign<L: Numbers>(&self, state: &mut [L]) {
         if let (Some((number, _)), Some(last)) = (self.mode, state.last_mut()) {
@@ -233,7 +236,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// The fault with surface and constraint as the model numbers them.
+    /// Renumbers surface and constraint of a fault from the part to the model.
     #[inline(always)]
     pub(crate) fn fault(&self, fault: Fault) -> Fault {
         let Some(mode) = self.mode() else {
@@ -257,7 +260,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// The place of dependent forms with the constraint as the model numbers it.
+    /// Renumbers the constraint of a drop of the rank from the part to the model.
     pub(crate) fn rank_drop(&self, drop: RankDrop) -> RankDrop {
         RankDrop {
             constraint: self.constraint(drop.constraint),
@@ -265,13 +268,13 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// The place of a constraint of the part among those of the model.
+    /// Index in the model of a constraint of the part.
     fn constraint(&self, own: usize) -> usize {
         let places = self.mode().map_or(&[][..], |mode| mode.constraints);
         places.get(own).copied().unwrap_or(own)
     }
 
-    /// The refusal with the constraint as the model numbers it.
+    /// Renumbers the constraint of a refusal from the part to the model.
     pub(crate) fn refusal(&self, mut error: StateError) -> StateError {
         if let StateError::OffConstraint { constraint, .. }
         | StateError::OffPosition { constraint, .. } = &mut error
@@ -281,7 +284,7 @@ impl<'s, S: Declared> Part<'s, S> {
         error
     }
 
-    /// The outcome with the constraint as the model numbers it.
+    /// Renumbers the constraint of an outcome from the part to the model.
     pub(crate) fn outcome(&self, mut outcome: Outcome) -> Outcome {
         if let Outcome::ProjectionFailed { constraint } = &mut outcome {
             *constraint = self.constraint(*constraint);
@@ -290,7 +293,7 @@ impl<'s, S: Declared> Part<'s, S> {
     }
 }
 
-/// Values at these places, and a number elsewhere.
+/// Moves values to these places; `elsewhere` fills the others.
 #[inline(always)]
 fn placed<V: StateVector>(values: &V, places: &[usize], elsewhere: f64) -> V {
     let mut all = values.zeroed();
@@ -301,7 +304,7 @@ fn placed<V: StateVector>(values: &V, places: &[usize], elsewhere: f64) -> V {
     all
 }
 
-/// The same over numbers.
+/// Same as [`placed`], over any kind of number.
 #[inline(always)]
 fn placed_row<L: Numbers, R: Row<L>>(row: &R, places: &[usize], elsewhere: L) -> R {
     let mut all = R::zeros(row.as_slice().len());
@@ -337,7 +340,7 @@ impl<S: Declared> Part<'_, S> {
         }
     }
 
-    /// So many values of a kernel at the beginning of a vector of this length.
+    /// The first values of a kernel, in a given number, at the beginning of a vector of this length.
     #[inline(always)]
     pub(super) fn vector<V: StateVector>(
         &self,
@@ -380,7 +383,7 @@ impl<S: Declared> Part<'_, S> {
         Ok(value[0])
     }
 
-    /// The values of a kernel that gives several things at once.
+    /// The values of a kernel that gives several quantities at once.
     #[inline(always)]
     pub(super) fn several(
         &self,
@@ -396,7 +399,7 @@ impl<S: Declared> Part<'_, S> {
         Ok(room)
     }
 
-    /// Two vectors that a kernel gives: positions and velocities.
+    /// Two vectors from one kernel: positions and velocities.
     pub(super) fn pair(
         &self,
         kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
@@ -413,7 +416,8 @@ impl<S: Declared> Part<'_, S> {
         }))
     }
 
-    /// A state whose motion is given by a kernel of positions and something else, both at the beginning of vectors.
+    /// A state whose momenta or quasi-velocities come from a kernel of positions and a second vector, both at the
+    /// beginning of vectors.
     #[inline(always)]
     pub(super) fn state_by(
         &self,
@@ -432,7 +436,7 @@ impl<S: Declared> Part<'_, S> {
         Ok(state)
     }
 
-    /// Positions and what a state holds of the motion, at the beginning of vectors, as one state.
+    /// Joins positions and momenta or quasi-velocities, at the beginning of vectors, to one state.
     #[inline(always)]
     pub(super) fn joined(&self, q: &[f64], motion: &[f64]) -> S::State {
         let [n, k] = self.lengths();

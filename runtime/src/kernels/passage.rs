@@ -1,22 +1,23 @@
-//! The state that a mode is entered with: as declared, or by the transition principle.
+//! State at the entry of a mode: as declared, or by the transition principle.
 //!
-//! **Constraints change** (Cortes and Vinogradov, Definition 4.12). The Lagrangian is the same on both sides. The mode is
-//! entered with the focusing point `P(p) + Q(Upsilon)`: the velocity nearest in the metric that satisfies its constraints.
-//! Whether that state goes on into the mode or back out of it is seen from the gap rates of the mode that is entered; a
-//! transition that leads back is then due at once, and the sequence of both is the admissible sequence there.
+//! **Constraints change** (Cortes and Vinogradov, Definition 4.12). The Lagrangian is the same on both sides. The
+//! entry state is the focusing point `P(p) + Q(Upsilon)`: its velocity is the nearest in the metric that satisfies
+//! the mode's constraints. The gap rates of the entered mode show on which side the motion goes on. A transition that
+//! leads back is due at once, and the sequence of both is the admissible sequence at this point.
 //!
-//! **The Lagrangian changes** (Definition 4.14). Along the constrained characteristic `p + c pi_D^* dh` through the momentum,
-//! with the metric and the constraints of the mode that is left, the energy of the mode that is entered is a quadratic:
+//! **The Lagrangian changes** (Definition 4.14). Along the constrained characteristic `p + c pi_D^* dh` through the
+//! momentum, with the metric and the constraints of the mode that is left, the energy of the mode that is entered is
+//! quadratic in `c`:
 //!
 //! ```text
 //! H_+(p + c d) - H_-(p) + c d_t h = c^2 k/2 + c b + E,   d = pi_D^* dh,
 //! k = d(g_+^{-1} d),   b = d(v_+(p)) + d_t h,   E = H_+(p) - H_-(p)
 //! ```
 //!
-//! Of its two roots that is taken which goes on in the direction of the motion, `b + k c = -sqrt(b^2 - 2 k E)`: refraction;
-//! then follows the focusing point in the constraints of the mode that is entered. Without a real root the motion is
-//! reflected, by the elastic law, and stays in the mode. Where both are possible both are decisive points, and refraction
-//! comes first.
+//! The root is the one that goes on in the direction of the motion, `b + k c = -sqrt(b^2 - 2 k E)`: refraction,
+//! followed by the focusing point in the constraints of the entered mode. Without a real root the motion is reflected
+//! by the elastic law and stays in its mode. Where both are possible both are decisive points, and refraction comes
+//! first.
 //!
 //! Reference: J. Cortes and A. M. Vinogradov, *Hamiltonian theory of constrained impulsive motion* (2006).
 
@@ -29,14 +30,15 @@ use crate::numbers::{Numbers, Row};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// A discriminant this small a part of its terms may be rounding: the motion then grazes the surface.
+/// Relative size of a discriminant, beside its terms, up to which it may be rounding: the motion then grazes the
+/// surface.
 const GRAZE: f64 = 64.0 * f64::EPSILON;
 
-/// The state in the mode that a surface leads to; `own` is the place of the surface in the mode that is left.
+/// The state in the mode that a surface leads to; `own` is the index of the surface in the mode that is left.
 ///
 /// # Errors
-/// An [`Outcome`] that ends the run: a fault, a state that is not finite, outside the chart of the mode that is entered or off
-/// its constraints.
+/// The [`Outcome`] that ends the run: a fault, or a state that is not finite, outside the chart of the entered mode
+/// or off its constraints.
 pub(super) fn passage<S: Declared + HasSurfaces>(
     system: &S,
     (surface, own, transition): (usize, usize, Transition),
@@ -61,12 +63,13 @@ pub(super) fn passage<S: Declared + HasSurfaces>(
     })
 }
 
-/// Whether states of the mode that states are made in can be off its constraints.
+/// True if states can violate the constraints of the mode in which they are made.
 fn can_leave_constraints<S: Declared>(part: &Part<'_, S>) -> bool {
     part.tables.form == Form::Global && part.tables.dimensions.constraints > 0
 }
 
-/// The state, if it is finite, inside the chart, and where the equations of positions among the constraints hold.
+/// Returns the state if it is finite, inside the chart, and satisfies the equations of positions among the
+/// constraints.
 fn checked<S: Declared>(
     entered: &S,
     surface: usize,
@@ -87,7 +90,7 @@ fn checked<S: Declared>(
     Ok(after)
 }
 
-/// The declared state; its velocities satisfy the constraints of the mode.
+/// The declared entry state; its velocities satisfy the constraints of the mode.
 fn declared<S: Declared>(
     (left, own): (&Part<'_, S>, usize),
     entered: &S,
@@ -116,7 +119,7 @@ fn declared<S: Declared>(
     }
 }
 
-/// How a run ends where the mode that is entered refuses the state.
+/// Outcome of a run whose state is refused by the entered mode.
 fn off(error: StateError, surface: usize) -> Outcome {
     match error {
         StateError::OffConstraint { constraint, .. }
@@ -125,12 +128,12 @@ fn off(error: StateError, surface: usize) -> Outcome {
             constraint,
         },
         StateError::Fault(fault) => fault.into(),
-        // Constraints refuse nothing else.
+        // Constraints give no other error.
         _ => Outcome::NonFinite { component: 0 },
     }
 }
 
-/// `P(p) + Q(Upsilon)` in the constraints of the mode that is entered.
+/// The focusing point `P(p) + Q(Upsilon)` in the constraints of the entered mode.
 fn focused<S: Declared>(
     left: &S,
     entered: &S,
@@ -145,7 +148,7 @@ fn focused<S: Declared>(
     }
 }
 
-/// Refraction, or reflection where there is none.
+/// Refraction, or reflection where no refraction exists.
 fn refracted<S: Declared + HasSurfaces>(
     system: &S,
     left: &Part<'_, S>,
@@ -205,8 +208,8 @@ impl<L: Numbers> Quadratic<L> {
         self.rate * self.rate - L::of(2.0) * self.compliance * self.excess
     }
 
-    /// The root with the rate `-sqrt(b^2 - 2 k E)` after it, without cancellation: `Some(None)` where there is no real one, `None` where
-    /// it is not certain which.
+    /// The root with the rate `-sqrt(b^2 - 2 k E)` after it, computed without cancellation. `Some(None)` if no real
+    /// root exists, `None` if its existence is not certain.
     pub fn root(&self) -> Option<Option<L>> {
         let discriminant = self.discriminant();
         if !(-discriminant).is_below_zero()? {
@@ -221,14 +224,14 @@ impl<L: Numbers> Quadratic<L> {
 }
 
 impl Quadratic<f64> {
-    /// Whether the discriminant may be rounding.
+    /// True if the sign of the discriminant may be decided by rounding.
     fn is_graze(&self) -> bool {
         let terms = self.rate * self.rate + 2.0 * (self.compliance * self.excess).abs();
         self.discriminant().abs() <= GRAZE * terms
     }
 }
 
-/// `pi_D^* dh` as a covector, from how an impulse changes the momenta at rest.
+/// `pi_D^* dh` as a covector, from the effect of an impulse on the momenta at rest.
 fn covector<S: Declared>(
     system: &S,
     left: &Part<'_, S>,
@@ -248,7 +251,7 @@ fn covector<S: Declared>(
     Ok(covector)
 }
 
-/// The energy of a mode along `p + c d`, off its constraints too.
+/// The energy of a mode along `p + c d`, also off its constraints.
 struct Along<V> {
     p: V,
     direction: V,
@@ -298,7 +301,7 @@ impl<V: StateVector> Along<V> {
     }
 }
 
-/// The first `n` positions and momenta behind each other.
+/// The first `n` positions, followed by the first `n` momenta.
 fn pair<S: Declared>(n: usize, q: &S::Vector, p: &S::Vector) -> S::Room<f64> {
     let mut both = S::Room::<f64>::zeros(2 * n);
     let (positions, momenta) = both.as_mut_slice()[..2 * n].split_at_mut(n);

@@ -1,26 +1,26 @@
-//! Kernels behind pointers: a form that is known only at run time.
+//! Kernels behind pointers, for a form that is known only at run time.
 
 use super::{KernelSet, KernelTable};
 use crate::numbers::Numbers;
 
-/// Something that has tables of pointers to kernels, one per kind of number.
+/// A source of tables of pointers to kernels, one table per kind of number.
 pub trait Tabled: Copy {
     /// The table over these numbers, if there is one.
     fn table<L: Numbers>(&self) -> Option<&'static KernelTable<L>>;
 }
 
-/// The kernels of such a table.
+/// The kernels of these tables.
 #[derive(Debug, Clone, Copy)]
 pub struct Pointers<T>(pub T);
 
 impl KernelSet {
-    /// What enclosures of gaps take.
+    /// Kernels needed for enclosures of gaps.
     pub const OF_GAPS: Self = Self::NONE.gap();
 
-    /// What enclosures of rates take.
+    /// Kernels needed for enclosures of rates.
     pub const OF_RATES: Self = Self::NONE.rate();
 
-    /// What variations take.
+    /// Kernels needed for variations.
     pub const OF_VARIATIONS: Self = Self::NONE
         .velocity()
         .motion()
@@ -33,6 +33,6 @@ impl KernelSet {
         .trace()
         .reset();
 
-    /// What variations take of a mode.
+    /// Kernels needed for variations of a mode.
     pub const OF_TRANSITIONS: Self = Self::OF_VARIATIONS.nearest().energy().entry();
 }

@@ -1,4 +1,4 @@
-//! `VectorField`, `System`, `Lagrangian` and `Divergence` of every declared model.
+//! `VectorField`, `System`, `Lagrangian` and `Divergence` for every declared model.
 
 use super::part::has_modes;
 use super::{At, Declared, Form, HasConstraints, HasDivergence, Kernels, Part, number, write};
@@ -38,7 +38,7 @@ impl<S: Declared> VectorField for S {
             .as_mut_slice()
             .split_at_mut(part.tables.dimensions.state);
         others.fill(1.0);
-        // Units have no guards.
+        // The kernel of the units has no guards, so it does not fail.
         let _ = part.write(S::Kernels::scale, t, places, own);
         scale
     }
@@ -54,7 +54,7 @@ impl<S: Declared> VectorField for S {
         component: &dyn Fn(usize) -> Rated,
         rate: &mut dyn FnMut(usize, Rated),
     ) -> Result<(), Fault> {
-        // NOTE: a constant, so that kernels over intervals are compiled only where they are asked for.
+        // NOTE: a constant, so that kernels over intervals are compiled only where they are needed.
         if const { !S::MAY_BE_NARROW } {
             return Err(Fault::NotDerived);
         }
@@ -92,10 +92,10 @@ pub(super) fn over_numbers<S: Declared, L: Numbers>(system: &S) -> S::Arguments<
     numbers
 }
 
-/// As [`System::state_nearest`], by Newton's steps from constraints that are not linear in the velocities.
+/// Implementation of [`System::state_nearest`] by Newton steps, for constraints that are nonlinear in the velocities.
 ///
 /// # Errors
-/// As [`nearest_by_steps`].
+/// The errors of [`nearest_by_steps`].
 pub fn nearest_of_declared<S: Declared + HasConstraints>(
     system: &S,
     t: f64,
@@ -306,7 +306,7 @@ impl<S: Declared> System for S {
     }
 }
 
-/// The coefficient of the law of a surface; NaN where it has none.
+/// The coefficient of restitution of a surface's law; NaN for a law without one.
 pub(super) fn coefficient<S: Declared>(system: &S, surface: usize) -> f64 {
     let Some((part, own)) = Part::of_surface(system, surface) else {
         return f64::NAN;
@@ -391,10 +391,10 @@ impl<S: Declared + HasDivergence> Divergence for S {
     }
 }
 
-/// As [`InvariantVolume::log_density`](crate::InvariantVolume::log_density).
+/// Implementation of [`InvariantVolume::log_density`](crate::InvariantVolume::log_density).
 ///
 /// # Errors
-/// Those of the kernels; [`Fault::SingularConstraint`] where an integral does not converge.
+/// The [`Fault`] of a kernel; [`Fault::SingularConstraint`] where an integral does not converge.
 pub fn log_density<S: Declared>(system: &S, t: f64, q: &S::Vector) -> Result<f64, Fault> {
     let density = number(system, S::Kernels::log_density, t, [q.as_slice(), &[]])?;
     let Some(reference) = system.tables().density_reference else {

@@ -1,4 +1,4 @@
-//! `Variational` of every declared model whose runs can be varied.
+//! `Variational` for every declared model whose runs can be varied.
 
 use super::impacting::{counts, counts_throughout, no_impulse};
 use super::part::has_modes;
@@ -34,7 +34,7 @@ impl<S: Declared> Part<'_, S> {
         kernel(&self.kernels, at, values).map_err(|fault| self.fault(fault))
     }
 
-    /// So many values of a kernel at the beginning of a row of this length.
+    /// The first values of a kernel, in a given number, at the beginning of a row of this length.
     fn row<L: Numbers, R: Row<L>>(
         &self,
         (kernel, [length, count]): (
@@ -61,7 +61,7 @@ impl<S: Declared> Part<'_, S> {
         self.row((kernel, counts), arguments, places)
     }
 
-    /// Positions, and motion by a kernel of positions and velocities, of the part.
+    /// Positions, and momenta or quasi-velocities from a kernel of positions and velocities, of the part.
     fn row_by<L: Numbers, R: Row<L>>(
         &self,
         kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
@@ -79,7 +79,7 @@ impl<S: Declared> Part<'_, S> {
         Ok(state)
     }
 
-    /// As [`System::state_nearest`](crate::System::state_nearest), over numbers.
+    /// Implementation of [`System::state_nearest`](crate::System::state_nearest) over any kind of number.
     fn nearest<L: Numbers, R: Row<L>>(
         &self,
         arguments: Arguments<'_, L>,
@@ -92,7 +92,8 @@ impl<S: Declared> Part<'_, S> {
         }
     }
 
-    /// The state with the values of a kernel added to its motion; `None` where the kernel is not given.
+    /// The state after adding the values of a kernel to its momenta or quasi-velocities; `None` if the part does not
+    /// have the kernel.
     fn added<L: Numbers, R: Row<L>>(
         &self,
         kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
@@ -114,7 +115,7 @@ impl<S: Declared> Part<'_, S> {
         Ok(Some(sum))
     }
 
-    /// The numbers of a contact at a surface of the part, and the direction behind them.
+    /// The numbers of a contact at a surface of the part, followed by the direction.
     fn collision<L: Numbers, R: Row<L>>(
         &self,
         own: usize,
@@ -130,7 +131,7 @@ impl<S: Declared> Part<'_, S> {
         found.map_err(|fault| self.fault(no_impulse(self.tables, fault, own)))
     }
 
-    /// Positions and velocities after the reset of a surface of the part; `None` where its law is no reset.
+    /// Positions and velocities after the reset of a surface of the part; `None` if its law is not a reset.
     fn landed<L: Numbers>(
         &self,
         own: usize,
@@ -153,8 +154,8 @@ impl<S: Declared> Part<'_, S> {
         })))
     }
 
-    /// The state in the mode that a surface of this one leads to. `None` where the Lagrangian changes and the state of one of both holds no
-    /// momenta.
+    /// The state in the mode that a surface of this one leads to. `None` where the Lagrangian changes and the state
+    /// of either mode holds no momenta.
     fn passed_into<L: Numbers, R: Row<L>>(
         &self,
         (own, transition): (usize, Transition),
@@ -187,8 +188,8 @@ impl<S: Declared> Part<'_, S> {
         Ok(Some(entered))
     }
 
-    /// Refraction, or reflection where there is none, of momenta: the formulas are those of `passage.rs`. `None` where it is not certain
-    /// which, and where the state of one of both modes holds no momenta.
+    /// Refraction of momenta, or reflection where no refraction exists, by the formulas of `passage.rs`. `None` where
+    /// the decision is not certain, and where the state of either mode holds no momenta.
     fn refracted<L: Numbers, R: Row<L>>(
         &self,
         right: &Part<'_, S>,
@@ -201,7 +202,7 @@ impl<S: Declared> Part<'_, S> {
         }
         let n = self.lengths()[0];
         let collision: S::Room<L> = self.collision(own, arguments, state.as_slice())?;
-        // NOTE: the third number of a contact is the rate of the surface itself, behind the fifth comes the direction.
+        // NOTE: the third number of a contact is the rate of the surface itself; the direction follows the fifth.
         let (surface_rate, direction) = (collision.as_slice()[2], &collision.as_slice()[5..5 + n]);
         let with_momenta = |momenta: &dyn Fn(usize) -> L| {
             let mut row = *state;
@@ -341,7 +342,7 @@ impl<S: HasVariations> Variational for S {
             part.write_over(S::Kernels::levels, arguments, [state, &[]], levels)?;
         }
         if has_modes(self) {
-            // What the mode does not use, and its number.
+            // The components that the mode does not use, and its number.
             let unused = &state[dimensions.state..];
             let places = values.as_mut_slice()[own..].iter_mut();
             places
@@ -464,7 +465,7 @@ impl<S: HasVariations> Variational for S {
         };
         let mut coefficient = [L::ZERO];
         let arguments = (parameters.as_slice(), L::ZERO);
-        // Coefficients have no guards.
+        // The kernel of a coefficient has no guards, so it does not fail.
         let _ = part.write_over(kernel, arguments, [&[], &[]], &mut coefficient);
         let value = coefficient[0].lane(0);
         let law = match declared.law {

@@ -9,16 +9,16 @@ use crate::kernels::{Declared, Documented, Mode, Part};
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
-/// The types of the modes of a model `W`, in order: `(First, (Second, ()))`. What a mode does as a system of its own is asked here by its
-/// number.
+/// The types of the modes of a model `W`, in order: `(First, (Second, ()))`. Functions of a mode as a system of its
+/// own are called here by its number.
 pub trait ModeList<W> {
-    /// Room for the coefficients of intermediate values of all modes.
+    /// Storage for the coefficients of intermediate values of all modes.
     type Jets<L: Numbers>: Jets;
 
-    /// As [`TaylorField::begin`], of every mode that some lane is in. `number` is that of the first of `modes`.
+    /// Calls [`TaylorField::begin`] of every mode of any lane. `number` is the number of the first of `modes`.
     ///
     /// # Errors
-    /// Those of the modes.
+    /// The [`Fault`] of a mode.
     fn begin<L: Numbers>(
         whole: &W,
         modes: (usize, &[Mode]),
@@ -27,7 +27,7 @@ pub trait ModeList<W> {
         firsts: &mut [L],
     ) -> Result<(), Fault>;
 
-    /// As [`TaylorField::advance`], of every mode that some lane is in.
+    /// Calls [`TaylorField::advance`] of every mode of any lane.
     fn advance<L: Numbers, R: Row<L>, G: Row<L>>(
         whole: &W,
         modes: (usize, &[Mode]),
@@ -37,10 +37,10 @@ pub trait ModeList<W> {
         jets: &mut Self::Jets<L>,
     );
 
-    /// As [`Instance::inspect`], of a state of a mode.
+    /// Calls [`Instance::inspect`] of the mode of a state.
     ///
     /// # Errors
-    /// Those of the mode.
+    /// The [`Fault`] of the mode.
     fn inspect(
         whole: &W,
         mode: usize,
@@ -49,7 +49,7 @@ pub trait ModeList<W> {
         report: &mut dyn Report,
     ) -> Result<(), Fault>;
 
-    /// As [`System::rank_drop`](crate::System::rank_drop), along motion in a mode.
+    /// Calls [`System::rank_drop`](crate::System::rank_drop) of a mode, along motion in it.
     fn rank_drop<V: StateVector>(
         whole: &W,
         mode: usize,
@@ -170,13 +170,13 @@ impl<
     }
 }
 
-/// The state of a mode at the beginning of one of the model.
+/// The state of a mode, from the beginning of a state of the model.
 fn own_state<M: Declared>(mode: &M, state: &[f64]) -> <M as Declared>::State {
     <M as Declared>::State::of(&state[..mode.tables().dimensions.state])
 }
 
-// NOTE: no mode's series is inlined into those of the whole: with many modes one function would hold all of them, and compilers
-// take minutes over it.
+// NOTE: the series of a mode are not inlined into those of the model: with many modes one function would hold all of
+// them, and compilers take minutes for it.
 #[inline(never)]
 fn begin<
     W: Copy,
@@ -228,7 +228,7 @@ fn advance<
     );
 }
 
-/// As [`System::rank_drop`](crate::System::rank_drop), of a model with these modes.
+/// Implementation of [`System::rank_drop`](crate::System::rank_drop) for a model with these modes.
 pub fn rank_drop<W: Declared, List: ModeList<W>>(
     whole: &W,
     motion: impl Fn(f64) -> (f64, W::State),

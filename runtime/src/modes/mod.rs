@@ -1,16 +1,18 @@
-//! Systems with modes: at every time the motion is one of several, and transitions lead from one to another.
+//! Hybrid systems with modes: at every time the motion follows one mode, and transitions lead from one mode to
+//! another.
 //!
-//! The state of the whole is that of the present mode, filled up with zeros to the length of the longest, and behind it the number of
-//! the mode, which no motion changes. So a run goes on through transitions with the same integrator, the same search for crossings and
-//! the same effects as through impacts; a transition is a surface at which the state becomes one of another mode.
+//! The state of the model is the state of the present mode, padded with zeros to the length of the longest, followed
+//! by the number of the mode, which no motion changes. A run passes transitions with the same integrator, event
+//! location and effects as impacts: a transition is a surface at which the state becomes one of another mode.
 //!
-//! Modes are told apart where kernels are asked ([`Part`](crate::kernels::Part)). Here stands what a mode does as a system of its own.
+//! [`Part`](crate::kernels::Part) selects the mode for every kernel. This module contains the functions of a mode as
+//! a system of its own.
 //!
 //! | file | job |
 //! |---|---|
 //! | `list.rs` | the modes of a declared model, by their types |
-//! | `series.rs` | power series of the whole, by those of the modes |
-//! | `within.rs` | an effect of whatever mode the motion is in |
+//! | `series.rs` | power series of the model, from those of the modes |
+//! | `within.rs` | an effect in the present mode |
 
 mod list;
 pub(crate) mod series;
@@ -23,7 +25,7 @@ pub use within::InMode;
 use crate::contract::TaylorField;
 use crate::numbers::Row;
 
-/// What a mode knows at a moment besides rates and gaps.
+/// Number of initial values of a mode's series besides rates and gaps.
 pub const fn rest<M: TaylorField>() -> usize {
     let [firsts, rates, gaps] = [
         <M::Firsts<f64> as Row<f64>>::CAPACITY,

@@ -1,7 +1,7 @@
-//! Power series of a model with modes, by those of its modes.
+//! Power series of a model with modes, from those of its modes.
 //!
-//! Motions that run side by side may be in different modes. Each mode that any of them is in expands the lanes that are in
-//! it; the other lanes are given the numbers of one that is, and what comes of them is dropped.
+//! Motions in neighbouring lanes may be in different modes. Each mode of any lane expands the lanes that are in it.
+//! The other lanes are filled with the numbers of one of these lanes, and their results are dropped.
 
 use crate::error::Fault;
 use crate::jet::LENGTH;
@@ -11,13 +11,13 @@ use crate::numbers::{Numbers, Row};
 /// Lengths of the rows of a model with modes.
 #[derive(Debug, Clone, Copy)]
 pub struct Lengths {
-    /// Components of a state, the number of the mode among them.
+    /// Number of components of a state, including the number of the mode.
     pub state: usize,
-    /// Gaps, or 0 where they have no series.
+    /// Number of gaps, or 0 if they have no series.
     pub gaps: usize,
 }
 
-/// A wanted expansion of a model with modes.
+/// A requested expansion of a model with modes.
 #[derive(Debug, Clone, Copy)]
 pub struct Expansion<'a, L> {
     /// Lengths of rows.
@@ -28,7 +28,7 @@ pub struct Expansion<'a, L> {
     pub unit: L,
     /// The highest order.
     pub order: usize,
-    /// What is known at the moment: rates, gaps, then whatever the mode takes of it.
+    /// Initial values: rates, gaps, then the other values of the mode.
     pub firsts: &'a [L],
 }
 
@@ -36,14 +36,14 @@ pub struct Expansion<'a, L> {
 #[derive(Clone, Copy)]
 struct Lanes {
     mode: usize,
-    /// The first of them.
+    /// The first of these lanes.
     first: usize,
-    /// Whether all are.
+    /// True if all lanes are in the mode.
     all: bool,
 }
 
 impl Lanes {
-    /// `None` if no lane is in the mode.
+    /// The lanes in this mode; `None` if there are none.
     #[inline(always)]
     fn of<L: Numbers>(mode: usize, number: &L) -> Option<Self> {
         let first = (0..L::LANES).find(|&lane| is_in(mode, number, lane))?;
@@ -51,7 +51,7 @@ impl Lanes {
         Some(Self { mode, first, all })
     }
 
-    /// The numbers of the lanes in the mode; in the others those of the first that is.
+    /// The numbers of the lanes in the mode; the other lanes repeat the first of them.
     #[inline(always)]
     fn picked<L: Numbers>(&self, value: L, number: &L) -> L {
         match self.all {
@@ -76,18 +76,18 @@ impl Lanes {
     }
 }
 
-/// Whether a lane is in a mode; `number` holds the numbers of the modes.
+/// True if a lane is in a mode; `number` holds the numbers of the modes.
 #[inline(always)]
 fn is_in<L: Numbers>(mode: usize, number: &L, lane: usize) -> bool {
     // NOTE: the conversion saturates.
     (number.lane(lane) + 0.5) as usize == mode
 }
 
-/// As [`TaylorField::begin`](crate::TaylorField::begin), for the lanes that are in this mode, of which `expand` begins the series of
-/// `known` numbers.
+/// Calls [`TaylorField::begin`](crate::TaylorField::begin) for the lanes in this mode; `expand` computes the `known`
+/// initial values of its series.
 ///
 /// # Errors
-/// That of the mode.
+/// The [`Fault`] of the mode.
 #[inline(always)]
 pub(crate) fn begin<L: Numbers, P: Row<L>, R: Row<L>, F: Row<L>>(
     ((number, mode), known): ((usize, &Mode), usize),
@@ -133,7 +133,7 @@ pub(crate) fn begin<L: Numbers, P: Row<L>, R: Row<L>, F: Row<L>>(
     Ok(())
 }
 
-/// Gaps of a mode that have series.
+/// Number of gaps of a mode that have series.
 fn own_gaps(mode: &Mode, lengths: Lengths) -> usize {
     match lengths.gaps {
         0 => 0,
@@ -141,7 +141,8 @@ fn own_gaps(mode: &Mode, lengths: Lengths) -> usize {
     }
 }
 
-/// As [`TaylorField::advance`](crate::TaylorField::advance), for the lanes that are in this mode, of which `expand` writes the series.
+/// Calls [`TaylorField::advance`](crate::TaylorField::advance) for the lanes in this mode; `expand` writes the
+/// series.
 #[inline(always)]
 pub(crate) fn advance<
     L: Numbers,

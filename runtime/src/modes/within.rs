@@ -1,4 +1,4 @@
-//! An effect of whatever mode the motion is in.
+//! An effect in the present mode of the motion.
 
 use crate::contract::System;
 use crate::effects::{Change, Effect, Moment, SceneEffects};
@@ -7,19 +7,19 @@ use crate::kernels::{Declared, Part};
 use crate::outcome::Outcome;
 use crate::record::Observer;
 
-/// An effect that sees a model with modes as the present mode, in which it makes states. It begins anew each time a mode is entered.
+/// An effect that sees a model with modes as the present mode. It begins anew each time a mode is entered.
 ///
-/// Only what an effect does after smooth motion is carried over ([`Effect::begin`] and [`Effect::settle`]): the search for
-/// crossings belongs to the model as a whole.
+/// Only the actions of an effect after smooth motion are carried over ([`Effect::begin`] and [`Effect::settle`]):
+/// event location belongs to the model as a whole.
 #[derive(Debug, Clone)]
 pub struct InMode<E> {
     effect: E,
-    /// The mode that the effect has begun in, if it has something to do there.
+    /// The mode in which the effect has begun, if it acts there.
     mode: Option<usize>,
 }
 
 impl<E> InMode<E> {
-    /// The effect in each mode.
+    /// Applies the effect in each mode.
     pub fn new(effect: E) -> Self {
         Self { effect, mode: None }
     }
