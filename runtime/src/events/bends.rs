@@ -1,10 +1,12 @@
-//! How much gaps can bend in a box: what tells of most steps in it that they pass a surface, from the gaps at their ends.
+//! Bounds of the second derivatives of gaps in a box. They show for most steps in it, from the gaps at their ends,
+//! that the step meets no surface.
 //!
-//! Along a path in the box with `|x_i'| <= v w_i` and `|x_i''| <= a w_i`, by the part of the step, the gap has
-//! `|g''| <= C = v^2 B + a S`, where `S` and `B` bound its rates and bends along all lines with `|x_i'| <= w_i`. Between
-//! its ends it is then above `(1 - s) g_0 + s g_1 - C s (1 - s)/2`, which has no zero inside where `(sqrt g_0 + sqrt g_1)^2 > C/2`.
+//! Consider a path in the box with `|x_i'| <= v w_i` and `|x_i''| <= a w_i`, with derivatives by the fraction `s` of
+//! the step. The gap has `|g''| <= C = v^2 B + a S`, where `S` and `B` bound its first and second derivatives along
+//! all lines with `|x_i'| <= w_i`. Between its ends the gap is above `(1 - s) g_0 + s g_1 - C s (1 - s)/2`, which has
+//! no zero inside if `(sqrt g_0 + sqrt g_1)^2 > C/2`.
 //!
-//! The box grows with what motion visits, so that a motion in a bounded room is measured a few times and no more.
+//! The box grows with the motion, so that a motion in a bounded region needs only a few measurements.
 
 use core::cell::Cell;
 
@@ -15,46 +17,47 @@ use crate::math;
 use crate::numbers::Bent;
 use crate::state::StateVector;
 
-/// Steps to wait after a box that told less than it should, at most.
+/// Maximum number of steps to wait after a box that decided too few steps.
 const MOST_PATIENCE: u32 = 512;
 
-/// Steps that a box is to tell of, to be worth its measuring.
+/// Number of steps that a box must decide to be worth its measurement.
 const WORTH: i32 = 8;
 
-/// A new box has so many times the way of its step on every side.
+/// Margin of a new box on every side, in multiples of the distance covered in its step.
 const MARGIN: f64 = 2.0;
 
-/// What is left in a step of how far components went in those before.
+/// Factor per step by which the recorded distances of earlier steps decay.
 const FADING: f64 = 0.98;
 
-/// Rounding of the bound, in parts of it.
+/// Relative rounding error of the bound.
 const ROUNDING: f64 = 1.0 / (1 << 30) as f64;
 
 /// The box and the bounds in it.
 #[derive(Debug, Clone)]
 pub(crate) struct Bends<S, G> {
     room: Room<S>,
-    /// How far components, and time, go in a step.
+    /// Distances that components, and time, cover in a step.
     ways: S,
     time: f64,
-    /// Bounds along lines that go as far as steps did when the box was measured.
+    /// Bounds along lines with the distances of steps at the time of the measurement.
     slopes: G,
     bends: G,
     measured: S,
     measured_time: f64,
-    /// How fast the last step moves, and how much it bends, in parts of those ways.
+    /// Speed of the last step and its second derivative, in units of those distances.
     speed: f64,
     turn: f64,
-    /// Whether that step lies in the box.
+    /// True if that step lies in the box.
     is_inside: bool,
-    /// Steps that the box has told of, less those it should have.
+    /// Number of decided steps, less a penalty for steps left undecided.
     score: i32,
     wait: u32,
     patience: u32,
 }
 
 impl<S: StateVector, G: StateVector> Bends<S, G> {
-    /// No box yet, for systems with so many positions, and as many components and gaps as these have.
+    /// Bounds without a box, for systems with this number of positions, and as many components and gaps as these
+    /// vectors.
     pub(crate) fn new(positions: usize, state: &S, gaps: &G) -> Self {
         Self {
             room: Room::new(positions, state),
@@ -73,12 +76,12 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
         }
     }
 
-    /// Forgets the box: surfaces, parameters or the mode are others.
+    /// Discards the box, after a change of surfaces, parameters or mode.
     pub(crate) fn forget(&mut self) {
         self.room.forget();
     }
 
-    /// Takes in a step, which the box is made to hold.
+    /// Sets the step, and extends the box to contain it.
     #[inline]
     pub(crate) fn follow<Sys: Impacting<State = S, Gaps = G>>(
         &mut self,
@@ -113,7 +116,7 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
             }
             let inverse = 1.0 / self.measured.as_slice()[i];
             let [speed, turn] = motion.map(|motion| motion * inverse);
-            // Not what drops NaN.
+            // Written so that NaN is kept.
             self.speed = if speed <= self.speed {
                 self.speed
             } else {
@@ -123,7 +126,7 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
         }
     }
 
-    /// The bounds in the box.
+    /// Computes the bounds in the box.
     #[cold]
     fn measure<Sys: Impacting<State = S, Gaps = G>>(&mut self, system: &Sys, path: &Path<S>) {
         (self.measured, self.measured_time) = (self.ways, self.time);
@@ -145,13 +148,13 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
         self.room.keep(taken.get());
     }
 
-    /// Whether a gap with these values at the ends of the step has no zero inside.
+    /// True if a gap with these values at the ends of the step has no zero inside.
     #[inline]
     pub(crate) fn tell(&self, surface: usize, [first, last]: [f64; 2]) -> bool {
         let [slope, bend] = [&self.slopes, &self.bends].map(|bound| bound.as_slice()[surface]);
         let most = 0.5 * (self.speed * self.speed * bend + self.turn * slope) * (1.0 + ROUNDING);
         let (first, last) = (first.abs(), last.abs());
-        // Not comparisons that NaN passes. Most ends are so far that no root needs to be taken.
+        // Written so that NaN fails the comparisons. Most ends are so far away that no square root is needed.
         let is_far = first + last > most || {
             let ends = math::sqrt(first) + math::sqrt(last);
             ends * ends * (1.0 - ROUNDING) > most
@@ -159,7 +162,7 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
         self.is_inside && is_far
     }
 
-    /// Takes in whether the bounds told of a step that it passes the surfaces that it does pass.
+    /// Records if the bounds decided a step that passes no surface; `has_told` is true if they did.
     #[inline]
     pub(crate) fn learn(&mut self, has_told: bool) {
         match has_told {

@@ -1,11 +1,11 @@
-//! Signs of a polynomial by its Bernstein coefficients: they bound it (convex hull), and their sign changes bound its roots
-//! (Descartes). A coefficient smaller than what the polynomial is in doubt by has no certain sign.
+//! Signs of a polynomial from its Bernstein coefficients: they bound it (convex hull), and their sign changes bound
+//! the number of its roots (Descartes). A coefficient smaller than the error of the polynomial has no certain sign.
 
 /// Number of coefficients.
 pub(crate) const COUNT: usize = 9;
 
-/// From powers to Bernstein coefficients: `C(j, k) / C(8, k)` of power `k` in coefficient `j`. Row `k` is that of a power,
-/// and begins with coefficient 1: coefficient 0 is power 0.
+/// Conversion of powers to Bernstein coefficients: `C(j, k) / C(8, k)` of power `k` in coefficient `j`. Row `k`
+/// belongs to a power and begins with coefficient 1; coefficient 0 is power 0.
 pub(crate) const FROM_POWERS: [[f64; COUNT - 1]; COUNT] = {
     let mut table = [[0.0; COUNT - 1]; COUNT];
     let mut j = 1;
@@ -32,13 +32,13 @@ pub(crate) enum Signs {
     Falls,
     /// One root, from negative to positive.
     Rises,
-    /// Cannot be told.
+    /// Not decided.
     Unclear,
 }
 
-/// Reads signs from Bernstein coefficients, at most 32; those within the doubt have none.
+/// Signs from Bernstein coefficients, at most 32 of them. Coefficients within `doubt` have no sign.
 ///
-/// One uncertain coefficient where the sign changes hides no root; any other may hide two.
+/// One uncertain coefficient at a change of sign hides no root; any other may hide two.
 #[inline(always)]
 pub(crate) fn read(coefficients: &[f64], doubt: f64) -> Signs {
     // One bit per coefficient, the first one lowest.

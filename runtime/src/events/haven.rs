@@ -1,7 +1,7 @@
-//! A box of times and states in which no gap vanishes: steps inside it need no look at any surface.
+//! A box of times and states in which no gap vanishes: steps inside it need no event location.
 //!
-//! It is what an enclosure of every gap over the box shows, and so holds of any motion in it. Boxes grow where motion stays far
-//! from all surfaces, and are tried ever more rarely where it does not.
+//! An enclosure of every gap over the box proves this, so it holds for any motion in the box. Boxes grow where motion
+//! stays far from all surfaces, and are tried ever more rarely where it does not.
 
 use core::cell::Cell;
 
@@ -11,25 +11,25 @@ use crate::contract::Impacting;
 use crate::numbers::TaylorModel;
 use crate::state::StateVector;
 
-/// Steps to wait for the next trial after several that failed, at most.
+/// Maximum number of steps to wait for the next trial after several failures.
 const MOST_PATIENCE: u32 = 64;
 
-/// Sizes of a box in ways of a step, at most.
+/// Maximum size of a box, in multiples of the distance covered in a step.
 const MOST_MARGIN: f64 = 1024.0;
 
-/// The box, once one is known.
+/// The box, if one is known.
 #[derive(Debug, Clone)]
 pub(crate) struct Haven<S> {
     room: Room<S>,
-    /// How much larger than what a step passes the next box is to be.
+    /// Size of the next box, as a multiple of the distance covered in a step.
     margin: f64,
-    /// Steps to let pass before the next trial, and how many the last failure has cost.
+    /// Number of steps to skip before the next trial, and the number that the last failure added.
     wait: u32,
     patience: u32,
 }
 
 impl<S: StateVector> Haven<S> {
-    /// None yet, for systems with so many positions, and as many components as this state has.
+    /// No box, for systems with this number of positions, and as many components as `like`.
     pub(crate) fn new(positions: usize, like: &S) -> Self {
         Self {
             room: Room::new(positions, like),
@@ -39,7 +39,7 @@ impl<S: StateVector> Haven<S> {
         }
     }
 
-    /// Forgets the box: surfaces, parameters or the mode are others.
+    /// Discards the box, after a change of surfaces, parameters or mode.
     pub(crate) fn forget(&mut self) {
         self.room.forget();
     }
@@ -50,8 +50,8 @@ impl<S: StateVector> Haven<S> {
         self.room.holds(path)
     }
 
-    /// Looks for a box about a step that meets no surface. Gaps of walls are to be positive in it, those that motion may pass
-    /// different from zero.
+    /// Looks for a box about a step that meets no surface. In the box the gaps of walls must be positive, and those
+    /// of passable surfaces different from zero.
     #[inline]
     pub(crate) fn settle<Sys: Impacting<State = S>>(
         &mut self,

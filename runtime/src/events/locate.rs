@@ -1,41 +1,43 @@
-//! The first fall of a gap through zero inside a step, and its time to the last bits.
+//! Event location: the first fall of a gap through zero inside a step, and its time to the last bits.
 //!
-//! The step is looked at stretch after stretch from its start. A stretch is settled by a Taylor model of the gap on it, or on a longer
-//! one: a gap that is enclosed away from zero has no fall there, one whose rates have one sign has as many as its ends show. Other
-//! stretches are halved, down to where rounding decides; a new model is made where the remainder of the last one is to blame.
+//! The step is searched stretch by stretch from its start. A Taylor model of the gap on the stretch, or on a longer
+//! one, decides it: a gap that is enclosed away from zero has no fall there, and for one whose rates have one sign
+//! the ends show the number of falls. Undecided stretches are halved until rounding decides. A new model is computed
+//! where the remainder of the last one is the cause.
 
 use super::crossing::Signs;
 use super::piece::Piece;
 use super::stretches::Stretches;
 use crate::numbers::TaylorModel;
 
-/// Halvings before the ends of a stretch decide: `2^-40` of a step.
+/// Maximum number of halvings: a stretch of `2^-40` of a step is decided by its ends.
 const DEPTH: u32 = 40;
 
-/// Halvings after which the rounding of the gap is asked for.
+/// Number of halvings after which the rounding of the gap is evaluated.
 const DOUBTFUL: u32 = 3;
 
-/// Stretches looked at before the search stops where it is; the step is cut there.
+/// Maximum number of stretches; the search stops there, and the step is cut.
 const STRETCHES: u32 = 4096;
 
-/// A gap this many times larger next to a change of sign than anywhere else in the step belongs to a pole.
+/// Ratio of a gap next to a change of sign to its values elsewhere in the step beyond which it belongs to a pole.
 const PEAK: f64 = (1 << 10) as f64;
 
-/// Where a search begins.
+/// Start of a search.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Start {
-    /// Part of the step at which it begins.
+    /// Fraction of the step at which it begins.
     pub from: f64,
-    /// Whether the motion comes from the allowed side.
+    /// True if the motion comes from the allowed side.
     pub above: bool,
-    /// On the surface, at the start of the step: the gap's slope there. The root at the start is divided out.
+    /// For a motion that starts on the surface, the gap's slope at the start of the step; the root at the start is
+    /// divided out.
     pub slope: Option<f64>,
-    /// Part of the step after which falls are of no interest.
+    /// Fraction of the step after which falls are ignored.
     pub until: f64,
 }
 
 impl Start {
-    /// Behind a fall or a pole, with the function negative there.
+    /// Start behind a fall or a pole, where the gap is negative.
     pub(crate) fn behind(from: f64, until: f64) -> Self {
         Self {
             from,
@@ -46,50 +48,50 @@ impl Start {
     }
 }
 
-/// Two parts of a step between which the gap falls: not negative at `before`, negative at `after`.
+/// Two fractions of a step that bracket a fall of the gap: not negative at `before`, negative at `after`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Bracket {
     pub before: f64,
     pub after: f64,
-    /// The one of the two at which the gap is closer to 0.
+    /// The one of the two with the gap closer to 0.
     pub nearest: f64,
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Search {
-    /// No fall in what is of interest of the step.
+    /// No fall in the searched part of the step.
     Clear,
-    /// The first fall, narrowed to neighbouring numbers or close to it.
+    /// The first fall, bracketed by neighbouring numbers or nearly so.
     Falls(Bracket),
     /// The gap went from zero within rounding to clearly negative, here; at 0 if it never rose from the surface.
     Sinks(f64),
     /// A change of sign through a pole, which ends here.
     Pole(f64),
-    /// Looked at up to here, and no further.
+    /// Searched up to here only.
     Unfinished(f64),
 }
 
 /// The gap of one surface along a step.
-// NOTE: functions behind pointers: the search is long, and compiled once instead of for every system and integrator.
+// NOTE: functions behind pointers: the long search is compiled once instead of for every system and integrator.
 pub(crate) struct Line<'a> {
-    /// The gap at a part of the step.
+    /// The gap at a fraction of the step.
     pub gap: &'a mut dyn FnMut(f64) -> f64,
-    /// The gap between two parts of the step.
+    /// A Taylor model of the gap between two fractions of the step.
     pub along: &'a mut dyn FnMut([f64; 2]) -> TaylorModel,
-    /// The same on the whole step, if that is known.
+    /// Taylor model on the whole step, if known.
     pub whole: Option<TaylorModel>,
     /// The gap at the start and at the end of the step.
     pub ends: [f64; 2],
-    /// The size of its rounding errors; asked for once or twice.
+    /// The size of its rounding errors; evaluated once or twice.
     pub rounding: &'a mut dyn FnMut() -> f64,
-    /// Where to begin.
+    /// Start of the search.
     pub start: Start,
-    /// A fall that is known, if no other is before it.
+    /// A known fall; it is the first unless another precedes it.
     pub known: Option<Bracket>,
 }
 
-/// A part of the step with the gap there.
+/// A fraction of the step with the gap there.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     x: f64,
@@ -113,17 +115,17 @@ impl View {
     }
 }
 
-/// A stretch on which the gap falls once, and about where it does as a part of the stretch.
+/// A stretch on which the gap falls once, and an estimate of the fall as a fraction of the stretch.
 struct Fall {
     before: Place,
     after: Place,
     guess: f64,
 }
 
-/// What stands at the end of a search that has found a fall.
+/// Result of a successful isolation.
 enum Isolated {
     Fall(Fall),
-    /// The one that was known.
+    /// The known fall.
     Known(Bracket),
 }
 
@@ -151,7 +153,7 @@ impl Line<'_> {
         }
     }
 
-    /// Looks for the first fall stretch after stretch; unclear stretches are halved.
+    /// Isolates the first fall, stretch by stretch; undecided stretches are halved.
     fn isolate(&mut self) -> Result<Isolated, Search> {
         let mut above = self.start.above;
         let mut rose = self.start.slope.is_none();
@@ -237,7 +239,7 @@ impl Line<'_> {
                         continue;
                     }
                     let floor = *floor.get_or_insert_with(&mut self.rounding);
-                    // A gap that rises from zero beyond rounding is not flat, however soon it falls.
+                    // A gap that rises from zero by more than rounding is not flat, however soon it falls.
                     let rises = is_at_hand && self.start.slope.is_some_and(|slope| slope > floor);
                     if rises && depth < DEPTH {
                         stretches.halve();
@@ -251,7 +253,7 @@ impl Line<'_> {
                         false => is_within(floor, &piece, gaps),
                     };
                     match is_flat {
-                        // It leaves zero, upwards or downwards, without having gone the other way.
+                        // The gap leaves zero, upwards or downwards, without an excursion to the other side.
                         Some(Signs::Positive) => {
                             (above, rose) = (true, true);
                             high = Some(after);
@@ -269,7 +271,7 @@ impl Line<'_> {
                             stretches.halve();
                             continue;
                         }
-                        // It rises and falls within what the parts of a step can tell.
+                        // The gap rises and falls within the resolution of the fractions of a step.
                         None if is_at_hand && after.gap < 0.0 => {
                             return Err(Search::Sinks(right));
                         }
@@ -287,7 +289,7 @@ impl Line<'_> {
         Err(Search::Unfinished(stretches.ends()[0]))
     }
 
-    /// About where the gap falls first, from its cubic.
+    /// Estimate of the first fall from the gap's cubic.
     fn expected(&self, piece: &Piece) -> Option<f64> {
         let Start {
             from, above, until, ..
@@ -311,7 +313,7 @@ impl Line<'_> {
         }
     }
 
-    /// The signs of the gap on a stretch. Where its ends may tell the gap is evaluated there.
+    /// The signs of the gap on a stretch. Evaluates the gap at its ends if they may decide.
     fn signs(
         &mut self,
         piece: &Piece,
@@ -333,7 +335,7 @@ impl Line<'_> {
         }
     }
 
-    /// The gap at a part of the step; that at the last part asked for is known.
+    /// The gap at a fraction of the step; `known` keeps the last evaluation.
     fn place_at(&mut self, x: f64, known: &mut Option<Place>) -> Place {
         match *known {
             Some(place) if place.x == x => place,
@@ -348,8 +350,8 @@ impl Line<'_> {
         }
     }
 
-    /// A gap that is negative beyond rounding at `low`, of which no stretch shows the fall: it fell where two of them meet or where
-    /// it is flat, or never rose.
+    /// Result for a gap that is negative beyond rounding at `low` although no stretch shows the fall: it fell between
+    /// two stretches or where it is flat, or never rose.
     fn sunk(
         [left, _]: [f64; 2],
         rose: bool,
@@ -362,7 +364,7 @@ impl Line<'_> {
         }
     }
 
-    /// Narrows the interval in which the gap falls.
+    /// Narrows the bracket of the fall.
     fn narrow(
         &mut self,
         Fall {
@@ -389,8 +391,8 @@ impl Line<'_> {
             },
         };
         let narrowed = narrow(drop, value);
-        // A pole is told from a root by gaps that grow towards it: from the ends of the interval, or, where that was
-        // narrow already, from what they are elsewhere in the step.
+        // A pole differs from a root by gaps that grow towards it: compared with the ends of the bracket or, if that
+        // was narrow already, with the values elsewhere in the step.
         let size = |drop: &Drop| {
             let gap = |i: usize| {
                 if slope.is_some() {
@@ -417,7 +419,7 @@ impl Line<'_> {
     }
 }
 
-/// Whether the signs of a gap are clear on a piece, if its values at the ends are those of the cubic.
+/// True if the signs of a gap are decided on a piece, if its values at the ends are those of the cubic.
 fn is_clear(piece: &Piece, is_at_hand: bool) -> bool {
     let signs = match is_at_hand {
         true => piece.signs_from_zero(),
@@ -429,7 +431,8 @@ fn is_clear(piece: &Piece, is_at_hand: bool) -> bool {
     signs != Signs::Unclear
 }
 
-/// A stretch on which a gap is zero within rounding, or leaves it one way only: which way it left, or `Unclear` of one that is flat.
+/// Test for a stretch on which a gap is zero within rounding, or leaves zero to one side only. Returns the sign of
+/// that side, or `Unclear` for a flat gap.
 fn is_within(floor: f64, piece: &Piece, [first, last]: [f64; 2]) -> Option<Signs> {
     let [lowest, highest] = piece.bounds_from(first);
     match (lowest >= -floor, highest <= floor) {
@@ -440,9 +443,9 @@ fn is_within(floor: f64, piece: &Piece, [first, last]: [f64; 2]) -> Option<Signs
     }
 }
 
-/// A gap divided by the part of the step it is taken at, over a surface just left; its limit is the slope.
+/// A gap divided by the fraction of the step, for a surface just left; its limit at 0 is the slope.
 ///
-/// Besides the root at the start this takes out most of the bend of a flight, which saves iterations.
+/// The division removes the root at the start and most of the curvature of a flight, which saves iterations.
 fn deflated(gap: f64, theta: f64, slope: Option<f64>) -> f64 {
     match slope {
         Some(slope) if theta == 0.0 => slope,
@@ -451,8 +454,8 @@ fn deflated(gap: f64, theta: f64, slope: Option<f64>) -> f64 {
     }
 }
 
-/// A fall between two places, and a third beside them: positions and values. The newest point comes first;
-/// it and the second enclose the root.
+/// A bracket of a fall by two places, and a third place beside them: positions and values. The newest point comes
+/// first; the first and second enclose the root.
 #[derive(Debug, Clone, Copy)]
 struct Drop {
     x: [f64; 3],
@@ -478,11 +481,11 @@ impl Drop {
     }
 }
 
-/// Chandrupatla's method: inverse quadratic interpolation where it is safe, else bisection.
+/// Chandrupatla's method: inverse quadratic interpolation where it is safe, otherwise bisection.
 fn narrow(drop: Drop, mut value: impl FnMut(f64) -> f64) -> Drop {
     let Drop { mut x, mut f } = drop;
     let mut reach = 1.0;
-    // Bisection alone ends within 64 halvings, but for roots next to 0.
+    // Bisection alone ends within 64 halvings, except for roots next to 0.
     for _ in 0..200 {
         let best = if f[0].abs() < f[1].abs() { x[0] } else { x[1] };
         let width = (x[1] - x[0]).abs();
@@ -490,8 +493,8 @@ fn narrow(drop: Drop, mut value: impl FnMut(f64) -> f64) -> Drop {
         if width <= resolution {
             break;
         }
-        // Trials keep off the ends so that both close in on the root; one that keeps close to an end and finds no
-        // change of sign there, for all is rounding, reaches further the next time.
+        // Trials keep a distance from the ends so that both ends close in on the root. A trial near an end that finds
+        // no change of sign, because rounding decides there, is followed by one further away.
         let part = next_part(x, f);
         let margin = (reach * resolution / width).min(0.5);
         let trial = if part >= 1.0 - margin {
@@ -520,12 +523,12 @@ fn narrow(drop: Drop, mut value: impl FnMut(f64) -> f64) -> Drop {
     Drop { x, f }
 }
 
-/// Where to go next between `x[0]` and `x[1]`.
+/// Place of the next trial between `x[0]` and `x[1]`.
 fn next_part(x: [f64; 3], f: [f64; 3]) -> f64 {
     let xi = (x[0] - x[1]) / (x[2] - x[1]);
     let phi = (f[0] - f[1]) / (f[2] - f[1]);
-    // A third point outside the enclosing ones is only met at first; interpolation is safe there if the three
-    // values are in order.
+    // A third point outside the bracket occurs only at first. Interpolation is safe there if the three values are in
+    // order.
     let ordered = if xi <= 1.0 {
         phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi
     } else {
@@ -547,7 +550,7 @@ mod tests {
     use crate::events::sampled;
     use crate::numbers::Numbers;
 
-    /// The first fall of a function, and how often it was evaluated.
+    /// The first fall of a function, and the number of its evaluations.
     fn first<F>(function: F, start: Start) -> (Search, u32)
     where
         F: Of,
@@ -570,7 +573,7 @@ mod tests {
         (found, evaluations)
     }
 
-    /// The part of the step between two of its parts.
+    /// The fraction of the step, as a model between two fractions.
     fn part([from, to]: [f64; 2]) -> TaylorModel {
         TaylorModel {
             error: f64::EPSILON * to,
@@ -641,12 +644,12 @@ mod tests {
 
     #[test]
     fn roots_where_stretches_meet_are_found_to_the_last_bits() {
-        // A gap that is rounded to multiples of this, and said to err by far more.
+        // A gap that is rounded to multiples of this unit, with a claimed error that is far larger.
         let unit = 1.0 / (1_u64 << 40) as f64;
         for part in [0.25, 0.125] {
             for eighths in -8..=8 {
                 let root = part + f64::from(eighths) / 8.0 * unit;
-                // It rises from the surface at the start.
+                // The gap rises from the surface at the start.
                 let turns = core::f64::consts::PI * (1.0 - 4.0 * unit) / root;
                 let gap = |x: f64| ((turns * (root - x)).sin() / unit).round() * unit;
                 let line = Line {
@@ -734,7 +737,8 @@ mod tests {
     fn pole_and_rest_are_told_from_roots() {
         let (found, _) = first(function!(c | x | c(1.0) / (c(0.3) - x)), FROM_ABOVE);
         assert!(matches!(found, Search::Pole(_)), "{found:?}");
-        // So close to where stretches meet that those around it are halved to neighbouring numbers.
+        // The pole is so close to the boundary of two stretches that those around it are halved to neighbouring
+        // numbers.
         assert!(matches!(
             first(
                 function!(c | x | c(1.0) / (c(0.25 - 1e-13) - x)),

@@ -1,8 +1,9 @@
-//! Events: where a gap, followed along the dense output of a step, falls through zero.
+//! Event location: falls of a gap through zero along the dense output of a step.
 //!
-//! A crossing is only ever reported with a witness: two times of which the earlier finds the gap not negative and
-//! the later finds it negative. That none was overlooked is shown by Taylor models of the gap along the motion ([`path`]): all its
-//! values and rates on a stretch of the step ([`piece`]); where these do not tell, the stretch is halved ([`locate`]).
+//! Every reported crossing has a witness: two times such that the gap is not negative at the earlier and negative at
+//! the later one. Taylor models of the gap along the motion ([`path`]) show that none was overlooked: they enclose
+//! its values and rates on a stretch of the step ([`piece`]). Stretches that these do not decide are halved
+//! ([`locate`]).
 
 pub(crate) mod bends;
 pub(crate) mod crossing;

@@ -1,7 +1,8 @@
-//! The motion along a step: a polynomial in the part of the step for each component, and Taylor models of it on parts of the step.
+//! The motion along a step: for each component a polynomial in the fraction of the step, and Taylor models of it on
+//! parts of the step.
 //!
-//! On `[a, b]`, with `m` in the middle and `r` half as long, `p(m + r s) = sum_k q_k s^k` for `s` in `[-1, 1]`. The model has the first
-//! four terms; all others are its remainder.
+//! On `[a, b]`, with middle `m` and half length `r`, `p(m + r s) = sum_k q_k s^k` for `s` in `[-1, 1]`. The model
+//! contains the first four terms; all others form its remainder.
 
 use crate::contract::System;
 use crate::effects::StepView;
@@ -11,13 +12,13 @@ use crate::numbers::{Interval, Rated, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Terms that are centred on a part of the step at first; the sizes of all others are added.
+/// Number of terms that are centred on a part of the step at first; of the others the absolute values are added.
 const FEW: usize = 8;
 
-/// All terms are centred where the others are more than this part of the change.
+/// Share of the change above which the terms beyond these are centred as well.
 const SMALL: f64 = 1.0 / (1 << 10) as f64;
 
-/// Rounding of a coefficient, and of the sums that move it, in parts of the sum of all terms.
+/// Rounding of a coefficient, and of the sums that shift it, relative to the sum of the absolute values of all terms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The motion along a step.
@@ -28,13 +29,14 @@ pub(crate) struct Path<S> {
     length: f64,
     coefficients: [S; LENGTH],
     order: usize,
-    /// How far each component may be from its polynomial, and its rate from that of the polynomial.
+    /// Error bounds of each component's polynomial, and of its derivative.
     doubts: [S; 2],
-    /// Sizes of the terms that are not centred on long parts: of the component, and of its rate.
+    /// Sums of the absolute values of the terms that are not centred on long parts: of the component, and of its
+    /// rate.
     tails: [S; 2],
     /// The model of every component on the whole step.
     whole: Whole<S>,
-    /// True once the dense output is taken in, false of the cubic through the ends.
+    /// True for the dense output, false for the cubic through the ends.
     is_dense: bool,
 }
 
@@ -44,12 +46,12 @@ struct Whole<S> {
     powers: [S; 4],
     error: S,
     slope: S,
-    /// The largest second rates of the polynomials, by the part of the step.
+    /// Largest second derivatives of the polynomials, by the fraction of the step.
     bend: S,
 }
 
 impl<S: StateVector> Path<S> {
-    /// Of no step, of states with as many components as this one.
+    /// Path before the first step, for states with as many components as `like`.
     pub(crate) fn new(like: &S) -> Self {
         let zeros = like.zeroed();
         Self {
@@ -69,11 +71,11 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// Takes in a step: its dense output where that is ready, else the cubic through its ends with what the rates inside differ
-    /// by. Where no rates inside are known dense output is prepared.
+    /// Sets the step: its dense output if that is ready, otherwise the cubic through its ends, with an error bound
+    /// from the rates inside. Prepares the dense output if no rates inside are known.
     ///
     /// # Errors
-    /// Those of the dense output.
+    /// The [`Fault`](crate::Fault) of the dense output.
     #[inline]
     pub(crate) fn follow<Sys: System<State = S>, Step: Stepper<Sys>>(
         &mut self,
@@ -93,10 +95,10 @@ impl<S: StateVector> Path<S> {
         Ok(())
     }
 
-    /// Takes in the dense output of the step, which it prepares. Returns whether that is new.
+    /// Replaces the cubic by the dense output of the step, which it prepares. Returns true if the path changed.
     ///
     /// # Errors
-    /// Those of the dense output.
+    /// The [`Fault`](crate::Fault) of the dense output.
     pub(crate) fn refine<Sys: System<State = S>, Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
@@ -143,8 +145,8 @@ impl<S: StateVector> Path<S> {
         self.add_rounding();
     }
 
-    /// Adds the rounding errors of the coefficients to the doubts, sums up the terms that are not centred, and makes the models of the
-    /// whole step.
+    /// Adds the rounding errors of the coefficients to the error bounds, sums the terms that are not centred, and
+    /// builds the models of the whole step.
     #[inline]
     fn add_rounding(&mut self) {
         let zeros = self.coefficients[0].zeroed();
@@ -180,7 +182,8 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// As [`Path::component`] of the whole step, for all components side by side, with the first `COUNT` terms centred.
+    /// Computes [`Path::component`] of the whole step for all components at once, with the first `COUNT` terms
+    /// centred.
     #[inline]
     fn fill_whole<const COUNT: usize>(&mut self) {
         let zeros = self.coefficients[0].zeroed();
@@ -225,7 +228,7 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// Component `i` on a part of the step.
+    /// Taylor model of component `i` on a part of the step.
     #[inline]
     pub(crate) fn component(&self, i: usize, part: [f64; 2]) -> TaylorModel {
         match part {
@@ -244,7 +247,7 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// The same with the first `COUNT` terms centred, and what the others add to the error.
+    /// The model with the first `COUNT` terms centred, and the contribution of the others to its error.
     #[inline]
     fn centred<const COUNT: usize>(&self, i: usize, part: [f64; 2]) -> (TaylorModel, f64) {
         let [middle, radius] = [0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])];
@@ -273,7 +276,7 @@ impl<S: StateVector> Path<S> {
         }
         let mut tail = 0.0;
         if terms <= self.order {
-            // On `[0, b]` the terms from `b^k` on are at most `b^k` times what they are on the whole step.
+            // On `[0, b]` the terms from degree `k` on are at most `b^k` times their values on the whole step.
             let [b, square] = [part[1], part[1] * part[1]];
             let power = square * square * square * b;
             tail = power * b * self.tails[0].as_slice()[i];
@@ -288,7 +291,7 @@ impl<S: StateVector> Path<S> {
         (model, tail)
     }
 
-    /// All values of component `i` on a part of the step that is no point, and all its rates by the part.
+    /// Enclosure of component `i` on a part of the step of positive length, and of its derivative by the fraction.
     pub(crate) fn rated(&self, i: usize, part: [f64; 2]) -> Rated {
         let model = self.component(i, part);
         let radius = Interval::point(0.5 * (part[1] - part[0]));
@@ -298,10 +301,10 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// How fast component `i` moves along the whole step by the part of it, and how much it bends, at most.
+    /// Bounds of the first and second derivative of component `i` on the whole step, by its fraction.
     ///
-    /// Path and polynomial meet at both ends of the step. What rates differ by keeps them apart by `d min(s, 1 - s)`, less than
-    /// `4 d s (1 - s)/2`: it counts as a bend of `4 d`.
+    /// Path and polynomial meet at both ends of the step. A difference `d` of the rates keeps them apart by at most
+    /// `d min(s, 1 - s)`, less than `4 d s (1 - s)/2`: it counts as a second derivative of `4 d`.
     #[inline]
     pub(crate) fn motion(&self, i: usize) -> [f64; 2] {
         let Whole {
@@ -324,19 +327,19 @@ impl<S: StateVector> Path<S> {
         self.length
     }
 
-    /// Component `i` at a part of the step, as the polynomial has it.
+    /// Value of the polynomial of component `i` at a fraction of the step.
     pub(crate) fn at(&self, i: usize, part: f64) -> f64 {
         let terms = self.coefficients[..=self.order].iter().rev();
         terms.fold(0.0, |sum, term| sum * part + term.as_slice()[i])
     }
 
-    /// All values of component `i` on the whole step.
+    /// Enclosure of component `i` on the whole step.
     #[inline]
     pub(crate) fn range(&self, i: usize) -> Interval {
         self.component(i, [0.0, 1.0]).range()
     }
 
-    /// All times on a part of the step, and their rate by the part.
+    /// Enclosure of the times on a part of the step, and of their rate by the fraction.
     #[inline]
     pub(crate) fn time(&self, [from, to]: [f64; 2]) -> Rated {
         let length = Interval::point(self.length);
@@ -346,7 +349,7 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// The same as a model.
+    /// Taylor model of the time on a part of the step.
     #[inline]
     pub(crate) fn time_model(&self, [from, to]: [f64; 2]) -> TaylorModel {
         let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from));

@@ -1,12 +1,12 @@
 //! Signs of a gap on a piece of a stretch, from its Taylor model on the stretch.
 //!
-//! On a piece the cubic has four Bernstein coefficients, which bound it (convex hull), as their differences bound its rate. The
-//! remainder changes along the piece by no more than its slope says.
+//! On a piece the cubic has four Bernstein coefficients, which bound it (convex hull); their differences bound its
+//! rate. The slope of the remainder bounds its change along the piece.
 
 use super::crossing::Signs;
 use crate::numbers::TaylorModel;
 
-/// Rounding of coefficients, in parts of the sum of all powers.
+/// Rounding of coefficients, relative to the sum of the absolute values of all powers.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The gap on a piece.
@@ -14,14 +14,14 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 pub(crate) struct Piece {
     /// Bernstein coefficients of the cubic.
     hull: [f64; 4],
-    /// The largest remainder.
+    /// Bound of the remainder.
     error: f64,
-    /// The largest change of the remainder between the ends.
+    /// Bound of the change of the remainder between the ends.
     drift: f64,
 }
 
 impl Piece {
-    /// The gap on `[from, to]`, where its model is that on `[first, last]`.
+    /// The gap on `[from, to]`, with its model on `[first, last]`.
     #[inline]
     pub(crate) fn of(model: &TaylorModel, [first, last]: [f64; 2], [from, to]: [f64; 2]) -> Self {
         let scale = 2.0 / (last - first);
@@ -52,18 +52,18 @@ impl Piece {
         }
     }
 
-    /// Whether the gap has values, with a remainder below this size.
+    /// True if the gap has values, with a remainder below this size.
     pub(crate) fn is_sharper_than(&self, size: f64) -> bool {
         let sum = self.hull.iter().fold(0.0, |sum, value| sum + value);
         sum.is_finite() && self.error < size
     }
 
-    /// The gap at both ends, as the cubic has it.
+    /// Values of the cubic at both ends.
     pub(crate) fn ends(&self) -> [f64; 2] {
         [self.hull[0], self.hull[3]]
     }
 
-    /// The lowest and the highest value.
+    /// Lower and upper bound of the values.
     pub(crate) fn bounds(&self) -> [f64; 2] {
         self.reach(self.hull, self.error)
     }
@@ -72,13 +72,13 @@ impl Piece {
         let lowest = values.into_iter().fold(f64::INFINITY, f64::min);
         let highest = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
         match (lowest - error, highest + error) {
-            // Not a comparison that NaN passes.
+            // Written so that NaN fails the comparison.
             (lowest, highest) if lowest <= highest => [lowest, highest],
             _ => [f64::NEG_INFINITY, f64::INFINITY],
         }
     }
 
-    /// The lowest and the highest value of a gap that is `first` at the start.
+    /// Lower and upper bound of the values of a gap that is `first` at the start.
     pub(crate) fn bounds_from(&self, first: f64) -> [f64; 2] {
         let ahead = self.reach(
             self.hull.map(|value| first + (value - self.hull[0])),
@@ -88,7 +88,7 @@ impl Piece {
         [ahead[0].max(within[0]), ahead[1].min(within[1])]
     }
 
-    /// The signs of a gap that is enclosed away from zero.
+    /// Signs of a gap that is enclosed away from zero.
     #[inline]
     pub(crate) fn signs(&self) -> Signs {
         let (hull, error) = (&self.hull, self.error);
@@ -121,9 +121,9 @@ impl Piece {
             .all(|pair| 3.0 * (pair[1] - pair[0]) > self.drift)
     }
 
-    /// The signs of a gap behind its zero at the start.
+    /// Signs of a gap after its zero at the start.
     ///
-    /// With the zero taken out of the cubic a quadratic is left, whose coefficients must exceed the slope of the remainder.
+    /// Division by the zero leaves a quadratic, whose coefficients must exceed the slope of the remainder.
     #[inline]
     pub(crate) fn signs_from_zero(&self) -> Signs {
         let [start, a, b, c] = self.hull;
@@ -138,7 +138,7 @@ impl Piece {
         }
     }
 
-    /// The signs of a gap with these values at its ends.
+    /// Signs of a gap with these values at its ends.
     #[inline]
     pub(crate) fn signs_between(&self, [first, last]: [f64; 2]) -> Signs {
         if first >= 0.0 && last >= 0.0 && first + last > 0.0 {
@@ -171,7 +171,8 @@ impl Piece {
         }
     }
 
-    /// Whether a gap with these values at its ends, which are not negative, is positive inside: held up by one of them.
+    /// True if a gap with these values at its ends, which are not negative, is positive inside by the bound from one
+    /// of them.
     fn stays_above(&self, first: f64, last: f64) -> bool {
         const THIRDS: [f64; 3] = [1.0 / 3.0, 2.0 / 3.0, 1.0];
         let [start, a, b, end] = self.hull;
@@ -183,15 +184,15 @@ impl Piece {
             || is_held(last, [b - end, a - end, start - end])
     }
 
-    /// About where the gap falls behind its zero at the start, as a part of the piece: where the quadratic is zero that is left of the
-    /// cubic without that one.
+    /// Estimate of the fall of a gap after its zero at the start, as a fraction of the piece: the zero of the
+    /// quadratic that remains after division by that zero.
     pub(crate) fn fall_from_zero(&self) -> Option<f64> {
         let [start, a, b, c] = self.hull;
         let [first, middle, last] = [3.0 * (a - start), 1.5 * (b - start), c - start];
         // `first + 2 (middle - first) x + bend x^2`
         let (half, bend) = (middle - first, first - 2.0 * middle + last);
         let root = crate::math::sqrt((half * half - bend * first).max(0.0));
-        // The quotient that does not cancel.
+        // The form of the quotient without cancellation.
         let part = match half <= 0.0 {
             true => first / (root - half),
             false => -(half + root) / bend,
@@ -199,12 +200,12 @@ impl Piece {
         (part > 0.0 && part < 1.0).then_some(part)
     }
 
-    /// About where a gap that is positive at the start and negative at the end falls.
+    /// Estimate of the fall of a gap that is positive at the start and negative at the end.
     pub(crate) fn first_fall(&self) -> Option<f64> {
         (self.hull[0] > 0.0 && self.hull[3] < 0.0).then(|| self.fall())
     }
 
-    /// About where a cubic that falls once is zero, as a part of the piece.
+    /// Estimate of the zero of a cubic that falls once, as a fraction of the piece.
     pub(crate) fn fall(&self) -> f64 {
         let [start, a, b, end] = self.hull;
         let value = |x: f64| {
@@ -212,7 +213,8 @@ impl Piece {
             y * y * (y * start + 3.0 * x * a) + x * x * (3.0 * y * b + x * end)
         };
         let (mut before, mut after) = ([0.0, start], [1.0, end]);
-        // Where the parabola through the ends and the middle is zero, twice: enough for a cubic that hardly bends.
+        // The zero of the parabola through the ends and the middle, twice: accurate enough for a cubic with small
+        // curvature.
         for _ in 0..2 {
             let middle = 0.5 * (before[0] + after[0]);
             let (low, mid, high) = (before[1], value(middle), after[1]);

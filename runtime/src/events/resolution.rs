@@ -1,21 +1,21 @@
-//! How small a gap can be told from zero: `32 u` times the sum of the absolute values of its terms.
+//! Resolution of gaps: a gap counts as zero below `32 u` times the sum of the absolute values of its terms.
 //!
-//! The terms are not known here, but how far the gap moves when a component moves by a small part of itself is:
-//! `sum_i |dh/dx_i| |x_i|`, at a zero of `h` the same up to the degree of the terms. Conditions of surfaces are granted the
-//! same: on their boundary rounding decides.
+//! The terms are not known here. The estimate `sum_i |dh/dx_i| |x_i|` uses the change of the gap when each component
+//! changes by a small fraction of itself; at a zero of `h` it agrees with the sum of the terms up to their degree.
+//! The conditions of surfaces get the same tolerance: on their boundary rounding decides.
 
 use crate::contract::Impacting;
 use crate::integrate::Tolerance;
 use crate::state::StateVector;
 
-/// The part by which a component is moved: half the digits, where difference quotients are best.
+/// Fraction by which a component is changed: half the digits, where difference quotients are most accurate.
 const PART: f64 = 1.0 / (1 << 26) as f64;
 
 /// Rounding errors in units of the sum of terms.
 const UNITS: f64 = 16.0 * f64::EPSILON;
 
-/// The size of the rounding errors of a surface's gap at a state whose components have come from values of these
-/// sizes. Takes one evaluation of the gaps per component and one for time, and one more.
+/// Size of the rounding errors of a surface's gap at a state whose components were computed from values of these
+/// sizes. Takes one evaluation of the gaps per component, one for time, and one more.
 pub(crate) fn resolution<Sys: Impacting>(
     system: &Sys,
     surface: usize,
@@ -31,7 +31,7 @@ pub(crate) fn resolution<Sys: Impacting>(
     UNITS * (sum + (later - here).abs() / PART)
 }
 
-/// `sum_i |dh/dx_i| sizes_i`, with `here` the gap.
+/// `sum_i |dh/dx_i| sizes_i`; `here` is the gap.
 fn sum_of_terms<Sys: Impacting>(
     system: &Sys,
     surface: usize,
@@ -50,8 +50,8 @@ fn sum_of_terms<Sys: Impacting>(
     sum / PART
 }
 
-/// How far a surface's gap moves when every component of the state errs by the tolerance: `unit` holds the sizes of the
-/// components, their scale, and the tolerance. Costs what [`resolution`] costs.
+/// Change of a surface's gap if every component of the state errs by the tolerance: `unit` holds the sizes of the
+/// components, their scale, and the tolerance. Takes as many evaluations as [`resolution`].
 pub(crate) fn error_within<Sys: Impacting>(
     system: &Sys,
     surface: usize,
@@ -68,8 +68,8 @@ pub(crate) fn error_within<Sys: Impacting>(
     tolerance.relative() * sum_of_terms(system, surface, (t, state), here, &units, evaluations)
 }
 
-/// Whether a surface counts, and would if rounding had moved the state: a component of one of these sizes, or time,
-/// either way by as much as all of them together may be off.
+/// True if a surface counts at this state, and also after changing one component, or time, either way by a bound of
+/// the total rounding error; `sizes` are the sizes of the components.
 pub(crate) fn counts_beyond_rounding<Sys: Impacting>(
     system: &Sys,
     surface: usize,

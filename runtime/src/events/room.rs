@@ -1,30 +1,30 @@
-//! A box of times and positions about a step, which later steps may lie in as well.
+//! A box of times and positions about a step, which may contain later steps as well.
 
 use super::path::Path;
 use crate::numbers::Interval;
 use crate::state::StateVector;
 
-/// The box; none at first.
+/// The box; empty at first.
 #[derive(Debug, Clone)]
 pub(crate) struct Room<S> {
     lowest: S,
     highest: S,
     times: Interval,
-    /// Components that are positions: gaps take no others.
+    /// Number of components that are positions; gaps depend on no others.
     positions: usize,
-    /// Those of them that are bounded, by their places.
+    /// Positions that are bounded, as a bit mask.
     kept: u64,
     is_known: bool,
 }
 
-/// The bit of a component; all from the last one on share it.
+/// Bit of a component in a mask; all components from the last bit on share it.
 #[inline]
 pub(crate) fn place(i: usize) -> u64 {
     1 << i.min(63)
 }
 
 impl<S: StateVector> Room<S> {
-    /// None yet, for systems with so many positions, and as many components as this state has.
+    /// No box, for systems with this number of positions, and as many components as `like`.
     pub(crate) fn new(positions: usize, like: &S) -> Self {
         Self {
             lowest: like.zeroed(),
@@ -36,7 +36,7 @@ impl<S: StateVector> Room<S> {
         }
     }
 
-    /// Forgets the box.
+    /// Discards the box.
     pub(crate) fn forget(&mut self) {
         self.is_known = false;
     }
@@ -54,36 +54,37 @@ impl<S: StateVector> Room<S> {
             && (0..self.positions).all(|i| !self.keeps(i) || self.range(i).contains(path.range(i)))
     }
 
-    /// All values of component `i` in the box.
+    /// Range of component `i` in the box.
     #[inline]
     pub(crate) fn range(&self, i: usize) -> Interval {
         Interval::new(self.lowest.as_slice()[i], self.highest.as_slice()[i])
     }
 
-    /// All times in the box.
+    /// Range of the times in the box.
     #[inline]
     pub(crate) fn times(&self) -> Interval {
         self.times
     }
 
-    /// Components that are positions.
+    /// Number of components that are positions.
     #[inline]
     pub(crate) fn positions(&self) -> usize {
         self.positions
     }
 
-    /// Bounds only these components from now on, by their [`place`]s: gaps take no others.
+    /// Bounds only these components from now on, given by their [`place`]s: gaps depend on no others.
     pub(crate) fn keep(&mut self, components: u64) {
         self.kept = components;
     }
 
-    /// Whether a component is bounded.
+    /// True if a component is bounded.
     #[inline]
     pub(crate) fn keeps(&self, i: usize) -> bool {
         self.kept & place(i) != 0
     }
 
-    /// Takes the box of a step, with so many times its way on every side.
+    /// Sets the box to that of a step, with a margin on every side of this multiple of the distance covered in the
+    /// step.
     pub(crate) fn surround(&mut self, path: &Path<S>, margin: f64) {
         for i in 0..self.positions {
             let range = path.range(i);
@@ -94,7 +95,7 @@ impl<S: StateVector> Room<S> {
         self.is_known = true;
     }
 
-    /// Makes the box so large that it holds a step as well; where the step leaves it, half as wide again.
+    /// Extends the box to contain a step as well; on a side that the step leaves, by half as much again.
     pub(crate) fn extend(&mut self, path: &Path<S>) {
         for i in 0..self.positions {
             self.set(i, extended(self.range(i), path.range(i)));

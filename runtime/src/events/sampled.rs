@@ -1,10 +1,11 @@
-//! A Taylor model of a function on a stretch, estimated from samples: for functions that are known at points only.
+//! A Taylor model of a function on a stretch, estimated from samples, for functions that are known at points only.
 //!
-//! Nine samples at Chebyshev-Lobatto points give an interpolant of degree 8, whose Chebyshev coefficients from the fourth on are the
-//! remainder. What the interpolant misses is estimated by its last two. This is no enclosure: what is narrower than the distance of
-//! two samples may be missed.
+//! Nine samples at Chebyshev-Lobatto points give an interpolant of degree 8, whose Chebyshev coefficients from the
+//! fourth on form the remainder. Its last two coefficients estimate the interpolation error. This is not an
+//! enclosure: features narrower than the distance of two samples may be missed.
 //!
-//! NOTE: gaps are enclosed ([`super::path`]). The forces of surfaces that hold the motion are not known over intervals.
+//! NOTE: gaps are enclosed ([`super::path`]). The contact forces of surfaces that hold the motion are not available
+//! over intervals.
 
 use core::f64::consts::FRAC_1_SQRT_2;
 
@@ -13,7 +14,7 @@ use crate::numbers::TaylorModel;
 /// Number of samples.
 pub(crate) const SAMPLES: usize = 9;
 
-/// `(1 - cos(j pi / 8)) / 2`: where in the unit interval the samples lie.
+/// Places of the samples in the unit interval: `(1 - cos(j pi / 8)) / 2`.
 pub(crate) const NODES: [f64; SAMPLES] = [
     0.0,
     0.038060233744356624,
@@ -26,7 +27,7 @@ pub(crate) const NODES: [f64; SAMPLES] = [
     1.0,
 ];
 
-/// `cos(j pi / 8)` of a whole turn.
+/// `cos(j pi / 8)` over a full turn.
 const COSINES: [f64; 16] = {
     const FIRST: [f64; 5] = [
         1.0,
@@ -51,10 +52,10 @@ const COSINES: [f64; 16] = {
 /// Rounding of the coefficients relative to the largest sample.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// How much steeper than large what the interpolant misses may be: twice the square of its degree.
+/// Ratio of slope to size of the interpolation error: twice the square of the degree.
 const STEEPER: f64 = 128.0;
 
-/// A function with these samples on a stretch, estimated. Infinite or NaN samples give doubt that nothing exceeds.
+/// Estimated model of a function with these samples on a stretch. Infinite or NaN samples give an infinite error.
 pub(crate) fn along(samples: &[f64; SAMPLES]) -> TaylorModel {
     let a = chebyshev(samples);
     let largest = samples
@@ -79,7 +80,7 @@ pub(crate) fn along(samples: &[f64; SAMPLES]) -> TaylorModel {
     }
 }
 
-/// Where the samples of a stretch lie, exact at both ends.
+/// Places of the samples of a stretch, exact at both ends.
 pub(crate) fn nodes([left, right]: [f64; 2]) -> [f64; SAMPLES] {
     NODES.map(|node| match node >= 1.0 {
         true => right,

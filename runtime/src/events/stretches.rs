@@ -1,24 +1,24 @@
-//! The stretches of a step that a search looks at, one after the other: about where a fall is expected, halved where they do not tell.
+//! The stretches of a step in the order of a search: cut near an expected fall, and halved where they are undecided.
 
-/// Where stretches end, in parts of the way to where a fall is expected: before it, and behind.
+/// Ends of stretches before and behind an expected fall, as fractions of the way to it.
 const BEFORE: f64 = 0.875;
 const BEHIND: f64 = 1.125;
 
-/// No stretches are chosen about falls that are expected within this part of the step: halves get there.
+/// Fraction of the step below which an expected fall gets no cuts of its own: halving reaches it.
 const NEAR: f64 = 1.0 / (1_u64 << 36) as f64;
 
-/// The stretches of a search: a few that are chosen, parted into `2^depth` each.
+/// The stretches of a search: a few between cuts, each divided into `2^depth` parts.
 #[derive(Debug)]
 pub(super) struct Stretches {
     cuts: [f64; 4],
-    /// The chosen one, and the number of the part of it.
+    /// Index of the stretch between cuts, and of the present part of it.
     chosen: usize,
     index: u64,
     depth: u32,
 }
 
 impl Stretches {
-    /// Of a part of the step, with cuts about where a fall is expected.
+    /// Stretches of a part of the step, with cuts near an expected fall.
     pub(super) fn of([from, until]: [f64; 2], expected: Option<f64>) -> Self {
         let at = |part: f64| match expected {
             Some(fall) if fall - from > NEAR * (until - from) => {
@@ -34,12 +34,12 @@ impl Stretches {
         }
     }
 
-    /// How often the chosen stretch is halved here.
+    /// Number of halvings of the present stretch.
     pub(super) fn depth(&self) -> u32 {
         self.depth
     }
 
-    /// The ends of the stretch to look at.
+    /// The ends of the present stretch.
     pub(super) fn ends(&self) -> [f64; 2] {
         let [from, until] = [self.cuts[self.chosen], self.cuts[self.chosen + 1]];
         let count = (1_u64 << self.depth) as f64;
@@ -58,7 +58,7 @@ impl Stretches {
         (self.index, self.depth) = (2 * self.index, self.depth + 1);
     }
 
-    /// Goes on behind the stretch. Returns false at the end.
+    /// Advances to the stretch behind. Returns false at the end.
     pub(super) fn advance(&mut self) -> bool {
         self.index += 1;
         while self.index.is_multiple_of(2) && self.depth > 0 {

@@ -1,4 +1,4 @@
-//! Motion between transitions in extended numbers, and where it meets a surface.
+//! Motion between transitions in extended numbers, and location of its impacts.
 
 use super::{At, Impact};
 use crate::contract::Variational;
@@ -18,16 +18,18 @@ use crate::variations::graze::Seen;
 use crate::variations::transition::{arrival, check_near, struck};
 use dalembert_numbers::Extended;
 
-/// How far the rate at the end of a step may be from the slope of the series, in rounding errors of the state.
+/// Allowed difference between the rate at the end of a step and the slope of the series, in rounding errors of the
+/// state.
 const DEFECT: f64 = 4096.0;
 
-/// How large the last two terms of a series may be, in rounding errors of the first ones.
+/// Allowed size of the last two terms of a series, in rounding errors of the first ones.
 const LAST: f64 = 0.25;
 
-/// Steps to the root of a gap at a slope that is known to a double: each adds as many digits as that has.
+/// Maximum number of chord steps to the root of a gap with a slope known in double precision: each adds the digits of
+/// a double.
 const CHORDS: u32 = 32;
 
-/// A flight on its way.
+/// State of a flight.
 pub(super) struct Flight<'a, Sys: Variational, const PARTS: usize> {
     system: &'a Sys,
     parameters: Sys::Parameters<Extended<PARTS>>,
@@ -35,19 +37,19 @@ pub(super) struct Flight<'a, Sys: Variational, const PARTS: usize> {
     pub(super) order: usize,
     /// Unit of time of the coefficients, a power of two.
     pub(super) unit: f64,
-    /// That of the next ones.
+    /// Unit of the next coefficients.
     pub(super) next_unit: f64,
     /// Length of the last step in this unit.
     pub(super) theta: f64,
-    /// Where in it the motion is cut, if it is.
+    /// Place at which the motion is cut, if it is cut, in this unit.
     pub(super) cut: Option<f64>,
     /// Ends of the last step.
     pub(super) ends: [At<Sys, PARTS>; 2],
-    /// Whether there are coefficients at the start of the last step.
+    /// True if the coefficients at the start of the last step are known.
     is_expanded: bool,
 }
 
-/// Numbers as a row of extended ones.
+/// Doubles as a row of extended numbers.
 pub(super) fn widened<const PARTS: usize, R: Row<Extended<PARTS>>>(values: &[f64]) -> R {
     let mut row = R::zeros(R::CAPACITY);
     for (own, value) in row.as_mut_slice().iter_mut().zip(values) {
@@ -57,7 +59,7 @@ pub(super) fn widened<const PARTS: usize, R: Row<Extended<PARTS>>>(values: &[f64
 }
 
 impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
-    /// A flight from a state, that may last so long.
+    /// A flight from a state, with an estimate of its duration.
     pub(super) fn new(system: &'a Sys, start: At<Sys, PARTS>, length: f64) -> Self {
         Self {
             system,
@@ -73,7 +75,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         }
     }
 
-    /// Evaluates what is known at the end of the last step.
+    /// Evaluates the rate and the gaps at the end of the last step.
     pub(super) fn begin(&mut self) -> Result<(), StepFailure> {
         let At { t, state } = &self.ends[1];
         self.expansion
@@ -88,7 +90,8 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         Ok(())
     }
 
-    /// Expands the motion from the end of the last step; how much of a length of time its series reach.
+    /// Expands the motion from the end of the last step. Returns the part of `length` that the series reach, in units
+    /// of time.
     pub(super) fn expand(&mut self, length: f64) -> Result<f64, StepFailure> {
         self.ends[0] = self.ends[1];
         (self.unit, self.theta, self.cut) = (self.next_unit, 0.0, None);
@@ -135,7 +138,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         self.system.scale(t.nearest(), &self.ends[0].rounded())
     }
 
-    /// Time and state after so many units, and the slope of the series there.
+    /// Time and state after `theta` units, and the slope of the series there.
     fn after(&self, theta: Extended<PARTS>) -> (At<Sys, PARTS>, Sys::Row<Extended<PARTS>>) {
         let [change, slope] = self.expansion.change(self.order, theta);
         let mut at = self.ends[0];
@@ -146,7 +149,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         (at, slope)
     }
 
-    /// Makes a step of this length from where the motion was expanded; whether the motion at its end is that of the series.
+    /// Makes a step of this length from the expansion. Returns true if the motion at its end is that of the series.
     pub(super) fn make(&mut self, length: Extended<PARTS>) -> Result<bool, StepFailure> {
         let theta = length / Extended::from(self.unit);
         let (end, slope) = self.after(theta);
@@ -156,7 +159,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         Ok(self.is_motion(length.nearest(), &slope))
     }
 
-    /// Whether the slope of the series at the end of a step is the rate there.
+    /// True if the slope of the series at the end of a step equals the rate there, within rounding.
     fn is_motion(&self, length: f64, slope: &Sys::Row<Extended<PARTS>>) -> bool {
         let scale = self.scale();
         let (rates, end) = (self.expansion.rate(), self.ends[1].state.as_slice());
@@ -169,12 +172,13 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         (0..rates.len()).all(|i| {
             let defect = (rates[i] - slope.as_slice()[i] / unit).nearest().abs() * length.abs();
             let allowed = DEFECT * Extended::<PARTS>::ROUNDING * size * scale.as_slice()[i];
-            // Sizes that are no normal numbers have no digits to compare.
+            // Subnormal sizes have no digits to compare.
             defect <= allowed.max(f64::MIN_POSITIVE)
         })
     }
 
-    /// Takes where the last step was cut, though nothing happened there, for its end; `is_start` where that is its start.
+    /// Takes the cut of the last step for its end if no transition happened there; `is_start` if the cut is its
+    /// start.
     pub(super) fn settle(&mut self, is_start: bool) -> Result<(), StepFailure> {
         if !self.is_expanded {
             // After a transition.
@@ -190,7 +194,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         }
     }
 
-    /// Goes the rest of the way to a time that rounding has reached.
+    /// Makes the remaining step to a time that the rounded time has reached.
     pub(super) fn land(&mut self, t_end: f64) -> Result<(), StepFailure> {
         let rest = Extended::from(t_end) - self.ends[1].t;
         if rest.nearest() == 0.0 {
@@ -201,14 +205,14 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         self.make(rest).map(drop)
     }
 
-    /// The end of the last step is where it began.
+    /// Sets the end of the last step to its start.
     pub(super) fn retract(&mut self) -> Result<(), StepFailure> {
         self.ends[1] = self.ends[0];
         self.theta = 0.0;
         self.begin()
     }
 
-    /// Refuses what passes of the last step if a surface is grazed in it.
+    /// Refuses the part of the last step up to its cut if a surface is grazed in it.
     pub(super) fn look_for_grazes(&self) -> Result<(), Undefined> {
         let seen = Seen {
             system: self.system,
@@ -220,12 +224,12 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         seen.look_for_grazes(t, self.cut.unwrap_or(self.theta))
     }
 
-    /// The last step was not made: it led to what cannot be told.
+    /// Discards the last step, for which no decision was possible.
     pub(super) fn forget(&mut self) {
         self.ends[1] = self.ends[0];
     }
 
-    /// Goes to where a surface is met, and carries out what a run in doubles has found there.
+    /// Locates the impact on a surface, and carries out the transition that a run in doubles has found there.
     pub(super) fn cross(
         &mut self,
         event: &Event<Sys::State>,
@@ -257,11 +261,11 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         })
     }
 
-    /// Where a gap vanishes near an event, at which it has this rate.
+    /// The root of a gap near an event with this gap rate.
     fn met(&mut self, event: &Event<Sys::State>, rate: f64) -> Result<At<Sys, PARTS>, Undefined> {
         let (t, surface) = (event.t, event.surface);
         if !self.is_expanded {
-            // At the first instant of a run.
+            // The first instant of a run.
             let expanded = self.begin().and_then(|()| self.expand(self.unit));
             self.theta = expanded.map_err(|failure| undefined(failure, t))? / self.unit;
         }
@@ -274,14 +278,14 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
             let step = gaps.as_slice()[surface] / slope;
             theta = theta - step;
             let size = step.nearest().abs();
-            // Not a comparison that NaN passes.
+            // Written so that NaN fails the comparison.
             let is_less = size < 0.5 * last;
             last = size;
             if !is_less || size == 0.0 {
                 break;
             }
         }
-        // What is left is rounding, unless the root is none.
+        // The rest is rounding, unless there is no root.
         let digits = crate::math::sqrt(Extended::<PARTS>::ROUNDING);
         let size = theta.nearest().abs().max(self.theta.abs());
         match last <= digits * size {
@@ -291,7 +295,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
     }
 }
 
-/// What a failure at a transition is.
+/// Conversion of a step failure at a transition.
 fn undefined(failure: StepFailure, t: f64) -> Undefined {
     match failure {
         StepFailure::Fault(fault) => fault.into(),
@@ -300,7 +304,7 @@ fn undefined(failure: StepFailure, t: f64) -> Undefined {
     }
 }
 
-/// The state of the nearest doubles.
+/// The state rounded to doubles.
 pub(super) fn rounded<S: StateVector, const PARTS: usize>(row: &[Extended<PARTS>]) -> S {
     let mut values = S::zeros(S::CAPACITY);
     for (own, number) in values.as_mut_slice().iter_mut().zip(row) {

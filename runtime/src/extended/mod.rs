@@ -1,22 +1,24 @@
-//! Numbers of more than double precision, and runs in them: a reference for digits that doubles have lost.
+//! Double-double and longer arithmetic, and runs in it: a reference for digits that doubles have lost.
 //!
-//! An [`Extended`] number is the sum of a few doubles. Whatever generated code computes over
-//! [`Numbers`](crate::numbers::Numbers), power series, gaps and transitions, it computes in them too, with every
-//! constant of the declaration to so many digits. [`ExtendedSimulation`] runs a system with
-//! [`variations`](crate::Variational) so:
+//! An [`Extended`] number is the sum of a few doubles (double-double arithmetic for two). Generated code over
+//! [`Numbers`](crate::numbers::Numbers), for power series, gaps and transitions, runs over these numbers too, with
+//! every constant of the declaration in full precision. [`ExtendedSimulation`] uses it to run a system with
+//! [`variations`](crate::Variational):
 //!
-//! - Smooth motion is summed from power series whose last terms are below the rounding of the numbers; times add up in
-//!   extended numbers too.
-//! - The steps, rounded to doubles, are watched by the same effects as those of any run: they find the surface that is met,
-//!   and about when. The root of the gap is then refined, and the law in force acts, in extended numbers.
-//! - What cannot be told within the rounding of doubles is not decided: grazes, several surfaces at one time,
-//!   motion that is held on a surface and what a policy adds to a law end the run with an [`Undefined`](crate::Undefined).
-//!   So do accumulations with their [`Outcome`](crate::Outcome), where doubles see them.
+//! - Smooth motion is summed from power series whose last terms are below the rounding of the numbers; times are
+//!   summed in extended numbers too.
+//! - The steps, rounded to doubles, are examined by the same effects as in any run: they find the surface that is met
+//!   and an approximate time. The root of the gap is then refined, and the law in force acts, in extended numbers.
+//! - Events that the rounding of doubles cannot decide are not decided: grazing impacts, several surfaces at one
+//!   time, motion that a surface holds and additions of a policy to a law end the run with an
+//!   [`Undefined`](crate::Undefined). Accumulations end it with their [`Outcome`](crate::Outcome), where doubles
+//!   detect them.
 //!
-//! Parameters and laws chosen for a run are doubles; so is a start, unless it is given in more digits. A projection to
-//! constraints acts on the rounded states alone: the motion keeps to them by all its digits. At a kink of `|x|`
-//! that the motion passes, series end: the run ends as [`Outcome::StepUnderflow`](crate::Outcome::StepUnderflow). Of a surface
-//! whose gap has a kink somewhere, grazes within the rounding of doubles are decided by these, and not refused.
+//! Parameters and laws chosen for a run are doubles; so is a start, unless it is given in more digits. A projection
+//! to constraints acts on the rounded states alone: the motion satisfies them to all its digits. A motion that passes
+//! a kink of `|x|` has no series there: the run ends as [`Outcome::StepUnderflow`](crate::Outcome::StepUnderflow).
+//! For a surface whose gap has a kink somewhere, grazing impacts within the rounding of doubles are decided in
+//! doubles and not refused.
 //!
 //! ```
 //! use core::ops::ControlFlow;

@@ -1,4 +1,4 @@
-//! A run in extended numbers: the driver of ordinary runs, over steps that are rounded from those of a flight.
+//! A run in extended numbers: the driver of ordinary runs, over the rounded steps of a flight.
 
 use core::cell::RefCell;
 use core::ops::ControlFlow;
@@ -22,14 +22,14 @@ use dalembert_numbers::Extended;
 pub struct At<Sys: TaylorField, const PARTS: usize> {
     /// The time.
     pub t: Extended<PARTS>,
-    /// The state, in the order of the system's.
+    /// The state, in the order of the system's state.
     pub state: Sys::Row<Extended<PARTS>>,
 }
 
-/// A transition: what a surface did to the motion.
+/// A transition at a surface.
 #[derive(Debug)]
 pub struct Impact<Sys: TaylorField, const PARTS: usize> {
-    /// When.
+    /// Time.
     pub t: Extended<PARTS>,
     /// Index of the surface.
     pub surface: usize,
@@ -44,11 +44,12 @@ pub struct Impact<Sys: TaylorField, const PARTS: usize> {
 /// A finished run in extended numbers.
 #[derive(Debug)]
 pub struct ExtendedRun<Sys: TaylorField, const PARTS: usize> {
-    /// Why it ended: as ordinary runs do, or where digits beyond those of doubles end.
+    /// Reason for the end: an ordinary [`Outcome`], or the reason why no digits beyond those of doubles exist.
     pub outcome: Result<Outcome, Undefined>,
-    /// Where it ended: the requested end, or the state after the last impact, or the end of the last whole step. A run can go on from here.
+    /// Time and state of the end: at the requested end, after the last impact, or at the end of the last whole step.
+    /// A run can go on from here.
     pub end: At<Sys, PARTS>,
-    /// What it cost.
+    /// Work done.
     pub counters: Counters,
 }
 
@@ -67,7 +68,7 @@ macro_rules! copied {
 copied!(At Impact ExtendedRun);
 
 impl<Sys: TaylorField, const PARTS: usize> At<Sys, PARTS> {
-    /// A state of doubles at a time that is one.
+    /// A state and time given in doubles.
     pub fn of(t: f64, state: &Sys::State) -> Self {
         Self {
             t: Extended::from(t),
@@ -75,13 +76,13 @@ impl<Sys: TaylorField, const PARTS: usize> At<Sys, PARTS> {
         }
     }
 
-    /// The state of the nearest doubles.
+    /// The state rounded to doubles.
     pub fn rounded(&self) -> Sys::State {
         rounded(self.state.as_slice())
     }
 }
 
-/// A system with effects, to be run in numbers of `PARTS` doubles: see the [module](super).
+/// A system with effects, for runs in numbers of `PARTS` doubles: see the [module](super).
 #[derive(Debug, Clone)]
 pub struct ExtendedSimulation<'a, Sys, Effects, const PARTS: usize> {
     system: &'a Sys,
@@ -92,7 +93,7 @@ pub struct ExtendedSimulation<'a, Sys, Effects, const PARTS: usize> {
 impl<'a, Sys: Variational, Effects: Effect<Sys>, const PARTS: usize>
     ExtendedSimulation<'a, Sys, Effects, PARTS>
 {
-    /// Puts the two together. [`Scene::effects`](crate::Scene::effects) are the effects a system declares.
+    /// Combines the two. [`Scene::effects`](crate::Scene::effects) are the effects that a system declares.
     pub fn new(system: &'a Sys, effects: Effects) -> Self {
         Self {
             system,
@@ -108,10 +109,10 @@ impl<'a, Sys: Variational, Effects: Effect<Sys>, const PARTS: usize>
         self
     }
 
-    /// Runs from a state to `t_end`, showing every impact to `see`, which may ask to stop.
+    /// Runs from a state to `t_end`. Calls `see` with every impact; it may ask to stop.
     ///
     /// # Errors
-    /// [`StartError`], as [`Simulation::run`].
+    /// [`StartError`] in the cases of [`Simulation::run`].
     pub fn run(
         self,
         start: At<Sys, PARTS>,
@@ -131,7 +132,7 @@ impl<'a, Sys: Variational, Effects: Effect<Sys>, const PARTS: usize>
         let undefined = witness.undefined;
         let mut flight = flight.into_inner();
         let mut outcome = undefined.map_or(Ok(run.outcome), Err);
-        // A step that was not passed whole is one that has not been made.
+        // A step that was cut counts as not made.
         if flight.cut.is_some() || run.t < flight.ends[1].t.nearest() {
             flight.forget();
         }
@@ -148,7 +149,7 @@ impl<'a, Sys: Variational, Effects: Effect<Sys>, const PARTS: usize>
     }
 }
 
-/// Carries out in a flight what happens to its rounded steps.
+/// Carries out in a flight the transitions of its rounded steps.
 struct Witness<'r, 'a, Sys: Variational, See, const PARTS: usize> {
     flight: &'r RefCell<Flight<'a, Sys, PARTS>>,
     see: See,

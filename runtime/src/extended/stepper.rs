@@ -1,4 +1,4 @@
-//! A flight in extended numbers as an integrator of doubles: its steps, rounded. Whatever watches a run watches these.
+//! Adapter of a flight in extended numbers to the interface of an integrator in doubles, for the effects of a run.
 
 use core::cell::RefCell;
 
@@ -17,18 +17,18 @@ use dalembert_numbers::Extended;
 /// Largest factor between a step that was limited from outside and the next.
 const GROW: f64 = 8.0;
 
-/// The steps of a flight, rounded.
+/// The steps of a flight, rounded to doubles.
 pub(super) struct Rounded<'r, 'a, Sys: Variational, const PARTS: usize> {
     flight: &'r RefCell<Flight<'a, Sys, PARTS>>,
     order: usize,
     unit: f64,
     theta: f64,
-    /// No step longer than this for now: after a jump.
+    /// Temporary limit of the step, after a jump.
     limit: f64,
     t: [Instant; 2],
     states: [Sys::State; 2],
     rates: [Sys::State; 2],
-    /// What rounding takes from the state at the start.
+    /// Rounding error of the state at the start.
     rest: Sys::State,
     coefficients: [Sys::State; LENGTH],
     gaps: [Sys::Gaps<f64>; LENGTH],
@@ -54,7 +54,7 @@ impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
         }
     }
 
-    /// Takes in where the flight is: the end of a step, or the state after a transition.
+    /// Reads the present time and state of the flight: the end of a step, or the state after a transition.
     fn place(&mut self) -> Result<(), StepFailure> {
         self.flight.borrow_mut().begin()?;
         self.take_end();
@@ -71,7 +71,7 @@ impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
         round_into(self.end_gaps.as_mut_slice(), flight.expansion.begun_gaps());
     }
 
-    /// Takes in the coefficients of a step.
+    /// Reads the coefficients of a step.
     fn take_series(&mut self) {
         let flight = self.flight.borrow();
         (self.order, self.unit) = (flight.order, flight.unit);
@@ -124,7 +124,7 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
         self.place()
     }
 
-    /// NOTE: the state is the one that the flight has reached, of which the driver holds a rounded one.
+    /// NOTE: the start is the present state of the flight; the driver holds a rounded copy of it.
     fn restart(
         &mut self,
         _: &Sys,
@@ -176,13 +176,13 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
         drop(flight);
         self.take_series();
         self.take_end();
-        // The next series are made in a unit near this step.
+        // The next series are computed in a unit near this step.
         self.flight.borrow_mut().next_unit = power_of_two(length);
         Ok(())
     }
 
-    /// NOTE: a projection keeps doubles to the constraints; the flight keeps to them by all its digits, and goes on from
-    /// its own state.
+    /// NOTE: a projection corrects doubles to the constraints. The flight satisfies them to all its digits, and goes
+    /// on from its own state.
     fn replace_end(
         &mut self,
         _: &Sys,

@@ -1,4 +1,4 @@
-//! Whether what holds for a motion holds for its neighbours as well: that they are on the surface too, or meet it when it does.
+//! Tests of neighbouring motions to first order: they lie on the same surface, or meet it at the same time.
 
 use super::flow::{dual_parameters, dual_state};
 use super::held::Holder;
@@ -7,10 +7,10 @@ use crate::contract::Variational;
 use crate::error::Fault;
 use crate::numbers::{Numbers, Row};
 
-/// How much a value may change along a direction, in units of the sum of what its arguments change it by.
+/// Allowed change of a value along a direction, relative to the sum of the absolute contributions of its arguments.
 const ROUNDING: f64 = 1e-9;
 
-/// A moment of neighbouring motions.
+/// Motions next to a motion at one moment, to first order.
 pub(super) struct Neighbours<Sys: Variational> {
     pub(super) parameters: Sys::Parameters<Dual>,
     pub(super) t: Dual,
@@ -26,7 +26,7 @@ impl<Sys: Variational> Clone for Neighbours<Sys> {
 impl<Sys: Variational> Copy for Neighbours<Sys> {}
 
 impl<Sys: Variational> Neighbours<Sys> {
-    /// At one time, in some directions.
+    /// Neighbours at one time, in some directions.
     fn at(system: &Sys, t: f64, state: &Sys::State, tangents: &[Tangent<Sys>]) -> Self {
         Self {
             parameters: dual_parameters(system, tangents),
@@ -35,7 +35,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         }
     }
 
-    /// The motion itself, over and over.
+    /// The motion itself in place of every neighbour.
     fn still(&self) -> Self {
         let mut still = *self;
         still.t = Dual::of(self.t.value);
@@ -46,7 +46,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         still
     }
 
-    /// Neighbours that each differ by one of the arguments only.
+    /// Neighbours that each differ in one of the arguments only.
     fn parts(&self) -> impl Iterator<Item = Self> {
         let still = self.still();
         let by_time = Self { t: self.t, ..still };
@@ -63,7 +63,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         [by_time].into_iter().chain(by_state).chain(by_parameters)
     }
 
-    /// Whether a value is the same for all of them, to rounding.
+    /// True if a value is the same for all neighbours, to rounding.
     fn share(&self, value: impl Fn(&Self) -> Result<Dual, Fault>) -> Result<bool, Fault> {
         let (mut sums, mut sizes) = ([0.0; DIRECTIONS], [0.0; DIRECTIONS]);
         for part in self.parts() {
@@ -77,7 +77,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         Ok(pairs.all(|(sum, size): (f64, f64)| sum.abs() <= ROUNDING * size))
     }
 
-    /// Whether all of them are at a surface if one of them is.
+    /// True if all neighbours are on a surface whenever the motion is.
     pub(super) fn share_gap(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
         self.share(|own| {
             let gaps = system.clearances(&own.parameters, own.t, &own.state)?;
@@ -92,7 +92,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         })
     }
 
-    /// Whether all of them keep to the instantaneous constraints of a surface if one of them does.
+    /// True if all neighbours satisfy the instantaneous constraints of a surface whenever the motion does.
     fn are_focused(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
         let Some(focused) = system.focus(&self.parameters, surface, self.t, &self.state)? else {
             return Ok(true);
@@ -111,7 +111,8 @@ impl<Sys: Variational> Neighbours<Sys> {
 }
 
 impl Holder {
-    /// Refuses directions that lead off what holds the motion: neighbours along them are not held.
+    /// Refuses directions that lead off the surface or the surfaces of a sliding motion: neighbours along them are
+    /// not held.
     pub(super) fn check_along<Sys: Variational>(
         self,
         system: &Sys,

@@ -1,4 +1,4 @@
-//! Directions along a section, and equations between them. Matrices are arrays of columns.
+//! Directions along a section, and linear equations between them. Matrices are arrays of columns.
 
 use super::{DIRECTIONS, Dual, Tangent, Undefined};
 use crate::contract::Variational;
@@ -7,23 +7,23 @@ use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 use crate::variations::flow::{dual_parameters, dual_state};
 
-/// Singular values below this part of the largest, or of 1, count as 0.
+/// Singular values below this share of the largest, or of 1, count as 0.
 const RANK: f64 = 1e-7;
 
-/// Part of a direction that must be left of it beside those before it.
+/// Share of a direction that must remain after projection on those before it.
 const DEPENDENT: f64 = 1e-10;
 
-/// Sweeps over all pairs of columns.
+/// Maximum number of sweeps over all pairs of columns.
 const SWEEPS: usize = 60;
 
-/// Newton's steps back to the section.
+/// Maximum number of Newton steps back to the section.
 const STEPS: usize = 12;
 
-/// The directions of a section through a point of it: those in which neither the gap nor the constraints change.
+/// Tangent directions of a section at a point: those along which neither the gap nor the constraints change.
 pub(super) struct Chart<Sys: Variational> {
-    /// Orthonormal, in units of the components: first what is left out, then the directions.
+    /// Orthonormal basis, in units of the components: first the excluded directions, then those of the section.
     frame: Sys::Columns,
-    /// How many are left out.
+    /// Number of excluded directions.
     left_out: usize,
     scale: Sys::State,
 }
@@ -36,14 +36,14 @@ impl<Sys: Variational> Clone for Chart<Sys> {
 
 impl<Sys: Variational> Copy for Chart<Sys> {}
 
-/// What a section fixes: a surface, and values of what the constraints keep.
+/// Equations of a section: a surface, and the values that the constraints conserve.
 pub(super) struct Fixed<Sys: Variational> {
     surface: usize,
     kept: Sys::Deviations<f64>,
 }
 
 impl<Sys: Variational> Fixed<Sys> {
-    /// The section that a point lies on.
+    /// The equations of the section through a point.
     pub(super) fn of(
         system: &Sys,
         surface: usize,
@@ -60,7 +60,7 @@ impl<Sys: Variational> Fixed<Sys> {
         Ok(Self { surface, kept })
     }
 
-    /// How far a point is from the section, per equation, along some directions.
+    /// Residual of a point in each equation, and its derivatives along some directions.
     fn excess(
         &self,
         system: &Sys,
@@ -83,7 +83,7 @@ impl<Sys: Variational> Fixed<Sys> {
 }
 
 impl<Sys: Variational> Chart<Sys> {
-    /// The directions at a point, and what moves the point onto the section to first order.
+    /// The directions at a point, and the step that moves the point onto the section to first order.
     fn at(
         system: &Sys,
         fixed: &Fixed<Sys>,
@@ -130,7 +130,7 @@ impl<Sys: Variational> Chart<Sys> {
         Ok((chart, correction))
     }
 
-    /// The point of the section near a point, and the directions there.
+    /// The point of the section near a given point, and the directions there.
     pub(super) fn onto(
         system: &Sys,
         fixed: &Fixed<Sys>,
@@ -199,8 +199,8 @@ pub(super) fn columns<Sys: Variational>(system: &Sys) -> Sys::Columns {
     columns
 }
 
-/// Makes the first `count` of the rows orthonormal, without those that depend on others, and gives how many are left. With
-/// it the least vector that takes `values` from what they give.
+/// Orthonormalises the first `count` rows, drops dependent ones, and returns the number of the others. Also computes
+/// the smallest vector whose products with the rows are `values`.
 fn orthonormalise<S: StateVector>(
     rows: &mut [S],
     count: usize,
@@ -233,7 +233,7 @@ fn orthonormalise<S: StateVector>(
     kept
 }
 
-/// Completes `count` orthonormal rows to a basis, by the unit vectors of which most is left.
+/// Completes `count` orthonormal rows to a basis, with the unit vectors that have the largest remainders.
 fn complete<S: StateVector>(rows: &mut [S], count: usize) {
     let dimension = rows.first().map_or(0, StateVector::count);
     for kept in count..dimension {
@@ -248,7 +248,7 @@ fn complete<S: StateVector>(rows: &mut [S], count: usize) {
                 }
             }
             let left = dot(&row, &row);
-            // A little more, so that of equals the first is taken.
+            // A small factor, so that of equal remainders the first is taken.
             if left > 1.000_001 * best.0 {
                 best = (left, row);
             }
@@ -262,10 +262,10 @@ fn complete<S: StateVector>(rows: &mut [S], count: usize) {
     }
 }
 
-/// The `x` of least `|A x - b|^2 + damping |x|^2`, where singular values that count as 0 are left out. `A`, the leading
-/// square of `size`, is overwritten; so is `turned`.
+/// The `x` of least `|A x - b|^2 + damping |x|^2`, without singular values that count as 0. `A`, the leading square
+/// of `size`, is overwritten, and so is `turned`.
 ///
-/// One-sided rotations (Hestenes): columns are turned in pairs until all are orthogonal.
+/// One-sided Jacobi rotations (Hestenes): columns are rotated in pairs until all are orthogonal.
 pub(super) fn least_squares<S: StateVector>(
     columns: &mut [S],
     turned: &mut [S],
@@ -314,7 +314,7 @@ pub(super) fn least_squares<S: StateVector>(
     solution
 }
 
-/// Two columns turned by the angle of this cosine and sine.
+/// Rotates two columns by the angle with this cosine and sine.
 fn turn<S: StateVector>(columns: &mut [S], [i, j]: [usize; 2], [cosine, sine]: [f64; 2]) {
     let (one, other) = (columns[i], columns[j]);
     for k in 0..one.count() {

@@ -1,4 +1,4 @@
-//! Numbers with first derivatives: what a series or an impact map says of its neighbours.
+//! Dual numbers: values with first derivatives, for forward-mode derivatives of series and impact maps.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -7,22 +7,23 @@ use wide::f64x4;
 use crate::math;
 use crate::numbers::Numbers;
 
-/// Directions whose derivatives are carried side by side.
+/// Number of directions whose derivatives are computed side by side.
 pub const DIRECTIONS: usize = 4;
 
-/// A number and its derivatives along [`DIRECTIONS`].
+/// A dual number: a value and its derivatives along [`DIRECTIONS`] directions.
 ///
-/// Every operation of [`Numbers`] carries the derivatives along by its own rule, so that a function written over
-/// [`Numbers`] gives its differential with its value, exact to rounding. The value has the bits that `f64` has.
-// NOTE: a vector, not an array: loops or numbers one by one in each operation of a long series keep compilers busy for minutes.
+/// Every operation of [`Numbers`] propagates the derivatives by its differentiation rule, so that a function written
+/// over [`Numbers`] gives its value and its differential, exact to rounding. The value has the same bits as with
+/// `f64`.
+// NOTE: a vector, not an array: loops or single numbers in each operation of a long series take minutes to compile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual {
-    /// The number.
+    /// The value.
     pub value: f64,
     slopes: f64x4,
 }
 
-/// This factor along each direction.
+/// The same factor along each direction.
 #[inline(always)]
 fn all(factor: f64) -> f64x4 {
     // NOTE: written out, since `splat` is a loop until it is optimised.
@@ -43,7 +44,7 @@ fn fused(a: f64x4, b: f64, c: f64x4) -> f64x4 {
 }
 
 impl Dual {
-    /// A number that does not change along any direction.
+    /// A constant: its derivatives are 0.
     pub const fn constant(value: f64) -> Self {
         Self {
             value,
@@ -60,16 +61,17 @@ impl Dual {
         }
     }
 
-    /// Its derivative along each direction.
+    /// The derivative along each direction.
     #[inline]
     pub fn slopes(&self) -> [f64; DIRECTIONS] {
         self.slopes.to_array()
     }
 
-    /// A function's value here, with its derivative here.
+    /// Chain rule, from a function's value and derivative here.
     #[inline(always)]
     fn chain(self, value: f64, derivative: f64) -> Self {
-        // NOTE: what does not depend on a direction has no derivative along it, however steep the function is.
+        // NOTE: a number that does not depend on a direction keeps derivative 0 along it, however steep the function
+        // is.
         let moves = self.slopes.simd_ne(f64x4::ZERO);
         Self {
             value,
@@ -118,7 +120,7 @@ impl Mul for Dual {
 impl Div for Dual {
     type Output = Self;
 
-    // The derivative of a quotient has other operations in it.
+    // The derivative of a quotient needs other operations too.
     #[allow(clippy::suspicious_arithmetic_impl)]
     #[inline(always)]
     fn div(self, other: Self) -> Self {
@@ -235,7 +237,7 @@ impl Numbers for Dual {
 mod tests {
     use super::*;
 
-    /// The derivative of a function against a central difference, and its value against that of `f64`.
+    /// Compares the derivative of a function with a central difference, and its value with that over `f64`.
     fn check(name: &str, x: f64, function: impl Fn(Dual) -> Dual, plain: impl Fn(f64) -> f64) {
         let found = function(Dual::new(x, [1.0, 0.0, 0.0, -2.0]));
         assert_eq!(found.value.to_bits(), plain(x).to_bits(), "{name} at {x}");

@@ -1,17 +1,17 @@
-//! Eigenvalues of a real matrix: Francis's double steps on its Hessenberg form.
+//! Eigenvalues of a real matrix: Francis's double-shift QR steps on its Hessenberg form.
 //!
 //! Reference: G. H. Golub, C. F. Van Loan, *Matrix Computations*, sections 7.4 and 7.5.
 
 use crate::math;
 use crate::state::StateVector;
 
-/// Steps that one eigenvalue may take.
+/// Maximum number of steps per eigenvalue.
 const STEPS: usize = 60;
 
-/// Every so many steps without an eigenvalue the shifts are others.
+/// Number of steps without an eigenvalue after which exceptional shifts are used.
 const PATIENCE: usize = 10;
 
-/// Eigenvalues of a square matrix, each as often as it is a root.
+/// Eigenvalues of a square matrix, with multiplicity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Multipliers<S> {
     real: S,
@@ -20,18 +20,18 @@ pub struct Multipliers<S> {
 }
 
 impl<S: StateVector> Multipliers<S> {
-    /// Real and imaginary parts, those of larger modulus first.
+    /// Real and imaginary parts, in order of decreasing modulus.
     pub fn iter(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let parts = self.real.as_slice().iter().zip(self.imaginary.as_slice());
         parts.take(self.count).map(|(re, im)| [*re, *im])
     }
 
-    /// Their number.
+    /// Number of eigenvalues.
     pub const fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there are none.
+    /// True if there are no eigenvalues.
     pub const fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -44,7 +44,7 @@ impl<S: StateVector> Multipliers<S> {
         }
     }
 
-    /// Puts one in its place by modulus, after those of the same modulus.
+    /// Inserts an eigenvalue by modulus, after those of the same modulus.
     fn add(&mut self, [re, im]: [f64; 2]) {
         let modulus = |re: f64, im: f64| re * re + im * im;
         let (real, imaginary) = (self.real.as_mut_slice(), self.imaginary.as_mut_slice());
@@ -59,7 +59,7 @@ impl<S: StateVector> Multipliers<S> {
     }
 }
 
-/// A square matrix that is overwritten, by its columns.
+/// A square matrix, stored by columns, that is overwritten.
 struct Square<'a, S> {
     columns: &'a mut [S],
     size: usize,
@@ -74,7 +74,7 @@ impl<S: StateVector> Square<'_, S> {
         &mut self.columns[column].as_mut_slice()[row]
     }
 
-    /// `H A H` with the reflection `H` that takes `x`, in the rows from `first` on, to its first entry.
+    /// Computes `H A H` with the reflection `H` that takes `x`, in the rows from `first` on, to its first entry.
     fn reflect(&mut self, first: usize, x: &[f64]) {
         let norm = math::sqrt(x.iter().map(|own| own * own).sum());
         if norm == 0.0 {
@@ -111,7 +111,7 @@ impl<S: StateVector> Square<'_, S> {
         }
     }
 
-    /// The first row of the block that ends before `end` and does not fall into two.
+    /// First row of the unreduced block that ends before `end`.
     fn start_of_block(&mut self, end: usize) -> usize {
         let mut start = end - 1;
         while start > 0 {
@@ -155,7 +155,7 @@ impl<S: StateVector> Square<'_, S> {
         }
     }
 
-    /// The eigenvalues of the two rows from `m` on.
+    /// Eigenvalues of the block of the two rows from `m` on.
     fn pair(&self, m: usize) -> [[f64; 2]; 2] {
         let (a, d) = (self.at(m, m), self.at(m + 1, m + 1));
         let product = self.at(m, m + 1) * self.at(m + 1, m);
@@ -171,8 +171,8 @@ impl<S: StateVector> Square<'_, S> {
     }
 }
 
-/// The eigenvalues of the leading square of this size, which is overwritten; `None` where they are not found, as where an
-/// entry is not finite.
+/// The eigenvalues of the leading square of this size, which is overwritten; `None` if they are not found, for
+/// example for an entry that is not finite.
 pub(super) fn eigenvalues<S: StateVector>(
     columns: &mut [S],
     size: usize,
@@ -230,7 +230,7 @@ mod tests {
         check([[3.0]], [[3.0, 0.0]], 0.0);
         check([[2.0, 1.0], [1.0, 2.0]], [[3.0, 0.0], [1.0, 0.0]], 1e-15);
         check([[0.0, -4.0], [1.0, 0.0]], [[0.0, 2.0], [0.0, -2.0]], 1e-15);
-        // The companion of (x^2 + 1)(x - 3)(x + 5)(x - 1/2) = x^5 + 3/2 x^4 - 15 x^3 + 9 x^2 - 16 x + 15/2.
+        // The companion matrix of (x^2 + 1)(x - 3)(x + 5)(x - 1/2) = x^5 + 3/2 x^4 - 15 x^3 + 9 x^2 - 16 x + 15/2.
         check(
             [
                 [-1.5, 15.0, -9.0, 16.0, -7.5],
@@ -242,7 +242,7 @@ mod tests {
             [[-5.0, 0.0], [3.0, 0.0], [0.0, 1.0], [0.0, -1.0], [0.5, 0.0]],
             1e-13,
         );
-        // A cycle: the roots of unity, which plain shifts do not find.
+        // A cyclic permutation: its eigenvalues are roots of unity, which plain shifts do not find.
         let (half, side) = (0.5, 0.75_f64.sqrt());
         let columns = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let mut columns = columns.map(SVector::<f64, 3>::from);

@@ -1,4 +1,4 @@
-//! Variations along a field without power series: extrapolation of the midpoint rule.
+//! Variations along a field without power series, by extrapolation of the midpoint rule.
 //!
 //! Reference: E. Hairer, S. Norsett, G. Wanner, *Solving Ordinary Differential Equations I* (1993), section II.9.
 
@@ -10,21 +10,24 @@ use crate::integrate::controller::least_step;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
-/// Midpoint rules of 2, 4, 6, .. parts that are combined.
+/// Number of midpoint rules, with 2, 4, 6, .. parts, that are combined.
 const RULES: usize = 8;
 
-/// Rules before this one are not asked whether they agree: they may by accident.
+/// Index of the first rule that is tested for convergence: earlier rules may agree by accident.
 const LEAST: usize = 3;
 
-/// What the last two combinations may differ by, in units of what varies: well above the rounding errors of the sums.
+/// Allowed difference of the last two combinations, in units of the change: well above the rounding errors of the
+/// sums.
 const LAST: f64 = 512.0 * f64::EPSILON;
 
-/// How far the end of a stretch may be from where the run has come, in units of its largest component: what an integrator errs
-/// by in a step is smaller at any useful tolerance, what a force that is not known does is not.
+/// Allowed distance of the end of a stretch from the state of the run, relative to its largest component. The local
+/// error of an integrator is smaller at any useful tolerance; the effect of a force that is not included here is
+/// larger.
 const KNOWN: f64 = 1e-2;
 
 impl<Sys: Variational> Flow<Sys> {
-    /// Carries some directions along held motion, from a state at the first of two times to the other, where it is `end`.
+    /// Propagates some directions along held motion, from the state at the first of two times to the second, where
+    /// the run's state is `end`.
     pub(super) fn follow_held(
         &mut self,
         system: &Sys,
@@ -57,7 +60,7 @@ impl<Sys: Variational> Flow<Sys> {
             .iter()
             .fold(0.0, |size: f64, own| size.max(own.abs()));
         let mut pairs = state.as_slice().iter().zip(end.as_slice());
-        // Something else holds it as well.
+        // Another force holds the motion as well.
         if !pairs.all(|(own, end)| (own.value - end).abs() <= KNOWN * size) {
             return Err(holder.undefined(until));
         }
@@ -65,7 +68,7 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(())
     }
 
-    /// What the state changes by over a step, unless that is too long.
+    /// Change of the state over a step; `None` if the step is too long.
     fn extrapolated(
         &mut self,
         system: &Sys,
@@ -85,7 +88,7 @@ impl<Sys: Variational> Flow<Sys> {
                 let rate = self.rate(system, parameters, holder, t + part as f64 * h, &there)?;
                 (before, now) = (now, sum(&before, &rate, 2.0 * h));
             }
-            // Aitken and Neville, in the square of the length of a part.
+            // Aitken-Neville scheme, in the square of the length of a part.
             for (k, entry) in combined[..rule].iter_mut().enumerate() {
                 let ratio = parts as f64 / (2 * (rule - k)) as f64;
                 let next = sum(&now, &sum(&now, entry, -1.0), 1.0 / (ratio * ratio - 1.0));
@@ -99,7 +102,7 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(None)
     }
 
-    /// Whether two changes of a state are the same within what is allowed, each direction in units of its own size.
+    /// True if two changes of a state agree within the tolerance, each direction in units of its own size.
     fn is_near(
         &self,
         state: &Sys::Row<Dual>,
@@ -117,7 +120,7 @@ impl<Sys: Variational> Flow<Sys> {
             for ((size, error), (after, difference)) in sizes.iter_mut().zip(&mut errors).zip(parts)
             {
                 *size = size.max((after / scale).abs());
-                // Not a maximum, which loses NaN.
+                // A sum rather than a maximum, which would lose NaN.
                 *error += (difference / scale).abs();
             }
         }

@@ -14,10 +14,10 @@ use crate::numbers::{Numbers, Row};
 use crate::record::Segment;
 use crate::state::StateVector;
 
-/// How large the last two terms of a series may be beside the first ones: what rounding leaves of the sum.
+/// Allowed size of the last two terms of a series beside the first ones: below the rounding of the sum.
 const LAST: f64 = 0.25 * f64::EPSILON;
 
-/// Power series of the motion with their derivatives.
+/// Power series of the motion, with their derivatives.
 pub(super) struct Flow<Sys: Variational> {
     pub(super) expansion: Expansion<Sys, Dual>,
     order: usize,
@@ -35,7 +35,7 @@ impl<Sys: Variational> Flow<Sys> {
         }
     }
 
-    /// Carries all directions along a stretch of motion, with what holds it.
+    /// Propagates all directions along a stretch of motion, free or held.
     pub(super) fn follow(
         &mut self,
         system: &Sys,
@@ -59,7 +59,7 @@ impl<Sys: Variational> Flow<Sys> {
         tangents.chunks_mut(DIRECTIONS).try_for_each(follow_some)
     }
 
-    /// Carries as many directions as go side by side.
+    /// Propagates up to [`DIRECTIONS`] directions side by side.
     fn follow_some(
         &mut self,
         system: &Sys,
@@ -93,7 +93,7 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(())
     }
 
-    /// Expands the motion from a state; the part of `length` that its series reach, in units of time.
+    /// Expands the motion from a state, and returns the part of `length` that the series reach, in units of time.
     fn step(
         &mut self,
         system: &Sys,
@@ -117,7 +117,7 @@ impl<Sys: Variational> Flow<Sys> {
         }
     }
 
-    /// The part of `wished` units of time that the series reach; `None` where they must be made in a shorter unit.
+    /// The part of `wished` units of time that the series reach; `None` if they must be computed in a shorter unit.
     fn reach(&self, wished: f64) -> Option<f64> {
         let mut sizes = [[0.0; DIRECTIONS + 1]; LENGTH];
         for (sizes, row) in sizes
@@ -138,7 +138,7 @@ impl<Sys: Variational> Flow<Sys> {
     }
 }
 
-/// A number that changes along each tangent at the rate `of` it; [`DIRECTIONS`] tangents at most.
+/// A dual number with the derivative `of` each tangent; at most [`DIRECTIONS`] tangents.
 fn along<T>(value: f64, tangents: &[T], of: impl Fn(&T) -> f64) -> Dual {
     let mut slopes = [0.0; DIRECTIONS];
     for (slope, tangent) in slopes.iter_mut().zip(tangents) {
@@ -147,7 +147,7 @@ fn along<T>(value: f64, tangents: &[T], of: impl Fn(&T) -> f64) -> Dual {
     Dual::new(value, slopes)
 }
 
-/// The parameters with their variations.
+/// The parameters as dual numbers, with their variations.
 pub(super) fn dual_parameters<Sys: Variational>(
     system: &Sys,
     tangents: &[Tangent<Sys>],
@@ -165,7 +165,7 @@ pub(super) fn dual_parameters<Sys: Variational>(
     row
 }
 
-/// A state with its variations.
+/// A state as dual numbers, with its variations.
 pub(super) fn dual_state<Sys: Variational>(
     state: &Sys::State,
     tangents: &[Tangent<Sys>],
@@ -182,7 +182,7 @@ pub(super) fn dual_state<Sys: Variational>(
     row
 }
 
-/// Takes the derivatives of a state for the directions that it was varied along.
+/// Stores the derivatives of a state in the directions along which it was varied.
 pub(super) fn take_slopes<Sys: Variational>(state: &Sys::Row<Dual>, tangents: &mut [Tangent<Sys>]) {
     for (k, tangent) in tangents.iter_mut().enumerate() {
         let entries = state.as_slice().iter();

@@ -1,4 +1,4 @@
-//! Grazes along power series: where rounding of doubles decides whether a surface is met.
+//! Grazing impacts along power series, where the rounding of doubles decides if a surface is met.
 
 use super::Undefined;
 use crate::contract::Variational;
@@ -6,13 +6,14 @@ use crate::integrate::taylor::expansion::Expansion;
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
-/// Places in a step at which the rate of a gap is looked at: between two of them it falls and rises at most once.
+/// Number of places in a step at which the rate of a gap is evaluated: between two of them it falls and rises at most
+/// once.
 const PLACES: usize = 16;
 
 /// Rounding errors of a gap, in units of the sum of the absolute values of its terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A step as its series show it.
+/// A step and its series.
 pub(crate) struct Seen<'a, Sys: Variational, L: Numbers> {
     pub(crate) system: &'a Sys,
     pub(crate) expansion: &'a Expansion<Sys, L>,
@@ -22,7 +23,8 @@ pub(crate) struct Seen<'a, Sys: Variational, L: Numbers> {
 }
 
 impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
-    /// Refuses a step from `t`, of `theta` units, in which the gap of a surface falls to 0 within rounding, and rises.
+    /// Refuses a step from `t`, of `theta` units, in which the gap of a surface falls to 0 within rounding, and rises
+    /// again.
     pub(crate) fn look_for_grazes(&self, t: f64, theta: f64) -> Result<(), Undefined> {
         for surface in 0..self.system.series_gap_count() {
             let mut falls_from = None;
@@ -44,7 +46,7 @@ impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
         Ok(())
     }
 
-    /// Where the least gap between two parts is 0 within rounding.
+    /// Place at which the least gap between two places is 0 within rounding.
     fn touch(&self, surface: usize, [mut low, mut high]: [f64; 2]) -> Option<f64> {
         loop {
             let middle = 0.5 * (low + high);
@@ -60,7 +62,7 @@ impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
         (gap.abs() <= ROUNDING * size).then_some(low)
     }
 
-    /// A gap at a part, its rate, and the sum of the absolute values of its terms.
+    /// A gap at a fraction of the step, its rate, and the sum of the absolute values of its terms.
     fn gap(&self, surface: usize, part: f64) -> [f64; 3] {
         let (mut gap, mut rate, mut size) = (0.0, 0.0, 0.0);
         for row in self.expansion.gaps[..=self.order].iter().rev() {

@@ -1,6 +1,6 @@
-//! Variations along motion that a surface holds, or that slides between two modes.
+//! Variations along motion that a surface holds, or that slides between two modes (sliding mode).
 //!
-//! What holds the motion adds to its field, and the sum has no power series. Over numbers with derivatives it is
+//! The contact force, or the mixture of two fields, has no power series. Over dual numbers the field is
 //!
 //! ```text
 //! f + lambda w,        lambda = -h''/dh(w)            held by h, whose impulses are along w
@@ -9,8 +9,8 @@
 //!
 //! with the second rate `h''` along `f`, and the gap rates `r`, from the first coefficients of the gaps' series.
 //!
-//! Where such motion begins, neighbours begin it on the surface: they jump as at any transition, with the held field for
-//! `f+`. Where it ends by itself the field is continuous, and they do not jump.
+//! At the beginning of such motion neighbours begin it on the surface: their variations jump as at any transition,
+//! with the held field for `f+`. If it ends by itself the field is continuous, and they do not jump.
 
 use super::flow::{Flow, dual_parameters, dual_state};
 use super::{Dual, Undefined};
@@ -19,14 +19,14 @@ use crate::numbers::{Numbers, Row};
 use crate::record::Hold;
 use crate::state::StateVector;
 
-/// How far the field may jump where motion ceases to be held, in units of its largest component.
+/// Allowed jump of the field at the end of held motion, relative to its largest component.
 const JUMP: f64 = 1e-5;
 
-/// What holds the motion.
+/// Cause of held motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Holder {
     Surface(usize),
-    /// The transition back to the other mode, and the one that was taken.
+    /// The transition back to the other mode, and the transition that was taken.
     Slide {
         back: usize,
         across: usize,
@@ -44,7 +44,7 @@ impl Holder {
         }
     }
 
-    /// The surface of the mode that the state is of.
+    /// The surface in the mode of the state.
     pub(super) fn surface(self) -> usize {
         match self {
             Self::Surface(surface) | Self::Slide { back: surface, .. } => surface,
@@ -58,7 +58,7 @@ impl Holder {
 }
 
 impl<Sys: Variational> Flow<Sys> {
-    /// The rate of a state that is held.
+    /// The rate of a held state.
     pub(super) fn rate(
         &mut self,
         system: &Sys,
@@ -75,7 +75,7 @@ impl<Sys: Variational> Flow<Sys> {
         }
     }
 
-    /// The rate of a state alone, with what holds it if something does.
+    /// The rate of a state without variations; held if there is a holder.
     pub(super) fn rate_of(
         &mut self,
         system: &Sys,
@@ -129,7 +129,8 @@ impl<Sys: Variational> Flow<Sys> {
         };
         let mut second = half + half;
         if let Some(traced) = system.trace(parameters, surface, now, state, &rate)? {
-            // A gap rate is affine in the motion: what a force changes it by is a difference of two.
+            // A gap rate is affine in the velocity variables, so its change by a force is a difference of two gap
+            // rates.
             let forced = sum(state, &sum(&traced, &rate, -1.0), 1.0);
             let collision = system.collision(parameters, surface, now, &forced)?;
             second = second + (collision.as_slice()[0] - gap_rate);
@@ -144,7 +145,7 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(rate)
     }
 
-    /// The rate between two modes that lead into each other.
+    /// The rate of sliding between two modes that lead into each other.
     fn slid(
         &mut self,
         system: &Sys,
@@ -165,7 +166,7 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(rate)
     }
 
-    /// Refuses an end of held motion where the field jumps, since something else than its force has ended it.
+    /// Refuses an end of held motion at which the field jumps: another cause than the contact force has ended it.
     pub(super) fn check_release(
         &mut self,
         system: &Sys,
@@ -184,7 +185,7 @@ impl<Sys: Variational> Flow<Sys> {
     }
 }
 
-/// The numbers of a row without their derivatives.
+/// Values of a row of dual numbers.
 fn values<Sys: Variational>(row: &Sys::Row<Dual>) -> Sys::State {
     let mut values = Sys::State::zeros(row.as_slice().len());
     for (own, entry) in values.as_mut_slice().iter_mut().zip(row.as_slice()) {

@@ -1,20 +1,21 @@
 //! First variations: derivatives of a run with respect to its initial state and its parameters.
 //!
-//! Between transitions the power series of the motion are computed once more, over [`Dual`] numbers: their slopes are the
-//! derivatives of the motion, exact to rounding, whatever integrator makes the run. At a transition on a surface
-//! `h(t, z; k) = 0`, with `f` the rate before and after it and the map `z+ = D(t, z; k)`,
+//! Between transitions the power series of the motion are computed once more, over [`Dual`] numbers (forward mode):
+//! their slopes are the derivatives of the motion, exact to rounding, with any integrator of the run. At a transition
+//! on a surface `h(t, z; k) = 0`, with `f` the rate before and after it and the map `z+ = D(t, z; k)`,
 //!
 //! ```text
 //! dT  = -(h_z . dz- + h_k dk) / (h_z . f- + h_t)
 //! dz+ = D_z (dz- + f- dT) + D_t dT + D_k dk - f+ dT
 //! ```
 //!
-//! is the augmented differential (saltation) of the transition. [`Variations`] is an observer that does both along a run.
+//! is the differential of the transition by the saltation matrix. [`Variations`] is an observer that propagates both
+//! along a run.
 //!
-//! [`Section`] is the map from one arrival at a surface to a later one, with its derivative; [`Section::periodic`] finds the
-//! points that return to themselves, and their multipliers.
+//! [`Section`] is the map from one arrival at a surface to a later one (Poincare map), with its derivative.
+//! [`Section::periodic`] finds its fixed points, periodic orbits, and their Floquet multipliers.
 //!
-//! Where the flow of a system with impacts has no derivative, none is given: see [`Undefined`].
+//! Where the flow of a system with impacts has no derivative, the result is [`Undefined`].
 
 mod along;
 mod chart;
@@ -40,54 +41,55 @@ pub use section::{Arrival, Section, SectionError};
 
 use crate::error::Fault;
 
-/// Why a run has no derivative, or no more digits than doubles have, and where.
+/// Reason why a run has no derivative, or no more digits than doubles have, with its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Undefined {
-    /// A surface was touched or hit so lightly that rounding decides whether it was hit: derivatives are infinite there,
-    /// or differ to both sides.
+    /// A grazing impact: rounding decides if the surface was hit. Derivatives are infinite there, or differ on both
+    /// sides.
     Graze {
-        /// When.
+        /// Time.
         t: f64,
         /// The surface.
         surface: usize,
     },
     /// Several surfaces were hit at one time: a neighbouring run meets them one after the other, or in another order.
     Corner {
-        /// When.
+        /// Time.
         t: f64,
         /// The surface hit last.
         surface: usize,
     },
-    /// From here on the motion is held in a way whose derivatives are not known: by several surfaces, after impacts that
-    /// accumulate, or where a neighbouring run is not held.
+    /// From here on the motion is held in a way whose derivatives are not available: by several surfaces, after
+    /// impacts that accumulate, or where a neighbouring run is not held.
     Held {
-        /// When.
+        /// Time.
         t: f64,
         /// The surface.
         surface: usize,
     },
-    /// What happened at an impact is not what the law in force does alone, as where a policy repeats it.
+    /// The state after an impact is not the result of the law in force alone, for example because a policy repeats
+    /// it.
     Unlawful {
-        /// When.
+        /// Time.
         t: f64,
         /// The surface.
         surface: usize,
     },
-    /// The Lagrangian changes at a transition where the state of one of the modes, reduced to its constraints, holds no
-    /// momenta: the derivatives of the refraction are not known.
+    /// The Lagrangian changes at a transition where the state of one of the modes, reduced to its constraints, holds
+    /// no momenta: the derivatives of the refraction are not available.
     Refracted {
-        /// When.
+        /// Time.
         t: f64,
         /// The transition.
         surface: usize,
     },
-    /// The motion, its derivatives or more of its digits could not be computed from here on.
+    /// The motion, its derivatives or its further digits could not be computed from here on.
     NotFinite {
-        /// When.
+        /// Time.
         t: f64,
     },
-    /// A fault met while derivatives or more digits were computed.
+    /// A fault while derivatives or further digits were computed.
     Fault(Fault),
 }
 

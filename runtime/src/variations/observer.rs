@@ -1,4 +1,4 @@
-//! The observer that carries first variations along a run.
+//! The observer that propagates first variations along a run.
 
 use core::ops::ControlFlow;
 
@@ -9,17 +9,18 @@ use super::{Tangent, Undefined};
 use crate::contract::Variational;
 use crate::record::{Event, Hold, Observer, Segment};
 
-/// Carries first variations along a run that it observes.
+/// Propagates first variations along the run that it observes.
 ///
-/// The directions are the caller's: any number of them, varied state and parameters in each. Observe one run, then ask for
-/// [`Variations::tangents`]. Any integrator will do; derivatives are those of the motion from the states that it gives.
+/// The caller provides the directions: any number of them, each with variations of state and parameters. Observe one
+/// run, then call [`Variations::tangents`]. Any integrator may be used; derivatives are those of the motion from the
+/// states that it gives.
 pub struct Variations<'a, Sys: Variational> {
     system: &'a Sys,
     tangents: &'a mut [Tangent<Sys>],
     flow: Flow<Sys>,
-    /// What holds the motion.
+    /// The cause of held motion.
     holder: Option<Holder>,
-    /// Transitions at one moment, and what held the motion before. What holds it after is known when it goes on.
+    /// Transitions at one moment, and the holder before them. The holder after them is known when the motion goes on.
     crossing: Option<(Sequence<Sys::State>, Option<Holder>)>,
     /// The end of the last stretch of motion.
     end: Option<Sys::State>,
@@ -27,7 +28,7 @@ pub struct Variations<'a, Sys: Variational> {
 }
 
 impl<'a, Sys: Variational> Variations<'a, Sys> {
-    /// Variations of the run that comes, from these directions.
+    /// Variations of the next run, from these directions.
     pub fn new(system: &'a Sys, tangents: &'a mut [Tangent<Sys>]) -> Self {
         Self {
             system,
@@ -40,10 +41,10 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
         }
     }
 
-    /// The derivatives at the end of what was observed.
+    /// The derivatives at the end of the observed run.
     ///
     /// # Errors
-    /// [`Undefined`]: the first place where the run has none.
+    /// [`Undefined`] for the first place at which the run has no derivative.
     pub fn tangents(&mut self) -> Result<&[Tangent<Sys>], Undefined> {
         self.go_on();
         match self.undefined {
@@ -62,7 +63,7 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
         }
     }
 
-    /// Carries the directions across the last transitions, unless derivatives have ended.
+    /// Propagates the directions across the last transitions, unless an earlier place had no derivative.
     fn go_on(&mut self) {
         if let Some((sequence, before)) = self.crossing.take()
             && self.undefined.is_none()
@@ -79,7 +80,7 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
         let (system, last) = (self.system, sequence.last());
         let t = last.t;
         if let [Some(holder), Some(_)] = holders {
-            // What the impact makes of the motion depends on the surface that holds it.
+            // The result of the impact depends on the surface that holds the motion.
             return Err(holder.undefined(t));
         }
         transition::cross(system, sequence, holders, &mut self.flow, self.tangents)?;
@@ -89,7 +90,7 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
         }
     }
 
-    /// Takes a beginning or an end of held motion.
+    /// Processes the beginning or end of held motion.
     fn turn(&mut self, hold: &Hold<Sys::State>) -> Result<(), Undefined> {
         let (system, t) = (self.system, hold.t);
         let holder = Holder::of(hold);

@@ -1,4 +1,4 @@
-//! Periodic orbits: fixed points of the map of a section, by Newton's method with its derivative.
+//! Periodic orbits: fixed points of the Poincare map of a section, by Newton's method with its derivative.
 
 use core::fmt;
 
@@ -14,55 +14,56 @@ use crate::integrate::Stepper;
 use crate::record::Event;
 use crate::state::StateVector;
 
-/// Newton's steps that are made unless told otherwise.
+/// Default maximum of Newton steps.
 pub const ITERATIONS: u32 = 50;
 
-/// Halvings of one step.
+/// Maximum number of halvings of one step.
 const HALVINGS: u32 = 12;
 
-/// A residual of this many units of rounding of the state, times the amplification of the orbit, is as good as 0; or of so
-/// many errors of a step.
+/// Residual that counts as 0: this many units of rounding of the state, times the amplification of the orbit; or as
+/// many local errors of the integrator.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const STEPS: f64 = 16.0;
 
-/// A point that is closed is the last one if it misses itself by more than this part of what the one before did.
+/// A closed point is final if its residual exceeds this share of the residual before it.
 const LAST_GAIN: f64 = 0.25;
 
-/// Part of the way along an orbit that it may be open by.
+/// Allowed residual of a closed orbit, as a share of the length of the way along it.
 const CLOSED: f64 = 1e-6;
 
-/// A periodic orbit of a section: a point that returns to itself.
+/// A periodic orbit: a point of a section that returns to itself.
 pub struct Orbit<Sys: Variational> {
-    /// The point of the section and what happens there; the time is the period.
+    /// The point of the section, with the states before and after the transition there; the time is the period.
     pub point: Arrival<Sys::State>,
-    /// How far the point is from its image, in units of the components of the state.
+    /// Distance of the point from its image, in units of the components of the state.
     pub residual: f64,
-    /// Newton's steps that were made.
+    /// Number of Newton steps.
     pub iterations: u32,
-    /// Number of directions of the section in the constraints: N + N - M - 1, where the state is `(q, u)`.
+    /// Number of directions of the section within the constraints: N + N - M - 1, if the state is `(q, u)`.
     pub dimension: usize,
     /// The first `dimension` columns are directions along the section, orthonormal in units of the components.
     pub directions: Sys::Columns,
-    /// The leading square of that size is the derivative of the section's map in these directions.
+    /// The leading square of size `dimension` is the derivative of the Poincare map in these directions: the
+    /// monodromy matrix, without the direction of the motion.
     pub derivative: Sys::Columns,
-    /// Its eigenvalues, the Floquet multipliers of the orbit. The direction of the motion is not among those of the section. A
-    /// quantity that is conserved gives a multiplier 1, and so does a coordinate that nothing depends on.
+    /// Eigenvalues of that derivative, the Floquet multipliers of the orbit without the one along the motion. Every
+    /// conserved quantity, and every coordinate that nothing depends on, gives a multiplier 1.
     pub multipliers: Multipliers<Sys::State>,
 }
 
-/// Why no orbit was found.
+/// Reason why no orbit was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum OrbitError {
-    /// A point tried is not mapped back to the section, or has no derivative.
+    /// A trial point is not mapped back to the section, or its map has no derivative.
     Section(SectionError),
-    /// The motion or its transitions depend on time: no return is the beginning of the next.
+    /// The motion or its transitions depend on time, so the end of a return is not the start of the next.
     DependsOnTime,
     /// Newton's method does not converge.
     NotConverged {
-        /// The least distance of a point from its image, in units of the components of the state.
+        /// Least distance of a point from its image, in units of the components of the state.
         residual: f64,
-        /// Steps made.
+        /// Number of steps.
         iterations: u32,
     },
     /// The multipliers are not finite.
@@ -103,11 +104,11 @@ impl From<Undefined> for OrbitError {
     }
 }
 
-/// A point of the section with what is known of its return.
+/// A point of the section and its return.
 struct Trial<Sys: Variational> {
     point: Sys::State,
     chart: Chart<Sys>,
-    /// How long the return takes, and how it ends.
+    /// Duration and end of the return.
     time: f64,
     event: Event<Sys::State>,
     /// Image minus point, along the directions.
@@ -122,14 +123,16 @@ where
     Step: Stepper<Sys>,
     Effects: Effect<Sys>,
 {
-    /// The periodic orbit near a point of the section (or near it), found by Newton's method in `iterations` steps at most
+    /// The periodic orbit near a point on or near the section, by Newton's method in at most `iterations` steps
     /// ([`ITERATIONS`] is enough).
     ///
-    /// Angles close up to turns. Where an orbit belongs to a family, as all orbits of a conserved energy do, one near the
-    /// point is approached. A step that does not bring point and image closer is halved.
+    /// Angles close up to full turns. If an orbit belongs to a family, like all orbits of a conservative system, the
+    /// iteration approaches one near the point. A step that does not bring point and image closer is halved.
     ///
     /// # Errors
-    /// [`OrbitError`].
+    /// [`OrbitError::Section`] where a point is not mapped back or the map has no derivative,
+    /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time, [`OrbitError::NotConverged`]
+    /// after the last step, [`OrbitError::NoMultipliers`] if the eigenvalues are not finite.
     pub fn periodic(
         &mut self,
         near: &Sys::State,
@@ -161,8 +164,8 @@ where
         }
     }
 
-    /// Whether a point is its own image, as far as can be told: by rounding, and beside the way from one to the other. A
-    /// motion that ceases comes back to where it is without being an orbit.
+    /// True if a point is its own image, up to rounding and relative to the distance between them along the orbit. A
+    /// motion that comes to rest returns to its point without being an orbit.
     fn is_closed(&self, trial: &Trial<Sys>) -> Result<bool, Undefined> {
         let mut rate = self.system.zero_state();
         self.system.rate(0.0, &trial.point, &mut rate)?;
@@ -172,7 +175,7 @@ where
         Ok(trial.residual <= f64::min(least, CLOSED * way))
     }
 
-    /// A better point along Newton's step, if there is one.
+    /// A better point along the Newton step, if one exists.
     fn improve(
         &mut self,
         fixed: &Fixed<Sys>,
@@ -197,7 +200,7 @@ where
         }
     }
 
-    /// Maps the point of the section near a point, with its directions.
+    /// Maps the point of the section near a given point, with its directions.
     fn attempt(&mut self, fixed: &Fixed<Sys>, point: Sys::State) -> Result<Trial<Sys>, OrbitError> {
         let (chart, point) = Chart::onto(self.system, fixed, 0.0, point)?;
         let dimension = chart.dimension();
@@ -251,10 +254,10 @@ fn finish<Sys: Variational>(
     })
 }
 
-/// Newton's step from a point: `(derivative - 1) step = -miss`, damped by the size of the miss as Levenberg and Marquardt do.
+/// Newton step from a point: `(derivative - 1) step = -miss`, damped by the size of the miss (Levenberg-Marquardt).
 ///
-/// Along a family of orbits `derivative - 1` is as small as the miss, not 0: undamped, steps would wander along the family.
-/// With this damping they converge quadratically to an orbit near by (J. Fan, Y. Yuan, Computing 74 (2005)).
+/// Along a family of orbits `derivative - 1` is as small as the miss, not 0: undamped steps would wander along the
+/// family. With this damping they converge quadratically to a nearby orbit (J. Fan, Y. Yuan, Computing 74 (2005)).
 fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     let dimension = trial.chart.dimension();
     let (mut matrix, mut turned) = (trial.derivative, columns(system));
@@ -271,14 +274,14 @@ fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     step
 }
 
-/// How much longer the image of a direction may be than the direction.
+/// Largest ratio of the length of the image of a direction to that of the direction.
 fn amplification<Sys: Variational>(trial: &Trial<Sys>) -> f64 {
     let columns = trial.derivative.as_ref()[..trial.chart.dimension()].iter();
     let squares = columns.map(|column| dot(column, column)).sum::<f64>();
     f64::max(crate::math::sqrt(squares), 1.0)
 }
 
-/// Takes whole turns out of the changes of angles.
+/// Removes full turns from the changes of angles.
 fn close_angles<Sys: Instance>(system: &Sys, change: &mut Sys::State) {
     let coordinates = system.description().coordinates.iter();
     for (own, coordinate) in change.as_mut_slice().iter_mut().zip(coordinates) {

@@ -11,11 +11,11 @@ use crate::outcome::{Outcome, StartError};
 use crate::record::{Event, Hold, Observer, Segment};
 use crate::simulation::Simulation;
 
-/// A surface of a system as a section of its motion, and how motions between its points are made.
+/// A surface of a system as a Poincare section of its motion, with the settings of the runs between its points.
 ///
-/// A point of the section is a state *at* the surface *before* what happens there. It is carried through that, and on until
-/// the surface is met again as often as is wanted; other surfaces may be met on the way. A section that is no wall is a
-/// surface with the law `reset { }`.
+/// A point of the section is a state *at* the surface *before* the transition there. The map carries it through the
+/// transition and on to the requested return to the surface; other surfaces may be met on the way. For a section that
+/// is not a wall, declare a surface with the law `reset { }`.
 pub struct Section<'a, Sys: Variational, Step, Effects> {
     pub(super) system: &'a Sys,
     simulation: Simulation<'a, Sys, Step, Effects>,
@@ -29,11 +29,11 @@ pub struct Section<'a, Sys: Variational, Step, Effects> {
 /// An arrival at a section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arrival<S> {
-    /// How long it took.
+    /// Time since the start of the run.
     pub time: f64,
-    /// The point of the section: the state at the surface, before what happens there.
+    /// The point of the section: the state at the surface, before the transition there.
     pub before: S,
-    /// The state after what happens there.
+    /// The state after the transition.
     pub after: S,
 }
 
@@ -47,15 +47,15 @@ impl<S: Copy> Arrival<S> {
     }
 }
 
-/// Why a section is not met.
+/// Reason why a section is not met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum SectionError {
     /// The run was not begun.
     Start(StartError),
-    /// The run ended before; with [`Outcome::Done`], the time allowed was over.
+    /// The run ended before the section; with [`Outcome::Done`], the allowed time was over.
     Ended(Outcome),
-    /// It is met, but the way to it has no derivative.
+    /// The section is met, but the way to it has no derivative.
     Undefined(Undefined),
 }
 
@@ -88,7 +88,7 @@ where
     Step: Stepper<Sys>,
     Effects: Effect<Sys>,
 {
-    /// The section at a surface. A return may take the time `horizon`.
+    /// The section at a surface. A return may take at most the time `horizon`.
     pub fn new(
         system: &'a Sys,
         stepper: Step,
@@ -107,18 +107,18 @@ where
         }
     }
 
-    /// With so many returns, 1 or more, for one.
+    /// Counts this many returns, 1 or more, as one application of the map.
     #[must_use]
     pub fn with_returns(mut self, returns: u32) -> Self {
         self.returns = returns.max(1);
         self
     }
 
-    /// The first arrival from a state that need not be on the section; `tangents`, any directions, become the derivatives
-    /// of the point arrived at.
+    /// The first arrival from a state that need not lie on the section. `tangents`, in any directions, become the
+    /// derivatives of the point of arrival.
     ///
     /// # Errors
-    /// [`SectionError`].
+    /// [`SectionError`] where the run is not begun, ends before the section, or has no derivative.
     pub fn arrive(
         &mut self,
         state: &Sys::State,
@@ -128,14 +128,14 @@ where
         Ok(Arrival::of(time, &event))
     }
 
-    /// The point that a point of the section is mapped to by as many returns as are wanted; `tangents`, directions along
-    /// the section, become their images.
+    /// The image of a point of the section under the Poincare map. `tangents`, directions along the section, become
+    /// their images.
     ///
     /// The images are derivatives of the map: they are directions along the section too. Along parameters they are
-    /// derivatives of its points at a fixed point to start from.
+    /// derivatives of the image of a fixed starting point.
     ///
     /// # Errors
-    /// [`SectionError`].
+    /// [`SectionError`] where the run is not begun, ends before the section, or has no derivative.
     pub fn next(
         &mut self,
         point: &Sys::State,
@@ -145,8 +145,8 @@ where
         Ok(Arrival::of(time, &event))
     }
 
-    /// Runs on until the surface has been met `returns` times and once more; how long that took from the first of these
-    /// times on, or from the start where there is none, and how it ended.
+    /// Runs until the surface has been met `returns` times and once more. Returns the duration since the first of
+    /// these times, or since the start if there is none, and the end of the run.
     pub(super) fn pass(
         &mut self,
         state: &Sys::State,
@@ -160,7 +160,7 @@ where
             first: None,
             last: None,
         };
-        // NOTE: so that the driver is compiled once for every observer that comes like this.
+        // NOTE: through a pointer, so that the driver is compiled once for every such observer.
         let mut observer: &mut dyn Observer<Sys> = &mut passage;
         let run = self
             .simulation
@@ -174,13 +174,13 @@ where
     }
 }
 
-/// Watches a run from one arrival to another.
+/// Observes a run from one arrival to another.
 struct Passage<'a, Sys: Variational> {
     variations: Variations<'a, Sys>,
     surface: usize,
-    /// Arrivals before the one that is wanted.
+    /// Number of arrivals before the requested one.
     left: u32,
-    /// When the surface was met first.
+    /// Time of the first arrival at the surface.
     first: Option<f64>,
     last: Option<Event<Sys::State>>,
 }

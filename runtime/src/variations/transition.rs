@@ -1,4 +1,4 @@
-//! The augmented differential of a transition: what it makes of variations at fixed times.
+//! The saltation matrix of a transition, applied to variations at fixed times.
 
 use super::along::Neighbours;
 use super::flow::{Flow, dual_parameters, dual_state, take_slopes};
@@ -11,14 +11,15 @@ use crate::numbers::{Numbers, Row};
 use crate::record::Event;
 use crate::state::StateVector;
 
-/// How far the state after a transition may be from what its law makes of the state before, in units of the largest
-/// component before and after: corrections of rounding errors are far smaller, anything else that happens there is not.
+/// Allowed difference between the state after a transition and the result of its law, relative to the largest
+/// component before and after. Corrections of rounding errors are far smaller; any other cause is far larger.
 const LAWFUL: f64 = 1e-6;
 
-/// Transitions at one moment that are carried across: more than one are two modes that pass the motion to and fro.
+/// Maximum number of transitions at one moment that are processed: more are two modes that pass the motion back and
+/// forth.
 const SEQUENCE: usize = 8;
 
-/// What is known of an arrival at a surface.
+/// Quantities of an arrival at a surface.
 pub(crate) struct Arrival<Sys: Variational> {
     /// The rate of the state before.
     rate: Sys::State,
@@ -26,7 +27,7 @@ pub(crate) struct Arrival<Sys: Variational> {
     pub(crate) gap_rate: f64,
 }
 
-/// Carries all directions across transitions at one moment, with what holds the motion before and after.
+/// Propagates all directions across transitions at one moment, for the holders of the motion before and after.
 pub(super) fn cross<Sys: Variational>(
     system: &Sys,
     sequence: &Sequence<Sys::State>,
@@ -49,7 +50,7 @@ pub(super) fn cross<Sys: Variational>(
         for (k, event) in sequence.iter() {
             let (t, surface) = (event.t, event.surface);
             if k > 0 && !now.share_gap(system, surface)? {
-                // Neighbouring motions meet them at different times.
+                // Neighbouring motions meet the surfaces at different times.
                 return Err(Undefined::Corner { t, surface });
             }
             now.state = struck::<Sys, Dual>(system, &parameters, event, now.t, &now.state)?;
@@ -67,7 +68,7 @@ pub(super) fn cross<Sys: Variational>(
     Ok(())
 }
 
-/// Transitions that follow each other at one moment.
+/// Transitions in sequence at one moment.
 pub(super) struct Sequence<S> {
     events: [Event<S>; SEQUENCE],
     count: usize,
@@ -81,7 +82,7 @@ impl<S: Copy> Sequence<S> {
         }
     }
 
-    /// Adds what follows at the same moment; whether it does, and there is room for it.
+    /// Adds a transition at the same moment. Returns false if it is at another moment, or if the sequence is full.
     pub(super) fn add(&mut self, event: &Event<S>) -> bool {
         let follows = event.simultaneous && event.t == self.first().t;
         let is_added = follows && self.count < SEQUENCE;
@@ -105,7 +106,7 @@ impl<S: Copy> Sequence<S> {
     }
 }
 
-/// Moves all directions from the time of an arrival to the surface, before anything happens there.
+/// Moves all directions from the time of an arrival to the surface, before the transition.
 pub(super) fn arrive<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
@@ -124,10 +125,10 @@ pub(super) fn arrive<Sys: Variational>(
     Ok(())
 }
 
-/// A time at which nothing that depends on time has a rate of 0 by accident.
+/// A generic time, at which rates with respect to time do not vanish by accident.
 const SOME_TIME: f64 = 0.739_085_133_215_160_7;
 
-/// Whether the motion, the gaps or the transition of an event depend on time itself.
+/// True if the motion, the gaps or the transition of an event depend on time explicitly.
 pub(super) fn depends_on_time<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
@@ -147,12 +148,12 @@ pub(super) fn depends_on_time<Sys: Variational>(
         .any(|own| own.slopes()[0] != 0.0))
 }
 
-/// A time that passes along the first direction.
+/// A time as a dual number, varied along the first direction.
 fn passing(t: f64) -> Dual {
     Dual::new(t, [1.0, 0.0, 0.0, 0.0])
 }
 
-/// Refuses what has no derivative; else what is known of an arrival by free motion.
+/// Quantities of an arrival by free motion. Refuses an arrival without derivative.
 pub(crate) fn arrival<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
@@ -162,7 +163,7 @@ pub(crate) fn arrival<Sys: Variational>(
     arrival_at(system, event, rate)
 }
 
-/// As [`arrival`], of motion at this rate.
+/// Quantities of an arrival by motion at this rate.
 fn arrival_at<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
@@ -222,7 +223,7 @@ impl<Sys: Variational> Arrival<Sys> {
     }
 }
 
-/// What the law of an impact makes of a state.
+/// The state after the law of an impact.
 pub(crate) fn struck<Sys: Variational, L: Numbers>(
     system: &Sys,
     parameters: &Sys::Parameters<L>,
@@ -234,7 +235,7 @@ pub(crate) fn struck<Sys: Variational, L: Numbers>(
     let (declared, _) = system.declared_law(parameters, surface);
     let strike = Strike {
         surface,
-        // A law that was chosen for the run: its coefficient is a number.
+        // A law chosen for the run has a constant coefficient.
         chosen: (declared != event.law).then_some(event.law),
         motion_start: system.motion_start(&event.before),
     };
@@ -250,9 +251,9 @@ pub(crate) fn struck<Sys: Variational, L: Numbers>(
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strike {
     pub(crate) surface: usize,
-    /// The law in place of the declared one.
+    /// The law that replaces the declared one.
     pub(crate) chosen: Option<Law>,
-    /// The first component of the state that holds the motion.
+    /// Index of the first momentum or quasi-velocity in the state.
     pub(crate) motion_start: usize,
 }
 
@@ -267,10 +268,11 @@ impl Strike {
         self.chosen.unwrap_or(declared)
     }
 
-    /// The state after the law; `None` where it is not known over numbers, or not certainly the same in all of them.
+    /// The state after the law; `None` if it is not available over this kind of number, or not certain for all the
+    /// values of it.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] of the impact or of the reset.
     pub(crate) fn applied<Sys: Variational, L: Numbers>(
         &self,
         system: &Sys,
@@ -293,7 +295,7 @@ impl Strike {
         if focused.is_some() {
             match collision.as_slice()[0].is_below_zero() {
                 Some(true) => {}
-                // The instantaneous constraints alone have turned the motion round.
+                // The instantaneous constraints alone have reversed the motion.
                 Some(false) => return Ok(Some(after)),
                 None => return Ok(None),
             }
@@ -304,7 +306,7 @@ impl Strike {
     }
 }
 
-/// Whether a state of the run, before or after an event, is this one.
+/// Checks that a state of the run, before or after an event, agrees with a computed state.
 pub(crate) fn check_near<S: StateVector, L: Numbers>(
     event: &Event<S>,
     run: &S,
