@@ -1,8 +1,8 @@
 //! Gaps of all surfaces along a step of certified motion.
 //!
-//! A step is passed in parts. Of each part the states, their rates, and with them all values and rates of every gap are enclosed. A
-//! surface is certainly not met in a part where its gap is positive, where it does not count, and where its gap rises from a surface
-//! just left. A passable surface is met from above only.
+//! A step is passed in parts. On each part the states and their rates are enclosed, and with them the values and
+//! rates of every gap. A surface is certainly not met in a part in which its gap is positive, in which it does not
+//! count, or in which its gap rises from a surface just left. A passable surface is met from above only.
 
 use super::frame::Bounds;
 use super::lost::Reason;
@@ -11,16 +11,16 @@ use crate::contract::{Impacting, Variational};
 use crate::numbers::{Interval, Rated, Row};
 use crate::per_surface::PerSurface;
 
-/// The shortest part of a step that is looked at.
+/// Length of the shortest part of a step that is examined, as a fraction of the step.
 const SHORTEST: f64 = 1.0 / (1_u64 << 44) as f64;
 
-/// Sides of the surfaces that all motions are known to be on.
+/// Sides of the surfaces on which all motions are known to lie.
 pub(super) type Sides<Sys> = PerSurface<Side, <Sys as Impacting>::Gaps>;
 
 /// The side of one surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
-    /// Anything.
+    /// Not known.
     Unknown,
     /// The gap is not negative.
     Above,
@@ -28,7 +28,7 @@ pub(super) enum Side {
     Below,
 }
 
-/// What may be met, and where: all before that part of the step is certainly passed.
+/// A surface that may be met, with a fraction of the step up to which no surface is met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Met {
     pub(super) surface: usize,
@@ -36,12 +36,12 @@ pub(super) struct Met {
     pub(super) at: f64,
 }
 
-/// States, times and their rates on a part of a step.
+/// Enclosures of states, times and their rates on a part of a step.
 pub(super) struct Part<S> {
     pub(super) times: Interval,
     pub(super) states: Bounds<S>,
     pub(super) rates: Bounds<S>,
-    /// Time and states in the middle, and all lengths from there.
+    /// Time and states in the middle, and the range of times relative to it.
     middle: (Interval, Bounds<S>, Interval),
 }
 
@@ -49,13 +49,13 @@ pub(super) struct Part<S> {
 pub(super) struct Course<'f, 'a, Sys: Variational> {
     field: &'f Field<'a, Sys>,
     arc: Arc<Sys, Interval>,
-    /// Times that the motions begin at.
+    /// Range of the times at which the motions begin.
     start: Interval,
     unit: Interval,
 }
 
 impl<'f, 'a, Sys: Variational> Course<'f, 'a, Sys> {
-    /// From a box at these times, in a tube that holds it for so many `units` of time, 1 or less.
+    /// Motions from a box at these times, in a tube that contains them for `units` of time, at most 1.
     pub(super) fn new(
         field: &'f Field<'a, Sys>,
         from: &Bounds<Sys::State>,
@@ -75,17 +75,17 @@ impl<'f, 'a, Sys: Variational> Course<'f, 'a, Sys> {
         })
     }
 
-    /// All times after so many units.
+    /// Enclosure of the times after these units of time.
     pub(super) fn times(&self, units: Interval) -> Interval {
         self.start + self.unit * units
     }
 
-    /// All states after so many units.
+    /// Enclosure of the states after these units of time.
     pub(super) fn at(&self, units: Interval) -> Bounds<Sys::State> {
         bounds(self.arc.at(units).as_slice())
     }
 
-    /// A part of the step.
+    /// Enclosures on a part of the step.
     pub(super) fn part(&self, units: Interval) -> Option<Part<Sys::State>> {
         let times = self.times(units);
         let middle = Interval::point(units.middle());
@@ -104,7 +104,7 @@ impl<'f, 'a, Sys: Variational> Course<'f, 'a, Sys> {
 }
 
 impl<Sys: Variational> Field<'_, Sys> {
-    /// All gaps and their rates on a part of a step.
+    /// Enclosures of all gaps and their rates on a part of a step.
     pub(super) fn gaps(&self, part: &Part<Sys::State>) -> Option<Sys::Clearances<Rated>> {
         let times = Rated {
             value: part.times,
@@ -125,7 +125,7 @@ impl<Sys: Variational> Field<'_, Sys> {
         Some(gaps)
     }
 
-    /// All gaps of states at some times.
+    /// Enclosures of all gaps for states at some times.
     pub(super) fn gaps_at(
         &self,
         times: Interval,
@@ -137,7 +137,7 @@ impl<Sys: Variational> Field<'_, Sys> {
     }
 }
 
-/// Surfaces, and which of them may be passed from above to below.
+/// Surfaces, with flags for those that may be passed from above to below.
 pub(super) struct Surfaces<'f, 'a, Sys: Variational + Impacting> {
     pub(super) field: &'f Field<'a, Sys>,
     pub(super) passable: PerSurface<bool, <Sys as Impacting>::Gaps>,
@@ -148,7 +148,7 @@ impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
         self.passable[surface]
     }
 
-    /// Passes a whole step, or what may be met in it.
+    /// Sides of all surfaces after a whole step, or the first surface that may be met in it.
     pub(super) fn passed(
         &self,
         course: &Course<'_, '_, Sys>,
@@ -181,7 +181,7 @@ impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
         Ok(sides)
     }
 
-    /// Passes a part of a step, from these sides to those at its end; else a surface that may be met.
+    /// Sides of all surfaces after a part of a step, from those at its start; or a surface that may be met.
     pub(super) fn passed_in(
         &self,
         part: Option<Part<Sys::State>>,

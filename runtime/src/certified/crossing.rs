@@ -1,16 +1,17 @@
 //! The map of a box of states across an impact, to one time after it.
 //!
-//! From a time `t_0` shortly before, all motions of a box `Y` are continued over the surface. Where the gap is positive at `t_0`, negative
-//! at `t_1` and falls all the time between, each of them meets the surface once; Newton's method over intervals narrows the
-//! times of that to `[t_a, t_b]`. With the time `tau(y)` of the motion from `y`, the flow `phi` before, the flow `psi` after and the law `R`
+//! From a time `t_0` shortly before the impact, all motions of a box `Y` are continued across the surface. If the gap
+//! is positive at `t_0`, negative at `t_1` and decreasing in between, each motion meets the surface once. Interval
+//! Newton iteration narrows these times to `[t_a, t_b]`. With the time `tau(y)` of the motion from `y`, the flow
+//! `phi` before, the flow `psi` after and the law `R`
 //!
 //! ```text
 //! P(y) = psi_(t_b - tau) R(tau, phi_tau(y))   is in   P(y_c) + DP(Y) (Y - y_c)
 //! DP q = Dpsi (DR (v + f^- tau') + d_t R tau' - f^+ tau'),   v = Dphi q,   tau' = -dh(v) / (dh(f^-) + d_t h)
 //! ```
 //!
-//! along each axis `q` of the frame: the saltation matrix between both derivatives of the flow. The centre alone is mapped to an
-//! enclosure as narrow as rounding.
+//! along each axis `q` of the frame: the saltation matrix between the derivatives of the two flows. The centre alone
+//! is mapped to an enclosure as narrow as rounding allows.
 //!
 //! Reference: M. A. Aizerman, F. R. Gantmakher, *Determination of stability by linear approximation of a periodic solution of a system of
 //! differential equations with discontinuous right-hand sides*, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958).
@@ -27,18 +28,18 @@ use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 use crate::variations::transition::Strike;
 
-/// Lengths of time that are tried, each twice the last.
+/// Maximum number of trial lengths of time, each twice the last.
 const TRIALS: u32 = 8;
 
-/// Steps of Newton's method.
+/// Maximum number of Newton steps.
 const STEPS: u32 = 6;
 
 /// Least length of time in units of rounding.
 const UNITS: f64 = 32.0;
 
-/// All states at an impact, and what goes on after it.
+/// Enclosures of the states at an impact, and of the motion after it.
 pub(super) struct Crossed<Sys: Variational + Impacting> {
-    /// All times of the impact.
+    /// Enclosure of the time of the impact.
     pub(super) time: Interval,
     pub(super) before: Bounds<Sys::State>,
     pub(super) after: Bounds<Sys::State>,
@@ -48,11 +49,11 @@ pub(super) struct Crossed<Sys: Variational + Impacting> {
     pub(super) sides: Sides<Sys>,
     /// The sides before the impact.
     pub(super) sides_before: Sides<Sys>,
-    /// Derivatives that were given: where the surface is met, and at the later time.
+    /// The given derivatives, propagated to the surface and to the later time.
     pub(super) derivatives: Option<[Matrix<Sys>; 2]>,
 }
 
-/// Motion from `t_0` over a surface.
+/// Motion from `t_0` across a surface.
 struct Approach<'s, 'f, 'a, Sys: Variational + Impacting> {
     surfaces: &'s Surfaces<'f, 'a, Sys>,
     surface: usize,
@@ -60,13 +61,13 @@ struct Approach<'s, 'f, 'a, Sys: Variational + Impacting> {
     t: f64,
     unit: Interval,
     tube: Bounds<Sys::State>,
-    /// All motions, and that of the centre.
+    /// The motions of the box, and that of the centre.
     all: Course<'f, 'a, Sys>,
     centre: Course<'f, 'a, Sys>,
-    /// Changes of the states at any time until `t_1` along each axis, and those of the gap.
+    /// Enclosures of the derivatives of the states at any time until `t_1` along each axis, and of those of the gap.
     turned: Turned<Sys>,
     slopes: Slopes<Sys>,
-    /// All motions until `t_1`, and all rates of the gap by units of time.
+    /// Enclosures of all motions until `t_1`, and of the rate of the gap per unit of time.
     whole: Part<Sys::State>,
     rate: Interval,
 }
@@ -77,9 +78,9 @@ struct Meeting<Sys: Variational> {
     centre_units: Interval,
     before: Bounds<Sys::State>,
     rates_before: Bounds<Sys::State>,
-    /// Changes of the time along each axis.
+    /// Derivatives of the time of the impact along each axis.
     delays: Slopes<Sys>,
-    /// All rates of the gap by units of time, while it is met.
+    /// Enclosure of the rate of the gap per unit of time during the impact.
     rate: Interval,
 }
 
@@ -88,15 +89,15 @@ struct Centre<S> {
     time: Interval,
     before: Bounds<S>,
     after: Bounds<S>,
-    /// At the time after all impacts.
+    /// Its states at the time after all impacts.
     moved: Bounds<S>,
 }
 
-/// Maps the states of a frame at the time `t`, at which the gap of a surface is positive and falls, across the impact there, and with them
-/// the columns of a derivative.
+/// Maps the states of a frame, and the columns of a derivative, across the impact on a surface whose gap is positive
+/// and falls at the time `t`.
 ///
 /// # Errors
-/// The condition that could not be proved.
+/// The [`Reason`]: the condition that could not be proved.
 pub(super) fn cross<Sys: Variational + Impacting>(
     surfaces: &Surfaces<'_, '_, Sys>,
     strike: &Strike,
@@ -112,7 +113,7 @@ pub(super) fn cross<Sys: Variational + Impacting>(
 }
 
 impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
-    /// A length of time after which all motions have certainly passed.
+    /// Motion for a length of time after which all motions have certainly passed the surface.
     fn new(
         surfaces: &'s Surfaces<'f, 'a, Sys>,
         surface: usize,
@@ -186,7 +187,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         Some(approach)
     }
 
-    /// `Dphi q`: all changes of the states along a direction, at any time until `t_1`, and those of the gap.
+    /// `Dphi q`: enclosure of the derivatives of the states along a direction, at any time until `t_1`, and of that
+    /// of the gap.
     fn swept(&self, direction: &Bounds<Sys::State>) -> Option<(Bounds<Sys::State>, Interval)> {
         let (field, whole) = (self.surfaces.field, &self.whole);
         let hull = self.frame.hull();
@@ -202,7 +204,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         Some((column, gaps.as_slice()[self.surface].rate))
     }
 
-    /// The gap of all motions after so many units of time.
+    /// Enclosure of the gap of all motions after these units of time.
     fn gap(&self, units: Interval) -> Option<Interval> {
         let of_all = self.gap_of(&self.all, units)?;
         let of_centre = self.gap_of(&self.centre, units)?;
@@ -217,14 +219,14 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         (!gap.is_whole()).then_some(gap)
     }
 
-    /// The rate of the gap on a part of the time.
+    /// Enclosure of the rate of the gap on a part of the time.
     fn rate_in(&self, units: Interval) -> Option<Interval> {
         let part = self.all.part(units)?;
         let rate = self.surfaces.field.gaps(&part)?.as_slice()[self.surface].rate * self.unit;
         rate.intersection(self.rate)
     }
 
-    /// Narrows the units of time in which a gap vanishes (Newton's method over intervals).
+    /// Narrows the units of time in which a gap vanishes (interval Newton iteration).
     fn narrowed(
         &self,
         mut units: Interval,
@@ -243,7 +245,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         Some(units)
     }
 
-    /// Where and when all motions meet the surface.
+    /// Enclosures of the times and states at which the motions meet the surface.
     fn meeting(&self) -> Result<Meeting<Sys>, Reason> {
         let surface = self.surface;
         let meeting = self.find_meeting();
@@ -289,7 +291,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         passed.map_err(|(other, reason)| together(surface, other, reason))
     }
 
-    /// Applies the law, and goes on to a time after all impacts.
+    /// Applies the law, and continues to a time after all impacts.
     fn struck(
         &self,
         strike: &Strike,
@@ -330,7 +332,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             true => {
                 let system = self.surfaces.field.system;
                 let mut sides = PerSurface::all(&system.zero_gaps(), Side::Unknown);
-                // The state stays the same, at the surface of both.
+                // The state is unchanged, on the surface of both transitions.
                 if let Some(back) = system.opposite(surface) {
                     sides[back] = Side::Above;
                 }
@@ -383,7 +385,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         })
     }
 
-    /// Changes of the state after the law along a direction from `t_0`, and of the time.
+    /// Derivatives of the state after the law along a direction from `t_0`, and of the time.
     fn struck_along(
         &self,
         strike: &Strike,
@@ -400,10 +402,10 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         Some((after, delay))
     }
 
-    /// The impact of the centre, and where it is when `rest` units of time have passed from `t_0`.
+    /// The impact of the centre, and its state `rest` units of time after `t_0`.
     ///
-    /// All of this is a function of the time `tau` and of the state `x` there. It is evaluated at one time and one state, and its derivatives by
-    /// both enclose what it differs by elsewhere.
+    /// The result is a function of the time `tau` and of the state `x` there. It is evaluated at one time and one
+    /// state; its derivatives by both enclose the difference elsewhere.
     fn struck_centre(
         &self,
         strike: &Strike,
@@ -464,7 +466,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         })
     }
 
-    /// Whether the law is a map; refuses one that a run in doubles refuses at the centre.
+    /// Returns true if the law is a map. Refuses a map that a run in doubles refuses at the centre.
     fn check_map(&self, strike: &Strike, meeting: &Meeting<Sys>) -> Result<bool, Reason> {
         let (surface, field) = (self.surface, self.surfaces.field);
         let is_map = strike.law(field.system, field.parameters()).is_map();
@@ -480,7 +482,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         Ok(is_map)
     }
 
-    /// The law over a box.
+    /// Enclosure of the law's result over a box.
     fn applied(
         &self,
         strike: &Strike,
@@ -493,7 +495,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         after.is_finite().then_some(after)
     }
 
-    /// Changes of the state along an axis where the surface is met.
+    /// Derivatives of the state at the surface along an axis.
     fn met_along(
         &self,
         meeting: &Meeting<Sys>,
@@ -507,7 +509,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
     }
 }
 
-/// Changes of the state after the law along a change of the state before it and of the time.
+/// Derivative of the state after the law along a change of the state before it and of the time.
 fn applied_along<Sys: Variational + Impacting>(
     field: &Field<'_, Sys>,
     strike: &Strike,
@@ -526,13 +528,13 @@ fn applied_along<Sys: Variational + Impacting>(
     changes.is_finite().then_some(changes)
 }
 
-/// What is left of some units of time after others, which are less.
+/// The difference `rest - units`, with negative values cut off at 0.
 fn ahead(rest: Interval, units: Interval) -> Interval {
     let rest = rest - units;
     Interval::new(rest.lo.max(0.0), rest.hi.max(0.0))
 }
 
-/// The gap of a surface and its rate at a time.
+/// Enclosures of the gap of a surface and of its rate at a time.
 fn gap_now<Sys: Variational + Impacting>(
     surfaces: &Surfaces<'_, '_, Sys>,
     surface: usize,

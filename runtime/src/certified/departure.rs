@@ -1,4 +1,4 @@
-//! Motion of a box of states after an impact, and changes of states that are carried along.
+//! Motion of a box of states after an impact, and propagation of derivatives along it.
 
 use super::course::{Course, Sides, Surfaces};
 use super::frame::Bounds;
@@ -7,17 +7,17 @@ use super::series::{Arc, Field};
 use crate::contract::{Impacting, Variational};
 use crate::numbers::{Interval, Rated, Row};
 
-/// Order of the series about an impact.
+/// Order of the series near an impact.
 pub(super) const ORDER: usize = 8;
 
-/// Motion from an impact, at whatever time it comes, to one time after it.
+/// Motion from an impact, at any of its possible times, to one time after it.
 pub(super) struct Departure<'f, 'a, Sys: Variational + Impacting> {
     pub(super) surfaces: &'f Surfaces<'f, 'a, Sys>,
     pub(super) surface: usize,
-    /// All times of the impact.
+    /// Enclosure of the time of the impact.
     pub(super) times: Interval,
     pub(super) unit: Interval,
-    /// All lengths of time from it, in units.
+    /// Enclosure of the length of time from it, in units.
     pub(super) rest: Interval,
 }
 
@@ -50,7 +50,7 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
         Ok(Departed { tube, rates, sides })
     }
 
-    /// Changes of the state at the time after all impacts, from those where the surface is met.
+    /// Derivatives of the state at the time after all impacts, from those at the surface.
     pub(super) fn carried(
         &self,
         departed: &Departed<Sys>,
@@ -67,7 +67,8 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
     }
 }
 
-/// All changes of the states along directions after so many units of time, from all states of a box with a tube.
+/// Enclosure of the derivatives of the states along directions after these units of time, over all states of a box
+/// with a tube.
 pub(super) fn carried<Sys: Variational>(
     field: &Field<'_, Sys>,
     [from, tube, along]: [&Bounds<Sys::State>; 3],

@@ -1,13 +1,14 @@
 //! Steps of certified motion.
 //!
-//! A step from the set `Y = y + Q r` takes a tube `B` that holds every motion from `Y` until the end of the step, since
-//! `Y + [0, h] f([t, t + h], B)` lies inside `B`. Then
+//! A step from the set `Y = y + Q r` uses a tube `B` that contains every motion from `Y` until the end of the step,
+//! because `Y + [0, h] f([t, t + h], B)` lies inside `B`. Then
 //!
 //! ```text
 //! y(t + h) is in  sum_(k<p) h^k c_k(y)  +  h^p c_p(B)  +  J(Y) (Y - y)
 //! ```
 //!
-//! with the Taylor coefficients `c_k` of the motion over intervals, and `J` the derivative of the sum by the start, over all of `Y`.
+//! with the Taylor coefficients `c_k` of the motion over intervals, and `J` the derivative of the sum by the start,
+//! over all of `Y`.
 
 use super::frame::{BLOCKS, Bounds, Frame, Matrix, Turned};
 use super::lost::{Lost, Reason};
@@ -20,15 +21,15 @@ use crate::math;
 use crate::numbers::{Interval, Numbers, Row};
 use crate::state::StateVector;
 
-/// Order of the series: remainders fall with its powers, work grows with its square.
+/// Order of the series: remainders decrease with its powers, work grows with its square.
 pub(super) const ORDER: usize = 18;
 
 const _: () = assert!(ORDER < LENGTH);
 
-/// The remainder of a step is to be about this part of the state, unless told otherwise.
+/// Default size of a step's remainder, relative to the state.
 const REMAINDER: f64 = f64::EPSILON;
 
-/// The same beside a box, in parts of its width.
+/// Allowed size of the remainder relative to the width of the box.
 const SHARE: f64 = 1.0 / 1024.0;
 
 /// Factors between a step and the next.
@@ -39,7 +40,7 @@ const SAFETY: f64 = 0.9;
 /// The centre at the end of a step.
 struct Moved<S> {
     bounds: Bounds<S>,
-    /// The largest remainder over what it may be.
+    /// The largest remainder divided by the allowed one.
     excess: f64,
 }
 
@@ -49,19 +50,19 @@ pub(super) struct Step<Sys: Variational> {
     pub(super) later: f64,
     /// Its length.
     pub(super) length: Interval,
-    /// A box that holds the motion until then.
+    /// A box that contains the motion during the step.
     pub(super) tube: Bounds<Sys::State>,
     frame: Frame<Sys>,
     next: f64,
 }
 
-/// A box of states that is followed through time.
+/// A box of states that is propagated through time: encloses the states of all its motions.
 pub struct CertifiedFlow<'a, Sys: Variational> {
     pub(super) field: Field<'a, Sys>,
     pub(super) t: f64,
     pub(super) frame: Frame<Sys>,
     remainder: f64,
-    /// The length to try next; `None` before the first step.
+    /// Length of the next trial; `None` before the first step.
     next: Option<f64>,
     steps: u64,
 }
@@ -92,22 +93,23 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         }
     }
 
-    /// With steps whose remainder is about this part of the state, which is positive: enclosures are as much wider, and steps longer.
+    /// Sets the remainder of a step to about this positive fraction of the state: larger values give longer steps and
+    /// wider enclosures.
     #[must_use]
     pub fn with_remainder(mut self, part: f64) -> Self {
         self.remainder = part;
         self
     }
 
-    /// With all values in a range for the parameter `index`, in the order of [`TaylorField::parameters`](crate::TaylorField::parameters);
-    /// one past the end changes nothing. The box holds the motions of all of them.
+    /// Sets the parameter `index`, in the order of [`TaylorField::parameters`](crate::TaylorField::parameters), to a
+    /// range; an index past the end changes nothing. The box then encloses the motions for every value in the range.
     #[must_use]
     pub fn with_parameter(mut self, index: usize, range: Interval) -> Self {
         self.field.set_parameter(index, range);
         self
     }
 
-    /// The time that was reached.
+    /// The present time.
     pub fn t(&self) -> f64 {
         self.t
     }
@@ -117,7 +119,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         self.steps
     }
 
-    /// All values that component `i` of the state may have now.
+    /// Enclosure of component `i` of the present state.
     pub fn component(&self, i: usize) -> Interval {
         self.frame.hull().at(i)
     }
@@ -127,10 +129,10 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         self.frame.hull().width()
     }
 
-    /// All positions and velocities that the state may have now: coordinate `i` and its rate.
+    /// Enclosures of the present positions and velocities: coordinate `i` with its rate.
     ///
     /// # Errors
-    /// [`Fault`] where a velocity may not exist.
+    /// A [`Fault`] where a velocity may not exist.
     pub fn velocities(&self) -> Result<Sys::Configuration<Interval>, Fault> {
         let hull = self.frame.hull();
         self.field.system.velocities(
@@ -140,10 +142,10 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         )
     }
 
-    /// Follows the motion to the time `t_end`.
+    /// Propagates the box to the time `t_end`.
     ///
     /// # Errors
-    /// [`Lost`] where no box is found that holds it; the state is that of the time it was lost at.
+    /// [`Lost`] if no box is found that contains the motion; the state is then that at the time of the loss.
     pub fn run(&mut self, t_end: f64) -> Result<(), Lost> {
         while self.t < t_end {
             let step = self.prepare(t_end)?;
@@ -152,7 +154,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         Ok(())
     }
 
-    /// A step, no further than `t_end`, which is later.
+    /// Prepares a step that ends at `t_end` or before; `t_end` is later than the present time.
     pub(super) fn prepare(&self, t_end: f64) -> Result<Step<Sys>, Lost> {
         let lost = |reason| Lost { t: self.t, reason };
         let hull = self.frame.hull();
@@ -192,7 +194,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
                         length,
                         tube,
                         frame,
-                        // A step that was cut says nothing of longer ones.
+                        // A step that was cut gives no information on longer ones.
                         next: if is_cut { wished.max(longest) } else { longest },
                     });
                 }
@@ -201,13 +203,13 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         }
     }
 
-    /// Makes a step that was prepared here.
+    /// Makes a step prepared from the present state.
     pub(super) fn make(&mut self, step: &Step<Sys>) {
         (self.frame, self.t, self.next) = (step.frame, step.later, Some(step.next));
         self.steps += 1;
     }
 
-    /// Goes on with other states at a later time.
+    /// Replaces time and states; the time is later.
     pub(super) fn jump(&mut self, t: f64, frame: Frame<Sys>) {
         (self.frame, self.t) = (frame, t);
     }
@@ -230,15 +232,15 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         (reach > 0.0).then_some(reach)
     }
 
-    /// A box that holds every motion from the hull until the end of a step.
+    /// A box that contains every motion from the hull until the end of a step.
     fn tube(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Bounds<Sys::State>> {
         let during = Interval::new(0.0, length.hi);
         let times = Interval::point(self.t) + during;
         self.field.tube(hull, times, during)
     }
 
-    /// Where the centre is at the end of a step, with the remainder. That may be as wide as rounding makes the state, or a small part of
-    /// what the box is wide.
+    /// The centre at the end of a step, with the remainder. The allowed remainder is the rounding of the state, or a
+    /// small fraction of the width of the box.
     fn moved(&self, tube: &Bounds<Sys::State>, length: Interval) -> Option<Moved<Sys::State>> {
         let now = Interval::point(self.t);
         let point = Bounds::point(&self.frame.centre);
@@ -260,7 +262,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         bounds.is_finite().then_some(Moved { bounds, excess })
     }
 
-    /// The derivatives of the sum of a step by its start, all over the hull, along the axes of the frame.
+    /// Enclosures of the derivatives of a step's sum by its start, over the hull, along the axes of the frame.
     fn turned(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Turned<Sys>> {
         let now = Interval::point(self.t);
         let n = hull.count();

@@ -1,15 +1,16 @@
-//! A set of states `centre + C r_0 + Q r`: a box `r_0` whose axes `C` are carried with the motion, and a box `r` in a frame `Q` that is
-//! orthonormal up to rounding.
+//! A set of states `centre + C r_0 + Q r`: a box `r_0` whose axes `C` are propagated with the motion, and a box `r`
+//! in a frame `Q` that is orthonormal up to rounding.
 //!
-//! The first box is the set as it once was, mapped without any loss. The second one takes in all that steps add, and is turned
-//! (QR), so that boxes in boxes do not grow by themselves. Where it becomes as large as the first, both are put into one.
+//! The first box is the set at an earlier time, mapped without loss. The second one contains the errors that steps
+//! add, and is rotated (QR) against the wrapping effect. When it becomes as large as the first, both are joined into
+//! one.
 
 use crate::contract::{Variational, VectorField};
 use crate::math;
 use crate::numbers::{Interval, Numbers};
 use crate::state::{StateVector, scaled};
 
-/// A box by its ends.
+/// A box given by its bounds.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds<S> {
     pub(super) lo: S,
@@ -17,7 +18,7 @@ pub(super) struct Bounds<S> {
 }
 
 impl<S: StateVector> Bounds<S> {
-    /// One point.
+    /// A box that contains one point.
     pub(super) fn point(point: &S) -> Self {
         Self {
             lo: *point,
@@ -48,7 +49,7 @@ impl<S: StateVector> Bounds<S> {
         self.hi.as_mut_slice()[i] = range.hi;
     }
 
-    /// The point in the middle.
+    /// The midpoint.
     pub(super) fn middle(&self) -> S {
         let mut middle = self.lo.zeroed();
         for (i, entry) in middle.as_mut_slice().iter_mut().enumerate() {
@@ -62,7 +63,7 @@ impl<S: StateVector> Bounds<S> {
         (0..self.count()).fold(0.0, |most, i| most.max(self.at(i).width()))
     }
 
-    /// What both boxes contain; the other one where they do not meet.
+    /// Intersection of both boxes; `other` if they are disjoint.
     pub(super) fn within(&self, other: &Self) -> Self {
         Self::of(self.count(), |i| {
             self.at(i).intersection(other.at(i)).unwrap_or(other.at(i))
@@ -74,7 +75,7 @@ impl<S: StateVector> Bounds<S> {
     }
 }
 
-/// The columns of a square matrix of zeros, and of what there is room for besides.
+/// The columns of a zero matrix with `n` rows, in storage of full capacity.
 pub(super) fn columns<Sys: Variational>(n: usize) -> Sys::Columns {
     let mut columns = Sys::columns();
     columns.as_mut().fill(Sys::State::zeros(n));
@@ -90,7 +91,7 @@ pub(super) fn identity<Sys: Variational>(n: usize) -> Sys::Columns {
     identity
 }
 
-/// A matrix of intervals by its columns.
+/// A matrix of intervals, stored by columns.
 pub(super) struct Matrix<Sys: Variational> {
     lo: Sys::Columns,
     hi: Sys::Columns,
@@ -105,12 +106,12 @@ impl<Sys: Variational> Clone for Matrix<Sys> {
 impl<Sys: Variational> Copy for Matrix<Sys> {}
 
 impl<Sys: Variational> Matrix<Sys> {
-    /// As many rows and columns of zeros.
+    /// A zero matrix.
     pub(super) fn zero(n: usize) -> Self {
         Self::of(&columns::<Sys>(n))
     }
 
-    /// The number of rows, and of columns.
+    /// Number of rows, equal to that of columns.
     pub(super) fn count(&self) -> usize {
         self.lo.as_ref().first().map_or(0, StateVector::count)
     }
@@ -125,7 +126,7 @@ impl<Sys: Variational> Matrix<Sys> {
         self.hi.as_mut()[j].as_mut_slice()[i] = range.hi;
     }
 
-    /// A matrix of numbers.
+    /// A matrix of point intervals.
     pub(super) fn of(columns: &Sys::Columns) -> Self {
         Self {
             lo: *columns,
@@ -133,7 +134,7 @@ impl<Sys: Variational> Matrix<Sys> {
         }
     }
 
-    /// Numbers in the middle of its entries.
+    /// Midpoints of the entries.
     pub(super) fn middle(&self) -> Sys::Columns {
         let n = self.count();
         let mut middle = columns::<Sys>(n);
@@ -180,7 +181,7 @@ impl<Sys: Variational> Clone for Block<Sys> {
 impl<Sys: Variational> Copy for Block<Sys> {}
 
 impl<Sys: Variational> Block<Sys> {
-    /// Nothing, in the axes of the state.
+    /// A box of size 0, in the axes of the state.
     fn none(n: usize) -> Self {
         Self {
             axes: identity::<Sys>(n),
@@ -188,12 +189,12 @@ impl<Sys: Variational> Block<Sys> {
         }
     }
 
-    /// The axes, by number.
+    /// The axes, with their indices.
     fn axes(&self) -> impl Iterator<Item = (usize, &Sys::State)> {
         self.axes.as_ref()[..self.rest.count()].iter().enumerate()
     }
 
-    /// The square of half its diagonal, if its edges are normal to each other.
+    /// Square of half its diagonal, if its edges are orthogonal.
     fn size(&self) -> f64 {
         self.axes().fold(0.0, |sum, (k, axis)| {
             let reach = self.rest.at(k).magnitude();
@@ -202,10 +203,10 @@ impl<Sys: Variational> Block<Sys> {
     }
 }
 
-/// Blocks of a frame.
+/// Number of blocks of a frame.
 pub(super) const BLOCKS: usize = 2;
 
-/// Derivatives along all axes of a frame, block by block; of axes that the set has no part of they need not be known.
+/// Derivatives along all axes of a frame, block by block. Those along axes of extent 0 may be unknown.
 pub(super) type Turned<Sys> = [Matrix<Sys>; BLOCKS];
 
 /// One number for each axis of a frame.
@@ -249,7 +250,7 @@ impl<Sys: Variational> Frame<Sys> {
         })
     }
 
-    /// The axes that the set has a part of: block, number and axis.
+    /// The axes along which the set has an extent: block, index and axis.
     pub(super) fn axes(&self) -> impl Iterator<Item = (usize, usize, Bounds<Sys::State>)> + '_ {
         let blocks = self.blocks.iter().enumerate();
         blocks.flat_map(|(b, block)| {
@@ -260,14 +261,15 @@ impl<Sys: Variational> Frame<Sys> {
         })
     }
 
-    /// All that a function with these derivatives along the axes differs by from its value at the centre.
+    /// Enclosure of the difference between a function on the set and its value at the centre, from its derivatives
+    /// along the axes.
     pub(super) fn along(&self, slopes: impl Fn(usize, usize) -> Interval) -> Interval {
         self.axes().fold(Interval::ZERO, |sum, (block, k, _)| {
             sum + slopes(block, k) * self.blocks[block].rest.at(k)
         })
     }
 
-    /// The set that the map `centre -> moved`, with derivatives in `turned` all over the hull, makes of this one.
+    /// Image of the set under the map `centre -> moved`, whose derivatives over the hull lie in `turned`.
     pub(super) fn moved(&self, moved: &Bounds<Sys::State>, turned: &Turned<Sys>) -> Self {
         let (centre, n) = (moved.middle(), moved.count());
         let [first, second] = &self.blocks;
@@ -301,7 +303,7 @@ impl<Sys: Variational> Frame<Sys> {
     }
 }
 
-/// Both blocks in one.
+/// Joins both blocks into one.
 fn joined<Sys: Variational>(first: &Block<Sys>, second: &Block<Sys>) -> Block<Sys> {
     let axes = orthonormal(first.rest.count(), &[first, second]);
     let [one, other] = [first, second].map(|block| Matrix::<Sys>::of(&block.axes));
@@ -325,8 +327,8 @@ pub(super) fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Mat
     product
 }
 
-/// Orthonormal axes along the edges of boxes: at each turn along the edge that reaches furthest beyond those before it (modified
-/// Gram-Schmidt, twice).
+/// Orthonormal axes along the edges of boxes: each along the edge that extends furthest beyond the axes before it
+/// (modified Gram-Schmidt, applied twice).
 fn orthonormal<Sys: Variational>(n: usize, blocks: &[&Block<Sys>]) -> Sys::Columns {
     let mut axes = columns::<Sys>(n);
     for j in 0..n {
@@ -340,7 +342,8 @@ fn orthonormal<Sys: Variational>(n: usize, blocks: &[&Block<Sys>]) -> Sys::Colum
                     before.iter().for_each(|axis| remove(axis, &mut edge));
                 }
                 let left = length(&edge);
-                // What is left of an edge along the others may be rounding, which points anywhere.
+                // The remainder of an edge after projection on the other axes may be rounding in an arbitrary
+                // direction.
                 if left > longest.0 && left > 1e-12 * whole {
                     longest = (left, edge);
                 }
@@ -355,7 +358,7 @@ fn orthonormal<Sys: Variational>(n: usize, blocks: &[&Block<Sys>]) -> Sys::Colum
     axes
 }
 
-/// An axis normal to the first `count`: the axis of the state of which most is left.
+/// An axis orthogonal to the first `count`: the axis of the state with the largest remainder.
 fn another<Sys: Variational>(n: usize, axes: &Sys::Columns, count: usize) -> Sys::State {
     let mut best = (0.0, Sys::State::zeros(n));
     for i in 0..n {
@@ -392,10 +395,11 @@ fn remove<S: StateVector>(axis: &S, from: &mut S) {
     }
 }
 
-/// A box that contains `Q^-1 (A_1 r_1 + .. + s)` for axes `Q` that are orthonormal up to rounding; of no bounds where they are not.
+/// A box that contains `Q^-1 (A_1 r_1 + .. + s)` for axes `Q` that are orthonormal up to rounding; unbounded if they
+/// are not.
 ///
-/// With `E = I - Q^T Q`, `w = Q^-1 v` is the fixed point of `w -> Q^T v + E w`, and lies in every box that this maps into itself if the
-/// norm of `E` is less than 1.
+/// With `E = I - Q^T Q`, `w = Q^-1 v` is the fixed point of `w -> Q^T v + E w`. If the norm of `E` is less than 1, it
+/// lies in every box that this function maps into itself.
 fn components<Sys: Variational>(
     axes: &Sys::Columns,
     parts: &[(&Matrix<Sys>, &Bounds<Sys::State>)],

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// The motion is not certified any further.
+/// The end of certified motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lost {
     /// The time up to which the motion is certified.
@@ -11,17 +11,18 @@ pub struct Lost {
     pub reason: Reason,
 }
 
-/// A condition that could not be proved of all motions of a box.
+/// A condition that could not be proved for all motions of a box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Reason {
-    /// No box was found that holds the motion for the shortest step: it may end, or its rate may not exist.
+    /// No box was found that contains the motion even for the shortest step: the motion may end, or its rate may not
+    /// exist.
     NoTube,
     /// The system has no kernels over intervals: its form was compiled without them.
     NotDerived,
-    /// The box has no finite ends any more.
+    /// The box has no finite bounds any more.
     NotFinite,
-    /// The surface may be met at a gap rate of 0, more than once, or by a part of the motions alone.
+    /// The surface may be met at gap rate 0, more than once, or by only some of the motions.
     MayGraze {
         /// The surface.
         surface: usize,
@@ -33,22 +34,24 @@ pub enum Reason {
         /// The other one.
         other: usize,
     },
-    /// The conditions of a surface may hold or not where its gap may be 0.
+    /// The conditions of a surface are not certain where its gap may be 0.
     UnsureCondition {
         /// The surface.
         surface: usize,
     },
-    /// The motion may be behind a surface that counts, or at it and approaching.
+    /// The motion may be behind a surface that counts, or on it and approaching.
     MayBeBehind {
         /// The surface.
         surface: usize,
     },
-    /// The gap may not rise after the impact: the motion may stay at the surface, or the law may leave it approaching.
+    /// The gap may not rise after the impact: the motion may stay on the surface, or the law may leave it
+    /// approaching.
     MayStay {
         /// The surface.
         surface: usize,
     },
-    /// The law of the surface is not known over intervals, is not the same for all motions, or has no finite result.
+    /// The law of the surface is not available over intervals, is not the same for all motions, or has no finite
+    /// result.
     UnsureLaw {
         /// The surface.
         surface: usize,
@@ -60,7 +63,7 @@ pub enum Reason {
     },
     /// The box has states of several modes.
     SeveralModes,
-    /// The end of the time asked for may lie before an impact or after it.
+    /// The requested end of the run may lie before an impact or after it.
     EndsAtImpact {
         /// The surface.
         surface: usize,

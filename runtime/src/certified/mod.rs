@@ -1,19 +1,20 @@
-//! Certified motion: boxes that contain the state at every end of a step and after every impact, whatever rounding and truncation do.
+//! Certified motion: boxes that provably contain the state at the end of every step and after every impact, including
+//! rounding and truncation errors.
 //!
 //! | file | job |
 //! |---|---|
-//! | `flow.rs` | steps: a tube that holds the motion, its Taylor series with remainder, the derivative by the start |
-//! | `frame.rs` | a box that is turned with the motion (QR), so that boxes in boxes do not grow by themselves |
+//! | `flow.rs` | steps: a tube that contains the motion, its Taylor series with remainder, the derivative by the start |
+//! | `frame.rs` | a box that is rotated with the motion (QR), against the wrapping effect |
 //! | `series.rs` | tubes, and series with remainder, of motions and of their derivatives |
-//! | `course.rs` | gaps along a step: which surfaces are certainly not met |
-//! | `crossing.rs` | the impact of all motions of a box: when, where, and the states at one time after it |
-//! | `departure.rs` | the motions after it, and changes of states along them |
-//! | `run.rs` | smooth motion and impacts by turns |
-//! | `orbit.rs` | periodic orbits that exist and attract by proof |
-//! | `lost.rs` | where certified motion ends, and why |
+//! | `course.rs` | gaps along a step: surfaces that are certainly not met |
+//! | `crossing.rs` | the impact of all motions of a box: times, places, and the states at one time after it |
+//! | `departure.rs` | the motions after it, and derivatives of states along them |
+//! | `run.rs` | smooth motion and impacts in turn |
+//! | `orbit.rs` | proofs that periodic orbits exist and attract |
+//! | `lost.rs` | end of certified motion, and its reason |
 //!
-//! What is certified is the motion by the equations, the surfaces and the laws of the model, with the doubles of its parameters or with
-//! ranges about them. Intervals of coordinates (charts) are not looked at, and nothing is held at a surface.
+//! The certificate is for the motion of the model's equations, surfaces and laws, with its parameters as doubles or
+//! in ranges about them. Intervals of coordinates (charts) are not checked, and no surface holds the motion.
 //!
 //! References: R. J. Lohner, *Computation of guaranteed enclosures for the solutions of ordinary initial and boundary value problems*,
 //! in Computational Ordinary Differential Equations (1992); N. S. Nedialkov, K. R. Jackson, G. F. Corliss, *Validated solutions of

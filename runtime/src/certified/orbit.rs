@@ -1,15 +1,16 @@
-//! Periodic orbits that exist by proof: fixed points of the map from one impact to a later one.
+//! Proofs of periodic orbits: fixed points of the map from one impact to a later one.
 //!
-//! `F` maps the state after an impact on a surface to that after a later one. For a box `Z` about a point `z`, with `Y` near
-//! `(DF(z) - I)^-1`,
+//! `F` maps the state after an impact on a surface to the state after a later one. For a box `Z` about a point `z`,
+//! with `Y` near `(DF(z) - I)^-1`,
 //!
 //! ```text
 //! K = z - Y (F(z) - z) + (I - Y (DF(Z) - I)) (Z - z)
 //! ```
 //!
-//! If `K` lies inside `Z`, there is one fixed point in `Z`, and it lies in `K` (Krawczyk). `DF` is that in all directions of the state: along the
-//! motion it is 0, as all states of one motion have the same image. With an eigenvalue 1, as a conserved quantity or a
-//! coordinate that nothing depends on gives, nothing is proved.
+//! If `K` lies inside `Z`, there is exactly one fixed point in `Z`, and it lies in `K` (Krawczyk). `DF` is the
+//! derivative in all directions of the state: along the motion it is 0, as all states of one motion have the same
+//! image. The method fails for an eigenvalue 1, which a conserved quantity or a coordinate that nothing depends on
+//! causes.
 //!
 //! Reference: R. Krawczyk, *Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken*, Computing 4 (1969); R. E. Moore,
 //! R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 8.
@@ -25,16 +26,16 @@ use crate::numbers::{Interval, Numbers, Rated, Row};
 use crate::state::StateVector;
 use crate::variations::transition::Strike;
 
-/// Squarings of the derivative, for a bound of its eigenvalues.
+/// Number of squarings of the derivative, for a bound of its eigenvalues.
 const SQUARINGS: u32 = 8;
 
-/// Boxes that are tried: each is about the image of the last.
+/// Maximum number of trial boxes, each about the image of the last.
 const TRIALS: u32 = 4;
 
-/// Times that a proved orbit is enclosed anew, at most.
+/// Maximum number of refinements of a proved orbit.
 const REFINEMENTS: u32 = 8;
 
-/// A surface whose impacts are the section of an orbit.
+/// A surface whose impacts are the Poincare section of an orbit.
 ///
 /// ```
 /// use dalembert::certified::CertifiedSection;
@@ -64,29 +65,30 @@ pub struct CertifiedSection<'a, Sys: Variational + Impacting> {
     horizon: f64,
 }
 
-/// A periodic orbit that exists.
+/// A periodic orbit that provably exists.
 pub struct CertifiedOrbit<Sys: Variational> {
     point: Bounds<Sys::State>,
     derivative: Matrix<Sys>,
-    /// All values that the period may have.
+    /// Enclosure of the period.
     pub period: Interval,
-    /// A bound of the absolute values of all multipliers. Less than 1, the orbit attracts all motions that begin near it.
+    /// Bound of the absolute values of all Floquet multipliers. If it is less than 1, the orbit attracts all motions
+    /// that begin near it.
     pub largest_multiplier: f64,
 }
 
-/// Why no orbit is proved.
+/// Reason why no orbit is proved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum NotProved {
-    /// The motion from the box is not certified as far as the section.
+    /// The motion from the box is not certified up to the section.
     Lost(Lost),
-    /// The section is not met again within the time allowed.
+    /// The section is not met again within the allowed time.
     NotMet,
-    /// The motion, the surfaces or the laws may depend on time: no return is the beginning of the next.
+    /// The motion, the surfaces or the laws may depend on time, so the end of a return is not the start of the next.
     DependsOnTime,
     /// The map of the section may have an eigenvalue 1.
     Singular,
-    /// No box there is mapped into itself: they are too wide, or hold no orbit.
+    /// No trial box is mapped into itself: the boxes are too wide, or contain no orbit.
     NotContained,
 }
 
@@ -111,19 +113,20 @@ impl From<Lost> for NotProved {
 }
 
 impl<Sys: Variational> CertifiedOrbit<Sys> {
-    /// All values of component `i` of the orbit's state just after the impact on the section.
+    /// Enclosure of component `i` of the orbit's state just after the impact on the section.
     pub fn point(&self, i: usize) -> Interval {
         self.point.at(i)
     }
 
-    /// All values of the derivative of component `i` of the image by component `j` of the state, from one impact to the next.
+    /// Enclosure of the derivative of component `i` of the image by component `j` of the state, from one impact to
+    /// the next.
     pub fn derivative(&self, i: usize, j: usize) -> Interval {
         self.derivative.at(i, j)
     }
 }
 
 impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
-    /// The section at a surface. A return may take the time `horizon`.
+    /// The section at a surface. A return may take at most the time `horizon`.
     pub fn new(system: &'a Sys, surface: usize, horizon: f64) -> Self {
         Self {
             field: Field::new(system),
@@ -133,26 +136,26 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         }
     }
 
-    /// With so many returns, 1 or more, for one.
+    /// Counts this many returns, 1 or more, as one application of the map.
     #[must_use]
     pub fn with_returns(mut self, returns: u32) -> Self {
         self.returns = returns.max(1);
         self
     }
 
-    /// With all values in a range for a parameter: there is an orbit for each of them. As
-    /// [`CertifiedFlow::with_parameter`](super::CertifiedFlow::with_parameter) takes it.
+    /// Sets a parameter to a range, as [`CertifiedFlow::with_parameter`](super::CertifiedFlow::with_parameter): there
+    /// is an orbit for each value in it.
     #[must_use]
     pub fn with_parameter(mut self, index: usize, range: Interval) -> Self {
         self.field.set_parameter(index, range);
         self
     }
 
-    /// Proves that a periodic orbit leaves the section within `radius` of a state, in each component. The state is one just after an
-    /// impact, such as that of an [`Orbit`](crate::variations::Orbit).
+    /// Proves that a periodic orbit leaves the section within `radius` of a state, in each component. The state is
+    /// one just after an impact, for example that of an [`Orbit`](crate::variations::Orbit).
     ///
     /// # Errors
-    /// [`NotProved`].
+    /// [`NotProved`] with the condition that could not be proved.
     pub fn periodic(
         &self,
         near: &Sys::State,
@@ -187,7 +190,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         Err(NotProved::NotContained)
     }
 
-    /// An orbit with narrower enclosures: its point lies in the image of every box that contains it.
+    /// The orbit with narrower enclosures: its point lies in the image of every box that contains it.
     fn refined(&self, mut orbit: CertifiedOrbit<Sys>) -> CertifiedOrbit<Sys> {
         for _ in 0..REFINEMENTS {
             match self.contraction(&orbit.point) {
@@ -201,7 +204,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         orbit
     }
 
-    /// Krawczyk's image of a box, and the orbit that there is if the box contains it.
+    /// Krawczyk's image of a box, and the orbit, which exists if the box contains its image.
     fn contraction(
         &self,
         region: &Bounds<Sys::State>,
@@ -240,7 +243,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         Ok((image, orbit))
     }
 
-    /// The impact on the section that all motions from a box return with.
+    /// The impact on the section at the return of all motions from a box.
     fn returned(&self, from: &Bounds<Sys::State>) -> Result<CertifiedImpact<Sys>, NotProved> {
         let mut run = CertifiedRun::new(self.field.system, 0.0, |i| from.at(i)).with_derivative();
         run.set_field(&self.field);
@@ -259,7 +262,8 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         }
     }
 
-    /// False if neither rates nor gaps nor the law depend on time. What takes the time at all gets all times here, and all rates of it.
+    /// False if neither rates nor gaps nor the law depend on time. Every function of time is evaluated over all
+    /// times, with all its rates.
     fn depends_on_time(&self, impact: &CertifiedImpact<Sys>) -> bool {
         let surface = impact.surface;
         let times = Rated {
@@ -293,7 +297,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
     }
 }
 
-/// A bound of the absolute values of all eigenvalues of all matrices: the root of the norm of a power.
+/// Bound of the absolute values of the eigenvalues of every matrix in the enclosure: the root of the norm of a power.
 fn spectral_bound<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
     let mut power = *matrix;
     let mut bound = norm(&power);
@@ -303,7 +307,7 @@ fn spectral_bound<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
         exponent *= 2.0;
         let norm = Interval::point(norm(&power));
         let root = Numbers::powf(norm, 1.0 / exponent).hi;
-        // Not a comparison that NaN passes.
+        // Written so that NaN fails the comparison.
         if root < bound {
             bound = root;
         }
@@ -320,10 +324,10 @@ fn norm<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
     })
 }
 
-/// The inverse of a matrix by its columns, as far as rounding lets it (Gauss and Jordan, with pivots by columns).
+/// Approximate inverse of a matrix, stored by columns (Gauss-Jordan elimination with column pivots).
 fn inverted<Sys: Variational>(n: usize, mut columns: Sys::Columns) -> Option<Sys::Columns> {
     let mut inverse = identity::<Sys>(n);
-    // Columns are combined until the matrix is the identity: what that does to the identity is the inverse.
+    // Columns are combined until the matrix is the identity; the same operations turn the identity into the inverse.
     for row in 0..n {
         let size = |j: usize, columns: &Sys::Columns| columns.as_ref()[j].as_slice()[row].abs();
         let pivot = (row..n).fold(row, |best, j| {

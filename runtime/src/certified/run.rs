@@ -1,4 +1,4 @@
-//! Certified runs: smooth motion and impacts by turns.
+//! Certified runs: smooth motion and impacts in turn.
 
 use core::ops::ControlFlow;
 
@@ -17,7 +17,7 @@ use crate::numbers::{Interval, Row};
 use crate::per_surface::PerSurface;
 use crate::variations::transition::Strike;
 
-/// How far before an impact it is approached: parts of a step, each tried after the last.
+/// Distances from an impact at which it is approached, as fractions of a step, tried in order.
 const MARGINS: [f64; 4] = [
     1.0 / (1_u64 << 40) as f64,
     1.0 / (1_u64 << 32) as f64,
@@ -25,35 +25,36 @@ const MARGINS: [f64; 4] = [
     1.0 / (1_u64 << 12) as f64,
 ];
 
-/// An impact that every motion of a box has.
+/// An impact of every motion of a box.
 pub struct CertifiedImpact<Sys: Variational> {
-    /// The surface, by its place in the declaration.
+    /// Index of the surface, in order of declaration.
     pub surface: usize,
-    /// All times of the impact.
+    /// Enclosure of the time of the impact.
     pub time: Interval,
     pub(super) before: Bounds<Sys::State>,
     pub(super) after: Bounds<Sys::State>,
-    /// All derivatives of the state after the impact by the start, where they are asked for.
+    /// Enclosure of the derivative of the state after the impact by the start, if requested.
     pub(super) derivative: Option<Matrix<Sys>>,
 }
 
 impl<Sys: Variational> CertifiedImpact<Sys> {
-    /// All values of component `i` of the state that arrives.
+    /// Enclosure of component `i` of the state before the impact.
     pub fn before(&self, i: usize) -> Interval {
         self.before.at(i)
     }
 
-    /// All values of component `i` of the state after the impact, at the time of the impact.
+    /// Enclosure of component `i` of the state after the impact, at the time of the impact.
     pub fn after(&self, i: usize) -> Interval {
         self.after.at(i)
     }
 }
 
-/// A box of states that is followed through time and impacts.
+/// A box of states that is propagated through time and impacts.
 ///
-/// Every surface is enclosed along every step. An impact is certified if every motion of the box meets the same surface once,
-/// transversally, and no other surface at about that time; then the declared law, or the one chosen for the run, is applied to all of
-/// them. What cannot be proved ends the run as [`Lost`], which says what that is.
+/// Every surface is enclosed along every step. An impact is certified if every motion of the box meets the same
+/// surface once, transversally, and no other surface at about the same time. The declared law, or the one chosen for
+/// the run, is then applied to all of them. A condition that cannot be proved ends the run as [`Lost`], which names
+/// it.
 ///
 /// ```
 /// use dalembert::certified::CertifiedRun;
@@ -90,7 +91,7 @@ pub struct CertifiedRun<'a, Sys: Variational + Impacting> {
 struct Progress<'a, Sys: Variational + Impacting> {
     flow: CertifiedFlow<'a, Sys>,
     sides: Sides<Sys>,
-    /// All derivatives by the start, where they are asked for.
+    /// Enclosure of the derivative by the start, if requested.
     derivative: Option<Matrix<Sys>>,
 }
 
@@ -105,7 +106,7 @@ impl<Sys: Variational + Impacting> Clone for Progress<'_, Sys> {
 }
 
 impl<Sys: Variational + Impacting> Progress<'_, Sys> {
-    /// A step, no further than `t_end`, in which all derivatives are held too.
+    /// Prepares a step that ends at `t_end` or before, including the derivative if requested.
     fn prepare(&self, t_end: f64) -> Result<Prepared<Sys>, Lost> {
         let (flow, mut t_end) = (&self.flow, t_end);
         loop {
@@ -126,7 +127,7 @@ impl<Sys: Variational + Impacting> Progress<'_, Sys> {
         }
     }
 
-    /// All derivatives at the end of a step.
+    /// Enclosure of the derivative at the end of a step.
     fn carried(&self, step: &Step<Sys>, derivative: &Matrix<Sys>) -> Option<Matrix<Sys>> {
         let flow = &self.flow;
         let (now, hull) = (Interval::point(flow.t), flow.frame.hull());
@@ -141,7 +142,7 @@ impl<Sys: Variational + Impacting> Progress<'_, Sys> {
         Some(later)
     }
 
-    /// Makes a step that was prepared here, at the end of which surfaces are on these sides.
+    /// Makes a step prepared from the present state; `sides` are the sides of the surfaces at its end.
     fn make(&mut self, prepared: &Prepared<Sys>, sides: Sides<Sys>) {
         self.derivative = prepared.derivative;
         self.flow.make(&prepared.step);
@@ -149,7 +150,7 @@ impl<Sys: Variational + Impacting> Progress<'_, Sys> {
     }
 }
 
-/// A step that can be made, with all derivatives at its end where they are asked for.
+/// A step that can be made, with the derivative at its end if requested.
 struct Prepared<Sys: Variational> {
     step: Step<Sys>,
     derivative: Option<Matrix<Sys>>,
@@ -171,28 +172,28 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         }
     }
 
-    /// With all values in a range for a parameter, as [`CertifiedFlow::with_parameter`] takes it.
+    /// Sets a parameter to a range; see [`CertifiedFlow::with_parameter`].
     #[must_use]
     pub fn with_parameter(mut self, index: usize, range: Interval) -> Self {
         self.progress.flow.field.set_parameter(index, range);
         self
     }
 
-    /// With steps as [`CertifiedFlow::with_remainder`] has them.
+    /// Sets the remainder of steps; see [`CertifiedFlow::with_remainder`].
     #[must_use]
     pub fn with_remainder(mut self, part: f64) -> Self {
         self.progress.flow = self.progress.flow.with_remainder(part);
         self
     }
 
-    /// With another law that is an impulse for a surface; one past the end changes nothing.
+    /// Replaces the law of a surface by another that is an impulse; a surface past the end changes nothing.
     #[must_use]
     pub fn with_law(mut self, surface: usize, law: Law) -> Self {
         self.laws.set(surface, Some(law));
         self
     }
 
-    /// The time that was reached.
+    /// The present time.
     pub fn t(&self) -> f64 {
         self.progress.flow.t
     }
@@ -202,12 +203,12 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         self.progress.flow.steps()
     }
 
-    /// Impacts so far.
+    /// Number of impacts so far.
     pub fn impacts(&self) -> u64 {
         self.impacts
     }
 
-    /// All values that component `i` of the state may have now.
+    /// Enclosure of component `i` of the present state.
     pub fn component(&self, i: usize) -> Interval {
         self.progress.flow.component(i)
     }
@@ -217,18 +218,19 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         self.progress.flow.width()
     }
 
-    /// All positions and velocities that the state may have now, as [`CertifiedFlow::velocities`] gives them.
+    /// Enclosures of the present positions and velocities; see [`CertifiedFlow::velocities`].
     ///
     /// # Errors
-    /// [`Fault`] where a velocity may not exist.
+    /// A [`Fault`] where a velocity may not exist.
     pub fn velocities(&self) -> Result<Sys::Configuration<Interval>, Fault> {
         self.progress.flow.velocities()
     }
 
-    /// Follows the motion to the time `t_end`, or until `observer` breaks after an impact.
+    /// Propagates the box to the time `t_end`, or until `observer` breaks after an impact.
     ///
     /// # Errors
-    /// [`Lost`]; the box is that of the time up to which the motion is certified.
+    /// [`Lost`] with the condition that could not be proved; the box is that at the time up to which the motion is
+    /// certified.
     pub fn run(
         &mut self,
         t_end: f64,
@@ -242,10 +244,10 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Ok(())
     }
 
-    /// Follows the motion to a time just after its next impact, or to the time `t_end` if there is none before.
+    /// Propagates the box to a time just after its next impact, or to the time `t_end` if there is none before.
     ///
     /// # Errors
-    /// As [`CertifiedRun::run`].
+    /// The errors of [`CertifiedRun::run`].
     pub fn next_impact(&mut self, t_end: f64) -> Result<Option<CertifiedImpact<Sys>>, Lost> {
         self.begin()?;
         while self.t() < t_end {
@@ -265,7 +267,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Ok(None)
     }
 
-    /// With all derivatives by the start; they are those at [`CertifiedRun::t`].
+    /// Also encloses the derivative by the start, at the time [`CertifiedRun::t`].
     pub(super) fn with_derivative(mut self) -> Self {
         let n = self.field().system.state_len();
         self.progress.derivative = Some(Matrix::of(&identity::<Sys>(n)));
@@ -280,7 +282,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         self.progress.flow.field = *field;
     }
 
-    /// At the start, surfaces at which the gap is exactly 0 are known to be left or entered.
+    /// Initial sides: at the start, surfaces whose gap is exactly 0 are known to be left or entered.
     fn begin(&mut self) -> Result<(), Lost> {
         if self.is_begun {
             return Ok(());
@@ -306,7 +308,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Ok(())
     }
 
-    /// What may be met in a step, or the sides of all surfaces at its end.
+    /// The surface that may be met in a step, or the sides of all surfaces at its end.
     fn watched(&self, progress: &Progress<'a, Sys>, step: &Step<Sys>) -> Result<Sides<Sys>, Met> {
         let flow = &progress.flow;
         let (now, hull) = (Interval::point(flow.t), flow.frame.hull());
@@ -332,7 +334,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Surfaces { field, passable }
     }
 
-    /// Crosses the surface that may be met in a step; `None` where the motion only went on to `t_end`.
+    /// Crosses the surface that may be met in a step; `None` if the motion only went on to `t_end`.
     fn meet(
         &mut self,
         step: &Step<Sys>,
@@ -369,7 +371,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Err(reason)
     }
 
-    /// The motion at a time before which nothing is met.
+    /// The motion at a time before which no surface is met.
     fn brought_to(&self, t: f64) -> Option<Progress<'a, Sys>> {
         let mut progress = self.progress.clone();
         while progress.flow.t < t {
@@ -380,7 +382,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Some(progress)
     }
 
-    /// The impact on a surface from the motion shortly before it, or on another that may be first.
+    /// The impact on a surface from the motion shortly before it, or on another surface that may be first.
     fn crossed(
         &self,
         near: &Progress<'a, Sys>,
@@ -412,7 +414,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         }
     }
 
-    /// The law chosen for a surface, if there is one. A map is not to be chosen.
+    /// The law chosen for a surface, if there is one. A map must not be chosen.
     fn chosen(&self, surface: usize) -> Result<Option<Law>, Reason> {
         let declared = self.field().system.law(surface);
         match self
@@ -426,7 +428,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         }
     }
 
-    /// Goes on after an impact, if it is certainly not after `t_end`.
+    /// Continues after an impact, if it is certainly not after `t_end`.
     fn take(
         &mut self,
         near: Progress<'a, Sys>,
@@ -436,7 +438,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     ) -> Result<Option<CertifiedImpact<Sys>>, Reason> {
         self.progress = near;
         if crossed.time.lo > t_end {
-            // Until then no surface is met.
+            // No surface is met until then.
             while self.t() < t_end {
                 let prepared = self.progress.prepare(t_end);
                 let prepared = prepared.map_err(|lost| lost.reason)?;

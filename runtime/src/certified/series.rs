@@ -1,13 +1,13 @@
-//! Taylor series of all motions of a box and of their derivatives, with remainder.
+//! Taylor series with remainder of all motions of a box, and of their derivatives.
 //!
-//! A motion `y` that stays in a tube `B` for the time `h` is, with the Taylor coefficients `c_k`,
+//! A motion `y` that stays in a tube `B` for the time `h` satisfies, with the Taylor coefficients `c_k`,
 //!
 //! ```text
 //! y(t + s) is in  sum_(k<p) s^k c_k(y(t))  +  s^p c_p(B),   0 <= s <= h
 //! ```
 //!
-//! Over [`Rated`] numbers the same holds of the derivative along a direction: its tube is found in the same way, for the equation of
-//! variations.
+//! Over [`Rated`] numbers the same holds for the derivative along a direction; its tube is found in the same way,
+//! from the variational equation.
 
 use super::frame::Bounds;
 use super::lost::Reason;
@@ -18,13 +18,13 @@ use crate::jet::LENGTH;
 use crate::numbers::{Interval, Numbers, Rated, Row};
 use crate::state::StateVector;
 
-/// Trials to find a tube.
+/// Maximum number of trials for a tube.
 const TRIALS: u32 = 6;
 
-/// Parts that a tube is made larger by than its last trial.
+/// Relative enlargement of a tube beyond its last trial.
 const ROOM: f64 = 0.1;
 
-/// A system with all parameters of a box.
+/// A system with boxes of parameters.
 pub(super) struct Field<'a, Sys: Variational> {
     pub(super) system: &'a Sys,
     parameters: Sys::Parameters<Interval>,
@@ -39,7 +39,7 @@ impl<Sys: Variational> Clone for Field<'_, Sys> {
 impl<Sys: Variational> Copy for Field<'_, Sys> {}
 
 impl<'a, Sys: Variational> Field<'a, Sys> {
-    /// A system with its own parameters.
+    /// The system with its own parameters.
     pub(super) fn new(system: &'a Sys) -> Self {
         let values = system.parameters();
         let mut parameters = Sys::Parameters::<Interval>::zeros(values.as_slice().len());
@@ -49,7 +49,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         Self { system, parameters }
     }
 
-    /// Puts a range in place of a parameter; one past the end changes nothing.
+    /// Replaces a parameter by a range; an index past the end changes nothing.
     pub(super) fn set_parameter(&mut self, index: usize, range: Interval) {
         if let Some(parameter) = self.parameters.as_mut_slice().get_mut(index) {
             *parameter = range;
@@ -60,7 +60,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         &self.parameters
     }
 
-    /// The parameters, which no direction changes.
+    /// The parameters, with derivative 0 along every direction.
     pub(super) fn steady_parameters(&self) -> Sys::Parameters<Rated> {
         let values = self.parameters.as_slice();
         let mut parameters = Sys::Parameters::<Rated>::zeros(values.len());
@@ -70,7 +70,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         parameters
     }
 
-    /// All rates in a box.
+    /// Enclosure of the rates in a box.
     pub(super) fn rates(
         &self,
         times: Interval,
@@ -84,7 +84,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         rates.is_finite().then_some(rates)
     }
 
-    /// Why there are no rates in a box: they may not exist, or are not known over intervals at all.
+    /// Reason why a box has no rates: they may not exist, or are not available over intervals.
     pub(super) fn no_rates(&self, times: Interval, states: &Bounds<Sys::State>) -> Reason {
         let row = row::<Sys>(states);
         let mut firsts = Sys::Firsts::<Interval>::zeros(self.system.firsts_len());
@@ -101,7 +101,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         }
     }
 
-    /// All changes of the rates along changes of the state.
+    /// Enclosure of the changes of the rates along changes of the state.
     fn changes(
         &self,
         times: Interval,
@@ -118,7 +118,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         changes.is_finite().then_some(changes)
     }
 
-    /// A box that holds every motion from a box until the end of a step; `times` are those of the whole step.
+    /// A box that contains every motion from a box until the end of a step; `times` are those of the whole step.
     pub(super) fn tube(
         &self,
         start: &Bounds<Sys::State>,
@@ -128,7 +128,8 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         held(start, during, |tube| self.rates(times, tube))
     }
 
-    /// A box that holds the derivatives of all motions in a tube until the end of a step, from a box of directions.
+    /// A box that contains the derivatives of all motions in a tube until the end of a step, from a box of
+    /// directions.
     pub(super) fn tube_along(
         &self,
         tube: &Bounds<Sys::State>,
@@ -157,7 +158,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         )
     }
 
-    /// The same, with the derivatives along directions.
+    /// Same as [`Field::series`], with the derivatives along directions.
     pub(super) fn series_along(
         &self,
         from: &Bounds<Sys::State>,
@@ -197,7 +198,8 @@ fn expanded<Sys: Variational, L: Numbers>(
     Some(series)
 }
 
-/// A box that solutions with rates in `rates(box)` do not leave for the time `during`, which begins with 0 (Picard, Lindelof).
+/// A box that solutions with rates in `rates(box)` do not leave for the time `during`, which begins with 0
+/// (Picard-Lindelof).
 fn held<S: StateVector>(
     start: &Bounds<S>,
     during: Interval,
@@ -231,7 +233,7 @@ pub(super) struct Arc<Sys: Variational, L: Numbers> {
 }
 
 impl<Sys: Variational, L: Numbers> Arc<Sys, L> {
-    /// The first `order` coefficients of a series, and the next one of the remainder.
+    /// Builds the arc from the first `order` coefficients of a series, and the next one of the remainder.
     pub(super) fn new(
         series: &Expansion<Sys, L>,
         remainder: &Expansion<Sys, L>,
@@ -242,7 +244,7 @@ impl<Sys: Variational, L: Numbers> Arc<Sys, L> {
         Self { rows, order }
     }
 
-    /// All values after so many units of time (Horner).
+    /// Enclosure of the values after these units of time (Horner scheme).
     pub(super) fn at(&self, units: L) -> Sys::Row<L> {
         let mut sums = self.rows[self.order];
         for row in self.rows[..self.order].iter().rev() {
@@ -254,7 +256,7 @@ impl<Sys: Variational, L: Numbers> Arc<Sys, L> {
     }
 }
 
-/// A box as numbers.
+/// A box as a row of intervals.
 pub(super) fn row<Sys: Variational>(bounds: &Bounds<Sys::State>) -> Sys::Row<Interval> {
     let mut row = Sys::Row::<Interval>::zeros(bounds.count());
     for (i, entry) in row.as_mut_slice().iter_mut().enumerate() {
@@ -263,7 +265,7 @@ pub(super) fn row<Sys: Variational>(bounds: &Bounds<Sys::State>) -> Sys::Row<Int
     row
 }
 
-/// A box as numbers that change along directions.
+/// A box as a row of intervals with derivatives along directions.
 pub(super) fn rated_row<Sys: Variational>(
     bounds: &Bounds<Sys::State>,
     along: &Bounds<Sys::State>,
@@ -278,7 +280,7 @@ pub(super) fn rated_row<Sys: Variational>(
     row
 }
 
-/// Numbers as a box.
+/// A row of intervals as a box.
 pub(super) fn bounds<S: StateVector>(row: &[Interval]) -> Bounds<S> {
     Bounds::of(row.len(), |i| row[i])
 }

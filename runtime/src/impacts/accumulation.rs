@@ -1,8 +1,9 @@
-//! Accumulation of impacts: when flights between them shrink to nothing.
+//! Accumulation of impacts (Zeno behaviour): flights between impacts shrink to zero.
 //!
-//! Two signs are taken. Impacts follow each other at one and the same number `t` ([`super::coincident`]); or the flights between impacts
-//! on one surface have shrunk several times in a row and the height that the next one will reach, about
-//! `gap rate * time / 4`, is below the rounding of the gap: it would be made of rounding errors ([`super::hops`]).
+//! Two criteria detect it. Impacts follow each other at the same floating-point time `t` ([`super::coincident`]). Or
+//! the flights between impacts on one surface have shrunk several times in a row, and the height of the next one,
+//! about `gap rate * time / 4`, is below the rounding of the gap, so that it would consist of rounding errors
+//! ([`super::hops`]).
 
 use super::coincident::{Coincident, Gathering};
 use super::growth::Growth;
@@ -11,14 +12,14 @@ use super::passing::Passing;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// How impacts accumulate, and when.
+/// Kind and time of an accumulation of impacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ends {
-    /// Hops on one surface have become too small or too short to be seen.
+    /// Hops on one surface have become too small or too short to be resolved.
     Hops(f64),
     /// Impacts on several surfaces follow each other at one time.
     AtOneTime(f64),
-    /// Flights have become too short to be told, while the energy grew.
+    /// Flights have become too short to be resolved while the energy grew.
     Spasmodic(f64),
 }
 
@@ -27,13 +28,13 @@ pub(super) enum Ends {
 pub(super) struct Bounce {
     pub(super) surface: usize,
     pub(super) t: f64,
-    /// Gap rates before and after it, the latter 0 for one that does not bounce.
+    /// Gap rates before and after it; the latter is 0 if the motion does not bounce.
     pub(super) rates: [f64; 2],
-    /// Whether the surface was struck at the same moment before: no flight lies in between.
+    /// True if the surface was struck at the same moment before: no flight lies in between.
     pub(super) again: bool,
 }
 
-/// What is remembered of the impacts so far.
+/// Data kept of the impacts so far.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accumulation<G: StateVector> {
     growth: Growth<G>,
@@ -43,7 +44,7 @@ pub(super) struct Accumulation<G: StateVector> {
 }
 
 impl<G: StateVector> Accumulation<G> {
-    /// No impacts yet, on as many surfaces as there are components here.
+    /// Data before the first impact, for as many surfaces as `like` has components.
     pub(super) fn none(like: &G) -> Self {
         Self {
             growth: Growth::none(like),
@@ -53,8 +54,8 @@ impl<G: StateVector> Accumulation<G> {
         }
     }
 
-    /// Takes in an impact. `rounding` gives the size of the gap's rounding errors, `energy` the energy after the impact where there
-    /// is one. Returns how impacts accumulate, if they do.
+    /// Records an impact. `rounding` gives the size of the gap's rounding errors, `energy` the energy after the
+    /// impact, if there is one. Returns the accumulation of the impacts, if they accumulate.
     pub(super) fn add(
         &mut self,
         bounce: Bounce,
@@ -76,13 +77,13 @@ impl<G: StateVector> Accumulation<G> {
                 is_last.then(|| Ends::Hops(hops.end(t)))
             }
             Gathering::Hops(hopping) if hopping == surface => Some(Ends::Hops(hops.end(t))),
-            // This surface happens to be hit where hops on another end.
+            // The surface is hit at the time at which hops on another one end.
             Gathering::Hops(_) => None,
             Gathering::Several => Some(Ends::AtOneTime(t)),
         }
     }
 
-    /// Takes in an impact after which the motion goes on through the surface: no flight begins there.
+    /// Records an impact after which the motion goes on through the surface: no flight begins there.
     pub(super) fn pass(&mut self, surface: usize, t: f64) -> Option<Ends> {
         self.coincident.count(surface, t);
         self.hops[surface] = Hops::NONE;
@@ -92,14 +93,14 @@ impl<G: StateVector> Accumulation<G> {
         are_many.then_some(Ends::AtOneTime(t))
     }
 
-    /// Whether impacts that the motion went on from through their surfaces, this one among them, followed each other faster
-    /// and faster until this time, at which two of them cannot be told apart.
+    /// True if impacts that the motion passed through, this one among them, followed each other faster and faster
+    /// until this time, at which two of them cannot be told apart.
     pub(super) fn has_passed_on(&self, surface: usize, t: f64) -> bool {
         self.passing.has_accumulated(surface, t)
     }
 
-    /// The time of accumulation if the motion, just bounced off a surface at `t`, did not rise from it: the hop is
-    /// too small to be seen. `None` if it had not bounced.
+    /// The time of accumulation if the motion has just bounced off a surface at `t` and did not rise from it: the hop
+    /// is too small to be resolved. `None` if it had not bounced.
     pub(super) fn ends_at(&self, surface: usize, t: f64) -> Option<f64> {
         let hops = &self.hops[surface];
         hops.has_bounced_at(t).then(|| hops.end(t))
@@ -112,7 +113,7 @@ mod tests {
 
     type Gaps = nalgebra::SVector<f64, 2>;
 
-    /// How impacts with these surfaces, times and gap rates accumulate, without energy.
+    /// Accumulation of impacts with these surfaces, times and gap rates, without energy.
     fn ends(impacts: impl Iterator<Item = (usize, f64, [f64; 2])>) -> Option<Ends> {
         let mut accumulation = Accumulation::none(&Gaps::zeros());
         impacts.into_iter().find_map(|(surface, t, rates)| {

@@ -1,21 +1,21 @@
-//! Impacts at one time: when they are infinitely many.
+//! Impacts at one time: test for infinitely many.
 //!
-//! Impacts that reverse their gap rates do not accumulate at one time: billiards in a corner that leaves room to go have
-//! finitely many (Burago, Ferleger and Kononenko), be it millions between bodies of very different masses. Those that lose speed do where
-//! their speeds have died away, those that gain it do at once.
+//! Impacts that reverse their gap rates do not accumulate at one time: billiards in a corner with an open exit have
+//! finitely many (Burago, Ferleger and Kononenko), although there may be millions between bodies of very different
+//! masses. Impacts that lose speed accumulate where their speeds have decayed, impacts that gain speed at once.
 
 use super::accumulation::Bounce;
 use super::repeats::Repeats;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Impacts at one time before they count as accumulated. A corner of angle `pi / n` takes up to `n`.
+/// Number of impacts at one time from which they count as accumulated. A corner of angle `pi / n` takes up to `n`.
 const MANY: u32 = 100;
 
-/// Part of a gap rate by which one after an impact may differ from that before, of an impact that reverses it.
+/// Relative difference of the gap rates before and after an impact up to which it counts as reversing.
 const REVERSED: f64 = 1.0 / (1 << 20) as f64;
 
-/// Part of the largest gap rate at one time that counts as died away.
+/// Share of the largest gap rate at one time below which a rate counts as decayed.
 const DIED: f64 = 1.0 / (1 << 20) as f64;
 
 /// Conclusion from the impacts at one time.
@@ -29,7 +29,7 @@ pub(super) enum Gathering {
     Several,
 }
 
-/// Impacts on one surface at one time, counted.
+/// Counts of the impacts on one surface at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Tally {
     count: u32,
@@ -48,13 +48,13 @@ impl Tally {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Coincident<G: StateVector> {
     impacts: Repeats,
-    /// Number of those that did not reverse the gap rate.
+    /// Number of impacts that did not reverse the gap rate.
     unequal: u32,
     on_each: PerSurface<Tally, G>,
 }
 
 impl<G: StateVector> Coincident<G> {
-    /// No impacts yet, on as many surfaces as there are components here.
+    /// Data before the first impact, for as many surfaces as `like` has components.
     pub(super) fn none(like: &G) -> Self {
         Self {
             impacts: Repeats::none(),
@@ -63,7 +63,7 @@ impl<G: StateVector> Coincident<G> {
         }
     }
 
-    /// Takes in an impact that the motion bounces off from.
+    /// Records an impact after which the motion bounces off.
     pub(super) fn add(&mut self, bounce: Bounce) {
         let Bounce {
             surface,
@@ -92,7 +92,7 @@ impl<G: StateVector> Coincident<G> {
         self.impacts.count() >= MANY
     }
 
-    /// Concludes from the impacts so far, of which this is the last.
+    /// Conclusion from the impacts so far; `bounce` is the last.
     pub(super) fn gathering(&self, bounce: Bounce) -> Gathering {
         if !self.are_many() {
             return Gathering::None;
@@ -104,14 +104,14 @@ impl<G: StateVector> Coincident<G> {
         }
     }
 
-    /// The surface that almost all impacts at this time were on, if they do not go to and fro between several.
+    /// The surface of almost all impacts at this time, unless they alternate between several.
     fn hops_on(&self) -> Option<usize> {
         let most = 0.75 * f64::from(self.impacts.count());
         let mut counts = self.on_each.iter().map(|tally| tally.count);
         counts.position(|count| f64::from(count) > most)
     }
 
-    /// True if impacts on several surfaces at one time are infinitely many.
+    /// True if infinitely many impacts on several surfaces happen at one time.
     fn are_infinite(&self, bounce: Bounce) -> bool {
         let [before, after] = bounce.rates;
         let has_died = after <= DIED * self.on_each[bounce.surface].fastest;

@@ -1,4 +1,5 @@
-//! Corners: several surfaces hit at one time. Impacts are carried out one after the other, and their order may matter.
+//! Corners: several surfaces hit at one time. Impacts are carried out one after the other, and their order may
+//! matter.
 
 use super::hits::{Hits, Order};
 use super::impulse::{Impacts, STILL};
@@ -8,35 +9,37 @@ use crate::outcome::Outcome;
 use crate::policy::Corner;
 use crate::state::StateVector;
 
-/// Impacts in one corner before its outcome counts as unknown. A corner of angle `pi / n` takes up to `n`.
+/// Number of impacts in one corner from which its outcome counts as unknown. A corner of angle `pi / n` takes up to
+/// `n`.
 const LONGEST: u32 = 100;
 
-/// Two changes of velocity are the same if the energy of their difference is less than this part of the larger of their
-/// own: squared `2^-40`, what rounding leaves of it in corners of small angles.
+/// Relative energy of the difference of two changes of velocity, beside the larger of their own, below which they are
+/// the same: the square of `2^-40`, the rounding errors in corners of small angles.
 const SAME: f64 = 1.0 / (1_u128 << 80) as f64;
 
-/// What is known of the order of the impacts at one moment.
+/// Knowledge of the order of the impacts at one moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// Whether the order matters is to be found out where a round begins with several surfaces.
+    /// Not yet examined: tested when a round begins with several surfaces.
     Open,
     /// The order does not matter, or was chosen.
     Settled,
 }
 
-/// How far the impacts of one moment are followed in advance.
+/// End of the impacts of one moment that are followed in advance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Until {
-    /// To the end of the round.
+    /// The end of the round.
     Round,
-    /// Until no surface at hand is approached.
+    /// The state in which no surface at hand is approached.
     End,
 }
 
-/// Finds out that impacts at one moment never end: without loss of energy they come back to a state they have left. The
-/// state is compared with those after impacts whose number is a power of two (Brent).
+/// Detects impacts at one moment that never end: without loss of energy they return to an earlier state. The state is
+/// compared with those after impacts whose number is a power of two (Brent's cycle detection).
 ///
-/// In a corner that leaves room to go, momenta grow in a direction into that room at every impact, and never return.
+/// In a corner with an open exit, every impact increases the momentum in a direction towards the exit, so states
+/// never return.
 pub(super) struct Recurrence<S> {
     kept: Option<S>,
     impacts: u64,
@@ -50,7 +53,7 @@ impl<S: StateVector> Recurrence<S> {
         }
     }
 
-    /// Takes in the state after an impact. Returns whether it returned.
+    /// Records the state after an impact. Returns true if it is an earlier state.
     pub(super) fn add<Sys: Impacting<State = S>>(
         &mut self,
         now: &Moment<'_, Sys>,
@@ -78,7 +81,7 @@ impl<S: StateVector> Recurrence<S> {
 }
 
 impl<Sys: Impacting> Impacts<Sys> {
-    /// The surface to be struck next.
+    /// The next surface to be struck.
     pub(super) fn next(
         &mut self,
         hits: &mut Hits<Sys::Gaps>,
@@ -102,7 +105,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// What is known of the order before the first impact.
+    /// The verdict before the first impact.
     pub(super) fn verdict(&self) -> Verdict {
         match self.policies.corner {
             Corner::Stop => Verdict::Open,
@@ -110,7 +113,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// The first and the last of the surfaces of a round, if it matters which of the two orders they are struck in.
+    /// The first and the last surface of a round, if the two orders of its impacts give different states.
     fn ambiguous(
         &mut self,
         hits: &Hits<Sys::Gaps>,
@@ -121,7 +124,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         if self.orders_agree(hits, rates, Until::Round, now)? {
             return Ok(None);
         }
-        // However the round is ordered, all that follows is the same.
+        // Every order of the round leads to the same result.
         *verdict = Verdict::Settled;
         match self.orders_agree(hits, rates, Until::End, now)? {
             true => Ok(None),
@@ -129,7 +132,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// Whether the impacts lead to the same state in both orders.
+    /// True if the impacts lead to the same state in both orders.
     fn orders_agree(
         &mut self,
         hits: &Hits<Sys::Gaps>,
@@ -147,7 +150,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             return Ok(false);
         }
         let difference = match energy_apart(now, &ascending, &descending) {
-            // A first-order system is where it is, and nothing besides.
+            // A first-order system is determined by its position.
             Err(Outcome::FirstOrder) => return Ok(true),
             difference => difference?,
         };
@@ -159,7 +162,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         Ok(difference <= SAME * changes)
     }
 
-    /// The state after the impacts in an order; `None` if they do not end.
+    /// The state after the impacts in a given order; `None` if they do not end.
     fn carried(
         &mut self,
         mut hits: Hits<Sys::Gaps>,

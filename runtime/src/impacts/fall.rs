@@ -1,4 +1,5 @@
-//! The first fall of one gap along a step: guessed on its polynomial where there is one, shown to be the first by enclosures.
+//! The first fall of one gap along a step: estimated on its polynomial if there is one, and proved to be the first by
+//! enclosures.
 
 use super::root::Polynomial;
 use super::search::rounding_along;
@@ -12,19 +13,19 @@ use crate::integrate::Stepper;
 use crate::numbers::TaylorModel;
 use crate::state::StateVector;
 
-/// What is known of a gap along a step.
+/// Known data of a gap along a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Known<'a, G> {
-    /// The polynomials of all gaps, where the step is one.
+    /// The polynomials of all gaps, if the step is a power series.
     pub(super) series: Option<&'a GapSeries<G>>,
     /// The gap at both ends.
     pub(super) ends: [f64; 2],
-    /// Its model on the whole step.
+    /// Taylor model of the gap on the whole step.
     pub(super) whole: Option<TaylorModel>,
 }
 
-/// The first fall of a gap, with its time to the last bits. On a series it is looked for on the polynomial; that none is before it
-/// is shown on the gap itself.
+/// The first fall of a gap, with its time to the last bits. For a series it is searched on the polynomial; enclosures
+/// of the gap itself show that none precedes it.
 pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &mut StepView<'_, Sys, Step>,
@@ -70,7 +71,7 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     found
 }
 
-/// The fall of a polynomial that has one root in the whole step, or in its beginning, corrected on the gap.
+/// The fall of a polynomial that has one root in the whole step, or in its beginning, corrected with the gap.
 fn plain_fall<G: StateVector>(
     surface: usize,
     series: &GapSeries<G>,

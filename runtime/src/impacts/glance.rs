@@ -1,4 +1,5 @@
-//! The first look at a step: gaps and rates at its end, and the polynomials that the gaps are of a step that is a series.
+//! Data of a step for the first test: gaps and rates at its end, and the polynomials of the gaps if the step is a
+//! power series.
 
 use super::series::GapSeries;
 use crate::contract::Impacting;
@@ -7,19 +8,19 @@ use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Times closer than this many units in the last place are the same time.
+/// Difference of times, relative to them, below which they count as the same.
 pub(super) const SAME_TIME: f64 = 4.0 * f64::EPSILON;
 
-/// A closer look: rates at the end of the step, and the gaps as polynomials where the step is one.
+/// Optional data: rates at the end of the step, and the polynomials of the gaps if the step is a series.
 struct Close<G> {
     rates: G,
     series: Option<GapSeries<G>>,
 }
 
-/// Gaps at the end of the step, and what a closer look shows.
+/// Gaps at the end of the step, and the optional data.
 pub(super) struct Glance<G> {
     pub(super) gaps: G,
-    /// The closer look; most steps need none.
+    /// The optional data; most steps need none.
     close: Option<Close<G>>,
     has_series: bool,
     /// Length of the step, and the larger of the absolute values of its times.
@@ -28,12 +29,12 @@ pub(super) struct Glance<G> {
 }
 
 impl<G: StateVector> Glance<G> {
-    /// Whether both ends of the step are one moment as far as times can tell.
+    /// True if both ends of the step are the same moment within the rounding of times.
     pub(super) fn is_moment(&self) -> bool {
         self.length <= SAME_TIME * self.latest
     }
 
-    /// Looks closer, unless that is done. Returns the rates at the end.
+    /// Computes the optional data, unless that is done. Returns the rates at the end.
     #[inline(always)]
     pub(super) fn look_closer<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         &mut self,
@@ -54,25 +55,25 @@ impl<G: StateVector> Glance<G> {
         Ok(rates)
     }
 
-    /// The rates at the end; none without a closer look.
+    /// The rates at the end; `None` before [`Glance::look_closer`].
     #[inline(always)]
     pub(super) fn rates(&self) -> Option<&G> {
         self.close.as_ref().map(|close| &close.rates)
     }
 
-    /// The rate of a gap at the end; none without a closer look.
+    /// The rate of a gap at the end; `None` before [`Glance::look_closer`].
     #[inline(always)]
     pub(super) fn rate(&self, surface: usize) -> Option<f64> {
         self.rates().map(|rates| rates.as_slice()[surface])
     }
 
-    /// The gaps as polynomials, after a closer look, where the step is one.
+    /// The polynomials of the gaps, after [`Glance::look_closer`], if the step is a series.
     #[inline(always)]
     pub(super) fn series(&self) -> Option<&GapSeries<G>> {
         self.close.as_ref()?.series.as_ref()
     }
 
-    /// The gap vanishes at the end of the step as far as times can tell.
+    /// True if the gap vanishes at the end of the step within the rounding of times.
     #[inline(always)]
     pub(super) fn is_due(&self, surface: usize) -> bool {
         let gap = self.gaps.as_slice()[surface];
@@ -81,7 +82,7 @@ impl<G: StateVector> Glance<G> {
     }
 }
 
-/// The gaps, if all are finite.
+/// Returns the gaps if all are finite.
 #[inline(always)]
 pub(super) fn finite<Sys: Impacting>(system: &Sys, gaps: Sys::Gaps) -> Result<Sys::Gaps, Outcome> {
     match gaps.as_slice().iter().position(|gap| !gap.is_finite()) {
@@ -92,7 +93,7 @@ pub(super) fn finite<Sys: Impacting>(system: &Sys, gaps: Sys::Gaps) -> Result<Sy
     }
 }
 
-/// Gaps at the end of the step.
+/// Computes the gaps at the end of the step.
 #[inline(always)]
 pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,

@@ -1,45 +1,45 @@
-//! Accumulations in which the energy grows: the limit of their times, and what model it is extrapolated by.
+//! Accumulations in which the energy grows: limit of their times, and the model of its extrapolation.
 //!
-//! Flights `f_n` between impacts on one surface shrink geometrically, `f_n ~ r^n`, as between walls that add a share of
-//! the speed, or algebraically, `f_n ~ c/(n + a)^2`, as between walls that close in. The model is the one that tells
-//! a flight in between better from the first and the last; what is left of the flights is `f r/(1 - r)`, or
-//! `sqrt(c f)` with `1/sqrt(c)` the mean growth of `1/sqrt(f_n)`.
+//! Flights `f_n` between impacts on one surface shrink geometrically, `f_n ~ r^n`, for example between walls that add
+//! a share of the speed, or algebraically, `f_n ~ c/(n + a)^2`, for example between walls that approach each other.
+//! The model is the one that predicts a flight in between better from the first and the last. The remaining flights
+//! take `f r/(1 - r)` in total, or `sqrt(c f)` with `1/sqrt(c)` the mean growth of `1/sqrt(f_n)`.
 
 use crate::math;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Flights shorter than this many units in the last place of the time are too short to tell the next ones: where they hardly
-/// shrink from one to the next, and where they do.
+/// Length of a flight, relative to the time, below which it does not determine the next ones: for flights that shrink
+/// slowly, and for flights that shrink fast.
 const RESOLVED: [f64; 2] = [4096.0 * f64::EPSILON, 8.0 * f64::EPSILON];
 
-/// Part of the flight before that the next is less than where flights are said to shrink from one to the next.
+/// Ratio of successive flights below which they count as shrinking fast.
 const QUICK: f64 = 0.875;
 
-/// Rounding of a flight, in parts of the time.
+/// Rounding of a flight, relative to the time.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
-/// Part of the first flight that the last must be less than.
+/// Ratio of the last flight to the first below which flights count as accumulating.
 const SHRUNK: f64 = 1.0 / 1024.0;
 
-/// Flights that must have shrunk in a row before the first is kept.
+/// Number of flights that must have shrunk in a row before the first is kept.
 const FIRST: u64 = 3;
 
-/// Part of the energy that it must have grown by.
+/// Least relative growth of the energy.
 const GROWN: f64 = 1.0 / (1 << 20) as f64;
 
 /// Per surface, flights that shrink in a row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Growth<G: StateVector>(PerSurface<Series, G>);
 
-/// Flights on one surface that shrink in a row.
+/// Successive shrinking flights on one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Series {
-    /// Number of the last one.
+    /// Number of the last flight.
     count: u64,
-    /// The flight of number [`FIRST`], and the energy after it where there is one.
+    /// The flight of number [`FIRST`], with the energy after it if there is one.
     first: Option<(Flight, Option<f64>)>,
-    /// The last flight whose number is a power of two, and the one before.
+    /// The last flight whose number is a power of two, and the one before it.
     marks: [Option<Flight>; 2],
 }
 
@@ -51,18 +51,19 @@ struct Flight {
 }
 
 impl<G: StateVector> Growth<G> {
-    /// No flights yet, on as many surfaces as there are components here.
+    /// Data before the first flight, for as many surfaces as `like` has components.
     pub(super) fn none(like: &G) -> Self {
         Self(PerSurface::all(like, Series::ENDLESS))
     }
 
-    /// No flight has ended on this surface.
+    /// Discards the flights on this surface.
     pub(super) fn forget(&mut self, surface: usize) {
         self.0[surface] = Series::ENDLESS;
     }
 
-    /// Takes in a flight that ends at `t`, with the length of the one before it on this surface. Returns the time of accumulation, if
-    /// flights have become too short to be told while the energy grew. `energy` is that of the motion, or what takes its place.
+    /// Records a flight that ends at `t`, with the length of the one before it on this surface. Returns the time of
+    /// accumulation if flights have become too short to be resolved while the energy grew. `energy` is that of the
+    /// motion, or a substitute.
     pub(super) fn add(
         &mut self,
         surface: usize,
@@ -76,20 +77,20 @@ impl<G: StateVector> Growth<G> {
 }
 
 impl Series {
-    /// No flight.
+    /// Series without flights.
     const NONE: Self = Self {
         count: 0,
         first: None,
         marks: [None; 2],
     };
 
-    /// The time before the first impact, which counts as a flight longer than all others.
+    /// The time before the first impact: a flight longer than all others.
     const ENDLESS: Self = Self {
         count: 1,
         ..Self::NONE
     };
 
-    /// As [`Growth::add`].
+    /// Records a flight on this surface; see [`Growth::add`].
     fn add(
         &mut self,
         t: f64,
@@ -130,9 +131,9 @@ impl Series {
         last
     }
 
-    /// The time that all further flights take.
+    /// Total time of all further flights.
     fn rest(&self, first: Flight, before: f64, last: Flight) -> f64 {
-        // The mark that is nearer to the middle: the last power of two is within a half of the end.
+        // The mark nearer to the middle: the last power of two is within a half of the end.
         if let Some(middle) = self.marks[1]
             && middle.number > FIRST
             && algebraic_fits(first, middle, last)
@@ -153,7 +154,7 @@ impl Flight {
     }
 }
 
-/// True if the energy has grown; false where it is not known.
+/// True if the energy has grown; false if it is not known.
 fn has_grown(first: Option<f64>, last: Option<f64>) -> bool {
     first
         .zip(last)
@@ -164,7 +165,7 @@ fn inverse_root(x: f64) -> f64 {
     1.0 / math::sqrt(x)
 }
 
-/// Whether `1/sqrt(f)` is nearer to a line than `ln f` is.
+/// True if `1/sqrt(f)` is closer to a linear function than `ln f` is.
 fn algebraic_fits(first: Flight, middle: Flight, last: Flight) -> bool {
     let share = middle.flights_since(first) / last.flights_since(first);
     let between = |value: fn(f64) -> f64| {
@@ -178,7 +179,7 @@ fn algebraic_fits(first: Flight, middle: Flight, last: Flight) -> bool {
 mod tests {
     use super::*;
 
-    /// When flights end that shrink as `length` says.
+    /// Time at which flights of lengths `length(n)` end.
     fn end(length: impl Fn(u32) -> f64) -> Option<f64> {
         let mut growth = Growth::none(&nalgebra::SVector::<f64, 1>::zeros());
         let (mut t, mut before) = (0.0, None);

@@ -1,4 +1,4 @@
-//! Motion along surfaces: the forces that hold it there, and what integration drifts from them.
+//! Motion along surfaces: the contact forces that hold it there, and the correction of drift.
 //!
 //! A frictionless surface `c` pushes along `pi_D^* dh_c`. The sizes `lambda_c` of the forces of all surfaces held are
 //! those that keep every gap rate:
@@ -7,12 +7,13 @@
 //! sum_d dh_c(pi_D grad h_d) lambda_d = -d^2 h_c/dt^2
 //! ```
 //!
-//! The same equations with gap rates or gaps on the right mend velocities and positions. Their matrix is symmetric and
-//! positive semidefinite, so that conjugate gradients solve them in as many steps as there are surfaces, one for one
-//! surface, without a matrix being kept.
+//! The same equations with gap rates or gaps on the right-hand side correct velocities and positions. Their matrix is
+//! symmetric and positive semidefinite, so conjugate gradients solve them in at most as many steps as there are
+//! surfaces, in one step for one surface, and without storing a matrix.
 //!
-//! Instantaneous constraints of a surface hold as long as it does: the motion is that of its trace. Their forces come first,
-//! the surfaces push within them, and one surface of those held has some at most ([`super::resting`]).
+//! Instantaneous constraints of a surface hold as long as it holds the motion
+//! ([`Impacting::trace`](crate::Impacting::trace)). Their forces come first, and the surfaces push within them. At
+//! most one of the held surfaces has instantaneous constraints ([`super::resting`]).
 
 use super::instantaneous::{focused, is_rough};
 use super::sliding::Slide;
@@ -23,7 +24,7 @@ use crate::forces::Forces;
 use crate::per_surface::PerSurface;
 use crate::state::{StateVector, scaled};
 
-/// Part of the right-hand side that is let be: rounding.
+/// Share of the right-hand side that counts as rounding.
 const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
 
 /// Surfaces along which the motion is held.
@@ -35,7 +36,7 @@ pub struct Held<G: StateVector> {
 }
 
 impl<G: StateVector> Held<G> {
-    /// None, of as many as there are components here.
+    /// No surface held, for as many surfaces as `like` has components.
     pub(super) fn none(like: &G) -> Self {
         Self {
             surfaces: PerSurface::all(like, false),
@@ -59,7 +60,7 @@ impl<G: StateVector> Held<G> {
         self.surfaces[surface] = false;
     }
 
-    /// The motion slides between two modes from now on.
+    /// Begins sliding between two modes.
     pub(super) fn slide_along(&mut self, slide: Slide) {
         self.hold(slide.back);
         self.hold(slide.across);
@@ -71,12 +72,12 @@ impl<G: StateVector> Held<G> {
         self.slide
     }
 
-    /// Those held, in order of index.
+    /// The held surfaces, in order of index.
     pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.surfaces.count()).filter(|&surface| self.is_held(surface))
     }
 
-    /// The components of those held, zeros elsewhere.
+    /// The components of the held surfaces, and zeros elsewhere.
     fn only(&self, values: &G) -> G {
         let mut only = *values;
         for (value, is_held) in only.as_mut_slice().iter_mut().zip(self.surfaces.iter()) {
@@ -87,7 +88,7 @@ impl<G: StateVector> Held<G> {
         only
     }
 
-    /// The sizes of the forces at a state. `None` for a system that does not know the second rates of its gaps.
+    /// The sizes of the contact forces at a state. `None` for a system without second rates of its gaps.
     pub(super) fn sizes<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -102,7 +103,7 @@ impl<G: StateVector> Held<G> {
         self.sizes_at(system, t, state, &rate)
     }
 
-    /// As [`Held::sizes`], where the rate without the forces is known.
+    /// Same as [`Held::sizes`], for a known rate without the forces.
     fn sizes_at<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -120,7 +121,7 @@ impl<G: StateVector> Held<G> {
         }
     }
 
-    /// The force of the instantaneous constraints where momenta or quasi-velocities change at these rates.
+    /// The force of the instantaneous constraints for these rates of momenta or quasi-velocities.
     fn trace<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -136,7 +137,7 @@ impl<G: StateVector> Held<G> {
         Ok(None)
     }
 
-    /// What instantaneous constraints add to an impulse or a force that is not within them.
+    /// Correction of an impulse or a force for the instantaneous constraints, if it violates them.
     fn reaction<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -151,7 +152,7 @@ impl<G: StateVector> Held<G> {
         Ok(without.map(|without| sum(&with, -1.0, &without)))
     }
 
-    /// The sizes of the impulses, or forces, on the surfaces held that take these gap rates, or second rates.
+    /// Sizes of the impulses, or forces, on the held surfaces that cancel these gap rates, or second rates.
     fn against<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -164,7 +165,7 @@ impl<G: StateVector> Held<G> {
             let contact = system.contact(surface, t, state)?;
             weights.as_mut_slice()[surface] = 1.0 / contact.constrained_compliance;
         }
-        // What is missing, in units of each surface's own impulse, and the direction of search.
+        // The residual, in units of each surface's own impulse, and the search direction.
         let mut missing = scaled(&self.only(rates), -1.0);
         let mut search = times(&weights, &missing);
         let mut squared = product(&search, &missing);
@@ -190,7 +191,7 @@ impl<G: StateVector> Held<G> {
         Ok(Some(sizes))
     }
 
-    /// What impulses of these sizes change the gap rates of the surfaces held by.
+    /// Change of the gap rates of the held surfaces by impulses of these sizes.
     fn response<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -206,7 +207,7 @@ impl<G: StateVector> Held<G> {
         Ok(responses.map(|responses| self.only(&responses)))
     }
 
-    /// The sum of impulses of these sizes.
+    /// Sum of impulses of these sizes.
     fn pushes<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -222,7 +223,7 @@ impl<G: StateVector> Held<G> {
         Ok(motion)
     }
 
-    /// Adds impulses of these sizes, taken at `state`, to a state or to a rate.
+    /// Adds impulses of these sizes, evaluated at `state`, to a state or to a rate.
     fn push<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -245,7 +246,7 @@ impl<G: StateVector> Held<G> {
         Ok(())
     }
 
-    /// Whether a surface held has instantaneous constraints.
+    /// True if a held surface has instantaneous constraints.
     pub(super) fn is_rough<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -260,7 +261,7 @@ impl<G: StateVector> Held<G> {
         Ok(false)
     }
 
-    /// Brings the state back to the surfaces held: gaps and gap rates to 0, each to first order.
+    /// Brings the state back to the held surfaces: gaps and gap rates to 0, each to first order.
     pub(super) fn settle<Sys: Impacting<Gaps = G>>(
         &self,
         now: &mut Moment<'_, Sys>,
@@ -279,7 +280,7 @@ impl<G: StateVector> Held<G> {
         Ok(Change::Changed)
     }
 
-    /// Moves positions as an impulse would change velocities.
+    /// Moves positions in the way an impulse changes velocities.
     fn settle_positions<Sys: Impacting<Gaps = G>>(
         &self,
         now: &mut Moment<'_, Sys>,
@@ -298,7 +299,7 @@ impl<G: StateVector> Held<G> {
         Ok(())
     }
 
-    /// Takes the gap rates, after the instantaneous constraints are brought to hold.
+    /// Cancels the gap rates, after enforcing the instantaneous constraints.
     pub(super) fn settle_rates<Sys: Impacting<Gaps = G>>(
         &self,
         now: &mut Moment<'_, Sys>,
@@ -339,7 +340,7 @@ impl<Sys: Impacting> Forces<Sys> for Held<Sys::Gaps> {
     }
 }
 
-/// The second rates of all gaps where the state changes at this rate. `None` for a system that does not know them.
+/// The second rates of all gaps for this rate of the state. `None` for a system that does not provide them.
 pub(super) fn second_rates<Sys: Impacting>(
     system: &Sys,
     t: f64,

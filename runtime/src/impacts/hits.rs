@@ -1,8 +1,9 @@
-//! Which surfaces are at hand at one moment, which of them are approached, and in which order they are struck.
+//! Surfaces at hand at one moment: approached surfaces, and the order in which they are struck. A surface is at hand
+//! where its gap is 0 within rounding.
 //!
-//! Surfaces are struck in rounds: first those that are approached on arrival, then those that the impacts of a round leave
-//! approached, and so on. So a wave of impacts passes through bodies that touch as it does through small gaps, if every
-//! gap takes equally long.
+//! Surfaces are struck in rounds: first those approached on arrival, then those that the impacts of a round leave
+//! approached, and so on. A wave of impacts therefore passes through bodies that touch in the same way as through
+//! equal small gaps.
 
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
@@ -10,38 +11,38 @@ use crate::state::StateVector;
 /// The order in which the surfaces of one round are struck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Order {
-    /// First the surface declared first.
+    /// Ascending index.
     Ascending,
-    /// First the surface declared last.
+    /// Descending index.
     Descending,
 }
 
-/// From which gap rate on a surface at hand counts as approached.
+/// Threshold of the gap rate from which a surface at hand counts as approached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Still {
-    /// Where the gap falls faster than this.
+    /// Approached if the gap falls faster than this.
     UpTo(f64),
-    /// The gap was seen to fall through 0: it is approached, whatever its rate.
+    /// Approached at any rate: the gap was seen to fall through 0.
     Fallen,
-    /// It was dealt with: it is not approached any more.
+    /// Not approached any more: its impact is settled.
     Done,
 }
 
 /// Surfaces at hand at one moment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hits<G: StateVector> {
-    /// Those at hand.
+    /// True for surfaces at hand.
     at_hand: PerSurface<bool, G>,
-    /// What counts as not approaching.
+    /// Thresholds of the gap rates.
     still: PerSurface<Still, G>,
-    /// Those that were approached when this round began and have not had their turn.
+    /// True for surfaces that were approached when this round began and have not had their turn.
     due: PerSurface<bool, G>,
-    /// Those that were struck at this moment.
+    /// True for surfaces that were struck at this moment.
     struck: PerSurface<bool, G>,
 }
 
 impl<G: StateVector> Hits<G> {
-    /// No surface, of as many as there are components here.
+    /// No surface at hand, for as many surfaces as `like` has components.
     pub(super) fn none(like: &G) -> Self {
         let none = PerSurface::all(like, false);
         Self {
@@ -52,29 +53,29 @@ impl<G: StateVector> Hits<G> {
         }
     }
 
-    /// These surfaces, of as many as there are components here.
+    /// These surfaces at hand, for as many surfaces as `like` has components.
     pub(super) fn all_of(surfaces: impl Iterator<Item = usize>, like: &G) -> Self {
         let mut hits = Self::none(like);
         surfaces.for_each(|surface| hits.add(surface));
         hits
     }
 
-    /// A surface is at hand as well.
+    /// Adds a surface.
     pub(super) fn add(&mut self, surface: usize) {
         self.at_hand[surface] = true;
     }
 
-    /// Whether a surface is at hand.
+    /// True if the surface is at hand.
     pub(super) fn is_at_hand(&self, surface: usize) -> bool {
         self.at_hand[surface]
     }
 
-    /// Whether any is at hand.
+    /// True if any surface is at hand.
     pub(super) fn is_some(&self) -> bool {
         self.at_hand.iter().any(|is_at_hand| is_at_hand)
     }
 
-    /// Whether a surface is at hand and approached.
+    /// True if the surface is at hand and approached.
     pub(super) fn is_approached(&self, surface: usize, rates: &G) -> bool {
         self.at_hand[surface]
             && match self.still[surface] {
@@ -91,7 +92,7 @@ impl<G: StateVector> Hits<G> {
             .count()
     }
 
-    /// The first and the last of them.
+    /// The first and the last surface at hand that is approached.
     pub(super) fn ends(&self, rates: &G) -> Option<[usize; 2]> {
         let mut approached =
             (0..rates.count()).filter(|&surface| self.is_approached(surface, rates));
@@ -99,7 +100,7 @@ impl<G: StateVector> Hits<G> {
         Some([first, approached.next_back().unwrap_or(first)])
     }
 
-    /// Begins a round if the last one is over. Returns the number of surfaces in it; 0 within a round.
+    /// Begins a round if the last one is over. Returns its number of surfaces; 0 within a round.
     pub(super) fn begin_round(&mut self, rates: &G) -> usize {
         if self.due(rates).next().is_some() {
             return 0;
@@ -110,7 +111,7 @@ impl<G: StateVector> Hits<G> {
         self.due(rates).count()
     }
 
-    /// The surface whose turn it is in this round; `None` where it is over.
+    /// The next surface of this round; `None` at its end.
     pub(super) fn turn(&mut self, rates: &G, order: Order) -> Option<usize> {
         let surface = match order {
             Order::Ascending => self.due(rates).next(),
@@ -126,22 +127,22 @@ impl<G: StateVector> Hits<G> {
             .filter(|&surface| self.due[surface] && self.is_approached(surface, rates))
     }
 
-    /// Notes an impact on a surface. Returns whether it was struck at this moment before.
+    /// Records an impact on a surface. Returns true if it was struck at this moment before.
     pub(super) fn note_struck(&mut self, surface: usize) -> bool {
         core::mem::replace(&mut self.struck[surface], true)
     }
 
-    /// The gap was seen to fall through 0: it counts as approached, whatever its rate.
+    /// Marks a surface whose gap was seen to fall through 0 as approached, whatever its rate.
     pub(super) fn set_fallen(&mut self, surface: usize) {
         self.still[surface] = Still::Fallen;
     }
 
-    /// The surface is at hand and was dealt with.
+    /// Marks a surface at hand as settled.
     pub(super) fn set_done(&mut self, surface: usize) {
         self.still[surface] = Still::Done;
     }
 
-    /// The surfaces at hand are others now; those dealt with stay so.
+    /// Replaces the surfaces at hand; settled ones stay settled.
     pub(super) fn replace(&mut self, at_hand: PerSurface<bool, G>) {
         self.at_hand = at_hand;
         for still in self.still.iter_mut() {
@@ -151,8 +152,8 @@ impl<G: StateVector> Hits<G> {
         }
     }
 
-    /// From now on, gap rates above `-rate` count as not approaching. Returns the largest such `rate` so far; `None` of a surface that
-    /// was dealt with.
+    /// Raises the threshold: gap rates above `-rate` count as not approaching. Returns the largest such `rate` so
+    /// far; `None` for a settled surface.
     pub(super) fn set_still(&mut self, surface: usize, rate: f64) -> Option<f64> {
         let rate = match self.still[surface] {
             Still::UpTo(before) => before.max(rate),

@@ -1,29 +1,29 @@
-//! Hops on one surface: flights that shrink from one impact to the next, and the time at which they end.
+//! Hops on one surface: flights that shrink from one impact to the next, and the time of their end.
 
 use super::accumulation::Bounce;
 
-/// Flights that must have shrunk in a row before their height is asked about.
+/// Number of flights that must have shrunk in a row before their height is tested.
 pub(super) const SHRUNK: u32 = 3;
 
-/// One flight suffices that begins with less than this part of the rate of the one before.
+/// Ratio of gap rates at the start of successive flights below which one flight suffices.
 const STEEP: f64 = 0.125;
 
-/// The impacts on one surface that the motion bounced off from.
+/// The impacts on one surface from which the motion bounced off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Hops {
     last: Option<Impact>,
     end: Option<Estimate>,
 }
 
-/// An impact, and the flight that it ended.
+/// An impact, with the flight before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Impact {
     t: f64,
-    /// Gap rate after it.
+    /// Gap rate after the impact.
     rate: f64,
     /// Length of the flight; `None` at the first impact.
     length: Option<f64>,
-    /// Number of flights in a row, this one the last, that were shorter than the one before.
+    /// Number of successive flights, up to this one, that were shorter than the flight before.
     shrunk: u32,
 }
 
@@ -31,24 +31,24 @@ struct Impact {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Flight {
     pub(super) length: f64,
-    /// Length of the flight before; `None` of the first.
+    /// Length of the flight before; `None` for the first.
     pub(super) before: Option<f64>,
-    /// Gap rates that it and the next flight begin with.
+    /// Gap rates at the start of this flight and of the next.
     rates: [f64; 2],
-    /// Number of flights in a row, this one the last, that were shorter than the one before.
+    /// Number of successive flights, up to this one, that were shorter than the flight before.
     shrunk: u32,
 }
 
-/// The time at which hops end, from guesses that take them for a geometric series.
+/// The time at which hops end, estimated as the limit of a geometric series.
 ///
-/// Its sum is a bad guess as long as the factor of the gap rates still changes, and again when the flights are made of rounding errors;
-/// in between successive guesses are closest.
+/// The estimate is inaccurate while the ratio of the gap rates still changes, and again when the flights consist of
+/// rounding errors. In between successive estimates agree best.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Estimate {
-    /// The last guess.
+    /// The last estimate.
     last: f64,
     best: f64,
-    /// Distance of the best guess from the guess before it; `None` of the first.
+    /// Difference of the best estimate from the one before it; `None` for the first.
     spread: Option<f64>,
 }
 
@@ -63,7 +63,8 @@ impl Hops {
         end: None,
     };
 
-    /// Takes in an impact. Returns the flight that it ended; `None` if it is the first, or struck again at the same moment.
+    /// Records an impact. Returns the flight that it ended; `None` for the first impact, or for another one at the
+    /// same moment.
     pub(super) fn land(&mut self, bounce: Bounce) -> Option<Flight> {
         let Bounce {
             t,
@@ -121,7 +122,7 @@ impl Impact {
 }
 
 impl Flight {
-    /// Factor of the gap rates.
+    /// Ratio of the gap rates.
     fn factor(&self) -> f64 {
         self.rates[1] / self.rates[0]
     }
@@ -134,7 +135,7 @@ impl Flight {
         is_shrinking && 0.25 * rate * next <= rounding()
     }
 
-    /// The end of all flights after this one, which ends at `t`, if they shrink by the same factor.
+    /// End of all flights after this one, which ends at `t`, if they shrink by the same factor.
     fn end(&self, t: f64) -> Option<f64> {
         let factor = self.factor();
         let end = t + self.length * factor / (1.0 - factor);
@@ -143,7 +144,7 @@ impl Flight {
 }
 
 impl Estimate {
-    /// The estimate after one more guess, if that is one.
+    /// The estimate after one more guess, if there is a guess.
     fn refined(before: Option<Self>, guess: Option<f64>) -> Option<Self> {
         let Some(guess) = guess else {
             return before;

@@ -22,26 +22,27 @@ use crate::policy::{Penetration, Policies, Rest, Split};
 use crate::record::{Event, Observer};
 use crate::state::StateVector;
 
-/// Impacts a run may have unless told otherwise.
+/// Default limit of the number of impacts of a run.
 pub const IMPACT_BUDGET: u64 = 10_000_000;
 
-/// A gap rate after an impact that is this small a part of the one before it counts as 0: `2^-36`, what rounding
-/// leaves of a plastic impact in a metric of condition `1e4`.
+/// Ratio of the gap rates after and before an impact below which the rate after it counts as 0: `2^-36`, the rounding
+/// of a plastic impact in a metric of condition `1e4`.
 pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 
 /// Impacts of a system on its surfaces, each by its declared law unless another was chosen.
 ///
-/// Hits at the same time (within rounding) are carried out in rounds, in each in order of index, until no surface at
-/// hand is approached. Surfaces that touch and that an impact leaves approached join the next round: so a wave of impacts
-/// passes through bodies that touch, in no time. Where the order of a round matters, where a law leaves the state
-/// approaching, and where the motion presses into a surface, the [`Policies`] say how to go on; by default the run ends, after an impact with the state after it.
+/// Simultaneous impacts (within rounding) are carried out in rounds, each in order of index, until no surface at hand
+/// is approached. Touching surfaces that an impact leaves approached join the next round, so that a wave of impacts
+/// passes through bodies that touch at one time. The [`Policies`] decide how to go on where the order of a round
+/// matters, where a law leaves the state approaching, and where the motion presses into a surface. By default the run
+/// ends there; after an impact, with the state after it.
 ///
-/// A surface with instantaneous constraints first brings the state to them ([`Impacting::focus`]). Where it still
-/// approaches, the law acts within them; along the surface they hold.
+/// A surface with instantaneous constraints first brings the state to them ([`Impacting::focus`]). If the state still
+/// approaches, the law acts within them; they hold while the motion goes on along the surface.
 ///
-/// A surface with the law [`Law::Reset`] has no side that is not allowed: it counts whenever its gap falls through 0 from
-/// above, and where the reset leaves it falling it is crossed. At the first instant of a run, and where a reset has moved
-/// the position, a surface at hand counts if it is approached. No motion is held along such a surface.
+/// A surface with the law [`Law::Reset`] has no forbidden side. It acts whenever its gap falls through 0 from above;
+/// if the reset leaves the gap falling, the motion crosses the surface. At the first instant of a run, and after a
+/// reset of positions, a surface at hand acts if it is approached. Such a surface does not hold the motion.
 #[derive(Debug, Clone)]
 pub struct Impacts<Sys: Impacting> {
     overrides: PerSurface<Option<Law>, Sys::Gaps>,
@@ -52,14 +53,14 @@ pub struct Impacts<Sys: Impacting> {
     pub(super) resting: Resting<Sys::Gaps>,
 }
 
-/// What an impact makes of a state.
+/// Result of an impact on a state.
 pub(super) struct Struck<Sys: Impacting> {
     pub(super) after: Sys::State,
-    /// Gap rates after it.
+    /// Gap rates after the impact.
     pub(super) rates: Sys::Gaps,
-    /// Whether by an impulse; else by a reset or a transition.
+    /// True if the impact was an impulse, false for a reset or a transition.
     by_impulse: bool,
-    /// Whether rounding may have decided between two ways to go on.
+    /// True if rounding may have decided between two possible continuations.
     is_graze: bool,
 }
 
@@ -69,28 +70,30 @@ struct Strike {
     surface: usize,
     /// Gap rate at which the surface is approached.
     rate: f64,
-    /// Whether other surfaces are hit at the same moment.
+    /// True if other surfaces are hit at the same moment.
     simultaneous: bool,
-    /// Gap rates above minus this count as not approaching.
+    /// Threshold: gap rates above its negative count as not approaching.
     still: f64,
-    /// Whether the surface was struck at this moment before.
+    /// True if the surface was struck at this moment before.
     again: bool,
 }
 
-/// What comes after an impact at the same moment.
+/// Next action at the same moment after an impact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Next {
     /// Impacts on the surfaces that are still approached.
     Impacts,
-    /// Infinitely many impacts have led to their limit; surfaces that are still approached hold the motion.
+    /// Contact: infinitely many impacts were replaced by their limit, and the surfaces that are still approached hold
+    /// the motion.
     Rest,
 }
 
-/// Transitions at one moment. There are few where they end: each loses energy (Cortes and Vinogradov, Remark 5.8).
+/// Transitions at one moment. Sequences that end are short: each transition loses energy (Cortes and Vinogradov,
+/// Remark 5.8).
 struct Passages(u32);
 
 impl Passages {
-    /// Transitions at one moment before the motion counts as trapped between modes.
+    /// Number of transitions at one moment beyond which the motion counts as trapped between modes.
     const MOST: u32 = 64;
 
     fn count(&mut self, surface: usize) -> Result<(), Outcome> {
@@ -103,7 +106,7 @@ impl Passages {
 }
 
 impl<Sys: Impacting> Impacts<Sys> {
-    /// The declared laws.
+    /// Impacts with the declared laws.
     pub fn declared(system: &Sys) -> Self {
         let gaps = system.zero_gaps();
         Self {
@@ -116,7 +119,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// With another law on a surface. A surface past the end changes nothing.
+    /// Replaces the law of a surface. A surface past the end changes nothing.
     #[must_use]
     pub fn with_law(mut self, surface: usize, law: Law) -> Self {
         self.overrides.set(surface, Some(law));
@@ -130,18 +133,18 @@ impl<Sys: Impacting> Impacts<Sys> {
         self
     }
 
-    /// With these policies instead of the default ones.
+    /// Replaces the policies.
     #[must_use]
     pub fn with_policies(mut self, policies: Policies) -> Self {
         self.policies = policies;
         self
     }
 
-    /// The forces `lambda_c` of the surfaces that hold the motion at the moment, 0 for the others: a surface pushes by
-    /// `lambda_c pi_D^* dh_c`. `None` for a system that does not know the second rates of its gaps.
+    /// The contact forces `lambda_c`, one per surface, 0 for surfaces that do not hold the motion now: a surface
+    /// pushes by `lambda_c pi_D^* dh_c`. `None` for a system without second rates of its gaps.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// A [`Fault`] where the rates or the forces do not exist.
     pub fn contact_forces(
         &self,
         system: &Sys,
@@ -151,7 +154,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.resting.held().sizes(system, t, state)
     }
 
-    /// The motion presses into a surface at the start of a step.
+    /// Handles a motion that presses into a surface at the start of a step.
     fn press<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -162,7 +165,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         if is_map && self.accumulation.has_passed_on(surface, t) {
             return Err(Outcome::Zeno { t, surface });
         }
-        // If it had bounced, hops have become too small to rise from the surface at all.
+        // After a bounce, hops have become too small to rise from the surface at all.
         let accumulation = self.accumulation.ends_at(surface, t);
         match (self.may_rest(surface), accumulation) {
             (false, None) => return Err(Outcome::Contact { surface }),
@@ -173,7 +176,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.resting.press(surface, t)
     }
 
-    /// Whether the motion may go on along a surface. One with a reset holds nothing.
+    /// True if the motion may go on along a surface. A surface with a reset does not hold the motion.
     fn may_rest(&self, surface: usize) -> bool {
         self.policies.rest == Rest::Contact && !self.watch.is_passable(surface)
     }
@@ -184,7 +187,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         law.unwrap_or_else(|| system.law(surface))
     }
 
-    /// Whether the motion may be on both sides of a surface.
+    /// True if the motion may be on both sides of a surface.
     fn passes(&self, system: &Sys, surface: usize) -> bool {
         self.law_of(system, surface).is_map() && system.is_passable(surface)
     }
@@ -241,7 +244,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                     self.slide(surface, &mut hits, &rates, now, observer)?;
                 }
             } else {
-                // What still approaches here does so within rounding.
+                // A surface that is still approached here is so within rounding.
                 hits.set_still(surface, -rates.as_slice()[surface]);
                 self.watch.touch(&mut hits, &rates, now)?;
                 if recurrence.add(now)? {
@@ -256,8 +259,8 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.watch.leave(&hits, now, rates)
     }
 
-    /// Begins to slide, if the mode that was just entered through a surface leads back at once, and nothing but the mode
-    /// changes on the way.
+    /// Begins to slide, if the mode that was just entered through a surface leads back at once, and the passage
+    /// changes nothing but the mode.
     fn slide<O: Observer<Sys>>(
         &mut self,
         across: usize,
@@ -292,7 +295,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// What the law in force makes of a state that approaches a surface at gap rate `rate`, after the instantaneous
+    /// Result of the law in force for a state that approaches a surface at gap rate `rate`, after the instantaneous
     /// constraints of the surface.
     pub(super) fn struck(
         &self,
@@ -324,7 +327,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                 let rates = system.gap_rates(t, &focused)?;
                 let rate = rates.as_slice()[surface];
                 if rate >= 0.0 {
-                    // The constraints alone have turned the motion round.
+                    // The instantaneous constraints alone have reversed the motion.
                     return Ok(Struck {
                         after: focused,
                         rates,
@@ -338,9 +341,10 @@ impl<Sys: Impacting> Impacts<Sys> {
         let blow = self.blow(system, surface, t, &before)?;
         let mut after = before;
         system.kick(&mut after, blow.size, &blow.direction);
-        // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction; without this the
-        // energy would drift like the number of impacts instead of its root. The rate half way is small where the law is
-        // elastic: rates before and after would be rounded to a grid that is coarse beside their difference.
+        // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction. Without this
+        // correction the energy would drift in proportion to the number of impacts instead of its square root. The
+        // rate half way is small for an elastic law: the rates before and after would be rounded to a grid that is
+        // coarse beside their difference.
         let taken = blow.share * rate;
         let half = rate - 0.5 * taken;
         let middle = system.gap_rates(t, &between(&before, &after))?.as_slice()[surface];
@@ -361,7 +365,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// One impact; returns the gap rates after it, and what comes next.
+    /// Carries out one impact. Returns the gap rates after it, and the next action.
     fn impact<O: Observer<Sys>>(
         &mut self,
         strike: Strike,
@@ -404,7 +408,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
         let leads_on = now.system.mode(&before) != now.system.mode(&struck.after);
         match struck.by_impulse {
-            // It goes on through the surface, or in another mode.
+            // The motion goes on through the surface, or in another mode.
             false if penetrates || leads_on => match self.accumulation.pass(surface, t) {
                 Some(_) => Err(Outcome::Zeno { t, surface }),
                 None => Ok((struck.rates, Next::Impacts)),
@@ -413,16 +417,16 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// Whether the state still approaches a surface after an impact.
+    /// True if the state still approaches a surface after an impact.
     fn penetrates(&self, strike: Strike, rate_after: f64, now: &mut Moment<'_, Sys>) -> bool {
-        // The sign of the rate after a slow impact may be made of rounding errors, which the impact has multiplied.
+        // Rounding errors, which the impact has multiplied, may decide the sign of the rate after a slow impact.
         let watch = &self.watch;
         let surface = strike.surface;
         rate_after < -strike.still
             && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
     }
 
-    /// Takes in an impact; returns the gap rates to go on with.
+    /// Records an impact. Returns the gap rates and the action to go on with.
     fn accumulate(
         &mut self,
         strike: Strike,
@@ -432,7 +436,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         let Strike { surface, rate, .. } = strike;
         let (system, t) = (now.system, now.t);
         let rate_after = struck.rates.as_slice()[surface];
-        // A reset sets the rate to its last digit; an impulse leaves rounding errors of the rate it takes.
+        // A reset sets the rate to its last digit; an impulse leaves rounding errors of the rate that it removes.
         let still = match struck.by_impulse {
             true => strike.still,
             false => 0.0,
@@ -444,7 +448,8 @@ impl<Sys: Impacting> Impacts<Sys> {
             again: strike.again,
         };
         let may_rest = self.may_rest(surface);
-        // A first-order system has no energy: whether its motion becomes faster is told by the rate it leaves the surface at.
+        // A first-order system has no energy: the rate at which its motion leaves the surface shows if it becomes
+        // faster.
         let energy = || match system.energy(t, &struck.after) {
             Ok(energy) => Some(energy),
             Err(Fault::FirstOrder) => Some(rate_after * rate_after),
@@ -456,13 +461,13 @@ impl<Sys: Impacting> Impacts<Sys> {
             None => Ok((struck.rates, Next::Impacts)),
             Some(Ends::Spasmodic(t)) => Err(Outcome::Spasmodic { t, surface }),
             Some(Ends::Hops(t)) if may_rest => {
-                // Hops too small to be seen: what is left of the last one is taken.
+                // Hops too small to be resolved: the rest of the last one is removed.
                 struck.take_rate(system, surface, now.t)?;
                 *now.state = struck.after;
                 self.resting.note_accumulation(surface, t);
                 Ok((struck.rates, Next::Impacts))
             }
-            // What does not bounce off is pressed.
+            // A surface off which the motion does not bounce is pressed.
             Some(Ends::AtOneTime(_)) if bounce.rates[1] == 0.0 => Ok((struck.rates, Next::Rest)),
             Some(Ends::AtOneTime(t)) if may_rest && bounce.rates[1] < rate.abs() => {
                 self.resting.note_accumulation(surface, t);
@@ -474,7 +479,7 @@ impl<Sys: Impacting> Impacts<Sys> {
 }
 
 impl<Sys: Impacting> Struck<Sys> {
-    /// Takes the whole gap rate of this surface.
+    /// Removes the whole gap rate of this surface.
     fn take_rate(&mut self, system: &Sys, surface: usize, t: f64) -> Result<(), Outcome> {
         let contact = system.contact(surface, t, &self.after)?;
         let impulse = contact.impulse(Law::ImpactPlastic);
@@ -583,7 +588,8 @@ impl<Sys: Impacting> SceneEffects<Sys> for Impacts<Sys> {
 
 /// The state half way between two.
 ///
-/// NOTE: components that an impulse does not change are seen to be the same, so that what is made of them is computed once.
+/// NOTE: components that an impulse does not change are passed on unchanged, so that the compiler evaluates
+/// quantities that depend on them once.
 #[inline(always)]
 fn between<S: StateVector>(one: &S, other: &S) -> S {
     let mut middle = *one;

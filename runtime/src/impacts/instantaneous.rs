@@ -1,12 +1,13 @@
-//! Constraints that hold in the moment of an impact only, and while the motion is held by their surface.
+//! Instantaneous constraints: they hold at the moment of an impact only, and while their surface holds the motion.
 //!
-//! An impact first brings the state to them, by the nearest impulse in the metric: J. Cortes and A. M. Vinogradov call where
-//! it leads the instantaneous focusing point. If the state still approaches there, the law acts within them.
+//! An impact first brings the state to them, by the smallest impulse in the metric. J. Cortes and A. M. Vinogradov
+//! call the result the instantaneous focusing point. If the state still approaches there, the law acts within the
+//! constraints.
 
 use crate::contract::Impacting;
 use crate::error::Fault;
 
-/// The state at the instantaneous constraints of a surface; `None` where it has none.
+/// The state at the instantaneous constraints of a surface; `None` if it has none.
 pub(super) fn focused<Sys: Impacting>(
     system: &Sys,
     surface: usize,
@@ -21,7 +22,7 @@ pub(super) fn focused<Sys: Impacting>(
     Ok(Some(focused))
 }
 
-/// Whether a surface has instantaneous constraints.
+/// True if a surface has instantaneous constraints.
 pub(super) fn is_rough<Sys: Impacting>(
     system: &Sys,
     surface: usize,

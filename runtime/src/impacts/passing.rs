@@ -1,27 +1,27 @@
-//! Impacts after which the motion goes on through the surface: when they follow each other faster and faster.
+//! Impacts after which the motion goes on through the surface: detection of their accumulation.
 
 use super::hops::{SHRUNK, is_shorter};
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Times closer than this part of themselves cannot be told apart.
+/// Relative difference of times below which they cannot be told apart.
 const INSTANT: f64 = 4.0 * f64::EPSILON;
 
 /// The impacts that the motion passed through.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passing<G: StateVector> {
-    /// Time of the last on any surface; `None` before the first.
+    /// Time of the last impact on any surface; `None` before the first.
     last: Option<f64>,
     /// Time between the last two.
     stretch: Option<f64>,
-    /// Number of times in a row that this became shorter.
+    /// Number of times in a row that `stretch` became shorter.
     shortened: u32,
-    /// Time of the last on each surface.
+    /// Time of the last impact on each surface.
     on_each: PerSurface<Option<f64>, G>,
 }
 
 impl<G: StateVector> Passing<G> {
-    /// No impacts yet, on as many surfaces as there are components here.
+    /// Data before the first impact, for as many surfaces as `like` has components.
     pub(super) fn none(like: &G) -> Self {
         Self {
             last: None,
@@ -31,7 +31,7 @@ impl<G: StateVector> Passing<G> {
         }
     }
 
-    /// Takes in an impact.
+    /// Records an impact.
     pub(super) fn add(&mut self, surface: usize, t: f64) {
         let stretch = self.last.replace(t).map(|last| t - last);
         self.on_each[surface] = Some(t);
@@ -47,8 +47,8 @@ impl<G: StateVector> Passing<G> {
         self.stretch = stretch;
     }
 
-    /// True if impacts, one on this surface among them, followed each other faster and faster until this time, at which two of
-    /// them cannot be told apart.
+    /// True if impacts, one on this surface among them, followed each other faster and faster until this time, at
+    /// which two of them cannot be told apart.
     pub(super) fn has_accumulated(&self, surface: usize, t: f64) -> bool {
         let instant = INSTANT * t.abs();
         let is_instant = |stretch: f64| stretch <= instant;

@@ -1,6 +1,8 @@
-//! Where a motion along surfaces leaves one of them: where its force, which can only push, would have to pull.
+//! Release of a motion from a surface that holds it: the contact force can only push, and the motion leaves where it
+//! would have to pull.
 //!
-//! The force is a function of time along a step like a gap is, and its fall through zero is found in the same way.
+//! The force is a function of time along a step, and its fall through zero is located in the same way as that of a
+//! gap.
 
 use core::cell::{Cell, RefCell};
 
@@ -14,10 +16,10 @@ use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Rounding of a force, in parts of the largest that it is in the step.
+/// Rounding of a force, relative to its largest value in the step.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A part of a step, and the surface that is left there; none where the search stopped.
+/// A fraction of a step, and the surface that is left there; `None` where the search stopped.
 pub(super) type Release = (f64, Option<usize>);
 
 /// The first release in a step.
@@ -67,7 +69,7 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         .fold(0.0_f64, |most, size| most.max(size.abs()));
     let above = whole[0] >= -ROUNDING * largest;
     if !above && whole.iter().all(|&size| size < 0.0) {
-        // Pressed by the gap, pulled by the force: within rounding of neither.
+        // The gap presses, the force pulls: both beyond rounding.
         return Err(Outcome::Contact { surface });
     }
     let fault = Cell::new(None);

@@ -1,6 +1,6 @@
-//! Counts of what happens again and again at one time.
+//! Counts of repeated events at one time.
 
-/// Number of times that something has happened again at the time at which it happened last.
+/// Number of repetitions of an event at the time of its last occurrence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Repeats {
     /// Time of the last occurrence; `None` before the first.
@@ -9,7 +9,7 @@ pub(super) struct Repeats {
 }
 
 impl Repeats {
-    /// Nothing has happened yet.
+    /// No occurrence yet.
     pub(super) fn none() -> Self {
         Self {
             last: None,
@@ -17,7 +17,7 @@ impl Repeats {
         }
     }
 
-    /// Takes in an occurrence. Returns the number of those before it at the same time.
+    /// Records an occurrence. Returns the number of earlier ones at the same time.
     pub(super) fn add(&mut self, t: f64) -> u32 {
         self.count = match self.last == Some(t) {
             true => self.count + 1,
@@ -27,7 +27,7 @@ impl Repeats {
         self.count
     }
 
-    /// Number of occurrences at the last time, the first not counted.
+    /// Number of occurrences at the last time, without the first.
     pub(super) fn count(&self) -> u32 {
         self.count
     }

@@ -1,7 +1,7 @@
-//! Resting on surfaces and sliding along them: when it begins, and when it ends.
+//! Resting on surfaces and sliding along them: begin and end of contact.
 //!
-//! Every change happens where a step is cut: at its start where the motion presses into a surface at hand, inside where
-//! a force would have to pull, or at an impact on another surface.
+//! Every change happens where a step is cut: at its start where the motion presses into a surface at hand, inside
+//! where a contact force would have to pull, or at an impact on another surface.
 
 use core::ops::ControlFlow;
 
@@ -19,19 +19,19 @@ use crate::per_surface::PerSurface;
 use crate::record::{Hold, Observer};
 use crate::state::StateVector;
 
-/// Changes at one time per surface before the motion counts as one that no choice of surfaces continues.
+/// Maximum number of changes at one time per surface; beyond it no choice of surfaces continues the motion.
 const CHANGES: u32 = 4;
 
-/// A gap rate with less than this part of the kinetic energy counts as 0: squared `2^-36`, as for impacts.
+/// Share of the kinetic energy below which a gap rate counts as 0: the square of `2^-36`, as for impacts.
 const STILL: f64 = 1.0 / (1_u128 << 72) as f64;
 
-/// What happens where the step is cut.
+/// Reason for a cut of the step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Turn {
     Nothing,
     /// The motion presses into this surface.
     Press(usize),
-    /// This surface would have to pull.
+    /// The contact force of this surface would have to pull.
     Leave(usize),
 }
 
@@ -40,14 +40,14 @@ enum Turn {
 pub(super) struct Resting<G: StateVector> {
     held: Held<G>,
     turn: Turn,
-    /// When impacts on a surface accumulated, until that is told.
+    /// Times at which impacts on a surface accumulated, until they are reported.
     accumulated: PerSurface<Option<f64>, G>,
     /// Changes of surfaces at one time.
     changes: Repeats,
 }
 
 impl<G: StateVector> Resting<G> {
-    /// On none, of as many as there are components here.
+    /// No surface, for as many surfaces as `like` has components.
     pub(super) fn none(like: &G) -> Self {
         Self {
             held: Held::none(like),
@@ -69,19 +69,19 @@ impl<G: StateVector> Resting<G> {
         (!self.held.is_empty()).then_some(self.held)
     }
 
-    /// Impacts on a surface accumulate at this time.
+    /// Records that impacts on a surface accumulate at this time.
     pub(super) fn note_accumulation(&mut self, surface: usize, t: f64) {
         self.accumulated[surface] = Some(t);
     }
 
-    /// The motion presses into a surface at the start of a step, at `t`.
+    /// Records that the motion presses into a surface at the start of a step, at `t`.
     pub(super) fn press(&mut self, surface: usize, t: f64) -> Result<Option<f64>, Outcome> {
         self.count(surface, t)?;
         self.turn = Turn::Press(surface);
         Ok(Some(0.0))
     }
 
-    /// Ends the run where surfaces are changed again and again at one time.
+    /// Counts a change of surfaces. Ends the run where changes repeat at one time.
     fn count(&mut self, surface: usize, t: f64) -> Result<(), Outcome> {
         if self.changes.add(t) > CHANGES * (self.accumulated.count() as u32 + 1) {
             return Err(Outcome::Contact { surface });
@@ -89,7 +89,7 @@ impl<G: StateVector> Resting<G> {
         Ok(())
     }
 
-    /// The earlier of a hit and of the first release in a step.
+    /// The earlier one of a hit and of the first release in a step.
     pub(super) fn look<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         &mut self,
         hit: Option<f64>,
@@ -107,7 +107,7 @@ impl<G: StateVector> Resting<G> {
         }
     }
 
-    /// Carries out what the step was cut for, if it was for this.
+    /// Carries out the change for which the step was cut, if there is one.
     pub(super) fn turn<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         now: &mut Moment<'_, Sys>,
@@ -120,7 +120,8 @@ impl<G: StateVector> Resting<G> {
                 None => self.leave(surface, now, observer)?,
             },
             Turn::Press(surface) => {
-                // How two surfaces with instantaneous constraints share what both of them take is not known.
+                // The division of a common impulse between two surfaces with instantaneous constraints is
+                // undetermined.
                 let (system, t) = (now.system, now.t);
                 if is_rough(system, surface, t, now.state)?
                     && self.held.is_rough(system, t, now.state)?
@@ -149,7 +150,7 @@ impl<G: StateVector> Resting<G> {
         Ok(true)
     }
 
-    /// After impacts: leaves the surfaces that the motion now rises from, and those that would have to pull.
+    /// Leaves the surfaces from which the motion rises after impacts, and those that would have to pull.
     pub(super) fn bounce<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         now: &mut Moment<'_, Sys>,
@@ -179,7 +180,7 @@ impl<G: StateVector> Resting<G> {
         self.drop_pulling(None, now, observer)
     }
 
-    /// After a reset of positions: leaves the surfaces that are not at hand any more.
+    /// Leaves the surfaces that are not at hand any more after a reset of positions.
     pub(super) fn keep<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         hits: &Hits<G>,
@@ -201,7 +202,7 @@ impl<G: StateVector> Resting<G> {
         Ok(())
     }
 
-    /// Two modes lead into each other: the motion slides between them.
+    /// Begins sliding between two modes that lead into each other.
     pub(super) fn begin_slide<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         slide: Slide,
@@ -223,7 +224,7 @@ impl<G: StateVector> Resting<G> {
         )
     }
 
-    /// One of the modes leads away from the surface, that of this transition: the motion goes on there.
+    /// Ends sliding where the mode of this transition leads away from the surface: the motion goes on there.
     fn end_slide<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         slide: Slide,
@@ -257,7 +258,7 @@ impl<G: StateVector> Resting<G> {
         )
     }
 
-    /// Leaves surfaces that would have to pull, one after the other, but not the one just pressed.
+    /// Leaves surfaces that would have to pull, one after the other, except the one just pressed.
     fn drop_pulling<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         pressed: Option<usize>,

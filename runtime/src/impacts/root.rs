@@ -1,4 +1,5 @@
-//! The fall of one gap on its polynomial along a step, corrected by an evaluation or two of the gap of the dense output.
+//! The fall of one gap on its polynomial along a step, corrected by one or two evaluations of the gap on the dense
+//! output.
 
 use super::series::GapSeries;
 use crate::events::crossing::Signs;
@@ -6,39 +7,38 @@ use crate::events::locate::Bracket;
 use crate::math;
 use crate::state::StateVector;
 
-/// Steps of Chebyshev's method, which triples the number of right digits in each.
+/// Maximum number of steps of Chebyshev's method. Each triples the number of correct digits.
 const STEPS: u32 = 10;
 
-/// A step of it this small a part of the root is the last one, or the last but one: what it leaves of the error is about
-/// its cube.
+/// Relative size of a step that is the last one, or the last but one: the remaining error is about its cube.
 const SETTLED: f64 = 1.0 / (1 << 18) as f64;
 
-/// Steps of it on the first terms of a polynomial, and how many these are.
+/// Number of steps on the first terms of a polynomial, and number of these terms.
 const GUESSES: u32 = 2;
 const FIRST_TERMS: usize = 8;
 
-/// Behind the first root of a polynomial, this many times as far as the root, it is looked at apart from the rest of the step.
+/// Ratio of a place behind the first root of a polynomial to the root, up to which the step is examined separately.
 const BEHIND: f64 = 1.25;
 
-/// Evaluations of the gap itself next to a root of its polynomial.
+/// Maximum number of evaluations of the gap itself near a root of its polynomial.
 const SECANTS: u32 = 6;
 
-/// A root is certain if what rounding leaves of doubt is this small a part of the interval it was found in.
+/// Share of the bracket below which the uncertainty from rounding makes a root certain.
 const CLOSE: f64 = 1.0 / (1 << 10) as f64;
 
-/// The polynomial of a surface's gap, a root at the start of the step divided out.
+/// The polynomial of a surface's gap, after division by a root at the start of the step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Polynomial<'a, G> {
     series: &'a GapSeries<G>,
     surface: usize,
-    /// Whether there is a root at the start.
+    /// True if there is a root at the start.
     at_hand: bool,
-    /// Its terms, of which those at the end that are 0 are not counted.
+    /// Terms of the polynomial, without zeros at the end.
     terms: &'a [G],
 }
 
 impl<'a, G: StateVector> Polynomial<'a, G> {
-    /// That of this surface, which is at hand at the start of the step or not.
+    /// The polynomial of this surface; `at_hand` if it is at hand at the start of the step.
     pub(super) fn new(series: &'a GapSeries<G>, surface: usize, at_hand: bool) -> Self {
         let first = usize::from(at_hand);
         let terms = &series.coefficients[first..=series.order.max(first)];
@@ -52,16 +52,16 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         }
     }
 
-    /// A part of the step up to which the polynomial falls once and does nothing else, if one is found.
+    /// A fraction of the step up to which the polynomial provably has one fall and no other root, if one is found.
     pub(super) fn first_fall(&self) -> Option<f64> {
         let end = (BEHIND * self.guess([0.0, 1.0])).min(1.0);
         let signs = self.series.signs_by_more(self.surface, self.at_hand, end);
         (signs == Signs::Falls).then_some(end)
     }
 
-    /// The fall of the gap in an interval at whose ends the polynomial has different signs: Chebyshev's method on the
-    /// polynomial, with the gap itself in the last step. `None` where that does not end soon, or the gap is not what the
-    /// polynomial says.
+    /// The fall of the gap in a bracket at whose ends the polynomial has different signs: Chebyshev's method on the
+    /// polynomial, with the gap itself in the last step. `None` if it does not converge soon, or if the gap differs
+    /// from the polynomial.
     pub(super) fn fall(
         &self,
         [mut before, mut after]: [f64; 2],
@@ -78,7 +78,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
                 after = near.part;
             }
             let root = near.root(near.value);
-            // Not a comparison that NaN passes.
+            // Written so that NaN fails the comparison.
             let is_inside = root >= before && root <= after;
             if is_inside && (root - near.part).abs() <= SETTLED * root {
                 break root;
@@ -91,7 +91,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
             root = near.root(near.value);
         }
         let size = self.series.sizes.as_slice()[self.surface];
-        // What neighbouring numbers and rounding cannot tell apart.
+        // Width that neighbouring numbers and rounding cannot resolve.
         let margin = 8.0 * f64::EPSILON * (root + size / self.slope(&near, root).abs());
         let root = self.corrected(&near, root, margin, gap)?;
         let is_plain = margin <= CLOSE * width && root > margin && root + margin < 1.0;
@@ -102,9 +102,9 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         })
     }
 
-    /// Whether a root is so near that rounding is more than what a step to it leaves: of its own error, about twice the
-    /// step times the square of the share that the bend has in it; and of the gap, whose slope is off by what a last term
-    /// would add to it that explains all doubt.
+    /// True if a root is so near that rounding exceeds the error after a step to it: the error of the step itself,
+    /// about twice the step times the square of the relative change of the slope in it; and the error from the gap's
+    /// slope, which a last term as large as the polynomial's error would change.
     #[inline(always)]
     fn is_next(&self, near: &Near, root: f64) -> bool {
         let step = (root - near.part).abs();
@@ -116,9 +116,9 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
             && degree * doubt * step <= f64::EPSILON * root * size
     }
 
-    /// The root of the gap itself, where that of its polynomial is `root` and `near` it: the same step with the gap in
-    /// place of the polynomial, then secants. One evaluation is enough where the polynomial misses little; `None`
-    /// where it misses more than it may.
+    /// The root of the gap itself, near the root `root` of its polynomial: the same step with the gap in place of the
+    /// polynomial, then secant steps. One evaluation suffices if the error of the polynomial is small; `None` if it
+    /// exceeds its bound.
     fn corrected(
         &self,
         near: &Near,
@@ -136,8 +136,8 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         }
         let mut next = near.root(value / divisor);
         let degree = self.series.order as f64;
-        // The slope is off by as much as the gap bends between here and the point before; at first, by what a last term
-        // that explains how far the root of the polynomial is off would add to it.
+        // Error of the slope: the change of the gap's slope between here and the point before; at first, the
+        // contribution of a last term that accounts for the error of the polynomial's root.
         let mut apart = (next - root).abs();
         let mut step = apart.max((next - part).abs());
         for _ in 0..SECANTS {
@@ -157,8 +157,8 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         None
     }
 
-    /// About where the polynomial falls in an interval: where its first terms do, looked for from where the parabola falls
-    /// that has its start, its slope there and its end.
+    /// Estimate of the fall of the polynomial in a bracket: the fall of its first terms, iterated from the fall of
+    /// the parabola with the same start, slope at the start and end.
     #[inline(always)]
     fn guess(&self, [before, after]: [f64; 2]) -> f64 {
         let middle = 0.5 * (before + after);
@@ -170,7 +170,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         let [a, b] = [0, 1].map(|k| self.series.coefficients[first + k].as_slice()[self.surface]);
         let end = self.series.last.as_slice()[self.surface];
         let root = math::sqrt((b * b - 4.0 * a * (end - a - b)).max(0.0));
-        // The quotient that does not cancel.
+        // The form of the quotient without cancellation.
         let mut part = inside(match b <= 0.0 {
             true => 2.0 * a / (root - b),
             false => -0.5 * (b + root) / (end - a - b),
@@ -184,9 +184,9 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         part
     }
 
-    /// These first terms next to a part of the step.
+    /// Value and derivatives of these first terms at a fraction of the step.
     ///
-    /// Even and odd powers are summed side by side, as each addition waits for the last.
+    /// Even and odd powers are summed side by side, which shortens the chain of dependent additions.
     #[inline(always)]
     fn near(&self, terms: &[G], part: f64) -> Near {
         let square = part * part;
@@ -203,7 +203,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
                 values[i] = math::mul_add(values[i], square, term);
             }
         }
-        // By the part, of `E(part^2) + part O(part^2)`.
+        // Derivative by the fraction, of `E(part^2) + part O(part^2)`.
         let [even, odd] = slopes;
         Near {
             part,
@@ -213,7 +213,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         }
     }
 
-    /// The slope of the gap at a root near by.
+    /// The slope of the gap at a nearby root.
     #[inline(always)]
     fn slope(&self, near: &Near, root: f64) -> f64 {
         let slope = near.slope + 2.0 * near.bend * (root - near.part);
@@ -221,7 +221,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
     }
 }
 
-/// A function next to a part of a step: its value there, its slope, and half of its second derivative.
+/// A function at a fraction of a step: its value, its slope, and half of its second derivative.
 #[derive(Debug, Clone, Copy)]
 struct Near {
     part: f64,
@@ -231,7 +231,7 @@ struct Near {
 }
 
 impl Near {
-    /// Where Chebyshev's step goes if the value is this one.
+    /// Target of Chebyshev's step for this value.
     #[inline(always)]
     fn root(&self, value: f64) -> f64 {
         let inverse = 1.0 / self.slope;
@@ -249,7 +249,7 @@ mod tests {
 
     type One = SVector<f64, 1>;
 
-    /// The series of a polynomial that may be wrong by `doubt`.
+    /// The series of a polynomial with an error of at most `doubt`.
     fn series(terms: &[f64], doubt: f64) -> GapSeries<One> {
         let mut coefficients = [One::zeros(); LENGTH];
         for (entry, term) in coefficients.iter_mut().zip(terms) {
@@ -267,7 +267,7 @@ mod tests {
         }
     }
 
-    /// The fall of a gap between these ends, by a polynomial that may be wrong by `doubt`.
+    /// The fall of a gap between these ends, with a polynomial that has an error of at most `doubt`.
     fn fall(
         polynomial: &GapSeries<One>,
         at_hand: bool,
@@ -331,7 +331,7 @@ mod tests {
 
     #[test]
     fn doubtful_falls_are_left_to_the_gap_itself() {
-        // It is not what the polynomial says; it touches; it rises.
+        // Three failures: the gap differs from the polynomial; it touches; it rises.
         let falling = series(&[0.5, -1.0], 1e-12);
         assert_eq!(fall(&falling, false, [0.0, 1.0], |_| 1e-11), None);
         let touching = series(&[0.25, -1.0, 1.0], 1e-12);

@@ -1,5 +1,5 @@
-//! The search for hits along a step that the first look did not settle: falls of gaps through zero, which of them are
-//! impacts, and what a motion from rest on a surface does.
+//! Event location along a step that the first tests did not settle: falls of gaps through zero, the impacts among
+//! them, and the motion from rest on a surface.
 
 use super::fall::{Known, first_fall};
 use super::glance::Glance;
@@ -17,26 +17,27 @@ use crate::numbers::TaylorModel;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Falls looked at in one step on one surface before the step is cut: those that are no impacts are passed over.
+/// Maximum number of falls examined in one step on one surface before the step is cut. Falls that are no impacts are
+/// passed over.
 const FALLS: u32 = 1024;
 
-/// A gap rate this small a part of those at the ends of the step may belong to a graze.
+/// Ratio of a gap rate to those at the ends of the step below which a grazing impact is possible.
 const SLOW: f64 = 1.0 / (1 << 10) as f64;
 
-/// What the errors of steps may grow to in a flight, over their sum.
+/// Bound of the growth of the local errors during a flight, relative to their sum.
 const SAFETY: f64 = 8.0;
 
 /// The first hit of one surface in a step.
 enum Found {
     Nothing,
-    /// At this part of the step, with this gap rate.
+    /// A hit at this fraction of the step, with this gap rate.
     Hit(f64, f64),
     Unfinished(f64),
 }
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Looks for the earliest hit along the dense output. `last_rates` are the gap rates at the end of the step, `first` is the first
-    /// surface that is not clear, with its gap on the whole step where that is known.
+    /// Finds the earliest hit along the dense output. `last_rates` are the gap rates at the end of the step; `first`
+    /// is the first surface that is not clear, with its gap on the whole step if that is known.
     pub(super) fn search<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
@@ -59,7 +60,7 @@ impl<Sys: Impacting> Watch<Sys> {
             let last_rate = last_rates.as_slice()[surface];
             let (part, rate) = match self.first_hit(surface, step, glance, whole)? {
                 Found::Hit(part, rate) => (part, Some(rate)),
-                // Gaps that cannot be told however short the step is: it would be cut again and again where it begins.
+                // Gaps that no shortening of the step decides: the step would be cut again and again at its start.
                 Found::Unfinished(part) if part * self.length < least_trial(step.t_start()) => {
                     return Err(Outcome::StepUnderflow { t: step.t_start() });
                 }
@@ -78,8 +79,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Has the integrator solve for the hit at `theta`, if it can: the step ends there then. Returns the part of the step to
-    /// cut it at.
+    /// Lets the integrator solve for the hit at `theta`, if it can: the step then ends there. Returns the fraction of
+    /// the step at which to cut it.
     pub(super) fn meet<Step: Stepper<Sys>>(
         &mut self,
         theta: f64,
@@ -123,7 +124,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let gap = self.gaps.as_slice()[surface];
         let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
         let until = self.proposed.unwrap_or(1.0);
-        // A passable surface at hand has counted: it is left upwards, or crossed.
+        // A passable surface at hand has acted already: the motion leaves it upwards, or crosses it.
         let crosses = self.is_passable(surface) && slope.is_some_and(|slope| slope <= 0.0);
         let mut start = Start {
             from: 0.0,
@@ -149,7 +150,8 @@ impl<Sys: Impacting> Watch<Sys> {
                     };
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
-                // Between times that are the same a surface at hand is left, whatever rounding says of its gap.
+                // Between times that are the same the motion leaves a surface at hand, whatever the rounding of its
+                // gap.
                 Search::Pole(_) if slope >= Some(0.0) && glance.is_moment() => {
                     return Ok(Found::Nothing);
                 }
@@ -193,11 +195,11 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(Found::Unfinished(start.from))
     }
 
-    /// Where an impact is placed and the gap rate there, unless the surface is not approached.
+    /// Place of an impact and the gap rate there; `None` if the surface is not approached.
     ///
-    /// NOTE: that is where the gap is closest to 0, on whichever side; but never where there is no motion behind the surface.
-    /// Were it always the allowed side, positions would be rounded away from the surface, and times and angular momenta
-    /// drift like the number of impacts.
+    /// NOTE: the place is where the gap is closest to 0, on either side, except where no motion exists behind the
+    /// surface. If it were always the allowed side, positions would be rounded away from the surface, and times and
+    /// angular momenta would drift in proportion to the number of impacts.
     fn approach<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -225,7 +227,7 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(is_approached.then_some((there, rate)))
     }
 
-    /// Behind a pole the surface must not count: the motion is on the side that is not allowed, and met no wall.
+    /// Checks that the surface does not count behind a pole: the motion is on the forbidden side, and met no wall.
     fn check_behind_pole<Step: Stepper<Sys>>(
         &self,
         surface: usize,
@@ -244,8 +246,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Marks a hit so slow that the gap's lowest value would be within its rounding, or within what the integrator may err by. `rate` is
-    /// the gap rate there, `last` that at the end of the step.
+    /// Marks a grazing impact: a hit so slow that the gap's lowest value would be within its rounding, or within the
+    /// error of the integrator. `rate` is the gap rate there, `last` that at the end of the step.
     fn note_graze<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -254,7 +256,7 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<(), Outcome> {
         let ends = [self.rates.as_slice()[surface], last];
-        // The change of the rate per part of the step, forwards.
+        // Forward change of the rate per fraction of the step.
         let (change, apart) = if part > 0.5 {
             (rate - ends[0], part)
         } else {
@@ -271,7 +273,7 @@ impl<Sys: Impacting> Watch<Sys> {
             if self.is_slow(surface, rate, || rounding) {
                 graze = Graze::WithinRounding;
             } else if self.errors > 0.0 && change > 0.0 {
-                // NOTE: only a gap that bends upwards would have turned before the surface.
+                // NOTE: only a gap with positive second derivative would have turned before the surface.
                 let scale = step.system.scale(step.t_end(), step.end());
                 let unit = (&self.sizes, &scale, tolerance);
                 let end = (step.t_end(), step.end());
@@ -289,8 +291,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Whether the motion goes into a surface at hand, rather than along it within rounding. Rounding adds up
-    /// along a wall, so its sum over the steps says nothing.
+    /// True if the motion goes into a surface at hand, false if it goes along it within rounding. Rounding
+    /// accumulates along a wall, so the sum of it over the steps decides nothing.
     pub(super) fn is_pressed<Step: Stepper<Sys>>(
         &self,
         surface: usize,
@@ -304,8 +306,8 @@ impl<Sys: Impacting> Watch<Sys> {
         glance.rate(surface).is_some_and(is_falling)
     }
 
-    /// Whether the gap is negative at the end of the step, by more than rounding: a motion along a wall falls and rises
-    /// through it by that much.
+    /// True if the gap is negative at the end of the step by more than rounding: a motion along a wall crosses it
+    /// back and forth by less.
     pub(super) fn is_sunk<Step: Stepper<Sys>>(
         &self,
         surface: usize,
@@ -323,7 +325,7 @@ impl<Sys: Impacting> Watch<Sys> {
     }
 }
 
-/// The size of a gap's rounding errors along a step, from components that have had these sizes.
+/// Size of a gap's rounding errors along a step, for components that have had these sizes.
 pub(super) fn rounding_along<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,
@@ -349,7 +351,7 @@ pub(super) fn is_active<Sys: Impacting, Step: Stepper<Sys>>(
         .surface_active(surface, step.time(part), &step.state(part))
 }
 
-/// What is known at a part of a step, if the motion exists there.
+/// The quantities at a fraction of a step, if the motion exists there.
 fn regular_place<Sys: Impacting, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
     part: f64,
@@ -361,7 +363,7 @@ fn regular_place<Sys: Impacting, Step: Stepper<Sys>>(
     exists.then_some(place)
 }
 
-/// The gap rate at a part of a step.
+/// The gap rate at a fraction of a step.
 fn rate_at<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,

@@ -1,7 +1,8 @@
-//! Gaps along a step that is a power series: polynomials themselves, whose signs are read from their coefficients.
+//! Gaps along a step that is a power series: they are polynomials, and their signs follow from their coefficients.
 //!
-//! The Bernstein coefficients of a polynomial on the step bound it from both sides (convex hull). They tell where to look for a
-//! root. That there is none elsewhere is for an enclosure of the gap itself to show: terms that the series leaves out may hide one.
+//! The Bernstein coefficients of a polynomial on the step bound it from both sides (convex hull), and show where a
+//! root may lie. An enclosure of the gap itself must show that no other root exists: the truncated terms of the
+//! series may hide one.
 //!
 //! Reference: G. Farin, *Curves and Surfaces for CAGD* (2002), chapter 5.
 
@@ -13,14 +14,14 @@ use crate::jet::LENGTH;
 use crate::math;
 use crate::state::StateVector;
 
-/// Part of the sum of its terms that a polynomial may be wrong by and still be of use. Its first terms must be most of the
-/// sum besides: where the last ones are, the step is longer than the series reaches.
+/// Relative error of a polynomial, beside the sum of the absolute values of its terms, up to which it is useful. Its
+/// first terms must also make up most of the sum: otherwise the step is longer than the reach of the series.
 const USEFUL: f64 = 1.0 / (1 << 20) as f64;
 
-/// Rounding of coefficients and of sums over them, in parts of the sum of terms.
+/// Rounding of coefficients and of sums over them, relative to the sum of the absolute values of the terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The gaps of a step as polynomials in the part of the step.
+/// The gaps of a step as polynomials in the fraction of the step.
 #[derive(Debug)]
 pub(super) struct GapSeries<G> {
     pub(super) coefficients: [G; LENGTH],
@@ -28,15 +29,15 @@ pub(super) struct GapSeries<G> {
     /// Sums of the absolute values of all terms, and of those above the fourth.
     pub(super) sizes: G,
     pub(super) tails: G,
-    /// How wrong each polynomial may be: what it misses at the end of the step, and rounding.
+    /// Error bound of each polynomial: its deviation at the end of the step, and rounding.
     pub(super) doubts: G,
-    /// The gaps at the end of the step, and their slopes by the part of the step.
+    /// The gaps at the end of the step, and their slopes by the fraction of the step.
     pub(super) last: G,
     pub(super) slopes: G,
 }
 
 impl<G: StateVector> GapSeries<G> {
-    /// The polynomials of a step that is a series, at whose end the gaps are `last`, if they are of use.
+    /// The polynomials of a step that is a series, with the gaps `last` at its end, if they are useful.
     #[inline(always)]
     pub(super) fn of<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         step: &StepView<'_, Sys, Step>,
@@ -93,7 +94,7 @@ impl<G: StateVector> GapSeries<G> {
         })
     }
 
-    /// The gap of a surface at a part of the step.
+    /// The gap of a surface at a fraction of the step.
     #[inline(always)]
     pub(super) fn at(&self, surface: usize, part: f64) -> f64 {
         let terms = self.coefficients[..=self.order].iter().rev();
@@ -102,7 +103,7 @@ impl<G: StateVector> GapSeries<G> {
         })
     }
 
-    /// Whether the gap of a surface is positive at a part of the step, beyond doubt.
+    /// True if the gap of a surface is positive at a fraction of the step, beyond its error.
     pub(super) fn is_positive(&self, surface: usize, part: f64) -> bool {
         self.at(surface, part) > self.doubts.as_slice()[surface]
     }
@@ -118,10 +119,10 @@ impl<G: StateVector> GapSeries<G> {
         rates
     }
 
-    /// The signs of the polynomial of a surface over the step, a root at the start divided out.
+    /// Signs of the polynomial of a surface over the step, after division by a root at the start.
     ///
-    /// A step is a small part of the radius of convergence, so that a cubic is almost the whole gap: its Bernstein
-    /// coefficients must exceed the sum of all other terms, or else those of more terms the sum of the rest.
+    /// A step is a small part of the radius of convergence, so a cubic is almost the whole gap: its Bernstein
+    /// coefficients must exceed the sum of all other terms, or those of more terms the sum of the rest.
     #[inline(always)]
     pub(super) fn signs(&self, surface: usize, at_hand: bool) -> Signs {
         let first = usize::from(at_hand);
@@ -138,8 +139,8 @@ impl<G: StateVector> GapSeries<G> {
         }
     }
 
-    /// The signs between the start of the step and a part of it, as more terms show them: the Bernstein coefficients of
-    /// the first terms must exceed the sum of all others.
+    /// Signs between the start of the step and a fraction of it, from more terms: the Bernstein coefficients of the
+    /// first terms must exceed the sum of all others.
     #[inline(never)]
     pub(super) fn signs_by_more(&self, surface: usize, at_hand: bool, end: f64) -> Signs {
         let first = usize::from(at_hand);

@@ -1,13 +1,13 @@
-//! Sliding along a surface where two first-order modes meet and both lead into it.
+//! Sliding mode along a surface at which two first-order modes meet and both lead into it.
 //!
-//! The motion is Filippov's: the combination of both fields that stays on the surface,
+//! The motion is Filippov's: the convex combination of both fields that stays on the surface,
 //!
 //! ```text
 //! f = f_b + s (f_a - f_b),   s = r_b/(r_a + r_b),
 //! ```
 //!
-//! with `r_a`, `r_b` the gap rates of the two transitions, each in the mode that it leaves; both are negative. It ends where one
-//! of them is 0: the motion goes on in that mode.
+//! with `r_a`, `r_b` the gap rates of the two transitions, each in the mode that it leaves; both are negative. It
+//! ends where one of them is 0: the motion goes on in that mode.
 //!
 //! Reference: A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), section 4.
 
@@ -16,16 +16,16 @@ use crate::error::Fault;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Two transitions that lead into each other: the one that leaves the present mode, and the one that was taken.
+/// Two transitions that lead into each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Slide {
-    /// Out of the mode that the state is of.
+    /// The transition out of the mode of the state.
     pub(super) back: usize,
-    /// Out of the other mode.
+    /// The transition out of the other mode.
     pub(super) across: usize,
 }
 
-/// Both fields at a state, and how fast each leads into the surface.
+/// Both fields at a state, and the gap rates at which they lead into the surface.
 struct Sides<Sys: Impacting> {
     own: Sys::State,
     other: Sys::State,
@@ -65,7 +65,7 @@ impl Slide {
         })
     }
 
-    /// How fast both modes lead into the surface, at the places of their transitions; 0 elsewhere.
+    /// Speeds at which both modes lead into the surface, at the indices of their transitions; 0 elsewhere.
     pub(super) fn pressures<Sys: Impacting>(
         self,
         system: &Sys,
@@ -79,7 +79,7 @@ impl Slide {
         Ok(pressures)
     }
 
-    /// Turns the rate of the present mode into that of the sliding motion.
+    /// Replaces the rate of the present mode by that of the sliding motion.
     pub(super) fn add<Sys: Impacting>(
         self,
         system: &Sys,

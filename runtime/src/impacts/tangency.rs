@@ -1,4 +1,4 @@
-//! Gaps that are zero at rate zero: whether the motion presses into the surface, or crosses it.
+//! Gaps that are zero at gap rate zero: test if the motion presses into the surface, or crosses it.
 
 use super::held::second_rates;
 use crate::contract::Impacting;
@@ -7,12 +7,12 @@ use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Parts of a step down to which the second rate of a gap is looked for in how its rate falls: half the digits, so that
-/// rounding of the second rate is not taken for one.
+/// Least fraction of a step over which the fall of a gap's rate is compared with its second rate: half the digits, so
+/// that rounding is not taken for a second rate.
 const LEAST_PART: f64 = 1.0 / (1 << 26) as f64;
 
-/// Whether the second rate of a gap, which is 0 at the start of a step at rate 0, tells at least half of how its rate
-/// falls in some small part of the step.
+/// True if the second rate of a gap, which is 0 at the start of a step at rate 0, accounts for at least half of the
+/// fall of its rate in some small part of the step.
 pub(super) fn is_accelerated<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,
@@ -35,8 +35,9 @@ pub(super) fn is_accelerated<Sys: Impacting, Step: Stepper<Sys>>(
     Ok(false)
 }
 
-/// Whether a gap that is 0 at this part of a step, at rate 0, goes on like the cube of time: told from the square, which
-/// is a graze or a contact, by what the rate changes in an eighth and in a quarter of the rest.
+/// True if a gap that is 0 at this fraction of a step, at rate 0, continues like the cube of time. The square, which
+/// is a grazing impact or a contact, differs in the changes of the rate over an eighth and a quarter of the remaining
+/// step.
 pub(super) fn crosses_at_rest<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,
@@ -48,6 +49,6 @@ pub(super) fn crosses_at_rest<Sys: Impacting, Step: Stepper<Sys>>(
         rates.map(|rates| rates.as_slice()[surface])
     };
     let (first, eighth, quarter) = (rate(0.0)?, rate(0.125)?, rate(0.25)?);
-    // A quarter of the change for the cube, half of it for the square.
+    // The ratio of the changes is a quarter for the cube, a half for the square.
     Ok(quarter < first && eighth - first > 0.375 * (quarter - first))
 }

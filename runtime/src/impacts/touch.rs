@@ -1,4 +1,4 @@
-//! Surfaces that touch where an impact happens: their gaps are 0 there, and they were not approached before it.
+//! Surfaces that touch at an impact: their gaps are 0 there, and they were not approached before it.
 
 use super::glance::finite;
 use super::hits::Hits;
@@ -9,7 +9,7 @@ use crate::outcome::Outcome;
 use crate::state::StateVector;
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Adds the surfaces that touch and are approached at these rates, after an impulse.
+    /// Adds the touching surfaces that are approached at these rates, after an impulse.
     pub(super) fn touch(
         &mut self,
         hits: &mut Hits<Sys::Gaps>,
@@ -23,7 +23,7 @@ impl<Sys: Impacting> Watch<Sys> {
         self.add_touching(hits, rates, now)?;
         for surface in 0..rates.count() {
             if hits.is_at_hand(surface) != before.is_at_hand(surface) {
-                // What was found out about the last hit on it is of another place.
+                // The data of the last hit on it belong to another place.
                 self.grazes[surface] = Graze::None;
                 self.bends.as_mut_slice()[surface] = 0.0;
             }
@@ -31,7 +31,7 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// The same, without taking the surfaces in as hit.
+    /// Same as [`Watch::touch`], without recording the surfaces as hit.
     pub(super) fn add_touching(
         &mut self,
         hits: &mut Hits<Sys::Gaps>,
@@ -49,7 +49,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Whether the gap of a surface is 0 within rounding, and is reached at this rate in no time that counts.
+    /// True if the gap of a surface is 0 within rounding, or so small that it is closed at this rate in no measurable
+    /// time.
     fn touches(
         &mut self,
         surface: usize,

@@ -1,11 +1,12 @@
-//! Watching the gaps of all surfaces along a step.
+//! Event detection: tests the gaps of all surfaces along a step.
 //!
-//! A step in a box in which no gap vanishes is not looked at ([`Haven`]). Elsewhere all values and rates of each gap along the step
-//! are enclosed ([`Path`]): one that is enclosed away from zero, or rises from a surface just left, settles its surface. What is left is
-//! searched ([`super::search`]). A gap of exactly 0 at the start of a step stands for a surface at hand: it was just hit, or touched within rounding.
-//! Its root there is divided out, so it is neither found again nor hides a later one.
+//! A step in a box in which no gap vanishes needs no test ([`Haven`]). Elsewhere the values and rates of each gap
+//! along the step are enclosed ([`Path`]); a gap that is enclosed away from zero, or rises from a surface just left,
+//! settles its surface. The other surfaces are searched ([`super::search`]). A gap of exactly 0 at the start of a
+//! step marks a surface at hand, which was just hit, or touched within rounding. Its root there is divided out, so it
+//! is neither found again nor hides a later one.
 //!
-//! A surface is passable where its law is a reset: its gap may be negative, and falls count from above only.
+//! A surface is passable if its law is a reset: its gap may be negative, and only falls from above count.
 
 use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::Held;
@@ -26,75 +27,76 @@ use crate::outcome::Outcome;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Only a surface that is hit within this part of a step after another is asked for its rounding.
+/// Fraction of a step after a hit within which other surfaces are tested for simultaneous impacts, with their
+/// rounding.
 pub(super) const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 
-/// The gaps at the start of the coming step, and what was found in the last one looked at.
+/// The gaps at the start of the next step, and the results for the last one.
 #[derive(Debug, Clone)]
 pub(super) struct Watch<Sys: Impacting> {
-    /// Gaps at the start of the step; 0 for surfaces at hand, negative only where the surface does not count or is
+    /// Gaps at the start of the step; 0 for surfaces at hand. Negative only for a surface that does not count or is
     /// passable.
     pub(super) gaps: Sys::Gaps,
-    /// Whether a surface is passable.
+    /// True for passable surfaces.
     passable: PerSurface<bool, Sys::Gaps>,
-    /// Rates at the start of the step, where they are known; always of surfaces at hand.
+    /// Rates at the start of the step, if known; always known for surfaces at hand.
     pub(super) rates: Sys::Gaps,
     has_rates: bool,
     /// The earliest proposal of the last step.
     pub(super) proposed: Option<f64>,
-    /// The part of the last step at which a surface is hit; meaningful while something is proposed.
+    /// Fraction of the last step at which a surface is hit; valid while there is a proposal.
     pub(super) parts: PerSurface<Option<f64>, Sys::Gaps>,
-    /// What that hit is.
+    /// Grazing test of that hit.
     pub(super) grazes: PerSurface<Graze, Sys::Gaps>,
-    /// How fast the gap rate changes about that hit.
+    /// Absolute change of the gap rate per unit of time near that hit.
     pub(super) bends: Sys::Gaps,
     /// Length of the last step.
     pub(super) length: f64,
-    /// What was evaluated where a hit was placed, perhaps the earliest.
+    /// Quantities at the place of a hit, possibly the earliest.
     pub(super) place: Option<Place<Sys>>,
-    /// Gaps at the position that impacts happen at, once they are known.
+    /// Gaps at the position of the impacts, once known.
     pub(super) here: Option<Sys::Gaps>,
-    /// Largest absolute values of the state's components since the last impact: their rounding errors stay with it.
+    /// Largest absolute values of the state's components since the last impact; they determine the rounding errors.
     pub(super) sizes: Sys::State,
-    /// The same at the start of the last step: what lies behind the place where that is cut has no part in it.
+    /// The same at the start of the last step, for a cut: the motion behind the cut does not contribute.
     sizes_at_start: Sys::State,
-    /// Steps since then: each has rounded the state.
+    /// Number of steps since then, each of which has rounded the state.
     pub(super) steps: u32,
-    /// The sum of their estimated errors, in units of the tolerance.
+    /// Sum of their local errors, in units of the tolerance.
     pub(super) errors: f64,
-    /// Surfaces that the motion is held on: their gaps are 0, and are not watched.
+    /// Surfaces that hold the motion: their gaps are 0, and are not tested.
     held: Held<Sys::Gaps>,
-    /// The surface that begins to count behind the motion where the last step is to be cut.
+    /// The surface that begins to count behind the motion at the proposed cut of the last step.
     behind: Option<usize>,
     /// The motion along the last step.
     pub(super) path: Path<Sys::State>,
-    /// Where no gap vanishes, and where gaps bend by no more than is known.
+    /// A box in which no gap vanishes, and a box with bounds of the gaps' derivatives.
     haven: Haven<Sys::State>,
     limits: Bends<Sys::State, Sys::Gaps>,
-    /// True if the gaps at the start of the coming step are not those kept: the last steps were not looked at.
+    /// True if the gaps kept are older than the start of the next step, because the last steps were not tested.
     is_stale: bool,
 }
 
-/// Whether a hit is a graze.
+/// Grazing test of a hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Graze {
-    /// It is none.
+    /// Not a grazing impact.
     None,
-    /// It is one within the rounding of the gap.
+    /// A grazing impact within the rounding of the gap.
     WithinRounding,
-    /// The surface is crossed, although the gap rate vanishes there.
+    /// A crossing of the surface at gap rate zero.
     Crossing,
-    /// It is one as far as the error of the integrator tells.
+    /// A grazing impact within the error of the integrator.
     WithinError,
 }
 
-/// What the first look at a step tells of a surface.
+/// Result of the first tests of a step for a surface.
 pub(super) enum Told {
-    /// The step passes it, as its ends and bounds of bends show.
+    /// No hit, from the gaps at the ends and the bounds of their derivatives.
     Passed,
-    /// The step passes it, as the gap on the whole step shows.
+    /// No hit, from the gap on the whole step.
     Clear,
-    /// Nothing, with the gap on the whole step if it was needed.
+    /// Undecided, with the gap on the whole step if it was computed.
     Unclear(Option<TaylorModel>),
 }
 
@@ -127,10 +129,10 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// The surfaces that the motion is held on from now on.
+    /// Sets the surfaces that hold the motion from now on.
     pub(super) fn hold(&mut self, held: &Held<Sys::Gaps>) {
         self.haven.forget();
-        // A slide may end in another mode.
+        // Sliding may end in another mode.
         if (0..self.gaps.count()).any(|surface| held.is_held(surface) != self.held.is_held(surface))
         {
             self.limits.forget();
@@ -138,7 +140,7 @@ impl<Sys: Impacting> Watch<Sys> {
         self.held = *held;
     }
 
-    /// Says whether a surface is passable in the coming run.
+    /// Sets whether a surface is passable in the next run.
     pub(super) fn set_passable(&mut self, surface: usize, passable: bool) {
         self.passable[surface] = passable;
     }
@@ -162,8 +164,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(hits)
     }
 
-    /// Takes in what an impact made of `before`: components that it changed have the size they have now, those it left alone
-    /// keep the rounding errors of the flight.
+    /// Updates the sizes after an impact: components that it changed take their present size, the others keep the
+    /// rounding errors of the flight.
     pub(super) fn resize(&mut self, before: &Sys::State, after: &Sys::State) {
         let states = before.as_slice().iter().zip(after.as_slice());
         for (size, (before, after)) in self.sizes.as_mut_slice().iter_mut().zip(states) {
@@ -173,7 +175,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// The surfaces at hand at a position that the motion did not come to by itself.
+    /// The surfaces at hand at a position that the motion did not reach by itself.
     pub(super) fn relocate(
         &mut self,
         hits: &mut Hits<Sys::Gaps>,
@@ -197,7 +199,7 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// In a mode that was just entered, a surface at hand that motion may pass has been dealt with: it was entered there.
+    /// In a mode that was just entered, a passable surface at hand counts as settled: the motion entered there.
     pub(super) fn pass_by(&self, hits: &mut Hits<Sys::Gaps>) {
         for surface in 0..self.gaps.count() {
             if self.is_passable(surface) && hits.is_at_hand(surface) {
@@ -206,7 +208,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Takes in the state that motion goes on from, after impacts on the surfaces at hand.
+    /// Records the state from which the motion goes on, after impacts on the surfaces at hand.
     pub(super) fn leave(
         &mut self,
         hits: &Hits<Sys::Gaps>,
@@ -236,13 +238,13 @@ impl<Sys: Impacting> Watch<Sys> {
         for surface in (0..self.gaps.count()).filter(|&surface| !is_at_hand(surface)) {
             self.gaps.as_mut_slice()[surface] = gaps.as_slice()[surface];
         }
-        // A gap that should be 0 has the rounding errors of the flight that ended; the next ones are those of the next.
+        // A gap that should be 0 has the rounding errors of the last flight; later gaps have those of the next.
         let checked = self.check_negative(now);
         self.sizes = *now.state;
         checked
     }
 
-    /// The surfaces hit where the step was cut: those found there, and those whose gaps are 0 there within rounding.
+    /// The surfaces hit at the cut of the step: those found there, and those whose gaps are 0 there within rounding.
     pub(super) fn hits(
         &mut self,
         theta: f64,
@@ -267,8 +269,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(hits)
     }
 
-    /// Adds the surfaces hit so soon after others that rounding decides which is first. In the direction of a flight the
-    /// rounding of its steps adds up.
+    /// Adds the surfaces that are hit so soon after others that rounding decides the order. Along a flight the
+    /// rounding of its steps accumulates.
     fn add_beside(
         &mut self,
         hits: &mut Hits<Sys::Gaps>,
@@ -288,7 +290,7 @@ impl<Sys: Impacting> Watch<Sys> {
             }
             let (gap, rate) = (gaps.as_slice()[surface], rates.as_slice()[surface]);
             let is_near = rate < 0.0 && gap.abs() <= BESIDE * rate.abs() * self.length;
-            // One that was passed, or has counted, lies behind.
+            // A surface that was passed, or has acted, lies behind.
             let is_ahead = !self.is_passable(surface) || self.gaps.as_slice()[surface] > 0.0;
             if is_near
                 && is_ahead
@@ -301,13 +303,13 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// What was evaluated at this moment when the hit was found.
+    /// The quantities at this moment, if they were evaluated when the hit was found.
     fn known_here(&self, now: &Moment<'_, Sys>) -> Option<&Place<Sys>> {
         let place = self.place.as_ref();
         place.filter(|place| place.is(now.t, now.state))
     }
 
-    /// The gap rates where the step was cut.
+    /// The gap rates at the cut of the step.
     pub(super) fn rates_here(&self, now: &Moment<'_, Sys>) -> Result<Sys::Gaps, Outcome> {
         match self.known_here(now) {
             Some(place) => Ok(place.rates),
@@ -315,7 +317,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Whether the hit on this surface is a graze.
+    /// True if the hit on this surface is a grazing impact.
     pub(super) fn is_graze(&self, surface: usize) -> bool {
         matches!(
             self.grazes[surface],
@@ -323,7 +325,8 @@ impl<Sys: Impacting> Watch<Sys> {
         )
     }
 
-    /// Whether a gap rate at the last hit is so slow that an error of the gap, such as its rounding, may have decided its sign.
+    /// True if a gap rate at the last hit is so slow that an error of the gap, for example its rounding, may have
+    /// decided its sign.
     pub(super) fn is_slow(
         &self,
         surface: usize,
@@ -334,12 +337,12 @@ impl<Sys: Impacting> Watch<Sys> {
         bend > 0.0 && rate * rate < 4.0 * bend * rounding()
     }
 
-    /// The size of a gap's rounding errors after the flight that ends now.
+    /// Size of a gap's rounding errors after the flight that ends now.
     pub(super) fn rounding(&self, surface: usize, now: &mut Moment<'_, Sys>) -> f64 {
         rounding(now, surface, &self.sizes)
     }
 
-    /// The same where the last step is cut: what lies behind has no part in it.
+    /// The same at the cut of the last step: the motion behind it does not contribute.
     pub(super) fn rounding_at_cut(&self, surface: usize, now: &mut Moment<'_, Sys>) -> f64 {
         let mut sizes = self.sizes_at_start;
         for (size, value) in sizes.as_mut_slice().iter_mut().zip(now.state.as_slice()) {
@@ -348,12 +351,12 @@ impl<Sys: Impacting> Watch<Sys> {
         rounding(now, surface, &sizes)
     }
 
-    /// Whether this surface is crossed at gap rate 0.
+    /// True if this surface is crossed at gap rate 0.
     pub(super) fn is_tangential_crossing(&self, surface: usize) -> bool {
         self.grazes[surface] == Graze::Crossing
     }
 
-    /// Looks for the earliest hit in a step.
+    /// Finds the earliest hit in a step.
     #[inline]
     pub(super) fn look<Step: Stepper<Sys>>(
         &mut self,
@@ -410,7 +413,7 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(self.proposed)
     }
 
-    /// Whether a gap is so small at the end of the step that it may vanish there as far as times can tell.
+    /// True if some gap is so small at the end of the step that it may vanish there within the rounding of times.
     #[inline]
     fn may_be_due(&self, glance: &Glance<Sys::Gaps>) -> bool {
         (0..self.gaps.count()).any(|surface| {
@@ -423,7 +426,7 @@ impl<Sys: Impacting> Watch<Sys> {
         })
     }
 
-    /// Gaps and rates at the start of a step that follows others which were not looked at.
+    /// Computes gaps and rates at the start of a step that follows untested ones.
     fn catch_up<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
@@ -438,7 +441,7 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// The step passes whole: its end is the start of the next.
+    /// Accepts the whole step: its end is the start of the next.
     #[inline]
     fn pass<Step: Stepper<Sys>>(
         &mut self,
@@ -503,7 +506,8 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// A surface that counts at the end of the step, with the motion behind it, began to count in the step: proposes to cut it there.
+    /// Proposes a cut where a surface begins to count in the step with the motion behind it; such a surface counts at
+    /// the end of the step.
     #[cold]
     fn end_where_behind<Step: Stepper<Sys>>(
         &mut self,
@@ -542,8 +546,8 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// A passable surface that is met within rounding at the end of the step, without a fall that counted, has not been
-    /// crossed: its gap gets the smallest number of the side that the motion came from.
+    /// Handles a passable surface that is met within rounding at the end of the step, without a fall that counted. It
+    /// has not been crossed, so its gap is set to the smallest number of the side of the motion.
     fn keep_side<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -558,7 +562,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Whether the step passes this surface.
+    /// Tests if the step passes this surface without a hit.
     #[inline]
     pub(super) fn told<Step: Stepper<Sys>>(
         &self,
@@ -572,7 +576,8 @@ impl<Sys: Impacting> Watch<Sys> {
         let at = |values: &Sys::Gaps| values.as_slice()[surface];
         let (first, last) = (at(&self.gaps), at(&glance.gaps));
         let is_at_hand = first == 0.0;
-        // NOTE: negative throughout, a surface at hand is not clear but pressed, unless it is passed.
+        // NOTE: a surface at hand whose gap is negative throughout is pressed, not clear, unless the motion passes
+        // it.
         let is_passed = self.is_passable(surface) && at(&self.rates) <= 0.0;
         if (is_at_hand && last < 0.0 && !is_passed) || glance.is_due(surface) {
             return Told::Unclear(None);
@@ -602,8 +607,9 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Surfaces that count have a gap that is not negative beyond rounding; within rounding they are at hand. One that
-    /// counts by rounding alone does not yet: so a ball that lands on a ledge is not inside the wall below.
+    /// Checks that no gap of a surface that counts is negative beyond rounding; within rounding the surface is at
+    /// hand. A surface that counts by rounding alone is ignored: a ball that lands on a ledge is not inside the wall
+    /// below.
     fn check_negative(&mut self, now: &mut Moment<'_, Sys>) -> Result<(), Outcome> {
         for surface in 0..self.gaps.count() {
             let gap = self.gaps.as_slice()[surface];
@@ -622,13 +628,13 @@ impl<Sys: Impacting> Watch<Sys> {
     }
 }
 
-/// Gaps at a moment, all finite.
+/// Gaps at a moment; fails if one is not finite.
 fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outcome> {
     now.counters.event_evaluations += 1;
     finite(now.system, now.system.gaps(now.t, now.state))
 }
 
-/// The size of a gap's rounding errors at a moment, from components that have had these sizes.
+/// Size of a gap's rounding errors at a moment, for components that have had these sizes.
 fn rounding<Sys: Impacting>(now: &mut Moment<'_, Sys>, surface: usize, sizes: &Sys::State) -> f64 {
     resolution(
         now.system,
