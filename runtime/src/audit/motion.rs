@@ -1,8 +1,8 @@
 //! Enclosures of the dense output: all values and rates of a component of the state on a part of a step.
 //!
 //! The dense output is a polynomial `p` in the fraction of the step. With `m` the middle and `r` half the length of a
-//! part, `p(m + r x) = sum_k q_k r^k x^k` for `x` in `[-1, 1]`, where `x^k` lies in `[0, 1]` for even and in `[-1,
-//! 1]` for odd `k` (centred form). The computation is in interval arithmetic.
+//! part, `p(m + r x) = sum_k q_k r^k x^k` for `x` in `[-1, 1]`, where `x^k` lies in `[0, 1]` for even and in
+//! `[-1, 1]` for odd `k` (centred form). The computation is in interval arithmetic.
 
 use crate::error::Fault;
 use crate::jet::LENGTH;

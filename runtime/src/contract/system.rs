@@ -4,7 +4,7 @@ use super::VectorField;
 use crate::error::{Fault, ParameterError, StateError};
 use crate::state::StateVector;
 
-/// Conserved quantity of a state when parameters change. A state holds momenta or quasi-velocities, and other
+/// Quantity that a state keeps when parameters change. A state holds momenta or quasi-velocities, and other
 /// parameters give them other velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
@@ -191,7 +191,7 @@ pub trait System: VectorField {
     ///
     /// # Errors
     /// [`StateError::OffConstraint`] where the named velocities contradict the constraints; [`StateError::Fault`]
-    /// where the constraints are singular.
+    /// with a fault of the system.
     fn complete_velocity(
         &self,
         t: f64,

@@ -83,13 +83,11 @@ struct Strike {
 enum Next {
     /// Impacts on the surfaces that are still approached.
     Impacts,
-    /// Contact: infinitely many impacts were replaced by their limit, and the surfaces that are still approached hold
-    /// the motion.
+    /// Contact: infinitely many impacts have reached their limit, and surfaces still approached hold the motion.
     Rest,
 }
 
-/// Transitions at one moment. Sequences that end are short: each transition loses energy (Cortes and Vinogradov,
-/// Remark 5.8).
+/// Transitions at one moment. Finite sequences are short: each loses energy (Cortes and Vinogradov, Remark 5.8).
 struct Passages(u32);
 
 impl Passages {
@@ -259,8 +257,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.watch.leave(&hits, now, rates)
     }
 
-    /// Begins to slide, if the mode that was just entered through a surface leads back at once, and the passage
-    /// changes nothing but the mode.
+    /// Begins to slide, if the mode just entered through a surface leads back at once and only the mode changed.
     fn slide<O: Observer<Sys>>(
         &mut self,
         across: usize,
@@ -342,9 +339,8 @@ impl<Sys: Impacting> Impacts<Sys> {
         let mut after = before;
         system.kick(&mut after, blow.size, &blow.direction);
         // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction. Without this
-        // correction the energy would drift in proportion to the number of impacts instead of its square root. The
-        // rate half way is small for an elastic law: the rates before and after would be rounded to a grid that is
-        // coarse beside their difference.
+        // correction the energy would drift like the number of impacts instead of its root. For an elastic law the
+        // rate half way is small; the rates before and after would be rounded coarsely beside their difference.
         let taken = blow.share * rate;
         let half = rate - 0.5 * taken;
         let middle = system.gap_rates(t, &between(&before, &after))?.as_slice()[surface];
@@ -448,8 +444,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             again: strike.again,
         };
         let may_rest = self.may_rest(surface);
-        // A first-order system has no energy: the rate at which its motion leaves the surface shows if it becomes
-        // faster.
+        // A first-order system has no energy; the rate at which its motion leaves the surface replaces it.
         let energy = || match system.energy(t, &struck.after) {
             Ok(energy) => Some(energy),
             Err(Fault::FirstOrder) => Some(rate_after * rate_after),
@@ -588,8 +583,7 @@ impl<Sys: Impacting> SceneEffects<Sys> for Impacts<Sys> {
 
 /// The state half way between two.
 ///
-/// NOTE: components that an impulse does not change are passed on unchanged, so that the compiler evaluates
-/// quantities that depend on them once.
+/// NOTE: unchanged components stay bitwise the same, so that quantities that depend on them are computed once.
 #[inline(always)]
 fn between<S: StateVector>(one: &S, other: &S) -> S {
     let mut middle = *one;

@@ -133,13 +133,13 @@ pub(crate) fn least_trial(t: f64) -> f64 {
     (f64::EPSILON / 64.0 * t.abs()).max(f64::MIN_POSITIVE)
 }
 
-/// Relative length above which a step is computed as the difference of two rounded times.
+/// Length of a step, relative to the time, above which it is computed as the difference of two rounded times.
 const LONG: f64 = 1024.0 * f64::EPSILON;
 
 /// Length and end of a step of about `h`. The end is `t_end` itself if a step one percent longer would reach it.
 ///
 /// A step that is long relative to the last place of the time keeps the low part of the time. Its length has no
-/// digits below that place: those of `h` depend on the units, and a run must not.
+/// digits below that place: those of `h` depend on the units, and a run must not depend on them.
 #[inline(always)]
 pub(crate) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
     let end = Instant::new(t_end);

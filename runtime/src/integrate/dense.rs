@@ -125,8 +125,8 @@ fn is_along(k: usize) -> bool {
 pub(super) const INNER: f64 = 0.112_701_665_379_258_31;
 
 impl<S: StateVector> Polynomial<S, 5> {
-    /// Raises the cubic through the ends to the quintic with slopes `h` times these rates at [`INNER`] and at `1 -
-    /// INNER`.
+    /// Raises the cubic through the ends to the quintic with slopes `h` times these rates at [`INNER`] and at
+    /// `1 - INNER`.
     pub(super) fn set_inner(&mut self, h: f64, rates: [&S; 2]) {
         const A: f64 = INNER;
         const B: f64 = 1.0 - INNER;

@@ -7,14 +7,16 @@
 //! dL/dqdot(tm, qm, v) + h/2 f(tm, qm, v) = p1 - mu_a eta^a(t1, q1)        with   (q1, p1) on D at t1
 //! ```
 //!
-//! The first line, N + M equations, gives `v` and `lambda`; the second gives `p1 = p0 + h f + lambda_a eta^a(t0, q0)
-//! + mu_a eta^a(t1, q1)`. Exchanging the ends with `h` for `-h` exchanges the lines: the step is self-adjoint, a map
-//! of D to itself. In two successive steps `mu + lambda'` at the common point is the multiplier of the discrete
-//! Lagrange-d'Alembert equations of the midpoint Lagrangian with the midpoint constraint, so that the `q` are those
-//! of Cortes and Martinez. Compositions of the step are maps of D, and self-adjoint where they are symmetric.
+//! The first line, N + M equations, gives `v` and `lambda`; the second gives
+//! `p1 = p0 + h f + lambda_a eta^a(t0, q0) + mu_a eta^a(t1, q1)`. Exchanging the ends with `h` for `-h` exchanges the
+//! lines: the step is self-adjoint, a map of D to itself. In two successive steps `mu + lambda'` at the common point
+//! is the multiplier of the discrete Lagrange-d'Alembert equations of the midpoint Lagrangian with the midpoint
+//! constraint, so that the `q` are those of Cortes and Martinez. Compositions of the step are maps of D, and
+//! self-adjoint where they are symmetric.
 //!
-//! The first line is solved for `v` by iterating the velocity that the constraints at the midpoint allow: `P = p0 +
-//! h/2 f(v) + lambda eta(q0)`, `(v, nu) = constrained_velocity(qm, P)`, `lambda += nu`; at the solution `nu` is 0.
+//! The first line is solved for `v` by iterating the velocity that the constraints at the midpoint allow:
+//! `P = p0 + h/2 f(v) + lambda eta(q0)`, `(v, nu) = constrained_velocity(qm, P)`, `lambda += nu`; at the solution
+//! `nu` is 0.
 
 use super::controller::not_finite;
 use super::embedded::Counted;
