@@ -12,7 +12,7 @@
 //! surfaces, in one step for one surface, and without storing a matrix.
 //!
 //! Instantaneous constraints of a surface hold as long as it holds the motion
-//! ([`Impacting::trace`](crate::Impacting::trace)). Their forces come first, and the surfaces push within them. At
+//! ([`Impacting::trace`]). Their forces come first, and the surfaces push within them. At
 //! most one of the held surfaces has instantaneous constraints ([`super::resting`]).
 
 use super::instantaneous::{focused, is_rough};

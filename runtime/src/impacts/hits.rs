@@ -3,7 +3,7 @@
 //!
 //! Surfaces are struck in rounds: first those approached on arrival, then those that the impacts of a round leave
 //! approached, and so on. A wave of impacts therefore passes through bodies that touch in the same way as through
-//! equal small gaps.
+//! small gaps, if all of them take equally long.
 
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
