@@ -57,6 +57,16 @@ pub struct Diagnostics {
 #[derive(Debug)]
 pub struct Diagnostic {
     places: Vec<(Location, String)>,
+    counterexample: Option<Counterexample>,
+}
+
+/// A state that refutes a claim.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Counterexample {
+    /// Names and values of the state, parameters included.
+    pub at: Vec<(String, f64)>,
+    /// Names and values of the quantities that contradict the claim there.
+    pub values: Vec<(String, f64)>,
 }
 
 impl Diagnostics {
@@ -82,6 +92,7 @@ impl Diagnostics {
     pub fn error(&mut self, at: Location, text: impl Into<String>) -> &mut Diagnostic {
         self.errors.push(Diagnostic {
             places: vec![(at, text.into())],
+            counterexample: None,
         });
         let last = self.errors.len() - 1;
         &mut self.errors[last]
@@ -153,6 +164,17 @@ impl Diagnostic {
     pub fn also(&mut self, at: Location, text: impl Into<String>) -> &mut Self {
         self.places.push((at, text.into()));
         self
+    }
+
+    /// Adds the state that refutes a claim.
+    pub fn refuted_by(&mut self, counterexample: Option<Counterexample>) -> &mut Self {
+        self.counterexample = counterexample;
+        self
+    }
+
+    /// The state that refutes a claim, if the error is about one.
+    pub fn counterexample(&self) -> Option<&Counterexample> {
+        self.counterexample.as_ref()
     }
 
     /// The text at the first place, help included.

@@ -193,6 +193,7 @@ fn refuse_claims(
             if !help.is_empty() {
                 error.help(help);
             }
+            error.refuted_by(finding.counterexample());
         }
     }
     diagnostics.finish(())

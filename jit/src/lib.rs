@@ -45,9 +45,10 @@ mod series;
 mod source;
 
 use dalembert::erased::Form;
-use dalembert_codegen::spec::{Declaration, Spec};
+use dalembert_codegen::spec::Declaration;
 use dalembert_codegen::{self as codegen, Compiled};
 
+pub use dalembert_codegen::diagnostics::Counterexample;
 pub use source::{Mistake, Refused};
 
 /// A model of a text.
@@ -74,16 +75,7 @@ pub fn load(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
 /// # Errors
 /// As [`load`].
 pub fn load_without_claims(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
-    load_from(name, text, |mut declaration| {
-        let specs: Vec<&mut Spec> = match &mut declaration {
-            Declaration::Model(spec) => vec![spec],
-            Declaration::Modes(modes) => {
-                modes.modes.iter_mut().map(|mode| &mut mode.spec).collect()
-            }
-        };
-        specs.into_iter().for_each(|spec| spec.claims.clear());
-        declaration
-    })
+    load_from(name, text, Declaration::without_claims)
 }
 
 fn load_from(

@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-use dalembert_codegen::diagnostics::{Diagnostics, Location};
+use dalembert_codegen::diagnostics::{Counterexample, Diagnostics, Location};
 use dalembert_codegen::{self as codegen};
 use proc_macro2::{LexError, Span, TokenStream};
 
 /// Mistakes in a text.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Refused {
     name: String,
     text: String,
@@ -15,7 +15,7 @@ pub struct Refused {
 }
 
 /// A mistake.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Mistake {
     /// What is wrong, and what to write instead.
     pub message: String,
@@ -25,6 +25,8 @@ pub struct Mistake {
     pub column: usize,
     /// Columns that are wrong in this line.
     pub width: usize,
+    /// The state that refutes a claim, where one does.
+    pub counterexample: Option<Counterexample>,
 }
 
 impl Refused {
@@ -45,8 +47,11 @@ impl Refused {
     pub(crate) fn add(&mut self, diagnostics: &Diagnostics) {
         for error in diagnostics.iter() {
             for (location, message) in error.places() {
-                let mistake = self.at(location, message);
-                self.mistakes.push(mistake);
+                let counterexample = error.counterexample().cloned();
+                self.mistakes.push(Mistake {
+                    counterexample,
+                    ..self.at(location, message)
+                });
             }
         }
     }
@@ -72,6 +77,7 @@ impl Refused {
             line: start.line,
             column: start.column + 1,
             width: last.saturating_sub(start.column).max(1),
+            counterexample: None,
         }
     }
 }
@@ -87,6 +93,7 @@ impl fmt::Display for Refused {
                 line,
                 column,
                 width,
+                ..
             } = mistake;
             let number = line.to_string();
             let margin = " ".repeat(number.len());

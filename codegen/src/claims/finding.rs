@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::potential::Potential;
 use super::sample::Sample;
+use crate::diagnostics::Counterexample;
 use crate::spec::ItemId;
 
 /// A claim and its verdict.
@@ -100,6 +101,18 @@ impl Finding {
             Verdict::Refuted(witness) => witness.to_string(),
             Verdict::Undecided(reason) => reason.clone(),
         }
+    }
+
+    /// The state that refutes the claim, if one was found.
+    pub fn counterexample(&self) -> Option<Counterexample> {
+        let Verdict::Refuted(witness) = &self.verdict else {
+            return None;
+        };
+        let sample = witness.sample.as_ref()?;
+        Some(Counterexample {
+            at: sample.values.clone(),
+            values: witness.values.clone(),
+        })
     }
 
     /// The finding as a remark in the documentation of the model.

@@ -10,12 +10,14 @@
 //! | `equations.rs` | declaration, Lagrangian, motion, constraints, surfaces, outputs |
 //! | `frame.rs` | the motion reduced to D |
 //! | `certificate.rs` | what the claims are about and rest on, for a program that checks them |
+//! | `print.rs` | a report as text and as a document of LaTeX |
 //! | `volume.rs`, `density_form.rs` | the invariant volume; the density form written out |
 
 pub mod certificate;
 mod density_form;
 mod equations;
 mod frame;
+mod print;
 mod volume;
 
 use std::fmt;
@@ -130,10 +132,26 @@ impl std::error::Error for ReportError {}
 /// # Errors
 /// [`ReportError`].
 pub fn report(source: &str) -> Result<Report, ReportError> {
+    report_of_declaration(declaration(source)?)
+}
+
+/// As [`report`], without looking at the claims of the model.
+///
+/// # Errors
+/// [`ReportError`].
+pub fn report_without_claims(source: &str) -> Result<Report, ReportError> {
+    report_of_declaration(declaration(source)?.without_claims())
+}
+
+fn declaration(source: &str) -> Result<Declaration, ReportError> {
     let tokens: TokenStream = source
         .parse()
         .map_err(|error: LexError| ReportError::Tokens(error.to_string()))?;
-    let spec = match read(tokens).map_err(ReportError::Declaration)? {
+    read(tokens).map_err(ReportError::Declaration)
+}
+
+fn report_of_declaration(declaration: Declaration) -> Result<Report, ReportError> {
+    let spec = match declaration {
         Declaration::Model(spec) => spec,
         Declaration::Modes(declared) => return report_of_modes(&declared),
     };

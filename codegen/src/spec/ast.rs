@@ -401,6 +401,21 @@ pub enum Declaration {
     Modes(Modes),
 }
 
+impl Declaration {
+    /// The same without its claims.
+    #[must_use]
+    pub fn without_claims(mut self) -> Self {
+        match &mut self {
+            Self::Model(spec) => spec.claims.clear(),
+            Self::Modes(modes) => modes
+                .modes
+                .iter_mut()
+                .for_each(|mode| mode.spec.claims.clear()),
+        }
+        self
+    }
+}
+
 /// A model with modes, families written out: what stands outside of `modes` belongs to each of them.
 #[derive(Debug)]
 pub struct Modes {

@@ -1,6 +1,8 @@
 //! Finding what a flag names: models, parameters, coordinates and their velocities, surfaces, scenes.
 
 use dalembert::describe::Description;
+use dalembert_driver::names;
+pub use dalembert_driver::names::{coordinates, momentum, surfaces, velocity};
 
 use crate::error::CliError;
 
@@ -14,15 +16,10 @@ pub fn find<'a>(
     given: &str,
     accepted: impl Iterator<Item = &'a str> + Clone,
 ) -> Result<usize, CliError> {
-    accepted
-        .clone()
-        .position(|name| name == given)
-        .ok_or_else(|| CliError::Unknown {
-            place: place.to_owned(),
-            what,
-            given: given.to_owned(),
-            accepted: accepted.map(str::to_owned).collect(),
-        })
+    names::find(what, given, accepted).map_err(|unknown| CliError::Unknown {
+        place: place.to_owned(),
+        unknown,
+    })
 }
 
 /// `name=value`, split at the first equals sign.
@@ -38,34 +35,6 @@ pub fn assignment<'a>(
         .split_once('=')
         .ok_or_else(|| CliError::value(place, text, expected))?;
     Ok((name.trim(), value.trim()))
-}
-
-/// The name of a coordinate's velocity: `x_dot`, `theta_dot.3`.
-pub fn velocity(coordinate: &str) -> String {
-    match coordinate.split_once('.') {
-        Some((family, member)) => format!("{family}_dot.{member}"),
-        None => format!("{coordinate}_dot"),
-    }
-}
-
-/// The name of a coordinate's momentum: `p_x`, `p_theta.3`.
-pub fn momentum(coordinate: &str) -> String {
-    format!("p_{coordinate}")
-}
-
-/// The coordinates' names in order.
-pub fn coordinates(
-    description: &Description,
-) -> impl Iterator<Item = &'static str> + Clone + use<> {
-    description
-        .coordinates
-        .iter()
-        .map(|coordinate| coordinate.name)
-}
-
-/// The surfaces' names in order.
-pub fn surfaces(description: &Description) -> impl Iterator<Item = &'static str> + Clone + use<> {
-    description.surfaces.iter().map(|surface| surface.name)
 }
 
 /// The first line of the model's documentation.

@@ -2,6 +2,7 @@
 
 use dalembert::describe::Description;
 use dalembert::law::Law;
+use dalembert_driver::course::{self as choice, FormError};
 use dalembert_driver::{AnyModel, Form, Integrator, OffConstraint, Settings};
 
 use std::path::{Path, PathBuf};
@@ -10,9 +11,6 @@ use crate::args::{CourseArgs, RunArgs, Switch};
 use crate::error::CliError;
 use crate::sink::is_stdout;
 use crate::{names, scalar};
-
-/// The time a run with `--impacts` alone may take, unless the model's own `until` is longer.
-const IMPACT_HORIZON: f64 = 3600.0;
 
 /// Refuses a picture that is no SVG.
 pub fn check_plot(path: Option<&Path>) -> Result<(), CliError> {
@@ -105,20 +103,14 @@ pub fn settings(
 
 /// The form of the equations: as asked for, else reduced where that can hold the state and what is asked of it.
 fn form(description: &Description, args: &RunArgs) -> Result<Form, CliError> {
-    let has_reduced = !description.quasi_velocities.is_empty();
     let needs_global =
         args.state.off_constraint == OffConstraint::Keep || args.projection.is_some();
-    match args.form {
-        Some(Form::Reduced) if !has_reduced => Err(CliError::Unreduced {
-            model: description.name,
-        }),
-        Some(Form::Reduced) if needs_global => Err(CliError::Usage(
+    Form::choose(description, args.form, needs_global).map_err(|error| match error {
+        FormError::Unreduced { model } => CliError::Unreduced { model },
+        FormError::OnConstraints => CliError::Usage(
             "--form reduced holds no states off the constraints: leave out --off-constraint keep and --projection",
-        )),
-        Some(form) => Ok(form),
-        None if has_reduced && !needs_global => Ok(Form::Reduced),
-        None => Ok(Form::Global),
-    }
+        ),
+    })
 }
 
 fn horizon(
@@ -126,18 +118,9 @@ fn horizon(
     until: Option<f64>,
     impacts: Option<u64>,
 ) -> Result<f64, CliError> {
-    let declared = model
-        .initial()
-        .until
-        .filter(|until| until.is_finite() && *until > 0.0);
-    match (until, impacts, declared) {
-        (Some(until), ..) => Ok(until),
-        (None, Some(_), declared) => Ok(declared.unwrap_or(0.0).max(IMPACT_HORIZON)),
-        (None, None, Some(until)) => Ok(until),
-        (None, None, None) => Err(CliError::Usage(
-            "the model declares no usable `until`; say when to stop with --until T or --impacts N",
-        )),
-    }
+    choice::horizon(model, until, impacts).ok_or(CliError::Usage(
+        "the model declares no usable `until`; say when to stop with --until T or --impacts N",
+    ))
 }
 
 /// The laws of `--law`, in order: a later one counts.
@@ -150,37 +133,12 @@ pub(crate) fn laws(model: &dyn AnyModel, flags: &[String]) -> Result<Vec<(usize,
             None => (None, flag.trim()),
         };
         let law = parse_law(law)?;
-        match surface {
-            Some(name) => {
-                let surface = names::find("--law", "surface", name, names::surfaces(description))?;
-                if model.law(surface) == Some(Law::Transition) {
-                    return Err(CliError::Usage(
-                        "--law: a transition leads to another mode, and takes no law",
-                    ));
-                }
-                laws.push((surface, law));
-            }
-            None if description.surfaces.is_empty() => {
-                return Err(CliError::Usage("--law: the model has no impact surfaces"));
-            }
-            // Where modes meet there is no wall.
-            None => laws.extend(
-                (0..description.surfaces.len())
-                    .filter(|&surface| model.law(surface) != Some(Law::Transition))
-                    .map(|surface| (surface, law)),
-            ),
-        }
+        let surface = surface
+            .map(|name| names::find("--law", "surface", name, names::surfaces(description)))
+            .transpose()?;
+        choice::add_law(&mut laws, model, surface, law).map_err(CliError::Law)?;
     }
-    let declares_reset = |surface: usize| model.law(surface) == Some(Law::Reset);
-    match laws
-        .iter()
-        .find(|&&(surface, law)| law == Law::Reset && !declares_reset(surface))
-    {
-        Some(&(surface, _)) => Err(CliError::NoReset {
-            surface: description.surfaces[surface].name,
-        }),
-        None => Ok(laws),
-    }
+    Ok(laws)
 }
 
 /// `LAW[:E]`

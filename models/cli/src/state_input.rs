@@ -1,7 +1,6 @@
 //! From flags to a model with its parameters, and to the state a run starts from.
 
-use dalembert::StateError;
-use dalembert_driver::{AnyModel, OffConstraint, Origin, Rates, Start};
+use dalembert_driver::{AnyModel, Beginning, Component, OffConstraint, Origin, Rates};
 
 use crate::args::{ModelArgs, RunArgs, StateArgs};
 use crate::entry::Entry;
@@ -114,9 +113,9 @@ pub fn initial_state_with(
     args: &StateArgs,
     change: impl FnOnce(&mut Beginning) -> Result<(), CliError>,
 ) -> Result<Origin, CliError> {
-    let mut beginning = Beginning::of(model, args)?;
+    let mut beginning = beginning(model, args)?;
     change(&mut beginning)?;
-    let refuse = |error| CliError::state(beginning.place(args), &model.description(), error);
+    let refuse = |error| CliError::state(place(&beginning, args), &model.description(), error);
     beginning.settle(model, args.off_constraint).map_err(refuse)
 }
 
@@ -133,195 +132,85 @@ pub fn declared_state(model: &dyn AnyModel) -> Result<Origin, CliError> {
 /// Where a state without flags comes from.
 const DECLARED: &str = "the model's `initial`";
 
-/// A state before it is checked; single numbers of it may still be changed.
-#[derive(Debug, Clone)]
-pub enum Beginning {
-    /// The model's `initial`, with changes; what nobody named follows from the constraints.
-    Named(Start),
-    /// Every number is given.
-    Given {
-        /// Positions.
-        q: Vec<f64>,
-        /// Velocities or momenta.
-        rates: Rates,
-    },
+/// The state that the flags say, before it is checked.
+///
+/// # Errors
+/// Anything about the flags.
+pub fn beginning(model: &dyn AnyModel, args: &StateArgs) -> Result<Beginning, CliError> {
+    let vector = |flag: &str, text: &str| numbers(model, flag, text);
+    if model.description().is_first_order {
+        return beginning_of_first_order(model, args);
+    }
+    let (q, rates) = match (&args.q, &args.qdot, &args.p) {
+        (Some(q), Some(qdot), None) => {
+            let q = vector("--q", q)?;
+            (q, Rates::Velocities(vector("--qdot", qdot)?))
+        }
+        (Some(q), None, Some(p)) => (vector("--q", q)?, Rates::Momenta(vector("--p", p)?)),
+        (None, None, None) => return changed(model, &args.initial),
+        (Some(_), ..) => return Err(CliError::Usage("--q needs --qdot or --p")),
+        (None, ..) => return Err(CliError::Usage("--qdot and --p need --q")),
+    };
+    Ok(Beginning::Given { q, rates })
 }
 
-impl Beginning {
-    /// What the flags say.
-    ///
-    /// # Errors
-    /// Anything about the flags.
-    pub fn of(model: &dyn AnyModel, args: &StateArgs) -> Result<Self, CliError> {
-        let vector = |flag: &str, text: &str| numbers(model, flag, text);
-        if model.description().is_first_order {
-            return Self::of_first_order(model, args);
-        }
-        let (q, rates) = match (&args.q, &args.qdot, &args.p) {
-            (Some(q), Some(qdot), None) => {
-                let q = vector("--q", q)?;
-                (q, Rates::Velocities(vector("--qdot", qdot)?))
-            }
-            (Some(q), None, Some(p)) => (vector("--q", q)?, Rates::Momenta(vector("--p", p)?)),
-            (None, None, None) => return Self::named(model, &args.initial),
-            (Some(_), ..) => return Err(CliError::Usage("--q needs --qdot or --p")),
-            (None, ..) => return Err(CliError::Usage("--qdot and --p need --q")),
-        };
-        Ok(Self::Given { q, rates })
+/// The same of a first-order system: its rates follow from the positions.
+fn beginning_of_first_order(model: &dyn AnyModel, args: &StateArgs) -> Result<Beginning, CliError> {
+    if args.qdot.is_some() || args.p.is_some() {
+        let text = "--qdot and --p: a first-order system has rates that follow from --q alone";
+        return Err(CliError::Usage(text));
     }
-
-    /// Of a first-order system: its rates follow from the positions.
-    fn of_first_order(model: &dyn AnyModel, args: &StateArgs) -> Result<Self, CliError> {
-        if args.qdot.is_some() || args.p.is_some() {
-            let text = "--qdot and --p: a first-order system has rates that follow from --q alone";
-            return Err(CliError::Usage(text));
-        }
-        match &args.q {
-            None => Self::named(model, &args.initial),
-            Some(q) => {
-                let q = numbers(model, "--q", q)?;
-                let rates = Rates::Velocities(vec![0.0; q.len()]);
-                Ok(Self::Given { q, rates })
-            }
+    match &args.q {
+        None => changed(model, &args.initial),
+        Some(q) => {
+            let q = numbers(model, "--q", q)?;
+            let rates = Rates::Velocities(vec![0.0; q.len()]);
+            Ok(Beginning::Given { q, rates })
         }
     }
+}
 
-    /// The model's `initial` with some changes `name=value`.
-    fn named(model: &dyn AnyModel, changes: &[String]) -> Result<Self, CliError> {
-        let mut start = model.initial();
-        for change in changes
-            .iter()
-            .flat_map(|list| list.split(','))
-            .filter(|change| !change.trim().is_empty())
-        {
-            apply_change(model, &mut start, change)?;
-        }
-        Ok(Self::Named(start))
+/// The model's `initial` with some changes `name=value`.
+fn changed(model: &dyn AnyModel, changes: &[String]) -> Result<Beginning, CliError> {
+    let mut beginning = Beginning::Named(model.initial());
+    for change in changes
+        .iter()
+        .flat_map(|list| list.split(','))
+        .filter(|change| !change.trim().is_empty())
+    {
+        apply_change(model, &mut beginning, change)?;
     }
+    Ok(beginning)
+}
 
-    /// Sets a coordinate.
-    pub fn set_position(&mut self, index: usize, value: f64) {
-        match self {
-            Self::Named(start) => {
-                start.q[index] = value;
-                start.placed[index] = true;
-            }
-            Self::Given { q, .. } => q[index] = value,
-        }
-    }
-
-    /// Sets a velocity. Where momenta are given there are none to set, and nothing changes.
-    pub fn set_velocity(&mut self, index: usize, value: f64) {
-        match self {
-            Self::Named(start) => {
-                start.qdot[index] = value;
-                start.named[index] = true;
-            }
-            Self::Given {
-                rates: Rates::Velocities(qdot),
-                ..
-            } => qdot[index] = value,
-            Self::Given { .. } => {}
-        }
-    }
-
-    /// True if momenta are given.
-    pub fn has_momenta(&self) -> bool {
-        matches!(
-            self,
-            Self::Given {
-                rates: Rates::Momenta(_),
-                ..
-            }
-        )
-    }
-
-    /// The state, complete and checked.
-    ///
-    /// # Errors
-    /// Why the system refuses it.
-    pub fn settle(
-        &self,
-        model: &dyn AnyModel,
-        policy: OffConstraint,
-    ) -> Result<Origin, StateError> {
-        let (q, rates, policy) = match self {
-            Self::Given { q, rates } => (q.clone(), rates.clone(), policy),
-            Self::Named(start) => {
-                let q = Self::placed(model, start, policy)?;
-                let completed = model.complete_velocity(&q, &start.qdot, &start.named);
-                let (qdot, policy) = match completed {
-                    // Completed velocities satisfy the constraints; a residual of the state is rounding on the way
-                    // through the momenta, which can be all there is of a constraint whose terms vanish here.
-                    Ok(qdot) => (qdot, OffConstraint::Keep),
-                    Err(error) if policy == OffConstraint::Error => return Err(error),
-                    // The named velocities contradict the constraints, and that is for the policy to settle.
-                    Err(_) => (start.qdot.clone(), policy),
-                };
-                (q, Rates::Velocities(qdot), policy)
-            }
-        };
-        let origin = Origin { q, rates, policy };
-        model.state(0.0, &origin).map(|_| origin)
-    }
-
-    /// The positions of a start, as far as they are open solved for.
-    fn placed(
-        model: &dyn AnyModel,
-        start: &Start,
-        policy: OffConstraint,
-    ) -> Result<Vec<f64>, StateError> {
-        match (model.complete_position(&start.q, &start.placed), policy) {
-            (Err(StateError::OffPosition { .. }), OffConstraint::Keep) => Ok(start.q.clone()),
-            (Err(StateError::OffPosition { .. }), OffConstraint::Project) => {
-                model.complete_position(&start.q, &vec![false; start.q.len()])
-            }
-            (placed, _) => placed,
-        }
-    }
-
-    /// The flags it comes from, for messages.
-    fn place(&self, args: &StateArgs) -> &'static str {
-        match self {
-            Self::Named(_) if args.initial.is_empty() => DECLARED,
-            Self::Named(_) => "--initial",
-            Self::Given {
-                rates: Rates::Velocities(_),
-                ..
-            } => "--q, --qdot",
-            Self::Given { .. } => "--q, --p",
-        }
+/// The flags that a state comes from, for messages.
+fn place(beginning: &Beginning, args: &StateArgs) -> &'static str {
+    match beginning {
+        Beginning::Named(_) if args.initial.is_empty() => DECLARED,
+        Beginning::Named(_) => "--initial",
+        Beginning::Given {
+            rates: Rates::Velocities(_),
+            ..
+        } => "--q, --qdot",
+        Beginning::Given { .. } => "--q, --p",
     }
 }
 
 /// Carries out one `name=value` of `--initial`.
-fn apply_change(model: &dyn AnyModel, start: &mut Start, change: &str) -> Result<(), CliError> {
+fn apply_change(
+    model: &dyn AnyModel,
+    beginning: &mut Beginning,
+    change: &str,
+) -> Result<(), CliError> {
     let (name, value) = names::assignment("--initial", change, "NAME=VALUE,..")?;
-    let coordinates: Vec<String> = names::coordinates(&model.description())
-        .map(str::to_owned)
-        .collect();
-    let given = match model.description().is_first_order {
-        true => &[],
-        false => coordinates.as_slice(),
-    };
-    let velocities = given.iter().map(|coordinate| names::velocity(coordinate));
-    let accepted: Vec<String> = coordinates.iter().cloned().chain(velocities).collect();
-    let index = names::find(
-        "--initial",
-        "coordinate or velocity",
-        name,
-        accepted.iter().map(String::as_str),
-    )?;
+    let found = Component::find(&model.description(), name);
+    let component = found.map_err(|unknown| CliError::Unknown {
+        place: "--initial".to_owned(),
+        unknown,
+    })?;
     let number = scalar::parse(value)
         .map_err(|expected| CliError::value(format!("--initial {name}"), value, expected))?;
-    let n = coordinates.len();
-    if index < n {
-        start.q[index] = number;
-        start.placed[index] = true;
-    } else {
-        start.qdot[index - n] = number;
-        start.named[index - n] = true;
-    }
+    beginning.set(component, number);
     Ok(())
 }
 

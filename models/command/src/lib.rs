@@ -8,58 +8,20 @@ pub mod figures;
 use std::sync::OnceLock;
 
 use dalembert_cli::{Catalogue, Entry};
+pub use dalembert_texts::TEXTS;
 
-/// Every shipped model: its name, and its type in `dalembert-models`.
-macro_rules! shipped {
+/// The entries of compiled models.
+#[cfg(feature = "inlined")]
+macro_rules! entries_of {
     ($($name:ident: $model:ident,)*) => {
-        /// The shipped models: name and text.
-        pub const TEXTS: &[(&str, &str)] = &[$((
-            stringify!($name),
-            include_str!(concat!("../../src/", stringify!($name), ".dal")),
-        )),*];
-
-        #[cfg(feature = "inlined")]
         fn entries() -> Vec<Entry> {
             dalembert_cli::models![$(dalembert_models::$model),*]
         }
     };
 }
 
-shipped! {
-    appell_hamel: AppellHamel,
-    ball_on_rotating_table: BallOnRotatingTable,
-    ball_on_switching_table: BallOnSwitchingTable,
-    bouncing_ball: BouncingBall,
-    chain2: Chain2,
-    chain3: Chain3,
-    chain4: Chain4,
-    chain8: Chain8,
-    chain16: Chain16,
-    chaplygin_sleigh: ChaplyginSleigh,
-    constant_speed: ConstantSpeed,
-    dimensionless_walker: DimensionlessWalker,
-    double_pendulum: DoublePendulum,
-    filippov_field: FilippovField,
-    harmonic_oscillator: HarmonicOscillator,
-    holonomic_bead_on_ellipses: HolonomicBeadOnEllipses,
-    moving_wall_disk: MovingWallDisk,
-    point_billiard: PointBilliard,
-    refracted_particle: RefractedParticle,
-    rimless_wheel_five: RimlessWheelFive,
-    rimless_wheel_ten: RimlessWheelTen,
-    rolling_ball_euler: RollingBallEuler,
-    rolling_ball_wall: RollingBallWall,
-    rolling_disk: RollingDisk,
-    smooth_and_rough_plane: SmoothAndRoughPlane,
-    spasmodic_hamiltonian: SpasmodicHamiltonian,
-    sphere_in_plane: SphereInPlane,
-    spring_mass_walker: SpringMassWalker,
-    super_elastic_strip: SuperElasticStrip,
-    tent_map: TentMap,
-    two_wheels_arrested: TwoWheelsArrested,
-    two_wheels_rod: TwoWheelsRod,
-    walker_foot_slip: WalkerFootSlip,
-}
+#[cfg(feature = "inlined")]
+dalembert_texts::shipped!(entries_of);
 
 #[cfg(not(feature = "inlined"))]
 fn entries() -> Vec<Entry> {

@@ -7,8 +7,12 @@
 //! | `run/` | one run: how it is made, what watches it, how it ended |
 //! | `accuracy/` | measured errors of integrators, with work and time |
 //! | `orbit.rs` | periodic orbits |
+//! | `variation.rs` | derivatives of runs |
 //! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | what a long run keeps of a quantity |
+//! | `course.rs` | choices that a run needs where its request is silent |
+//! | `beginning.rs` | states from what is given of them |
+//! | `names.rs`, `words.rs`, `outcome.rs` | names of quantities; refusals, faults and outcomes in the names of the model |
 //!
 //! A model that has a form is run by the system of all forms ([`of_form`]), which is compiled here, once; any other is compiled with all
 //! that runs it where its type is named ([`of_type`]).
@@ -16,16 +20,23 @@
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
+mod beginning;
 mod certify;
+pub mod course;
 pub mod drift;
 mod grid;
 mod integrator;
 mod model;
+pub mod names;
 mod orbit;
+pub mod outcome;
 mod refusal;
 mod run;
 mod typed;
+mod variation;
+pub mod words;
 
+pub use beginning::{Beginning, Component};
 pub use certify::{Certification, Certified, Ranges, Strike};
 pub use grid::Grid;
 pub use integrator::{Form, Integrator};
@@ -36,3 +47,4 @@ pub use orbit::{Found, Search};
 pub use refusal::{Refusal, Uncertified};
 pub use run::{Contact, Ending, Impact, Piece, Settings, Watch};
 pub use typed::{Model, of_form, of_type};
+pub use variation::{Derivatives, Variable, VariationError};

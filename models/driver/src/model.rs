@@ -9,6 +9,7 @@ use crate::certify::{Certification, Certified, Strike};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
 use crate::run::{Ending, Settings, Watch};
+use crate::variation::{Derivatives, Variable, VariationError};
 
 /// Velocities or momenta, one per coordinate.
 #[derive(Debug, Clone, PartialEq)]
@@ -198,6 +199,17 @@ pub trait Runs {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal>;
+    /// Derivatives of the last state of a run with respect to these variables; `is_over` says where nobody wants to wait any longer.
+    ///
+    /// # Errors
+    /// Why the run does not begin. The inner result says why it has no derivatives.
+    fn differentiate(
+        &self,
+        origin: &Origin,
+        settings: &Settings,
+        variables: &[Variable],
+        is_over: &mut dyn FnMut() -> bool,
+    ) -> Result<Result<Derivatives, VariationError>, Refusal>;
     /// Encloses the motion from this state on, and shows its impacts.
     ///
     /// # Errors

@@ -20,6 +20,7 @@ use crate::model::{
 use crate::orbit::{Finder, Found, Search};
 use crate::refusal::Refusal;
 use crate::run::{self, Abreast, Ending, Settings, Watch};
+use crate::variation::{Begun, Differentiator, Variable, VariationError, Varied};
 
 /// A model that can be run without its type: everything that `model!` implements of one with values for its parameters.
 pub trait Model:
@@ -319,6 +320,28 @@ impl<M: Model> Runs for Typed<M> {
             qdot: qdot.as_slice(),
         };
         self.model.visit_variational(finder).transpose()
+    }
+
+    fn differentiate(
+        &self,
+        origin: &Origin,
+        settings: &Settings,
+        variables: &[Variable],
+        is_over: &mut dyn FnMut() -> bool,
+    ) -> Varied {
+        in_form!(self, origin, settings, |model, state| {
+            let begun = Begun::of(model, &state)?;
+            let differentiator = Differentiator {
+                variables,
+                settings,
+                state: &begun.state,
+                q: &begun.q,
+                qdot: &begun.qdot,
+                is_over,
+            };
+            let varied = model.visit_variational(differentiator);
+            varied.unwrap_or(Ok(Err(VariationError::WithoutVariations)))
+        })
     }
 
     fn certify(

@@ -9,14 +9,14 @@ use dalembert::{Outcome, Policies};
 use dalembert_codegen::claims::{Finding, Verdict};
 use dalembert_codegen::report::{self, Item, Section};
 use dalembert_driver::{
-    AnyModel, Contact, Form, Impact, Integrator, Origin, Piece, Settings, Watch,
+    AnyModel, Contact, Form, Impact, Integrator, Origin, Piece, Settings, Watch, words,
 };
 use serde_json::{Value, json};
 
 use crate::Streams;
 use crate::args::{CheckArgs, Format};
 use crate::entry::Entry;
-use crate::error::{CliError, fault_text};
+use crate::error::CliError;
 use crate::exit::Exit;
 use crate::json::{Document, number};
 use crate::names;
@@ -117,7 +117,7 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
         let inspected = model.inspect(0.0, &state, &mut Silent);
         let failure = inspected
             .err()
-            .map(|fault| fault_text(&description, &fault));
+            .map(|fault| words::fault_text(&description, &fault));
         checks.push(Check {
             subject: "the equations of motion exist at the initial state",
             failure,

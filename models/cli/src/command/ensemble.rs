@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
-use dalembert_driver::{AnyModel, Rates, Settings};
+use dalembert_driver::{AnyModel, Beginning, Rates, Settings};
 use serde_json::{Map, Value};
 
 use crate::args::EnsembleArgs;
@@ -21,7 +21,7 @@ use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::sink::{Sink, is_stdout};
-use crate::state_input::{Beginning, build_model};
+use crate::state_input::{self, build_model};
 use crate::{Streams, plot, run_request};
 
 /// An ensemble that has been run, with what the files say of it.
@@ -244,7 +244,7 @@ fn members(
         None => Members::varied(&args.vary, args.members, args.random, &description)?,
     };
     let moved = |quantity: &Quantity| matches!(quantity, Quantity::Velocity(_));
-    let given = Beginning::of(model, &args.run.state)?;
+    let given = state_input::beginning(model, &args.run.state)?;
     match given {
         Beginning::Given {
             rates: Rates::Momenta(_),

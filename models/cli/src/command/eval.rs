@@ -9,7 +9,7 @@ use std::io::{BufWriter, Write};
 use dalembert::StateError;
 use dalembert::describe::Description;
 use dalembert::law::Law;
-use dalembert_driver::{AnyModel, OffConstraint, Origin};
+use dalembert_driver::{AnyModel, OffConstraint, Origin, words};
 use serde_json::{Map, Value, json};
 
 use crate::Streams;
@@ -125,7 +125,7 @@ fn evaluate(model: &dyn AnyModel, given: &Given, laws: &[Law]) -> Result<Value, 
 /// `{"error": {"kind", "message"}}`
 fn refusal(description: &Description, error: &StateError) -> Value {
     let kind = match error {
-        StateError::Fault(fault) => error::fault_kind(fault),
+        StateError::Fault(fault) => words::fault_kind(fault),
         StateError::OutsideChart { .. } => "outside_chart",
         StateError::NotFinite { .. } => "not_finite",
         _ => "state_refused",

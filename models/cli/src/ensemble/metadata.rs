@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use dalembert::describe::Description;
-use dalembert_driver::{AnyModel, Rates};
+use dalembert_driver::{AnyModel, Beginning, Rates};
 use serde_json::{Map, Value, json};
 
 use super::fingerprint::fingerprint;
@@ -12,7 +12,7 @@ use crate::args::StateArgs;
 use crate::error::CliError;
 use crate::json::{named, number};
 use crate::names;
-use crate::state_input::Beginning;
+use crate::state_input;
 
 /// Everything that rows and counts depend on. Keys are the same whatever the flags; what was not asked for is `null`.
 ///
@@ -86,7 +86,7 @@ fn start(
     description: &Description,
     args: &StateArgs,
 ) -> Result<Value, CliError> {
-    let (q, rates, given) = match Beginning::of(model, args)? {
+    let (q, rates, given) = match state_input::beginning(model, args)? {
         Beginning::Named(start) => {
             let given = start.named;
             (start.q, Rates::Velocities(start.qdot), given)

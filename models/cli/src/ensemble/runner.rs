@@ -21,7 +21,7 @@ use crate::entry::Entry;
 use crate::error::{CliError, refusal_text, state_text};
 use crate::outcome;
 use crate::record::Tally;
-use crate::state_input::{Beginning, build_model};
+use crate::state_input::{self, build_model};
 
 /// The outcome of a member that the system does not let begin.
 const REFUSED: &str = "refused";
@@ -197,7 +197,8 @@ impl<'a> Runner<'a> {
             }
         }
         let model = self.model.as_ref();
-        let mut beginning = Beginning::of(model, &run.state).map_err(|error| error.to_string())?;
+        let mut beginning =
+            state_input::beginning(model, &run.state).map_err(|error| error.to_string())?;
         for (quantity, &value) in pairs() {
             match *quantity {
                 Quantity::Position(index) => beginning.set_position(index, value),

@@ -20,7 +20,8 @@ use dalembert::integrate::{
 use dalembert::law::Law;
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
-    Event, Hold, Observer, Outcome, Policies, Run, SceneEffects, Segment, Simulation, StateVector,
+    Event, Hold, Instance, Observer, Outcome, Policies, Run, Scene, SceneEffects, Segment,
+    Simulation, StateVector,
 };
 
 use crate::integrator::{Form, Integrator};
@@ -284,7 +285,10 @@ fn run<M: Model>(
 }
 
 /// The effects of a scene as the settings want them, and the law in force on each surface.
-pub(crate) fn effects<M: Model>(model: &M, settings: &Settings) -> (M::Effects, Vec<Option<Law>>) {
+pub(crate) fn effects<M: Instance + Scene>(
+    model: &M,
+    settings: &Settings,
+) -> (M::Effects, Vec<Option<Law>>) {
     let mut effects = model.effects();
     for &(surface, law) in &settings.laws {
         effects.set_law(surface, law);

@@ -2,11 +2,10 @@
 
 use dalembert::describe::Assumption;
 use dalembert::numbers::Interval;
-use dalembert_driver::{AnyModel, Form};
+use dalembert_driver::{AnyModel, Beginning, Form};
 
 use crate::args::CertifyArgs;
 use crate::error::CliError;
-use crate::state_input::Beginning;
 use crate::{names, scalar};
 
 const FLAG: &str = "--certify-within";

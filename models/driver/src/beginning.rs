@@ -1,0 +1,144 @@
+//! A state from its beginning: positions and velocities as they are given, then completed and checked.
+
+use dalembert::StateError;
+use dalembert::describe::Description;
+
+use crate::model::{AnyModel, OffConstraint, Origin, Rates, Start};
+use crate::names::{self, Unknown};
+
+/// A coordinate or a velocity, by the index of the coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Component {
+    /// A coordinate.
+    Position(usize),
+    /// A velocity.
+    Velocity(usize),
+}
+
+impl Component {
+    /// The one of this name, such as `x` or `x_dot`. A first-order system has no velocities of its own.
+    ///
+    /// # Errors
+    /// [`Unknown`].
+    pub fn find(description: &Description, name: &str) -> Result<Self, Unknown> {
+        let coordinates: Vec<&str> = names::coordinates(description).collect();
+        let n = coordinates.len();
+        let given = match description.is_first_order {
+            true => &[],
+            false => coordinates.as_slice(),
+        };
+        let velocities: Vec<String> = given.iter().map(|own| names::velocity(own)).collect();
+        let accepted = coordinates.iter().copied();
+        let accepted = accepted.chain(velocities.iter().map(String::as_str));
+        let index = names::find("coordinate or velocity", name, accepted)?;
+        Ok(match index < n {
+            true => Self::Position(index),
+            false => Self::Velocity(index - n),
+        })
+    }
+}
+
+/// A state before it is checked; single numbers of it may still be changed.
+#[derive(Debug, Clone)]
+pub enum Beginning {
+    /// The model's `initial`, with changes; what nobody named follows from the constraints.
+    Named(Start),
+    /// Every number is given.
+    Given {
+        /// Positions.
+        q: Vec<f64>,
+        /// Velocities or momenta.
+        rates: Rates,
+    },
+}
+
+impl Beginning {
+    /// Sets a coordinate or a velocity.
+    pub fn set(&mut self, component: Component, value: f64) {
+        match component {
+            Component::Position(index) => self.set_position(index, value),
+            Component::Velocity(index) => self.set_velocity(index, value),
+        }
+    }
+
+    /// Sets a coordinate.
+    pub fn set_position(&mut self, index: usize, value: f64) {
+        match self {
+            Self::Named(start) => {
+                start.q[index] = value;
+                start.placed[index] = true;
+            }
+            Self::Given { q, .. } => q[index] = value,
+        }
+    }
+
+    /// Sets a velocity. Where momenta are given there are none to set, and nothing changes.
+    pub fn set_velocity(&mut self, index: usize, value: f64) {
+        match self {
+            Self::Named(start) => {
+                start.qdot[index] = value;
+                start.named[index] = true;
+            }
+            Self::Given {
+                rates: Rates::Velocities(qdot),
+                ..
+            } => qdot[index] = value,
+            Self::Given { .. } => {}
+        }
+    }
+
+    /// True if momenta are given.
+    pub fn has_momenta(&self) -> bool {
+        matches!(
+            self,
+            Self::Given {
+                rates: Rates::Momenta(_),
+                ..
+            }
+        )
+    }
+
+    /// The state, complete and checked.
+    ///
+    /// # Errors
+    /// Why the system refuses it.
+    pub fn settle(
+        &self,
+        model: &dyn AnyModel,
+        policy: OffConstraint,
+    ) -> Result<Origin, StateError> {
+        let (q, rates, policy) = match self {
+            Self::Given { q, rates } => (q.clone(), rates.clone(), policy),
+            Self::Named(start) => {
+                let q = Self::placed(model, start, policy)?;
+                let completed = model.complete_velocity(&q, &start.qdot, &start.named);
+                let (qdot, policy) = match completed {
+                    // Completed velocities satisfy the constraints; a residual of the state is rounding on the way
+                    // through the momenta, which can be all there is of a constraint whose terms vanish here.
+                    Ok(qdot) => (qdot, OffConstraint::Keep),
+                    Err(error) if policy == OffConstraint::Error => return Err(error),
+                    // The named velocities contradict the constraints, and that is for the policy to settle.
+                    Err(_) => (start.qdot.clone(), policy),
+                };
+                (q, Rates::Velocities(qdot), policy)
+            }
+        };
+        let origin = Origin { q, rates, policy };
+        model.state(0.0, &origin).map(|_| origin)
+    }
+
+    /// The positions of a start, as far as they are open solved for.
+    fn placed(
+        model: &dyn AnyModel,
+        start: &Start,
+        policy: OffConstraint,
+    ) -> Result<Vec<f64>, StateError> {
+        match (model.complete_position(&start.q, &start.placed), policy) {
+            (Err(StateError::OffPosition { .. }), OffConstraint::Keep) => Ok(start.q.clone()),
+            (Err(StateError::OffPosition { .. }), OffConstraint::Project) => {
+                model.complete_position(&start.q, &vec![false; start.q.len()])
+            }
+            (placed, _) => placed,
+        }
+    }
+}

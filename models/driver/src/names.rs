@@ -1,0 +1,125 @@
+//! Names of quantities of a model, and finding the one that is meant.
+
+use std::fmt::{self, Write as _};
+
+use dalembert::describe::Description;
+
+/// A name that is not among the accepted ones.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unknown {
+    /// Kind of the named thing: `parameter`, `surface`.
+    pub what: &'static str,
+    /// The name that was given.
+    pub given: String,
+    /// The names there are.
+    pub accepted: Vec<String>,
+}
+
+impl fmt::Display for Unknown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            what,
+            given,
+            accepted,
+        } = self;
+        write!(f, "unknown {what} `{given}`{}", hints(given, accepted))
+    }
+}
+
+impl std::error::Error for Unknown {}
+
+/// The position of `given` among `accepted`.
+///
+/// # Errors
+/// [`Unknown`].
+pub fn find<'a>(
+    what: &'static str,
+    given: &str,
+    accepted: impl Iterator<Item = &'a str> + Clone,
+) -> Result<usize, Unknown> {
+    let place = accepted.clone().position(|name| name == given);
+    place.ok_or_else(|| Unknown {
+        what,
+        given: given.to_owned(),
+        accepted: accepted.map(str::to_owned).collect(),
+    })
+}
+
+/// The name of a coordinate's velocity: `x_dot`, `theta_dot.3`.
+pub fn velocity(coordinate: &str) -> String {
+    match coordinate.split_once('.') {
+        Some((family, member)) => format!("{family}_dot.{member}"),
+        None => format!("{coordinate}_dot"),
+    }
+}
+
+/// The name of a coordinate's momentum: `p_x`, `p_theta.3`.
+pub fn momentum(coordinate: &str) -> String {
+    format!("p_{coordinate}")
+}
+
+/// The coordinates' names in order.
+pub fn coordinates(
+    description: &Description,
+) -> impl Iterator<Item = &'static str> + Clone + use<> {
+    description
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.name)
+}
+
+/// The surfaces' names in order.
+pub fn surfaces(description: &Description) -> impl Iterator<Item = &'static str> + Clone + use<> {
+    description.surfaces.iter().map(|surface| surface.name)
+}
+
+/// The nearest accepted name, if one is near, and all of them.
+fn hints(given: &str, accepted: &[String]) -> String {
+    let mut text = String::new();
+    if let Some(nearest) = nearest(given, accepted) {
+        let _ = write!(text, "; did you mean `{nearest}`?");
+    }
+    match accepted {
+        [] => text.push_str("; there are none"),
+        names => {
+            let _ = write!(text, "\n  accepted: {}", names.join(", "));
+        }
+    }
+    text
+}
+
+/// The first of the names nearest to `given`, unless more than a third of its letters would have to change.
+fn nearest<'a>(given: &str, accepted: &'a [String]) -> Option<&'a String> {
+    let lower = given.to_lowercase();
+    let distance = |name: &String| strsim::damerau_levenshtein(&lower, &name.to_lowercase());
+    let best = accepted.iter().min_by_key(|name| distance(name))?;
+    (distance(best) <= lower.chars().count().div_ceil(3)).then_some(best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unknown(given: &str, accepted: &[&str]) -> String {
+        let found = find("model", given, accepted.iter().copied());
+        found.expect_err("no such name").to_string()
+    }
+
+    #[test]
+    fn a_near_name_is_suggested_and_all_are_listed() {
+        let text = unknown("roling_disk", &["pendulum", "rolling_disk"]);
+        assert_eq!(
+            text,
+            "unknown model `roling_disk`; did you mean `rolling_disk`?\n  accepted: pendulum, rolling_disk"
+        );
+    }
+
+    #[test]
+    fn a_far_name_is_not_suggested() {
+        assert_eq!(
+            unknown("zzz", &["pendulum"]),
+            "unknown model `zzz`\n  accepted: pendulum"
+        );
+        assert_eq!(unknown("zzz", &[]), "unknown model `zzz`; there are none");
+    }
+}

@@ -1,0 +1,353 @@
+//! Derivatives of a run with respect to its start and its parameters, across impacts, behind a trait that knows nothing of its type.
+
+use std::ops::ControlFlow;
+
+use dalembert::contract::Variational;
+use dalembert::describe::{Description, VariationalVisitor};
+use dalembert::integrate::{Chosen, Dop853, DormandPrince5, Stepper, Taylor, Tolerance};
+use dalembert::numbers::{Numbers, Row};
+use dalembert::simulation::STEP_BUDGET;
+use dalembert::variations::{Dual, Tangent};
+use dalembert::{
+    Event, Fault, Hold, Instance, Observer, Outcome, Scene, Segment, Simulation, StateError,
+    StateVector, Undefined, Variations,
+};
+use thiserror::Error;
+
+use crate::integrator::{Form, Integrator};
+use crate::names::{self, Unknown};
+use crate::refusal::Refusal;
+use crate::run::{Settings, effects};
+
+/// A quantity that a run may be differentiated by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variable {
+    /// A coordinate at the start.
+    Position(usize),
+    /// A velocity at the start, by its coordinate; the others follow as the constraints demand.
+    Velocity(usize),
+    /// A quasi-velocity at the start.
+    Quasi(usize),
+    /// A parameter. The start stays as it is in positions and velocities, or, of the reduced form, in quasi-velocities.
+    Parameter(usize),
+}
+
+/// The derivatives of the last state.
+#[derive(Debug, Clone)]
+pub struct Derivatives {
+    /// The time of the last state.
+    pub t: f64,
+    /// Derivatives of all positions, one list for each variable.
+    pub q: Vec<Vec<f64>>,
+    /// Derivatives of all velocities.
+    pub qdot: Vec<Vec<f64>>,
+}
+
+/// Why a run has no derivatives.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum VariationError {
+    /// The scene was declared without what derivatives take.
+    #[error("the scene was declared without `variations`; add it to what the scene uses")]
+    WithoutVariations,
+    /// An integrator of fixed step.
+    #[error("derivatives are those of runs by dop853, dopri5 or taylor")]
+    FixedStep,
+    /// A model with modes.
+    #[error("derivatives of models with modes are not given by name")]
+    Modes,
+    /// The global form of a model with constraints.
+    #[error("derivatives of a model with constraints are those of its reduced form")]
+    Constrained,
+    /// A velocity that follows from others.
+    #[error("the velocity of this coordinate follows from the others")]
+    Dependent {
+        /// The coordinate.
+        coordinate: usize,
+    },
+    /// The run ends before its time.
+    #[error("the run ends before its time: {0}")]
+    Ended(Outcome),
+    /// The run has no derivative.
+    #[error(transparent)]
+    Undefined(#[from] Undefined),
+}
+
+impl From<Fault> for VariationError {
+    fn from(fault: Fault) -> Self {
+        Self::Undefined(fault.into())
+    }
+}
+
+impl Variable {
+    /// The variable of this name: a coordinate, a velocity, a quasi-velocity of the reduced form, or a parameter.
+    ///
+    /// # Errors
+    /// [`Unknown`].
+    pub fn find(description: &Description, name: &str) -> Result<Self, Unknown> {
+        let coordinates = names::coordinates(description).enumerate();
+        let velocities = coordinates
+            .clone()
+            .map(|(index, name)| (names::velocity(name), Self::Velocity(index)));
+        let quasi = description.quasi_velocities.iter().enumerate();
+        let quasi = quasi.map(|(index, name)| ((*name).to_owned(), Self::Quasi(index)));
+        let parameters = description.parameters.iter().enumerate();
+        let parameters = parameters.map(|(index, it)| (it.name.to_owned(), Self::Parameter(index)));
+        let all: Vec<(String, Self)> = coordinates
+            .map(|(index, name)| (name.to_owned(), Self::Position(index)))
+            .chain(quasi)
+            .chain(velocities.filter(|_| !description.is_first_order))
+            .chain(parameters)
+            .collect();
+        let accepted = all.iter().map(|(name, _)| name.as_str());
+        let index = names::find("coordinate, velocity or parameter", name, accepted)?;
+        Ok(all[index].1)
+    }
+}
+
+/// Differentiates a run of whatever model it is shown.
+pub(crate) struct Differentiator<'a> {
+    pub variables: &'a [Variable],
+    pub settings: &'a Settings,
+    /// The state of the form that the settings ask for.
+    pub state: &'a [f64],
+    /// Positions and velocities of that state.
+    pub q: &'a [f64],
+    pub qdot: &'a [f64],
+    /// True where nobody wants to wait any longer.
+    pub is_over: &'a mut dyn FnMut() -> bool,
+}
+
+/// What a differentiator makes of a model: the inner error where there are no derivatives, the outer where no run begins.
+pub(crate) type Varied = Result<Result<Derivatives, VariationError>, Refusal>;
+
+impl VariationalVisitor for Differentiator<'_> {
+    type Output = Varied;
+
+    fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Varied {
+        let tolerance = Tolerance::new(self.settings.tol)?;
+        let longest = self.settings.max_step.unwrap_or(f64::INFINITY);
+        match self.settings.integrator {
+            Integrator::Dop853 => {
+                let mut stepper = Dop853::new(tolerance).with_max_step(longest)?;
+                self.differentiate(system, &mut stepper)
+            }
+            Integrator::Dopri5 => {
+                let mut stepper = DormandPrince5::new(tolerance).with_max_step(longest)?;
+                self.differentiate(system, &mut stepper)
+            }
+            Integrator::Taylor => {
+                let mut stepper = Taylor::new(tolerance).with_max_step(longest)?;
+                self.differentiate(system, &mut stepper)
+            }
+            _ => Ok(Err(VariationError::FixedStep)),
+        }
+    }
+}
+
+impl Differentiator<'_> {
+    fn differentiate<S: Instance + Scene + Variational>(
+        self,
+        system: &S,
+        stepper: &mut impl Stepper<S>,
+    ) -> Varied {
+        let description = system.description();
+        if !description.modes.is_empty() {
+            return Ok(Err(VariationError::Modes));
+        }
+        let is_free = description.constraints.is_empty();
+        if self.settings.form == Form::Global && !is_free {
+            return Ok(Err(VariationError::Constrained));
+        }
+        let directions = self.variables.iter();
+        let directions: Result<Vec<Tangent<S>>, _> = directions
+            .map(|variable| self.direction(system, *variable))
+            .collect();
+        let mut tangents = match directions {
+            Ok(tangents) => tangents,
+            Err(error) => return Ok(Err(error)),
+        };
+        let mut state = system.zero_state();
+        state.as_mut_slice().copy_from_slice(self.state);
+        let (effects, _) = effects(system, self.settings);
+        let mut observer = Interruptible {
+            variations: Variations::new(system, &mut tangents),
+            is_over: self.is_over,
+        };
+        let observing: &mut dyn Observer<S> = &mut observer;
+        let budget = self.settings.steps.unwrap_or(STEP_BUDGET);
+        let mut simulation =
+            Simulation::new(system, Chosen::new(stepper), effects).with_step_budget(budget);
+        let until = self.settings.until;
+        let run = simulation.run(0.0, state, until, &mut { observing })?;
+        if run.outcome != Outcome::Done {
+            return Ok(Err(VariationError::Ended(run.outcome)));
+        }
+        let carried = observer.variations.tangents();
+        Ok(carried
+            .map_err(VariationError::from)
+            .and_then(|tangents| derivatives(system, run.t, &run.state, tangents)))
+    }
+
+    /// The direction of the state, and of the parameters, that a variable stands for.
+    fn direction<S: Instance + Variational>(
+        &self,
+        system: &S,
+        variable: Variable,
+    ) -> Result<Tangent<S>, VariationError> {
+        let n = self.q.len();
+        let is_reduced = self.settings.form == Form::Reduced;
+        match variable {
+            Variable::Position(index) if is_reduced => Ok(Tangent::of_component(index)),
+            Variable::Parameter(index) if is_reduced => Ok(Tangent::of_parameter(index)),
+            Variable::Quasi(index) if is_reduced => Ok(Tangent::of_component(n + index)),
+            Variable::Quasi(_) => Err(VariationError::Constrained),
+            _ => self.composed(system, variable),
+        }
+    }
+
+    /// The same from positions and velocities, of which one changes.
+    fn composed<S: Instance + Variational>(
+        &self,
+        system: &S,
+        variable: Variable,
+    ) -> Result<Tangent<S>, VariationError> {
+        let parameter = match variable {
+            Variable::Parameter(index) => Tangent::of_parameter(index),
+            _ => Tangent::zero(),
+        };
+        let mut q = constant::<S::Configuration<Dual>>(self.q);
+        let mut qdot = constant::<S::Configuration<Dual>>(self.qdot);
+        match variable {
+            Variable::Position(index) => change(&mut q, index),
+            Variable::Velocity(index) => change(&mut qdot, index),
+            _ => {}
+        }
+        let parameters = parameters_along(system, &parameter);
+        if system.description().is_first_order {
+            let mut tangent = parameter;
+            for (entry, q) in tangent.state.as_mut_slice().iter_mut().zip(q.as_slice()) {
+                *entry = q.slopes()[0];
+            }
+            return Ok(tangent);
+        }
+        let state = system.composed(&parameters, Dual::of(0.0), &q, &qdot)?;
+        let mut tangent = parameter;
+        for (entry, value) in tangent
+            .state
+            .as_mut_slice()
+            .iter_mut()
+            .zip(state.as_slice())
+        {
+            *entry = value.slopes()[0];
+        }
+        if let Variable::Velocity(coordinate) = variable {
+            let reached = system.velocities(&parameters, Dual::of(0.0), &state)?;
+            // A velocity that the constraints give is not changed by itself.
+            if (reached.as_slice()[coordinate].slopes()[0] - 1.0).abs() > 1e-9 {
+                return Err(VariationError::Dependent { coordinate });
+            }
+        }
+        Ok(tangent)
+    }
+}
+
+/// Numbers that do not change.
+fn constant<R: Row<Dual>>(values: &[f64]) -> R {
+    let mut row = R::zeros(values.len());
+    for (entry, value) in row.as_mut_slice().iter_mut().zip(values) {
+        *entry = Dual::of(*value);
+    }
+    row
+}
+
+/// Lets one number change at rate 1.
+fn change<R: Row<Dual>>(row: &mut R, index: usize) {
+    let entry = &mut row.as_mut_slice()[index];
+    *entry = Dual::new(entry.value, [1.0, 0.0, 0.0, 0.0]);
+}
+
+/// The parameters as they change along a direction.
+fn parameters_along<S: Variational>(system: &S, tangent: &Tangent<S>) -> S::Parameters<Dual> {
+    let values = system.parameters();
+    let mut row = constant::<S::Parameters<Dual>>(values.as_slice());
+    let slopes = tangent.parameters.as_slice().iter();
+    for (entry, slope) in row.as_mut_slice().iter_mut().zip(slopes) {
+        *entry = Dual::new(entry.value, [*slope, 0.0, 0.0, 0.0]);
+    }
+    row
+}
+
+/// Derivatives of positions and velocities from those of the state.
+fn derivatives<S: Instance + Variational>(
+    system: &S,
+    t: f64,
+    state: &S::State,
+    tangents: &[Tangent<S>],
+) -> Result<Derivatives, VariationError> {
+    let n = system.coordinate_count();
+    let mut found = Derivatives {
+        t,
+        q: Vec::new(),
+        qdot: Vec::new(),
+    };
+    for tangent in tangents {
+        let mut row = constant::<S::Row<Dual>>(StateVector::as_slice(state));
+        let slopes = tangent.state.as_slice().iter();
+        for (entry, slope) in row.as_mut_slice().iter_mut().zip(slopes) {
+            *entry = Dual::new(entry.value, [*slope, 0.0, 0.0, 0.0]);
+        }
+        let parameters = parameters_along(system, tangent);
+        let qdot = system.velocities(&parameters, Dual::of(t), &row)?;
+        let slope = |value: &Dual| value.slopes()[0];
+        found
+            .q
+            .push(row.as_slice()[..n].iter().map(slope).collect());
+        found
+            .qdot
+            .push(qdot.as_slice()[..n].iter().map(slope).collect());
+    }
+    Ok(found)
+}
+
+/// Variations of a run that may be given up.
+struct Interruptible<'a, 'b, S: Variational> {
+    variations: Variations<'a, S>,
+    is_over: &'b mut dyn FnMut() -> bool,
+}
+
+impl<S: Variational> Observer<S> for Interruptible<'_, '_, S> {
+    fn step(&mut self, segment: &mut Segment<'_, S::State>) -> ControlFlow<()> {
+        match (self.is_over)() {
+            true => ControlFlow::Break(()),
+            false => self.variations.step(segment),
+        }
+    }
+
+    fn event(&mut self, event: &Event<S::State>) -> ControlFlow<()> {
+        self.variations.event(event)
+    }
+
+    fn hold(&mut self, hold: &Hold<S::State>) -> ControlFlow<()> {
+        self.variations.hold(hold)
+    }
+}
+
+/// The state of a form, with its positions and velocities.
+pub(crate) struct Begun {
+    pub state: Vec<f64>,
+    pub q: Vec<f64>,
+    pub qdot: Vec<f64>,
+}
+
+impl Begun {
+    /// Of a state of a system.
+    pub(crate) fn of<S: Instance>(system: &S, state: &S::State) -> Result<Self, StateError> {
+        let qdot = system.velocity(0.0, state).map_err(StateError::from)?;
+        Ok(Self {
+            state: StateVector::as_slice(state).to_vec(),
+            q: system.position(state).as_slice().to_vec(),
+            qdot: qdot.as_slice().to_vec(),
+        })
+    }
+}
