@@ -223,7 +223,7 @@ fn the_runtime_is_bare() {
 
 #[test]
 fn only_calls_of_machine_code_are_unchecked() {
-    for folder in ["codegen", "macros/src", "models", "benches"] {
+    for folder in ["codegen", "macros/src", "models", "benches", "python/src"] {
         assert_absent(folder, &["unsafe {", "unsafe extern"]);
     }
     for (path, text) in sources("jit/src") {
@@ -257,6 +257,7 @@ fn the_project_stands_alone() {
         "models",
         "tests",
         "benches",
+        "python/src",
     ] {
         for (path, text) in sources(folder) {
             if path.ends_with("layering.rs") {

@@ -329,6 +329,9 @@ impl<M: Model> Runs for Typed<M> {
         variables: &[Variable],
         is_over: &mut dyn FnMut() -> bool,
     ) -> Varied {
+        if let Some(error) = VariationError::beforehand(self.model.description(), settings) {
+            return Ok(Err(error));
+        }
         in_form!(self, origin, settings, |model, state| {
             let begun = Begun::of(model, &state)?;
             let differentiator = Differentiator {

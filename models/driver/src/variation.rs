@@ -73,6 +73,19 @@ pub enum VariationError {
     Undefined(#[from] Undefined),
 }
 
+impl VariationError {
+    /// The reason that is known before the run.
+    pub(crate) fn beforehand(description: &Description, settings: &Settings) -> Option<Self> {
+        let is_free = description.constraints.is_empty();
+        match settings.form {
+            _ if !description.modes.is_empty() => Some(Self::Modes),
+            Form::Global if !is_free => Some(Self::Constrained),
+            _ if !settings.integrator.is_adaptive() => Some(Self::FixedStep),
+            _ => None,
+        }
+    }
+}
+
 impl From<Fault> for VariationError {
     fn from(fault: Fault) -> Self {
         Self::Undefined(fault.into())
@@ -151,14 +164,6 @@ impl Differentiator<'_> {
         system: &S,
         stepper: &mut impl Stepper<S>,
     ) -> Varied {
-        let description = system.description();
-        if !description.modes.is_empty() {
-            return Ok(Err(VariationError::Modes));
-        }
-        let is_free = description.constraints.is_empty();
-        if self.settings.form == Form::Global && !is_free {
-            return Ok(Err(VariationError::Constrained));
-        }
         let directions = self.variables.iter();
         let directions: Result<Vec<Tangent<S>>, _> = directions
             .map(|variable| self.direction(system, *variable))

@@ -1,0 +1,22 @@
+"""Nonholonomic mechanics with impacts: declared models, checked equations, exact events.
+
+>>> import dalembert
+>>> disk = dalembert.models.rolling_disk
+>>> run = disk.simulate(until=20, state={"theta_dot": 12})
+>>> run.outcome.kind, len(run.events)        # doctest: +SKIP
+('done', 5)
+
+A model comes from a text of the language (:meth:`Model.from_text`), from a file (:meth:`Model.from_file`), or is one of the
+shipped ones (:mod:`dalembert.models`).
+"""
+
+from . import models
+from ._errors import DalembertError, Mistake, ModelError, RequestError
+from ._model import Model, Parameter
+from ._report import Derivation, Expression, Section, Verdict
+from ._run import Outcome, Run
+
+__all__ = [
+    "DalembertError", "Derivation", "Expression", "Mistake", "Model", "ModelError", "Outcome", "Parameter", "RequestError", "Run",
+    "Section", "Verdict", "models",
+]

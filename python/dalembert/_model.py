@@ -1,0 +1,541 @@
+"""Models: what is declared, values of parameters, and what can be done with both."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from html import escape
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, Sequence
+
+from . import _native
+from ._errors import RequestError
+from ._report import Derivation, Expression, Verdict, derivations
+from ._run import Run
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from ._sympy import Symbolic
+
+#: A law by its name, with its coefficient: ``"elastic"``, ``"newton:0.5"``.
+Law = str
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a model.
+
+    Attributes
+    ----------
+    name : str
+        The name; a member of a family has its index behind a dot, ``m.3``.
+    value : float
+        The value of the model at hand; NaN where there is none yet.
+    default : float or None
+        The declared value.
+    assumption : str
+        The values that are allowed.
+    documentation : str
+        The doc comment of the declaration.
+    """
+
+    name: str
+    value: float
+    default: float | None
+    assumption: str
+    documentation: str
+
+
+class Model:
+    """A mechanical system with values for its parameters. Models do not change: other values make another model.
+
+    Values of parameters are attributes: ``disk.m``. Names with dots are items of :attr:`parameters`.
+
+    Examples
+    --------
+    >>> from dalembert import Model
+    >>> pendulum = Model.from_text('''
+    ...     Pendulum {
+    ...         coordinates { theta: angle; }
+    ...         parameters { g > 0 = 9.81; }
+    ...         lagrangian = dot(theta)^2/2 + g*cos(theta);
+    ...         initial { theta = 1/2; until = 10; }
+    ...     }
+    ... ''')
+    >>> pendulum.with_parameters(g=1.62).simulate()["theta"][0]
+    np.float64(0.5)
+    """
+
+    def __init__(self, native: _native.NativeModel, claims: bool = True, scene: str = "all") -> None:
+        self._native = native
+        self._claims = claims
+        self._scene = scene
+
+    @cached_property
+    def _description(self) -> dict[str, Any]:
+        return self._native.description()
+
+    # Where models come from ------------------------------------------------------------------------------------------------
+
+    @classmethod
+    def from_text(cls, text: str, name: str | None = None, claims: bool = True, *, file: str = "text") -> Model:
+        """Load a model from a text of the language.
+
+        Parameters
+        ----------
+        text : str
+            One or more declarations.
+        name : str, optional
+            The model that is meant, where the text declares several; as it is declared or in snake case.
+        claims : bool, default True
+            Examine the claims. Without them a model loads faster, and nothing is known that follows from a claim.
+        file : str, optional
+            The name of the text in messages.
+
+        Returns
+        -------
+        Model
+            With the declared values of its parameters.
+
+        Raises
+        ------
+        ModelError
+            Every mistake of the first stage that found any; claims that are refuted, with a counterexample.
+        RequestError
+            No model of this name, or several without a name; a model that is too large.
+        """
+        models = [cls(native, claims) for native in _native.load(text, file, claims)]
+        if name is None:
+            if len(models) > 1:
+                listed = ", ".join(model.name for model in models)
+                raise RequestError(f"{file} declares several models, {listed}; say which one by name=")
+            return models[0]
+        for model in models:
+            if name in (model.name, model._description["type_name"]):
+                return model
+        listed = ", ".join(model.name for model in models)
+        raise RequestError(f"{file} declares no model `{name}`\n  accepted: {listed}")
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str], name: str | None = None, claims: bool = True) -> Model:
+        """Load a model from a file, such as ``disk.dal``.
+
+        Parameters
+        ----------
+        path : path
+            The file, in UTF-8.
+        name, claims
+            As for :meth:`from_text`.
+
+        Returns
+        -------
+        Model
+            With the declared values of its parameters.
+        """
+        text = Path(path).read_text(encoding="utf-8")
+        return cls.from_text(text, name, claims, file=os.fspath(path))
+
+    def _changed(self, native: _native.NativeModel, scene: str | None = None) -> Model:
+        return Model(native, self._claims, self._scene if scene is None else scene)
+
+    def with_parameters(self, /, **values: float) -> Model:
+        """The same model with other values for some parameters.
+
+        Parameters
+        ----------
+        **values : float
+            New values by name; of a name with a dot as ``with_parameters(**{"m.3": 2})``.
+
+        Returns
+        -------
+        Model
+            This one stays as it is.
+
+        Raises
+        ------
+        RequestError
+            No such parameter, or a value that the declaration rules out.
+        """
+        return self._changed(self._native.with_parameters(_pairs(values)))
+
+    def scene(self, name: str) -> Model:
+        """A declared scene of this model, with the values of this one.
+
+        Parameters
+        ----------
+        name : str
+            One of :attr:`scenes`; ``"all"`` is the whole model.
+
+        Returns
+        -------
+        Model
+            The scene as a model.
+        """
+        return self._changed(self._native.in_scene(name), name)
+
+    # What is declared ------------------------------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """The name in snake case: `rolling_disk`."""
+        return self._description["name"]
+
+    @property
+    def documentation(self) -> str:
+        """The doc comment."""
+        return self._description["documentation"]
+
+    @property
+    def source(self) -> str:
+        """The declaration."""
+        return self._description["source"]
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates."""
+        return tuple(self._description["coordinates"])
+
+    @property
+    def velocities(self) -> tuple[str, ...]:
+        """Names of the velocities: `x_dot`."""
+        return tuple(self._description["velocities"])
+
+    @property
+    def momenta(self) -> tuple[str, ...]:
+        """Names of the momenta: `p_x`."""
+        return tuple(self._description["momenta"])
+
+    @property
+    def is_first_order(self) -> bool:
+        """True if a field is declared in place of a Lagrangian."""
+        return self._description["is_first_order"]
+
+    @property
+    def view(self) -> tuple[list[str], list[int] | None, bool] | None:
+        """The declared view: labels, indices of the coordinates that it shows, true with a region; None without a view."""
+        return self._description["view"]
+
+    @property
+    def constraints(self) -> tuple[str, ...]:
+        """Names of the constraints."""
+        return tuple(self._description["constraints"])
+
+    @property
+    def surfaces(self) -> dict[str, str]:
+        """Declared laws by names of surfaces."""
+        return dict(self._description["surfaces"])
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the declared outputs."""
+        return tuple(self._description["outputs"])
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return tuple(self._description["inputs"])
+
+    @property
+    def scenes(self) -> tuple[str, ...]:
+        """Names of the scenes, `all` first."""
+        return tuple(self._description["scenes"])
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """Names of the modes."""
+        return tuple(mode for mode, _ in self._description["modes"])
+
+    @property
+    def quasi_velocities(self) -> tuple[str, ...]:
+        """Names of the velocities that the constraints leave."""
+        return tuple(self._description["quasi_velocities"])
+
+    @cached_property
+    def parameters(self) -> Mapping[str, float]:
+        """Values of the parameters by name."""
+        names = (name for name, _, _ in self._description["parameters"])
+        return MappingProxyType(dict(zip(names, self._native.values())))
+
+    @cached_property
+    def declared_parameters(self) -> tuple[Parameter, ...]:
+        """The parameters with their values, declared values, assumptions and doc comments."""
+        docs = _native.documentation(self.source)
+        return tuple(
+            Parameter(name, self.parameters[name], default, assumption, docs.get(name.split(".")[0], ""))
+            for name, assumption, default in self._description["parameters"]
+        )
+
+    @property
+    def initial(self) -> dict[str, float]:
+        """The declared part of the initial state, by name, and the declared ``until``."""
+        q, qdot, placed, named, until = self._native.initial()
+        positions = {name: value for name, value, given in zip(self.coordinates, q, placed) if given}
+        velocities = {name: value for name, value, given in zip(self.velocities, qdot, named) if given}
+        end = {} if until is None else {"until": until}
+        return positions | velocities | end
+
+    def __getattr__(self, name: str) -> float:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self.parameters[name]
+        except KeyError:
+            raise AttributeError(f"`{self.name}` has no parameter or attribute `{name}`") from None
+
+    def __dir__(self) -> Iterable[str]:
+        return [*super().__dir__(), *self.parameters]
+
+    # Motion ----------------------------------------------------------------------------------------------------------------
+
+    def simulate(
+        self,
+        *,
+        until: float | None = None,
+        impacts: int | None = None,
+        state: Mapping[str, float] | None = None,
+        q: Sequence[float] | None = None,
+        qdot: Sequence[float] | None = None,
+        p: Sequence[float] | None = None,
+        off_constraint: str = "error",
+        times: Sequence[float] | np.ndarray | None = None,
+        samples: int = 1000,
+        tol: float = 1e-10,
+        integrator: str = "dop853",
+        step: float | None = None,
+        max_step: float | None = None,
+        steps: int | None = None,
+        law: Law | Mapping[str, Law] | None = None,
+        form: str | None = None,
+        projection: bool | None = None,
+        rest: str = "stop",
+        penetration: str = "stop",
+        corner: str = "stop",
+        split: str = "first",
+        inputs: Mapping[str, float] | None = None,
+        mode: str | None = None,
+    ) -> Run:
+        """Run the model from a state at ``t = 0``.
+
+        Other threads go on meanwhile, and Ctrl-C interrupts. The numbers are those of the command line, to the bit.
+
+        Parameters
+        ----------
+        until : float, optional
+            The end; the declared one without it.
+        impacts : int, optional
+            Stop after this many impacts. Without `until` the run may then take up to 3600 units of time.
+        state : mapping of str to float, optional
+            Changes of the declared initial state: coordinates ``x``, velocities ``x_dot``. What nobody names follows from the
+            constraints.
+        q, qdot, p : sequence of float, optional
+            All positions, with all velocities or all momenta, instead.
+        off_constraint : {"error", "project", "keep"}
+            What becomes of positions or velocities that violate the constraints.
+        times : sequence of float, optional
+            Times of the samples, in order.
+        samples : int, default 1000
+            Without `times`, the number of equally spaced times from 0 to the end, both included.
+        tol : float, default 1e-10
+            Relative error allowed per step, from 1e-15 to 0.1.
+        integrator : {"dop853", "dopri5", "taylor", "rk4", "gauss4", "gauss6", "dla2", "dla4"}
+            The last five keep one step.
+        step : float, optional
+            The step of an integrator that keeps it; without it one that suits `tol`.
+        max_step : float, optional
+            The largest step of the others.
+        steps : int, optional
+            Stop after this many steps.
+        law : str or mapping of str to str, optional
+            The impact law of all surfaces, or of each by name, instead of the declared ones: ``"elastic"``, ``"newton:0.5"``.
+        form : {"reduced", "global"}, optional
+            The form of the equations; reduced where the model has such a form.
+        projection : bool, optional
+            Project on the constraints after each step, in global form.
+        rest : {"stop", "contact"}
+            On a surface that the motion presses into.
+        penetration : {"stop", "repeat", "contact"}
+            After a law that leaves the state approaching.
+        corner : {"stop", "ascending", "descending"}
+            At several surfaces at one time whose order matters.
+        split : {"first", "stop"}
+            At a transition that the motion can go on from in more than one way.
+        inputs : mapping of str to float, optional
+            Values of inputs that are held through the run; 0 without.
+        mode : str, optional
+            The mode to begin in, of a model with modes.
+
+        Returns
+        -------
+        Run
+            Samples, impacts, and how it ended. Any end is a result, not an exception.
+
+        Raises
+        ------
+        RequestError
+            Unknown names, values out of range, a state that is refused.
+        """
+        native = self._native
+        if inputs:
+            native = native.with_inputs(_pairs(inputs))
+        if mode is not None:
+            native = native.with_mode(mode)
+        request = {
+            "until": until, "impacts": impacts, "state": _pairs(state or {}), "q": _floats(q), "qdot": _floats(qdot),
+            "p": _floats(p), "off_constraint": off_constraint, "times": None if times is None else _array(times),
+            "samples": samples, "tol": tol, "integrator": integrator, "step": step, "max_step": max_step, "steps": steps,
+            "laws": _laws(law), "form": form, "projection": projection, "rest": rest, "penetration": penetration,
+            "corner": corner, "split": split,
+        }
+        return Run(self, native.simulate(request))
+
+    def evaluate(
+        self,
+        q: Sequence[float],
+        qdot: Sequence[float] | None = None,
+        p: Sequence[float] | None = None,
+        t: float = 0.0,
+    ) -> dict[str, Any]:
+        """Everything that is derived, at a state.
+
+        Parameters
+        ----------
+        q : sequence of float
+            Positions.
+        qdot, p : sequence of float
+            Velocities or momenta; one of them.
+        t : float, default 0
+            The time.
+
+        Returns
+        -------
+        dict
+            Numbers, vectors and matrices by name: ``qdot``, ``p``, ``pdot``, ``acceleration``, ``multipliers``, ``metric``,
+            ``energy`` and others. Names are those of the command ``eval``.
+        """
+        return self._native.evaluate({"t": t, "q": _floats(q), "qdot": _floats(qdot), "p": _floats(p)})
+
+    # Equations -------------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _derivations(self) -> dict[str, Derivation]:
+        return derivations(self.source, self._claims, self.scenes)
+
+    def derive(self, scene: str | None = None) -> Derivation:
+        """Derive the equations again, with the claims that the model makes.
+
+        Parameters
+        ----------
+        scene : str, optional
+            One of :attr:`scenes`, which are the modes of a model with modes; without it that of this model.
+
+        Returns
+        -------
+        Derivation
+            Metric, forces, constraints, impact maps: as text, as LaTeX, and as data.
+        """
+        scene = self._scene if scene is None else scene
+        if scene not in self._derivations:
+            raise RequestError(f"unknown scene `{scene}`\n  accepted: {', '.join(self._derivations)}")
+        return self._derivations[scene]
+
+    def check(self) -> tuple[Verdict, ...]:
+        """Verdicts on the claims of the model and of its scenes.
+
+        Returns
+        -------
+        tuple of Verdict
+            In the order of the declaration.
+        """
+        return tuple(verdict for derivation in self._derivations.values() for verdict in derivation.verdicts)
+
+    @property
+    def lagrangian(self) -> Expression:
+        """The Lagrangian, as text, LaTeX or an expression of SymPy."""
+        return self.derive().lagrangian
+
+    def to_sympy(self, scene: str | None = None) -> Symbolic:
+        """The declaration in SymPy.
+
+        Parameters
+        ----------
+        scene : str, optional
+            As for :meth:`derive`. A model with modes has a declaration for each of them, and none as a whole.
+
+        Returns
+        -------
+        Symbolic
+            Lagrangian, constraints, forces and surfaces, over functions of time.
+        """
+        from ._sympy import Symbolic
+
+        declaration = self.derive(scene).declaration
+        if declaration is None:
+            raise RequestError(f"`{self.name}` has modes; say which one by scene=: {', '.join(self.modes)}")
+        return Symbolic.of(declaration)
+
+    # Shown -----------------------------------------------------------------------------------------------------------------
+
+    def __repr__(self) -> str:
+        lines = [f"Model {self.name}" + ("" if self._scene == "all" else f", scene {self._scene}")]
+        lines += [f"  {line}" for line in self.documentation.splitlines()]
+        lines.append(f"  coordinates  {', '.join(self.coordinates)}")
+        for title, names in [("constraints", self.constraints), ("surfaces", self.surfaces), ("outputs", self.outputs)]:
+            if names:
+                lines.append(f"  {title:12} {', '.join(names)}")
+        if self.parameters:
+            lines.append("  parameters")
+            width = max(map(len, self.parameters))
+            for own in self.declared_parameters:
+                about = "  ".join(part for part in [own.assumption, own.documentation] if part)
+                lines.append(f"    {own.name:{width}} = {own.value:<12g} {about}".rstrip())
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{escape(own.name)}</td><td>{own.value:g}</td><td>{escape(own.assumption)}</td>"
+            f"<td style='text-align: left'>{escape(own.documentation)}</td></tr>"
+            for own in self.declared_parameters
+        )
+        table = f"<table><tr><th>parameter</th><th>value</th><th>values</th><th></th></tr>{rows}</table>" if rows else ""
+        return f"<h3>{escape(self.name)}</h3><p>{escape(self.documentation)}</p>{table}{self.derive().to_html(heading=False)}"
+
+    def __reduce__(self) -> Any:
+        given = {own.name: own.value for own in self.declared_parameters if own.value == own.value}
+        return _restored, (self.source, self._claims, self._scene, given)
+
+
+def _restored(source: str, claims: bool, scene: str, parameters: dict[str, float]) -> Model:
+    model = Model.from_text(source, claims=claims).with_parameters(**parameters)
+    return model if scene == "all" else model.scene(scene)
+
+
+def _pairs(values: Mapping[str, float]) -> list[tuple[str, float]]:
+    return [(name, float(value)) for name, value in values.items()]
+
+
+def _floats(values: Sequence[float] | None) -> list[float] | None:
+    return None if values is None else [float(value) for value in values]
+
+
+def _array(values: Sequence[float] | np.ndarray) -> np.ndarray:
+    import numpy as np
+
+    return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _laws(law: Law | Mapping[str, Law] | None) -> list[tuple[str | None, str, float | None]]:
+    if law is None:
+        return []
+    given = {None: law} if isinstance(law, str) else law
+    return [(surface, *_law(text)) for surface, text in given.items()]
+
+
+def _law(text: Law) -> tuple[str, float | None]:
+    name, _, coefficient = text.partition(":")
+    try:
+        return name.strip(), float(coefficient) if coefficient else None
+    except ValueError:
+        raise RequestError(f"law: `{text}` is not accepted; expected a law such as \"elastic\" or \"newton:0.5\"") from None

@@ -1,0 +1,374 @@
+"""Runs that have ended: samples, impacts, outcome."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Mapping, Sequence
+
+from . import _native
+
+if TYPE_CHECKING:
+    import numpy as np
+    import pandas
+    import polars
+    import pyarrow
+    import xarray
+    from matplotlib.axes import Axes
+
+    from ._model import Model
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended.
+
+    Attributes
+    ----------
+    kind : str
+        ``"done"`` at the requested end; ``"zeno"``, ``"contact"``, ``"ambiguous"``, ``"left_chart"`` and others elsewhere.
+    t : float
+        When.
+    reached : bool
+        True if the requested time or number of impacts was reached.
+    details : mapping of str to object
+        Facts that go with the kind, in the names of the model: ``surface``, ``accumulates_at``.
+    words : str
+        The outcome in a sentence.
+    """
+
+    kind: str
+    t: float
+    reached: bool
+    details: Mapping[str, Any]
+    words: str
+
+    def __str__(self) -> str:
+        facts = ", ".join(f"{name} {value}" for name, value in self.details.items())
+        return f"{self.kind} at t = {self.t}" + (f" ({facts})" if facts else "")
+
+
+class Run:
+    """A run of a model.
+
+    Arrays are those that the run filled; nothing is copied. Rows are samples, columns coordinates.
+
+    Examples
+    --------
+    >>> import dalembert
+    >>> run = dalembert.models.bouncing_ball.simulate(until=1)
+    >>> run.q.shape
+    (1000, 1)
+    """
+
+    def __init__(self, model: Model, native: _native.NativeRun) -> None:
+        self.model = model
+        self._native = native
+
+    # Samples ---------------------------------------------------------------------------------------------------------------
+
+    @property
+    def t(self) -> np.ndarray:
+        """Times of the samples."""
+        return self._native.samples.t
+
+    @property
+    def q(self) -> np.ndarray:
+        """Positions, one row per sample."""
+        return self._native.samples.q
+
+    @property
+    def qdot(self) -> np.ndarray:
+        """Velocities, one row per sample."""
+        return self._native.samples.qdot
+
+    @property
+    def p(self) -> np.ndarray:
+        """Momenta, one row per sample."""
+        return self._native.samples.p
+
+    @property
+    def energy(self) -> np.ndarray:
+        """Energies of the samples."""
+        return self._native.samples.energy
+
+    @property
+    def outputs(self) -> np.ndarray:
+        """Declared outputs, one row per sample."""
+        return self._native.samples.outputs
+
+    @property
+    def view(self) -> np.ndarray | None:
+        """Points of the declared view, one row per sample; None without a view."""
+        return self._native.samples.view
+
+    @property
+    def mode(self) -> np.ndarray | None:
+        """Names of the modes of the samples; None of a model without modes."""
+        return _modes(self.model, self._native.samples)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A quantity of all samples by name: ``"t"``, a coordinate, ``"x_dot"``, ``"p_x"``, ``"energy"``, an output."""
+        return _column(self.model, self._native.samples, name)
+
+    def __call__(self, t: float | Sequence[float] | np.ndarray) -> Samples:
+        """States at any times of the run.
+
+        The run is made once more, up to the last of the times: the states are those of a run with these ``times``, to the bit.
+        Ask for many times at once.
+
+        Parameters
+        ----------
+        t : float or array of float
+            Times from 0 to the end, in any order.
+
+        Returns
+        -------
+        Samples
+            With arrays in the shape of `t`.
+        """
+        import numpy as np
+
+        times = np.asarray(t, dtype=np.float64)
+        if times.size and not (0 <= times.min() and times.max() <= self.outcome.t):
+            raise ValueError(f"the run knows the times from 0 to {self.outcome.t}")
+        order = np.argsort(times, axis=None, kind="stable")
+        table = self._native.at(np.ascontiguousarray(times.ravel()[order]))
+        back = np.argsort(order, kind="stable")
+        return Samples(self.model, times, table, back)
+
+    # Impacts ---------------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def events(self) -> np.ndarray:
+        """Impacts, as a structured array.
+
+        Fields are ``t``, ``surface`` (its name), ``simultaneous`` (another surface was hit at the same time), ``grazing`` (so
+        light that rounding may have decided it), and ``before`` and ``after``, which have a field for each coordinate, each
+        velocity and the energy: ``run.events["after"]["theta_dot"]``. Of a model with modes, ``mode`` is a field of both.
+        """
+        own = self._native.impacts
+        flags = {"simultaneous": own.simultaneous, "grazing": own.grazing}
+        return self._table(own.surfaces, flags, {"before": own.before, "after": own.after})
+
+    @cached_property
+    def contacts(self) -> np.ndarray:
+        """Moments where a surface begins or ceases to hold the motion, as a structured array.
+
+        Fields are ``t``, ``surface``, ``begins``, ``accumulates_at`` (NaN where the contact does not begin by impacts that
+        accumulate), and ``at``, the state.
+        """
+        own = self._native.contacts
+        flags = {"begins": own.begins, "accumulates_at": own.accumulation}
+        return self._table(own.surfaces, flags, {"at": own.at})
+
+    def _table(
+        self, surfaces: np.ndarray, flags: Mapping[str, np.ndarray], states: Mapping[str, _native.Table],
+    ) -> np.ndarray:
+        import numpy as np
+
+        names = np.array(list(self.model.surfaces) or [""])
+        columns = [*self.model.coordinates, *self.model.velocities, "energy"]
+        state = [(name, "f8") for name in columns]
+        if self.model.modes:
+            state.append(("mode", np.array(self.model.modes).dtype))
+        first = next(iter(states.values()))
+        kinds = [("t", "f8"), ("surface", names.dtype), *((name, flag.dtype) for name, flag in flags.items())]
+        table = np.empty(len(first.t), [*kinds, *((name, state) for name in states)])
+        table["t"] = first.t
+        table["surface"] = names[surfaces]
+        for name, flag in flags.items():
+            table[name] = flag
+        for place, own in states.items():
+            for name in columns:
+                table[place][name] = _column(self.model, own, name)
+            if self.model.modes:
+                table[place]["mode"] = _modes(self.model, own)
+        return table
+
+    # The end ---------------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def outcome(self) -> Outcome:
+        """How the run ended."""
+        own = self._native
+        return Outcome(own.kind, own.t_end, own.reached, own.details, own.words)
+
+    @property
+    def last(self) -> dict[str, float]:
+        """The last state: coordinates, velocities and the energy by name."""
+        q, qdot, energy = self._native.last
+        return {**dict(zip(self.model.coordinates, q)), **dict(zip(self.model.velocities, qdot)), "energy": energy}
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """Counts of work: rate evaluations, accepted and rejected steps, impacts, and others."""
+        return self._native.counters
+
+    @property
+    def warnings(self) -> list[str]:
+        """Places where an integrator of fixed step was out of its depth, in words."""
+        return self._native.warnings
+
+    @property
+    def laws(self) -> dict[str, str | None]:
+        """The laws that were in force, by surface."""
+        return dict(self._native.laws)
+
+    # Derivatives -----------------------------------------------------------------------------------------------------------
+
+    def jacobian(self, wrt: Sequence[str]) -> np.ndarray:
+        """Derivatives of the last positions and velocities, across impacts.
+
+        The run is made once more, and its first variations with it. Times of start and end are fixed.
+
+        Parameters
+        ----------
+        wrt : sequence of str
+            Names of coordinates, velocities, quasi-velocities and parameters. A velocity brings along those that follow from it by
+            the constraints. With respect to a parameter the start stays as it is.
+
+        Returns
+        -------
+        array
+            One column per name; rows are coordinates, then velocities, in the order of the model.
+
+        Raises
+        ------
+        RequestError
+            The run has no derivative: a graze, a corner, a velocity that follows from others, an integrator of fixed step.
+        """
+        return self._native.jacobian(list(wrt))
+
+    # Tables ----------------------------------------------------------------------------------------------------------------
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """The samples by name: time, coordinates, velocities, energy, outputs, mode.
+
+        Returns
+        -------
+        dict of str to array
+            The columns of the table that the command ``simulate --csv`` writes, but for its events.
+        """
+        names = ["t", *self.model.coordinates, *self.model.velocities]
+        if not self.model.is_first_order:
+            names.append("energy")
+        columns = {name: self[name] for name in [*names, *self.model.outputs]}
+        return columns if self.mode is None else {**columns, "mode": self.mode}
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The samples as a table of pandas."""
+        import pandas
+
+        return pandas.DataFrame(self.columns())
+
+    def to_polars(self) -> polars.DataFrame:
+        """The samples as a table of polars."""
+        import polars
+
+        return polars.DataFrame(self.columns())
+
+    def to_arrow(self) -> pyarrow.Table:
+        """The samples as a table of Arrow."""
+        import pyarrow
+
+        return pyarrow.table(self.columns())
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The samples as a data set of xarray over the dimension ``t``."""
+        import xarray
+
+        columns = self.columns()
+        times = columns.pop("t")
+        return xarray.Dataset({name: ("t", values) for name, values in columns.items()}, {"t": times})
+
+    # Pictures --------------------------------------------------------------------------------------------------------------
+
+    def plot(self, *quantities: str, ax: Axes | None = None) -> Axes:
+        """Draw the run with matplotlib.
+
+        Parameters
+        ----------
+        *quantities : str
+            What to draw over time, or the second and others over the first if that is not ``"t"``. Without any the declared
+            view, in which both axes have one scale; without a view all coordinates over time.
+        ax : matplotlib axes, optional
+            Where to draw.
+
+        Returns
+        -------
+        matplotlib axes
+            Of the picture.
+        """
+        from . import _plot
+
+        return _plot.plot(self, quantities, ax)
+
+    def __repr__(self) -> str:
+        form, integrator, tol, step = self._native.settings
+        kept = f"tol {tol:g}" if step is None else f"step {step:g}"
+        return (
+            f"Run of {self.model.name}: {self.outcome}\n"
+            f"  {len(self.t)} samples, {len(self._native.impacts.surfaces)} impacts, {integrator}, {form} form, {kept}"
+        )
+
+
+class Samples:
+    """States at times that were asked for, in the shape of these times. Items are quantities by name, as of a :class:`Run`."""
+
+    def __init__(self, model: Model, times: np.ndarray, table: _native.Table, order: np.ndarray) -> None:
+        self._model = model
+        self._table = table
+        self._order = order
+        self.t = times
+
+    def _rows(self, values: np.ndarray) -> np.ndarray:
+        return values[self._order].reshape(self.t.shape + values.shape[1:])
+
+    @property
+    def q(self) -> np.ndarray:
+        """Positions; the last axis is that of the coordinates."""
+        return self._rows(self._table.q)
+
+    @property
+    def qdot(self) -> np.ndarray:
+        """Velocities."""
+        return self._rows(self._table.qdot)
+
+    @property
+    def p(self) -> np.ndarray:
+        """Momenta."""
+        return self._rows(self._table.p)
+
+    @property
+    def energy(self) -> np.ndarray:
+        """Energies."""
+        return self._rows(self._table.energy)
+
+    @property
+    def outputs(self) -> np.ndarray:
+        """Declared outputs."""
+        return self._rows(self._table.outputs)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self._rows(_column(self._model, self._table, name))
+
+
+def _column(model: Model, table: _native.Table, name: str) -> np.ndarray:
+    if name in ("t", "energy"):
+        return getattr(table, name)
+    if name in ("q", "qdot", "p", "outputs"):
+        return getattr(table, name)
+    for names, values in [
+        (model.coordinates, table.q), (model.velocities, table.qdot), (model.momenta, table.p), (model.outputs, table.outputs),
+    ]:
+        if name in names:
+            return values[:, names.index(name)]
+    accepted = ", ".join(["t", *model.coordinates, *model.velocities, *model.momenta, "energy", *model.outputs])
+    raise KeyError(f"`{name}` is no quantity of {model.name}; accepted: {accepted}")
+
+
+def _modes(model: Model, table: _native.Table) -> np.ndarray | None:
+    import numpy as np
+
+    return None if table.mode is None else np.array(model.modes)[table.mode]

@@ -1,0 +1,32 @@
+//! The extension module `dalembert._native`: what the Python package calls.
+//!
+//! | file | job |
+//! |---|---|
+//! | `error.rs` | exceptions, with mistakes in texts as data |
+//! | `model.rs` | models: texts to forms, values of parameters, descriptions |
+//! | `request.rs` | the arguments of a run, as settings and state of the driver |
+//! | `recorder.rs` | samples, impacts and contacts of a run as columns of numbers; signals |
+//! | `run.rs` | runs that have ended, as arrays |
+//! | `evaluate.rs` | everything that is derived at a state |
+//! | `report.rs` | derivations and verdicts |
+//!
+//! Names, defaults and documentation that users see are those of the Python files beside it.
+
+mod error;
+mod evaluate;
+mod model;
+mod recorder;
+mod report;
+mod request;
+mod run;
+
+/// The functions and classes of the module.
+#[pyo3::pymodule(gil_used = false)]
+mod _native {
+    #[pymodule_export]
+    use crate::model::{NativeModel, load, shipped};
+    #[pymodule_export]
+    use crate::report::{derive, documentation};
+    #[pymodule_export]
+    use crate::run::{ContactTable, ImpactTable, NativeRun, Table};
+}

@@ -1,0 +1,265 @@
+//! Models: texts to forms, values of parameters, descriptions.
+
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+use dalembert::describe::{Description, Topology};
+use dalembert::erased::Form;
+use dalembert_driver::{AnyModel, Code, names, of_form};
+use dalembert_jit::Loaded;
+use numpy::{PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::evaluate::{self, At};
+use crate::request::Request;
+use crate::run::NativeRun;
+use crate::{error, recorder};
+
+/// A model in one of its scenes, with values for its parameters and inputs.
+#[pyclass(frozen, module = "dalembert._native")]
+#[derive(Clone)]
+pub struct NativeModel {
+    loaded: &'static Loaded,
+    pub(crate) form: &'static Form,
+    values: Vec<f64>,
+    mode: usize,
+}
+
+/// Texts that were loaded, without and with claims. What is made of a text lives as long as the process.
+static LOADED: [Mutex<BTreeMap<String, &'static [Loaded]>>; 2] =
+    [const { Mutex::new(BTreeMap::new()) }; 2];
+
+/// The models of a text. `shown` is its name in messages.
+#[pyfunction]
+pub fn load(py: Python<'_>, text: &str, shown: &str, claims: bool) -> PyResult<Vec<NativeModel>> {
+    let known = &LOADED[usize::from(claims)];
+    let find = || {
+        let known = known.lock().unwrap_or_else(PoisonError::into_inner);
+        known.get(text).copied()
+    };
+    let models = match find() {
+        Some(models) => models,
+        None => {
+            let load = match claims {
+                true => dalembert_jit::load,
+                false => dalembert_jit::load_without_claims,
+            };
+            let models = py.detach(|| load(shown, text));
+            let models = models.map_err(|refused| error::model_error(py, &refused))?;
+            let models: &'static [Loaded] = Vec::leak(models);
+            let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
+            known.insert(text.to_owned(), models);
+            models
+        }
+    };
+    models.iter().map(NativeModel::of).collect()
+}
+
+/// The shipped models: name and text.
+#[pyfunction]
+pub fn shipped() -> Vec<(&'static str, &'static str)> {
+    dalembert_texts::TEXTS.to_vec()
+}
+
+impl NativeModel {
+    fn of(loaded: &'static Loaded) -> PyResult<Self> {
+        Self::of_form(loaded, loaded.form)
+    }
+
+    /// The model of a form, with declared values.
+    fn of_form(loaded: &'static Loaded, form: &'static Form) -> PyResult<Self> {
+        let model = of_form(form, Code::Loaded).ok_or_else(|| {
+            error::refused(format!(
+                "`{}` has vectors of more than 32 components, or more than 64 parameters; compile it in a crate of Rust \
+                 with `dalembert::model!`",
+                form.documentation.description.name
+            ))
+        })?;
+        let count = model.description().parameters.len() + model.inputs().len();
+        Ok(Self {
+            loaded,
+            form,
+            values: (0..count).map(|index| model.parameter(index)).collect(),
+            mode: 0,
+        })
+    }
+
+    pub(crate) fn describe(&self) -> &'static Description {
+        &self.form.documentation.description
+    }
+
+    /// The model for the driver.
+    pub(crate) fn build(&self) -> Box<dyn AnyModel> {
+        let mut model = of_form(self.form, Code::Loaded).expect("room, as where it was loaded");
+        for (index, value) in self.values.iter().enumerate() {
+            model.set_parameter(index, *value);
+        }
+        model.set_mode(self.mode);
+        model
+    }
+
+    fn set(&mut self, name: &str, value: f64) -> PyResult<()> {
+        let parameters = self.describe().parameters;
+        let accepted = parameters.iter().map(|parameter| parameter.name);
+        let index = names::find("parameter", name, accepted).map_err(error::refused)?;
+        let assumption = parameters[index].assumption;
+        if !assumption.holds(value) {
+            return Err(error::refused(format!(
+                "{name}: {value} is not accepted; expected a value {assumption}"
+            )));
+        }
+        self.values[index] = value;
+        Ok(())
+    }
+
+    fn set_input(&mut self, name: &str, value: f64) -> PyResult<()> {
+        let accepted = self.form.documentation.inputs.iter().copied();
+        let index = names::find("input", name, accepted).map_err(error::refused)?;
+        if !value.is_finite() {
+            return Err(error::refused(format!(
+                "{name}: {value} is not accepted; expected a finite number"
+            )));
+        }
+        let after = self.describe().parameters.len();
+        self.values[after + index] = value;
+        Ok(())
+    }
+
+    fn set_mode(&mut self, name: &str) -> PyResult<()> {
+        let modes = self.describe().modes.iter().map(|mode| mode.name);
+        self.mode = names::find("mode", name, modes).map_err(error::refused)?;
+        Ok(())
+    }
+}
+
+#[pymethods]
+impl NativeModel {
+    /// The same model with other values for some parameters.
+    fn with_parameters(&self, values: Vec<(String, f64)>) -> PyResult<Self> {
+        let mut changed = self.clone();
+        for (name, value) in values {
+            changed.set(&name, value)?;
+        }
+        Ok(changed)
+    }
+
+    /// The same model with inputs that are held.
+    fn with_inputs(&self, values: Vec<(String, f64)>) -> PyResult<Self> {
+        let mut changed = self.clone();
+        for (name, value) in values {
+            changed.set_input(&name, value)?;
+        }
+        Ok(changed)
+    }
+
+    /// The same model, beginning in a mode.
+    fn with_mode(&self, name: &str) -> PyResult<Self> {
+        let mut changed = self.clone();
+        changed.set_mode(name)?;
+        Ok(changed)
+    }
+
+    /// A scene of the model, with the values of this one.
+    fn in_scene(&self, name: &str) -> PyResult<Self> {
+        let scenes = self.loaded.scenes.iter().map(|(name, _)| *name);
+        let accepted = core::iter::once("all").chain(scenes);
+        let index = names::find("scene", name, accepted).map_err(error::refused)?;
+        let form = match index.checked_sub(1) {
+            None => self.loaded.form,
+            Some(scene) => self.loaded.scenes[scene].1,
+        };
+        let mut scene = Self::of_form(self.loaded, form)?;
+        scene.values.clone_from(&self.values);
+        Ok(scene)
+    }
+
+    /// Values of parameters, then of inputs.
+    fn values(&self) -> Vec<f64> {
+        self.values.clone()
+    }
+
+    /// Names, shapes and documentation of what is declared.
+    fn description<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let own = self.describe();
+        let dict = PyDict::new(py);
+        dict.set_item("name", own.name)?;
+        dict.set_item("type_name", own.type_name)?;
+        dict.set_item("documentation", own.documentation)?;
+        dict.set_item("source", own.source)?;
+        dict.set_item("is_first_order", own.is_first_order)?;
+        let coordinates: Vec<&str> = names::coordinates(own).collect();
+        let velocities: Vec<String> = coordinates.iter().map(|own| names::velocity(own)).collect();
+        let momenta: Vec<String> = coordinates.iter().map(|own| names::momentum(own)).collect();
+        dict.set_item("coordinates", coordinates)?;
+        dict.set_item("velocities", velocities)?;
+        dict.set_item("momenta", momenta)?;
+        let topologies: Vec<_> = own.coordinates.iter().map(|it| ends(it.topology)).collect();
+        dict.set_item("topologies", topologies)?;
+        dict.set_item("quasi_velocities", own.quasi_velocities)?;
+        let parameters = own.parameters.iter();
+        let parameters = parameters.map(|it| (it.name, it.assumption.to_string(), it.default));
+        dict.set_item(
+            "parameters",
+            PyList::new(py, parameters.collect::<Vec<_>>())?,
+        )?;
+        dict.set_item("inputs", self.form.documentation.inputs)?;
+        let constraints: Vec<&str> = own.constraints.iter().map(|it| it.name).collect();
+        dict.set_item("constraints", constraints)?;
+        let surfaces: Vec<_> = own.surfaces.iter().map(|it| (it.name, it.law)).collect();
+        dict.set_item("surfaces", surfaces)?;
+        dict.set_item("outputs", own.outputs)?;
+        dict.set_item("scenes", own.scenes)?;
+        let modes: Vec<_> = own
+            .modes
+            .iter()
+            .map(|it| (it.name, it.coordinates))
+            .collect();
+        dict.set_item("modes", modes)?;
+        let view = own.view.map(|view| (view.labels, view.plane, view.region));
+        dict.set_item("view", view)?;
+        Ok(dict)
+    }
+
+    /// The declared initial state and end: positions, velocities, and which of them were declared.
+    #[allow(clippy::type_complexity)]
+    fn initial(&self) -> (Vec<f64>, Vec<f64>, Vec<bool>, Vec<bool>, Option<f64>) {
+        let start = self.build().initial();
+        (start.q, start.qdot, start.placed, start.named, start.until)
+    }
+
+    /// Makes a run.
+    fn simulate(&self, py: Python<'_>, request: Request) -> PyResult<NativeRun> {
+        recorder::simulate(py, self, request)
+    }
+
+    /// Everything that is derived at a state.
+    fn evaluate<'py>(&self, py: Python<'py>, at: At) -> PyResult<Bound<'py, PyDict>> {
+        evaluate::evaluate(py, self, &at)
+    }
+
+    /// Values of the function of the declared region, one per row of positions; NaN without a region.
+    fn region<'py>(
+        &self,
+        py: Python<'py>,
+        t: f64,
+        q: PyReadonlyArray2<'py, f64>,
+    ) -> Bound<'py, PyArray1<f64>> {
+        let model = self.build();
+        let rows = q.as_array();
+        let values = rows
+            .rows()
+            .into_iter()
+            .map(|row| model.region(t, &row.to_vec()).unwrap_or(f64::NAN));
+        PyArray1::from_iter(py, values)
+    }
+}
+
+/// `None` for a line, the period of a circle, or the ends of an interval.
+fn ends(topology: Topology) -> Option<Vec<f64>> {
+    match topology {
+        Topology::Line => None,
+        Topology::Circle => Some(vec![core::f64::consts::TAU]),
+        Topology::Interval { low, high } => Some(vec![low, high]),
+    }
+}
