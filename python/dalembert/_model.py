@@ -65,8 +65,8 @@ class Model:
     ...         initial { theta = 1/2; until = 10; }
     ...     }
     ... ''')
-    >>> pendulum.with_parameters(g=1.62).simulate()["theta"][0]
-    np.float64(0.5)
+    >>> float(pendulum.with_parameters(g=1.62).simulate()["theta"][0])
+    0.5
     """
 
     def __init__(self, native: _native.NativeModel, claims: bool = True, scene: str = "all") -> None:

@@ -33,6 +33,8 @@ class Scope:
 
     def read(self, text: str) -> Expr:
         """The expression of a text of the language."""
+        if "..." in text:
+            raise ValueError("the expression is too long to be written out")
         return _Parser(text, self).whole()
 
 
