@@ -1,6 +1,7 @@
 """Equations: shown, and checked against the Euler-Lagrange equations of SymPy."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +18,11 @@ NAMES = [
     "holonomic_bead_on_ellipses", "appell_hamel", "constant_speed", "bouncing_ball", "point_billiard", "double_pendulum", "chain3",
     "harmonic_oscillator", "super_elastic_strip",
 ]
+
+#: The functions that the documentation lists.
+FUNCTIONS = re.search(
+    r"the functions `([a-z0-9 ]+)`", (Path(__file__).parents[2] / "docs" / "language.md").read_text(encoding="utf-8"),
+).group(1).split()
 
 
 def admissible(model, generator):
@@ -77,6 +83,15 @@ def test_the_lagrangian_that_is_printed_is_that_of_the_declaration(name):
         values = [(own, sympy.Float(generator.uniform(0.1, 0.9), 30)) for own in names]
         difference = (printed - symbolic.lagrangian).subs(values)
         assert abs(sympy.N(difference, 30)) < 1e-20
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_of_the_language_are_those_of_sympy(name):
+    call = f"{name}(x, 1/3)" if name == "atan2" else f"{name}(x)"
+    model = Model.from_text(f"One {{ coordinates {{ x; }} lagrangian = dot(x)^2/2; forces {{ push: {call}*d(x); }} }}")
+    symbolic = model.to_sympy()
+    force = symbolic.forces["x"].subs(symbolic.q["x"], 0.4)
+    assert model.evaluate([0.4], [0])["pdot"][0] == pytest.approx(float(force), rel=1e-14)
 
 
 def test_gaps_are_exported():

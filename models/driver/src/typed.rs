@@ -334,7 +334,10 @@ impl<M: Model> Runs for Typed<M> {
         }
         in_form!(self, origin, settings, |model, state| {
             let begun = Begun::of(model, &state)?;
+            let values = TaylorField::parameters(model);
             let differentiator = Differentiator {
+                form: self.form,
+                values: values.as_slice(),
                 variables,
                 settings,
                 state: &begun.state,
@@ -342,8 +345,7 @@ impl<M: Model> Runs for Typed<M> {
                 qdot: &begun.qdot,
                 is_over,
             };
-            let varied = model.visit_variational(differentiator);
-            varied.unwrap_or(Ok(Err(VariationError::WithoutVariations)))
+            differentiator.run()
         })
     }
 

@@ -1,9 +1,12 @@
-//! Derivatives of a run with respect to its start and its parameters, across impacts, behind a trait that knows nothing of its type.
+//! Derivatives of a run with respect to its start and its parameters, across impacts, as plain data.
+//!
+//! They are computed by the system of all forms with the largest capacity alone, for which all this is compiled once.
 
 use std::ops::ControlFlow;
 
-use dalembert::contract::Variational;
+use dalembert::contract::{TaylorField, Variational};
 use dalembert::describe::{Description, VariationalVisitor};
+use dalembert::erased::{self, Erased};
 use dalembert::integrate::{Chosen, Dop853, DormandPrince5, Stepper, Taylor, Tolerance};
 use dalembert::numbers::{Numbers, Row};
 use dalembert::simulation::STEP_BUDGET;
@@ -18,6 +21,9 @@ use crate::integrator::{Form, Integrator};
 use crate::names::{self, Unknown};
 use crate::refusal::Refusal;
 use crate::run::{Settings, effects};
+
+/// The system whose runs are differentiated.
+type System = Erased<32>;
 
 /// A quantity that a run may be differentiated by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,6 +53,11 @@ pub struct Derivatives {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum VariationError {
+    /// The model has no form.
+    #[error(
+        "derivatives are those of models that are loaded from a text, and this one is compiled into the program"
+    )]
+    Compiled,
     /// The scene was declared without what derivatives take.
     #[error("the scene was declared without `variations`; add it to what the scene uses")]
     WithoutVariations,
@@ -118,8 +129,12 @@ impl Variable {
     }
 }
 
-/// Differentiates a run of whatever model it is shown.
+/// Differentiates a run.
 pub(crate) struct Differentiator<'a> {
+    /// The form, of a model that has one.
+    pub form: Option<&'static erased::Form>,
+    /// The values of all parameters, inputs included.
+    pub values: &'a [f64],
     pub variables: &'a [Variable],
     pub settings: &'a Settings,
     /// The state of the form that the settings ask for.
@@ -159,6 +174,21 @@ impl VariationalVisitor for Differentiator<'_> {
 }
 
 impl Differentiator<'_> {
+    /// The derivatives of the last state.
+    pub(crate) fn run(self) -> Varied {
+        let Some(mut system) = self.form.and_then(System::of) else {
+            return Ok(Err(VariationError::Compiled));
+        };
+        for (index, value) in self.values.iter().enumerate() {
+            system.set_parameter(index, *value);
+        }
+        if self.settings.form == Form::Global {
+            system = system.global();
+        }
+        let varied = system.visit_variational(self);
+        varied.unwrap_or(Ok(Err(VariationError::WithoutVariations)))
+    }
+
     fn differentiate<S: Instance + Scene + Variational>(
         self,
         system: &S,
@@ -274,7 +304,7 @@ fn change<R: Row<Dual>>(row: &mut R, index: usize) {
 
 /// The parameters as they change along a direction.
 fn parameters_along<S: Variational>(system: &S, tangent: &Tangent<S>) -> S::Parameters<Dual> {
-    let values = system.parameters();
+    let values = TaylorField::parameters(system);
     let mut row = constant::<S::Parameters<Dual>>(values.as_slice());
     let slopes = tangent.parameters.as_slice().iter();
     for (entry, slope) in row.as_mut_slice().iter_mut().zip(slopes) {
