@@ -1,9 +1,9 @@
 //! Sign patterns: the branches on which an expression with absolute values and roots must be looked at one by one.
 //!
-//! Modulo a prime that is 3 mod 4 a residue is a square or its opposite is, so that being a square stands for being
-//! positive. A random point realises one sign for the argument of every absolute value; an expression is 0 if it is 0
-//! under every pattern of signs. Patterns that occur form an affine space over GF(2) (signs of products follow from
-//! those of their factors), so that they are known to be complete once the space no longer grows.
+//! Modulo a prime that is 3 mod 4, a residue other than 0 is a square or its opposite is. Squares therefore stand for
+//! positive numbers. A random point realises one sign for the argument of every absolute value; an expression is 0 if it
+//! is 0 under every pattern of signs. The patterns that occur form an affine space over GF(2) (signs of products follow
+//! from those of their factors). They are complete once the space no longer grows.
 //!
 //! A root `sqrt(u)` of a `u` that is no square needs no cases: both roots are conjugate. Where a product of radicands is
 //! a square `w^2`, the product of their roots is `w` or `-w`, whichever is a square: a branch that is not seen from
@@ -18,14 +18,14 @@ use crate::point::ModularPoint;
 use crate::pool::Pool;
 use crate::zero::SamplePoints;
 
-/// Absolute values with different arguments that are told apart, and hidden relations between radicands.
+/// Largest number of absolute values with different arguments, and of hidden relations between radicands.
 const MOST_ARGUMENTS: usize = 24;
 const MOST_HIDDEN: usize = 5;
-/// Radicands whose relations are looked for.
+/// Largest number of radicands whose relations are sought.
 const MOST_RADICANDS: usize = 64;
-/// Bits of a chance that is neglected: of a relation that is none, of a pattern or a hidden branch that is missed.
+/// Bits of a neglected chance: of a false relation, of a missed pattern, of a missed hidden branch.
 const BITS: usize = 60;
-/// Points at which one question is asked at most.
+/// Largest number of points at which one question is asked.
 const MOST_VISITS: usize = 1 << 15;
 
 /// The branches of some expressions.
@@ -236,7 +236,7 @@ struct Echelon {
 }
 
 impl Echelon {
-    /// Adds a vector; whether it is independent of those before.
+    /// Adds a vector. True if it is independent of those before.
     fn push(&mut self, vector: u64) -> bool {
         let rest = self
             .rows

@@ -34,7 +34,7 @@ impl Pool {
         Some(self.scale(&Rational::new(twelfths, 12), self.pi()))
     }
 
-    /// The square of a number or a root of one, if it is a number, and whether it is negative itself.
+    /// The square of an expression that is a number or a root of one. True if the expression itself is negative.
     fn signed_square(&self, id: ExprId) -> Option<(Rational, bool)> {
         if let Some(number) = self.as_number(id) {
             return Some((number * number, number.is_negative()));

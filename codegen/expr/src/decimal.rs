@@ -1,4 +1,4 @@
-//! Rational numbers from decimal text and to doubles, each without an error that is not needed.
+//! Rational numbers from decimal text and to doubles: exact, or rounded once.
 
 use num_bigint::{BigInt, Sign};
 use num_rational::BigRational;
@@ -39,14 +39,14 @@ impl Rational {
         }
     }
 
-    /// Four doubles, each the nearest to what those before it leave of the number: zeros after the first where the number is
-    /// a double, or beyond the range.
+    /// Four doubles that add up to the number, each the nearest to the remainder after those before it. Zeros follow the
+    /// first where the number is a double, or beyond the range.
     pub fn to_parts(&self) -> [f64; 4] {
         let mut left = self.clone();
         core::array::from_fn(|_| {
             let part = left.to_f64();
             left = match BigRational::from_float(part) {
-                Some(own) => left.clone() - Self::from_big(own),
+                Some(exact) => left.clone() - Self::from_big(exact),
                 None => Self::ZERO,
             };
             part

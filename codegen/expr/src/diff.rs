@@ -48,7 +48,7 @@ impl Pool {
     fn diff_node(&mut self, id: ExprId, symbol: SymbolId) -> ExprId {
         match self.node(id).clone() {
             Node::Number(_) | Node::Pi => self.zero(),
-            Node::Symbol(own) if own == symbol => self.one(),
+            Node::Symbol(other) if other == symbol => self.one(),
             Node::Symbol(_) => self.zero(),
             Node::Sum { terms, .. } => self.diff_sum(&terms, symbol),
             Node::Product(factors) => self.diff_product(&factors, symbol),

@@ -1,8 +1,8 @@
-//! Is an expression different from 0 all over a box? Enclosures by intervals, on parts of the box until all are decided.
+//! Proofs that an expression is not 0 anywhere in a box: enclosures by intervals, on parts of the box until all are decided.
 //!
-//! Lines are boxes from minus to plus infinity: boxes are halved in `x/(1+|x|)`, in which every line has length 2. Where
-//! a derivative keeps its sign, the ends in its direction decide: this is what settles polynomials far out, whose terms
-//! an enclosure of each by itself lets cancel.
+//! Lines are boxes from minus to plus infinity: boxes are halved in `x/(1+|x|)`, in which every line has length 2. Where a
+//! derivative keeps its sign, the ends in its direction decide. This settles polynomials far out, where terms enclosed one
+//! by one seem to cancel.
 
 use std::collections::BTreeMap;
 use std::ops::{Add, Mul};
@@ -21,11 +21,11 @@ pub type Domain = Vec<(SymbolId, Interval)>;
 /// The answer of [`Pool::zeros_on`].
 #[derive(Clone, PartialEq, Debug)]
 pub enum Zeros {
-    /// There is none.
+    /// There is no zero.
     None,
-    /// There is one between two points at which the signs differ, or at a point.
+    /// There is a zero between two points at which the signs differ, or at a point.
     Between(Vec<(SymbolId, f64)>, Vec<(SymbolId, f64)>),
-    /// Neither was shown; a part of the box that is open.
+    /// Neither was shown; a part of the box that is undecided.
     Open(Domain),
 }
 
@@ -142,14 +142,14 @@ impl Pool {
         let Node::Product(factors) = self.node(term) else {
             return whole;
         };
-        let found = factors.iter().find(|(own, _)| *own == base);
+        let found = factors.iter().find(|(factor, _)| *factor == base);
         let power = found.and_then(|(_, power)| power.to_i64().filter(|power| *power > 0));
         let Some(power) = power else {
             return whole;
         };
         let mut rest = Interval::point(1.0);
-        for (own, exponent) in factors.iter().filter(|(own, _)| *own != base) {
-            rest = rest.mul(ranges[own.index()]?.power(exponent)?);
+        for (factor, exponent) in factors.iter().filter(|(factor, _)| *factor != base) {
+            rest = rest.mul(ranges[factor.index()]?.power(exponent)?);
         }
         Some((power, rest))
     }

@@ -60,12 +60,12 @@ impl Pool {
 
     /// `value` and `magnitude` are known for all operands and `value` for the node itself.
     fn magnitude_of_node(&self, id: ExprId, values: &[f64], magnitudes: &[f64]) -> f64 {
-        let own = values[id.index()].abs();
+        let size = values[id.index()].abs();
         let value = |id: ExprId| values[id.index()];
-        // What an operand loses by cancellation.
+        // Loss of an operand by cancellation.
         let excess = |id: ExprId| magnitudes[id.index()] - values[id.index()].abs();
         match self.node(id) {
-            Node::Number(_) | Node::Pi | Node::Symbol(_) => own,
+            Node::Number(_) | Node::Pi | Node::Symbol(_) => size,
             Node::Sum { constant, terms } => terms
                 .iter()
                 .fold(constant.to_f64().abs(), |sum, (c, term)| {
@@ -75,11 +75,11 @@ impl Pool {
                 product * power_magnitude(value(*base).abs(), magnitudes[base.index()], e)
             }),
             Node::Call(function, argument) => {
-                own + function.slope(value(*argument)).abs() * excess(*argument)
+                size + function.slope(value(*argument)).abs() * excess(*argument)
             }
             Node::Atan2(y, x) => {
                 let square = value(*y) * value(*y) + value(*x) * value(*x);
-                own + (value(*x).abs() * excess(*y) + value(*y).abs() * excess(*x)) / square
+                size + (value(*x).abs() * excess(*y) + value(*y).abs() * excess(*x)) / square
             }
         }
     }

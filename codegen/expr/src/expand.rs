@@ -1,4 +1,4 @@
-//! Products of sums written out, for presentation: what then cancels, or collects, is seen by [`Pool::simplify`].
+//! Products of sums multiplied out, for presentation. [`Pool::simplify`] then collects and cancels the terms.
 
 use crate::node::{ExprId, Node};
 use crate::pool::Pool;

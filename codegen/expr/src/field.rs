@@ -2,7 +2,7 @@
 //!
 //! All primes are `p = 2^61 - c` with small `c`, so that a product is reduced by two multiplications by `c`. All are
 //! 3 modulo 4: of `u` and `-u` exactly one is a square, and on the squares, a group of odd order `(p-1)/2`, every
-//! root of a degree prime to that order is unique and multiplicative. Squares so take the place of the positive
+//! root of a degree prime to that order is unique and multiplicative. Squares therefore take the place of the positive
 //! numbers: `sqrt(a b) = sqrt(a) sqrt(b)` holds for squares `a`, `b`.
 
 use num_bigint::BigInt;
@@ -105,7 +105,7 @@ impl Modulus {
         (old.0 == 1).then(|| old.1.rem_euclid(p) as u64)
     }
 
-    /// Whether `a` is a square other than 0.
+    /// True if `a` is a square other than 0.
     pub fn is_square(self, a: u64) -> bool {
         self.pow(a, (self.prime() - 1) / 2) == 1
     }

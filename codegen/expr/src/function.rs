@@ -1,7 +1,8 @@
-//! The functions of one argument: their table, and what is known of each of them.
+//! The functions of one argument: their table and their properties.
 //!
-//! A function is named in the table and described by the matches below; the compiler asks for each of them. What takes its values in other
-//! numbers asks in turn: residues (`modular.rs`), balls (`taylor/balls.rs`), Taylor series (`taylor/expand.rs`).
+//! The table names the functions, and the matches below describe them: the compiler requires an arm for each. Evaluation
+//! in other numbers has such matches too: residues (`modular.rs`), balls (`taylor/balls.rs`), Taylor series
+//! (`taylor/expand.rs`).
 
 use std::ops::Mul;
 
@@ -65,7 +66,7 @@ macro_rules! functions {
 }
 with_functions!(functions);
 
-/// How a function is written in LaTeX.
+/// Notation of a function in LaTeX.
 pub(crate) enum Notation {
     /// By a command, before its argument.
     Command(&'static str),
@@ -75,7 +76,7 @@ pub(crate) enum Notation {
     Bars,
 }
 
-/// What a function makes of the opposite argument.
+/// Symmetry under a change of sign of the argument.
 #[derive(Copy, Clone, PartialEq, Eq)]
 pub(crate) enum Parity {
     /// `f(-x) = -f(x)`
@@ -106,13 +107,13 @@ pub enum Course {
     Wave,
     /// Increasing.
     Increasing,
-    /// The same for opposite arguments, and increasing with their size.
+    /// Even, and increasing with the size of the argument.
     Valley,
     /// Without a value for some arguments.
     Partial,
 }
 
-/// What a function is modulo a prime, see `modular.rs`.
+/// Form of a function modulo a prime, see `modular.rs`.
 #[derive(Copy, Clone, PartialEq, Eq)]
 pub(crate) enum Residue {
     /// A rational function of the half-angle tangents of base angles.
@@ -126,7 +127,7 @@ pub(crate) enum Residue {
 }
 
 impl Residue {
-    /// Whether it is taken apart into multiples of base angles or exponents.
+    /// True if the argument is split into multiples of base angles or exponents.
     pub(crate) fn has_base(self) -> bool {
         matches!(self, Self::Circular | Self::Exponential)
     }
@@ -198,7 +199,7 @@ impl Function {
         }
     }
 
-    /// Whether the value is one of several that satisfy the same equation, as an angle is of its sine.
+    /// True if the value is one of several solutions of the same equation, as an angle is for its sine.
     pub fn chooses_branch(self) -> bool {
         !self.residue().has_base()
     }

@@ -1,4 +1,4 @@
-//! Closed intervals of doubles that contain every value of what they stand for: each operation is rounded outwards.
+//! Closed intervals of doubles that contain every value of the quantity they enclose: each operation is rounded outwards.
 //!
 //! Sums, products, quotients and square roots of doubles are correctly rounded, so one step outwards encloses them.
 //! Elementary functions are those of `libm`, which may err by more than one unit in the last place: by 1.6 of them at random arguments

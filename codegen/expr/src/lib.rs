@@ -7,13 +7,13 @@
 //! | file | job |
 //! |---|---|
 //! | `rational.rs`, `decimal.rs` | exact numbers; from text, to doubles |
-//! | `function.rs` | the functions of one argument, and what is known of each |
-//! | `node.rs`, `pool.rs`, `intern.rs` | what an expression is, and where it is kept |
+//! | `function.rs` | the functions of one argument and their properties |
+//! | `node.rs`, `pool.rs`, `intern.rs` | nodes of expressions and their storage |
 //! | `construct.rs`, `sum.rs`, `product.rs`, `call.rs`, `constants.rs` | the constructors and every rewrite they make |
-//! | `sign.rs` | what is known of signs and finiteness |
+//! | `sign.rs` | signs and finiteness |
 //! | `diff.rs`, `subst.rs`, `eval.rs` | calculus and evaluation |
 //! | `taylor/` | truncated series, modulo a prime, in double precision or in ranges |
-//! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `branch.rs`, `squares.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and what it decides |
+//! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `branch.rs`, `squares.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and the decisions it allows |
 //! | `ball/` | numbers of 76 digits with bounds of their errors |
 //! | `interval.rs`, `enclose.rs` | certified ranges, and expressions that are never 0 |
 //! | `simplify.rs`, `expand.rs`, `print/` | presentation |

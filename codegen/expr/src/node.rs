@@ -1,4 +1,4 @@
-//! What an expression is: the node types, and the names of nodes and symbols.
+//! Nodes of expressions: their types, and the names of nodes and symbols.
 
 use crate::function::Function;
 use crate::rational::Rational;
@@ -30,10 +30,10 @@ macro_rules! id {
 id!(SymbolId);
 id!(ExprId);
 
-/// What is known of a symbol; every symbol is a finite real number.
+/// Assumption on a symbol. Every symbol is a finite real number.
 #[derive(Copy, Clone, Eq, PartialEq, Hash, Debug)]
 pub enum Assumption {
-    /// Nothing more.
+    /// No further condition.
     None,
     /// Greater than 0.
     Positive,
@@ -60,7 +60,7 @@ pub enum Node {
     Sum {
         /// The numeric summand.
         constant: Rational,
-        /// Coefficients and what they multiply.
+        /// Coefficients and their terms.
         terms: Box<[(Rational, ExprId)]>,
     },
     /// Product of `base^exponent`, in order of base and exponent; a single entry is a power.
@@ -109,7 +109,7 @@ impl Node {
         bits
     }
 
-    /// What making the node costs of a pool's budget.
+    /// Steps of a pool's budget that making the node takes.
     pub(crate) fn steps(&self) -> u64 {
         let mut steps = 1;
         self.for_each_operand(|_| steps += 1);

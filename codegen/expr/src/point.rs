@@ -8,7 +8,7 @@ use crate::intern::WordHash;
 use crate::node::{Assumption, SymbolId};
 use crate::rational::Rational;
 
-/// Why expressions have no value at a point; another point may do.
+/// Reason why expressions have no value at a point. They may have one at another.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum ModularFailure {
     /// A denominator is 0 there.
@@ -32,7 +32,7 @@ pub struct ModularPoint {
     atoms: HashMap<(Atom, u64, u64), (u64, u64), WordHash>,
 }
 
-/// What an atom stands for; its arguments are residues.
+/// Kinds of atoms. Their arguments are residues.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, Debug)]
 pub(crate) enum Atom {
     Symbol,
@@ -108,7 +108,7 @@ impl ModularPoint {
     /// `-x`, exponentials of it are replaced to match.
     ///
     /// # Errors
-    /// If the angle is divided into parts of which half a turn has no multiple of `pi/12`.
+    /// If the angle is divided into parts that make half a turn no multiple of `pi/12`.
     pub fn move_symbol(
         &mut self,
         symbol: SymbolId,

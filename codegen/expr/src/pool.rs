@@ -1,4 +1,4 @@
-//! Where expressions are kept: symbols, nodes, and what is known of each node from its structure.
+//! Storage of expressions: symbols, nodes, and the properties that the structure of each node shows.
 
 use std::collections::HashMap;
 
@@ -9,8 +9,8 @@ use crate::sign::Sign;
 
 /// A set of expressions in which equal expressions have equal ids.
 ///
-/// A pool may have a budget of steps (see [`Pool::with_budget`]). When it is spent, every constructor gives the
-/// expression 1, so that whatever is going on ends soon without an answer, and [`Pool::is_exhausted`] says so.
+/// A pool may have a budget of steps (see [`Pool::with_budget`]). When it is spent, every constructor gives the expression
+/// 1: computations end soon, without an answer, and [`Pool::is_exhausted`] is true.
 #[derive(Clone, Debug)]
 pub struct Pool {
     symbols: Vec<Symbol>,
@@ -31,7 +31,7 @@ struct Symbol {
     assumption: Assumption,
 }
 
-/// What is known of a node since its creation.
+/// Properties of a node, found at its creation.
 #[derive(Copy, Clone, Debug)]
 struct Facts {
     sign: Sign,
@@ -73,17 +73,17 @@ impl Pool {
         pool
     }
 
-    /// Whether the budget is spent: expressions made since then are not what was asked for.
+    /// True if the budget is spent. Expressions made since then are not the ones that were asked for.
     pub fn is_exhausted(&self) -> bool {
         self.budget == 0
     }
 
-    /// From here on there is no budget.
+    /// Removes the budget.
     pub fn lift_budget(&mut self) {
         self.budget = u64::MAX;
     }
 
-    /// How deep expressions stand within an expression; 0 for one without parts.
+    /// Depth of nesting of an expression; 0 for one without parts.
     pub fn depth(&self, id: ExprId) -> usize {
         self.facts[id.index()].depth as usize
     }
@@ -115,7 +115,7 @@ impl Pool {
         &self.symbols[symbol.index()].latex
     }
 
-    /// What is known of a symbol.
+    /// Assumption on a symbol.
     pub fn symbol_assumption(&self, symbol: SymbolId) -> Assumption {
         self.symbols[symbol.index()].assumption
     }
@@ -163,7 +163,7 @@ impl Pool {
         }
     }
 
-    /// Whether the expression is the number 0.
+    /// True if the expression is the number 0.
     pub fn is_syntactic_zero(&self, id: ExprId) -> bool {
         id == self.zero()
     }
@@ -173,17 +173,17 @@ impl Pool {
         self.facts[id.index()].sign
     }
 
-    /// Whether the expression is seen to be finite for all values of its symbols that satisfy their assumptions.
+    /// True if the structure shows that the expression is finite for all values of its symbols that satisfy their assumptions.
     pub fn is_finite(&self, id: ExprId) -> bool {
         self.facts[id.index()].finite
     }
 
-    /// Whether a symbol occurs in an expression.
+    /// True if a symbol occurs in an expression.
     pub fn depends_on(&self, id: ExprId, symbol: SymbolId) -> bool {
         self.sets.contains(self.facts[id.index()].symbols, symbol)
     }
 
-    /// Whether any of the symbols occurs in an expression.
+    /// True if any of the symbols occurs in an expression.
     pub fn depends_on_any(&self, id: ExprId, symbols: &[SymbolId]) -> bool {
         symbols.iter().any(|symbol| self.depends_on(id, *symbol))
     }
@@ -193,7 +193,7 @@ impl Pool {
         self.sets.members(self.facts[id.index()].symbols)
     }
 
-    /// Whether no symbol occurs in an expression.
+    /// True if no symbol occurs in an expression.
     pub fn is_constant(&self, id: ExprId) -> bool {
         self.facts[id.index()].symbols == SymbolSets::EMPTY
     }

@@ -1,15 +1,15 @@
 //! Constructors of products and powers: `product of base^exponent` in the normal form of [`Node::Product`].
 //!
-//! Exponents of one base are added, and beside the total it is kept what the single powers demanded of the base:
-//! `x^-1` that it is not 0, `x^(1/2)` that it is not negative. Where the power of the total demands less and the base
-//! is not known to comply, a guard keeps the domain; see [`Pool::settle`].
+//! Exponents of one base are added. The demands of the single powers on the base are kept beside the total: `x^-1` demands
+//! that it is not 0, `x^(1/2)` that it is not negative. Where the power of the total demands less and the base is not
+//! known to comply, a guard keeps the domain; see [`Pool::settle`].
 
 use crate::node::{ExprId, Node};
 use crate::pool::Pool;
 use crate::rational::Rational;
 use crate::sign::is_even;
 
-/// What powers demand of their base.
+/// Demands of powers on their base.
 #[derive(Copy, Clone, Default)]
 struct Demand {
     nonzero: bool,
@@ -17,7 +17,7 @@ struct Demand {
 }
 
 impl Demand {
-    /// What `x^exponent` demands of `x`.
+    /// Demand of `x^exponent` on `x`.
     fn of(exponent: &Rational) -> Self {
         Self {
             nonzero: exponent.is_negative(),
@@ -158,7 +158,7 @@ impl Pool {
         }
     }
 
-    /// Whether [`Pool::expand`] takes `base^exponent` apart; guards `sqrt(x)^n` and plain powers stay.
+    /// True if [`Pool::expand`] takes `base^exponent` apart; guards `sqrt(x)^n` and plain powers stay.
     fn is_expandable(&self, base: ExprId, exponent: &Rational) -> bool {
         exponent.is_integer()
             && match self.node(base) {
@@ -272,7 +272,7 @@ impl Pool {
         self.expand(factors, inside, exponent);
     }
 
-    /// Appends `base^exponent` with what is needed to keep the demand on the base.
+    /// Appends `base^exponent` with the guards that keep the demand on the base.
     ///
     /// | missing | total | appended |
     /// |---|---|---|

@@ -1,4 +1,4 @@
-//! What a set of expressions is made of, as far as it decides how much a modular evaluation proves.
+//! Properties of a set of expressions that decide how much a modular evaluation proves.
 
 use crate::function::{Function, Residue};
 use crate::node::{ExprId, Node};
@@ -20,7 +20,7 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// Whether a value other than 0 modulo a prime proves that an expression is not 0.
+    /// True if a value other than 0 modulo a prime proves that an expression is not 0.
     pub fn is_exact(&self) -> bool {
         !self.branches && !self.hidden_relations
     }

@@ -15,18 +15,17 @@ pub struct RankReport {
     pub rank: usize,
     /// The rows that do not depend on earlier rows, in order.
     pub independent_rows: Vec<usize>,
-    /// Every other row, with the earlier independent rows of which it is a combination with coefficients other than
-    /// 0; a row of zeros has none.
+    /// Every other row, with the earlier independent rows that it combines with coefficients other than 0; a row of zeros has none.
     pub dependencies: Vec<(usize, Vec<usize>)>,
     /// For each independent row, in the same order, the column of its pivot: the first in which it differs from the
     /// combinations of the rows before.
     pub pivot_columns: Vec<usize>,
-    /// Whether the independence is sure. It is not if the entries could not be evaluated, or if they contain functions
+    /// True if the independence is certain. It is not if the entries could not be evaluated, or if they contain functions
     /// whose hidden relations the residues do not show and values in double precision do not confirm the rank.
     pub decided: bool,
 }
 
-/// Points, without roots and with them: a hidden sign of theirs may be such that rows are dependent.
+/// Numbers of points, without roots and with roots. A hidden sign of a root may make rows dependent at a point.
 const SAMPLES: (usize, usize) = (3, 24);
 const REAL_SAMPLES: u64 = 12;
 
@@ -62,7 +61,7 @@ impl Pool {
         report
     }
 
-    /// Whether the matrix has at least this rank at some real point, clearly.
+    /// True if the matrix clearly has at least this rank at some real point.
     fn has_real_rank(&self, rows: &[Vec<ExprId>], roots: &[ExprId], rank: usize) -> bool {
         rank == 0
             || (0..REAL_SAMPLES).any(|seed| {
@@ -102,7 +101,7 @@ struct EchelonRow {
     combination: Vec<u64>,
 }
 
-/// Row by row: what is left of a row after the rows before it is independent, or 0.
+/// Eliminates row by row: the remainder of a row after the rows before it is independent of them, or 0.
 fn eliminate(field: Modulus, rows: &[Vec<ExprId>], values: Vec<u64>) -> RankReport {
     let mut report = undecided();
     let mut echelon: Vec<EchelonRow> = Vec::new();

@@ -47,17 +47,17 @@ impl Rational {
         Self::from_i128(i128::from(numer), i128::from(denom))
     }
 
-    /// Whether it is 0.
+    /// True if it is 0.
     pub fn is_zero(&self) -> bool {
         matches!(self.0, Parts::Small(0, _))
     }
 
-    /// Whether it is 1.
+    /// True if it is 1.
     pub fn is_one(&self) -> bool {
         matches!(self.0, Parts::Small(1, 1))
     }
 
-    /// Whether it is less than 0.
+    /// True if it is less than 0.
     pub fn is_negative(&self) -> bool {
         match &self.0 {
             Parts::Small(n, _) => *n < 0,
@@ -65,12 +65,12 @@ impl Rational {
         }
     }
 
-    /// Whether it is greater than 0.
+    /// True if it is greater than 0.
     pub fn is_positive(&self) -> bool {
         !self.is_zero() && !self.is_negative()
     }
 
-    /// Whether its denominator is 1.
+    /// True if its denominator is 1.
     pub fn is_integer(&self) -> bool {
         match &self.0 {
             Parts::Small(_, d) => *d == 1,

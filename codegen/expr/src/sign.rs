@@ -1,4 +1,4 @@
-//! What the structure of an expression shows of its sign and of its being finite.
+//! Sign and finiteness of an expression, as far as its structure shows them.
 //!
 //! A sign holds wherever the expression is defined: `1/x` is [`Sign::NonZero`], because it is undefined where `x`
 //! is 0. Finiteness is total: it holds for all values of the symbols that satisfy their assumptions.
@@ -37,17 +37,17 @@ impl Sign {
         }
     }
 
-    /// Whether it excludes 0.
+    /// True if it excludes 0.
     pub fn is_nonzero(self) -> bool {
         matches!(self, Self::Positive | Self::Negative | Self::NonZero)
     }
 
-    /// Whether it excludes negative values.
+    /// True if it excludes negative values.
     pub fn is_nonnegative(self) -> bool {
         matches!(self, Self::Positive | Self::NonNegative | Self::Zero)
     }
 
-    /// Whether it excludes positive values.
+    /// True if it excludes positive values.
     pub fn is_nonpositive(self) -> bool {
         matches!(self, Self::Negative | Self::NonPositive | Self::Zero)
     }
@@ -99,7 +99,7 @@ impl Sign {
     }
 }
 
-/// Whether an integer is even.
+/// True if an integer is even.
 pub(crate) fn is_even(value: &Rational) -> bool {
     (value * &Rational::HALF).is_integer()
 }
@@ -159,7 +159,7 @@ impl Pool {
         }
     }
 
-    /// Whether a function has a value at an argument that has one; `None` if that is not known.
+    /// True if a function has a value at an argument that has one; `None` if that is not known.
     fn has_value(&self, function: Function, argument: ExprId) -> Option<bool> {
         match function.arguments() {
             Arguments::All => Some(true),
@@ -172,9 +172,8 @@ impl Pool {
         }
     }
 
-    /// Whether a part of the expression is a constant without a real value that its form gives away: a negative
-    /// power of 0, a root of a negative number, `ln` of a number that is not positive, `asin` or `acos` outside
-    /// `[-1, 1]`.
+    /// True if a part of the expression is a constant whose form shows that it has no real value: a negative power of 0, a
+    /// root of a negative number, `ln` of a number that is not positive, `asin` or `acos` outside `[-1, 1]`.
     pub fn is_undefined_constant(&self, id: ExprId) -> bool {
         self.reachable(&[id])
             .into_iter()

@@ -1,8 +1,9 @@
 //! Random points at which many roots and logarithms have values.
 //!
-//! A root or a logarithm has a value modulo a prime where its argument is a square, as half of the residues are: with `k`
-//! independent arguments one point of `2^k` will do. So symbols are drawn again a few at a time: first those of the
-//! argument with the fewest, until it and all others that are known by then are squares, and so on with the rest.
+//! A root or a logarithm has a value modulo a prime where its argument is a square, as half of the residues are: of `2^k`
+//! points, one is suitable for `k` independent arguments. Symbols are therefore drawn a few at a time. The first are those
+//! of the argument with the fewest symbols, until this argument and all others whose symbols are drawn by then are
+//! squares. The rest follows in the same way.
 
 use crate::field::mix;
 use crate::function::Function;
@@ -10,7 +11,7 @@ use crate::node::{ExprId, Node, SymbolId};
 use crate::point::ModularPoint;
 use crate::pool::Pool;
 
-/// So many arguments are left to chance.
+/// Largest number of arguments whose points are left to chance.
 const BY_CHANCE: usize = 4;
 /// Arguments of one step beyond which a degree is too large to prove anything.
 const MOST_ARGUMENTS: usize = 64;
@@ -125,8 +126,8 @@ impl Squares {
         Self { steps }
     }
 
-    /// Draws the symbols of a point that were not set until all arguments are squares; `None` if those of a step are not at any of its
-    /// draws.
+    /// Draws the symbols of a point that were not set until all arguments are squares. `None` if the arguments of a step
+    /// are not all squares at any of its draws.
     pub(crate) fn settle(&self, pool: &Pool, point: &mut ModularPoint, seed: u64) -> Option<()> {
         for step in &self.steps {
             let mut free = step.symbols.clone();

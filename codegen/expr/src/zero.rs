@@ -1,4 +1,4 @@
-//! Whether an expression is identically zero, in three answers.
+//! Zero tests of expressions, with three answers.
 //!
 //! Values at random points modulo primes, see [`Pool::modular_eval`], decide:
 //! - 0 at enough points: [`Verdict::Proved`]. The chance of an accident is `degree / p` per point (Schwartz, Zippel),
@@ -45,7 +45,7 @@ pub(crate) const CLEAR: f64 = 1e-6;
 const MAX_NODES: usize = 1 << 20;
 
 impl Pool {
-    /// Whether an expression is 0 for all values of its symbols that satisfy their assumptions.
+    /// Tests if an expression is 0 for all values of its symbols that satisfy their assumptions.
     pub fn zero_test(&self, id: ExprId) -> Verdict {
         if self.is_syntactic_zero(id) {
             return Verdict::Proved;
@@ -68,7 +68,7 @@ impl Pool {
         }
     }
 
-    /// Whether all sampled residues are 0; `None` if there were not enough.
+    /// True if all sampled residues are 0; `None` if there were not enough.
     fn vanishes_modularly(&self, id: ExprId, order: &[ExprId], profile: &Profile) -> Option<bool> {
         let wanted = sample_count(profile);
         let mut points = SamplePoints::new(self, order, profile, 0)?;
@@ -86,7 +86,7 @@ impl Pool {
         (!covered.holds || is_worth).then_some(covered.holds)
     }
 
-    /// Whether values at real points are different from 0 beyond any doubt of rounding.
+    /// True if values at real points differ from 0 by more than any rounding error.
     fn is_clearly_nonzero(&self, id: ExprId) -> bool {
         let (mut valid, mut witnesses) = (0, 0);
         for seed in 0..REAL_DRAWS {
@@ -176,7 +176,7 @@ impl SamplePoints {
         self
     }
 
-    /// The same points, whether or not roots have values there.
+    /// The same points, without regard to the values of roots there.
     pub(crate) fn unsettled(mut self) -> Self {
         self.squares = Squares::default();
         self

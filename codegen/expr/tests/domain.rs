@@ -1,5 +1,4 @@
-//! Random expressions: what the constructors build has the value of the expression as written, and is undefined
-//! where that is undefined.
+//! Random expressions: a built expression has the value of the expression as written, and is undefined where that is undefined.
 
 #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
 
@@ -145,9 +144,9 @@ fn built_value(pool: &Pool, id: ExprId, point: &[f64]) -> Option<f64> {
         .then(|| *values.last().unwrap())
 }
 
-/// Whether a value hinges on rounding: it moves by much, or comes or goes, when the point moves by little.
+/// True if the value is sensitive to rounding: it changes by much, appears or disappears, when the point moves by little.
 ///
-/// Coordinates that are 0 stay: what happens there is the point of the test.
+/// Coordinates that are 0 stay: the behaviour there is the subject of the test.
 fn is_fragile(written: &Written, point: &[f64]) -> bool {
     let moved = |pattern: usize| {
         let shift = |k: usize| {

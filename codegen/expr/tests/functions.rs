@@ -1,5 +1,5 @@
-//! What is known of each function - parity, exact values, sign, domain - agrees with its values. A function that is
-//! added is tested here without a change.
+//! The known properties of each function - parity, exact values, sign, domain - agree with its values. A new function is
+//! tested here without a change.
 
 use dalembert_expr::{Assumption, ExprId, Function, Pool, Rational, Sign};
 
@@ -15,7 +15,7 @@ fn samples(assumption: Assumption) -> Vec<f64> {
     all.into_iter().filter(allowed).collect()
 }
 
-/// The value of a function without any rewrite: of a symbol of which nothing is known.
+/// The value of a function without any rewrite: its argument is a symbol without assumption.
 fn plain(function: Function, x: f64) -> f64 {
     let mut pool = Pool::new();
     let symbol = pool.symbol("x", "x", Assumption::None);
@@ -61,10 +61,10 @@ fn for_each_call(mut check: impl FnMut(&Pool, Function, ExprId, f64, f64)) {
 #[test]
 fn rewrites_keep_the_value() {
     for_each_call(|pool, function, call, x, argument| {
-        let (own, expected) = (pool.eval(&[call], &|_| x)[0], plain(function, argument));
+        let (value, expected) = (pool.eval(&[call], &|_| x)[0], plain(function, argument));
         assert!(
-            agree(own, expected),
-            "{} at {argument}: {own} for {expected}",
+            agree(value, expected),
+            "{} at {argument}: {value} for {expected}",
             pool.text(call)
         );
     });
@@ -103,18 +103,18 @@ fn exact_values_are_the_values() {
             ];
             for (argument, x) in arguments {
                 let call = pool.call(function, argument);
-                let (own, expected) = (pool.eval(&[call], &|_| 0.0)[0], plain(function, x));
+                let (value, expected) = (pool.eval(&[call], &|_| 0.0)[0], plain(function, x));
                 let text = pool.text(call);
                 // At a pole a rounded argument gives a large number.
                 let pole = expected.abs() > 1e15;
                 assert!(
-                    agree(own, expected) || pole,
+                    agree(value, expected) || pole,
                     "{}({x}) as {text}",
                     function.name()
                 );
                 assert!(!pool.is_undefined_constant(call) || !expected.is_finite());
                 assert!(!pool.is_finite(call) || expected.is_finite() && !pole);
-                assert!(!contradicts(pool.sign(call), own), "{text}");
+                assert!(!contradicts(pool.sign(call), value), "{text}");
             }
         }
     }

@@ -7,7 +7,7 @@
 //! atan x    y by Newton's method;  atan x - y = atan u,  u = (x cos y - sin y)/(cos y + x sin y),   |atan u| <= |u|
 //! ```
 //!
-//! What is left out of the sums is at most twice its first term, by size: their terms fall at least as fast as `2^-k`.
+//! The terms left out of a sum add up to at most twice the first of them, by size: terms fall at least as fast as `2^-k`.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -21,7 +21,7 @@ const SMALL: i32 = 8;
 /// Terms of a sum in `t^k`, and in `t^(2k)`: those that are left out are below `2^-256`.
 const TERMS: u64 = 22;
 const SQUARES: u64 = 11;
-/// Arguments beyond have no exponential, or a sine of which only the bounds are known.
+/// Size of arguments beyond which exponentials are out of reach and sines have only the bounds -1 and 1.
 const FAR: f64 = 1e6;
 
 impl Ball {

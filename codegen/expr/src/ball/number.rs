@@ -308,7 +308,7 @@ impl Mul for Ball {
 mod tests {
     use super::*;
 
-    /// Whether the ball contains a fraction, by exact arithmetic on fractions that balls of radius 0 hold.
+    /// Asserts that the ball contains a fraction, which `value` holds with radius 0.
     fn contains(ball: Ball, value: Ball, what: &str) {
         let distance = ball.midpoint().sub(value);
         assert!(
@@ -346,7 +346,7 @@ mod tests {
             contains(wide.sqrt().unwrap(), value.sqrt().unwrap(), "sqrt(x)");
             contains(wide.mul(wide), value.mul(value), "x^2");
             let exponent = Rational::new(-7, 3);
-            let [of_wide, of_value] = [wide, value].map(|own| own.power(&exponent).unwrap());
+            let [of_wide, of_value] = [wide, value].map(|base| base.power(&exponent).unwrap());
             contains(of_wide, of_value, "x^(-7/3)");
         }
         let around = Ball::ZERO.widened(1.0);

@@ -11,7 +11,7 @@ const WORDS: usize = 4;
 /// Bits of a mantissa.
 pub(super) const BITS: i32 = 64 * WORDS as i32;
 
-/// `mantissa * 2^exponent`, with the other sign if it is negative; the words of the mantissa begin with the lowest.
+/// `mantissa * 2^exponent`, with the other sign if it is negative. The lowest word of the mantissa comes first.
 ///
 /// NOTE: the highest bit of the mantissa is 1 unless the number is 0, whose exponent is 0 and which is not negative.
 #[derive(Copy, Clone, PartialEq, Eq, Debug, Default)]
@@ -112,7 +112,7 @@ impl Wide {
         self.leading(0, power_of_two(1023), 0.0)
     }
 
-    /// The first 53 bits, with an integer added in the last place; other values beyond the range of doubles.
+    /// The first 53 bits, with an integer added in the last place; `above` and `below` beyond the range of doubles.
     fn leading(&self, added: u64, above: f64, below: f64) -> f64 {
         if self.is_zero() {
             return 0.0;
@@ -283,7 +283,7 @@ fn normalised(is_negative: bool, mut mantissa: [u64; WORDS], mut exponent: i32) 
     }
 }
 
-/// A mantissa without its lowest bits, and whether one of them was 1.
+/// A mantissa without its lowest bits. True if one of these bits was 1.
 fn shifted_right(mantissa: &[u64; WORDS], shift: i32) -> ([u64; WORDS], bool) {
     if shift >= BITS {
         return ([0; WORDS], *mantissa != [0; WORDS]);
@@ -311,7 +311,7 @@ fn shifted_right(mantissa: &[u64; WORDS], shift: i32) -> ([u64; WORDS], bool) {
     (result, is_cut)
 }
 
-/// The sum, and whether a bit beyond the highest is missing.
+/// The sum. True if a bit beyond the highest is missing.
 fn added(a: &[u64; WORDS], b: &[u64; WORDS]) -> ([u64; WORDS], bool) {
     let mut sum = [0; WORDS];
     let mut carry = false;

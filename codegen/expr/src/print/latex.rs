@@ -99,7 +99,7 @@ fn render_power(pool: &Pool, base: &Layout, exponent: &Rational) -> String {
     }
 }
 
-/// Whether the exponent is written after the function's name, `\cos^{2}(x)`.
+/// True if the exponent is written after the function's name, `\cos^{2}(x)`.
 fn takes_power(function: Function) -> bool {
     matches!(function.notation(), Notation::Command(_))
 }

@@ -1,4 +1,4 @@
-//! How an expression is arranged: quotients, signs, common factors, order.
+//! Arrangement of an expression: quotients, signs, common factors, order.
 
 use std::collections::VecDeque;
 
@@ -18,7 +18,7 @@ pub(super) enum Layout {
     Integer(String),
     Pi,
     Symbol(SymbolId),
-    /// Summands, each with whether it is subtracted.
+    /// Summands; true for those that are subtracted.
     Sum(Vec<(bool, Layout)>),
     /// A product over a product; an empty numerator is 1.
     Quotient(Vec<Layout>, Vec<Layout>),
@@ -34,7 +34,7 @@ pub(super) enum Layout {
 /// `coefficient * product of base^exponent`
 type Term = (Rational, Vec<(ExprId, Rational)>);
 
-/// A factor of a product: an expression or what is left of a sum without its common factors.
+/// A factor of a product: an expression, or the rest of a sum without its common factors.
 enum Base {
     Expression(ExprId),
     Sum(Vec<Term>),
@@ -207,8 +207,7 @@ fn multiply(bases: &mut Vec<(Base, Rational)>, base: ExprId, exponent: Rational)
     bases.push((Base::Expression(base), exponent));
 }
 
-/// Changes the sign of a sum that has a negative summand and an odd power, or of any sum if `always`; whether it
-/// found one.
+/// Changes the sign of a sum that has a negative summand and an odd power, or of any sum if `always`. True if it found one.
 fn flip_one_sum(bases: &mut [(Base, Rational)], always: bool) -> bool {
     let alone = always && bases.len() == 1;
     for (base, exponent) in bases {

@@ -4,7 +4,7 @@ use super::layout::Layout;
 use crate::pool::Pool;
 use crate::rational::Rational;
 
-/// How tightly the outermost operation binds.
+/// Precedence of the outermost operation.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Sum,

@@ -43,7 +43,7 @@ pub trait Arithmetic: Copy {
         terms: &[(u32, Self::Scalar)],
     );
 
-    /// Whether `a` is 0.
+    /// True if `a` is 0.
     fn is_zero(self, a: Self::Scalar) -> bool {
         a == self.integer(0)
     }

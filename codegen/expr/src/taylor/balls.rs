@@ -163,7 +163,8 @@ impl RangePoint for BallPoint {
     const CLOSE: f64 = 1e-60;
 
     fn of(point: &RealPoint) -> Self {
-        let range = |value: &f64| decimal(*value).map_or(Ball::WHOLE, |own| Ball::rational(&own));
+        let range =
+            |value: &f64| decimal(*value).map_or(Ball::WHOLE, |number| Ball::rational(&number));
         Self {
             values: point.coordinates().iter().map(range).collect(),
         }

@@ -11,12 +11,13 @@ use crate::node::{ExprId, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
 
-/// A point whose numbers are ranges: what is known of a range holds for the number that is meant.
+/// A point whose numbers are ranges. Each range contains the exact number.
 pub trait RangePoint: ExpansionPoint + Clone {
     /// A part of a number that is a few times its uncertainty after some operations.
     const CLOSE: f64;
 
-    /// The point whose coordinates are the shortest decimal numbers that round to those of `point`: what is printed of it is exact.
+    /// The point whose coordinates are the shortest decimal numbers that round to those of `point`. Printed coordinates
+    /// are therefore exact.
     fn of(point: &RealPoint) -> Self;
 
     /// The side of 0 on which the whole range is; `None` if 0 or numbers on both sides are inside.
@@ -174,8 +175,9 @@ impl RangePoint for EnclosedPoint {
     const CLOSE: f64 = 1e-13;
 
     fn of(point: &RealPoint) -> Self {
-        let range =
-            |value: &f64| decimal(*value).map_or(Interval::WHOLE, |own| Interval::rational(&own));
+        let range = |value: &f64| {
+            decimal(*value).map_or(Interval::WHOLE, |number| Interval::rational(&number))
+        };
         let ranges = point.coordinates().iter().map(range);
         Self {
             ranges: (0..).map(SymbolId::from_index).zip(ranges).collect(),

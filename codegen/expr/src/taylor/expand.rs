@@ -9,7 +9,7 @@ use crate::point::ModularPoint;
 use crate::pool::Pool;
 use crate::rational::Rational;
 
-/// Where expressions are expanded: the values of symbols, and with them of all expressions.
+/// A point at which expressions are expanded: the values of symbols, and with them of all expressions.
 pub trait ExpansionPoint {
     /// The coefficients of series.
     type Field: Arithmetic;
@@ -189,7 +189,7 @@ struct Expansion<'e, 's, P: ExpansionPoint> {
     jets: &'e Jets<'s, P::Field>,
     point: &'e mut P,
     values: &'e [Scalar<P>],
-    /// What is known, by id.
+    /// Series known so far, by id.
     series: Vec<Series<P>>,
 }
 
@@ -290,8 +290,8 @@ impl<P: ExpansionPoint> Expansion<'_, '_, P> {
             }
             Abs => {
                 let u = self.of(argument);
-                let own = jets.field.inv(jets.value(u))?;
-                Some(jets.scale(jets.field.mul(own, value), u))
+                let inverse = jets.field.inv(jets.value(u))?;
+                Some(jets.scale(jets.field.mul(inverse, value), u))
             }
         }
     }
@@ -363,11 +363,11 @@ mod tests {
             for (k, (derivative, factorial)) in wanted.into_iter().enumerate() {
                 let order = fixture.pool.reachable(&[derivative]);
                 let value = point.values(&fixture.pool, &order).unwrap()[derivative.index()];
-                let own = series.get(k).copied().unwrap_or(field.integer(0));
-                let own = field.mul(own, field.integer(factorial));
+                let coefficient = series.get(k).copied().unwrap_or(field.integer(0));
+                let coefficient = field.mul(coefficient, field.integer(factorial));
                 assert!(
-                    near(own, value),
-                    "{text}, monomial {k}: {own:?} is not {value:?}"
+                    near(coefficient, value),
+                    "{text}, monomial {k}: {coefficient:?} is not {value:?}"
                 );
             }
         }

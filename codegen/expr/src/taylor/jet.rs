@@ -21,7 +21,7 @@ pub struct Jets<'s, A> {
     order: usize,
 }
 
-/// Whether the second derivative of a pair of functions is minus or plus the function.
+/// Pairs of functions. The second derivative of each function is minus or plus the function.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub(super) enum Pair {
     /// `sin`, `cos`

@@ -1,4 +1,4 @@
-//! The monomials of a truncated series: in increasing degree, and how they multiply.
+//! The monomials of a truncated series, in increasing degree, and their products.
 
 use std::cell::OnceCell;
 
